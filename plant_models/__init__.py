@@ -1,0 +1,32 @@
+"""The plant: cars, retarders, pneumatics, friction, sensors and motion, in SI, without solver words."""
+
+from plant_models.cut import Car, Cut, couple
+from plant_models.errors import PlantError
+from plant_models.friction import Friction
+from plant_models.motion import PathCoefficients, braked_axles, mean_braked_axles, path_breaks_m, path_coefficients
+from plant_models.pneumatics import Pneumatics, PressureHistory
+from plant_models.retarder import PressingForce, RetarderPosition, WeightForce
+from plant_models.rolling_resistance import RollingResistance
+from plant_models.speed_sensor import DopplerSensor
+from plant_models.track_profile import TrackProfile
+
+__all__ = [
+    "Car",
+    "Cut",
+    "DopplerSensor",
+    "Friction",
+    "PathCoefficients",
+    "PlantError",
+    "Pneumatics",
+    "PressingForce",
+    "PressureHistory",
+    "RetarderPosition",
+    "RollingResistance",
+    "TrackProfile",
+    "WeightForce",
+    "braked_axles",
+    "couple",
+    "mean_braked_axles",
+    "path_breaks_m",
+    "path_coefficients",
+]

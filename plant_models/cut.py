@@ -1,0 +1,96 @@
+"""Cars and the cuts that they form: mass, axles, inertia of the rotating wheels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+from plant_models.errors import require, require_between
+
+GRAVITY_M_S2 = 9.81
+"""Acceleration of gravity g."""
+
+ROTATING_MASS_PER_AXLE_T = 0.42
+"""Equivalent mass of one rotating wheel set, J/r² (domain facts §2.5)."""
+
+
+@dataclass(frozen=True)
+class Car:
+    """One car type: where its axles stand and what it may weigh.
+
+    `axle_offsets_m` are distances of the axles behind the first axle (first entry 0, increasing);
+    `length_m` is over couplers; masses in tonnes.
+    """
+
+    name: str
+    axle_offsets_m: tuple[float, ...]
+    length_m: float
+    tare_t: float
+    gross_t: float
+
+    def __post_init__(self) -> None:
+        require_offsets(f"car {self.name}: axle_offsets_m", self.axle_offsets_m)
+        require_between(f"car {self.name}: length_m", self.length_m, self.axle_offsets_m[-1], 60.0)
+        require_between(f"car {self.name}: tare_t", self.tare_t, 1.0, 200.0)
+        require_between(f"car {self.name}: gross_t", self.gross_t, self.tare_t, 400.0)
+
+
+@dataclass(frozen=True)
+class Cut:
+    """A cut as the retarder sees it.
+
+    `axle_offsets_m`: distances of all axles behind the first (first entry 0, increasing), metres;
+    `mass_t`: mass of the whole cut, Q; `allowed_stage`: the highest braking stage that the weight
+    category may be given (light wheels slide or are squeezed out under the high ones).
+    """
+
+    category: str
+    mass_t: float
+    axle_offsets_m: tuple[float, ...]
+    allowed_stage: int
+
+    def __post_init__(self) -> None:
+        require_between("cut: mass_t", self.mass_t, 1.0, 20_000.0)
+        require_offsets("cut: axle_offsets_m", self.axle_offsets_m)
+        require(self.allowed_stage >= 1, f"cut: allowed_stage is {self.allowed_stage}; it must be at least 1")
+
+    @property
+    def axles(self) -> int:
+        """Number of axles n."""
+        return len(self.axle_offsets_m)
+
+    @property
+    def inertia_t(self) -> float:
+        """Q + 0.42 n: mass plus the equivalent mass of the wheel sets, tonnes."""
+        return self.mass_t + ROTATING_MASS_PER_AXLE_T * self.axles
+
+    @property
+    def reduced_gravity_m_s2(self) -> float:
+        """g' = g / (1 + 0.42 n / Q) (model §1)."""
+        return GRAVITY_M_S2 * self.mass_t / self.inertia_t
+
+    @property
+    def axle_load_t(self) -> float:
+        """Mean mass per axle, tonnes."""
+        return self.mass_t / self.axles
+
+
+def couple(cars: tuple[Car, ...], mass_t: float, category: str, allowed_stage: int) -> Cut:
+    """The cut made of `cars` coupled in this order, together weighing `mass_t` tonnes."""
+    require(len(cars) > 0, "cut: cars is empty; a cut has at least one car")
+    offsets: list[float] = []
+    front_coupler = 0.0
+    for car in cars:
+        overhang = (car.length_m - car.axle_offsets_m[-1]) / 2.0
+        offsets += [front_coupler + overhang + x for x in car.axle_offsets_m]
+        front_coupler += car.length_m
+    return Cut(category, mass_t, tuple(round(x - offsets[0], 6) for x in offsets), allowed_stage)
+
+
+def require_offsets(name: str, offsets_m: tuple[float, ...]) -> None:
+    """Raise unless the offsets start at 0 and increase."""
+    require(len(offsets_m) >= 1 and offsets_m[0] == 0.0, f"{name} is {offsets_m}; it must start with 0")
+    require(
+        all(b > a for a, b in pairwise(offsets_m)) and offsets_m[-1] < 2000.0,
+        f"{name} is {offsets_m}; it must increase and stay under 2000 m",
+    )

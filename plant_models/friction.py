@@ -1,0 +1,55 @@
+"""Friction factor ξ of a cut: persistent per cut, and correlated along the path (model §1)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.errors import require_between
+
+
+@dataclass(frozen=True)
+class Friction:
+    """ξ(s) = ξ_cut·(1 + η(s)).
+
+    ξ_cut ~ N(1, CV²) is drawn once per cut and kept, CV² = `common_cv`² + `axle_cv`²/N̄, and never falls
+    under `floor`; η is stationary and Gaussian with std `path_std` and exponential correlation over
+    `correlation_length_m`.
+    """
+
+    common_cv: float
+    axle_cv: float
+    path_std: float
+    correlation_length_m: float
+    floor: float = 0.3
+
+    def __post_init__(self) -> None:
+        for name in ("common_cv", "axle_cv", "path_std"):
+            require_between(f"friction: {name}", getattr(self, name), 0.0, 0.6)
+        require_between("friction: correlation_length_m", self.correlation_length_m, 0.01, 1000.0)
+        require_between("friction: floor", self.floor, 0.05, 0.9)
+
+    def cut_cv(self, mean_braked_axles: float) -> float:
+        """Coefficient of variation of ξ_cut with N̄ = `mean_braked_axles`."""
+        return math.sqrt(self.common_cv**2 + self.axle_cv**2 / max(mean_braked_axles, 1.0))
+
+    def cut_factor(self, z: NDArray[np.float64], cv: float) -> NDArray[np.float64]:
+        """ξ_cut for standard normal `z`."""
+        return np.maximum(self.floor, 1.0 + cv * z)
+
+    def path_cell_std(self, cell_m: NDArray[np.float64] | float) -> NDArray[np.float64]:
+        """Std of η as a constant per path cell of length `cell_m`.
+
+        Chosen so that the work of η over many cells has the variance of the continuous process:
+        σ²·(2ℓ/ΔS)·tanh(ΔS/2ℓ); it tends to σ for short cells and to the white equivalent
+        σ·sqrt(2ℓ/ΔS) for long ones (model §2, finding 3).
+        """
+        x = np.asarray(cell_m, dtype=np.float64) / (2.0 * self.correlation_length_m)
+        return self.path_std * np.sqrt(np.tanh(x) / x)
+
+    def path_correlation(self, distance_m: NDArray[np.float64] | float) -> NDArray[np.float64]:
+        """Correlation of η over `distance_m`."""
+        return np.exp(-np.asarray(distance_m, dtype=np.float64) / self.correlation_length_m)

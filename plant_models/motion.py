@@ -1,0 +1,91 @@
+"""Motion of a cut through a retarder position, reduced to coefficients per path cell.
+
+With e = v²/2 the equation of motion (model §1) reads, per metre of path,
+de/ds = g'(i(s) − w)·1e-3 − ξ(s)·β(s)·p, where p = max(0, P − P0) and
+β(s) = Σ over braked axles of K·c(N)/(Q + 0.42 n). Everything the solver and the simulator need of
+a cut and a position is i and β, exactly averaged over path cells.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.cut import Cut
+from plant_models.retarder import RetarderPosition
+from plant_models.track_profile import TrackProfile
+
+
+@dataclass(frozen=True)
+class PathCoefficients:
+    """Cell means along the path of the first axle.
+
+    `edges_m` shape (n + 1,); `gravity_m_s2` = g'·i·1e-3 and `brake_m_s2_per_kpa` = β, shape (n,);
+    `resistance_m_s2_per_n_kn` = g'·1e-3: deceleration by one N/kN of specific resistance.
+    """
+
+    edges_m: NDArray[np.float64]
+    gravity_m_s2: NDArray[np.float64]
+    brake_m_s2_per_kpa: NDArray[np.float64]
+    resistance_m_s2_per_n_kn: float
+
+    def __post_init__(self) -> None:
+        for array in (self.edges_m, self.gravity_m_s2, self.brake_m_s2_per_kpa):
+            array.setflags(write=False)
+
+
+def braked_axles(position: RetarderPosition, cut: Cut, s_m: NDArray[np.float64]) -> NDArray[np.int64]:
+    """N(s): wheel pairs inside any retarder of the position when the first axle stands at `s_m`."""
+    axle = np.asarray(s_m)[..., None] - np.asarray(cut.axle_offsets_m)
+    inside = np.zeros(axle.shape, dtype=bool)
+    for start, end in position.zones_m:
+        inside |= (axle >= start) & (axle < end)
+    count: NDArray[np.int64] = inside.sum(axis=-1)
+    return count
+
+
+def path_breaks_m(position: RetarderPosition, cut: Cut, profile: TrackProfile) -> NDArray[np.float64]:
+    """Sorted positions in [0, S_exit], both included, where N(s) or the grade under an axle changes."""
+    offsets = np.asarray(cut.axle_offsets_m)
+    marks = [edge for zone in position.zones_m for edge in zone] + list(profile.starts_m)
+    breaks = (np.asarray(marks)[:, None] + offsets).ravel()
+    exit_m = position.exit_m(cut)
+    inner = breaks[(breaks > 1e-9) & (breaks < exit_m - 1e-9)]
+    return np.unique(np.concatenate([[0.0], np.round(inner, 9), [exit_m]]))
+
+
+def path_coefficients(
+    position: RetarderPosition, cut: Cut, profile: TrackProfile, edges_m: NDArray[np.float64]
+) -> PathCoefficients:
+    """Exact means of gravity and brake coefficient over the cells between `edges_m`."""
+    fine = np.unique(np.concatenate([path_breaks_m(position, cut, profile), edges_m]))
+    middle = 0.5 * (fine[1:] + fine[:-1])
+    axles = braked_axles(position, cut, middle)
+    slope = np.array([0.0] + [n * position.force.slope_kn_per_kpa(cut, n) for n in range(1, cut.axles + 1)])
+    grade = profile.grade_permille(middle[:, None] - np.asarray(cut.axle_offsets_m)).mean(axis=1)
+    gravity = cut.reduced_gravity_m_s2 * 1e-3 * grade
+    return PathCoefficients(
+        edges_m=np.array(edges_m, dtype=np.float64),
+        gravity_m_s2=cell_means(fine, gravity, edges_m),
+        brake_m_s2_per_kpa=cell_means(fine, slope[axles] / cut.inertia_t, edges_m),
+        resistance_m_s2_per_n_kn=cut.reduced_gravity_m_s2 * 1e-3,
+    )
+
+
+def mean_braked_axles(position: RetarderPosition, cut: Cut) -> float:
+    """N̄: mean number of braked wheel pairs over the part of the path where any is braked."""
+    edges = path_breaks_m(position, cut, TrackProfile.uniform(0.0))
+    axles = braked_axles(position, cut, 0.5 * (edges[1:] + edges[:-1]))
+    length = np.diff(edges)
+    return float((axles * length).sum() / length[axles > 0].sum())
+
+
+def cell_means(
+    fine_edges: NDArray[np.float64], values: NDArray[np.float64], edges: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Means over coarse cells of a function constant between `fine_edges` (a refinement of `edges`)."""
+    integral = np.concatenate([[0.0], np.cumsum(values * np.diff(fine_edges))])
+    means: NDArray[np.float64] = np.diff(np.interp(edges, fine_edges, integral)) / np.diff(edges)
+    return means

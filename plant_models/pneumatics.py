@@ -1,0 +1,172 @@
+"""Pneumatic drive: relay pressure regulator, valve delays, first-order filling and exhausting (S4).
+
+The pressure after a command is known in advance, because the regulator is deterministic: it is worked
+out here once, as pieces of exponentials, for the solver and the simulator alike.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.errors import PlantError, require, require_between
+
+MAX_SWITCHINGS = 40
+"""After so many valve openings within one command the regulator is said to hunt."""
+
+
+@dataclass(frozen=True)
+class Pneumatics:
+    """Constants of the drive; pressures kPa gauge, times s (symbols of S4 in brackets)."""
+
+    supply_pressure_kpa: float
+    """[P_max]"""
+    exhaust_pressure_kpa: float
+    """[P_min]"""
+    brake_delay_s: float
+    """[tZ2] supply valve delay"""
+    touch_delay_s: float
+    """[t00] extra dead time while the pads do not touch (P ≤ P0)"""
+    release_delay_s: float
+    """[tZ0] exhaust valve delay"""
+    fill_time_constant_s: float
+    exhaust_time_constant_s: float
+    dead_band_kpa: float
+    """[ε] half dead band of the stage regulator"""
+    closing_delay_s: float = 0.0
+    """time for which a valve stays open after the pressure has reached the band"""
+
+    def __post_init__(self) -> None:
+        require_between("pneumatics: supply_pressure_kpa", self.supply_pressure_kpa, 1.0, 2000.0)
+        require_between(
+            "pneumatics: exhaust_pressure_kpa", self.exhaust_pressure_kpa, 0.0, self.supply_pressure_kpa - 1.0
+        )
+        for name in ("brake_delay_s", "touch_delay_s", "release_delay_s", "closing_delay_s"):
+            require_between(f"pneumatics: {name}", getattr(self, name), 0.0, 5.0)
+        for name in ("fill_time_constant_s", "exhaust_time_constant_s"):
+            require_between(f"pneumatics: {name}", getattr(self, name), 1e-3, 10.0)
+        require_between("pneumatics: dead_band_kpa", self.dead_band_kpa, 0.1, 200.0)
+
+    def require_reachable(self, stage_pressures_kpa: tuple[float, ...]) -> None:
+        """Raise unless every stage pressure can be reached and the dead bands do not overlap."""
+        band = self.dead_band_kpa
+        require(
+            stage_pressures_kpa[-1] - band < self.supply_pressure_kpa,
+            f"retarder: stage_pressures_kpa ends at {stage_pressures_kpa[-1]:g}; the supply of "
+            f"{self.supply_pressure_kpa:g} kPa cannot reach it: raise supply_pressure_kpa or lower the stage",
+        )
+        require(
+            stage_pressures_kpa[0] + band > self.exhaust_pressure_kpa,
+            f"retarder: stage_pressures_kpa starts at {stage_pressures_kpa[0]:g}, which exhausting to "
+            f"{self.exhaust_pressure_kpa:g} kPa cannot reach",
+        )
+        for low, high in pairwise(stage_pressures_kpa):
+            require(
+                high - low > 2 * band,
+                f"pneumatics: dead_band_kpa is {band:g}; the bands of the stages at {low:g} and {high:g} kPa overlap: "
+                "make it less than half their distance",
+            )
+
+    def respond(self, start_kpa: float, target_kpa: float, touch_kpa: float) -> PressureHistory:
+        """Pressure after the command `target_kpa`, given at t = 0 while the pressure rests at `start_kpa`.
+
+        Raises `PlantError` if the regulator hunts (closing delay too long for the dead band).
+        """
+        pieces: list[tuple[float, float, float, float]] = []
+        time, pressure = 0.0, start_kpa
+        for _ in range(MAX_SWITCHINGS):
+            error = target_kpa - pressure
+            if abs(error) <= self.dead_band_kpa * (1 + 1e-12):
+                pieces.append((time, pressure, pressure, 1.0))
+                return PressureHistory(*(np.array(column) for column in zip(*pieces, strict=True)))
+            if error > 0:
+                delay = self.brake_delay_s + (self.touch_delay_s if pressure <= touch_kpa else 0.0)
+                asymptote, constant = self.supply_pressure_kpa, self.fill_time_constant_s
+                until = target_kpa - self.dead_band_kpa
+            else:
+                delay = self.release_delay_s
+                asymptote, constant = self.exhaust_pressure_kpa, self.exhaust_time_constant_s
+                until = target_kpa + self.dead_band_kpa
+            pieces.append((time, pressure, pressure, 1.0))
+            pieces.append((time + delay, pressure, asymptote, constant))
+            open_s = constant * np.log((asymptote - pressure) / (asymptote - until)) + self.closing_delay_s
+            time += delay + open_s
+            pressure = float(asymptote + (pressure - asymptote) * np.exp(-open_s / constant))
+            if self.closing_delay_s == 0.0:
+                pressure = until  # exact, so that equal commands end at equal pressures
+        raise PlantError(
+            f"pneumatics: closing_delay_s is {self.closing_delay_s:g}; with a dead band of ±{self.dead_band_kpa:g} kPa "
+            f"the stage regulator hunts around {target_kpa:g} kPa: shorten the delay or widen the band"
+        )
+
+
+@dataclass(frozen=True)
+class PressureHistory:
+    """P(t) after one command, as pieces P∞ + (P_start − P∞)·exp(−(t − t_start)/T).
+
+    All arrays of shape (pieces,): `starts_s`, `pressures_kpa` at the starts, `asymptotes_kpa`,
+    `time_constants_s`. The last piece is constant and lasts for ever; it starts at `duration_s`.
+    """
+
+    starts_s: NDArray[np.float64]
+    pressures_kpa: NDArray[np.float64]
+    asymptotes_kpa: NDArray[np.float64]
+    time_constants_s: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        for array in (self.starts_s, self.pressures_kpa, self.asymptotes_kpa, self.time_constants_s):
+            array.setflags(write=False)
+
+    @property
+    def duration_s(self) -> float:
+        """Time from the command until the pressure rests, D."""
+        return float(self.starts_s[-1])
+
+    @property
+    def end_kpa(self) -> float:
+        """Pressure that is held in the end."""
+        return float(self.pressures_kpa[-1])
+
+    def pressure_kpa(self, t_s: NDArray[np.float64]) -> NDArray[np.float64]:
+        """P at the times `t_s` ≥ 0."""
+        piece = np.clip(np.searchsorted(self.starts_s, t_s, side="right") - 1, 0, None)
+        decay = np.exp(-(t_s - self.starts_s[piece]) / self.time_constants_s[piece])
+        asymptote = self.asymptotes_kpa[piece]
+        return asymptote + (self.pressures_kpa[piece] - asymptote) * decay
+
+    def mean_overpressure_kpa(self, edges_s: NDArray[np.float64], touch_kpa: float) -> NDArray[np.float64]:
+        """Exact mean of max(0, P − touch) between consecutive `edges_s`; shape (len(edges) − 1,)."""
+        integral = self.overpressure_integral(edges_s, touch_kpa)
+        return np.diff(integral) / np.diff(edges_s)
+
+    def overpressure_integral(self, t_s: NDArray[np.float64], touch_kpa: float) -> NDArray[np.float64]:
+        """∫₀ᵗ max(0, P − touch) dt in kPa·s, closed form piece by piece."""
+        total = np.zeros_like(t_s)
+        ends = np.append(self.starts_s[1:], np.inf)
+        for start, end, pressure, asymptote, constant in zip(
+            self.starts_s, ends, self.pressures_kpa, self.asymptotes_kpa, self.time_constants_s, strict=True
+        ):
+            x = np.clip(np.minimum(t_s, end) - start, 0.0, None)
+            total += exponential_overpressure(x, pressure - touch_kpa, asymptote - touch_kpa, constant)
+        return total
+
+
+def exponential_overpressure(
+    x_s: NDArray[np.float64], start_kpa: float, asymptote_kpa: float, constant_s: float
+) -> NDArray[np.float64]:
+    """∫₀ˣ max(0, a + (b − a)·e^(−t/T)) dt for b = `start_kpa`, a = `asymptote_kpa`, T = `constant_s`."""
+
+    def free(x: NDArray[np.float64]) -> NDArray[np.float64]:
+        return asymptote_kpa * x - (start_kpa - asymptote_kpa) * constant_s * np.expm1(-x / constant_s)
+
+    if start_kpa >= 0 and asymptote_kpa >= 0:
+        return free(x_s)
+    if start_kpa <= 0 and asymptote_kpa <= 0:
+        return np.zeros_like(x_s)
+    crossing = np.array(constant_s * np.log((asymptote_kpa - start_kpa) / asymptote_kpa))
+    if start_kpa > 0:
+        return free(np.minimum(x_s, crossing))
+    return free(np.maximum(x_s, crossing)) - free(crossing)

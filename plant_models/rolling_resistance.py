@@ -1,0 +1,53 @@
+"""Specific rolling resistance of a cut: one gamma-distributed draw per cut (domain facts §2.1)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.errors import require_between
+
+
+@dataclass(frozen=True)
+class RollingResistance:
+    """Specific resistance w0 in N/kN (= permille of weight), gamma distributed over cuts.
+
+    `mean_n_per_kn` and `std_n_per_kn` belong to the weight category; a zero std means w0 is known.
+    """
+
+    mean_n_per_kn: float
+    std_n_per_kn: float
+
+    def __post_init__(self) -> None:
+        require_between("rolling resistance: mean_n_per_kn", self.mean_n_per_kn, 0.01, 50.0)
+        require_between("rolling resistance: std_n_per_kn", self.std_n_per_kn, 0.0, 50.0)
+
+    @property
+    def shape(self) -> float:
+        """Gamma shape (mean/std)²; infinite when w0 is known."""
+        return (self.mean_n_per_kn / self.std_n_per_kn) ** 2 if self.std_n_per_kn > 0.0 else math.inf
+
+    @property
+    def scale_n_per_kn(self) -> float:
+        """Gamma scale std²/mean, N/kN."""
+        return self.std_n_per_kn**2 / self.mean_n_per_kn
+
+    def sample(self, rng: np.random.Generator, size: int) -> NDArray[np.float64]:
+        """`size` independent draws, N/kN."""
+        if self.std_n_per_kn == 0.0:
+            return np.full(size, self.mean_n_per_kn)
+        return rng.gamma(self.shape, self.scale_n_per_kn, size)
+
+    def nodes(self, count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Gauss quadrature of the gamma law: (values in N/kN, probabilities), each of shape (count,)."""
+        if count == 1 or self.std_n_per_kn == 0.0:
+            return np.array([self.mean_n_per_kn]), np.array([1.0])
+        # Golub–Welsch for the generalised Laguerre polynomials: Γ(shape) never appears, so that a narrow law
+        # (a large shape) does not overflow as scipy's roots_genlaguerre does.
+        i = np.arange(count)
+        beside = np.sqrt(i[1:] * (i[1:] + self.shape - 1.0))
+        x, vectors = np.linalg.eigh(np.diag(2.0 * i + self.shape) + np.diag(beside, 1) + np.diag(beside, -1))
+        return x * self.scale_n_per_kn, vectors[0] ** 2

@@ -1,0 +1,27 @@
+"""Doppler (radar) speed sensor: sampled in time, noisy, quantised (R9)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from plant_models.errors import require_between
+
+
+@dataclass(frozen=True)
+class DopplerSensor:
+    """Measured speed = round((v + noise)/resolution)·resolution, once every `sample_period_s`.
+
+    `noise_m_s`: std of white Gaussian noise; `resolution_m_s`: 0 means not quantised;
+    `computing_delay_s`: from the sample to the command on the valves' wires.
+    """
+
+    noise_m_s: float
+    resolution_m_s: float
+    sample_period_s: float
+    computing_delay_s: float
+
+    def __post_init__(self) -> None:
+        require_between("sensor: noise_m_s", self.noise_m_s, 0.0, 1.0)
+        require_between("sensor: resolution_m_s", self.resolution_m_s, 0.0, 1.0)
+        require_between("sensor: sample_period_s", self.sample_period_s, 0.005, 2.0)
+        require_between("sensor: computing_delay_s", self.computing_delay_s, 0.0, 2.0)

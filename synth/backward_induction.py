@@ -1,0 +1,123 @@
+"""Solve a problem: backward induction over path quanta to switching lines (R2)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.kernels.bellman import sweep
+from synth.problem import Criterion
+from synth.switching_lines import SwitchingLines
+from synth.transitions import Transitions
+
+
+TIE_M2_S2 = 1e-9
+"""Gains smaller than this are rounding: hold wins."""
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Result of a sweep.
+
+    `lines`: the common policy; `gain_down`, `gain_up` (N, K + 1, E): mean-square cost saved by a change of stage
+    at a measured speed (what the lines bound, and what R5's indifferent region is read from); `values`
+    (I, N + 1, H, L, E): estimated cost to go by scenario.
+    """
+
+    transitions: Transitions
+    target_speed_m_s: float
+    criterion: Criterion
+    lines: SwitchingLines
+    gain_down: NDArray[np.float64]
+    gain_up: NDArray[np.float64]
+    values: NDArray[np.float64]
+
+    @property
+    def status(self) -> str:
+        """One sentence: what was solved."""
+        shape = self.values.shape
+        return (
+            f"solved {shape[1] - 1} path quanta × {shape[2]} resting modes × {shape[4]} speeds × "
+            f"{shape[0]} scenarios × {shape[3]} noise levels for {self.target_speed_m_s:g} m/s"
+        )
+
+
+def solve(
+    transitions: Transitions,
+    target_speed_m_s: float,
+    criterion: Criterion,
+    occupancy: NDArray[np.float64] | None = None,
+) -> Solution:
+    """Backward induction for one target speed.
+
+    `occupancy` (I, N, H, L, E): expected samples in every hidden state under a former policy
+    (`policy_evaluation.Evaluation.density`); it turns the prior weights of the scenarios into posterior ones.
+    """
+    t = transitions
+    nodes, stages, points = len(t.drive_m_s2), t.actuator.stages, len(t.grid.speed_m_s)
+    shape = (len(t.scenarios.factor), nodes + 1, len(t.actuator.mode_stage), len(t.chain.levels), points)
+    values = np.empty(shape)
+    lower, upper = np.empty((nodes, stages)), np.empty((nodes, stages))
+    gain_down, gain_up = np.empty((nodes, stages, points)), np.empty((nodes, stages, points))
+    noise = measured_speed_std(t.plant.sensor.noise_m_s, t.plant.sensor.resolution_m_s)
+    start, smear = true_speed_weights(t.grid.speed_m_s, noise)
+    sweep(
+        (t.grid.speed_m_s - target_speed_m_s) ** 2,
+        target_speed_m_s**2 + criterion.stall_cost_m2_s2,
+        criterion.switching_tolerance_m2_s2, TIE_M2_S2, noise, start, smear,
+        np.empty((0,) * 5) if occupancy is None else occupancy, hidden_prior(t), *sweep_arguments(t),
+        t.scenarios.factor, t.scenarios.extra_m_s2, t.grid.path_step_m, t.grid.energy_step_m2_s2,
+        t.plant.sensor.sample_period_s, len(t.entry), values, lower, upper, gain_down, gain_up,
+    )  # fmt: skip
+    lines = SwitchingLines(t.grid.path_m, with_exit_node(lower), with_exit_node(upper))
+    return Solution(t, target_speed_m_s, criterion, lines, gain_down, gain_up, values)
+
+
+def sweep_arguments(t: Transitions) -> tuple[NDArray[np.float64], ...]:
+    """The plant's arrays in the order in which `sweep` takes them."""
+    a = t.landings
+    return (
+        t.grid.speed_m_s, t.actuator.mode_stage, t.actuator.mode_overpressure_kpa,
+        a.lower_chain, a.upper_chain, a.end_mode, a.travel_m, a.energy_m2_s2, a.factors,
+        t.noise.probability, t.noise.mean, t.noise.std, t.chain.levels, t.chain.transition,
+        t.drive_m_s2, t.brake_m_s2_per_kpa,
+    )  # fmt: skip
+
+
+def hidden_prior(t: Transitions) -> NDArray[np.float64]:
+    """Prior weights (I, H, L) of scenario, resting mode within its stage, and noise level."""
+    stage = t.actuator.mode_stage
+    per_mode = 1.0 / np.bincount(stage)[stage]
+    prior: NDArray[np.float64] = np.einsum("i,h,l->ihl", t.scenarios.weight, per_mode, t.chain.stationary)
+    return prior
+
+
+def measured_speed_std(noise_m_s: float, resolution_m_s: float) -> float:
+    """Std of the measured speed: noise and the equivalent of quantisation, resolution/√12."""
+    return max(math.hypot(noise_m_s, resolution_m_s / math.sqrt(12.0)), 1e-4)
+
+
+def true_speed_weights(
+    speed_m_s: NDArray[np.float64], noise_m_s: float
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Bands of P(true speed | measured speed) on the grid: first index (E,) and weights (E, W).
+
+    Flat prior in speed: weight φ((v' − v)/σ)·dv', cut at four standard deviations.
+    """
+    v = speed_m_s
+    width = np.gradient(v)
+    first = np.searchsorted(v, v - 4 * noise_m_s)
+    last = np.searchsorted(v, v + 4 * noise_m_s, side="right")
+    span = int((last - first).max())
+    start = np.minimum(first, len(v) - span)
+    index = start[:, None] + np.arange(span)
+    weights = np.exp(-0.5 * ((v[index] - v[:, None]) / noise_m_s) ** 2) * width[index]
+    return start, weights / weights.sum(axis=1, keepdims=True)
+
+
+def with_exit_node(lines: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(N, K + 1) per quantum start → (K + 1, N + 1) with the last row repeated at S_exit."""
+    return np.concatenate([lines, lines[-1:]]).T.copy()

@@ -1,0 +1,192 @@
+"""The laws that a table has to beat, each tuned as a competent engineer would (domain facts §6, items 1–4).
+
+All four are switching lines with `multi_step`: one command may jump over stages, as these laws do. They
+are tuned on the rms exit error of simulated passes: a coarse grid, then a simplex search from its best point.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.closed_loop import ClosedLoop, LineController, close_loop
+from synth.kernels.closed_loop import Draws
+from synth.problem import Plant
+from synth.random_passes import RandomPasses
+from synth.switching_lines import SwitchingLines
+
+LINE_NODES = 129
+"""Nodes of the lines; only the energy rule's are not constant."""
+
+REFINEMENTS = 40
+"""Simulations that the simplex search may take."""
+
+
+@dataclass(frozen=True)
+class TunedBaseline:
+    """A baseline with the parameters found, and its rms on the passes that it was tuned on."""
+
+    name: str
+    parameters: dict[str, float]
+    controller: LineController
+    rms_m_s: float
+
+
+@dataclass(frozen=True)
+class Family:
+    """A law with free parameters.
+
+    `build(loop, target, brake_stage, *values)` makes the controller; `names`, `grids` and `bounds` belong to
+    `values`. A law that chooses its stages itself (`one_stage` false) is only built with the top stage.
+    """
+
+    name: str
+    build: Callable[..., LineController]
+    one_stage: bool
+    names: tuple[str, ...]
+    grids: tuple[tuple[float, ...], ...]
+    bounds: tuple[tuple[float, float], ...]
+
+
+def single_threshold(loop: ClosedLoop, target_m_s: float, brake_stage: int, offset_m_s: float) -> LineController:
+    """Brake with one stage while V > V_target + offset, else release."""
+    return two_thresholds(loop, target_m_s, brake_stage, offset_m_s, 0.0)
+
+
+def two_thresholds(
+    loop: ClosedLoop, target_m_s: float, brake_stage: int, release_m_s: float, width_m_s: float
+) -> LineController:
+    """Relay: brake above V_target + release + width, release below V_target + release."""
+    return threshold_with_lead(loop, target_m_s, brake_stage, release_m_s, 0.0, width_m_s)
+
+
+def threshold_with_lead(
+    loop: ClosedLoop,
+    target_m_s: float,
+    brake_stage: int,
+    offset_m_s: float,
+    lead_s: float,
+    width_m_s: float = 0.0,
+) -> LineController:
+    """Single threshold that compares V + a·lead, a being the filtered slope of the measured speed."""
+    stages = loop.stages
+    lower = np.full((stages, LINE_NODES), -np.inf)
+    upper = np.full((stages, LINE_NODES), np.inf)
+    lower[1:] = target_m_s + offset_m_s
+    upper[:brake_stage] = target_m_s + offset_m_s + width_m_s
+    return LineController(SwitchingLines(line_nodes_m(loop), lower, upper), multi_step=True, lead_s=lead_s)
+
+
+def energy_rule(
+    loop: ClosedLoop,
+    target_m_s: float,
+    top_stage: int,
+    friction: float,
+    offset_m_s: float,
+    lead_s: float,
+    hysteresis_m_s: float,
+) -> LineController:
+    """The least stage whose remaining work suffices: up above V_k(s), down below V_{k−1}(s) − hysteresis.
+
+    V_k(s)² = (V_target + offset)² + 2·(work of stage k at the friction factor `friction` and of the mean
+    resistance − work of gravity, from s to the exit), per unit of inertia.
+    """
+    path = loop.path
+    nodes = line_nodes_m(loop)
+    resistance = path.drag_m_s2_per_n_kn * loop.plant.resistance.mean_n_per_kn
+    speeds = np.empty((top_stage + 1, LINE_NODES))
+    for stage, kpa in enumerate(loop.stage_overpressures_kpa[: top_stage + 1]):
+        slowing = friction * path.brake_m_s2_per_kpa * kpa + resistance - path.gravity_m_s2
+        done = np.concatenate([[0.0], np.cumsum(slowing * np.diff(path.edges_m))])
+        left = done[-1] - np.interp(nodes, path.edges_m, done)
+        speeds[stage] = np.sqrt(np.maximum((target_m_s + offset_m_s) ** 2 + 2.0 * left, 0.0))
+    lower = np.full((loop.stages, LINE_NODES), -np.inf)
+    upper = np.full((loop.stages, LINE_NODES), np.inf)
+    lower[1 : top_stage + 1] = speeds[:-1] - hysteresis_m_s
+    upper[:top_stage] = speeds[:-1]
+    return LineController(SwitchingLines(nodes, lower, upper), multi_step=True, lead_s=lead_s)
+
+
+def line_nodes_m(loop: ClosedLoop) -> NDArray[np.float64]:
+    """Equally spaced nodes from the entrance to the exit."""
+    return np.linspace(0.0, loop.plant.exit_m, LINE_NODES)
+
+
+OFFSETS_M_S = (-0.2, 0.0, 0.1, 0.2, 0.4)
+SPEED_BOUNDS, TIME_BOUNDS = (-1.0, 2.0), (0.0, 2.0)
+
+FAMILIES = (
+    Family(
+        name="single threshold",
+        build=single_threshold,
+        one_stage=True,
+        names=("offset_m_s",),
+        grids=(OFFSETS_M_S,),
+        bounds=(SPEED_BOUNDS,),
+    ),
+    Family(
+        name="two-threshold relay",
+        build=two_thresholds,
+        one_stage=True,
+        names=("release_m_s", "width_m_s"),
+        grids=(OFFSETS_M_S, (0.0, 0.2)),
+        bounds=(SPEED_BOUNDS, (0.0, 2.0)),
+    ),
+    Family(
+        name="threshold with lead",
+        build=threshold_with_lead,
+        one_stage=True,
+        names=("offset_m_s", "lead_s"),
+        grids=(OFFSETS_M_S, (0.0, 0.2, 0.4)),
+        bounds=(SPEED_BOUNDS, TIME_BOUNDS),
+    ),
+    Family(
+        name="energy rule",
+        build=energy_rule,
+        one_stage=False,
+        names=("friction", "offset_m_s", "lead_s", "hysteresis_m_s"),
+        grids=((0.7, 0.85, 1.0, 1.2), (0.0, 0.1, 0.2), (0.0, 0.3), (0.0, 0.15)),
+        bounds=((0.2, 2.0), SPEED_BOUNDS, TIME_BOUNDS, (0.0, 2.0)),
+    ),
+)
+
+
+def tune_baselines(plant: Plant, target_m_s: float, passes: RandomPasses) -> tuple[TunedBaseline, ...]:
+    """The four baselines, tuned for least rms exit error on `passes` (500 to 1000 are enough)."""
+    loop = close_loop(plant, plant.top_stage + 1)
+    draws = loop.draws(passes)
+    return tuple(tune(family, loop, target_m_s, draws) for family in FAMILIES)
+
+
+def tune(family: Family, loop: ClosedLoop, target_m_s: float, draws: Draws) -> TunedBaseline:
+    """The best member of `family`; deterministic."""
+    from scipy.optimize import minimize  # start-up: scipy only where it is needed
+
+    def rms(stage: int, values: tuple[float, ...]) -> float:
+        exits = loop.run(family.build(loop, target_m_s, stage, *values), draws).exit_speed_m_s
+        return float(np.sqrt(np.mean((exits - target_m_s) ** 2)))
+
+    top = loop.stages - 1
+    members = list(product(range(1, top + 1) if family.one_stage else (top,), product(*family.grids)))
+    stage, start = min(members, key=lambda member: rms(*member))
+    steps = [0.5 * (grid[1] - grid[0]) for grid in family.grids]
+
+    def cost(x: NDArray[np.float64]) -> float:
+        return rms(stage, tuple(x))
+
+    found = minimize(
+        cost,
+        np.array(start, dtype=np.float64),
+        method="Nelder-Mead",
+        bounds=family.bounds,
+        options={"initial_simplex": np.vstack([start, start + np.diag(steps)]), "maxfev": REFINEMENTS},
+    )
+    values = tuple(float(value) for value in found.x)
+    parameters = dict(zip(family.names, values, strict=True))
+    if family.one_stage:
+        parameters = {"brake_stage": float(stage), **parameters}
+    return TunedBaseline(family.name, parameters, family.build(loop, target_m_s, stage, *values), float(found.fun))

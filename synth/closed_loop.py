@@ -1,0 +1,301 @@
+"""Closed-loop Monte Carlo: passes of a plant under a table or switching lines (the proof that a table works)."""
+
+from __future__ import annotations
+
+import math
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, fields
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models import path_breaks_m, path_coefficients
+from synth.actuator import stage_locked_actuator
+from synth.kernels import closed_loop as kernel
+from synth.problem import Plant
+from synth.random_passes import PATH_CELLS, RandomPasses, random_passes
+from synth.switching_lines import SwitchingLines
+from tuning_tables.table import ControllerTable
+
+Scalar = TypeVar("Scalar", bound=np.generic)
+
+CELL_M = 0.25
+"""Longest path cell; η is constant in a cell."""
+
+SUBSTEPS = 10
+"""Parts of a sampling period in which a transient is played as its mean (see the convergence test)."""
+
+CHUNK_PASSES = 2000
+"""Passes whose random numbers are in memory at a time, for each thread (6 MB)."""
+
+
+@dataclass(frozen=True)
+class TableController:
+    """A regulator that runs an exported table with the table's own rule."""
+
+    table: ControllerTable
+
+    @property
+    def stages(self) -> int:
+        """Number of stages K + 1."""
+        return int(self.table.coefficients.shape[0])
+
+    def law(self) -> kernel.Rule:
+        """The rule as the kernel takes it."""
+        none = fixed(np.empty((0, 0)), np.float64)
+        table = self.table
+        arrays = (
+            fixed(table.coefficients, np.float32),
+            fixed(table.has_line, np.bool_),
+            fixed(table.valid_range, np.float32),
+        )
+        return kernel.Rule(*arrays, none, none, 1.0, False, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class LineController:
+    """A regulator that compares speed with switching lines.
+
+    `multi_step`: the comparison is repeated at the stage reached before the command is sent, so that one
+    command may jump over stages. `lead_s` τ: compared is measured speed + τ·slope, the slope of the
+    measured speed being filtered to first order over `slope_filter_s`.
+    """
+
+    lines: SwitchingLines
+    multi_step: bool = False
+    lead_s: float = 0.0
+    slope_filter_s: float = 0.3
+
+    @property
+    def stages(self) -> int:
+        """Number of stages K + 1."""
+        return self.lines.stages
+
+    def law(self) -> kernel.Rule:
+        """The rule as the kernel takes it."""
+        lines = self.lines
+        return kernel.Rule(
+            fixed(np.empty((0, 0, 0)), np.float32),
+            fixed(np.empty((0, 0)), np.bool_),
+            fixed(np.empty(0), np.float32),
+            fixed(lines.lower_m_s, np.float64),
+            fixed(lines.upper_m_s, np.float64),
+            float(lines.nodes_m[-1]) / (lines.nodes_m.size - 1),
+            self.multi_step,
+            self.lead_s,
+            self.slope_filter_s,
+        )
+
+
+Controller = TableController | LineController
+
+
+@dataclass(frozen=True)
+class ExitSample:
+    """How n passes ended, arrays of shape (n,); a stalled pass has exit speed 0."""
+
+    exit_speed_m_s: NDArray[np.float64]
+    stalled: NDArray[np.bool_]
+    switchings: NDArray[np.int32]
+    transit_time_s: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        for array in vars(self).values():
+            array.setflags(write=False)
+
+    def __len__(self) -> int:
+        return len(self.exit_speed_m_s)
+
+
+@dataclass(frozen=True)
+class PassTrace:
+    """One pass, event by event, arrays of shape (events,); the last event is the end of the pass.
+
+    Overpressure max(0, P − P0) and commanded stage hold from an event to the next; `measured_m_s` is NaN
+    where nothing was sampled.
+    """
+
+    time_s: NDArray[np.float64]
+    path_m: NDArray[np.float64]
+    speed_m_s: NDArray[np.float64]
+    overpressure_kpa: NDArray[np.float64]
+    stage: NDArray[np.int64]
+    measured_m_s: NDArray[np.float64]
+    stalled: bool
+
+    @property
+    def exit_speed_m_s(self) -> float:
+        """Speed at the exit; 0 after a stall."""
+        return 0.0 if self.stalled else float(self.speed_m_s[-1])
+
+
+@dataclass(frozen=True)
+class ClosedLoop:
+    """A plant made ready for the kernel: path cells, actuator, sensor. Build it with `close_loop`."""
+
+    plant: Plant
+    path: kernel.Path
+    drive: kernel.Drive
+    sensor: kernel.Sensor
+
+    @property
+    def stages(self) -> int:
+        """Number of stages K + 1."""
+        return int(self.drive.command.shape[1])
+
+    @property
+    def stage_overpressures_kpa(self) -> NDArray[np.float64]:
+        """max(0, P_k − P0) of the stages, shape (K + 1,)."""
+        position = self.plant.position
+        nominal = np.asarray(position.stage_pressures_kpa[: self.stages])
+        return np.maximum(0.0, nominal - position.force.touch_pressure_kpa)
+
+    def draws(self, passes: RandomPasses, cut_factor: float | None = None) -> kernel.Draws:
+        """What `passes` mean for this plant; `cut_factor` fixes ξ_cut (the friction is known)."""
+        plant = self.plant
+        factor = plant.friction.cut_factor(passes.cut_z, plant.friction_cv)
+        if cut_factor is not None:
+            factor = np.full(len(passes), cut_factor, dtype=np.float64)
+        return kernel.Draws(
+            fixed(factor, np.float64),
+            fixed(self.resistance_n_kn(passes.resistance_u), np.float64),
+            fixed(plant.entry.speed_m_s(passes.entry_u), np.float64),
+            fixed(passes.phase_u * plant.sensor.sample_period_s, np.float64),
+            fixed(passes.path_z, np.float32),
+            fixed(passes.noise_z, np.float32),
+        )
+
+    def resistance_n_kn(self, u: NDArray[np.float64]) -> NDArray[np.float64]:
+        """w0 for uniform `u`: the quantiles of its gamma law."""
+        law = self.plant.resistance
+        if law.std_n_per_kn == 0.0:
+            return np.full(u.shape, law.mean_n_per_kn)
+        from scipy.special import gammaincinv  # start-up: scipy only where it is needed
+
+        return np.asarray(gammaincinv(law.shape, u) * law.scale_n_per_kn, dtype=np.float64)
+
+    def run(self, controller: Controller, draws: kernel.Draws) -> ExitSample:
+        """All passes of `draws` under `controller`."""
+        return self._record(controller, draws, np.empty((0, kernel.EVENT_FIELDS)))[0]
+
+    def follow(self, controller: Controller, draws: kernel.Draws) -> PassTrace:
+        """The only pass of `draws` under `controller`, event by event."""
+        longest = math.ceil(kernel.LONGEST_PASS_S / self.sensor.period_s + 2) * self.drive.substeps + 2
+        sample, events = self._record(controller, draws, np.empty((longest, kernel.EVENT_FIELDS)))
+        time, path, speed, overpressure, stage, measured = np.ascontiguousarray(events.T)
+        return PassTrace(time, path, speed, overpressure, stage.astype(np.int64), measured, bool(sample.stalled[0]))
+
+    def _record(
+        self, controller: Controller, draws: kernel.Draws, events: NDArray[np.float64]
+    ) -> tuple[ExitSample, NDArray[np.float64]]:
+        if controller.stages != self.stages:
+            raise ValueError(f"closed loop: the controller has {controller.stages} stages, the loop {self.stages}")
+        n = len(draws.cut_factor)
+        exits = kernel.Exits(np.empty(n), np.empty(n), np.empty(n, dtype=np.bool_), np.empty(n, dtype=np.int32))
+        count = kernel.run_passes(self.path, self.drive, self.sensor, controller.law(), draws, exits, events)
+        return ExitSample(exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s), events[:count]
+
+
+def close_loop(plant: Plant, stages: int, substeps: int = SUBSTEPS) -> ClosedLoop:
+    """`plant` with a regulator of `stages` stages: as many as its controller has, allowed or not."""
+    if not 2 <= stages <= plant.position.top_stage + 1:
+        raise ValueError(f"closed loop: {stages} stages; {plant.position.name} has {plant.position.top_stage + 1}")
+    actuator = stage_locked_actuator(plant.position, plant.sensor, stages - 1, substeps)
+    drive = kernel.Drive(
+        fixed(actuator.mode_overpressure_kpa, np.float64),
+        fixed(actuator.command, np.int64),
+        fixed(actuator.chain_mode, np.int64),
+        fixed(actuator.chain_samples, np.int64),
+        # Rounded, so that the kernel sees that a pressure at rest is one and the same.
+        fixed(np.round(actuator.chain_overpressure_kpa, 9), np.float64),
+        actuator.substeps,
+    )
+    sensor = plant.sensor
+    return ClosedLoop(
+        plant=plant,
+        path=path_cells(plant),
+        drive=drive,
+        sensor=kernel.Sensor(sensor.sample_period_s, sensor.noise_m_s, sensor.resolution_m_s),
+    )
+
+
+def path_cells(plant: Plant) -> kernel.Path:
+    """Cells with constant coefficients and constant η."""
+    edges = cell_edges_m(plant)
+    coefficients = path_coefficients(plant.position, plant.cut, plant.profile, edges)
+    length = np.diff(edges)
+    memory = np.append(0.0, plant.friction.path_correlation(0.5 * (length[1:] + length[:-1])))  # none before the first
+    return kernel.Path(
+        fixed(edges, np.float64),
+        fixed(coefficients.gravity_m_s2, np.float64),
+        fixed(coefficients.brake_m_s2_per_kpa, np.float64),
+        fixed(plant.friction.path_cell_std(length), np.float64),
+        fixed(memory, np.float64),
+        fixed(np.sqrt(1.0 - memory**2), np.float64),
+        coefficients.resistance_m_s2_per_n_kn,
+    )
+
+
+def cell_edges_m(plant: Plant) -> NDArray[np.float64]:
+    """Edges of at most 512 cells of at most 0.25 m, none of them with a change of N(s) or grade inside.
+
+    Long cuts get longer cells; if their axles alone make too many breaks, cells take the mean over a break.
+    """
+    breaks = path_breaks_m(plant.position, plant.cut, plant.profile)
+    if breaks.size > PATH_CELLS // 2:
+        return np.linspace(0.0, plant.exit_m, PATH_CELLS + 1)
+    count = min(math.ceil(plant.exit_m / CELL_M), PATH_CELLS - breaks.size)
+    uniform = np.linspace(0.0, plant.exit_m, count + 1)
+    # A sliver between a break and a node of the mesh would only cost time and digits.
+    far = np.abs(uniform[:, None] - breaks).min(axis=1) > 1e-3
+    return np.sort(np.concatenate([uniform[far], breaks]))
+
+
+def simulate(plant: Plant, controller: Controller, passes: RandomPasses, cut_factor: float | None = None) -> ExitSample:
+    """`passes` of `plant` under `controller`; `cut_factor` fixes ξ_cut instead of drawing it."""
+    loop = close_loop(plant, controller.stages)
+    return loop.run(controller, loop.draws(passes, cut_factor))
+
+
+def simulate_many(
+    plant: Plant,
+    controller: Controller,
+    seed: int,
+    count: int,
+    first_pass: int = 0,
+    threads: int = 1,
+    cut_factor: float | None = None,
+) -> ExitSample:
+    """Passes `first_pass` … `first_pass + count − 1` of `seed`, in bounded memory.
+
+    The result does not depend on `threads` nor on how the passes are split.
+    """
+    loop = close_loop(plant, controller.stages)
+    end = first_pass + count
+    # Chunks end at multiples of their size, so that no block of random numbers is drawn twice.
+    inner = range((first_pass // CHUNK_PASSES + 1) * CHUNK_PASSES, end, CHUNK_PASSES)
+    starts, ends = [first_pass, *inner], [*inner, end]
+
+    def chunk(start: int, stop: int) -> ExitSample:
+        return loop.run(controller, loop.draws(random_passes(seed, start, stop - start), cut_factor))
+
+    with ThreadPoolExecutor(max_workers=threads) as pool:
+        samples = list(pool.map(chunk, starts, ends))
+    names = [field.name for field in fields(ExitSample)]
+    return ExitSample(**{name: np.concatenate([getattr(sample, name) for sample in samples]) for name in names})
+
+
+def trace(
+    plant: Plant, controller: Controller, passes: RandomPasses, index: int, cut_factor: float | None = None
+) -> PassTrace:
+    """Pass `index` of `passes` event by event: the same pass as in `simulate`."""
+    loop = close_loop(plant, controller.stages)
+    return loop.follow(controller, loop.draws(passes.part(index, index + 1), cut_factor))
+
+
+def fixed(array: NDArray[Any], dtype: type[Scalar]) -> NDArray[Scalar]:
+    """Contiguous read-only view or copy: the kernel is compiled for exactly such arrays, once."""
+    view: NDArray[Scalar] = np.ascontiguousarray(array, dtype=dtype).view()
+    view.setflags(write=False)
+    return view

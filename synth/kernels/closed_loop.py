@@ -1,0 +1,283 @@
+"""Kernel of the closed-loop simulation: cut, valves, sensor and switching rule, pass after pass (model §1).
+
+Motion is exact: within a path cell and a piece of constant overpressure the acceleration is constant, so
+positions and times of cell edges are closed forms. The only approximation is that a transient is played as
+its exact mean overpressure over each part of a sampling period.
+
+The tables' own rule is compiled here unchanged, so that the loop is driven by what a controller runs: the
+one import that is neither numpy nor numba. Numba does not notice that an imported function has changed:
+the cache directory must be named by a hash that covers `tuning_tables/rule.py` too.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from tuning_tables import rule
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+MOVING, LEFT, STALLED = 0, 1, 2
+
+LONGEST_PASS_S = 300.0
+"""A cut that is still inside after this time has stalled: it creeps."""
+
+EVENT_FIELDS = 6
+"""Columns of a trace: time, path, speed, overpressure, stage, measured speed (NaN between samples)."""
+
+
+class Path(NamedTuple):
+    """Cells along the path: `edges_m` (C + 1,); all others (C,) but the last.
+
+    `eta_std` of η in the cell, `eta_memory` correlation with the cell before (0 in the first) and
+    `eta_fresh` = sqrt(1 − memory²); `drag_m_s2_per_n_kn`: deceleration by one N/kN of resistance.
+    """
+
+    edges_m: Floats
+    gravity_m_s2: Floats
+    brake_m_s2_per_kpa: Floats
+    eta_std: Floats
+    eta_memory: Floats
+    eta_fresh: Floats
+    drag_m_s2_per_n_kn: float
+
+
+class Drive(NamedTuple):
+    """Resting modes and chains of the actuator (`synth.actuator.Actuator`, same names); mode 0 is released."""
+
+    mode_overpressure_kpa: Floats
+    command: Ints
+    chain_mode: Ints
+    chain_samples: Ints
+    chain_overpressure_kpa: Floats
+    substeps: int
+
+
+class Sensor(NamedTuple):
+    """Sampling period, noise and resolution of the speed sensor."""
+
+    period_s: float
+    noise_m_s: float
+    resolution_m_s: float
+
+
+class Rule(NamedTuple):
+    """Switching rule: a polynomial table, or lines if the table has no stage (`coefficients` of size 0).
+
+    Table: `coefficients` float32 (K + 1, 2, r + 1), `has_line` (K + 1, 2), `valid` float32 (4,). Lines: `lower`,
+    `upper` (K + 1, N + 1) over nodes `spacing_m` apart; with `multi_step` the comparison is repeated at the
+    stage reached; the speed compared is measured + `lead_s`·slope, the slope filtered over `filter_s`.
+    """
+
+    coefficients: NDArray[np.float32]
+    has_line: NDArray[np.bool_]
+    valid: NDArray[np.float32]
+    lower: Floats
+    upper: Floats
+    spacing_m: float
+    multi_step: bool
+    lead_s: float
+    filter_s: float
+
+
+class Draws(NamedTuple):
+    """What chance gives to n passes: ξ_cut, w0, entry speed, first sample (n,); z of path and sensor (n, ·)."""
+
+    cut_factor: Floats
+    resistance_n_kn: Floats
+    entry_m_s: Floats
+    first_sample_s: Floats
+    path_z: NDArray[np.float32]
+    noise_z: NDArray[np.float32]
+
+
+class Exits(NamedTuple):
+    """Results of n passes, filled by the kernel; a stalled pass leaves with speed 0 at the time it stops."""
+
+    speed_m_s: Floats
+    time_s: Floats
+    stalled: NDArray[np.bool_]
+    switchings: NDArray[np.int32]
+
+
+table_decision = njit(cache=True, nogil=True)(rule.decide)
+
+
+@njit(cache=True, nogil=True, forceinline=True)
+def advance(
+    edges_m: Floats, free: Floats, brake: Floats, overpressure: float, duration_s: float, cell: int, s: float, v: float
+) -> Any:
+    """Move for `duration_s` under constant overpressure; returns (cell, s, v, time used, status).
+
+    `free` and `brake` (C,) are acceleration without brake and deceleration by one kPa in each cell. Ends
+    early at the exit (LEFT) or where the speed reaches 0 (STALLED).
+    """
+    left = duration_s
+    while True:
+        a = free[cell] - brake[cell] * overpressure
+        gap = edges_m[cell + 1] - s
+        v_end = v + a * left
+        x = 0.5 * (v + v_end) * left
+        if v_end > 0.0 and x < gap:
+            return cell, s + x, v_end, duration_s, MOVING
+        square = v * v + 2.0 * a * gap
+        if square <= 0.0:
+            return cell, s - 0.5 * v * v / a, 0.0, duration_s - left - v / a, STALLED
+        v_edge = math.sqrt(square)
+        left = max(0.0, left - 2.0 * gap / (v + v_edge))
+        v = v_edge
+        cell += 1
+        s = edges_m[cell]
+        if cell == free.shape[0]:
+            return cell, s, v, duration_s - left, LEFT
+
+
+@njit(cache=True, nogil=True, forceinline=True)
+def measure(v: float, z: float, sensor: Sensor) -> float:
+    """Speed that the sensor reports; it has no sign."""
+    value: float = v + sensor.noise_m_s * z
+    if sensor.resolution_m_s > 0.0:
+        value = np.rint(value / sensor.resolution_m_s) * sensor.resolution_m_s
+    return max(0.0, value)
+
+
+@njit(cache=True, nogil=True, forceinline=True)
+def line_at(lines: Floats, stage: int, spacing_m: float, s: float) -> float:
+    """Line of `stage` at path `s`; beside an infinite node it is infinite: no command."""
+    place = s / spacing_m
+    node = min(int(place), lines.shape[1] - 2)
+    low: float = lines[stage, node]
+    high: float = lines[stage, node + 1]
+    if math.isinf(low):
+        return low
+    if math.isinf(high):
+        return high
+    speed: float = low + (place - node) * (high - low)
+    return speed
+
+
+@njit(cache=True, nogil=True, forceinline=True)
+def line_decision(lower: Floats, upper: Floats, spacing_m: float, stage: int, s: float, v: float) -> int:
+    """−1, 0 or +1 stage by the switching lines."""
+    if v < line_at(lower, stage, spacing_m, s):
+        return -1
+    if v > line_at(upper, stage, spacing_m, s):
+        return 1
+    return 0
+
+
+@njit(cache=True, nogil=True, forceinline=True)
+def stage_by_lines(
+    lower: Floats, upper: Floats, spacing_m: float, multi_step: bool, stage: int, top: int, s: float, v: float
+) -> int:
+    """Stage that switching lines want at (s, v) while `stage` rests, within 0 … `top`."""
+    step = line_decision(lower, upper, spacing_m, stage, s, v)
+    wanted = min(max(stage + step, 0), top)
+    if multi_step and step != 0:
+        while 0 < wanted < top and line_decision(lower, upper, spacing_m, wanted, s, v) == step:
+            wanted += step
+    return wanted
+
+
+@njit(cache=True, nogil=True, forceinline=True)
+def note(events: Floats, count: int, t: float, s: float, v: float, kpa: float, stage: int, measured: float) -> int:
+    """Write one event, if a trace is wanted (`events` not empty); returns the number of events."""
+    if count < events.shape[0]:
+        events[count, 0], events[count, 1], events[count, 2] = t, s, v
+        events[count, 3], events[count, 4], events[count, 5] = kpa, stage, measured
+        return count + 1
+    return count
+
+
+@njit(cache=True, nogil=True)
+def run_pass(
+    edges_m: Floats, free: Floats, brake: Floats, drive: Drive, sensor: Sensor, law: Rule,
+    entry_m_s: float, first_sample_s: float, noise_z: NDArray[np.float32], events: Floats,
+) -> Any:  # fmt: skip
+    """One pass from the entrance, released, to the exit; returns (v, time, status, switchings, events).
+
+    A pressure, stage or speed in `events` holds from its time on; the last event is the end of the pass.
+    """
+    # Unpacked once: numba counts references each time that an array is taken from a tuple.
+    coefficients, has_line, valid, lower, upper, spacing_m, multi_step, lead_s, filter_s = law
+    mode_kpa, command, chain_mode, chain_samples, chain_kpa, substeps = drive
+    period, part = sensor.period_s, sensor.period_s / substeps
+    tabled = coefficients.shape[0] > 0
+    top = command.shape[1] - 1
+    gain = period / (period + filter_s)
+    mode, sample, switchings, slope, before = 0, 0, 0, 0.0, math.nan
+    kpa = mode_kpa[0]
+    count = note(events, 0, 0.0, 0.0, entry_m_s, kpa, 0, math.nan)
+    cell, s, v, time, status = advance(edges_m, free, brake, kpa, first_sample_s, 0, 0.0, entry_m_s)
+    stage, chain, played = 0, -1, 0
+    # One turn of the loop is one sampling period, at rest or within a chain.
+    while status == MOVING and time < LONGEST_PASS_S:
+        measured = measure(v, noise_z[sample % noise_z.shape[0]], sensor)
+        if sample > 0:
+            slope += gain * ((measured - before) / period - slope)
+        before = measured
+        if chain < 0:
+            if tabled:
+                wanted = min(max(stage + table_decision(coefficients, has_line, valid, stage, s, measured), 0), top)
+            else:
+                ahead = measured + lead_s * slope
+                wanted = stage_by_lines(lower, upper, spacing_m, multi_step, stage, top, s, ahead)
+            if wanted != stage:
+                chain, played, stage = command[mode, wanted], 0, wanted
+                switchings += 1
+        if chain < 0:
+            kpa = mode_kpa[mode]
+            count = note(events, count, time, s, v, kpa, stage, measured)
+            cell, s, v, used, status = advance(edges_m, free, brake, kpa, period, cell, s, v)
+        else:
+            i = 0
+            while i < substeps and status == MOVING:
+                first, at = i, played * substeps
+                kpa = chain_kpa[chain, at + i]
+                while i < substeps and chain_kpa[chain, at + i] == kpa:
+                    i += 1  # dead times and rests are one step
+                time = first_sample_s + sample * period + first * part
+                count = note(events, count, time, s, v, kpa, stage, measured)
+                measured = math.nan
+                cell, s, v, used, status = advance(edges_m, free, brake, kpa, (i - first) * part, cell, s, v)
+            played += 1
+            if played == chain_samples[chain]:
+                mode, chain = chain_mode[chain], -1
+        sample += 1
+        if status == MOVING:
+            time = first_sample_s + sample * period  # not by summing up: the clock must not drift
+        else:
+            time += used
+    count = note(events, count, time, s, v, kpa, stage, math.nan)
+    return v, time, status, switchings, count
+
+
+@njit(cache=True, nogil=True)
+def run_passes(path: Path, drive: Drive, sensor: Sensor, law: Rule, draws: Draws, exits: Exits, events: Floats) -> int:
+    """Simulate all passes of `draws` into `exits`; returns the number of events of the last pass."""
+    cells = path.gravity_m_s2.shape[0]
+    free, brake = np.empty(cells), np.empty(cells)
+    count = 0
+    for i in range(draws.cut_factor.shape[0]):
+        drag = path.drag_m_s2_per_n_kn * draws.resistance_n_kn[i]
+        x = 0.0
+        for j in range(cells):
+            x = path.eta_memory[j] * x + path.eta_fresh[j] * draws.path_z[i, j]
+            factor = draws.cut_factor[i] * max(0.0, 1.0 + path.eta_std[j] * x)  # bars do not push
+            free[j] = path.gravity_m_s2[j] - drag
+            brake[j] = path.brake_m_s2_per_kpa[j] * factor
+        v, time, status, switchings, count = run_pass(
+            path.edges_m, free, brake, drive, sensor, law,
+            draws.entry_m_s[i], draws.first_sample_s[i], draws.noise_z[i], events,
+        )  # fmt: skip
+        exits.stalled[i] = status != LEFT
+        exits.speed_m_s[i] = v if status == LEFT else 0.0
+        exits.time_s[i] = time
+        exits.switchings[i] = switchings
+    return count

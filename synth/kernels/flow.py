@@ -1,0 +1,164 @@
+"""Motion at a held stage over one path quantum, on the uniform energy grid, and its transpose.
+
+In e = v²/2 a held stage shifts every speed by the same amount, so a quantum is a four-point stencil with
+constant weights on contiguous arrays, after mixing the levels of the path noise. `push` is the exact
+transpose of `pull`, so forward densities and backward values agree to rounding.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+
+@njit(cache=True, nogil=True)
+def pull(values, transition, shift, stalled, first, last, out, mixed):
+    """`out`[h, l, j] = Σ_m transition[l, m]·values[h, m](j + shift[h, l]) for first ≤ j < last.
+
+    `values`, `out` (H, L, E); `shift` (H, L) in cells of the energy grid; at and below cell 0 the value is
+    `stalled`; above the grid the last value holds. `mixed` (E,) is scratch.
+    """
+    modes, levels, points = values.shape
+    for h in range(modes):
+        for l in range(levels):
+            base = int(np.floor(shift[h, l]))
+            x = shift[h, l] - base
+            c0, c1, c2, c3 = stencil(x)
+            begin = max(min(first + base - 1, points - 4), 0)
+            end = min(max(last + base + 3, 4), points)
+            for j in range(begin, end):
+                mixed[j] = transition[l, 0] * values[h, 0, j]
+            for m in range(1, levels):
+                p = transition[l, m]
+                for j in range(begin, end):
+                    mixed[j] += p * values[h, m, j]
+            mixed[0] = stalled
+            low = min(max(2 - base, first), last)
+            high = max(min(points - 2 - base, last), low)
+            for j in range(first, low):
+                out[h, l, j] = value_at(mixed, j + base + x)
+            for j in range(low, high):
+                i = j + base
+                out[h, l, j] = c0 * mixed[i - 1] + c1 * mixed[i] + c2 * mixed[i + 1] + c3 * mixed[i + 2]
+            for j in range(high, last):
+                out[h, l, j] = value_at(mixed, j + base + x)
+            out[h, l, 0] = stalled
+
+
+@njit(cache=True, nogil=True)
+def push(mass, transition, shift, first, last, out, moved):
+    """Transpose of `pull`: mass in first ≤ j < last at the start of a quantum goes to its end, added to `out`.
+
+    Returns (stalled, escaped): mass that stopped, and mass that ran into the top of the grid (it is kept in
+    the last cell). `moved` (E,) is scratch.
+    """
+    modes, levels, points = mass.shape
+    stalled, escaped = 0.0, 0.0
+    for h in range(modes):
+        for l in range(levels):
+            begin, end = extent(mass[h, l], first, last)
+            if begin >= end:
+                continue
+            base = int(np.floor(shift[h, l]))
+            x = shift[h, l] - base
+            c0, c1, c2, c3 = stencil(x)
+            low = min(max(2 - base, begin), end)
+            high = max(min(points - 2 - base, end), low)
+            bottom = max(min(begin + base - 1, points - 4), 0)
+            top = min(max(end + base + 3, 4), points)
+            moved[bottom:top] = 0.0
+            for j in range(begin, low):
+                put_at(moved, j + base + x, mass[h, l, j])
+            for j in range(low, high):
+                moved[j + base - 1] += c0 * mass[h, l, j]
+            for j in range(low, high):
+                moved[j + base] += c1 * mass[h, l, j]
+            for j in range(low, high):
+                moved[j + base + 1] += c2 * mass[h, l, j]
+            for j in range(low, high):
+                moved[j + base + 2] += c3 * mass[h, l, j]
+            for j in range(high, end):
+                put_at(moved, j + base + x, mass[h, l, j])
+                escaped += abs(mass[h, l, j])
+            if bottom == 0:
+                stalled += moved[0]
+                moved[0] = 0.0
+            for m in range(levels):
+                p = transition[l, m]
+                for j in range(bottom, top):
+                    out[h, m, j] += p * moved[j]
+    return stalled, escaped
+
+
+@njit(cache=True, nogil=True)
+def extent(row, first, last):
+    """Smallest range of indices within [first, last) that holds all non-zero entries of `row`."""
+    while first < last and row[first] == 0.0:
+        first += 1
+    while last > first and row[last - 1] == 0.0:
+        last -= 1
+    return first, last
+
+
+@njit(cache=True, nogil=True, inline="always")
+def stencil(x):
+    """Weights of cubic Lagrange interpolation at fraction x between the second and third of four points."""
+    c0 = -x * (x - 1.0) * (x - 2.0) / 6.0
+    c1 = (x + 1.0) * (x - 1.0) * (x - 2.0) / 2.0
+    c2 = -(x + 1.0) * x * (x - 2.0) / 2.0
+    c3 = (x + 1.0) * x * (x - 1.0) / 6.0
+    return c0, c1, c2, c3
+
+
+@njit(cache=True, nogil=True, inline="always")
+def interpolation(position, points):
+    """Second of the four grid points that interpolate at `position` (cells), and their weights.
+
+    Cubic inside, held constant beyond both ends, and linear next to them: the value jumps at a stall
+    (cell 0), and a cubic across the jump would promise costs below zero.
+    """
+    position = min(max(position, 0.0), points - 1.0)
+    i = min(max(int(position), 1), points - 3)
+    x = position - i
+    c0, c1, c2, c3 = stencil(x)
+    before, after, low = x < 0.0, x > 1.0, position < 2.0
+    c0 = -x if before else (0.0 if after or low else c0)
+    c1 = 1.0 + x if before else (0.0 if after else (1.0 - x if low else c1))
+    c2 = 0.0 if before else (2.0 - x if after else (x if low else c2))
+    c3 = x - 1.0 if after else (0.0 if before or low else c3)
+    return i, c0, c1, c2, c3
+
+
+@njit(cache=True, nogil=True)
+def value_at(row, position):
+    """`row` (E,) interpolated at `position` in cells."""
+    i, c0, c1, c2, c3 = interpolation(position, row.shape[0])
+    return c0 * row[i - 1] + c1 * row[i] + c2 * row[i + 1] + c3 * row[i + 2]
+
+
+@njit(cache=True, nogil=True)
+def put_at(row, position, mass):
+    """Transpose of `value_at`; what arrives at or below cell 0 is found in `row`[0]."""
+    i, c0, c1, c2, c3 = interpolation(position, row.shape[0])
+    row[i - 1] += c0 * mass
+    row[i] += c1 * mass
+    row[i + 1] += c2 * mass
+    row[i + 2] += c3 * mass
+
+
+@njit(cache=True, nogil=True)
+def quanta_to_next_sample(speed, acceleration, period, path_step):
+    """Path until the next sample at a held stage, in quanta, never below a small positive number."""
+    reach = speed * period + 0.5 * acceleration * period * period
+    if speed + acceleration * period < 0.0:
+        reach = -0.5 * speed * speed / acceleration
+    return max(reach / path_step, 0.01)
+
+
+@njit(cache=True, nogil=True)
+def shifts(n, factor, levels, drive, brake, pressure, extra, path_step, energy_step, out):
+    """Energy change over quantum `n` at every mode and level, in cells of the grid; `out` (H, L)."""
+    for h in range(pressure.shape[0]):
+        for l in range(levels.shape[0]):
+            slope = drive[n] + extra - factor * (1.0 + levels[l]) * brake[n] * pressure[h]
+            out[h, l] = slope * path_step / energy_step

@@ -1,0 +1,125 @@
+"""A change of stage as one step of the chain: from the deciding sample to the first unlocked one.
+
+The landing point lies between two path nodes; the value there is interpolated along the path on which the
+cut would roll on at the stage reached, so that interpolation shifts the phase of the sampling a little but
+never the speed. `put_transient` is the exact transpose of `transient_value`.
+
+Values and masses live in rings over the path: node n is at index n mod ring length, the exit node N too.
+
+Arguments shared by both: `n`, `c`, `l`, `j` node, transient, noise level, energy point; `factor` ξ_cut;
+`mode` reached; landing tables `travel`, `energy` (N, C, F, E) over `factors` (F,), equally spaced;
+noise tables `probability`, `mean`, `std` (C, R, L, L); `drive` (N,) acceleration without brakes, `brake` (N,)
+= β; `pressure` (H,) over-pressure of modes; `levels` (L,); `extra` added acceleration of this scenario (its w).
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+from synth.kernels.flow import put_at, value_at
+
+
+@njit(cache=True, nogil=True)
+def landing(n, c, j, f, travel, energy, factors):
+    """(path in m, energy) at the end of transient `c` from (n, j) for friction factor `f`; path −1: stall.
+
+    Quadratic in f through the three nearest nodes; if one of them stalls, the nearest node decides.
+    """
+    count = factors.shape[0]
+    if count == 1:
+        return travel[n, c, 0, j], energy[n, c, 0, j]
+    width = factors[1] - factors[0]
+    i = min(max(int((f - factors[0]) / width + 0.5), 1), count - 2)
+    t0, t1, t2 = travel[n, c, i - 1, j], travel[n, c, i, j], travel[n, c, i + 1, j]
+    e0, e1, e2 = energy[n, c, i - 1, j], energy[n, c, i, j], energy[n, c, i + 1, j]
+    x = min(max((f - factors[i]) / width, -1.5), 1.5)
+    if t0 < 0.0 or t1 < 0.0 or t2 < 0.0:
+        if x < -0.5:
+            return t0, e0
+        if x > 0.5:
+            return t2, e2
+        return t1, e1
+    a, b = 0.5 * x * (x - 1.0), 0.5 * x * (x + 1.0)
+    m = 1.0 - x * x
+    return a * t0 + m * t1 + b * t2, a * e0 + m * e1 + b * e2
+
+
+@njit(cache=True, nogil=True)
+def transient_value(
+    n, last, c, l, j, factor, mode, travel, energy, factors, probability, mean, std,
+    drive, brake, pressure, levels, extra, path_step, energy_step, values, mixed, stalled,
+):  # fmt: skip
+    """Expected value after transient `c`; `values` (ring, H, L, E) and `mixed` the same after level mixing; `last` = N."""
+    ring = values.shape[0]
+    total = 0.0
+    nominal, _ = landing(n, c, j, factor, travel, energy, factors)
+    if nominal < 0.0:
+        return stalled
+    crossed = min(int(nominal / path_step + 1e-9), probability.shape[1] - 1)
+    for m in range(levels.shape[0]):
+        p = probability[c, crossed, l, m]
+        if p < 1e-12:
+            continue
+        spread = std[c, crossed, l, m]
+        for side in range(2):
+            f = factor * (1.0 + mean[c, crossed, l, m] + (spread if side == 1 else -spread))
+            path, e = landing(n, c, j, f, travel, energy, factors)
+            if path < 0.0:
+                total += 0.5 * p * stalled
+                continue
+            e += extra * path
+            ahead = path / path_step
+            cell = n + int(ahead + 1e-9)
+            x = max(ahead - int(ahead + 1e-9), 0.0)
+            whole = 1.0 if cell == n else x  # a landing in its own quantum is decided on at the quantum's end
+            if cell >= last:
+                total += 0.5 * p * value_at(values[last % ring, mode, m], e / energy_step)
+                continue
+            slope = drive[cell] + extra - factor * (1.0 + levels[m]) * brake[cell] * pressure[mode]
+            back = (e - slope * x * path_step) / energy_step
+            forth = (e + slope * (1.0 - x) * path_step) / energy_step
+            if cell > n:
+                total += 0.5 * p * (1.0 - whole) * value_at(values[cell % ring, mode, m], back)
+            total += 0.5 * p * whole * value_at(mixed[(cell + 1) % ring, mode, m], forth)
+    return total
+
+
+@njit(cache=True, nogil=True)
+def put_transient(
+    mass, n, last, c, l, j, factor, mode, travel, energy, factors, probability, mean, std,
+    drive, brake, pressure, levels, extra, path_step, energy_step, arriving, mixing,
+):  # fmt: skip
+    """Spread `mass` over `arriving` and `mixing` (ring, H, L, E), `last` = N; returns the mass that stalls."""
+    ring = arriving.shape[0]
+    stalled = 0.0
+    nominal, _ = landing(n, c, j, factor, travel, energy, factors)
+    if nominal < 0.0:
+        return mass
+    crossed = min(int(nominal / path_step + 1e-9), probability.shape[1] - 1)
+    for m in range(levels.shape[0]):
+        p = probability[c, crossed, l, m]
+        if p < 1e-12:
+            continue
+        spread = std[c, crossed, l, m]
+        for side in range(2):
+            f = factor * (1.0 + mean[c, crossed, l, m] + (spread if side == 1 else -spread))
+            path, e = landing(n, c, j, f, travel, energy, factors)
+            share = 0.5 * p * mass
+            if path < 0.0:
+                stalled += share
+                continue
+            e += extra * path
+            ahead = path / path_step
+            cell = n + int(ahead + 1e-9)
+            x = max(ahead - int(ahead + 1e-9), 0.0)
+            whole = 1.0 if cell == n else x  # a landing in its own quantum is decided on at the quantum's end
+            if cell >= last:
+                put_at(arriving[last % ring, mode, m], e / energy_step, share)
+                continue
+            slope = drive[cell] + extra - factor * (1.0 + levels[m]) * brake[cell] * pressure[mode]
+            back = (e - slope * x * path_step) / energy_step
+            forth = (e + slope * (1.0 - x) * path_step) / energy_step
+            if cell > n:
+                put_at(arriving[cell % ring, mode, m], back, (1.0 - whole) * share)
+            put_at(mixing[(cell + 1) % ring, mode, m], forth, whole * share)
+    return stalled

@@ -1,0 +1,115 @@
+"""Friction along the path as a Markov chain over path quanta, and its mean over a transient."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models import Friction
+
+
+@dataclass(frozen=True)
+class PathChain:
+    """η, constant in each path quantum: `levels` (L,), `transition` (L, L) rows from, `stationary` (L,)."""
+
+    levels: NDArray[np.float64]
+    transition: NDArray[np.float64]
+    stationary: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        for array in (self.levels, self.transition, self.stationary):
+            array.setflags(write=False)
+
+
+def correlated_chain(friction: Friction, quantum_m: float, levels: int) -> PathChain:
+    """Rouwenhorst's chain: variance and exponential autocorrelation of η exactly, for any quantum.
+
+    One level means no path noise. Source: Kopecky & Suen, Rev. Econ. Dyn. 13 (2010), §2.
+    """
+    if levels == 1 or friction.path_std == 0.0:
+        return PathChain(np.zeros(1), np.ones((1, 1)), np.ones(1))
+    stay = 0.5 * (1.0 + float(friction.path_correlation(quantum_m)))
+    matrix = np.array([[stay, 1 - stay], [1 - stay, stay]])
+    for size in range(3, levels + 1):
+        grown = np.zeros((size, size))
+        grown[:-1, :-1] += stay * matrix
+        grown[:-1, 1:] += (1 - stay) * matrix
+        grown[1:, :-1] += (1 - stay) * matrix
+        grown[1:, 1:] += stay * matrix
+        grown[1:-1] /= 2.0
+        matrix = grown
+    span = float(friction.path_cell_std(quantum_m)) * math.sqrt(levels - 1)
+    stationary = np.array([math.comb(levels - 1, i) for i in range(levels)]) / 2.0 ** (levels - 1)
+    return PathChain(np.linspace(-span, span, levels), matrix / matrix.sum(axis=1, keepdims=True), stationary)
+
+
+def independent_chain(std: float, levels: int) -> PathChain:
+    """Independent normal noise of std `std` in every quantum: the formulation as published (S2)."""
+    x, weights = np.polynomial.hermite_e.hermegauss(levels)
+    weights = weights / weights.sum()
+    return PathChain(std * x, np.tile(weights, (levels, 1)), weights)
+
+
+@dataclass(frozen=True)
+class TransientNoise:
+    """Force-weighted mean of η over a transient that crosses r quantum boundaries, given both end levels.
+
+    `probability` (C, R, L, L): of the end level, given the first; `mean`, `std` (C, R, L, L) of the mean of η,
+    given both. C transients, r = 0 … R − 1.
+    """
+
+    probability: NDArray[np.float64]
+    mean: NDArray[np.float64]
+    std: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        for array in (self.probability, self.mean, self.std):
+            array.setflags(write=False)
+
+
+def transient_noise(
+    chain: PathChain, overpressure: NDArray[np.float64], periods: NDArray[np.int64], longest: int
+) -> TransientNoise:
+    """Exact first and second moments of Σ g_t η_t along the chain, weights g_t following the brake force.
+
+    `overpressure` (C, T): force profile over time, of which the first share periods/max(periods) counts;
+    the profile is laid over the quanta as if speed were constant. `longest`: R.
+    """
+    weights = force_weights(overpressure, periods, longest)
+    count, size = len(periods), len(chain.levels)
+    level, square = chain.levels, chain.levels**2
+    shape = (count, longest, size, size)
+    zeroth = np.broadcast_to(np.eye(size), shape).copy()
+    first = np.zeros(shape)
+    second = np.zeros(shape)
+    for t in range(longest):
+        g = weights[:, :, t, None, None]
+        second = second + 2.0 * g * first * level + g**2 * zeroth * square
+        first = first + g * zeroth * level
+        goes_on = (np.arange(longest) > t)[None, :, None, None]
+        zeroth = np.where(goes_on, zeroth @ chain.transition, zeroth)
+        first = np.where(goes_on, first @ chain.transition, first)
+        second = np.where(goes_on, second @ chain.transition, second)
+    mean = first / zeroth.clip(1e-300)
+    variance = (second / zeroth.clip(1e-300) - mean**2).clip(0.0)
+    return TransientNoise(zeroth, mean, np.sqrt(variance))
+
+
+def force_weights(
+    overpressure: NDArray[np.float64], periods: NDArray[np.int64], longest: int
+) -> NDArray[np.float64]:
+    """g (C, R, R): share of the brake work done in quantum t = 0 … r of a transient of r + 1 quanta."""
+    steps = overpressure.shape[1]
+    used = np.rint(periods * (steps / periods.max())).astype(int)
+    weights = np.zeros((len(periods), longest, longest))
+    for c, last in enumerate(used):
+        work = np.concatenate([[0.0], np.cumsum(overpressure[c, :last])])
+        if work[-1] <= 0.0:
+            work = np.arange(last + 1.0)
+        for r in range(longest):
+            edges = np.interp(np.linspace(0.0, last, r + 2), np.arange(last + 1), work)
+            weights[c, r, : r + 1] = np.diff(edges) / work[-1]
+    return weights

@@ -1,0 +1,172 @@
+"""Exact evaluation of a policy of switching lines: mean square, exit-speed density, gradient (prediction).
+
+Nothing is sampled: the Chapman–Kolmogorov equation is followed forward for every hidden scenario, or the
+expected cost backward; the two are transposes of one another and agree to rounding.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.backward_induction import measured_speed_std
+from synth.kernels.commands import command_probabilities
+from synth.kernels.policy_density import forward
+from synth.kernels.policy_value import backward
+from synth.problem import Criterion
+from synth.switching_lines import SwitchingLines
+from synth.transitions import Transitions
+
+
+@dataclass(frozen=True)
+class Commands:
+    """P(down), P(up) at every node, stage and true speed (N, K + 1, E), and their slopes by the line value."""
+
+    down: NDArray[np.float64]
+    up: NDArray[np.float64]
+    down_slope: NDArray[np.float64]
+    up_slope: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ExitDensity:
+    """Distribution at the exit: `probability` (E,) at `speed_m_s` (E,), the rest as probabilities or means.
+
+    `escaped` is mass that ran off the top of the grid somewhere; it should be zero.
+    """
+
+    speed_m_s: NDArray[np.float64]
+    probability: NDArray[np.float64]
+    stalled: float
+    escaped: float
+    switchings: float
+
+    def rms_m_s(self, target_speed_m_s: float) -> float:
+        """Root mean square exit-speed error; a stall counts as exit speed 0."""
+        square = (self.probability * (self.speed_m_s - target_speed_m_s) ** 2).sum()
+        return float(np.sqrt(max(square + self.stalled * target_speed_m_s**2, 0.0)))
+
+    def bias_m_s(self, target_speed_m_s: float) -> float:
+        """Mean exit-speed error; a stall counts as exit speed 0."""
+        first = (self.probability * (self.speed_m_s - target_speed_m_s)).sum()
+        return float(first - self.stalled * target_speed_m_s)
+
+    def p_overspeed(self, limit_m_s: float) -> float:
+        """P(exit speed > limit), the cell that holds the limit shared linearly in energy."""
+        energy = 0.5 * self.speed_m_s**2
+        step = energy[1] - energy[0]
+        above = np.clip((energy - 0.5 * limit_m_s**2) / step + 0.5, 0.0, 1.0)
+        return float(max((self.probability * above).sum(), 0.0))
+
+
+def commands(transitions: Transitions, lines: SwitchingLines, staircase: bool) -> Commands:
+    """Command probabilities of `lines` under the sensor's noise.
+
+    `staircase`: quantisation as it is (the effective threshold sits half a step off the multiples of the
+    resolution); otherwise as an equivalent noise, which keeps the cost differentiable in the lines.
+    """
+    sensor = transitions.plant.sensor
+    nodes, points = len(transitions.drive_m_s2), len(transitions.grid.speed_m_s)
+    lower, upper = lines.lower_m_s[:, :nodes].T.copy(), lines.upper_m_s[:, :nodes].T.copy()
+    noise = measured_speed_std(sensor.noise_m_s, sensor.resolution_m_s)
+    if staircase and sensor.resolution_m_s > 0.0:
+        q = sensor.resolution_m_s
+        lower, upper = q * (np.ceil(lower / q) - 0.5), q * (np.floor(upper / q) + 0.5)
+        noise = measured_speed_std(sensor.noise_m_s, 0.0)
+    arrays = [np.empty((nodes, lines.stages, points)) for _ in range(4)]
+    command_probabilities(lower, upper, transitions.grid.speed_m_s, noise, *arrays)
+    return Commands(*arrays)
+
+
+@dataclass(frozen=True)
+class Occupancy:
+    """Where a policy takes the cut: `samples` (I, N, H, L, E) expected samples in every hidden state, weighted
+    by the scenarios; `band` (I, N, 2) range of energies met at a node."""
+
+    samples: NDArray[np.float64]
+    band: NDArray[np.int64]
+
+
+def exit_density(transitions: Transitions, policy: Commands) -> ExitDensity:
+    """Exit-speed density of the policy, all scenarios weighted."""
+    return forward_pass(transitions, policy, np.empty((len(transitions.scenarios.weight), 0, 0, 0, 0)))[0]
+
+
+def occupancy_of(transitions: Transitions, policy: Commands) -> tuple[ExitDensity, Occupancy]:
+    """Exit-speed density and the occupancy of every hidden state."""
+    t = transitions
+    shape = (len(t.drive_m_s2), len(t.actuator.mode_stage), len(t.chain.levels), len(t.grid.speed_m_s))
+    samples = np.zeros((len(t.scenarios.weight), *shape))
+    density, band = forward_pass(t, policy, samples)
+    return density, Occupancy(samples, band)
+
+
+def forward_pass(
+    t: Transitions, policy: Commands, samples: NDArray[np.float64]
+) -> tuple[ExitDensity, NDArray[np.int64]]:
+    """Forward recursion over all scenarios; `samples` (I, N, H, L, E) is filled unless its nodes are 0."""
+    points = len(t.grid.speed_m_s)
+    exits, totals = np.zeros(points), np.zeros(4)
+    band = np.empty((len(t.scenarios.weight), len(t.drive_m_s2), 2), dtype=np.int64)
+    for i, weight in enumerate(t.scenarios.weight):
+        one, sums = np.empty(points), np.empty(4)
+        forward(
+            policy.down, policy.up, t.entry, *shared_arguments(t), t.scenarios.factor[i], t.scenarios.extra_m_s2[i],
+            t.grid.path_step_m, t.grid.energy_step_m2_s2, t.plant.sensor.sample_period_s,
+            samples[i], band[i], one, sums,
+        )  # fmt: skip
+        samples[i] *= weight
+        exits += weight * one
+        totals += weight * sums
+    total = ExitDensity(t.grid.speed_m_s, exits, float(totals[0]), float(totals[1]), float(totals[2] + totals[3]))
+    return total, band
+
+
+def expected_cost(
+    transitions: Transitions, policy: Commands, target_speed_m_s: float, criterion: Criterion
+) -> float:
+    """Expected cost of the policy by the backward recursion, every state valued."""
+    return backward_pass(transitions, policy, target_speed_m_s, criterion, None)[0]
+
+
+def cost_and_gradient(
+    transitions: Transitions, policy: Commands, target_speed_m_s: float, criterion: Criterion
+) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
+    """Cost and its exact derivatives by every line value: (cost, by lower (K + 1, N), by upper (K + 1, N))."""
+    _, occupancy = occupancy_of(transitions, policy)
+    return backward_pass(transitions, policy, target_speed_m_s, criterion, occupancy)
+
+
+def backward_pass(
+    t: Transitions, policy: Commands, target_speed_m_s: float, criterion: Criterion, occupancy: Occupancy | None
+) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
+    """Backward recursion over all scenarios; see `cost_and_gradient`."""
+    nodes, stages = policy.down.shape[:2]
+    by_lower, by_upper = np.zeros((nodes, stages)), np.zeros((nodes, stages))
+    terminal = (t.grid.speed_m_s - target_speed_m_s) ** 2
+    stalled = target_speed_m_s**2 + criterion.stall_cost_m2_s2
+    nothing, no_band = np.empty((0, 0, 0, 0)), np.empty((0, 2), dtype=np.int64)
+    cost = 0.0
+    for i, weight in enumerate(t.scenarios.weight):
+        cost += weight * backward(
+            policy.down, policy.up, policy.down_slope, policy.up_slope, terminal, stalled,
+            criterion.switching_tolerance_m2_s2, t.entry,
+            *shared_arguments(t), t.scenarios.factor[i], t.scenarios.extra_m_s2[i], t.grid.path_step_m,
+            t.grid.energy_step_m2_s2, t.plant.sensor.sample_period_s,
+            nothing if occupancy is None else occupancy.samples[i],
+            no_band if occupancy is None else occupancy.band[i], by_lower, by_upper,
+        )  # fmt: skip
+    return float(cost), by_lower.T.copy(), by_upper.T.copy()
+
+
+def shared_arguments(t: Transitions) -> tuple[NDArray[np.float64], ...]:
+    """The plant's arrays in the order in which `forward` and `backward` take them."""
+    a = t.landings
+    return (
+        t.grid.speed_m_s, t.actuator.mode_stage, t.actuator.mode_overpressure_kpa,
+        a.lower_chain, a.upper_chain, a.end_mode, a.travel_m, a.energy_m2_s2, a.factors,
+        t.noise.probability, t.noise.mean, t.noise.std, t.chain.levels, t.chain.transition, t.chain.stationary,
+        t.drive_m_s2, t.brake_m_s2_per_kpa,
+    )  # fmt: skip

@@ -1,0 +1,82 @@
+"""Random numbers of simulated passes, drawn once and used for every controller (common random numbers)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+BLOCK_PASSES = 1000
+"""Passes that share one random stream; fixed, because pass i must not depend on how many are asked for."""
+
+PATH_CELLS = 512
+"""Random numbers along the path of one pass; a closed loop uses the first of them, one a cell."""
+
+NOISE_SAMPLES = 256
+"""Random numbers of the speed sensor in one pass; after that many samples they come again (25 s at 0.1 s)."""
+
+
+@dataclass(frozen=True)
+class RandomPasses:
+    """Standard random numbers of n passes; what they mean physically is decided by the plant.
+
+    `cut_z` (n,) standard normal for ξ_cut; `entry_u`, `phase_u`, `resistance_u` (n,) uniform in [0, 1) for
+    the entry speed, the phase of the sampling and the rolling resistance; `path_z` (n, 512) and `noise_z`
+    (n, 256) standard normal float32 for η along the path and the sensor.
+    """
+
+    cut_z: NDArray[np.float64]
+    entry_u: NDArray[np.float64]
+    phase_u: NDArray[np.float64]
+    resistance_u: NDArray[np.float64]
+    path_z: NDArray[np.float32]
+    noise_z: NDArray[np.float32]
+
+    def __post_init__(self) -> None:
+        for array in vars(self).values():
+            if len(array) != len(self.cut_z):
+                raise ValueError("random passes: all arrays must have one entry a pass")
+            array.setflags(write=False)
+
+    def __len__(self) -> int:
+        return len(self.cut_z)
+
+    def part(self, start: int, stop: int) -> RandomPasses:
+        """Passes `start` … `stop − 1` of these, as views."""
+        return RandomPasses(**{name: getattr(self, name)[start:stop] for name in NAMES})
+
+
+NAMES = tuple(field.name for field in fields(RandomPasses))
+
+
+def random_passes(seed: int, first_pass: int, count: int) -> RandomPasses:
+    """Passes `first_pass` … `first_pass + count − 1` of the endless row that `seed` stands for.
+
+    Pass i has the same numbers whatever `first_pass` and `count`: block b of 1000 passes is drawn whole
+    from `SeedSequence(seed, spawn_key=(b,))`.
+    """
+    if seed < 0 or first_pass < 0 or count < 0:
+        raise ValueError(f"random passes: seed {seed}, first pass {first_pass} and count {count} must not be negative")
+    end = first_pass + count
+    pieces: list[RandomPasses] = []
+    for block in range(first_pass // BLOCK_PASSES, max(-(-end // BLOCK_PASSES), first_pass // BLOCK_PASSES + 1)):
+        start = block * BLOCK_PASSES
+        drawn = block_of_passes(seed, block)
+        pieces.append(drawn.part(max(first_pass, start) - start, min(end, start + BLOCK_PASSES) - start))
+    if len(pieces) == 1:
+        return pieces[0]
+    return RandomPasses(**{name: np.concatenate([getattr(piece, name) for piece in pieces]) for name in NAMES})
+
+
+def block_of_passes(seed: int, block: int) -> RandomPasses:
+    """All passes of one block, in the order of drawing that the row is defined by."""
+    rng = np.random.Generator(np.random.SFC64(np.random.SeedSequence(seed, spawn_key=(block,))))
+    return RandomPasses(
+        cut_z=rng.standard_normal(BLOCK_PASSES),
+        entry_u=rng.random(BLOCK_PASSES),
+        phase_u=rng.random(BLOCK_PASSES),
+        resistance_u=rng.random(BLOCK_PASSES),
+        noise_z=rng.standard_normal((BLOCK_PASSES, NOISE_SAMPLES), dtype=np.float32),
+        path_z=rng.standard_normal((BLOCK_PASSES, PATH_CELLS), dtype=np.float32),
+    )

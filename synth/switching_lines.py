@@ -1,0 +1,35 @@
+"""Switching lines V_lo,k(s) and V_hi,k(s) as matrices over path nodes and stages (S2: switching matrices)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class SwitchingLines:
+    """Below `lower_m_s[k]` go a stage down, above `upper_m_s[k]` go a stage up, between them hold.
+
+    `nodes_m` (N + 1,) increasing from 0 to S_exit, equally spaced; `lower_m_s` and `upper_m_s` of shape
+    (K + 1, N + 1), linear between nodes; −inf / +inf where the stage has no such command.
+    """
+
+    nodes_m: NDArray[np.float64]
+    lower_m_s: NDArray[np.float64]
+    upper_m_s: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        if self.lower_m_s.shape != self.upper_m_s.shape or self.lower_m_s.shape[1:] != self.nodes_m.shape:
+            raise ValueError(
+                f"switching lines: shapes {self.lower_m_s.shape} and {self.upper_m_s.shape} do not fit "
+                f"{self.nodes_m.shape[0]} path nodes"
+            )
+        for array in (self.nodes_m, self.lower_m_s, self.upper_m_s):
+            array.setflags(write=False)
+
+    @property
+    def stages(self) -> int:
+        """Number of stages K + 1."""
+        return int(self.lower_m_s.shape[0])

@@ -1,0 +1,189 @@
+"""Everything of a plant that a sweep needs and that depends on neither policy nor target speed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models import path_coefficients
+from synth.actuator import Actuator, stage_locked_actuator
+from synth.grid import Grid, Resolution, make_grid
+from synth.kernels.landing import land
+from synth.path_noise import PathChain, TransientNoise, correlated_chain, independent_chain, transient_noise
+from synth.problem import Plant
+
+FRICTION_FACTOR_RANGE = (0.2, 1.9)
+FRICTION_FACTOR_NODES = 7
+FINE_CELLS_PER_QUANTUM = 4
+
+
+@dataclass(frozen=True)
+class Landings:
+    """End of every neighbouring stage change from every grid node, for friction `factors` (F,).
+
+    `travel_m`, `energy_m2_s2` (N, C, F, E), see `kernels.landing.land`; `lower_chain`, `upper_chain` (H,): index of the
+    transient one stage down / up from a mode, −1 if none; `end_mode` (C,).
+    """
+
+    factors: NDArray[np.float64]
+    travel_m: NDArray[np.float64]
+    energy_m2_s2: NDArray[np.float64]
+    lower_chain: NDArray[np.int64]
+    upper_chain: NDArray[np.int64]
+    end_mode: NDArray[np.int64]
+    overpressure_kpa: NDArray[np.float64]
+    samples: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Scenarios:
+    """Hidden constants of a pass: friction factor ξ_cut, added acceleration by w − E w, weights; shape (I,)."""
+
+    factor: NDArray[np.float64]
+    extra_m_s2: NDArray[np.float64]
+    weight: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Transitions:
+    """One plant on one grid: `drive_m_s2`, `brake_m_s2_per_kpa` (N,) cell means, landings, noise, entry.
+
+    `entry` (M + 1, E): probability of entry energy j with the first sample at path node r.
+    """
+
+    plant: Plant
+    grid: Grid
+    actuator: Actuator
+    drive_m_s2: NDArray[np.float64]
+    brake_m_s2_per_kpa: NDArray[np.float64]
+    landings: Landings
+    chain: PathChain
+    noise: TransientNoise
+    scenarios: Scenarios
+    entry: NDArray[np.float64]
+
+
+def persistent_transitions(plant: Plant, resolution: Resolution) -> Transitions:
+    """ξ_cut in scenarios, η as a correlated chain: the default formulation."""
+    grid, actuator = make_grid(plant, resolution), actuator_of(plant, resolution)
+    chain = correlated_chain(plant.friction, grid.path_step_m, resolution.path_levels)
+    scenarios = persistent_scenarios(plant, resolution.friction_nodes, resolution.resistance_nodes)
+    return assemble(plant, grid, actuator, chain, scenarios, make_landings(plant, grid, actuator))
+
+
+def published_transitions(plant: Plant, resolution: Resolution) -> Transitions:
+    """Independent friction noise in every quantum, unscaled, nothing persistent: the formulation of S2."""
+    grid, actuator = make_grid(plant, resolution), actuator_of(plant, resolution)
+    chain = independent_chain(math.hypot(plant.friction_cv, plant.friction.path_std), 5)
+    scenarios = Scenarios(np.ones(1), np.zeros(1), np.ones(1))
+    return assemble(plant, grid, actuator, chain, scenarios, make_landings(plant, grid, actuator))
+
+
+def with_known_friction(transitions: Transitions, factor: float) -> Transitions:
+    """The same plant whose ξ_cut is known to be `factor` (friction-known bound)."""
+    known = Scenarios(np.array([factor]), np.zeros(1), np.ones(1))
+    return Transitions(**{**vars(transitions), "scenarios": known})
+
+
+def as_published(transitions: Transitions) -> Transitions:
+    """The same plant and landings with the noise of `published_transitions`."""
+    plant = transitions.plant
+    chain = independent_chain(math.hypot(plant.friction_cv, plant.friction.path_std), 5)
+    scenarios = Scenarios(np.ones(1), np.zeros(1), np.ones(1))
+    return assemble(plant, transitions.grid, transitions.actuator, chain, scenarios, transitions.landings)
+
+
+def actuator_of(plant: Plant, resolution: Resolution) -> Actuator:
+    """The plant's actuator cut into the resolution's transient sub-steps."""
+    return stage_locked_actuator(plant.position, plant.sensor, plant.top_stage, resolution.transient_substeps)
+
+
+def persistent_scenarios(plant: Plant, friction_nodes: int, resistance_nodes: int) -> Scenarios:
+    """Product of Gauss–Hermite nodes of ξ_cut and generalised Gauss–Laguerre nodes of w."""
+    z, z_weight = np.polynomial.hermite_e.hermegauss(friction_nodes)
+    factor = plant.friction.cut_factor(z, plant.friction_cv)
+    w, w_weight = plant.resistance.nodes(resistance_nodes)
+    extra = -plant.cut.reduced_gravity_m_s2 * 1e-3 * (w - plant.resistance.mean_n_per_kn)
+    return Scenarios(
+        factor=np.repeat(factor, len(w)),
+        extra_m_s2=np.tile(extra, len(z)),
+        weight=np.outer(z_weight / z_weight.sum(), w_weight).ravel(),
+    )
+
+
+def assemble(
+    plant: Plant, grid: Grid, actuator: Actuator, chain: PathChain, scenarios: Scenarios, landings: Landings
+) -> Transitions:
+    """Put the pieces of one plant together."""
+    coefficients = path_coefficients(plant.position, plant.cut, plant.profile, grid.path_m)
+    resistance = coefficients.resistance_m_s2_per_n_kn * plant.resistance.mean_n_per_kn
+    longest = int(math.ceil(landings.travel_m.max() / grid.path_step_m)) + 2
+    return Transitions(
+        plant=plant,
+        grid=grid,
+        actuator=actuator,
+        drive_m_s2=coefficients.gravity_m_s2 - resistance,
+        brake_m_s2_per_kpa=coefficients.brake_m_s2_per_kpa,
+        landings=landings,
+        chain=chain,
+        noise=transient_noise(chain, landings.overpressure_kpa, landings.samples, longest),
+        scenarios=scenarios,
+        entry=entry_distribution(plant, grid),
+    )
+
+
+def make_landings(plant: Plant, grid: Grid, actuator: Actuator) -> Landings:
+    """Integrate the motion through every change to a neighbouring stage (kernel `land`)."""
+    modes = len(actuator.mode_stage)
+    used: list[int] = []
+    lower, upper = np.full(modes, -1), np.full(modes, -1)
+    for neighbours, step in ((lower, -1), (upper, 1)):
+        for mode, stage in enumerate(actuator.mode_stage):
+            if 0 <= stage + step < actuator.stages:
+                neighbours[mode] = len(used)
+                used.append(int(actuator.command[mode, stage + step]))
+    fine = np.linspace(0.0, plant.exit_m, FINE_CELLS_PER_QUANTUM * (len(grid.path_m) - 1) + 1)
+    cells = path_coefficients(plant.position, plant.cut, plant.profile, fine)
+    work = np.concatenate([[0.0], np.cumsum(cells.brake_m_s2_per_kpa * np.diff(fine))])
+    drive = cells.gravity_m_s2 - cells.resistance_m_s2_per_n_kn * plant.resistance.mean_n_per_kn
+    factors = np.linspace(*FRICTION_FACTOR_RANGE, FRICTION_FACTOR_NODES)
+    overpressure = np.ascontiguousarray(actuator.chain_overpressure_kpa[used])
+    samples = actuator.chain_samples[used]
+    shape = (len(grid.path_m) - 1, len(used), len(factors), len(grid.speed_m_s))
+    travel, energy = np.empty(shape), np.empty(shape)
+    dt = plant.sensor.sample_period_s / actuator.substeps
+    land(
+        grid.path_step_m, work, drive, overpressure, samples, actuator.substeps, dt, factors,
+        grid.speed_m_s, 0, travel, energy,
+    )  # fmt: skip
+    return Landings(factors, travel, energy, lower, upper, actuator.chain_mode[used], overpressure, samples)
+
+
+def entry_distribution(plant: Plant, grid: Grid) -> NDArray[np.float64]:
+    """Entry speed uniform, sampling phase uniform: the first sample lies within v·T_c of the entrance.
+
+    The mass is spread so that the mean energy is kept; along the path by integrating the hat functions.
+    """
+    count = 2000 if plant.entry.high_m_s > plant.entry.low_m_s else 1
+    v = plant.entry.speed_m_s((np.arange(count) + 0.5) / count)
+    period, step = plant.sensor.sample_period_s, grid.path_step_m
+    reach = math.ceil(grid.speed_m_s[-1] * period / step) + 2
+    position = 0.5 * v**2 / grid.energy_m2_s2[1]
+    cell = np.minimum(position.astype(int), len(grid.energy_m2_s2) - 2)
+    share = position - cell
+    entry = np.zeros((reach, len(grid.energy_m2_s2)))
+    far = v * period / step
+    for r in range(reach):
+        weight = (hat_integral(far - r) - hat_integral(-r * np.ones_like(far))) / far
+        np.add.at(entry[r], cell, weight * (1.0 - share) / count)
+        np.add.at(entry[r], cell + 1, weight * share / count)
+    return entry
+
+
+def hat_integral(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """∫ from −1 to x of the hat function max(0, 1 − |t|)."""
+    x = np.clip(x, -1.0, 1.0)
+    return np.where(x < 0, 0.5 * (1 + x) ** 2, 1.0 - 0.5 * (1 - x) ** 2)

@@ -1,0 +1,114 @@
+"""The house: who may import whom, what starts at once, how long a file may be, and what must be documented."""
+
+import ast
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PACKAGES = ("plant_models", "synth", "tuning_tables")
+HEAVY = ("control", "h5py", "matplotlib", "numba", "scipy")
+FILES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
+
+
+def lint_imports(directory: Path, *contracts: str) -> subprocess.CompletedProcess[str]:
+    """Check the named import contracts, or all of them, on the checkout in `directory`."""
+    settings = f"limit_to_contracts={contracts!r}, no_cache=True, no_logo=True"
+    command = f"from importlinter.cli import lint_imports; raise SystemExit(lint_imports({settings}))"
+    return subprocess.run(
+        [sys.executable, "-c", command], cwd=directory, capture_output=True, text=True, timeout=120, check=False
+    )
+
+
+def loaded_by(statement: str) -> set[str]:
+    """Return the top-level packages that a fresh interpreter has loaded after `statement`."""
+    command = f"{statement}; import sys; print(*{{name.partition('.')[0] for name in sys.modules}})"
+    run = subprocess.run(
+        [sys.executable, "-c", command], cwd=ROOT, capture_output=True, text=True, timeout=60, check=False
+    )
+    assert run.returncode == 0, run.stderr
+    return set(run.stdout.split())
+
+
+def relative_names() -> Iterator[str]:
+    return (path.relative_to(ROOT).as_posix() for path in FILES)
+
+
+def test_import_contracts_are_kept() -> None:
+    run = lint_imports(ROOT)
+    assert run.returncode == 0, run.stdout + run.stderr
+
+
+@pytest.mark.parametrize(
+    ("name", "source", "contract"),
+    [
+        ("plant_models/intruder.py", "import synth", "layers"),
+        ("plant_models/intruder.py", "import tuning_tables", "layers"),
+        ("tuning_tables/intruder.py", "import plant_models", "layers"),
+        ("plant_models/intruder.py", "import matplotlib.pyplot", "plant-is-physics"),
+        ("tuning_tables/rule.py", "import scipy.stats", "table-is-light"),
+        ("synth/kernels/intruder.py", "import scipy.special", "kernels-are-bare"),
+        ("synth/kernels/intruder.py", "from synth.kernel_cache import guarded", "kernels-are-bare"),
+    ],
+)
+def test_an_import_against_the_contracts_is_found(tmp_path: Path, name: str, source: str, contract: str) -> None:
+    shutil.copy(ROOT / "pyproject.toml", tmp_path)
+    for package in PACKAGES:
+        shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__", "*.toml"))
+    with (tmp_path / name).open("a", encoding="utf-8") as file:
+        file.write(f"\n{source}\n")
+    run = lint_imports(tmp_path, contract)
+    assert run.returncode == 1, run.stdout + run.stderr
+    assert "BROKEN" in run.stdout, run.stdout + run.stderr
+
+
+def test_command_line_starts_without_the_numeric_libraries() -> None:
+    assert loaded_by("import synth.cli").isdisjoint({"control", "matplotlib", "numba", "scipy"})
+
+
+def test_a_table_is_used_with_numpy_alone() -> None:
+    loaded = loaded_by("import tuning_tables, tuning_tables.rule, tuning_tables.json_file")
+    assert loaded.isdisjoint({*HEAVY, "plant_models", "pydantic", "synth"})
+
+
+def test_packages_are_found() -> None:
+    assert {name.partition("/")[0] for name in relative_names()} == set(PACKAGES)
+
+
+def test_no_file_collects_what_has_no_name() -> None:
+    collectors = {"common", "helper", "helpers", "misc", "util", "utils"}
+    assert [name for name in relative_names() if collectors & set(Path(name).with_suffix("").parts)] == []
+
+
+@pytest.mark.parametrize("path", FILES, ids=relative_names())
+def test_source_file_is_short_and_documented(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert len(text.splitlines()) <= 300, "split the file: one noun a file"
+    assert list(undocumented(ast.parse(text))) == []
+
+
+def undocumented(module: ast.Module) -> Iterator[str]:
+    """Yield the public functions and classes, and the public functions of classes, that have no docstring."""
+    for node in module.body:
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef) and not node.name.startswith("_"):
+            if ast.get_docstring(node) is None and not is_overload(node):
+                yield f"line {node.lineno}: {node.name}"
+            if isinstance(node, ast.ClassDef):
+                methods = ast.Module(
+                    body=[part for part in node.body if not is_declared_elsewhere(part)], type_ignores=[]
+                )
+                yield from undocumented(methods)
+
+
+def is_overload(node: ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef) -> bool:
+    return any(ast.unparse(decorator).endswith("overload") for decorator in node.decorator_list)
+
+
+def is_declared_elsewhere(node: ast.stmt) -> bool:
+    """Whether a part of a class has its contract elsewhere: an override, or a validator that pydantic calls."""
+    decorators = [ast.unparse(decorator) for decorator in getattr(node, "decorator_list", [])]
+    return any("override" in text or "validator" in text or "serializer" in text for text in decorators)

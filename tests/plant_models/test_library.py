@@ -1,0 +1,181 @@
+"""The library: it loads, says where each number is from, and refuses what is not as it should be."""
+
+from importlib.resources import files
+
+import numpy as np
+import pytest
+
+from plant_models import PlantError, WeightForce
+from plant_models.library import (
+    car_names,
+    load_car,
+    load_retarder,
+    retarder_names,
+    weight_categories,
+    weight_category,
+    weight_category_named,
+)
+from plant_models.library.car_entry import car_from_toml
+from plant_models.library.data_file import library_text
+from plant_models.library.retarder_entry import retarder_from_toml
+from plant_models.library.weight_category import categories_from_toml
+
+GOOD = library_text("retarders", "knp-5-bunch")
+CATEGORIES = files("plant_models.library").joinpath("weight_categories.toml").read_text(encoding="utf-8")
+DELAY = next(line for line in GOOD.splitlines() if line.startswith("brake_delay_s"))
+
+
+def test_holds_the_promised_types() -> None:
+    assert {"knp-5-bunch", "vzpg-5-bunch", "rnz-2m-park", "t-50-bunch", "kv-3-bunch"} <= set(retarder_names())
+    assert {"gondola-4", "box-4", "flat-4", "tank-4", "hopper-4", "tank-8", "gondola-6"} <= set(car_names())
+
+
+@pytest.mark.parametrize("name", retarder_names())
+def test_every_number_of_a_retarder_has_an_origin(name: str) -> None:
+    entry = load_retarder(name)
+    assert entry.position.name == name
+    assert all(v.source and v.confidence and v.range is not None and v.in_range for v in entry.provenance)
+    assert any(v.assumed for v in entry.provenance)
+    assert entry.entry_speed_m_s[1] <= entry.position.max_entry_speed_m_s
+    assert max(entry.target_speeds_m_s) < entry.entry_speed_m_s[1]
+
+
+@pytest.mark.parametrize("name", car_names())
+def test_every_car_loads_with_equal_overhangs_left_over(name: str) -> None:
+    entry = load_car(name)
+    assert 0.5 < (entry.car.length_m - entry.car.axle_offsets_m[-1]) / 2 < 2.5
+    assert all(v.source and v.in_range for v in entry.provenance)
+
+
+def test_full_stage_force_is_that_of_the_facts() -> None:
+    position = load_retarder("knp-5-bunch").position
+    cut_free_slope = position.force.slope_kn_per_kpa(None, 1)  # type: ignore[arg-type]  # a pressing force asks no cut
+    assert cut_free_slope * (600 - 50) == pytest.approx(20.0)
+    assert position.zones_m == ((0.0, 12.475), (14.475, 26.95))
+
+
+def test_weight_force_gives_the_energy_head_whatever_the_mass() -> None:
+    position = load_retarder("kv-3-bunch").position
+    assert isinstance(position.force, WeightForce)
+    over = position.stage_pressures_kpa[-1] - position.force.touch_pressure_kpa
+    head_m = position.force.slope_kn_per_kpa_per_t * over * 12.475 / 9.81
+    assert head_m == pytest.approx(1.2, rel=1e-3)
+
+
+def test_axle_patterns() -> None:
+    assert load_car("gondola-4").car.axle_offsets_m == (0.0, 1.85, 8.65, 10.5)
+    assert load_car("tank-8").car.axle_offsets_m == (0.0, 1.85, 3.2, 5.05, 13.79, 15.64, 16.99, 18.84)
+    assert len(load_car("gondola-6").car.axle_offsets_m) == 6
+
+
+@pytest.mark.parametrize(
+    ("mass_t", "axles", "name"),
+    [
+        (22, 4, "Л"),
+        (28, 4, "Л"),
+        (28.01, 4, "ЛС"),
+        (44, 4, "ЛС"),
+        (60, 4, "С"),
+        (72, 4, "СТ"),
+        (72.1, 4, "Т"),
+        (33, 6, "Л"),
+        (48, 8, "Л"),
+        (176, 8, "Т"),
+        (120, 8, "С"),
+        (500, 4, "Т"),
+    ],
+)
+def test_weight_category_goes_by_axle_load(mass_t: float, axles: int, name: str) -> None:
+    assert weight_category(mass_t, axles).name == name
+
+
+def test_weight_categories_are_those_of_the_facts() -> None:
+    assert [c.name for c in weight_categories()] == ["Л", "ЛС", "С", "СТ", "Т"]
+    assert [c.allowed_stage for c in weight_categories()] == [2, 3, 4, 4, 4]
+    shapes = [c.resistance.shape for c in weight_categories()]
+    np.testing.assert_allclose(shapes, [6.82, 6.81, 7.84, 10.82, 12.35], atol=0.005)
+
+
+@pytest.mark.parametrize(
+    ("typed", "name"), [("Л", "Л"), ("LS", "ЛС"), ("CT", "СТ"), ("T", "Т"), ("S", "С"), ("C", "С")]
+)
+def test_categories_answer_to_latin_letters(typed: str, name: str) -> None:
+    assert weight_category_named(typed).name == name
+
+
+def test_unknown_names_get_a_hint() -> None:
+    with pytest.raises(PlantError, match="did you mean knp-5-bunch"):
+        load_retarder("knp5-bunch")
+    with pytest.raises(PlantError, match="known: box-4"):
+        load_car("zzz")
+    with pytest.raises(PlantError, match="weight category 'XX' is not in the library"):
+        weight_category_named("XX")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            "brake_delay_s",
+            "brake_dela_s",
+            r"unknown key retarder.pneumatics.brake_dela_s; did you mean .*brake_delay_s",
+        ),
+        (DELAY, "", r"key retarder.pneumatics.brake_delay_s is missing"),
+        (DELAY, "brake_delay_s = 0.1", r"retarder.pneumatics.brake_delay_s is 0.1; it must be a table"),
+        (
+            DELAY,
+            DELAY.replace("value = 0.1", "value = '0.1'"),
+            r"brake_delay_s.value is '0.1'; it must be a finite number",
+        ),
+        (DELAY, DELAY.replace("value = 0.1", "value = nan"), r"brake_delay_s.value is nan; it must be a finite number"),
+        (DELAY, DELAY.replace("value = 0.1", "value = true"), r"brake_delay_s.value is True"),
+        (
+            DELAY,
+            DELAY.replace("value = 0.1", "value = 0.3"),
+            r"brake_delay_s.value is 0.3; it is outside its own range",
+        ),
+        (DELAY, DELAY.replace("[0.05, 0.20]", "[0.2, 0.05]"), r"brake_delay_s.range is \[0.2, 0.05\]"),
+        (DELAY, DELAY.replace('"L"', '"X"'), r"brake_delay_s.confidence is 'X'; it must be one of H"),
+        (
+            DELAY,
+            DELAY.replace("source", "sauce"),
+            r"unknown key retarder.pneumatics.brake_delay_s.sauce; did you mean source",
+        ),
+        (
+            DELAY,
+            DELAY.replace(', confidence = "L"', ""),
+            r"key retarder.pneumatics.brake_delay_s.confidence is missing",
+        ),
+        ('law = "pressing"', 'law = "presing"', r"law is 'presing'; did you mean pressing"),
+        ('law = "pressing"', 'law = "weight"', r"unknown key retarder.force.slope_kn_per_kpa; did you mean"),
+        ("[[0.0, 12.475], [14.475, 26.95]]", "[[0.0, 12.475], [10.0, 26.95]]", r"zones must be ordered"),
+        ("[[0.0, 12.475], [14.475, 26.95]]", "[[0.0, 12.475], [10.0]]", r"zones_m.value .*at least one pair"),
+        ("[track]", "[track", r"not valid TOML: .*line"),
+    ],
+)
+def test_damaged_retarder_file_is_refused_by_name_and_key(old: str, new: str, message: str) -> None:
+    assert GOOD.count(old) >= 1
+    with pytest.raises(PlantError, match=r"retarders/bad.toml: .*" + message):
+        retarder_from_toml(GOOD.replace(old, new, 1), "bad")
+
+
+def test_damaged_car_and_category_files_are_refused() -> None:
+    with pytest.raises(PlantError, match=r"cars/bad.toml: key title is missing"):
+        car_from_toml("", "bad")
+    swapped = CATEGORIES.replace("value = 28.0, range = [28.0, 28.0]", "value = 70.0, range = [0.0, 90.0]")
+    with pytest.raises(PlantError, match=r"weight_categories.toml: S: mass_above_t is 44"):
+        categories_from_toml(swapped)
+    with pytest.raises(PlantError, match="holds no category"):
+        categories_from_toml("")
+
+
+def test_with_values_marks_what_changed_and_only_that() -> None:
+    entry = load_retarder("knp-5-bunch")
+    changed = entry.with_values({"retarder.pneumatics.brake_delay_s": 0.12, "sensor.noise_m_s": 0.05})
+    assert changed.position.pneumatics.brake_delay_s == 0.12
+    sources = {v.key: v.source for v in changed.provenance}
+    assert sources["retarder.pneumatics.brake_delay_s"] == "configuration"
+    assert sources["sensor.noise_m_s"].startswith("memory")
+    assert entry.position.pneumatics.brake_delay_s == 0.10
+    with pytest.raises(PlantError, match=r"slope_kn_per_kpa_per_t is 1.0; the pressing force law of knp-5-bunch"):
+        entry.with_values({"retarder.force.slope_kn_per_kpa_per_t": 1.0})

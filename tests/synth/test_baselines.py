@@ -1,0 +1,77 @@
+"""Baselines: the energy rule's lines lead to the target, and tuning finds members worth comparing with."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from synth.baselines import FAMILIES, TunedBaseline, energy_rule, threshold_with_lead, tune_baselines, two_thresholds
+from synth.closed_loop import close_loop, simulate
+from synth.exit_statistics import exit_statistics
+from synth.kernels.closed_loop import LEFT, advance
+from synth.problem import Plant
+from synth.random_passes import RandomPasses, random_passes
+
+TARGET_M_S = 3.0
+
+
+@pytest.fixture(scope="module")
+def passes() -> RandomPasses:
+    return random_passes(seed=5, first_pass=0, count=400)
+
+
+@pytest.fixture(scope="module")
+def tuned(plant_52t: Plant, passes: RandomPasses) -> dict[str, TunedBaseline]:
+    return {baseline.name: baseline for baseline in tune_baselines(plant_52t, TARGET_M_S, passes)}
+
+
+@pytest.mark.parametrize("stage", [0, 1, 2, 3])
+def test_a_cut_on_the_energy_line_leaves_with_the_target(plant_52t: Plant, stage: int) -> None:
+    loop = close_loop(plant_52t, 5)
+    friction = 0.9
+    lines = energy_rule(loop, TARGET_M_S, 4, friction, 0.1, 0.0, 0.2).lines
+    path = loop.path
+    free = path.gravity_m_s2 - path.drag_m_s2_per_n_kn * plant_52t.resistance.mean_n_per_kn
+    brake = friction * path.brake_m_s2_per_kpa
+    kpa = loop.stage_overpressures_kpa[stage]
+    entry = lines.upper_m_s[stage, 0]
+    *_, speed, _, status = advance(path.edges_m, free, brake, kpa, 1e3, 0, 0.0, entry)
+    assert status == LEFT
+    assert speed == pytest.approx(TARGET_M_S + 0.1, abs=1e-9)
+    assert lines.lower_m_s[stage + 1] == pytest.approx(lines.upper_m_s[stage] - 0.2)
+
+
+def test_thresholds_jump_to_their_stage_and_back(plant_52t: Plant) -> None:
+    loop = close_loop(plant_52t, 5)
+    lines = two_thresholds(loop, TARGET_M_S, 3, 0.1, 0.2).lines
+    assert np.all(lines.upper_m_s[:3] == pytest.approx(3.3))
+    assert np.all(np.isposinf(lines.upper_m_s[3:]))
+    assert np.all(lines.lower_m_s[1:] == pytest.approx(3.1))
+    assert np.all(np.isneginf(lines.lower_m_s[0]))
+    assert threshold_with_lead(loop, TARGET_M_S, 3, 0.1, 0.4).lead_s == 0.4
+
+
+def test_tuning_is_deterministic_and_reports_what_it_reached(
+    plant_52t: Plant, passes: RandomPasses, tuned: dict[str, TunedBaseline]
+) -> None:
+    assert list(tuned) == [family.name for family in FAMILIES]
+    again = {baseline.name: baseline for baseline in tune_baselines(plant_52t, TARGET_M_S, passes)}
+    for name, baseline in tuned.items():
+        figures = exit_statistics(simulate(plant_52t, baseline.controller, passes), TARGET_M_S)
+        assert figures.rms_m_s == baseline.rms_m_s
+        assert again[name].parameters == baseline.parameters
+
+
+def test_richer_laws_are_no_worse_and_all_are_sensible(tuned: dict[str, TunedBaseline]) -> None:
+    single = tuned["single threshold"].rms_m_s
+    assert single < 0.2
+    assert tuned["two-threshold relay"].rms_m_s <= single + 0.005  # both grids hold the single threshold's
+    assert tuned["threshold with lead"].rms_m_s <= single + 0.005
+    assert tuned["energy rule"].rms_m_s < 0.7 * single
+
+
+def test_tuned_baseline_holds_on_fresh_passes(plant_52t: Plant, tuned: dict[str, TunedBaseline]) -> None:
+    fresh = random_passes(seed=6, first_pass=0, count=4000)
+    for baseline in tuned.values():
+        figures = exit_statistics(simulate(plant_52t, baseline.controller, fresh), TARGET_M_S)
+        assert figures.rms_m_s < 1.4 * baseline.rms_m_s

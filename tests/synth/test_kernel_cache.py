@@ -1,0 +1,196 @@
+"""The kernel cache: a new directory for any change, no alien file touched, and a damaged cache mends itself."""
+
+import json
+import os
+import subprocess
+import sys
+import textwrap
+import time
+from pathlib import Path
+
+import pytest
+
+from synth.kernel_cache import empty_kernel_cache, guarded, kernel_fingerprint, use_kernel_cache
+
+SOURCES = ("plant_models/motion.py", "synth/kernels/bellman.py", "synth/kernels/deep/er.py", "tuning_tables/rule.py")
+
+
+@pytest.fixture
+def checkout(tmp_path: Path) -> Path:
+    for name in (*SOURCES, "synth/settings.py", "tuning_tables/table.py"):
+        path = tmp_path / "checkout" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(f"# {name}\nx = 1\n")
+    return tmp_path / "checkout"
+
+
+@pytest.fixture
+def base(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("RETARDER_SYNTH_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "")  # so that the value of before the test comes back after it
+    if "numba" in sys.modules:
+        config = sys.modules["numba"].config
+        monkeypatch.setattr(config, "CACHE_DIR", config.CACHE_DIR)
+    return tmp_path / "cache"
+
+
+@pytest.mark.parametrize("name", SOURCES)
+def test_one_changed_byte_in_a_kernel_source_changes_the_fingerprint(checkout: Path, name: str) -> None:
+    before = kernel_fingerprint(checkout)
+    path = checkout / name
+    path.write_text(path.read_text().replace("x = 1", "x = 2"))
+    assert kernel_fingerprint(checkout) != before
+
+
+def test_renamed_and_new_sources_change_the_fingerprint(checkout: Path) -> None:
+    seen = {kernel_fingerprint(checkout)}
+    (checkout / "synth/kernels/bellman.py").rename(checkout / "synth/kernels/bellmann.py")
+    seen.add(kernel_fingerprint(checkout))
+    (checkout / "plant_models/empty.py").write_text("")
+    seen.add(kernel_fingerprint(checkout))
+    assert len(seen) == 3
+
+
+def test_files_without_kernels_leave_the_fingerprint_alone(checkout: Path) -> None:
+    before = kernel_fingerprint(checkout)
+    (checkout / "synth/settings.py").write_text("x = 2\n")
+    (checkout / "tuning_tables/table.py").write_text("x = 2\n")
+    assert kernel_fingerprint(checkout) == before
+
+
+@pytest.mark.parametrize(("setting", "changes"), [("NUMBA_BOUNDSCHECK", True), ("NUMBA_NUM_THREADS", False)])
+def test_settings_that_change_the_machine_code_change_the_fingerprint(
+    checkout: Path, monkeypatch: pytest.MonkeyPatch, setting: str, changes: bool
+) -> None:
+    monkeypatch.delenv(setting, raising=False)
+    before = kernel_fingerprint(checkout)
+    monkeypatch.setenv(setting, "1")
+    assert (kernel_fingerprint(checkout) != before) is changes
+
+
+def test_directory_is_named_by_the_fingerprint_and_handed_to_numba(base: Path) -> None:
+    directory = use_kernel_cache()
+    assert directory == base / "retarder-synth" / kernel_fingerprint()
+    assert directory.is_dir()
+    assert os.environ["NUMBA_CACHE_DIR"] == str(directory)
+    assert use_kernel_cache() == directory
+
+
+def test_directory_set_by_the_user_for_numba_is_replaced(base: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(base / "stale"))
+    assert use_kernel_cache().parent == base / "retarder-synth"
+
+
+def test_unwritable_bases_are_passed_over(base: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "a-file").write_text("")
+    monkeypatch.setenv("RETARDER_SYNTH_CACHE", str(tmp_path / "a-file" / "below"))
+    monkeypatch.setenv("XDG_CACHE_HOME", "relative/path")
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    assert use_kernel_cache().is_relative_to(tmp_path / "home" / ".cache")
+    monkeypatch.setenv("HOME", str(tmp_path / "a-file"))
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "")
+    private = use_kernel_cache()
+    assert private.is_dir()
+    assert not private.is_relative_to(tmp_path / "home")
+    assert use_kernel_cache() == private
+
+
+def test_only_own_directories_unused_for_a_month_are_removed(base: Path) -> None:
+    now = time.time()
+    ages_days = {"0123456789abcdef": 31, "fedcba9876543210": 29, "notes": 400}
+    for name, days in ages_days.items():
+        (base / "retarder-synth" / name).mkdir(parents=True)
+        os.utime(base / "retarder-synth" / name, (now - days * 86400, now - days * 86400))
+    directory = use_kernel_cache()
+    left = {path.name for path in (base / "retarder-synth").iterdir()}
+    assert left == {"fedcba9876543210", "notes", directory.name}
+
+
+def test_emptying_takes_compiled_kernels_only(tmp_path: Path) -> None:
+    for name in ("a/kernel.nbi", "a/kernel.1.nbc", "a/notes.txt"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("x")
+    empty_kernel_cache(tmp_path)
+    assert [path.name for path in tmp_path.rglob("*.*")] == ["notes.txt"]
+
+
+def test_other_errors_pass_through_and_are_not_retried(base: Path) -> None:
+    directory = use_kernel_cache()
+    (directory / "kernel.nbi").write_text("x")
+    calls = []
+
+    def fail() -> None:
+        calls.append(1)
+        raise EOFError("not from the cache")
+
+    with pytest.raises(EOFError, match="not from the cache"):
+        guarded(fail)
+    assert len(calls) == 1
+    assert (directory / "kernel.nbi").exists()
+
+
+def test_arguments_and_result_pass_through() -> None:
+    assert guarded(divmod, 7, 2) == (3, 1)
+    assert guarded(int, "ff", base=16) == 255
+
+
+KERNEL = """
+from numba import njit
+
+@njit(cache=True)
+def double(x):
+    return 2.0 * x
+"""
+
+DAMAGE_AND_MEND = """
+import importlib, json, pickle, sys
+from synth.kernel_cache import guarded, use_kernel_cache
+
+directory = use_kernel_cache()
+assert "numba" not in sys.modules
+import kernel
+
+def fresh():
+    return importlib.reload(kernel).double  # a new dispatcher: it must read the cache again
+
+def hits(function):
+    return sum(function.stats.cache_hits.values())
+
+damages = {
+    "truncated": lambda data: data[: len(data) // 2],
+    "empty": lambda data: b"",
+    "zeros": lambda data: bytes(len(data)),
+    "garbage": lambda data: b"\\xff" * 7 + data[::-1],
+    "another pickle": lambda data: pickle.dumps("something else"),
+}
+fresh()(1.5)
+report = {}
+for suffix in ("nbi", "nbc"):
+    for name, damage in damages.items():
+        (path,) = directory.rglob("*." + suffix)
+        path.write_bytes(damage(path.read_bytes()))
+        function = fresh()
+        first = guarded(function, 1.5)
+        again = fresh()
+        report[suffix + " " + name] = [first, hits(function), guarded(again, 2.5), hits(again)]
+print(json.dumps(report))
+"""
+
+
+def test_damaged_cache_is_emptied_and_the_kernel_compiled_anew(tmp_path: Path) -> None:
+    (tmp_path / "kernel.py").write_text(KERNEL)
+    environment = {k: v for k, v in os.environ.items() if not k.startswith("NUMBA_")}
+    environment |= {"RETARDER_SYNTH_CACHE": str(tmp_path / "cache"), "PYTHONPATH": str(tmp_path)}
+    run = subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(DAMAGE_AND_MEND)],
+        env=environment,
+        cwd=Path(__file__).parents[2],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == 0, run.stderr
+    report = json.loads(run.stdout)
+    assert len(report) == 10
+    # right result, compiled anew; right result, read from the mended cache
+    assert report == {name: [3.0, 0, 5.0, 1] for name in report}

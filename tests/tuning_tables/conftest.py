@@ -1,0 +1,75 @@
+"""Tables to test with: one that a tuning run might give, and a maker of its variants."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from tuning_tables import (
+    ControllerTable,
+    CutId,
+    Generator,
+    Predicted,
+    RetarderId,
+    Stage,
+    Validated,
+    ValidRange,
+    round_coefficients,
+)
+
+MakeTable = Callable[..., ControllerTable]
+
+
+@pytest.fixture(scope="session")
+def table() -> ControllerTable:
+    """Four stages, cubic lines with rounded coefficients, an umlaut in a name, validated."""
+    return ControllerTable(
+        id="leer-22t-4.0",
+        created="2026-11-20T22:46:00Z",
+        generator=Generator("retarder-synth", "0.1.0", "0123456789abcdef" * 4),
+        retarder=RetarderId("Talbremse Süd", ((0.0, 12.475), (14.475, 26.95)), 37.45, 15.0),
+        cut=CutId("medium", 22.0, (0.0, 1.85, 8.65, 10.5)),
+        target_speed_m_s=4.0,
+        degree=3,
+        stages=(
+            Stage(0, 0.0, None, round_coefficients([6.1, -0.05, 1e-3, -3.3e-5])),
+            Stage(
+                1, 150.0, round_coefficients([5.2, -0.04, 5e-4, -1e-5]), round_coefficients([6.3, -0.05, 1e-3, -3e-5])
+            ),
+            Stage(2, 300.0, round_coefficients([5.6, -0.05, 8e-4, -2e-5]), None),
+            Stage(3, 450.0, round_coefficients([5.8, -0.05, 8e-4, -2e-5]), None),
+        ),
+        valid=ValidRange((0.0, 37.45), (0.3, 9.0)),
+        predicted=Predicted(0.05, -0.001, 0.01, 4.1),
+        validated=Validated(20000, 0.05, (0.049, 0.051)),
+    )
+
+
+@pytest.fixture(scope="session")
+def linear_table(table: ControllerTable) -> ControllerTable:
+    """Two stages and lines that are exact in float32: raise above 4 + s/4, lower below 2 + s/4; path 1..8 m."""
+    return replace(
+        table,
+        id="linear",
+        degree=1,
+        stages=(Stage(0, 0.0, None, (4.0, 0.25)), Stage(1, 100.0, (2.0, 0.25), None)),
+        valid=ValidRange((1.0, 8.0), (0.0, 9.0)),
+        predicted=Predicted(0.1, 0.0, 0.0, 2.0, p_stall=0.25),
+        validated=None,
+    )
+
+
+@pytest.fixture(scope="session")
+def crossing(table: ControllerTable) -> Callable[[tuple[float, ...], tuple[float, ...], tuple[float, float]], Any]:
+    """A function that builds a three-stage table whose middle stage has the given lower and upper line."""
+
+    def make(lower: tuple[float, ...], upper: tuple[float, ...], s_m: tuple[float, float]) -> ControllerTable:
+        return replace(
+            table,
+            degree=len(lower) - 1,
+            stages=(Stage(0, 0.0, None, upper), Stage(1, 100.0, lower, upper), Stage(2, 200.0, lower, None)),
+            valid=ValidRange(s_m, (0.0, 9.0)),
+        )
+
+    return make

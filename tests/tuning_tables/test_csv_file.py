@@ -1,0 +1,56 @@
+"""The CSV file holds the whole table: read back by other means, it gives the JSON document again."""
+
+import csv
+import io
+import json
+
+from tuning_tables import to_csv, to_json, write_csv
+
+
+def test_every_value_reads_back_exactly(table, linear_table):
+    for exported in (table, linear_table):
+        rows = list(csv.DictReader(io.StringIO(to_csv(exported).decode("utf-8"), newline="")))
+        document = json.loads(to_json(exported))
+        lines = {(row["record"], int(row["key"])): numbers(row) for row in rows if row["record"] in ("lower", "upper")}
+        for stage in exported.stages:
+            assert lines.pop(("lower", stage.k), None) == stage.lower
+            assert lines.pop(("upper", stage.k), None) == stage.upper
+        assert not lines
+        leaves = dict(flattened({**document, "stages": [without_lines(stage) for stage in document["stages"]]}))
+        for row in rows:
+            if row["record"] == "text":
+                assert leaves.pop(row["key"]) == row["value0"]
+            elif row["record"] == "number":
+                assert leaves.pop(row["key"]) == numbers(row)
+        assert leaves == ({} if exported.validated else {"validated": None})
+
+
+def test_rows_form_a_rectangle_and_equal_tables_give_equal_bytes(table, tmp_path):
+    write_csv(table, tmp_path / "table.csv")
+    content = (tmp_path / "table.csv").read_bytes()
+    assert content == to_csv(table)
+    assert content.endswith(b"\r\n")
+    widths = {len(row) for row in csv.reader(io.StringIO(content.decode("utf-8"), newline=""))}
+    assert widths == {2 + 4}
+
+
+def numbers(row):
+    return tuple(float(value) for name, value in row.items() if name.startswith("value") and value)
+
+
+def without_lines(stage):
+    return {key: value for key, value in stage.items() if key not in ("lower", "upper")}
+
+
+def flattened(value, key=""):
+    """(dotted key, string or tuple of numbers) of each leaf; an array of numbers is one leaf."""
+    if isinstance(value, dict):
+        for name, member in value.items():
+            yield from flattened(member, f"{key}.{name}" if key else name)
+    elif isinstance(value, list) and not isinstance(value[0], int | float):
+        for index, item in enumerate(value):
+            yield from flattened(item, f"{key}.{index}")
+    elif isinstance(value, list):
+        yield key, tuple(value)
+    else:
+        yield key, (value,) if isinstance(value, int | float) else value

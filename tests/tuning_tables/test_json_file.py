@@ -1,0 +1,253 @@
+"""A table survives the way through a JSON file unchanged, and nothing that was changed on the way gets through."""
+
+import copy
+import json
+import os
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tuning_tables import (
+    DamagedTable,
+    NewerVersion,
+    OlderVersion,
+    TableError,
+    UnknownFormat,
+    from_json,
+    read_json,
+    to_json,
+    write_json,
+)
+from tuning_tables.canonical import document_checksum
+from tuning_tables.json_file import LARGEST_FILE_BYTES
+
+
+def document_of(table):
+    return json.loads(to_json(table))
+
+
+def sealed(document):
+    """The text of `document` with a checksum that is right for it: as a careless program would write it."""
+    return json.dumps({**document, "crc32": document_checksum(document)}).encode()
+
+
+def key_paths(value, path=()):
+    """Every key of every object in the document, as a path of keys and indices."""
+    members = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, member in members:
+        if isinstance(value, dict):
+            yield (*path, key)
+        yield from key_paths(member, (*path, key))
+
+
+def parent_of(document, path):
+    for key in path[:-1]:
+        document = document[key]
+    return document
+
+
+def test_a_table_survives_the_file(table, linear_table, tmp_path):
+    for original in (table, linear_table):
+        write_json(original, tmp_path / "table.json")
+        read = read_json(tmp_path / "table.json")
+        assert read == original
+        assert np.array_equal(read.coefficients, original.coefficients, equal_nan=True)
+    assert os.listdir(tmp_path) == ["table.json"]
+
+
+def test_equal_tables_give_equal_bytes_and_their_order_is_the_contract(table):
+    assert to_json(table) == to_json(from_json(to_json(table)))
+    assert list(document_of(table)) == [
+        "format",
+        "version",
+        "id",
+        "created",
+        "generator",
+        "retarder",
+        "cut",
+        "target_speed_m_s",
+        "polynomial",
+        "stages",
+        "valid",
+        "predicted",
+        "validated",
+        "crc32",
+    ]
+    assert sum(line.startswith(b'  {"k": ') for line in to_json(table).splitlines()) == len(table.stages)
+
+
+def test_layout_is_free_but_content_is_not(table):
+    document = document_of(table)
+    assert from_json(json.dumps(document, indent=4, sort_keys=True).encode()) == table
+    document["target_speed_m_s"] = 4.25
+    with pytest.raises(DamagedTable, match="crc32"):
+        from_json(json.dumps(document).encode())
+
+
+@pytest.mark.parametrize("turn", [0, 3, 6])
+def test_no_flipped_bit_gets_through(table, turn):
+    content = to_json(table)
+    refused = 0
+    for position in range(len(content)):
+        changed = bytearray(content)
+        changed[position] ^= 1 << (position + turn) % 8
+        try:
+            assert from_json(bytes(changed)) == table, position
+        except TableError:
+            refused += 1
+    # Only an exponent's "e" turned into "E" leaves the content as it was.
+    assert refused > 0.99 * len(content)
+
+
+def test_no_truncated_file_gets_through(table):
+    content = to_json(table)
+    assert content.endswith(b"}\n")
+    for length in range(len(content) - 1):
+        with pytest.raises(DamagedTable):
+            from_json(content[:length])
+
+
+def test_every_key_is_required_even_under_a_right_checksum(table):
+    paths = list(key_paths(document_of(table)))
+    assert len(paths) > 40
+    for path in paths:
+        document = document_of(table)
+        del parent_of(document, path)[path[-1]]
+        content = json.dumps(document).encode() if path == ("crc32",) else sealed(document)
+        with pytest.raises(UnknownFormat if path == ("format",) else DamagedTable, match=path[-1]):
+            from_json(content)
+
+
+def test_no_key_is_allowed_that_is_not_known(table):
+    for place in [(), ("cut",), ("predicted",), ("validated",), ("stages", 1)]:
+        document = document_of(table)
+        parent_of(document, (*place, "surplus"))["surplus"] = 1
+        with pytest.raises(DamagedTable, match="surplus is an unknown key"):
+            from_json(sealed(document))
+
+
+@pytest.mark.parametrize("wrong", [None, True, "4", [], {}, [None], -1, 0.5], ids=repr)
+def test_no_value_of_another_type_gets_through(table, wrong):
+    refused = 0
+    for path in key_paths(document_of(table)):
+        document = document_of(table)
+        parent_of(document, path)[path[-1]] = copy.deepcopy(wrong)
+        content = sealed(document)
+        if path == ("crc32",):
+            content = json.dumps(document).encode()
+        try:
+            # Some numbers may be others, and some lines may be null: then they must have arrived as they are.
+            assert document_of(from_json(content)) == json.loads(content), path
+        except TableError:
+            refused += 1
+    assert refused >= 25
+
+
+@pytest.mark.parametrize(
+    ("change", "error"),
+    [
+        ({"format": "retarder-book"}, UnknownFormat),
+        ({"format": None}, UnknownFormat),
+        ({"version": 2}, NewerVersion),
+        ({"version": 10**12}, NewerVersion),
+        ({"version": 0}, OlderVersion),
+        ({"version": -1}, OlderVersion),
+        ({"version": 1.0}, DamagedTable),
+        ({"version": True}, DamagedTable),
+        ({"version": "1"}, DamagedTable),
+        ({"polynomial": {"variable": "t_s", "degree": 3}}, DamagedTable),
+        ({"valid": {"s_m": [1.0, 0.0], "v_m_s": [0.0, 1.0]}}, DamagedTable),
+    ],
+)
+def test_formats_versions_and_values_have_their_own_errors(table, change, error):
+    with pytest.raises(TableError) as caught:
+        from_json(sealed({**document_of(table), **change}), source="t.json")
+    assert type(caught.value) is error
+    assert str(caught.value).startswith("t.json: ")
+
+
+@pytest.mark.parametrize(
+    ("content", "error"),
+    [
+        (b"", DamagedTable),
+        (b"\x89HDF\r\n\x1a\n", DamagedTable),
+        (b"\xff\xfe{\x00}\x00", DamagedTable),
+        (b'\xef\xbb\xbf{"format": "retarder-table"}', DamagedTable),
+        (b"s_m,v_m_s\n0,1\n", DamagedTable),
+        (b"{}", UnknownFormat),
+        (b"null", UnknownFormat),
+        (b"[1, 2]", UnknownFormat),
+        (b'{"format": "geojson"}', UnknownFormat),
+        (b'{"format": ' + b"[" * 500 + b"]" * 500 + b"}", UnknownFormat),
+        (b"[" * 100_000, DamagedTable),
+        (b'{"a":' * 100_000, DamagedTable),
+        (b'{"format": "retarder-table", "version": ' + b"9" * 5000 + b"}", DamagedTable),
+        (b" " * (LARGEST_FILE_BYTES + 1), DamagedTable),
+    ],
+    ids=lambda value: repr(value)[:24],
+)
+def test_foreign_files_are_refused(content, error):
+    with pytest.raises(TableError) as caught:
+        from_json(content)
+    assert type(caught.value) is error
+
+
+@pytest.mark.parametrize(
+    ("token", "reason"),
+    [
+        (b"NaN", "NaN is no JSON number"),
+        (b"Infinity", "Infinity is no JSON number"),
+        (b"-Infinity", "-Infinity is no JSON number"),
+        (b"1e999", "must be finite"),
+        (b"-1e999", "must be finite"),
+        (b"9007199254740994", "beyond 2"),
+        (b"9" * 400, "exceeds the range"),
+        (b"9" * 5000, "exceeds the range"),
+    ],
+    ids=lambda value: str(value[:20]),
+)
+def test_numbers_that_are_none_are_refused(table, token, reason):
+    content = to_json(table)
+    assert content.count(b'"mass_t": 22.0') == 1
+    with pytest.raises(DamagedTable, match=reason):
+        from_json(content.replace(b'"mass_t": 22.0', b'"mass_t": ' + token))
+
+
+def test_a_key_given_twice_is_refused_though_the_last_one_is_right(table):
+    content = to_json(table).replace(b'"mass_t": 22.0', b'"mass_t": 85.0, "mass_t": 22.0')
+    with pytest.raises(DamagedTable, match="'mass_t' is given twice"):
+        from_json(content)
+
+
+def test_a_document_nested_in_a_known_key_is_refused(table):
+    deep = "[" * 400 + "]" * 400
+    document = {**document_of(table), "id": json.loads(deep)}
+    with pytest.raises(DamagedTable):
+        from_json(sealed(document))
+
+
+def test_a_lone_surrogate_is_refused(table):
+    content = to_json(table).replace(b'"medium"', b'"\\ud800"')
+    with pytest.raises(DamagedTable):
+        from_json(content)
+
+
+def test_a_file_that_is_too_long_is_refused_unread(table, tmp_path):
+    path = tmp_path / "long.json"
+    path.write_bytes(to_json(table) + b" " * LARGEST_FILE_BYTES)
+    with pytest.raises(DamagedTable, match=r"long\.json"):
+        read_json(path)
+
+
+def test_an_absent_file_is_an_os_error(tmp_path):
+    with pytest.raises(FileNotFoundError):
+        read_json(tmp_path / "absent.json")
+
+
+@given(content=st.binary(max_size=200) | st.text(alphabet='{}[]",:0123eE+-.truefalsn', max_size=80).map(str.encode))
+@settings(derandomize=True)
+def test_noise_is_refused_in_order(content):
+    with pytest.raises(TableError):
+        from_json(content)

@@ -1,0 +1,153 @@
+"""One rule, three ways to ask it, the same float32 answer from all."""
+
+import math
+from dataclasses import replace
+
+import numba
+import numpy as np
+import pytest
+
+from tuning_tables import HOLD, LOWER, RAISE, Stage, ValidRange, decide, decide_for, decide_many
+
+NAN, INF = float("nan"), float("inf")
+
+
+def exact_horner(line, s):
+    """The line in float32, each step in double precision and then rounded: an independent way to the same number."""
+    value = np.float32(line[-1])
+    for coefficient in reversed(line[:-1]):
+        # A product of two float32 numbers is exact in double precision; each rounding is then made explicitly.
+        product = np.float32(float(value) * float(s))
+        value = np.float32(float(product) + float(coefficient))
+    return value
+
+
+def adversarial_readings(table, rng, count):
+    """Readings on the lines, one float32 step beside them, at the ends, absurd ones; stages in and out of range."""
+    stages = rng.integers(-2, len(table.stages) + 2, count)
+    s = rng.uniform(-10.0, 60.0, count).astype(np.float32)
+    s[::7] = rng.choice(np.float32([0.0, -0.0, 37.45, 1e-45, 1e-39, 3.4e38, -3.4e38, NAN, INF, -INF]), s[::7].size)
+    v = rng.uniform(-1.0, 10.0, count).astype(np.float32)
+    v[::11] = rng.choice(np.float32([0.0, -0.0, 1e-45, 1e-39, 3.4e38, NAN, INF, -INF]), v[::11].size)
+    for index in range(0, count, 3):
+        stage = table.stages[rng.integers(len(table.stages))]
+        line = stage.lower or stage.upper if rng.random() < 0.5 else stage.upper or stage.lower
+        clamped = np.clip(s[index], *table.valid_range[:2])
+        if np.isfinite(clamped):
+            stages[index] = stage.k
+            on_line = exact_horner(line, clamped)
+            just_below, just_above = np.nextafter(on_line, np.float32([0.0, INF]))
+            v[index] = (on_line, just_below, just_above)[index % 9 // 3]
+    return stages, s, v
+
+
+def test_the_three_ways_agree_everywhere(table):
+    stages, s, v = adversarial_readings(table, np.random.default_rng(20261120), 100_000)
+    compiled = numba.njit(decide)
+
+    @numba.njit
+    def run(coefficients, has_line, valid_range, stages, s, v):
+        answers = np.empty(stages.size, dtype=np.int8)
+        for index in range(stages.size):
+            answers[index] = compiled(coefficients, has_line, valid_range, stages[index], s[index], v[index])
+        return answers
+
+    arrays = (table.coefficients, table.has_line, table.valid_range)
+    many = decide_many(table, stages, s, v)
+    jitted = run(*arrays, stages, s, v)
+    plain = np.array([decide(*arrays, *reading) for reading in zip(stages.tolist(), s, v, strict=True)])
+    assert np.count_nonzero(many != plain) == 0
+    assert np.count_nonzero(jitted != plain) == 0
+    # All answers occur often, so that the agreement means something.
+    assert np.all(np.bincount(plain + 1) > 5_000)
+
+
+def test_answers_agree_with_an_independent_float32_evaluation(table):
+    stages, s, v = adversarial_readings(table, np.random.default_rng(1), 20_000)
+    credible = np.isfinite(s) & np.isfinite(v) & (v >= 0) & (stages >= 0) & (stages < len(table.stages))
+    ties = 0
+    for k, path, speed in zip(stages[credible].tolist(), s[credible], v[credible], strict=True):
+        stage = table.stages[k]
+        clamped = np.clip(path, *table.valid_range[:2])
+        lower = -INF if stage.lower is None else exact_horner(stage.lower, clamped)
+        upper = INF if stage.upper is None else exact_horner(stage.upper, clamped)
+        ties += speed in (lower, upper)
+        assert decide_for(table, k, path, speed) == (LOWER if speed < lower else RAISE if speed > upper else HOLD)
+    assert ties > 500
+
+
+def test_both_float_widths_of_a_reading_agree_in_compiled_code(table):
+    compiled = numba.njit(decide)
+    arrays = (table.coefficients, table.has_line, table.valid_range)
+    for s in np.linspace(0.0, 37.0, 50):
+        for v in np.linspace(4.0, 7.0, 50):
+            assert compiled(*arrays, 1, float(s), float(v)) == compiled(*arrays, 1, np.float32(s), np.float32(v))
+
+
+@pytest.mark.parametrize(
+    ("stage", "s_m", "v_m_s", "answer"),
+    [
+        (0, 4.0, 5.0, HOLD),  # tie with the upper line
+        (0, 4.0, math.nextafter(5.0, 6.0), HOLD),  # a tie in float32
+        (0, 4.0, float(np.nextafter(np.float32(5), np.float32(6))), RAISE),
+        (0, 4.0, 0.0, HOLD),  # no lower line at stage 0
+        (1, 4.0, 3.0, HOLD),  # tie with the lower line
+        (1, 4.0, float(np.nextafter(np.float32(3), np.float32(2))), LOWER),
+        (1, 4.0, 1e3, HOLD),  # no upper line at the top stage
+        (1, 4.0, 0.0, LOWER),
+        (1, 4.0, -0.0, LOWER),
+        (0, -100.0, 4.25, HOLD),  # clamped to s = 1, where the line is at 4.25
+        (0, -100.0, 4.5, RAISE),
+        (0, 100.0, 6.0, HOLD),  # clamped to s = 8
+        (0, 100.0, 6.5, RAISE),
+        (0, 4.0, 3.4e38, RAISE),  # beyond the valid speeds, but a number
+    ],
+)
+def test_the_rule_on_a_table_that_can_be_checked_by_hand(linear_table, stage, s_m, v_m_s, answer):
+    assert decide_for(linear_table, stage, s_m, v_m_s) == answer
+    assert decide_many(linear_table, stage, s_m, v_m_s) == answer
+
+
+@pytest.mark.parametrize(
+    ("stage", "s_m", "v_m_s"),
+    [
+        (1, NAN, 0.0),
+        (1, INF, 0.0),
+        (1, -INF, 0.0),
+        (1, 1e39, 0.0),
+        (1, 4.0, NAN),
+        (1, 4.0, -1e-30),
+        (0, 4.0, INF),
+        (0, 4.0, 1e300),
+        (2, 4.0, 0.0),
+        (-1, 4.0, 0.0),
+        (0, NAN, NAN),
+    ],
+)
+def test_an_incredible_reading_moves_no_valve(linear_table, stage, s_m, v_m_s):
+    # The same reading with credible numbers does ask for a change, so that HOLD is an answer to what is incredible.
+    assert decide_for(linear_table, 1, 4.0, 0.0) == LOWER
+    assert decide_for(linear_table, 0, 4.0, 9.0) == RAISE
+    assert decide_for(linear_table, stage, s_m, v_m_s) == HOLD
+    assert decide_many(linear_table, stage, s_m, v_m_s) == HOLD
+
+
+def test_subnormal_coefficients_are_not_flushed_to_zero(linear_table):
+    tiny = float(np.float32(1e-44))
+    table = replace(
+        linear_table,
+        stages=(Stage(0, 0.0, None, (tiny, 0.0)), Stage(1, 1.0, None, None)),
+        valid=ValidRange((0.0, 1.0), (0.0, 1.0)),
+    )
+    compiled = numba.njit(decide)
+    arrays = (table.coefficients, table.has_line, table.valid_range)
+    for v, answer in ((tiny, HOLD), (float(np.nextafter(np.float32(tiny), np.float32(1))), RAISE)):
+        assert decide(*arrays, 0, 0.5, v) == compiled(*arrays, 0, 0.5, v) == decide_many(table, 0, 0.5, v) == answer
+
+
+def test_many_broadcasts_and_refuses_stages_that_are_no_integers(linear_table):
+    answers = decide_many(linear_table, [[0], [1]], 4.0, [0.0, 4.0, 9.0])
+    assert answers.tolist() == [[HOLD, HOLD, RAISE], [LOWER, HOLD, HOLD]]
+    assert answers.dtype == np.int8
+    with pytest.raises(TypeError, match="integers"):
+        decide_many(linear_table, 0.0, 4.0, 4.0)

@@ -1,0 +1,77 @@
+"""The JSON Schema accepts what is exported and agrees with the reader on shapes."""
+
+import copy
+import json
+
+import jsonschema
+import pytest
+
+from tuning_tables import DamagedTable, from_json, table_schema, to_json, write_schema
+from tuning_tables.canonical import document_checksum
+
+
+@pytest.fixture(scope="module")
+def validator():
+    jsonschema.Draft202012Validator.check_schema(table_schema())
+    return jsonschema.Draft202012Validator(table_schema())
+
+
+def test_exported_tables_conform(validator, table, linear_table):
+    for exported in (table, linear_table):
+        validator.validate(json.loads(to_json(exported)))
+
+
+def places(value, path=()):
+    yield path
+    members = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, member in members:
+        yield from places(member, (*path, key))
+
+
+def altered(document, path, value):
+    document = copy.deepcopy(document)
+    parent = document
+    for key in path[:-1]:
+        parent = parent[key]
+    parent[path[-1]] = value
+    return document
+
+
+@pytest.mark.parametrize("wrong", [None, True, "", [], {}, -1], ids=repr)
+def test_what_the_schema_refuses_the_reader_refuses_too(validator, table, wrong):
+    document = json.loads(to_json(table))
+    refused = 0
+    for path in places(document):
+        if not path or path[0] in ("format", "version", "crc32"):
+            continue
+        changed = altered(document, path, wrong)
+        if not validator.is_valid(changed):
+            refused += 1
+            changed["crc32"] = document_checksum(changed)
+            with pytest.raises(DamagedTable):
+                from_json(json.dumps(changed).encode())
+    assert refused >= 30
+
+
+def test_missing_and_unknown_keys_do_not_conform(validator, table):
+    document = json.loads(to_json(table))
+    objects = [path for path in places(document) if path and isinstance(value_at(document, path), dict)]
+    assert len(objects) >= 9
+    for key in document:
+        assert not validator.is_valid({name: value for name, value in document.items() if name != key})
+    for path in objects:
+        content = value_at(document, path)
+        assert not validator.is_valid(altered(document, path, {**content, "surplus": 1}))
+        for key in content:
+            assert not validator.is_valid(altered(document, path, {k: v for k, v in content.items() if k != key}))
+
+
+def value_at(document, path):
+    for key in path:
+        document = document[key]
+    return document
+
+
+def test_the_schema_file_is_the_schema(tmp_path):
+    write_schema(tmp_path / "schema.json")
+    assert json.loads((tmp_path / "schema.json").read_bytes()) == table_schema()

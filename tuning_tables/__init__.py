@@ -1,0 +1,59 @@
+"""Tuning tables: the artefact that a trackside controller loads, and the rule by which it decides.
+
+A controller needs `read_json` and `decide_for`; numpy is all they use. Books in HDF5 need h5py when called.
+"""
+
+from tuning_tables.atomic_file import replacing, write_atomically
+from tuning_tables.csv_file import to_csv, write_csv
+from tuning_tables.errors import (
+    DamagedTable,
+    InvalidTable,
+    NewerVersion,
+    OlderVersion,
+    TableError,
+    UnknownFormat,
+)
+from tuning_tables.figures import Predicted, Validated, ValidRange
+from tuning_tables.hdf5_file import read_book, write_book
+from tuning_tables.json_file import from_json, read_json, to_json, write_json
+from tuning_tables.provenance import CutId, Generator, RetarderId
+from tuning_tables.rule import HOLD, LOWER, RAISE, decide, decide_for, decide_many
+from tuning_tables.schema import table_schema, write_schema
+from tuning_tables.stage import Stage, round_coefficients
+from tuning_tables.table import ControllerTable
+
+__all__ = [
+    "HOLD",
+    "LOWER",
+    "RAISE",
+    "ControllerTable",
+    "CutId",
+    "DamagedTable",
+    "Generator",
+    "InvalidTable",
+    "NewerVersion",
+    "OlderVersion",
+    "Predicted",
+    "RetarderId",
+    "Stage",
+    "TableError",
+    "UnknownFormat",
+    "ValidRange",
+    "Validated",
+    "decide",
+    "decide_for",
+    "decide_many",
+    "from_json",
+    "read_book",
+    "read_json",
+    "replacing",
+    "round_coefficients",
+    "table_schema",
+    "to_csv",
+    "to_json",
+    "write_atomically",
+    "write_book",
+    "write_csv",
+    "write_json",
+    "write_schema",
+]

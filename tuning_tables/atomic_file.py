@@ -1,0 +1,49 @@
+"""A file that appears complete or not at all, whatever happens to the writing process or the power.
+
+The content goes to a sibling `.NAME.<random>.part`, is forced to the disk, and takes the name in one step; then the
+directory entry is forced out too. Leftovers of a killed process are known by that name and may be deleted.
+"""
+
+from __future__ import annotations
+
+import os
+import secrets
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+
+@contextmanager
+def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
+    """Hand out a new empty file to be written and closed in the `with` block; afterwards it is found at `path`.
+
+    Where the block raises, `path` is left as it was and the temporary file is removed. The file's permissions are those
+    of any new file of this process. Raises `OSError` where the directory cannot be written.
+    """
+    target = Path(path)
+    part = target.with_name(f".{target.name}.{secrets.token_hex(8)}.part")
+    os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
+    try:
+        yield part
+        _force_to_disk(part)
+        os.replace(part, target)
+    except BaseException:
+        part.unlink(missing_ok=True)
+        raise
+    _force_to_disk(target.parent)
+
+
+def write_atomically(path: str | os.PathLike[str], content: bytes) -> None:
+    """Make `content` the content of the file at `path`, replacing what was there; raises `OSError`."""
+    with replacing(path) as part:
+        part.write_bytes(content)
+
+
+def _force_to_disk(path: Path) -> None:
+    if path.is_dir() and os.name == "nt":
+        return  # Windows opens no directory as a file; its file system keeps a journal of names itself.
+    descriptor = os.open(path, os.O_RDONLY if path.is_dir() else os.O_RDWR)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

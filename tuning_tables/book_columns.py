@@ -1,0 +1,178 @@
+"""A book of tables as columns: one array per quantity, the first axis running over the tables.
+
+Tables of one book may differ in stages, degree, zones and axles: shorter ones are filled up with NaN (float columns) or
+0 (the rest). `COLUMNS` states every array with its axes, type, unit and meaning; this is the layout of "book.h5".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from tuning_tables.errors import InvalidTable
+from tuning_tables.figures import Predicted, Validated, ValidRange
+from tuning_tables.provenance import CutId, Generator, RetarderId
+from tuning_tables.stage import Stage
+from tuning_tables.table import ControllerTable
+
+Columns = Mapping[str, npt.NDArray[Any]]
+
+
+@dataclass(frozen=True)
+class Column:
+    """One array of a book.
+
+    `dtype`: a numpy type, "S" for UTF-8 text of the length needed. `unit`: "1" for plain numbers and text. `content`:
+    the value of one table, at most as long as the axes after the first.
+    """
+
+    name: str
+    axes: tuple[str, ...]
+    dtype: str
+    unit: str
+    meaning: str
+    content: Callable[[ControllerTable], Any]
+
+
+AXES: Final[Mapping[str, str]] = {
+    "table": "index of the table in the book",
+    "stage": "pressure stage k",
+    "line": "0: lower line, 1: upper line",
+    "power": "power of the path in m",
+    "zone": "index of the retarder along the path",
+    "axle": "index of the axle from the front",
+    "end": "0: beginning or smallest, 1: end or largest",
+}
+
+COLUMNS: Final[tuple[Column, ...]] = (
+    Column("id", ("table",), "S", "1", "name of the table", lambda t: t.id),
+    Column("created", ("table",), "S", "1", "instant of creation, UTC", lambda t: t.created),
+    Column("generator_name", ("table",), "S", "1", "program that made the table", lambda t: t.generator.name),
+    Column("generator_version", ("table",), "S", "1", "its version", lambda t: t.generator.version),
+    Column("config_sha256", ("table",), "S", "1", "its configuration", lambda t: t.generator.config_sha256),
+    Column("retarder", ("table",), "S", "1", "retarder position", lambda t: t.retarder.name),
+    Column("zones_m", ("table", "zone", "end"), "<f8", "m", "retarder zones", lambda t: t.retarder.zones_m),
+    Column("exit_m", ("table",), "<f8", "m", "path at the end of the pass", lambda t: t.retarder.exit_m),
+    Column("dead_band_kpa", ("table",), "<f8", "kPa", "of the pressure", lambda t: t.retarder.dead_band_kpa),
+    Column("category", ("table",), "S", "1", "class of cuts", lambda t: t.cut.category),
+    Column("mass_t", ("table",), "<f8", "t", "mass of the cut", lambda t: t.cut.mass_t),
+    Column("axle_offsets_m", ("table", "axle"), "<f8", "m", "from the first axle", lambda t: t.cut.axle_offsets_m),
+    Column("target_speed_m_s", ("table",), "<f8", "m/s", "exit speed aimed at", lambda t: t.target_speed_m_s),
+    Column("degree", ("table",), "<i4", "1", "of the lines", lambda t: t.degree),
+    Column("n_stages", ("table",), "<i4", "1", "number of stages", lambda t: len(t.stages)),
+    Column("pressure_kpa", ("table", "stage"), "<f8", "kPa", "gauge", lambda t: [s.pressure_kpa for s in t.stages]),
+    Column("coefficients", ("table", "stage", "line", "power"), "<f4", "m/s per m^power",
+           "switching lines, NaN: no line", lambda t: t.coefficients),
+    Column("has_line", ("table", "stage", "line"), "|u1", "1", "1: there is a line", lambda t: t.has_line),
+    Column("valid_s_m", ("table", "end"), "<f8", "m", "path range of the lines", lambda t: t.valid.s_m),
+    Column("valid_v_m_s", ("table", "end"), "<f8", "m/s", "speed range of the lines", lambda t: t.valid.v_m_s),
+    Column("predicted_rms_m_s", ("table",), "<f8", "m/s", "exit speed error", lambda t: t.predicted.rms_m_s),
+    Column("predicted_bias_m_s", ("table",), "<f8", "m/s", "mean of the error", lambda t: t.predicted.bias_m_s),
+    Column("predicted_p_overspeed", ("table",), "<f8", "1", "probability", lambda t: t.predicted.p_overspeed),
+    Column("predicted_switchings", ("table",), "<f8", "1", "per pass", lambda t: t.predicted.switchings),
+    Column("predicted_p_stall", ("table",), "<f8", "1", "probability, NaN: not computed",
+           lambda t: np.nan if t.predicted.p_stall is None else t.predicted.p_stall),
+    Column("validated_passes", ("table",), "<i8", "1", "simulated passes, 0: not validated",
+           lambda t: 0 if t.validated is None else t.validated.passes),
+    Column("validated_rms_m_s", ("table",), "<f8", "m/s", "exit speed error, simulated",
+           lambda t: np.nan if t.validated is None else t.validated.rms_m_s),
+    Column("validated_rms_ci95_m_s", ("table", "end"), "<f8", "m/s", "95 % interval of it",
+           lambda t: (np.nan, np.nan) if t.validated is None else t.validated.rms_ci95_m_s),
+)  # fmt: skip
+
+
+def columns_of(tables: Sequence[ControllerTable]) -> dict[str, npt.NDArray[Any]]:
+    """The arrays of a book, by name. Raises `InvalidTable` for no tables at all and for an id given twice."""
+    ids = [table.id for table in tables]
+    if not ids:
+        raise InvalidTable("the book has no tables, but it must have at least one.")
+    if len(set(ids)) < len(ids):
+        twice = next(name for name in ids if ids.count(name) > 1)
+        raise InvalidTable(f"two tables of the book have the id {twice!r}, but ids must differ within a book.")
+    return {column.name: _stacked(column, tables) for column in COLUMNS}
+
+
+def tables_of(columns: Columns) -> tuple[ControllerTable, ...]:
+    """The tables in the arrays of a book, which must have the names, types and numbers of axes of `COLUMNS`.
+
+    Raises `InvalidTable` for values that make no table, `UnicodeDecodeError` for text that is no UTF-8.
+    """
+    return tuple(_table({name: column[row] for name, column in columns.items()}) for row in range(len(columns["id"])))
+
+
+def _stacked(column: Column, tables: Sequence[ControllerTable]) -> npt.NDArray[Any]:
+    if column.dtype == "S":
+        return np.array([column.content(table).encode("utf-8") for table in tables])
+    contents = [np.asarray(column.content(table), dtype=column.dtype) for table in tables]
+    longest = tuple(max(sizes) for sizes in zip(*(content.shape for content in contents), strict=True))
+    filler = np.nan if column.dtype in ("<f4", "<f8") else 0
+    stacked = np.full((len(tables), *longest), filler, dtype=column.dtype)
+    for index, content in enumerate(contents):
+        region: tuple[slice, ...] = tuple(map(slice, content.shape))
+        stacked[index, ...][region] = content  # the dots keep a view even of a single number
+    return stacked
+
+
+def _table(row: Mapping[str, Any]) -> ControllerTable:
+    """The table in one row of every column."""
+    p_stall = float(row["predicted_p_stall"])
+    return ControllerTable(
+        id=_text(row["id"]),
+        created=_text(row["created"]),
+        generator=Generator(_text(row["generator_name"]), _text(row["generator_version"]), _text(row["config_sha256"])),
+        retarder=RetarderId(
+            _text(row["retarder"]),
+            tuple((float(begin), float(end)) for begin, end in row["zones_m"] if not np.isnan(begin)),
+            float(row["exit_m"]),
+            float(row["dead_band_kpa"]),
+        ),
+        cut=CutId(_text(row["category"]), float(row["mass_t"]), _present(row["axle_offsets_m"])),
+        target_speed_m_s=float(row["target_speed_m_s"]),
+        degree=int(row["degree"]),
+        stages=_stages(row),
+        valid=ValidRange(_pair(row["valid_s_m"]), _pair(row["valid_v_m_s"])),
+        predicted=Predicted(
+            float(row["predicted_rms_m_s"]),
+            float(row["predicted_bias_m_s"]),
+            float(row["predicted_p_overspeed"]),
+            float(row["predicted_switchings"]),
+            None if np.isnan(p_stall) else p_stall,
+        ),
+        validated=_validated(row),
+    )
+
+
+def _stages(row: Mapping[str, Any]) -> tuple[Stage, ...]:
+    n_stages, degree = int(row["n_stages"]), int(row["degree"])
+    most_stages, _, most_powers = row["coefficients"].shape
+    if not (2 <= n_stages <= most_stages and 0 <= degree < most_powers):
+        raise InvalidTable(f"n_stages {n_stages} or degree {degree} exceeds the coefficients of the book.")
+    coefficients = row["coefficients"][:, :, : degree + 1].astype(np.float64)
+    lines = [
+        [tuple(coefficients[k, line].tolist()) if row["has_line"][k, line] else None for line in (0, 1)]
+        for k in range(n_stages)
+    ]
+    return tuple(Stage(k, float(row["pressure_kpa"][k]), lower, upper) for k, (lower, upper) in enumerate(lines))
+
+
+def _validated(row: Mapping[str, Any]) -> Validated | None:
+    passes = int(row["validated_passes"])
+    if passes == 0:
+        return None
+    return Validated(passes, float(row["validated_rms_m_s"]), _pair(row["validated_rms_ci95_m_s"]))
+
+
+def _present(values: npt.NDArray[np.float64]) -> tuple[float, ...]:
+    return tuple(values[~np.isnan(values)].tolist())
+
+
+def _pair(values: npt.NDArray[np.float64]) -> tuple[float, float]:
+    return float(values[0]), float(values[1])
+
+
+def _text(value: bytes) -> str:
+    return value.decode("utf-8")

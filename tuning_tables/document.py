@@ -1,0 +1,202 @@
+"""A controller table as a JSON document (dicts, lists, numbers, strings), and back, without the text around it."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tuning_tables.canonical import CHECKSUM_KEY, document_checksum
+from tuning_tables.errors import DamagedTable, InvalidTable, NewerVersion, OlderVersion, UnknownFormat
+from tuning_tables.figures import Predicted, Validated, ValidRange
+from tuning_tables.provenance import CutId, Generator, RetarderId
+from tuning_tables.section import Section
+from tuning_tables.stage import Stage
+from tuning_tables.table import ControllerTable
+
+FORMAT: Final = "retarder-table"
+VERSION: Final = 1
+VARIABLE: Final = "s_m"
+
+_KEYS: Final = (
+    "format",
+    "version",
+    "id",
+    "created",
+    "generator",
+    "retarder",
+    "cut",
+    "target_speed_m_s",
+    "polynomial",
+    "stages",
+    "valid",
+    "predicted",
+    "validated",
+    CHECKSUM_KEY,
+)
+
+
+def to_document(table: ControllerTable) -> dict[str, object]:
+    """The document of `table`, in the order in which it is to be read, its checksum last."""
+    document: dict[str, object] = {
+        "format": FORMAT,
+        "version": VERSION,
+        "id": table.id,
+        "created": table.created,
+        "generator": {
+            "name": table.generator.name,
+            "version": table.generator.version,
+            "config_sha256": table.generator.config_sha256,
+        },
+        "retarder": {
+            "name": table.retarder.name,
+            "zones_m": [_floats(zone) for zone in table.retarder.zones_m],
+            "exit_m": float(table.retarder.exit_m),
+            "dead_band_kpa": float(table.retarder.dead_band_kpa),
+        },
+        "cut": {
+            "category": table.cut.category,
+            "mass_t": float(table.cut.mass_t),
+            "axle_offsets_m": _floats(table.cut.axle_offsets_m),
+        },
+        "target_speed_m_s": float(table.target_speed_m_s),
+        "polynomial": {"variable": VARIABLE, "degree": table.degree},
+        "stages": [_stage_document(stage) for stage in table.stages],
+        "valid": {"s_m": _floats(table.valid.s_m), "v_m_s": _floats(table.valid.v_m_s)},
+        "predicted": _predicted_document(table.predicted),
+        "validated": None if table.validated is None else _validated_document(table.validated),
+    }
+    return {**document, CHECKSUM_KEY: document_checksum(document)}
+
+
+def from_document(document: object, source: str) -> ControllerTable:
+    """The table in `document`, as parsed from the file that `source` names in messages.
+
+    Raises `UnknownFormat`, `NewerVersion`, `OlderVersion` for another format or version, and `DamagedTable` for a wrong
+    checksum, a missing or unknown key, a wrong type, and values that make no table. Checked in this order.
+    """
+    members = _versioned(document, source)
+    top = Section(members, source, "", _KEYS)
+    _require_checksum(members, top.text(CHECKSUM_KEY), source)
+    polynomial = top.section("polynomial", ("variable", "degree"))
+    if polynomial.text("variable") != VARIABLE:
+        found = polynomial.text("variable")
+        raise DamagedTable(f'{source}: polynomial.variable is {found!r:.60}, but only "{VARIABLE}" is allowed.')
+    try:
+        return ControllerTable(
+            id=top.text("id"),
+            created=top.text("created"),
+            generator=_generator(top.section("generator", ("name", "version", "config_sha256"))),
+            retarder=_retarder(top.section("retarder", ("name", "zones_m", "exit_m", "dead_band_kpa"))),
+            cut=_cut(top.section("cut", ("category", "mass_t", "axle_offsets_m"))),
+            target_speed_m_s=top.number("target_speed_m_s"),
+            degree=polynomial.count("degree"),
+            stages=tuple(map(_stage, top.sections("stages", ("k", "pressure_kpa", "lower", "upper")))),
+            valid=_valid_range(top.section("valid", ("s_m", "v_m_s"))),
+            predicted=_predicted(
+                top.section("predicted", ("rms_m_s", "bias_m_s", "p_overspeed", "switchings"), ("p_stall",))
+            ),
+            validated=_validated(top),
+        )
+    except InvalidTable as invalid:
+        raise DamagedTable(f"{source}: {invalid}") from invalid
+
+
+def _versioned(document: object, source: str) -> dict[str, object]:
+    """The document, now known to be an object of a format and version that the rest can read."""
+    if not isinstance(document, dict) or document.get("format") != FORMAT:
+        found = document.get("format") if isinstance(document, dict) else type(document).__name__
+        raise UnknownFormat(f'{source}: format is {found!r:.60}, but it must be "{FORMAT}"; give a controller table.')
+    version = document.get("version")
+    if not isinstance(version, int) or isinstance(version, bool):
+        raise DamagedTable(f"{source}: version is {version!r:.60}, but it must be the whole number {VERSION}.")
+    if version > VERSION:
+        raise NewerVersion(f"{source}: version is {version}, this reader knows only {VERSION}; update retarder-synth.")
+    if version < VERSION:
+        raise OlderVersion(f"{source}: version is {version}, this reader knows only {VERSION}; export it again.")
+    return document
+
+
+def _require_checksum(members: dict[str, object], stored: str, source: str) -> None:
+    try:
+        computed = document_checksum(members)
+    except ValueError as fault:
+        raise DamagedTable(f"{source}: the content has no checksum, for {fault}") from fault
+    if stored != computed:
+        raise DamagedTable(
+            f"{source}: crc32 is {stored!r:.60}, but the content gives {computed!r}: "
+            "it was changed after the export; export the table again."
+        )
+
+
+def _floats(values: tuple[float, ...]) -> list[float]:
+    return [float(value) for value in values]
+
+
+def _stage_document(stage: Stage) -> dict[str, object]:
+    return {
+        "k": stage.k,
+        "pressure_kpa": float(stage.pressure_kpa),
+        "lower": None if stage.lower is None else _floats(stage.lower),
+        "upper": None if stage.upper is None else _floats(stage.upper),
+    }
+
+
+def _predicted_document(predicted: Predicted) -> dict[str, object]:
+    document: dict[str, object] = {
+        "rms_m_s": float(predicted.rms_m_s),
+        "bias_m_s": float(predicted.bias_m_s),
+        "p_overspeed": float(predicted.p_overspeed),
+        "switchings": float(predicted.switchings),
+    }
+    return document if predicted.p_stall is None else {**document, "p_stall": float(predicted.p_stall)}
+
+
+def _validated_document(validated: Validated) -> dict[str, object]:
+    return {
+        "passes": validated.passes,
+        "rms_m_s": float(validated.rms_m_s),
+        "rms_ci95_m_s": _floats(validated.rms_ci95_m_s),
+    }
+
+
+def _generator(section: Section) -> Generator:
+    return Generator(section.text("name"), section.text("version"), section.text("config_sha256"))
+
+
+def _retarder(section: Section) -> RetarderId:
+    return RetarderId(
+        section.text("name"), section.pairs("zones_m"), section.number("exit_m"), section.number("dead_band_kpa")
+    )
+
+
+def _cut(section: Section) -> CutId:
+    return CutId(section.text("category"), section.number("mass_t"), section.numbers("axle_offsets_m"))
+
+
+def _stage(section: Section) -> Stage:
+    return Stage(
+        section.count("k"),
+        section.number("pressure_kpa"),
+        section.numbers_or_null("lower"),
+        section.numbers_or_null("upper"),
+    )
+
+
+def _valid_range(section: Section) -> ValidRange:
+    return ValidRange(section.pair("s_m"), section.pair("v_m_s"))
+
+
+def _predicted(section: Section) -> Predicted:
+    return Predicted(
+        section.number("rms_m_s"),
+        section.number("bias_m_s"),
+        section.number("p_overspeed"),
+        section.number("switchings"),
+        section.number("p_stall") if "p_stall" in section else None,
+    )
+
+
+def _validated(top: Section) -> Validated | None:
+    if top.value("validated") is None:
+        return None
+    section = top.section("validated", ("passes", "rms_m_s", "rms_ci95_m_s"))
+    return Validated(section.count("passes"), section.number("rms_m_s"), section.pair("rms_ci95_m_s"))

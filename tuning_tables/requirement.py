@@ -1,0 +1,82 @@
+"""What one value of a table must be; each function raises `InvalidTable` with key, value and what is allowed.
+
+They check and change nothing, so a frozen dataclass holds exactly what its caller gave.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from itertools import pairwise
+from typing import Final
+
+from tuning_tables.errors import InvalidTable
+
+UTC_INSTANT: Final = r"^[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9]{2}:[0-9]{2}:[0-9]{2}(\.[0-9]{1,9})?Z$"
+SHA256_HEX: Final = r"^[0-9a-f]{64}$"
+LARGEST_EXACT_INTEGER: Final = 2**53
+
+
+def require_text(value: object, key: str) -> None:
+    """`value` is a non-empty printable string (so it survives JSON, CSV, HDF5 and a C comment alike)."""
+    if not isinstance(value, str) or not value or not value.isprintable():
+        raise InvalidTable(f"{key} is {value!r}, but it must be a non-empty string of printable characters.")
+
+
+def require_match(value: object, key: str, pattern: str, example: str) -> None:
+    """`value` is a string that matches `pattern` as a whole."""
+    # `$` alone would let a closing line feed through.
+    if not isinstance(value, str) or re.fullmatch(pattern, value) is None:
+        raise InvalidTable(f"{key} is {value!r}, but it must have the form {example}.")
+
+
+def require_finite(value: object, key: str) -> None:
+    """`value` is a Python number (no bool, no numpy scalar but float64) and finite."""
+    if not _is_number(value) or not math.isfinite(value):  # type: ignore[arg-type]
+        raise InvalidTable(f"{key} is {value!r}, but it must be a finite number of type float.")
+
+
+def require_between(value: object, key: str, smallest: float, largest: float = math.inf) -> None:
+    """`value` is finite and smallest <= value <= largest."""
+    require_finite(value, key)
+    if not smallest <= value <= largest:  # type: ignore[operator]
+        raise InvalidTable(f"{key} is {value!r}, but it must lie in [{smallest!r}, {largest!r}].")
+
+
+def require_positive(value: object, key: str) -> None:
+    """`value` is finite and > 0."""
+    require_finite(value, key)
+    if not value > 0:  # type: ignore[operator]
+        raise InvalidTable(f"{key} is {value!r}, but it must be greater than 0.")
+
+
+def require_count(value: object, key: str, smallest: int, largest: int = LARGEST_EXACT_INTEGER) -> None:
+    """`value` is a Python int (no bool) and smallest <= value <= largest."""
+    if not isinstance(value, int) or isinstance(value, bool) or not smallest <= value <= largest:
+        raise InvalidTable(f"{key} is {value!r}, but it must be a whole number in [{smallest}, {largest}].")
+
+
+def require_tuple(value: object, key: str, length: int | None = None) -> None:
+    """`value` is a tuple, of `length` entries if a length is given (a list would leave the table mutable)."""
+    if not isinstance(value, tuple) or (length is not None and len(value) != length):
+        wanted = "a tuple" if length is None else f"a tuple of {length} entries"
+        raise InvalidTable(f"{key} is {value!r}, but it must be {wanted}.")
+
+
+def require_rising(values: tuple[float, ...], key: str) -> None:
+    """`values` is a non-empty tuple of finite numbers, each greater than the one before."""
+    require_tuple(values, key)
+    for index, value in enumerate(values):
+        require_finite(value, f"{key}[{index}]")
+    if not values or any(not earlier < later for earlier, later in pairwise(values)):
+        raise InvalidTable(f"{key} is {values!r}, but it must hold at least one number and rise strictly.")
+
+
+def require_kind(value: object, key: str, kind: type) -> None:
+    """`value` is an instance of the class `kind`."""
+    if not isinstance(value, kind):
+        raise InvalidTable(f"{key} is {value!r}, but it must be a {kind.__name__}.")
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)

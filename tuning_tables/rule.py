@@ -1,0 +1,110 @@
+"""The decision rule of the regulator, stated once for the controller, the simulator and the generated code.
+
+    raise   if the stage has an upper line and  v > upper(s)
+    lower   if the stage has a  lower line and  v < lower(s)
+    hold    otherwise; so a tie, v equal to the line, holds
+
+The lower line is looked at first; as lower(s) < upper(s) in every `ControllerTable`, both can never ask at once.
+
+All arithmetic is float32, one rounding an operation, Horner's rule from the highest power down, no fused multiply-add:
+c[r], then repeatedly (value * s) + c[i]. A path outside the valid range is clamped into it. The speed is compared as it
+is, however far outside the range of speeds the lines were fitted on: far too fast must still brake.
+
+Safe answer. A reading that cannot be true moves no valve: where path or speed is NaN, infinite or beyond the float32
+numbers, where the speed is negative, or the stage does not exist, the answer is HOLD. A single false reading is then
+harmless, as the pressure in force was right a sampling period ago; a lasting fault is for the supervision above this
+rule, which alone knows whether braking fully or releasing is the safe side.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from tuning_tables.table import ControllerTable
+
+LOWER: Final = -1
+HOLD: Final = 0
+RAISE: Final = 1
+
+LARGEST_READING: Final = 3.4028234663852886e38  # the largest float32 number
+
+
+def decide(
+    coefficients: npt.NDArray[np.float32],
+    has_line: npt.NDArray[np.bool_],
+    valid_range: npt.NDArray[np.float32],
+    stage: int,
+    s_m: float,
+    v_m_s: float,
+) -> int:
+    """LOWER, HOLD or RAISE for one reading; the arrays are those of a `ControllerTable`, and only they are trusted.
+
+    coefficients float32 (K+1, 2, degree+1), has_line bool (K+1, 2), valid_range float32 (4,), stage 0..K, path and
+    speed in any float width (rounded to float32 before use). Pure; raises nothing for any number.
+
+    `numba.njit(decide)` compiles this text as it stands and gives the same answers: hence one function without helpers,
+    and no literal in the arithmetic, which would promote it to double precision.
+    """
+    # Written so that NaN fails it, and before the conversion, so that no number overflows in it.
+    if not (-LARGEST_READING <= s_m <= LARGEST_READING and 0.0 <= v_m_s <= LARGEST_READING):
+        return HOLD
+    if stage < 0 or stage >= coefficients.shape[0]:
+        return HOLD
+    s = np.float32(s_m)
+    v = np.float32(v_m_s)
+    if s < valid_range[0]:
+        s = valid_range[0]
+    if s > valid_range[1]:
+        s = valid_range[1]
+    highest = coefficients.shape[2] - 1
+    if has_line[stage, 0]:
+        line_speed = coefficients[stage, 0, highest]
+        for power in range(highest - 1, -1, -1):
+            line_speed = line_speed * s + coefficients[stage, 0, power]
+        if v < line_speed:
+            return LOWER
+    if has_line[stage, 1]:
+        line_speed = coefficients[stage, 1, highest]
+        for power in range(highest - 1, -1, -1):
+            line_speed = line_speed * s + coefficients[stage, 1, power]
+        if v > line_speed:
+            return RAISE
+    return HOLD
+
+
+def decide_for(table: ControllerTable, stage: int, s_m: float, v_m_s: float) -> int:
+    """LOWER, HOLD or RAISE of `table` for one reading of path and speed at `stage`."""
+    return decide(table.coefficients, table.has_line, table.valid_range, stage, s_m, v_m_s)
+
+
+def decide_many(
+    table: ControllerTable, stage: npt.ArrayLike, s_m: npt.ArrayLike, v_m_s: npt.ArrayLike
+) -> npt.NDArray[np.int8]:
+    """`decide` for whole arrays at once, with identical answers.
+
+    stage (integers), s_m and v_m_s broadcast against each other; the result has the broadcast shape.
+    Raises `TypeError` where the stages are not integers.
+    """
+    stages, paths, speeds = np.broadcast_arrays(
+        np.asarray(stage), np.asarray(s_m, dtype=np.float64), np.asarray(v_m_s, dtype=np.float64)
+    )
+    if stages.dtype.kind not in "iu":
+        raise TypeError(f"stage has dtype {stages.dtype}, but stages are integers.")
+    credible = (np.abs(paths) <= LARGEST_READING) & (speeds >= 0) & (speeds <= LARGEST_READING)
+    credible &= (stages >= 0) & (stages < len(table.stages))
+    # An incredible reading is replaced by one that is harmless to compute with; its answer is masked below.
+    index = np.where(credible, stages, 0).astype(np.intp)
+    s = np.where(credible, paths, 0).astype(np.float32)
+    v = np.where(credible, speeds, 0).astype(np.float32)
+    s = np.where(s < table.valid_range[0], table.valid_range[0], s)
+    s = np.where(s > table.valid_range[1], table.valid_range[1], s)
+    line_speed = table.coefficients[index, :, -1]
+    for power in range(table.degree - 1, -1, -1):
+        line_speed = line_speed * s[..., np.newaxis] + table.coefficients[index, :, power]
+    has_line = table.has_line[index] & credible[..., np.newaxis]
+    raises = has_line[..., 1] & (v > line_speed[..., 1])
+    lowers = has_line[..., 0] & (v < line_speed[..., 0])
+    return np.where(lowers, LOWER, np.where(raises, RAISE, HOLD)).astype(np.int8)

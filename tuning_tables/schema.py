@@ -1,0 +1,90 @@
+"""The JSON Schema (draft 2020-12) of a controller table, for editors and for readers in other languages.
+
+A schema states shapes and ranges. What it cannot state, the reader checks beyond it: the checksum, the order of stages
+and lines, coefficients that float32 can hold, and that no key is given twice.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import Final
+
+from tuning_tables.atomic_file import write_atomically
+from tuning_tables.document import FORMAT, VARIABLE, VERSION
+from tuning_tables.requirement import SHA256_HEX, UTC_INSTANT
+from tuning_tables.table import HIGHEST_DEGREE, MOST_STAGES
+
+DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
+
+
+def table_schema() -> dict[str, object]:
+    """A new dict with the JSON Schema of the format "retarder-table", version 1."""
+    line = {"anyOf": [{"type": "null"}, _array({"type": "number"}, 1, HIGHEST_DEGREE + 1)]}
+    stage = _object(k=_whole(0, MOST_STAGES - 1), pressure_kpa=_number(0), lower=line, upper=line)
+    validated = _object(passes=_whole(1), rms_m_s=_number(0), rms_ci95_m_s=_pair(_number(0)))
+    predicted = _object(rms_m_s=_number(0), bias_m_s=_number(), p_overspeed=_number(0, 1), switchings=_number(0))
+    predicted["properties"]["p_stall"] = _number(0, 1)
+    top = _object(
+        format={"const": FORMAT},
+        version={"const": VERSION},
+        id=_text(),
+        created={"type": "string", "pattern": UTC_INSTANT},
+        generator=_object(name=_text(), version=_text(), config_sha256={"type": "string", "pattern": SHA256_HEX}),
+        retarder=_object(name=_text(), zones_m=_array(_pair(_number()), 1), exit_m=_number(), dead_band_kpa=_number(0)),
+        cut=_object(category=_text(), mass_t=_above_zero(), axle_offsets_m=_array(_number(0), 1)),
+        target_speed_m_s=_above_zero(),
+        polynomial=_object(variable={"const": VARIABLE}, degree=_whole(0, HIGHEST_DEGREE)),
+        stages=_array(stage, 2, MOST_STAGES),
+        valid=_object(s_m=_pair(_number(-1e6, 1e6)), v_m_s=_pair(_number(0, 1e6))),
+        predicted=predicted,
+        validated={"anyOf": [{"type": "null"}, validated]},
+        crc32={"type": "string", "pattern": "^[0-9a-f]{8}$"},
+    )
+    return {"$schema": DIALECT, "title": f"{FORMAT} {VERSION}", **top}
+
+
+def write_schema(path: str | os.PathLike[str]) -> None:
+    """Write the schema to the file at `path`, complete or not at all; raises `OSError`."""
+    write_atomically(path, (json.dumps(table_schema(), indent=1) + "\n").encode("utf-8"))
+
+
+def _object(**properties: object) -> dict[str, dict[str, object]]:
+    """All `properties` and no others; all are required."""
+    members: dict[str, object] = {
+        "type": "object",
+        "properties": dict(properties),
+        "required": list(properties),
+        "additionalProperties": False,
+    }
+    return members  # type: ignore[return-value]
+
+
+def _array(items: object, fewest: int, most: int | None = None) -> dict[str, object]:
+    bounds = {"minItems": fewest} if most is None else {"minItems": fewest, "maxItems": most}
+    return {"type": "array", "items": items, **bounds}
+
+
+def _pair(items: object) -> dict[str, object]:
+    return _array(items, 2, 2)
+
+
+def _number(smallest: float | None = None, largest: float | None = None) -> dict[str, object]:
+    return _bounded("number", smallest, largest)
+
+
+def _whole(smallest: int, largest: int | None = None) -> dict[str, object]:
+    return _bounded("integer", smallest, largest)
+
+
+def _bounded(kind: str, smallest: float | None, largest: float | None) -> dict[str, object]:
+    bounds = {"minimum": smallest, "maximum": largest}
+    return {"type": kind, **{key: bound for key, bound in bounds.items() if bound is not None}}
+
+
+def _above_zero() -> dict[str, object]:
+    return {"type": "number", "exclusiveMinimum": 0}
+
+
+def _text() -> dict[str, object]:
+    return {"type": "string", "minLength": 1}

@@ -1,0 +1,38 @@
+"""A seal at the end of a file: one line with the SHA-256 of all that stands before it.
+
+It is for formats whose own library must not meet a damaged file. HDF5 is one: a single flipped bit in a part that it
+keeps without a checksum (the heap of strings and references) can hold it in an endless loop, as was measured with
+HDF5 2.0. With the seal, plain Python has read every byte before the library sees the first. HDF5 ignores what follows
+its own end, so that h5py and xarray open a sealed file as any other; a program that writes into it breaks the seal.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from typing import Final
+
+from tuning_tables.errors import DamagedTable
+
+SEAL_PREFIX: Final = b"\n# sealed, sha256 of all before this line: "
+SEAL_BYTES: Final = len(SEAL_PREFIX) + 64 + 1
+
+
+def seal_of(body: bytes) -> bytes:
+    """The line to append to `body`: SEAL_PREFIX, 64 hex digits, line feed."""
+    return SEAL_PREFIX + hashlib.sha256(body).hexdigest().encode("ascii") + b"\n"
+
+
+def unsealed(content: bytes, source: str) -> bytes:
+    """The body of the sealed `content`, read from the file that `source` names in messages.
+
+    Raises `DamagedTable` where the seal is missing or does not fit.
+    """
+    body, seal = content[:-SEAL_BYTES], content[-SEAL_BYTES:]
+    if not seal.startswith(SEAL_PREFIX):
+        raise DamagedTable(
+            f"{source}: there is no seal at its end, so it was cut off, edited or made by another program; "
+            "export it again."
+        )
+    if seal != seal_of(body):
+        raise DamagedTable(f"{source}: the seal at its end does not fit what is before it; export it again.")
+    return body

@@ -1,0 +1,140 @@
+"""The controller table: everything a trackside controller needs to regulate one class of cuts to one exit speed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from tuning_tables.errors import InvalidTable
+from tuning_tables.figures import Predicted, Validated, ValidRange
+from tuning_tables.line_order import require_order, require_representable
+from tuning_tables.provenance import CutId, Generator, RetarderId
+from tuning_tables.requirement import (
+    UTC_INSTANT,
+    require_count,
+    require_kind,
+    require_match,
+    require_positive,
+    require_text,
+    require_tuple,
+)
+from tuning_tables.stage import Stage
+
+MOST_STAGES: Final = 32
+HIGHEST_DEGREE: Final = 9
+
+
+@dataclass(frozen=True)
+class ControllerTable:
+    """A complete, checked table; it cannot be built otherwise, and nothing in it can be changed.
+
+    id, created       name of the table; UTC instant "2026-11-20T22:46:00Z", given by the caller
+    generator, retarder, cut   what made it and what it is for
+    target_speed_m_s  exit speed the table aims at, > 0
+    degree            of all lines, 0..9
+    stages            k = 0..K in order, 1 <= K <= 31, pressures rising, degree+1 coefficients a line; no `lower` at
+                      stage 0, no `upper` at stage K; no `upper` at stage k says that stage k+1 must not be entered
+    valid             path and speed range of the lines
+    predicted         figures of the solver; `validated` those of a closed loop, None before it was run
+
+    Derived from these, as arrays for `rule.decide` (read-only; line 0 is `lower`, line 1 is `upper`):
+
+    coefficients      float32 (K+1, 2, degree+1), ascending powers of s in m; NaN where there is no line
+    has_line          bool (K+1, 2)
+    valid_range       float32 (4,): s_min, s_max in m, v_min, v_max in m/s
+
+    On the valid path range lower(s) < upper(s) holds at every stage that has both, also as evaluated in float32.
+
+    Raises `InvalidTable`.
+    """
+
+    id: str
+    created: str
+    generator: Generator
+    retarder: RetarderId
+    cut: CutId
+    target_speed_m_s: float
+    degree: int
+    stages: tuple[Stage, ...]
+    valid: ValidRange
+    predicted: Predicted
+    validated: Validated | None = None
+    coefficients: npt.NDArray[np.float32] = field(init=False, repr=False, compare=False)
+    has_line: npt.NDArray[np.bool_] = field(init=False, repr=False, compare=False)
+    valid_range: npt.NDArray[np.float32] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        self._require_fields()
+        self._require_stages()
+        valid_range = np.array(self.valid.s_m + self.valid.v_m_s, dtype=np.float32)
+        self._require_lines((float(valid_range[0]), float(valid_range[1])))
+        coefficients, has_line = _line_arrays(self.stages, self.degree)
+        for name, array in (("coefficients", coefficients), ("has_line", has_line), ("valid_range", valid_range)):
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)
+
+    def with_validated(self, validated: Validated) -> ControllerTable:
+        """The same table with the figures of a closed-loop run filled in."""
+        return replace(self, validated=validated)
+
+    def _require_fields(self) -> None:
+        require_text(self.id, "id")
+        require_match(self.created, "created", UTC_INSTANT, "2026-11-20T22:46:00Z")
+        require_kind(self.generator, "generator", Generator)
+        require_kind(self.retarder, "retarder", RetarderId)
+        require_kind(self.cut, "cut", CutId)
+        require_positive(self.target_speed_m_s, "target_speed_m_s")
+        require_count(self.degree, "polynomial.degree", 0, HIGHEST_DEGREE)
+        require_kind(self.valid, "valid", ValidRange)
+        require_kind(self.predicted, "predicted", Predicted)
+        if self.validated is not None:
+            require_kind(self.validated, "validated", Validated)
+
+    def _require_stages(self) -> None:
+        require_tuple(self.stages, "stages")
+        if not 2 <= len(self.stages) <= MOST_STAGES:
+            raise InvalidTable(f"stages has {len(self.stages)} entries, but 2 to {MOST_STAGES} are allowed.")
+        for index, stage in enumerate(self.stages):
+            require_kind(stage, f"stages[{index}]", Stage)
+            if stage.k != index:
+                raise InvalidTable(f"stages[{index}].k is {stage.k}, but stages must be numbered 0, 1, 2, ...")
+        for below, above in pairwise(self.stages):
+            if not below.pressure_kpa < above.pressure_kpa:
+                raise InvalidTable(
+                    f"stages[{above.k}].pressure_kpa is {above.pressure_kpa!r}, "
+                    f"but it must exceed that of stage {below.k}, {below.pressure_kpa!r}."
+                )
+        if self.stages[0].lower is not None:
+            raise InvalidTable("stages[0].lower is given, but it must be null: there is no stage below the lowest.")
+        if self.stages[-1].upper is not None:
+            raise InvalidTable("upper of the top stage is given, but it must be null: there is no stage above it.")
+
+    def _require_lines(self, s_range_m: tuple[float, float]) -> None:
+        for stage in self.stages:
+            for name, line in (("lower", stage.lower), ("upper", stage.upper)):
+                if line is None:
+                    continue
+                key = f"stages[{stage.k}].{name}"
+                if len(line) != self.degree + 1:
+                    raise InvalidTable(
+                        f"{key} has {len(line)} coefficients, but a line of degree {self.degree} has {self.degree + 1}."
+                    )
+                require_representable(line, s_range_m, key)
+            if stage.lower is not None and stage.upper is not None:
+                require_order(stage.lower, stage.upper, s_range_m, f"stages[{stage.k}]")
+
+
+def _line_arrays(stages: tuple[Stage, ...], degree: int) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.bool_]]:
+    """Coefficients, float32 (K+1, 2, degree+1), NaN where a line is missing, and which lines there are, (K+1, 2)."""
+    coefficients = np.full((len(stages), 2, degree + 1), np.nan, dtype=np.float32)
+    has_line = np.zeros((len(stages), 2), dtype=np.bool_)
+    for stage in stages:
+        for index, line in enumerate((stage.lower, stage.upper)):
+            if line is not None:
+                coefficients[stage.k, index] = line
+                has_line[stage.k, index] = True
+    return coefficients, has_line
