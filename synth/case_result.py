@@ -53,9 +53,9 @@ class Indifference:
 class Feasibility:
     """Entry speeds that the position can serve when the friction is known.
 
-    `entry_m_s` (n,) and `bound_rms_m_s` (n,): friction-known rms by entry speed; `served_m_s`: (low, high) within
-    the configured entry range where it meets `limit_m_s`, None if nowhere; `feasible`: the bound over the whole
-    entry range meets the limit.
+    `entry_m_s` (n,) from the target to the position's highest entry speed, and `bound_rms_m_s` (n,): friction-known
+    rms by entry speed; `served_m_s`: (low, high) where it meets `limit_m_s`, None if nowhere; `feasible`: the
+    simulated bound over the configured entry range meets the limit.
     """
 
     entry_m_s: NDArray[np.float64]

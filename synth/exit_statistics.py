@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,6 +56,41 @@ def exit_statistics(sample: ExitSample, target_m_s: float) -> ExitStatistics:
         overspeed_ci95=clopper_pearson(over, n),
         stalls=int(np.count_nonzero(sample.stalled)),
         switchings=float(sample.switchings.mean()),
+    )
+
+
+def pooled_statistics(
+    samples: Sequence[ExitSample], weights: Sequence[float], target_m_s: float
+) -> ExitStatistics:
+    """Statistics of a mixture: stratum i has probability `weights`[i] and was sampled by `samples`[i].
+
+    The intervals follow from the strata's own variances; the one of `overspeed` is normal.
+    """
+    share = np.concatenate([np.full(len(s), w / len(s)) for s, w in zip(samples, weights, strict=True)])
+    share /= share.sum()
+    error = np.concatenate([s.exit_speed_m_s for s in samples]) - target_m_s
+    over = (error > OVERSPEED_M_S).astype(float)
+    mean_square, overspeed = float(share @ error**2), float(share @ over)
+    bias = float(share @ error)
+    square_se, over_se = 0.0, 0.0
+    for s, w in zip(samples, weights, strict=True):
+        e = s.exit_speed_m_s - target_m_s
+        square_se += (w**2) * float((e**2).var(ddof=1)) / len(s)
+        over_se += (w**2) * float((e > OVERSPEED_M_S).var(ddof=1)) / len(s)
+    order = np.argsort(np.abs(error))
+    p99 = np.abs(error)[order][np.searchsorted(np.cumsum(share[order]), 0.99)]
+    half = NORMAL_95 * math.sqrt(over_se)
+    return ExitStatistics(
+        passes=len(error),
+        rms_m_s=math.sqrt(mean_square),
+        rms_ci95_m_s=rms_interval(mean_square, math.sqrt(square_se)),
+        bias_m_s=bias,
+        std_m_s=math.sqrt(max(mean_square - bias**2, 0.0)),
+        p99_m_s=float(p99),
+        overspeed=overspeed,
+        overspeed_ci95=(max(overspeed - half, 0.0), min(overspeed + half, 1.0)),
+        stalls=sum(int(np.count_nonzero(s.stalled)) for s in samples),
+        switchings=float(share @ np.concatenate([s.switchings for s in samples])),
     )
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+import os
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +38,18 @@ class Resolution:
         for name in ("transient_substeps", "friction_nodes", "path_levels", "resistance_nodes"):
             value = getattr(self, name)
             require(1 <= value <= 64, f"grid: {name} is {value}; it must be a whole number from 1 to 64")
+
+
+def finer_for_check(resolution: Resolution) -> Resolution:
+    """The resolution at which a table solved on `resolution` is predicted: half the path step, more scenarios."""
+    return replace(
+        resolution,
+        path_step_m=0.5 * resolution.path_step_m,
+        speed_step_m_s=0.75 * resolution.speed_step_m_s,
+        friction_nodes=17,
+        path_levels=3,
+        resistance_nodes=3,
+    )
 
 
 @dataclass(frozen=True)
@@ -74,3 +87,28 @@ def make_grid(plant: Plant, resolution: Resolution) -> Grid:
     top = 0.5 * plant.entry.high_m_s**2 + downhill + 4 * step
     energy = step * np.arange(math.ceil(top / step) + 1, dtype=np.float64)
     return Grid(np.linspace(0.0, plant.exit_m, quanta + 1), energy, np.sqrt(2.0 * energy))
+
+
+def memory_estimate_bytes(plant: Plant, resolution: Resolution) -> int:
+    """What one solve and one check of `plant` will hold at most, from the sizes of their largest arrays."""
+    total = 0
+    for r in (resolution, finer_for_check(resolution)):
+        quanta = max(4, round(plant.exit_m / r.path_step_m))
+        points = 0.5 * plant.entry.high_m_s**2 / (r.speed_step_m_s * r.reference_speed_m_s) * 1.2
+        modes, chains = 2 * plant.top_stage, 4 * plant.top_stage
+        landings = quanta * chains * 7 * points * 2
+        scenarios = r.friction_nodes * r.resistance_nodes if r is resolution else 2
+        values = 3 * scenarios * quanta * modes * r.path_levels * points
+        total += int(8 * (landings + values + 6 * quanta * (plant.top_stage + 1) * points))
+    return total
+
+
+def require_memory(label: str, plant: Plant, resolution: Resolution, workers: int) -> None:
+    """Raise `PlantError` if `workers` solves at once would not fit into this machine's memory."""
+    needed = workers * memory_estimate_bytes(plant, resolution)
+    available = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_AVPHYS_PAGES")
+    require(
+        needed <= 0.8 * available,
+        f"grid: path_step_m is {resolution.path_step_m:g} and speed_step_m_s {resolution.speed_step_m_s:g}; solving "
+        f"{label} would take about {needed / 1e9:.1f} GB and {available / 1e9:.1f} GB are free: make a step larger",
+    )

@@ -77,11 +77,12 @@ class Plant:
 class Criterion:
     """Cost of one pass: (V_exit − V_target)², plus `stall_cost_m2_s2` for a stall in the position.
 
-    `switching_tolerance_m2_s2`: a change of stage must gain more than this, else hold wins (R5).
+    `switching_tolerance_m2_s2`: a change of stage must gain more than this, else hold wins: commands whose
+    costs differ by less count as equal, and of these the one with the fewest switchings is taken (R5).
     """
 
     stall_cost_m2_s2: float = 1.0
-    switching_tolerance_m2_s2: float = 1e-5
+    switching_tolerance_m2_s2: float = 3e-5
 
     def __post_init__(self) -> None:
         require_between("criterion: stall_cost_m2_s2", self.stall_cost_m2_s2, 0.0, 1e4)

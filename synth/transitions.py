@@ -74,11 +74,11 @@ def persistent_transitions(plant: Plant, resolution: Resolution) -> Transitions:
     return assemble(plant, grid, actuator, chain, scenarios, make_landings(plant, grid, actuator))
 
 
-def published_transitions(plant: Plant, resolution: Resolution) -> Transitions:
-    """Independent friction noise in every quantum, unscaled, nothing persistent: the formulation of S2."""
+def check_transitions(plant: Plant, resolution: Resolution) -> Transitions:
+    """The persistent formulation with `check_scenarios`, for the prediction of a finished table."""
     grid, actuator = make_grid(plant, resolution), actuator_of(plant, resolution)
-    chain = independent_chain(math.hypot(plant.friction_cv, plant.friction.path_std), 5)
-    scenarios = Scenarios(np.ones(1), np.zeros(1), np.ones(1))
+    chain = correlated_chain(plant.friction, grid.path_step_m, resolution.path_levels)
+    scenarios = check_scenarios(plant, resolution.friction_nodes, resolution.resistance_nodes)
     return assemble(plant, grid, actuator, chain, scenarios, make_landings(plant, grid, actuator))
 
 
@@ -102,16 +102,45 @@ def actuator_of(plant: Plant, resolution: Resolution) -> Actuator:
 
 
 def persistent_scenarios(plant: Plant, friction_nodes: int, resistance_nodes: int) -> Scenarios:
-    """Product of Gauss–Hermite nodes of ξ_cut and generalised Gauss–Laguerre nodes of w."""
+    """Product of Gauss–Hermite nodes of ξ_cut and Gauss nodes of w."""
     z, z_weight = np.polynomial.hermite_e.hermegauss(friction_nodes)
     factor = plant.friction.cut_factor(z, plant.friction_cv)
-    w, w_weight = plant.resistance.nodes(resistance_nodes)
-    extra = -plant.cut.reduced_gravity_m_s2 * 1e-3 * (w - plant.resistance.mean_n_per_kn)
+    extra, w_weight = resistance_scenarios(plant, resistance_nodes)
     return Scenarios(
-        factor=np.repeat(factor, len(w)),
+        factor=np.repeat(factor, len(extra)),
         extra_m_s2=np.tile(extra, len(z)),
         weight=np.outer(z_weight / z_weight.sum(), w_weight).ravel(),
     )
+
+
+def check_scenarios(plant: Plant, friction_nodes: int, resistance_nodes: int) -> Scenarios:
+    """Scenarios for a prediction that must get the tails right, and not pay for every pair of (ξ_cut, w).
+
+    ξ_cut at equally spaced nodes up to four standard deviations (the cost has a kink where the brake power
+    ends, which a Gauss rule misses); w added as its main effect: E f(ξ, w) ≈ E f(ξ, w̄) + E f(1, w) − f(1, w̄),
+    so one weight may be negative. `friction_nodes` must be odd.
+    """
+    z, z_weight = equally_spaced_normal(friction_nodes)
+    extra, w_weight = resistance_scenarios(plant, resistance_nodes)
+    z_weight[friction_nodes // 2] -= 1.0
+    return Scenarios(
+        factor=np.concatenate([plant.friction.cut_factor(z, plant.friction_cv), np.ones(len(extra))]),
+        extra_m_s2=np.concatenate([np.zeros(len(z)), extra]),
+        weight=np.concatenate([z_weight, w_weight]),
+    )
+
+
+def equally_spaced_normal(count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Nodes from −4 to 4 and trapezoidal weights of the standard normal law, (count,) each."""
+    z = np.linspace(-4.0, 4.0, count)
+    weight = np.exp(-0.5 * z**2)
+    return z, weight / weight.sum()
+
+
+def resistance_scenarios(plant: Plant, count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(added acceleration of w − E w in m/s², probability) at Gauss nodes of the gamma law."""
+    w, weight = plant.resistance.nodes(count)
+    return -plant.cut.reduced_gravity_m_s2 * 1e-3 * (w - plant.resistance.mean_n_per_kn), weight
 
 
 def assemble(

@@ -1,0 +1,110 @@
+"""All pictures of a book: what is drawn, and what is said under it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from matplotlib.figure import Figure
+
+from synth.case_result import CaseResult, DegreeStudy
+from synth.plots.case_names import by_class, case_name, file_stem
+from synth.plots.degree_study import degree_study
+from synth.plots.exit_density import exit_density
+from synth.plots.feasibility import feasibility
+from synth.plots.figure_file import draw
+from synth.plots.picture import Picture
+from synth.plots.policy_map import policy_map
+from synth.plots.rms_by_controller import rms_by_controller
+from synth.plots.sample_passes import sample_passes
+from synth.plots.surfaces import surfaces
+from synth.plots.switchings import switchings
+
+
+def all_pictures(cases: Sequence[CaseResult], studies: Sequence[DegreeStudy], limit_m_s: float) -> Iterator[Picture]:
+    """Every picture of the book in the order of the report; each is drawn when it is asked for."""
+    yield from book_pictures(cases, studies, limit_m_s)
+    for group in by_class(cases):
+        yield from class_pictures(group)
+    for case in cases:
+        yield from case_pictures(case)
+
+
+def book_pictures(cases: Sequence[CaseResult], studies: Sequence[DegreeStudy], limit_m_s: float) -> Iterator[Picture]:
+    """The pictures that set all cases side by side; `limit_m_s`: acceptance limit of the rms."""
+    yield picture(
+        rms_by_controller(cases, limit_m_s),
+        "rms-by-controller",
+        "Accuracy",
+        "Exit-speed error by controller",
+        "Simulated rms with its 95 % interval, the same passes for every controller. Hollow: the rms that the method "
+        "itself predicted. Grey: infeasible, even a controller that knows the friction misses the limit.",
+    )
+    yield picture(
+        feasibility(cases),
+        "feasibility",
+        "Accuracy",
+        "Served entry speeds",
+        "Rms of a controller that knows the friction of the cut, over entry speed: what the position can do at all.",
+    )
+    yield picture(
+        switchings(cases),
+        "switchings",
+        "Switchings",
+        "Use of the indifferent region",
+        "Where several commands cost the same within the tolerance, hold is taken: predicted switchings a pass and "
+        "rms of the solver's lines with and without this rule.",
+    )
+    if studies:
+        yield picture(
+            degree_study(studies),
+            "degree-study",
+            "Degree of the lines",
+            "Exit-speed error by degree",
+            "Predicted rms of polynomial lines of degree r: fitted to the solver's lines, and polished on the exactly "
+            "evaluated policy.",
+        )
+
+
+def class_pictures(cases: Sequence[CaseResult]) -> Iterator[Picture]:
+    """The pictures of one cut class over its targets; surfaces for the middle target only."""
+    label, middle = cases[0].label, cases[len(cases) // 2]
+    yield picture(
+        exit_density(cases),
+        file_stem("exit-density", label),
+        "Predicted and simulated exit speed",
+        f"Exit speed of {label}",
+        f"{label}: density predicted by the forward equation of the exported table, over the histogram of simulated "
+        "passes; above near the target, below on a logarithmic scale with the tails.",
+    )
+    yield picture(
+        surfaces(middle),
+        file_stem("surfaces", case_name(middle)),
+        "Switching surfaces",
+        f"Switching surfaces of {case_name(middle)}",
+        f"{case_name(middle)}: the exported lines (bold) over path and pressure, joined linearly between the stages.",
+    )
+
+
+def case_pictures(case: CaseResult) -> Iterator[Picture]:
+    """The pictures of one case."""
+    name = case_name(case)
+    yield picture(
+        policy_map(case),
+        file_stem("policy-map", name),
+        "Switching lines",
+        f"Best command by stage, {name}",
+        f"{name}: best command by stage, the region of indifferent control (hatched), the solver's switching lines "
+        "(dots), the exported polynomial lines (bold), and simulated passes while they were in the stage.",
+    )
+    yield picture(
+        sample_passes(case),
+        file_stem("sample-passes", name),
+        "Sample passes",
+        f"Sample passes, {name}",
+        f"{name}: passes with low, nominal and high friction under the exported table.",
+    )
+
+
+def picture(figure: Figure, name: str, section: str, title: str, caption: str) -> Picture:
+    """Draw `figure` as a picture."""
+    return Picture(name, section, title, caption, draw(figure))

@@ -1,0 +1,72 @@
+"""How far the predictions can be trusted: the table's own, and that of the formulation as published."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from statistics import median
+
+from synth.case_result import CaseResult
+from synth.plots.case_names import Contest, case_name, contest, honesty
+from synth.report.book_report import BookReport
+from synth.report.case_table import HONEST
+from synth.report.figures import counted, span
+from synth.report.markup import Markup, element
+
+FAR_OFF = 1.5
+"""From this factor on, between promised and simulated rms, a prediction is called far off."""
+
+
+def honesty_section(book: BookReport) -> Markup:
+    """Two paragraphs, computed over the feasible cases (over all, where none is feasible)."""
+    cases = book.feasible or book.cases
+    return element("div", element("p", own_prediction(cases)), element("p", published_prediction(cases)))
+
+
+def own_prediction(cases: Sequence[CaseResult]) -> str:
+    """What became of the prediction of the exported tables."""
+    ratios = [honesty(contest(case).table) for case in cases]
+    inside = sum(HONEST[0] <= ratio <= HONEST[1] for ratio in ratios)
+    return (
+        "Prediction (the exit-speed density of the exported table, nothing sampled) and simulation (passes in time "
+        "with valves, sensor and sampling) are two independent computations of one quantity. Predicted / "
+        f"simulated rms is {span(ratios)} over {counted(len(cases), 'case')}; {inside} of them within "
+        f"{HONEST[0]:g} to {HONEST[1]:g}."
+    )
+
+
+def published_prediction(cases: Sequence[CaseResult]) -> str:
+    """What became of the prediction that the formulation as published makes of itself."""
+    found = [contest(case) for case in cases]
+    ratios = [honesty(each.published) for each in found]
+    lead = (
+        "The formulation as published takes the friction of every path quantum as independent, so that it averages out "
+        f"within a pass. The rms that it promised: {span([c.published.predicted_rms_m_s for c in found], '.3f')} m/s; "
+        f"simulated, where the friction of a cut persists: "
+        f"{span([c.published.statistics.rms_m_s for c in found], '.3f')} m/s. "
+    )
+    return lead + judgement(cases, ratios) + " " + comparison(found)
+
+
+def judgement(cases: Sequence[CaseResult], ratios: Sequence[float]) -> str:
+    """Whether its promise holds, in one sentence."""
+    if all(HONEST[0] <= ratio <= HONEST[1] for ratio in ratios):
+        return f"Here its own prediction holds: predicted / simulated is {span(ratios)}."
+    middle = f"Predicted / simulated is {span(ratios)}, {median(ratios):.2f} in the median: "
+    place = min(range(len(ratios)), key=lambda i: -abs(math.log(ratios[i])) if ratios[i] > 0.0 else -math.inf)
+    ratio = ratios[place]
+    factor = (1.0 / ratio if ratio < 1.0 else ratio) if ratio > 0.0 else math.inf
+    direction = "less" if ratio < 1.0 else "more"
+    return (
+        f"{middle}its own prediction is {'far off' if factor > FAR_OFF else 'off'}, most in {case_name(cases[place])}, "
+        f"where it promised {factor:.1f} times {direction} error than there was. Its predictions must not be used."
+    )
+
+
+def comparison(found: Sequence[Contest]) -> str:
+    """How its lines fare beside the exported tables, on the same passes."""
+    worse = [each.published.statistics.rms_m_s / each.table.statistics.rms_m_s for each in found]
+    return (
+        f"On the same passes the rms of its lines is {span(worse)} times that of the exported tables "
+        f"({median(worse):.2f} in the median)."
+    )

@@ -1,0 +1,52 @@
+"""The verdict: accepted or not, the worst case, and what is infeasible and why."""
+
+from __future__ import annotations
+
+from synth.case_result import CaseResult
+from synth.plots.case_names import case_name, contest, why_infeasible
+from synth.report.book_report import BookReport
+from synth.report.figures import counted, interval, speed
+from synth.report.markup import Markup, element
+
+
+def verdict(book: BookReport) -> Markup:
+    """The box at the head of the page."""
+    word = "Accepted" if book.accepted else "Not accepted"
+    parts = [element("p", element("strong", word), " — ", book.verdict)]
+    if book.feasible:
+        parts.append(element("p", worst_case(book)))
+    if book.infeasible:
+        lead = (
+            f"{counted(len(book.infeasible), 'case')} of {len(book.cases)} infeasible: even a controller that knows "
+            f"the friction of every cut stays above {speed(book.acceptance_rms_m_s)} m/s there. "
+            "They take no part in the verdict and are shown everywhere."
+        )
+        parts.append(element("p", lead))
+        parts.append(element("ul", *(element("li", infeasible_case(case)) for case in book.infeasible)))
+    else:
+        parts.append(element("p", "Every case is feasible."))
+    return element("section", *parts, class_="verdict accepted" if book.accepted else "verdict refused", id="verdict")
+
+
+def worst_case(book: BookReport) -> str:
+    """The feasible case of highest simulated rms."""
+    worst = max(book.feasible, key=lambda case: contest(case).table.statistics.rms_m_s)
+    found = contest(worst).table.statistics
+    return (
+        f"Worst of the {counted(len(book.feasible), 'feasible case')}: {case_name(worst)}, simulated rms "
+        f"{speed(found.rms_m_s)} m/s, 95 % interval {interval(found.rms_ci95_m_s)}, over {found.passes} passes; "
+        f"the limit is {speed(book.acceptance_rms_m_s)} m/s."
+    )
+
+
+def infeasible_case(case: CaseResult) -> str:
+    """Why one case cannot be served, and what of it can."""
+    known = contest(case).known_friction.statistics.rms_m_s
+    entry, served = case.plant.entry, case.feasibility.served_m_s
+    part = (
+        f"entry speeds from {served[0]:.2f} to {served[1]:.2f} m/s are served" if served else "no entry speed is served"
+    )
+    return (
+        f"{case_name(case)}: {why_infeasible(case)}; rms with the friction known {speed(known)} m/s at entry speeds of "
+        f"{entry.low_m_s:g} to {entry.high_m_s:g} m/s; {part}."
+    )

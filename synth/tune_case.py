@@ -1,0 +1,174 @@
+"""One case from problem to validated table: solve, fit, polish, export, predict, simulate, compare."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from synth.backward_induction import Solution, solve
+from synth.baselines import tune_baselines
+from synth.case_result import CaseResult, DegreeStudy, Indifference, Measured
+from synth.closed_loop import Controller, ExitSample, LineController, TableController, simulate, trace
+from synth.exit_statistics import exit_statistics
+from synth.friction_bound import friction_known_bound
+from synth.policy_evaluation import ExitDensity, commands, cost_and_gradient, exit_density, occupancy_of
+from synth.policy_map import policy_map
+from synth.polynomial_fit import Evaluate, Fit, PolynomialLines, fit_lines, polish
+from synth.problem import Criterion, Problem
+from synth.random_passes import RandomPasses
+from synth.switching_lines import SwitchingLines
+from synth.tabulate import lines_of, prediction_of, tabulate
+from synth.transitions import Transitions, as_published
+from tuning_tables import ControllerTable, Generator, Predicted, Validated
+
+POLISH_ITERATIONS = 25
+TRACE_FACTORS = (0.8, 1.0, 1.2)
+INDIFFERENCE_SHOWN_M2_S2 = 1e-4
+"""Costs that differ by less than (1 cm/s)² are drawn as equal."""
+
+
+@dataclass(frozen=True)
+class CaseOrder:
+    """What to do for one case, and with what; `store` writes a table and reads it back from its file.
+
+    `design` is the grid to solve on, `check` the finer one to predict on; `tuning` are the passes that
+    baselines are tuned on, `passes` those that everything is compared on; `limit_m_s` the acceptance rms.
+    """
+
+    label: str
+    problem: Problem
+    design: Transitions
+    check: Transitions
+    published: Transitions
+    degree: int
+    limit_m_s: float
+    passes: RandomPasses
+    tuning: RandomPasses
+    generator: Generator
+    created: str
+    store: Callable[[ControllerTable], ControllerTable]
+
+    @property
+    def table_id(self) -> str:
+        """Name of the case's table, also as a file name."""
+        return f"{self.label}-to-{self.problem.target_speed_m_s:g}-m-s".replace(" ", "-")
+
+
+def tune_case(order: CaseOrder) -> CaseResult:
+    """Tune one case; the table is validated as read back from its file."""
+    problem, design, target = order.problem, order.design, order.problem.target_speed_m_s
+    solution = solve(design, target, problem.criterion)
+    _, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
+    fit = fit_lines(solution, occupancy.samples, order.degree)
+    lines = polished(design, fit, target, problem.criterion)
+    table, predicted = predicted_table(order, lines)
+    table = order.store(table)
+    sample = simulate(problem.plant, TableController(table), order.passes)
+    statistics = exit_statistics(sample, target)
+    validated = Validated(statistics.passes, statistics.rms_m_s, statistics.rms_ci95_m_s)
+    table = order.store(table.with_validated(validated))
+    known, feasibility = friction_known_bound(design, problem, order.passes, order.limit_m_s)
+    published = solve(order.published, target, problem.criterion)
+    nodes = np.linspace(0.0, problem.plant.exit_m, 301)
+    return CaseResult(
+        label=order.label,
+        plant=problem.plant,
+        target_speed_m_s=target,
+        table=table,
+        table_lines=lines_of(table, nodes),
+        solver_lines=solution.lines,
+        policy_map=policy_map(solution, INDIFFERENCE_SHOWN_M2_S2),
+        predicted=predicted,
+        published_predicted_rms_m_s=rms_of_lines(order.published, published.lines, target),
+        exit_speeds_m_s=sample.exit_speed_m_s.astype(np.float32),
+        comparison=(
+            Measured("table", statistics, predicted.rms_m_s(target)),
+            run(order, "full lines", LineController(solution.lines)),
+            run(order, "as published", LineController(published.lines)),
+            known,
+            *(run(order, b.name, b.controller) for b in tune_baselines(problem.plant, target, order.tuning)),
+        ),
+        indifference=indifference(design, solution, target, problem.criterion),
+        feasibility=feasibility,
+        traces=tuple(
+            trace(problem.plant, TableController(table), order.passes, i, cut_factor=factor)
+            for i, factor in enumerate(TRACE_FACTORS)
+        ),
+        trace_factors=TRACE_FACTORS,
+    )
+
+
+def evaluator(design: Transitions, target_speed_m_s: float, criterion: Criterion) -> Evaluate:
+    """Exact cost and gradient of lines, as `polish` wants them."""
+
+    def evaluate(lines: SwitchingLines) -> tuple[float, np.ndarray, np.ndarray]:
+        return cost_and_gradient(design, commands(design, lines, staircase=False), target_speed_m_s, criterion)
+
+    return evaluate
+
+
+def polished(design: Transitions, fit: Fit, target_speed_m_s: float, criterion: Criterion) -> PolynomialLines:
+    """The fitted lines after the polish."""
+    evaluate = evaluator(design, target_speed_m_s, criterion)
+    return polish(fit.lines, fit.curvature, design.grid.path_m, evaluate, POLISH_ITERATIONS).lines
+
+
+def predicted_table(order: CaseOrder, lines: PolynomialLines) -> tuple[ControllerTable, ExitDensity]:
+    """The rounded table with the exact prediction of itself, sensor quantisation included."""
+    unknown = Predicted(0.0, 0.0, 0.0, 0.0)
+    plant, target = order.problem.plant, order.problem.target_speed_m_s
+    table = tabulate(plant, lines, target, unknown, order.generator, order.table_id, order.created)
+    predicted = predict(order.check, table)
+    return replace(table, predicted=prediction_of(predicted, target)), predicted
+
+
+def predict(check: Transitions, table: ControllerTable) -> ExitDensity:
+    """Exit-speed density of an exported table on `check`."""
+    lines = lines_of(table, check.grid.path_m)
+    stages = check.actuator.stages
+    used = SwitchingLines(lines.nodes_m, lines.lower_m_s[:stages], lines.upper_m_s[:stages])
+    return exit_density(check, commands(check, used, staircase=True))
+
+
+def run(order: CaseOrder, name: str, controller: Controller) -> Measured:
+    """Closed loop of `controller` on the common passes."""
+    sample: ExitSample = simulate(order.problem.plant, controller, order.passes)
+    return Measured(name, exit_statistics(sample, order.problem.target_speed_m_s))
+
+
+def rms_of_lines(transitions: Transitions, lines: SwitchingLines, target_speed_m_s: float) -> float:
+    """What a formulation itself predicts for its own lines."""
+    return exit_density(transitions, commands(transitions, lines, staircase=True)).rms_m_s(target_speed_m_s)
+
+
+def indifference(
+    design: Transitions, solution: Solution, target_speed_m_s: float, criterion: Criterion
+) -> Indifference:
+    """Predicted switchings and rms of the solver's lines with the tolerance, and of lines solved without it."""
+    plain = solve(design, target_speed_m_s, replace(criterion, switching_tolerance_m2_s2=0.0))
+    with_it = exit_density(design, commands(design, solution.lines, staircase=False))
+    without = exit_density(design, commands(design, plain.lines, staircase=False))
+    return Indifference(
+        tolerance_m2_s2=criterion.switching_tolerance_m2_s2,
+        switchings_without=without.switchings,
+        switchings_with=with_it.switchings,
+        rms_without_m_s=without.rms_m_s(target_speed_m_s),
+        rms_with_m_s=with_it.rms_m_s(target_speed_m_s),
+    )
+
+
+def degree_study(design: Transitions, problem: Problem, label: str, degrees: tuple[int, ...]) -> DegreeStudy:
+    """Predicted rms against the degree of the polynomials, fitted and polished (R4)."""
+    target, criterion = problem.target_speed_m_s, problem.criterion
+    solution = solve(design, target, criterion)
+    density, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
+    fitted, after = np.empty(len(degrees)), np.empty(len(degrees))
+    for i, degree in enumerate(degrees):
+        fit = fit_lines(solution, occupancy.samples, degree)
+        best = polished(design, fit, target, criterion)
+        for found, lines in ((fitted, fit.lines), (after, best)):
+            at_nodes = lines.at(design.grid.path_m)
+            found[i] = exit_density(design, commands(design, at_nodes, staircase=False)).rms_m_s(target)
+    return DegreeStudy(f"{label}, {target:g} m/s", degrees, fitted, after, density.rms_m_s(target))

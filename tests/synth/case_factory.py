@@ -1,0 +1,176 @@
+"""Results of a tune that were never computed: right in shape and size, made in milliseconds."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models import (
+    Cut,
+    DopplerSensor,
+    Friction,
+    Pneumatics,
+    PressingForce,
+    RetarderPosition,
+    RollingResistance,
+    TrackProfile,
+)
+from synth.case_result import CaseResult, DegreeStudy, Feasibility, Indifference, Measured, PolicyMap
+from synth.closed_loop import ExitSample, PassTrace
+from synth.exit_statistics import exit_statistics
+from synth.policy_evaluation import ExitDensity
+from synth.problem import EntrySpeed, Plant
+from synth.switching_lines import SwitchingLines
+from tuning_tables import (
+    ControllerTable,
+    CutId,
+    Generator,
+    Predicted,
+    RetarderId,
+    Stage,
+    ValidRange,
+    round_coefficients,
+)
+
+PASSES = 4000
+NAMES_AND_SPREAD = (
+    ("table", 1.0),
+    ("lines", 1.05),
+    ("as published", 6.0),
+    ("friction known", 0.9),
+    ("single threshold", 4.0),
+    ("two-threshold relay", 3.5),
+    ("threshold with lead", 3.0),
+    ("energy rule", 2.0),
+)
+
+
+def make_plant(mass_t: float, stages: int) -> Plant:
+    """A gondola on a two-retarder position."""
+    position = RetarderPosition(
+        name="КНП-5",
+        zones_m=((0.0, 12.475), (14.475, 26.95)),
+        stage_pressures_kpa=(0.0, 150.0, 300.0, 450.0, 600.0),
+        force=PressingForce(20.0 / 550.0, 50.0),
+        pneumatics=Pneumatics(700.0, 0.0, 0.1, 0.2, 0.1, 0.3, 0.3, 15.0),
+        max_entry_speed_m_s=7.0,
+    )
+    return Plant(
+        position=position,
+        cut=Cut("ЛС", mass_t, (0.0, 1.85, 8.65, 10.5), stages - 1),
+        profile=TrackProfile.uniform(8.0),
+        friction=Friction(common_cv=0.15, axle_cv=0.0, path_std=0.10, correlation_length_m=2.0),
+        resistance=RollingResistance(1.5, 0.5),
+        sensor=DopplerSensor(0.05, 0.04, 0.1, 0.02),
+        entry=EntrySpeed(5.0, 6.5),
+    )
+
+
+def make_case(
+    label: str = "gondola-36t", target: float = 3.0, stages: int = 4, spread: float = 0.04, feasible: bool = True
+) -> CaseResult:
+    """A case whose exit speeds are normal with `spread` m/s around the target; infeasible ones leave too fast."""
+    plant = make_plant(36.0, stages)
+    bias = 0.0 if feasible else 0.2
+    samples = [make_sample(target + bias, factor * spread, seed) for seed, (_, factor) in enumerate(NAMES_AND_SPREAD)]
+    density = make_density(target + bias, spread)
+    comparison = tuple(
+        Measured(name, exit_statistics(sample, target), density.rms_m_s(target) if name == "table" else math.nan)
+        for (name, _), sample in zip(NAMES_AND_SPREAD, samples, strict=True)
+    )
+    entry = np.linspace(5.0, 6.5, 5)
+    return CaseResult(
+        label=label,
+        plant=plant,
+        target_speed_m_s=target,
+        table=make_table(label, plant, target),
+        table_lines=make_lines(plant, target, 129),
+        solver_lines=make_lines(plant, target, 76, wiggle=0.05),
+        policy_map=make_policy_map(plant, target),
+        predicted=density,
+        published_predicted_rms_m_s=0.4 * spread,
+        exit_speeds_m_s=samples[0].exit_speed_m_s.astype(np.float32),
+        comparison=comparison,
+        indifference=Indifference(1e-5, 12.0, 9.5, spread, 1.01 * spread),
+        feasibility=Feasibility(entry, np.full(5, spread + abs(bias)), 0.1, (5.0, 6.5) if feasible else None, feasible),
+        traces=tuple(make_trace(plant, target, factor) for factor in (0.8, 1.0, 1.2)),
+        trace_factors=(0.8, 1.0, 1.2),
+    )
+
+
+def make_lines(plant: Plant, target: float, nodes: int, wiggle: float = 0.0) -> SwitchingLines:
+    """Lines that fall to the target, 0.1 m/s apart, higher for higher stages."""
+    s = np.linspace(0.0, plant.exit_m, nodes)
+    stage = np.arange(plant.top_stage + 1)[:, None]
+    middle = target + (6.0 - target) * (1.0 - s / plant.exit_m) ** 2 + 0.1 * stage + wiggle * np.sin(3.0 * s)
+    lower, upper = middle - 0.05, middle + 0.05
+    lower[0], upper[-1] = -np.inf, np.inf
+    return SwitchingLines(s, lower, upper)
+
+
+def make_policy_map(plant: Plant, target: float) -> PolicyMap:
+    """Up above the lines, down below them, indifferent in the first third."""
+    lines = make_lines(plant, target, 76)
+    speed = np.sqrt(2.0 * 0.09 * np.arange(280))
+    below = speed < lines.lower_m_s[:, :-1, None]
+    above = speed > lines.upper_m_s[:, :-1, None]
+    indifferent = np.broadcast_to(lines.nodes_m[:-1, None] < plant.exit_m / 3.0, below.shape).copy()
+    return PolicyMap(lines.nodes_m[:-1], speed, (above.astype(np.int8) - below.astype(np.int8)), indifferent)
+
+
+def make_density(mean: float, spread: float) -> ExitDensity:
+    """Normal in speed, on an energy grid."""
+    speed = np.sqrt(2.0 * 0.06 * np.arange(400))
+    weight = np.exp(-0.5 * ((speed - mean) / max(spread, 0.03)) ** 2)
+    return ExitDensity(speed, weight / weight.sum(), 0.0, 0.0, 9.5)
+
+
+def make_sample(mean: float, spread: float, seed: int) -> ExitSample:
+    """Normal exit speeds; nothing stalls."""
+    rng = np.random.default_rng(seed)
+    speed = mean + spread * rng.standard_normal(PASSES)
+    return ExitSample(speed, np.zeros(PASSES, bool), np.full(PASSES, 9, np.int32), np.full(PASSES, 12.0))
+
+
+def make_trace(plant: Plant, target: float, factor: float) -> PassTrace:
+    """Braking at the top stage, then released."""
+    s = np.linspace(0.0, plant.exit_m, 120)
+    speed = np.maximum(6.0 - 0.25 * factor * s, target)
+    time = np.concatenate([[0.0], np.cumsum(np.diff(s) / speed[1:])])
+    stage: NDArray[np.int64] = np.where(speed > target, plant.top_stage, 0).astype(np.int64)
+    return PassTrace(time, s, speed, 120.0 * stage, stage, speed + 0.01, False)
+
+
+def make_table(label: str, plant: Plant, target: float) -> ControllerTable:
+    """A table of parallel straight lines, as cubics."""
+    position = plant.position
+    stages = tuple(
+        Stage(
+            k,
+            position.stage_pressures_kpa[k],
+            None if k == 0 else round_coefficients((target + 1.0, -0.02, 0.0, 0.0)),
+            None if k == plant.top_stage else round_coefficients((target + 1.2, -0.02, 0.0, 0.0)),
+        )
+        for k in range(plant.top_stage + 1)
+    )
+    return ControllerTable(
+        id=f"{label}-{target:g}",
+        created="2026-11-20T22:46:00Z",
+        generator=Generator("retarder-synth", "0.1.0", "ab" * 32),
+        retarder=RetarderId(position.name, position.zones_m, plant.exit_m, position.pneumatics.dead_band_kpa),
+        cut=CutId(plant.cut.category, plant.cut.mass_t, plant.cut.axle_offsets_m),
+        target_speed_m_s=target,
+        degree=3,
+        stages=stages,
+        valid=ValidRange((0.0, plant.exit_m), (0.3, 9.0)),
+        predicted=Predicted(0.05, 0.0, 0.0, 9.5),
+    )
+
+
+def make_study(label: str = "gondola-36t, target 3 m/s") -> DegreeStudy:
+    """Worse fits for low degrees, a polish that helps."""
+    return DegreeStudy(
+        label, (1, 2, 3, 4), np.array([0.2, 0.1, 0.06, 0.07]), np.array([0.06, 0.05, 0.042, 0.041]), 0.043
+    )

@@ -1,0 +1,312 @@
+"""Predicted limit cycles against time-stepped relays, the simulator and python-control's own analysis."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from plant_models import Cut, DopplerSensor, Friction, PlantError, Pneumatics, RollingResistance, TrackProfile
+from synth.closed_loop import LineController, trace
+from synth.control_system import describing_function_analysis
+from synth.limit_cycle import (
+    StagePair,
+    first_harmonic,
+    harmonic_pressure_cycle,
+    hunting_report,
+    limit_cycle,
+    pressure_hunting,
+    pressure_limit_cycle,
+    relay_cycle,
+)
+from synth.problem import EntrySpeed, Plant
+from synth.random_passes import random_passes
+from synth.switching_lines import SwitchingLines
+
+TOUCH_KPA = 50.0
+
+
+def drive(closing_delay_s: float, dead_band_kpa: float = 15.0) -> Pneumatics:
+    """The pilot plant's drive with valves that shut late; filling slower than exhausting."""
+    return Pneumatics(700.0, 0.0, 0.1, 0.2, 0.07, 0.4, 0.3, dead_band_kpa, closing_delay_s)
+
+
+def long_plant(plant: Plant, grade_permille: float, period_s: float, computing_s: float) -> Plant:
+    """A bogie in one zone of 480 m, without chance: the acceleration at a stage does not depend on the path."""
+    return replace(
+        plant,
+        position=replace(plant.position, zones_m=((0.0, 480.0),)),
+        profile=TrackProfile.uniform(grade_permille),
+        cut=Cut("С", 52.0, (0.0, 1.85), 4),
+        friction=Friction(0.0, 0.0, 0.0, 2.0),
+        resistance=RollingResistance(plant.resistance.mean_n_per_kn, 0.0),
+        sensor=DopplerSensor(0.0, 0.0, period_s, computing_s),
+        entry=EntrySpeed(4.0, 4.0),
+    )
+
+
+def pair_of_lines(plant: Plant, lower_stage: int, lower_m_s: list[float], upper_m_s: list[float]) -> SwitchingLines:
+    """Lines, given at entrance and exit, that let the regulator climb to `lower_stage` and hunt above it."""
+    lower, upper = np.full((5, 2), -np.inf), np.full((5, 2), np.inf)
+    upper[:lower_stage], upper[lower_stage], lower[lower_stage + 1] = 0.0, upper_m_s, lower_m_s
+    return SwitchingLines(np.array([0.0, plant.exit_m]), lower, upper)
+
+
+def simulated(plant: Plant, lower_stage: int, lines: SwitchingLines, from_m: float, to_m: float) -> tuple[float, float]:
+    """(half swing, mean period) of the simulator's pass, counted from raise to raise inside a part of the path."""
+    events = trace(plant, LineController(lines), random_passes(1, 0, 1), 0)
+    raises = np.flatnonzero((events.stage[1:] == lower_stage + 1) & (events.stage[:-1] == lower_stage)) + 1
+    raises = raises[(events.path_m[raises] > from_m) & (events.path_m[raises] < to_m)]
+    assert raises.size > 7
+    at = events.path_m[raises[0] : raises[-1]]
+    middle = 0.5 * (lines.lower_m_s[lower_stage + 1] + lines.upper_m_s[lower_stage])
+    relative = events.speed_m_s[raises[0] : raises[-1]] - np.interp(at, lines.nodes_m, middle)
+    duration = float(events.time_s[raises[-1]] - events.time_s[raises[0]])
+    return 0.5 * float(np.ptp(relative)), duration / (raises.size - 1)
+
+
+def stepped_pressure(air: Pneumatics, target: float, step: float = 1e-4) -> tuple[float, float, float]:
+    """(bottom, top, period) of the relay played in small time steps, by rules and without closed forms."""
+    pressure, time, valve, wait = 0.0, 0.0, 0, math.inf
+    shuts, tops, bottoms = math.inf, list[float](), list[tuple[float, float]]()
+    while len(bottoms) < 4 and time < 60.0:
+        if valve == 0:
+            wanted = int(pressure < target - air.dead_band_kpa) - int(pressure > target + air.dead_band_kpa)
+            touch = air.touch_delay_s if pressure <= TOUCH_KPA else 0.0
+            wait = (air.brake_delay_s + touch if wanted > 0 else air.release_delay_s) if wait == math.inf else wait
+            wait -= step
+            if wanted != 0 and wait <= 0.0:
+                valve, wait, shuts = wanted, math.inf, math.inf
+        elif valve > 0:
+            pressure += step * (air.supply_pressure_kpa - pressure) / air.fill_time_constant_s
+        else:
+            pressure += step * (air.exhaust_pressure_kpa - pressure) / air.exhaust_time_constant_s
+        reached = pressure * valve >= (target - valve * air.dead_band_kpa) * valve
+        if valve != 0 and reached and shuts == math.inf:
+            shuts = time + air.closing_delay_s
+        if valve != 0 and time >= shuts:
+            if valve > 0:
+                tops.append(pressure)
+            else:
+                bottoms.append((time, pressure))
+            valve = 0
+        time += step
+    return bottoms[-1][1], tops[-1], bottoms[-1][0] - bottoms[-2][0]
+
+
+@pytest.mark.parametrize(("target", "delay"), [(150.0, 0.08), (300.0, 0.08), (450.0, 0.08), (55.0, 0.2)])
+def test_pressure_cycle_is_the_relays(target: float, delay: float) -> None:
+    cycle = pressure_limit_cycle(drive(delay), target, TOUCH_KPA)
+    assert cycle is not None
+    bottom, top, period = stepped_pressure(drive(delay), target)
+    assert (cycle.bottom_kpa, cycle.top_kpa) == pytest.approx((bottom, top), abs=0.5)
+    assert cycle.period_s == pytest.approx(period, rel=0.01)
+
+
+def test_pressure_hunts_exactly_where_the_drive_finds_no_rest() -> None:
+    hunting = set()
+    for target in (0.0, 60.0, 150.0, 300.0, 450.0, 600.0):
+        for delay in np.arange(0.0, 0.2, 0.005):
+            air = drive(float(delay))
+            predicted = pressure_limit_cycle(air, target, TOUCH_KPA) is not None
+            hunting.add(predicted)
+            start = target - 100.0 if target >= 100.0 else target + 100.0
+            if predicted:
+                with pytest.raises(PlantError, match="hunts"):
+                    air.respond(start, target, TOUCH_KPA)
+            else:
+                air.respond(start, target, TOUCH_KPA)
+    assert hunting == {True, False}
+
+
+def test_pressure_threshold_is_two_dead_bands_and_the_harmonic_one_a_quarter_more() -> None:
+    """Equal rates r = 1000 kPa/s and a narrow band: exact at rτ = 2ε, describing function at π²ε/4."""
+
+    def air(reach: float) -> Pneumatics:
+        return Pneumatics(600.0, 0.0, 0.1, 0.2, 0.1, 0.3, 0.3, 0.5, reach * 0.5 / 1000.0)
+
+    assert pressure_limit_cycle(air(1.99), 300.0, TOUCH_KPA) is None
+    exact = pressure_limit_cycle(air(2.01), 300.0, TOUCH_KPA)
+    assert exact is not None
+    assert exact.top_kpa - exact.bottom_kpa == pytest.approx(2 * 0.5 * (2.01 - 1.0), rel=0.01)
+    assert harmonic_pressure_cycle(air(2.46), 300.0) is None
+    assert harmonic_pressure_cycle(air(2.48), 300.0) is not None
+    assert harmonic_pressure_cycle(air(50.0), 0.0) is None  # nothing to exhaust
+
+
+def test_pressure_harmonic_balances_in_python_control() -> None:
+    import control
+
+    air, target = drive(0.08), 300.0
+    cycle = harmonic_pressure_cycle(air, target)
+    exact = pressure_limit_cycle(air, target, TOUCH_KPA)
+    assert cycle is not None
+    assert exact is not None
+    rate = math.sqrt((700.0 - target) / 0.4 * (target / 0.3))
+    amplitude, omega = cycle.top_kpa - target, math.pi / (2 * 0.08)
+
+    def relay(error: float) -> float:
+        return rate * float(np.sign(error)) * (abs(error) > 15.0)
+
+    gain = control.describing_function(relay, amplitude, num_points=20_000)
+    assert gain * np.exp(-1j * omega * 0.08) / (1j * omega) == pytest.approx(-1.0, abs=1e-3)
+    assert cycle.top_kpa - cycle.bottom_kpa == pytest.approx(exact.top_kpa - exact.bottom_kpa, rel=0.25)
+    assert cycle.period_s == pytest.approx(exact.period_s, rel=0.25)
+
+
+def test_pilot_plant_hunts_in_pressure_only_with_late_valves(plant_52t: Plant) -> None:
+    assert pressure_hunting(plant_52t) == ()
+    late = replace(plant_52t.position.pneumatics, closing_delay_s=0.08)
+    plant = replace(plant_52t, position=replace(plant_52t.position, pneumatics=late))
+    assert [stage for stage, _ in pressure_hunting(plant)] == [1, 2, 3]  # at 0 and 600 kPa one rate is too small
+    with pytest.raises(PlantError, match="hunts"):
+        limit_cycle(plant, 0, 0.1)
+
+
+def test_symmetric_relay_by_hand() -> None:
+    """Acceleration ±a, dead time τ, lines ±c: amplitude c + aτ, period 4(c + aτ)/a."""
+    low, high = np.full(25, 0.0), np.full(25, 100.0)
+    pair = StagePair(1, 0.0, 100.0, np.concatenate([low, high[:15]]), np.concatenate([high, low[:15]]), 0.1)
+    cycle = relay_cycle(pair, 0.1, free=0.2, brake=0.004)
+    assert cycle is not None
+    a, delay = 0.2, 25 * 0.005 + 0.05  # half a sampling period is the mean wait
+    assert (cycle.rise_m_s2, cycle.fall_m_s2) == pytest.approx((a, a))
+    assert (cycle.brake_delay_s, cycle.release_delay_s) == pytest.approx((delay, delay))
+    assert cycle.amplitude_m_s == pytest.approx(0.05 + a * delay)
+    assert cycle.top_m_s == pytest.approx(-cycle.bottom_m_s)
+    assert cycle.period_s == pytest.approx(4 * (0.05 + a * delay) / a)
+    assert relay_cycle(pair, 0.1, free=0.5, brake=0.004) is None
+    assert relay_cycle(pair, 0.1, free=-0.1, brake=0.004) is None
+
+    response = describing_function_analysis(cycle)
+    [(amplitude, omega)] = response.intersections
+    assert cycle.harmonic_amplitude_m_s == pytest.approx(amplitude, rel=1e-3)
+    assert cycle.harmonic_period_s == pytest.approx(2 * math.pi / omega, rel=1e-3)
+
+
+@pytest.mark.parametrize(("rise", "fall", "brake_s", "release_s"), [(0.1, 0.3, 0.2, 0.5), (0.4, 0.05, 0.6, 0.2)])
+def test_first_harmonic_of_unequal_slopes_is_that_of_the_wave(
+    rise: float, fall: float, brake_s: float, release_s: float
+) -> None:
+    """Fourier coefficient of the rectangular acceleration, and the line crossings of the sine that it makes."""
+    gap = 0.05
+    amplitude, period = first_harmonic(gap, rise, fall, brake_s, release_s)
+    phase = np.linspace(-math.pi, math.pi, 200_001)
+    share = math.pi * fall / (rise + fall)
+    acceleration = np.where(np.abs(phase) < share, rise, -fall)
+    omega = 2 * math.pi / period
+    wave = np.trapezoid(acceleration * np.cos(phase), phase) / math.pi / omega
+    assert amplitude == pytest.approx(wave, rel=1e-3)
+    raised = amplitude * math.sin(share - omega * brake_s)
+    lowered = amplitude * math.sin(-share - omega * release_s)
+    assert raised - lowered == pytest.approx(gap, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("grade", "stage", "gap", "period_s", "computing_s"),
+    [
+        (8.0, 0, 0.2, 0.1, 0.02),
+        (10.0, 0, 0.1, 0.1, 0.3),
+        (25.0, 1, 0.2, 0.1, 0.02),
+        (25.0, 1, 0.05, 0.3, 0.02),
+        (50.0, 2, 0.1, 0.1, 0.02),
+        (10.0, 0, -0.5, 0.1, 0.02),  # only the lock ends each stay in the lower stage
+        (20.0, 1, -0.3, 0.1, 0.02),  # only the lock ends each stay in the upper stage
+    ],
+)
+def test_speed_cycle_is_the_simulators(
+    plant_52t: Plant, grade: float, stage: int, gap: float, period_s: float, computing_s: float
+) -> None:
+    plant = long_plant(plant_52t, grade, period_s, computing_s)
+    cycle = limit_cycle(plant, stage, gap, (10.0, 470.0))
+    assert cycle is not None
+    lines = pair_of_lines(plant, stage, [4.0, 4.0], [4.0 + gap, 4.0 + gap])
+    amplitude, period = simulated(plant, stage, lines, 40.0, 475.0)
+    assert cycle.sampled_period_s == pytest.approx(period, rel=0.005)
+    assert cycle.sampled_amplitude_m_s == pytest.approx(amplitude, abs=0.001)
+    assert cycle.period_s == pytest.approx(period, rel=0.06)
+    # The closed form is the mean; one swing may start up to half a sample later or earlier at each end.
+    spread = 0.25 * (cycle.rise_m_s2 + cycle.fall_m_s2) * period_s + 0.001
+    assert cycle.amplitude_m_s == pytest.approx(amplitude, abs=spread)
+    if gap >= 0.0:
+        assert cycle.harmonic_period_s == pytest.approx(period, rel=0.25)
+        assert cycle.harmonic_amplitude_m_s == pytest.approx(amplitude, rel=0.4)
+    else:
+        assert math.isnan(cycle.harmonic_period_s)
+
+
+def test_falling_lines_are_followed_by_two_braking_stages(plant_52t: Plant) -> None:
+    """Lines V² = 144 − 0.4·s fall by 0.2 m/s²; around level ones these stages, which both brake, cannot hunt."""
+    still = long_plant(plant_52t, 25.0, 0.02, 0.02)
+    position = replace(still.position, max_entry_speed_m_s=12.0)
+    plant = replace(still, position=position, entry=EntrySpeed(12.0, 12.0))
+    nodes = np.linspace(0.0, plant.exit_m, 601)
+    speed = np.sqrt(np.maximum(144.0 - 0.4 * nodes, 9.0))
+    lower, upper = np.full((5, 601), -np.inf), np.full((5, 601), np.inf)
+    upper[:2], upper[2], lower[3] = 0.0, speed + 0.03, speed - 0.03
+    lines = SwitchingLines(nodes, lower, upper)
+    cycle = limit_cycle(plant, 2, 0.06, (40.0, 300.0), -0.2)
+    assert cycle is not None
+    amplitude, period = simulated(plant, 2, lines, 40.0, 300.0)
+    assert cycle.sampled_period_s == pytest.approx(period, rel=0.01)
+    assert cycle.sampled_amplitude_m_s == pytest.approx(amplitude, abs=0.002)
+    assert limit_cycle(plant, 2, 0.06, (40.0, 300.0)) is None
+    [hunting] = [found for found in hunting_report(plant, lines) if found.cycle.lower_stage == 2]
+    assert hunting.to_m == pytest.approx(135.0 / 0.4, abs=1.0)  # where the lines become level
+    assert hunting.cycle.period_s == pytest.approx(cycle.period_s, rel=0.01)
+
+
+def test_report_counts_the_periods_that_the_simulator_plays(plant_52t: Plant) -> None:
+    plant = long_plant(plant_52t, 25.0, 0.1, 0.02)
+    lines = pair_of_lines(plant, 1, [4.0, 4.0], [4.2, 4.2])
+    nodes = np.linspace(0.0, plant.exit_m, 97)
+    fine = SwitchingLines(nodes, np.repeat(lines.lower_m_s[:, :1], 97, 1), np.repeat(lines.upper_m_s[:, :1], 97, 1))
+    [hunting] = hunting_report(plant, fine)
+    assert hunting.cycle.lower_stage == 1
+    assert hunting.from_m < 10.0
+    assert hunting.to_m > 470.0
+    events = trace(plant, LineController(fine), random_passes(1, 0, 1), 0)
+    raises = np.count_nonzero((events.stage[1:] == 2) & (events.stage[:-1] == 1))
+    assert hunting.periods == pytest.approx(raises, abs=1.5)
+
+
+def test_report_is_empty_where_nothing_can_hunt(plant_52t: Plant) -> None:
+    """Stages 2 and 3 both brake; or the position is left before one period is over."""
+    nodes = np.linspace(0.0, plant_52t.exit_m, 65)
+    lower, upper = np.full((5, 65), -np.inf), np.full((5, 65), np.inf)
+    upper[2], lower[3] = 4.2, 4.0
+    assert hunting_report(plant_52t, SwitchingLines(nodes, lower.copy(), upper.copy())) == ()
+    upper[0], lower[1] = 6.0, 4.0  # 2 m/s at 0.07 m/s² take half a minute
+    assert hunting_report(plant_52t, SwitchingLines(nodes, lower.copy(), upper.copy())) == ()
+
+
+@pytest.mark.parametrize(("mass_t", "gap"), [(22.0, 0.02), (52.0, 0.02), (52.0, 0.1), (85.0, 0.1)])
+def test_report_holds_on_the_pilot_position(plant_of: Callable[[float], Plant], mass_t: float, gap: float) -> None:
+    """Two retarders, 1 to 4 braked axles: the report's means against a pass that meets them one by one."""
+    pilot = plant_of(mass_t)
+    plant = replace(
+        pilot,
+        friction=Friction(0.0, 0.0, 0.0, 2.0),
+        resistance=RollingResistance(pilot.resistance.mean_n_per_kn, 0.0),
+        sensor=DopplerSensor(0.0, 0.0, 0.1, 0.02),
+        entry=EntrySpeed(4.0, 4.0),
+    )
+    nodes = np.linspace(0.0, plant.exit_m, 65)
+    lower, upper = np.full((plant.top_stage + 1, 65), -np.inf), np.full((plant.top_stage + 1, 65), np.inf)
+    upper[0], lower[1] = 4.0 + gap, 4.0
+    lines = SwitchingLines(nodes, lower, upper)
+    [hunting] = hunting_report(plant, lines)
+    assert hunting.cycle.lower_stage == 0
+    events = trace(plant, LineController(lines), random_passes(1, 0, 1), 0)
+    raises = np.flatnonzero((events.stage[1:] == 1) & (events.stage[:-1] == 0)) + 1
+    assert hunting.periods == pytest.approx(raises.size, abs=1.0)
+    swing = float(np.ptp(events.speed_m_s[raises[0] : raises[-1]]))
+    assert hunting.cycle.amplitude_m_s == pytest.approx(0.5 * swing, abs=0.012)
+
+
+def test_a_pair_beyond_the_allowed_stages_is_refused(plant_22t: Plant) -> None:
+    with pytest.raises(ValueError, match="stages 0 to 2"):
+        limit_cycle(plant_22t, 2, 0.1)

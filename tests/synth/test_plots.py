@@ -1,0 +1,154 @@
+"""Every picture is drawn without a warning, as PNG and SVG, with the same bytes for the same case."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+
+from synth.case_result import CaseResult
+from synth.plots.case_names import by_class, contest, file_stem, honesty, why_infeasible
+from synth.plots.degree_study import degree_study
+from synth.plots.exit_density import cell_edges_m_s, exit_density
+from synth.plots.feasibility import feasibility
+from synth.plots.figure_file import draw, save_figure
+from synth.plots.picture import save_picture
+from synth.plots.picture_book import all_pictures
+from synth.plots.policy_map import command_image, parts_in_stage, policy_map
+from synth.plots.rms_by_controller import rms_by_controller
+from synth.plots.sample_passes import outcome, sample_passes
+from synth.plots.surfaces import surfaces
+from synth.plots.switchings import switchings
+from tests.synth.case_factory import make_case, make_study
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def cases() -> list[CaseResult]:
+    """Two classes, one of them infeasible at its lowest target."""
+    return [
+        make_case("лёгкая-22t", 2.0, stages=3),
+        make_case("лёгкая-22t", 3.0, stages=3),
+        make_case("heavy-85t", 2.0, stages=5, feasible=False),
+        make_case("heavy-85t", 3.0, stages=5, spread=0.07),
+    ]
+
+
+FIGURES: dict[str, Callable[[list[CaseResult]], Figure]] = {
+    "policy_map of three stages": lambda cases: policy_map(cases[0]),
+    "policy_map of five stages": lambda cases: policy_map(cases[2]),
+    "sample_passes": lambda cases: sample_passes(cases[0]),
+    "exit_density": lambda cases: exit_density(cases[:2]),
+    "exit_density of an infeasible case": lambda cases: exit_density(cases[2:3]),
+    "rms_by_controller": lambda cases: rms_by_controller(cases, 0.1),
+    "degree_study": lambda cases: degree_study([make_study()] * 7),
+    "surfaces": lambda cases: surfaces(cases[2]),
+    "feasibility": feasibility,
+    "switchings": switchings,
+}
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_a_figure_gives_the_same_png_and_svg_twice(name: str, cases: list[CaseResult]) -> None:
+    first, again = draw(FIGURES[name](cases)), draw(FIGURES[name](cases))
+    assert first == again
+    assert first.png.startswith(b"\x89PNG")
+    root = ElementTree.fromstring(first.svg)
+    assert root.tag == "{http://www.w3.org/2000/svg}svg"
+    assert b"<dc:date>" not in first.svg
+
+
+def test_no_text_leaves_the_figure(cases: list[CaseResult]) -> None:
+    for name, make in FIGURES.items():
+        figure = make(cases)
+        width, height = figure.get_size_inches() * figure.dpi
+        draw(figure)
+        children = [part for axes in figure.axes for part in (*axes.get_children(), axes.xaxis.label, axes.yaxis.label)]
+        for text in (*figure.texts, *(part for part in children if isinstance(part, Text))):
+            box = text.get_window_extent()
+            if text.get_text():
+                assert min(box.x0, box.y0, width - box.x1, height - box.y1) > -1.0, (name, text)
+
+
+def test_hard_cases_are_drawn_too(cases: list[CaseResult]) -> None:
+    hard = {
+        "two stages, no passes, no baselines": replace(
+            make_case(stages=2), traces=(), trace_factors=(), comparison=cases[0].comparison[:4]
+        ),
+        "errors wider than the picture": make_case(spread=1.5),
+        "errors narrower than a cell": make_case(spread=0.0005),
+        "nothing leaves": replace(
+            cases[0],
+            exit_speeds_m_s=np.zeros(100, np.float32),
+            predicted=replace(cases[0].predicted, probability=np.zeros(400), stalled=1.0),
+        ),
+    }
+    assert {name: len(list(all_pictures([case], [], 0.1))) for name, case in hard.items()} == dict.fromkeys(hard, 7)
+
+
+def test_a_figure_is_saved_in_both_forms(tmp_path: Path, cases: list[CaseResult]) -> None:
+    paths = save_figure(switchings(cases), tmp_path, "switchings")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["switchings.png", "switchings.svg"]
+    assert all(path.stat().st_size > 1000 for path in paths)
+
+
+def test_the_picture_book_names_every_picture_once_and_every_case(tmp_path: Path, cases: list[CaseResult]) -> None:
+    pictures = list(all_pictures(cases, [make_study()], 0.1))
+    names = [picture.name for picture in pictures]
+    assert len(set(names)) == len(names) == 4 + 2 * 2 + 2 * 4
+    assert all(any(case.label in picture.title for picture in pictures) for case in cases)
+    assert save_picture(pictures[0], tmp_path)[1].read_bytes() == pictures[0].drawing.svg
+
+
+def test_the_map_shows_command_and_indifference_where_they_are(cases: list[CaseResult]) -> None:
+    case = cases[1]
+    image = command_image(case.policy_map, 1, case.plant.exit_m, (2.0, 6.9))
+    up, down = image[-1, -1], image[0, -1]
+    assert up[0] > up[2], "up is reddish"
+    assert down[2] > down[0], "down is bluish"
+    assert len(np.unique(image[:, : image.shape[1] // 4].reshape(-1, 4), axis=0)) == 4, "three commands and stripes"
+    assert len(np.unique(image[:, image.shape[1] // 2 :].reshape(-1, 4), axis=0)) == 3
+
+
+def test_every_part_of_a_pass_is_drawn_in_exactly_one_stage(cases: list[CaseResult]) -> None:
+    trace = cases[0].traces[1]
+    shown = [parts_in_stage((trace,), stage)[1][:-1] for stage in range(3)]
+    segments = sum(int(np.count_nonzero(np.isfinite(v[1:]) & np.isfinite(v[:-1]))) for v in shown)
+    assert segments == trace.speed_m_s.size - 1
+
+
+def test_energy_cells_tile_the_speeds() -> None:
+    speed = np.sqrt(2.0 * 0.06 * np.arange(50))
+    edges = cell_edges_m_s(speed)
+    assert edges.shape == speed.shape
+    assert np.all((edges[:-1] < speed[1:]) & (speed[1:] < edges[1:]))
+
+
+def test_roles_and_names(cases: list[CaseResult]) -> None:
+    found = contest(cases[0])
+    assert found.best_baseline is not None
+    assert found.best_baseline.name == "energy rule"
+    assert honesty(found.published) == pytest.approx(
+        cases[0].published_predicted_rms_m_s / found.published.statistics.rms_m_s
+    )
+    assert [len(group) for group in by_class(cases)] == [2, 2]
+    assert why_infeasible(cases[2]) == "out of brake power"
+    assert file_stem("exit-density", "Four tanks, 3.5 m/s") == "exit-density-four-tanks-3.5-m-s"
+
+
+def test_a_stalled_pass_is_called_so(cases: list[CaseResult]) -> None:
+    assert outcome(replace(cases[0].traces[0], stalled=True)) == "stopped in the position"
+
+
+def test_drawing_needs_no_pyplot() -> None:
+    command = "import synth.plots.picture_book, sys; raise SystemExit('matplotlib.pyplot' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", command], cwd=ROOT, timeout=60, check=False).returncode == 0

@@ -1,0 +1,197 @@
+"""The report: one balanced HTML page that loads nothing, says what is assumed, and escapes what it is given."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from plant_models.library import SourcedValue
+from synth.plots.picture import Drawing, Picture
+from synth.report import BookReport, report_page, write_report
+from synth.report.figures import counted, percent, quotient, span
+from synth.report.markup import VOID, Markup, element
+from synth.report.verdict import verdict
+from tests.synth.case_factory import make_case, make_study
+
+ROOT = Path(__file__).parents[2]
+SVG = b'<svg xmlns="http://www.w3.org/2000/svg" width="10" height="10"></svg>'
+
+
+class Page(HTMLParser):
+    """Reads a page: whether the tags balance, what it would load, its text and identifiers."""
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.loaded: list[str] = []
+        self.identifiers: list[str] = []
+        self.targets: list[str] = []
+        self.without_alt = 0
+        self.words: list[str] = []
+        self.tags: set[str] = set()
+        self.feed(html)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = dict(attrs)
+        self.tags.add(tag)
+        if tag not in VOID:
+            self.open.append(tag)
+        if tag == "a":
+            self.targets.append(given.get("href") or "")
+        else:
+            self.loaded += [given[name] or "" for name in ("src", "href", "srcset", "data") if name in given]
+        if tag == "img" and not given.get("alt"):
+            self.without_alt += 1
+        if identifier := given.get("id"):
+            self.identifiers.append(identifier)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        self.words.append(data)
+
+    @property
+    def text(self) -> str:
+        return "".join(self.words)
+
+
+@pytest.fixture(scope="module")
+def book() -> BookReport:
+    """Three cases, one of them infeasible; one parameter assumed, one out of its range."""
+    return BookReport(
+        title="Две позиции <КНП-5>",
+        tool_version="0.1.0",
+        config_sha256="cd" * 32,
+        created="2026-11-20T22:46:00Z",
+        cases=(
+            make_case("gondola-22t", 2.0, stages=3),
+            make_case("gondola-85t", 2.0, stages=5, feasible=False),
+            make_case("gondola-85t", 4.0, stages=5, spread=0.09),
+        ),
+        degree_studies=(make_study(),),
+        parameters=(
+            SourcedValue("friction.common_cv", 0.15, "1", (0.1, 0.25), "assumed: pilot study", "L"),
+            SourcedValue("retarder.zones_m", ((0.0, 12.475), (14.475, 26.95)), "m", (0.0, 40.0), "S2 & S4", "H"),
+            SourcedValue("entry.high_m_s", 9.0, "m/s", (4.5, 7.0), "configuration", ""),
+        ),
+        accepted=False,
+        verdict="1 of 2 feasible cases exceeds its limit",
+        acceptance_rms_m_s=0.1,
+        file_hashes={"tables/a&b.json": "ef" * 32},
+        pictures=(
+            Picture("one", "Accuracy", "Title one", 'Caption "one" <b>', Drawing(b"png", SVG)),
+            Picture("two", "Passes", "Title two", "Caption two", Drawing(b"png", SVG)),
+            Picture("three", "Accuracy", "Title three", "Caption three", Drawing(b"png", SVG)),
+        ),
+    )
+
+
+@pytest.fixture(scope="module")
+def page(book: BookReport) -> Page:
+    """The page, read."""
+    return Page(report_page(book))
+
+
+def test_the_page_is_balanced_and_loads_nothing(page: Page) -> None:
+    assert page.open == []
+    assert page.loaded
+    assert all(address.startswith("data:image/svg+xml;base64,") for address in page.loaded)
+    assert page.tags.isdisjoint({"script", "link", "iframe", "object", "b"})
+    assert page.without_alt == 0
+
+
+def test_the_style_loads_nothing(book: BookReport) -> None:
+    style = re.search(r"<style>(.*?)</style>", report_page(book), re.DOTALL)
+    assert style is not None
+    assert not re.search(r"url\(|@import|http", style[1])
+
+
+def test_links_lead_to_sections_of_the_page(page: Page) -> None:
+    assert len(set(page.identifiers)) == len(page.identifiers)
+    assert {target.removeprefix("#") for target in page.targets} <= set(page.identifiers)
+    assert page.targets
+
+
+def test_the_verdict_comes_first_and_names_the_infeasible_case(page: Page, book: BookReport) -> None:
+    text = page.text
+    assert text.index("Not accepted") < text.index("Results")
+    assert "gondola-85t, target 2 m/s: out of brake power" in text
+    assert "at entry speeds of 5 to 6.5 m/s; no entry speed is served" in text
+    assert "Worst of the 2 feasible cases: gondola-85t, target 4 m/s" in text
+    assert all(case.label in text for case in book.cases)
+
+
+def test_assumed_and_exceeded_parameters_are_marked(page: Page, book: BookReport) -> None:
+    html = report_page(book)
+    rows = re.findall(r"<tr[^>]*>.*?</tr>", html)
+    assumed = [row for row in rows if ">assumed</td>" in row]
+    assert len(assumed) == 1
+    assert "friction.common_cv" in assumed[0]
+    assert "3 parameters, 1 of them assumed" in page.text
+    assert "(0, 12.475), (14.475, 26.95)" in page.text
+    assert "4.5 to 7: exceeded" in page.text
+
+
+def test_the_published_formulation_is_judged_by_the_numbers(page: Page, book: BookReport) -> None:
+    assert "its own prediction is far off" in page.text
+    honest = tuple(
+        replace(case, published_predicted_rms_m_s=case.comparison[2].statistics.rms_m_s) for case in book.cases
+    )
+    assert "Here its own prediction holds" in report_page(replace(book, cases=honest))
+
+
+def test_the_studies_are_told_in_numbers(page: Page) -> None:
+    assert "saves 2.50 switchings a pass" in page.text
+    assert "multiplies the rms by 1.010" in page.text
+    assert "0.042 (0.060)" in page.text
+
+
+def test_pictures_of_a_section_stand_together(page: Page) -> None:
+    captions = [page.text.index(word) for word in ('Caption "one" <b>', "Caption three", "Caption two")]
+    assert captions == sorted(captions)
+
+
+def test_what_is_given_is_escaped(book: BookReport) -> None:
+    evil = "<script>alert('x')</script>"
+    html = report_page(replace(book, title=evil, verdict=evil, tool_version=evil, file_hashes={evil: evil}))
+    assert "<script" not in html
+    assert html.count("&lt;script&gt;") == 6
+    assert Page(html).open == []
+
+
+def test_the_same_book_gives_the_same_bytes(tmp_path: Path, book: BookReport) -> None:
+    for name in ("a.html", "b.html"):
+        write_report(tmp_path / name, book)
+    assert (tmp_path / "a.html").read_bytes() == (tmp_path / "b.html").read_bytes()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.html", "b.html"]
+
+
+def test_a_book_without_feasible_case_and_one_without_infeasible(book: BookReport) -> None:
+    only = replace(book, cases=book.cases[1:2], pictures=())
+    assert "Worst of" not in Page(report_page(only)).text
+    assert "Every case is feasible." in verdict(replace(book, cases=book.cases[:1]))
+
+
+def test_the_report_is_written_without_matplotlib() -> None:
+    command = "import synth.report, sys; raise SystemExit('matplotlib' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", command], cwd=ROOT, timeout=60, check=False).returncode == 0
+
+
+def test_markup() -> None:
+    assert element("p", "a<b", Markup("<br>"), class_='x"y') == '<p class="x&quot;y">a&lt;b<br></p>'
+    assert element("img", alt="", src="s") == '<img src="s">'
+
+
+def test_figures() -> None:
+    assert [percent(share) for share in (0.0, 0.00012, 0.05, 0.25)] == ["0", "0.012", "5", "25.0"]
+    assert quotient(float("nan")) == "–"
+    assert [span(values) for values in ([1.0, 2.0], [1.0, 1.001])] == ["from 1.00 to 2.00", "1.00"]
+    assert [counted(n, "case") for n in (1, 3)] == ["1 case", "3 cases"]
