@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,35 +46,43 @@ class Solution:
         )
 
 
-def solve(
-    transitions: Transitions,
-    target_speed_m_s: float,
-    criterion: Criterion,
-    occupancy: NDArray[np.float64] | None = None,
-) -> Solution:
-    """Backward induction for one target speed.
+def solve(transitions: Transitions, target_speed_m_s: float, criterion: Criterion) -> Solution:
+    """Backward induction for one target speed."""
+    return solve_targets(transitions, (target_speed_m_s,), criterion)[0]
 
-    `occupancy` (I, N, H, L, E): expected samples in every hidden state under a former policy
-    (`policy_evaluation.Evaluation.density`); it turns the prior weights of the scenarios into posterior ones.
-    """
+
+def solve_targets(
+    transitions: Transitions, targets_m_s: Sequence[float], criterion: Criterion
+) -> tuple[Solution, ...]:
+    """Backward induction for several target speeds in one sweep: they share all motion, so an extra one is cheap."""
     t = transitions
-    nodes, stages, points = len(t.drive_m_s2), t.actuator.stages, len(t.grid.speed_m_s)
-    shape = (len(t.scenarios.factor), nodes + 1, len(t.actuator.mode_stage), len(t.chain.levels), points)
+    targets = np.asarray(targets_m_s, dtype=np.float64)
+    nodes, stages, points, width = len(t.drive_m_s2), t.actuator.stages, len(t.grid.speed_m_s), len(targets)
+    shape = (len(t.scenarios.factor), nodes + 1, len(t.actuator.mode_stage), len(t.chain.levels), points * width)
     values = np.empty(shape)
-    lower, upper = np.empty((nodes, stages)), np.empty((nodes, stages))
-    gain_down, gain_up = np.empty((nodes, stages, points)), np.empty((nodes, stages, points))
+    lower, upper = np.empty((nodes, stages, width)), np.empty((nodes, stages, width))
+    gain_down, gain_up = (np.empty((nodes, stages, width, points)) for _ in range(2))
     noise = measured_speed_std(t.plant.sensor.noise_m_s, t.plant.sensor.resolution_m_s)
-    start, smear = true_speed_weights(t.grid.speed_m_s, noise)
     sweep(
-        (t.grid.speed_m_s - target_speed_m_s) ** 2,
-        target_speed_m_s**2 + criterion.stall_cost_m2_s2,
-        criterion.switching_tolerance_m2_s2, TIE_M2_S2, noise, start, smear,
-        np.empty((0,) * 5) if occupancy is None else occupancy, hidden_prior(t), *sweep_arguments(t),
-        t.scenarios.factor, t.scenarios.extra_m_s2, t.grid.path_step_m, t.grid.energy_step_m2_s2,
-        t.plant.sensor.sample_period_s, len(t.entry), values, lower, upper, gain_down, gain_up,
+        ((t.grid.speed_m_s[:, None] - targets) ** 2).ravel(), targets**2 + criterion.stall_cost_m2_s2,
+        criterion.switching_tolerance_m2_s2, TIE_M2_S2, noise, *true_speed_weights(t.grid.speed_m_s, noise),
+        hidden_prior(t), *sweep_arguments(t), t.scenarios.factor, t.scenarios.extra_m_s2,
+        t.grid.path_step_m, t.grid.energy_step_m2_s2, t.plant.sensor.sample_period_s, len(t.entry),
+        values, lower, upper, gain_down, gain_up,
     )  # fmt: skip
-    lines = SwitchingLines(t.grid.path_m, with_exit_node(lower), with_exit_node(upper))
-    return Solution(t, target_speed_m_s, criterion, lines, gain_down, gain_up, values)
+    values = values.reshape(*shape[:-1], points, width)
+    return tuple(
+        Solution(
+            transitions=t,
+            target_speed_m_s=float(target),
+            criterion=criterion,
+            lines=SwitchingLines(t.grid.path_m, with_exit_node(lower[:, :, i]), with_exit_node(upper[:, :, i])),
+            gain_down=gain_down[:, :, i],
+            gain_up=gain_up[:, :, i],
+            values=values[..., i],
+        )
+        for i, target in enumerate(targets)
+    )
 
 
 def sweep_arguments(t: Transitions) -> tuple[NDArray[np.float64], ...]:

@@ -22,6 +22,9 @@ from synth.switching_lines import SwitchingLines
 LINE_NODES = 129
 """Nodes of the lines; only the energy rule's are not constant."""
 
+COARSE_PASSES = 250
+"""Passes for the coarse grid; whether a law brakes far too early or late shows in few."""
+
 REFINEMENTS = 40
 """Simulations that the simplex search may take."""
 
@@ -159,24 +162,25 @@ def tune_baselines(plant: Plant, target_m_s: float, passes: RandomPasses) -> tup
     """The four baselines, tuned for least rms exit error on `passes` (500 to 1000 are enough)."""
     loop = close_loop(plant, plant.top_stage + 1)
     draws = loop.draws(passes)
-    return tuple(tune(family, loop, target_m_s, draws) for family in FAMILIES)
+    few = loop.draws(passes.part(0, min(COARSE_PASSES, len(passes))))
+    return tuple(tune(family, loop, target_m_s, few, draws) for family in FAMILIES)
 
 
-def tune(family: Family, loop: ClosedLoop, target_m_s: float, draws: Draws) -> TunedBaseline:
-    """The best member of `family`; deterministic."""
+def tune(family: Family, loop: ClosedLoop, target_m_s: float, few: Draws, draws: Draws) -> TunedBaseline:
+    """The best member of `family`: a coarse grid on the passes `few`, then a simplex search on `draws`; deterministic."""
     from scipy.optimize import minimize  # start-up: scipy only where it is needed
 
-    def rms(stage: int, values: tuple[float, ...]) -> float:
+    def rms(stage: int, values: tuple[float, ...], draws: Draws) -> float:
         exits = loop.run(family.build(loop, target_m_s, stage, *values), draws).exit_speed_m_s
         return float(np.sqrt(np.mean((exits - target_m_s) ** 2)))
 
     top = loop.stages - 1
     members = list(product(range(1, top + 1) if family.one_stage else (top,), product(*family.grids)))
-    stage, start = min(members, key=lambda member: rms(*member))
+    stage, start = min(members, key=lambda member: rms(*member, few))
     steps = [0.5 * (grid[1] - grid[0]) for grid in family.grids]
 
     def cost(x: NDArray[np.float64]) -> float:
-        return rms(stage, tuple(x))
+        return rms(stage, tuple(x), draws)
 
     found = minimize(
         cost,

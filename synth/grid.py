@@ -13,6 +13,10 @@ from plant_models.errors import require, require_between
 from synth.problem import Plant
 
 
+MARGIN_CELLS = 10
+"""Cells of the energy grid above the fastest pass: interpolation there must not ripple into it."""
+
+
 @dataclass(frozen=True)
 class Resolution:
     """How fine the state space is cut.
@@ -84,7 +88,7 @@ def make_grid(plant: Plant, resolution: Resolution) -> Grid:
     quanta = max(4, round(plant.exit_m / resolution.path_step_m))
     step = resolution.speed_step_m_s * resolution.reference_speed_m_s
     downhill = max(0.0, max(plant.profile.grades_permille)) * 1e-3 * plant.cut.reduced_gravity_m_s2 * plant.exit_m
-    top = 0.5 * plant.entry.high_m_s**2 + downhill + 4 * step
+    top = 0.5 * plant.entry.high_m_s**2 + downhill + MARGIN_CELLS * step
     energy = step * np.arange(math.ceil(top / step) + 1, dtype=np.float64)
     return Grid(np.linspace(0.0, plant.exit_m, quanta + 1), energy, np.sqrt(2.0 * energy))
 

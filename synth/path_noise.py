@@ -43,14 +43,15 @@ def correlated_chain(friction: Friction, quantum_m: float, levels: int) -> PathC
         matrix = grown
     span = float(friction.path_cell_std(quantum_m)) * math.sqrt(levels - 1)
     stationary = np.array([math.comb(levels - 1, i) for i in range(levels)]) / 2.0 ** (levels - 1)
-    return PathChain(np.linspace(-span, span, levels), matrix / matrix.sum(axis=1, keepdims=True), stationary)
+    values = np.maximum(np.linspace(-span, span, levels), -1.0)  # bars brake or do nothing
+    return PathChain(values, matrix / matrix.sum(axis=1, keepdims=True), stationary)
 
 
 def independent_chain(std: float, levels: int) -> PathChain:
     """Independent normal noise of std `std` in every quantum: the formulation as published (S2)."""
     x, weights = np.polynomial.hermite_e.hermegauss(levels)
     weights = weights / weights.sum()
-    return PathChain(std * x, np.tile(weights, (levels, 1)), weights)
+    return PathChain(np.maximum(std * x, -1.0), np.tile(weights, (levels, 1)), weights)
 
 
 @dataclass(frozen=True)
@@ -75,8 +76,8 @@ def transient_noise(
 ) -> TransientNoise:
     """Exact first and second moments of Σ g_t η_t along the chain, weights g_t following the brake force.
 
-    `overpressure` (C, T): force profile over time, of which the first share periods/max(periods) counts;
-    the profile is laid over the quanta as if speed were constant. `longest`: R.
+    `overpressure` (C, max(periods)·substeps): force profile over time, of which the first `periods` of each row
+    count; it is laid over the quanta as if speed were constant. `longest`: R.
     """
     weights = force_weights(overpressure, periods, longest)
     count, size = len(periods), len(chain.levels)

@@ -120,7 +120,8 @@ def forward_pass(
         samples[i] *= weight
         exits += weight * one
         totals += weight * sums
-    total = ExitDensity(t.grid.speed_m_s, exits, float(totals[0]), float(totals[1]), float(totals[2] + totals[3]))
+    stalled = max(float(totals[0]), 0.0)  # cubic weights leave −1e-8 or so
+    total = ExitDensity(t.grid.speed_m_s, exits, stalled, float(totals[1]), float(totals[2] + totals[3]))
     return total, band
 
 

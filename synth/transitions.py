@@ -15,8 +15,9 @@ from synth.kernels.landing import land
 from synth.path_noise import PathChain, TransientNoise, correlated_chain, independent_chain, transient_noise
 from synth.problem import Plant
 
-FRICTION_FACTOR_RANGE = (0.2, 1.9)
-FRICTION_FACTOR_NODES = 7
+FACTOR_STEP = 0.3
+"""Largest distance of the friction factors for which transients are integrated; between them a parabola."""
+
 FINE_CELLS_PER_QUANTUM = 4
 
 
@@ -84,12 +85,16 @@ def check_transitions(plant: Plant, resolution: Resolution) -> Transitions:
 
 def with_known_friction(transitions: Transitions, factor: float) -> Transitions:
     """The same plant whose ξ_cut is known to be `factor` (friction-known bound)."""
-    known = Scenarios(np.array([factor]), np.zeros(1), np.ones(1))
+    known = Scenarios(np.array([float(factor)]), np.zeros(1), np.ones(1))
     return Transitions(**{**vars(transitions), "scenarios": known})
 
 
 def as_published(transitions: Transitions) -> Transitions:
-    """The same plant and landings with the noise of `published_transitions`."""
+    """The same plant, grid and landings in the formulation of S2: friction noise independent in every quantum.
+
+    The whole spread of friction, persistent or not, is drawn anew in every quantum and not scaled to its length.
+    Sampling, delays and measurement noise are those of the plant, so that only the friction is told apart.
+    """
     plant = transitions.plant
     chain = independent_chain(math.hypot(plant.friction_cv, plant.friction.path_std), 5)
     scenarios = Scenarios(np.ones(1), np.zeros(1), np.ones(1))
@@ -178,9 +183,9 @@ def make_landings(plant: Plant, grid: Grid, actuator: Actuator) -> Landings:
     cells = path_coefficients(plant.position, plant.cut, plant.profile, fine)
     work = np.concatenate([[0.0], np.cumsum(cells.brake_m_s2_per_kpa * np.diff(fine))])
     drive = cells.gravity_m_s2 - cells.resistance_m_s2_per_n_kn * plant.resistance.mean_n_per_kn
-    factors = np.linspace(*FRICTION_FACTOR_RANGE, FRICTION_FACTOR_NODES)
-    overpressure = np.ascontiguousarray(actuator.chain_overpressure_kpa[used])
+    factors = friction_factors(plant)
     samples = actuator.chain_samples[used]
+    overpressure = np.ascontiguousarray(actuator.chain_overpressure_kpa[used, : samples.max() * actuator.substeps])
     shape = (len(grid.path_m) - 1, len(used), len(factors), len(grid.speed_m_s))
     travel, energy = np.empty(shape), np.empty(shape)
     dt = plant.sensor.sample_period_s / actuator.substeps
@@ -189,6 +194,14 @@ def make_landings(plant: Plant, grid: Grid, actuator: Actuator) -> Landings:
         grid.speed_m_s, 0, travel, energy,
     )  # fmt: skip
     return Landings(factors, travel, energy, lower, upper, actuator.chain_mode[used], overpressure, samples)
+
+
+def friction_factors(plant: Plant) -> NDArray[np.float64]:
+    """Equally spaced factors ξ that cover four standard deviations of ξ_cut and three of η."""
+    cv, std = plant.friction_cv, plant.friction.path_std
+    low = max(plant.friction.floor, 1.0 - 4.0 * cv) * max(1.0 - 3.0 * std, 0.0)
+    high = (1.0 + 4.0 * cv) * (1.0 + 3.0 * std)
+    return np.linspace(low, high, max(3, math.ceil((high - low) / FACTOR_STEP) + 1))
 
 
 def entry_distribution(plant: Plant, grid: Grid) -> NDArray[np.float64]:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 
+from synth.backward_induction import solve_targets
 from synth.case_result import CaseResult, DegreeStudy
+from synth.friction_bound import friction_known_bounds
 from synth.grid import finer_for_check, require_memory
 from synth.problem import Plant, Problem
 from synth.random_passes import RandomPasses, random_passes
@@ -68,19 +70,25 @@ def tune_class(
     generator: Generator, created: str, tables: Path, progress: Progress,
 ) -> tuple[tuple[CaseResult, ...], tuple[DegreeStudy, ...]]:  # fmt: skip
     """All targets of one cut class; with `studied` also the degree study of its middle target."""
+    targets, criterion = config.targets_m_s, config.criterion
     design = persistent_transitions(plant, config.resolution)
     check = check_transitions(plant, finer_for_check(config.resolution))
-    published = as_published(design)
+    solutions = solve_targets(design, targets, criterion)
+    plain = solve_targets(design, targets, replace(criterion, switching_tolerance_m2_s2=0.0))
+    published = solve_targets(as_published(design), targets, criterion)
+    bounds = friction_known_bounds(design, targets, criterion, passes, config.acceptance.rms_m_s)
     results = []
-    for target in config.targets_m_s:
+    for i, target in enumerate(targets):
         order = CaseOrder(
             label=label,
-            problem=Problem(plant, target, config.criterion),
-            design=design,
+            problem=Problem(plant, target, criterion),
+            solution=solutions[i],
+            plain=plain[i],
+            published=published[i],
+            known=bounds[i][0],
+            feasibility=bounds[i][1],
             check=check,
-            published=published,
             degree=config.fit.degree,
-            limit_m_s=config.acceptance.rms_m_s,
             passes=passes,
             tuning=tuning,
             generator=generator,
@@ -92,9 +100,8 @@ def tune_class(
         progress(f"{label} to {target:g} m/s: rms {figures.rms_m_s:.3f} m/s in {figures.passes} simulated passes")
     studies = ()
     if studied:
-        target = config.targets_m_s[len(config.targets_m_s) // 2]
-        studies = (degree_study(design, Problem(plant, target, config.criterion), label, DEGREES),)
-        progress(f"{label} to {target:g} m/s: degree study done")
+        studies = (degree_study(solutions[len(targets) // 2], label, DEGREES),)
+        progress(f"{label} to {targets[len(targets) // 2]:g} m/s: degree study done")
     return tuple(results), studies
 
 

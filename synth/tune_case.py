@@ -7,12 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from synth.backward_induction import Solution, solve
+from synth.backward_induction import Solution
 from synth.baselines import tune_baselines
-from synth.case_result import CaseResult, DegreeStudy, Indifference, Measured
+from synth.case_result import CaseResult, DegreeStudy, Feasibility, Indifference, Measured
 from synth.closed_loop import Controller, ExitSample, LineController, TableController, simulate, trace
 from synth.exit_statistics import exit_statistics
-from synth.friction_bound import friction_known_bound
 from synth.policy_evaluation import ExitDensity, commands, cost_and_gradient, exit_density, occupancy_of
 from synth.policy_map import policy_map
 from synth.polynomial_fit import Evaluate, Fit, PolynomialLines, fit_lines, polish
@@ -20,7 +19,7 @@ from synth.problem import Criterion, Problem
 from synth.random_passes import RandomPasses
 from synth.switching_lines import SwitchingLines
 from synth.tabulate import lines_of, prediction_of, tabulate
-from synth.transitions import Transitions, as_published
+from synth.transitions import Transitions
 from tuning_tables import ControllerTable, Generator, Predicted, Validated
 
 POLISH_ITERATIONS = 25
@@ -33,17 +32,20 @@ INDIFFERENCE_SHOWN_M2_S2 = 1e-4
 class CaseOrder:
     """What to do for one case, and with what; `store` writes a table and reads it back from its file.
 
-    `design` is the grid to solve on, `check` the finer one to predict on; `tuning` are the passes that
-    baselines are tuned on, `passes` those that everything is compared on; `limit_m_s` the acceptance rms.
+    `solution` on the design grid, `plain` the same without the switching tolerance, `published` in the formulation
+    as published; `check` the finer grid to predict on; `tuning` are the passes that baselines are tuned on,
+    `passes` those that everything is compared on.
     """
 
     label: str
     problem: Problem
-    design: Transitions
+    solution: Solution
+    plain: Solution
+    published: Solution
+    known: Measured
+    feasibility: Feasibility
     check: Transitions
-    published: Transitions
     degree: int
-    limit_m_s: float
     passes: RandomPasses
     tuning: RandomPasses
     generator: Generator
@@ -58,8 +60,8 @@ class CaseOrder:
 
 def tune_case(order: CaseOrder) -> CaseResult:
     """Tune one case; the table is validated as read back from its file."""
-    problem, design, target = order.problem, order.design, order.problem.target_speed_m_s
-    solution = solve(design, target, problem.criterion)
+    problem, solution, target = order.problem, order.solution, order.problem.target_speed_m_s
+    design, published = solution.transitions, order.published
     _, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
     fit = fit_lines(solution, occupancy.samples, order.degree)
     lines = polished(design, fit, target, problem.criterion)
@@ -69,8 +71,6 @@ def tune_case(order: CaseOrder) -> CaseResult:
     statistics = exit_statistics(sample, target)
     validated = Validated(statistics.passes, statistics.rms_m_s, statistics.rms_ci95_m_s)
     table = order.store(table.with_validated(validated))
-    known, feasibility = friction_known_bound(design, problem, order.passes, order.limit_m_s)
-    published = solve(order.published, target, problem.criterion)
     nodes = np.linspace(0.0, problem.plant.exit_m, 301)
     return CaseResult(
         label=order.label,
@@ -81,17 +81,17 @@ def tune_case(order: CaseOrder) -> CaseResult:
         solver_lines=solution.lines,
         policy_map=policy_map(solution, INDIFFERENCE_SHOWN_M2_S2),
         predicted=predicted,
-        published_predicted_rms_m_s=rms_of_lines(order.published, published.lines, target),
+        published_predicted_rms_m_s=rms_of_lines(published.transitions, published.lines, target),
         exit_speeds_m_s=sample.exit_speed_m_s.astype(np.float32),
         comparison=(
             Measured("table", statistics, predicted.rms_m_s(target)),
             run(order, "full lines", LineController(solution.lines)),
             run(order, "as published", LineController(published.lines)),
-            known,
+            order.known,
             *(run(order, b.name, b.controller) for b in tune_baselines(problem.plant, target, order.tuning)),
         ),
-        indifference=indifference(design, solution, target, problem.criterion),
-        feasibility=feasibility,
+        indifference=indifference(order),
+        feasibility=order.feasibility,
         traces=tuple(
             trace(problem.plant, TableController(table), order.passes, i, cut_factor=factor)
             for i, factor in enumerate(TRACE_FACTORS)
@@ -143,26 +143,23 @@ def rms_of_lines(transitions: Transitions, lines: SwitchingLines, target_speed_m
     return exit_density(transitions, commands(transitions, lines, staircase=True)).rms_m_s(target_speed_m_s)
 
 
-def indifference(
-    design: Transitions, solution: Solution, target_speed_m_s: float, criterion: Criterion
-) -> Indifference:
+def indifference(order: CaseOrder) -> Indifference:
     """Predicted switchings and rms of the solver's lines with the tolerance, and of lines solved without it."""
-    plain = solve(design, target_speed_m_s, replace(criterion, switching_tolerance_m2_s2=0.0))
-    with_it = exit_density(design, commands(design, solution.lines, staircase=False))
-    without = exit_density(design, commands(design, plain.lines, staircase=False))
+    design, target = order.solution.transitions, order.problem.target_speed_m_s
+    with_it = exit_density(design, commands(design, order.solution.lines, staircase=False))
+    without = exit_density(design, commands(design, order.plain.lines, staircase=False))
     return Indifference(
-        tolerance_m2_s2=criterion.switching_tolerance_m2_s2,
+        tolerance_m2_s2=order.problem.criterion.switching_tolerance_m2_s2,
         switchings_without=without.switchings,
         switchings_with=with_it.switchings,
-        rms_without_m_s=without.rms_m_s(target_speed_m_s),
-        rms_with_m_s=with_it.rms_m_s(target_speed_m_s),
+        rms_without_m_s=without.rms_m_s(target),
+        rms_with_m_s=with_it.rms_m_s(target),
     )
 
 
-def degree_study(design: Transitions, problem: Problem, label: str, degrees: tuple[int, ...]) -> DegreeStudy:
+def degree_study(solution: Solution, label: str, degrees: tuple[int, ...]) -> DegreeStudy:
     """Predicted rms against the degree of the polynomials, fitted and polished (R4)."""
-    target, criterion = problem.target_speed_m_s, problem.criterion
-    solution = solve(design, target, criterion)
+    design, target, criterion = solution.transitions, solution.target_speed_m_s, solution.criterion
     density, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
     fitted, after = np.empty(len(degrees)), np.empty(len(degrees))
     for i, degree in enumerate(degrees):

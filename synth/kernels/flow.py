@@ -15,34 +15,49 @@ from numba import njit
 def pull(values, transition, shift, stalled, first, last, out, mixed):
     """`out`[h, l, j] = Σ_m transition[l, m]·values[h, m](j + shift[h, l]) for first ≤ j < last.
 
-    `values`, `out` (H, L, E); `shift` (H, L) in cells of the energy grid; at and below cell 0 the value is
-    `stalled`; above the grid the last value holds. `mixed` (E,) is scratch.
+    `values`, `out` (H, L, E·T): T targets side by side at every energy; `stalled` (T,) values at and below cell 0;
+    `shift` (H, L) in cells of the energy grid; above the grid the last value holds. `mixed` (E·T,) is scratch.
     """
-    modes, levels, points = values.shape
+    modes, levels, size = values.shape
+    width = stalled.shape[0]
+    points = size // width
     for h in range(modes):
         for l in range(levels):
             base = int(np.floor(shift[h, l]))
             x = shift[h, l] - base
             c0, c1, c2, c3 = stencil(x)
-            begin = max(min(first + base - 1, points - 4), 0)
-            end = min(max(last + base + 3, 4), points)
+            begin = max(min(first + base - 1, points - 4), 0) * width
+            end = min(max(last + base + 3, 4), points) * width
             for j in range(begin, end):
                 mixed[j] = transition[l, 0] * values[h, 0, j]
             for m in range(1, levels):
                 p = transition[l, m]
                 for j in range(begin, end):
                     mixed[j] += p * values[h, m, j]
-            mixed[0] = stalled
+            mixed[:width] = stalled
+            out[h, l, :width] = stalled
             low = min(max(2 - base, first), last)
             high = max(min(points - 2 - base, last), low)
+            for j in range(low * width, high * width):
+                i = j + base * width
+                out[h, l, j] = (
+                    c0 * mixed[i - width] + c1 * mixed[i] + c2 * mixed[i + width] + c3 * mixed[i + 2 * width]
+                )
             for j in range(first, low):
-                out[h, l, j] = value_at(mixed, j + base + x)
-            for j in range(low, high):
-                i = j + base
-                out[h, l, j] = c0 * mixed[i - 1] + c1 * mixed[i] + c2 * mixed[i + 1] + c3 * mixed[i + 2]
+                take(mixed, j + base + x, points, width, out[h, l], j)
             for j in range(high, last):
-                out[h, l, j] = value_at(mixed, j + base + x)
-            out[h, l, 0] = stalled
+                take(mixed, j + base + x, points, width, out[h, l], j)
+
+
+@njit(cache=True, nogil=True)
+def take(row, position, points, width, out, j):
+    """`out` at energy j = `row` interpolated at `position`, for all targets; rows (E·T,)."""
+    i, c0, c1, c2, c3 = interpolation(position, points)
+    for t in range(width):
+        at = i * width + t
+        out[j * width + t] = (
+            c0 * row[at - width] + c1 * row[at] + c2 * row[at + width] + c3 * row[at + 2 * width]
+        )
 
 
 @njit(cache=True, nogil=True)
@@ -162,3 +177,19 @@ def shifts(n, factor, levels, drive, brake, pressure, extra, path_step, energy_s
         for l in range(levels.shape[0]):
             slope = drive[n] + extra - factor * (1.0 + levels[l]) * brake[n] * pressure[h]
             out[h, l] = slope * path_step / energy_step
+
+
+@njit(cache=True, nogil=True)
+def mix_values(values, transition, first, last, stalled, out):
+    """`out`[h, l, j] = Σ_m transition[l, m]·values[h, m, j] for first ≤ j < last; shapes (H, L, E·T)."""
+    modes, levels, _ = values.shape
+    width = stalled.shape[0]
+    for h in range(modes):
+        for l in range(levels):
+            out[h, l, :width] = stalled
+            for j in range(first * width, last * width):
+                out[h, l, j] = transition[l, 0] * values[h, 0, j]
+            for m in range(1, levels):
+                p = transition[l, m]
+                for j in range(first * width, last * width):
+                    out[h, l, j] += p * values[h, m, j]

@@ -58,7 +58,8 @@ def advance(s, v, left_with, work, gravity, fine, cells, exit_m, brake, dt):
         faster = v[j] + change * dt
         ahead = s[j] + 0.5 * (v[j] + max(faster, 0.0)) * dt
         crosses = left_with[j] < 0.0 and ahead >= exit_m and v[j] > 0.0
-        at_exit = max(0.5 * v[j] * v[j] + change * (exit_m - s[j]), 0.0)
+        left = gravity[i0] * (exit_m - s[j]) - brake * (work[cells] - a)
+        at_exit = max(0.5 * v[j] * v[j] + left, 0.0)
         left_with[j] = at_exit if crosses else left_with[j]
         moves = v[j] > 0.0
         s[j] = min(ahead, exit_m) if moves else s[j]

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from synth.kernels.flow import pull, quanta_to_next_sample, shifts
+from synth.kernels.flow import mix_values, pull, quanta_to_next_sample, shifts
 from synth.kernels.policy_density import NEGLIGIBLE_MASS
 from synth.kernels.transient import transient_value
 
@@ -37,6 +37,7 @@ def backward(
     values = np.full((ring, modes, size, points), stalled)
     mixed = np.full((ring, modes, size, points), stalled)
     scratch = np.zeros(points)
+    stop = np.full(1, stalled)
     shift = np.empty((modes, size))
     ahead[:] = terminal
     values[nodes % ring] = terminal
@@ -48,7 +49,7 @@ def backward(
         here = values[n % ring]
         shifts(n, factor, levels, drive, brake, pressure, extra, path_step, energy_step, shift)
         for r in range(reach - 2, -1, -1):
-            pull(ahead[r], transition, shift, stalled, first, last, ahead[r + 1], scratch)
+            pull(ahead[r], transition, shift, stop, first, last, ahead[r + 1], scratch)
         for h in range(modes):
             k = stage[h]
             for l in range(size):
@@ -91,7 +92,7 @@ def backward(
                         lower_gradient[n, k] += mass * down_slope[n, k, j] * (q_down - q_hold)
                     if visited_only and p_up > NEGLIGIBLE_PROBABILITY and upper_chain[h] >= 0:
                         upper_gradient[n, k] += mass * up_slope[n, k, j] * (q_up - q_hold)
-        mix_values(here, transition, first, last, stalled, mixed[n % ring])
+        mix_values(here, transition, first, last, stop, mixed[n % ring])
         ahead[0] = here
     cost = 0.0
     for r in range(reach):
@@ -100,18 +101,3 @@ def backward(
                 if entry[r, j] != 0.0:
                     cost += entry[r, j] * stationary[l] * ahead[r, 0, l, j]
     return cost
-
-
-@njit(cache=True, nogil=True)
-def mix_values(values, transition, first, last, stalled, out):
-    """`out`[h, l, j] = Σ_m transition[l, m]·values[h, m, j] for first ≤ j < last; shapes (H, L, E)."""
-    modes, levels, _ = values.shape
-    for h in range(modes):
-        for l in range(levels):
-            out[h, l, 0] = stalled
-            for j in range(first, last):
-                out[h, l, j] = transition[l, 0] * values[h, 0, j]
-            for m in range(1, levels):
-                p = transition[l, m]
-                for j in range(first, last):
-                    out[h, l, j] += p * values[h, m, j]

@@ -20,28 +20,27 @@ from synth.kernels.flow import put_at, value_at
 
 
 @njit(cache=True, nogil=True)
+def factor_weights(f, factors):
+    """Quadratic interpolation in the friction factor: (nearest node, centre node, three weights)."""
+    width = factors[1] - factors[0]
+    centre = min(max(int((f - factors[0]) / width + 0.5), 1), factors.shape[0] - 2)
+    x = min(max((f - factors[centre]) / width, -1.5), 1.5)
+    nearest = centre - 1 if x < -0.5 else (centre + 1 if x > 0.5 else centre)
+    return nearest, centre, 0.5 * x * (x - 1.0), 1.0 - x * x, 0.5 * x * (x + 1.0)
+
+
+@njit(cache=True, nogil=True)
 def landing(n, c, j, f, travel, energy, factors):
     """(path in m, energy) at the end of transient `c` from (n, j) for friction factor `f`; path −1: stall.
 
     Quadratic in f through the three nearest nodes; if one of them stalls, the nearest node decides.
     """
-    count = factors.shape[0]
-    if count == 1:
-        return travel[n, c, 0, j], energy[n, c, 0, j]
-    width = factors[1] - factors[0]
-    i = min(max(int((f - factors[0]) / width + 0.5), 1), count - 2)
+    nearest, i, low, middle, high = factor_weights(f, factors)
     t0, t1, t2 = travel[n, c, i - 1, j], travel[n, c, i, j], travel[n, c, i + 1, j]
+    if min(t0, t1, t2) < 0.0:
+        return travel[n, c, nearest, j], energy[n, c, nearest, j]
     e0, e1, e2 = energy[n, c, i - 1, j], energy[n, c, i, j], energy[n, c, i + 1, j]
-    x = min(max((f - factors[i]) / width, -1.5), 1.5)
-    if t0 < 0.0 or t1 < 0.0 or t2 < 0.0:
-        if x < -0.5:
-            return t0, e0
-        if x > 0.5:
-            return t2, e2
-        return t1, e1
-    a, b = 0.5 * x * (x - 1.0), 0.5 * x * (x + 1.0)
-    m = 1.0 - x * x
-    return a * t0 + m * t1 + b * t2, a * e0 + m * e1 + b * e2
+    return low * t0 + middle * t1 + high * t2, low * e0 + middle * e1 + high * e2
 
 
 @njit(cache=True, nogil=True)

@@ -1,0 +1,114 @@
+"""Convergence of the prediction and of the solution as path step, speed step and transient sub-steps are halved."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.backward_induction import solve
+from synth.grid import Resolution
+from synth.policy_evaluation import commands, exit_density, occupancy_of
+from synth.polynomial_fit import stage_occupancy
+from synth.problem import Criterion, Plant
+from synth.switching_lines import SwitchingLines
+from synth.transitions import Transitions, persistent_transitions
+
+TARGET_M_S = 3.0
+
+BASE = Resolution(0.25, 0.02, transient_substeps=4, friction_nodes=3, path_levels=2)
+
+
+def straight_lines(nodes_m: NDArray[np.float64]) -> SwitchingLines:
+    """Lines that fall along the path: the same controller on every grid."""
+    u = nodes_m / nodes_m[-1]
+    never = np.full_like(u, np.inf)
+    lower = np.stack([-never, 3.1 - 0.1 * u, 3.9 - 0.6 * u])
+    return SwitchingLines(np.array(nodes_m), lower, np.stack([3.6 - 0.3 * u, 4.6 - 1.2 * u, never]))
+
+
+def predicted(t: Transitions) -> float:
+    """Rms of the straight lines, m/s."""
+    return exit_density(t, commands(t, straight_lines(t.grid.path_m), staircase=False)).rms_m_s(TARGET_M_S)
+
+
+def solved(t: Transitions) -> float:
+    """Rms of the solver's own lines on their own grid, m/s."""
+    lines = solve(t, TARGET_M_S, Criterion()).lines
+    return exit_density(t, commands(t, lines, staircase=False)).rms_m_s(TARGET_M_S)
+
+
+def series(plant: Plant, **levels: tuple[float, ...]) -> list[Transitions]:
+    """Transitions for several values of one field of the resolution."""
+    ((name, values),) = levels.items()
+    return [persistent_transitions(plant, replace(BASE, **{name: value})) for value in values]
+
+
+def orders(name: str, rms: list[float]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(differences between levels, observed orders)."""
+    differences = np.abs(np.diff(rms))
+    order = np.log2(differences[:-1] / differences[1:])
+    print(f"{name}: rms {np.round(rms, 6)} differences {differences} orders {np.round(order, 2)}")
+    return differences, order
+
+
+def test_prediction_converges_in_the_path_step(plant: Plant) -> None:
+    """Between first and second order (measured 1.7, 1.5): decisions fall on nodes, their phase is interpolated."""
+    _, order = orders("prediction, path", [predicted(t) for t in series(plant, path_step_m=(0.5, 0.25, 0.125, 0.0625))])
+    assert order.min() > 1.2
+
+
+def test_prediction_converges_in_the_speed_step(plant: Plant) -> None:
+    """Cubic interpolation: measured orders 3.9 and 4.6; at the default step the error is under 1e-5 m/s."""
+    rms = [predicted(t) for t in series(plant, speed_step_m_s=(0.08, 0.04, 0.02, 0.01))]
+    differences, order = orders("prediction, speed", rms)
+    assert order.min() > 2.5
+    assert differences[-1] < 1e-5
+
+
+def test_prediction_hardly_depends_on_the_substeps(plant: Plant) -> None:
+    """Already two sub-steps are within 1e-5 m/s of sixteen; their order is asserted on the landings (oracles)."""
+    rms = [predicted(t) for t in series(plant, transient_substeps=(1, 2, 16))]
+    differences, _ = orders("prediction, sub-steps", rms)
+    assert differences[0] < 1e-4
+    assert differences[1] < 1e-5
+
+
+def test_solution_converges(plant: Plant) -> None:
+    """Rms of the solver's own lines: differences shrink with every halving, and in the path step at order > 1.2."""
+    _, order = orders("solution, path", [solved(t) for t in series(plant, path_step_m=(1.0, 0.5, 0.25, 0.125))])
+    assert order.min() > 1.2
+    for name, values in (("speed_step_m_s", (0.08, 0.04, 0.02)), ("transient_substeps", (1, 2, 4))):
+        rms = [solved(t) for t in series(plant, **{name: values})]
+        differences, _ = orders(f"solution, {name}", rms)
+        assert differences[1] < differences[0]
+        assert differences[1] < 0.01 * rms[-1]
+
+
+def lines_apart(t: Transitions, coarse: SwitchingLines, fine: SwitchingLines) -> float:
+    """Mean distance of two sets of lines at the nodes of `t`, weighted by the samples taken near the coarse ones."""
+    _, occupancy = occupancy_of(t, commands(t, coarse, staircase=False))
+    samples = stage_occupancy(occupancy.samples, t.actuator.mode_stage, t.actuator.stages)
+    total = weights = 0.0
+    stride = (len(fine.nodes_m) - 1) // (len(coarse.nodes_m) - 1)
+    for a, b in ((coarse.lower_m_s, fine.lower_m_s), (coarse.upper_m_s, fine.upper_m_s)):
+        for k, n in np.argwhere(np.isfinite(a[:, :-1]) & np.isfinite(b[:, ::stride][:, :-1])):
+            near = np.abs(t.grid.speed_m_s - a[k, n]) < 0.1
+            weight = float(samples[n, k, near].sum())
+            total += weight * abs(a[k, n] - b[k, n * stride])
+            weights += weight
+    return total / weights
+
+
+def test_lines_converge(plant: Plant) -> None:
+    """Lines move less with every halving: measured in m/s where samples are taken, and at last by under 0.02."""
+    for name, values in (
+        ("path_step_m", (0.5, 0.25, 0.125)), ("speed_step_m_s", (0.08, 0.04, 0.02)), ("transient_substeps", (1, 2, 4))
+    ):  # fmt: skip
+        levels = series(plant, **{name: values})
+        lines = [solve(t, TARGET_M_S, Criterion()).lines for t in levels]
+        moves = [lines_apart(levels[i], lines[i], lines[i + 1]) for i in (0, 1)]
+        print(f"lines, {name}: moved by {moves}")
+        assert moves[1] < moves[0]
+        assert moves[1] < 0.02

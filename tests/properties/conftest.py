@@ -1,0 +1,68 @@
+"""A small plant with everything random in it, coarse enough to be solved in a blink."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from plant_models import (
+    Cut,
+    DopplerSensor,
+    Friction,
+    Pneumatics,
+    PressingForce,
+    RetarderPosition,
+    RollingResistance,
+    TrackProfile,
+)
+from synth.grid import Resolution
+from synth.problem import EntrySpeed, Plant
+from synth.transitions import Transitions, persistent_transitions
+
+ROUGH = Friction(0.12, 0.0, 0.10, 2.0)
+RADAR = DopplerSensor(0.05, 0.04, 0.1, 0.02)
+RUNNER = RollingResistance(1.5, 0.5)
+
+
+def random_plant(
+    *,
+    friction: Friction = ROUGH,
+    sensor: DopplerSensor = RADAR,
+    resistance: RollingResistance = RUNNER,
+) -> Plant:
+    """One retarder of 8 m, three stages, a cut of two axles."""
+    position = RetarderPosition(
+        "small",
+        ((0.0, 8.0),),
+        (0.0, 200.0, 400.0),
+        PressingForce(0.08, 50.0, (1.0, 0.9)),
+        Pneumatics(700.0, 0.0, 0.07, 0.12, 0.09, 0.25, 0.2, 15.0),
+        7.0,
+    )
+    cut = Cut("С", 20.0, (0.0, 1.5), 2)
+    return Plant(
+        position, cut, TrackProfile.uniform(8.0), friction, resistance, sensor, EntrySpeed(4.0, 5.0)
+    )  # fmt: skip
+
+
+COARSE = Resolution(path_step_m=0.5, speed_step_m_s=0.05, transient_substeps=5, friction_nodes=3, path_levels=2)
+
+
+@pytest.fixture(scope="session")
+def plant_with() -> Callable[..., Plant]:
+    """`random_plant`."""
+    return random_plant
+
+
+@pytest.fixture(scope="session")
+def coarse() -> Resolution:
+    """19 quanta × 4 modes × 3 scenarios × 2 levels × about 100 speeds."""
+    return COARSE
+
+
+@pytest.fixture(scope="session")
+def small() -> Callable[[], Transitions]:
+    """The random plant on the coarse grid; behind a call, as hypothesis prints its arguments."""
+    transitions = persistent_transitions(random_plant(), COARSE)
+    return lambda: transitions

@@ -1,0 +1,90 @@
+"""Forward density and backward value are transposes of each other, whatever the lines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from synth.policy_evaluation import commands, cost_and_gradient, exit_density, expected_cost
+from synth.problem import Criterion
+from synth.switching_lines import SwitchingLines
+from synth.transitions import Transitions
+
+SEEDS = st.integers(0, 2**32 - 1)
+
+FEW = settings(
+    max_examples=12, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+
+
+def random_lines(t: Transitions, seed: int) -> SwitchingLines:
+    """Ordered lines between 0.5 and 5.5 m/s, rough along the path, some of them absent."""
+    rng = np.random.default_rng(seed)
+    shape = (t.actuator.stages, len(t.grid.path_m))
+    middle = rng.uniform(0.8, 5.0, (shape[0], 1)) + 0.3 * rng.standard_normal(shape)
+    half = rng.uniform(0.05, 0.8, shape)
+    lower, upper = middle - half, middle + half
+    if rng.random() < 0.3:
+        lower[int(rng.integers(shape[0]))] = -np.inf
+    if rng.random() < 0.3:
+        upper[int(rng.integers(shape[0]))] = np.inf
+    lower[0], upper[-1] = -np.inf, np.inf
+    return SwitchingLines(np.array(t.grid.path_m), lower, upper)
+
+
+def shifted(lines: SwitchingLines, by_lower: NDArray[np.float64], by_upper: NDArray[np.float64]) -> SwitchingLines:
+    """The lines moved by (K + 1, N) at the nodes before the exit."""
+    lower, upper = lines.lower_m_s.copy(), lines.upper_m_s.copy()
+    lower[:, :-1] += by_lower
+    upper[:, :-1] += by_upper
+    return SwitchingLines(np.array(lines.nodes_m), lower, upper)
+
+
+@FEW
+@given(seed=SEEDS, target=st.floats(1.0, 4.0), staircase=st.booleans(), stall_cost=st.floats(0.0, 20.0))
+def test_density_and_value_agree(
+    small: Callable[[], Transitions], seed: int, target: float, staircase: bool, stall_cost: float
+) -> None:
+    """rms² + stall cost + cost of commands = value at the entrance, to 1e-8: masses under 1e-12 are dropped."""
+    t, criterion = small(), Criterion(stall_cost, 1e-3)
+    policy = commands(t, random_lines(t, seed), staircase)
+    density = exit_density(t, policy)
+    forward = density.rms_m_s(target) ** 2 + density.stalled * stall_cost + 1e-3 * density.switchings
+    assert expected_cost(t, policy, target, criterion) == pytest.approx(forward, rel=1e-8)
+
+
+@FEW
+@given(seed=SEEDS)
+def test_no_mass_is_lost(small: Callable[[], Transitions], seed: int) -> None:
+    """Exits and stalls sum to one within 1e-9; what reaches the top of the grid are ripples of unbraked passes."""
+    t = small()
+    density = exit_density(t, commands(t, random_lines(t, seed), staircase=False))
+    assert density.probability.sum() + density.stalled == pytest.approx(1.0, abs=1e-9)
+    assert density.escaped < 1e-3
+    assert density.stalled > -1e-6
+
+
+@FEW
+@given(seed=SEEDS, target=st.floats(1.0, 4.0))
+def test_gradient_is_the_slope_of_the_cost(small: Callable[[], Transitions], seed: int, target: float) -> None:
+    """Along a random direction: central difference over ±1e-4 m/s, 1e-5 of the largest slope (third derivative)."""
+    t, criterion = small(), Criterion(1.0, 1e-4)
+    lines = random_lines(t, seed)
+    rng = np.random.default_rng(seed + 1)
+    shape = lines.lower_m_s[:, :-1].shape
+    direction = rng.standard_normal((2, *shape))
+    cost, by_lower, by_upper = cost_and_gradient(t, commands(t, lines, False), target, criterion)
+    h = 1e-4
+    sides = [
+        expected_cost(t, commands(t, shifted(lines, *(s * h * direction)), False), target, criterion)
+        for s in (1.0, -1.0)
+    ]
+    size = np.abs(by_lower).sum() + np.abs(by_upper).sum()
+    along = (by_lower * direction[0]).sum() + (by_upper * direction[1]).sum()
+    assert along == pytest.approx((sides[0] - sides[1]) / (2 * h), abs=1e-5 * size + 1e-9)
+    assert cost == pytest.approx(expected_cost(t, commands(t, lines, False), target, criterion), rel=1e-8)
