@@ -14,7 +14,6 @@ from synth.problem import Criterion
 from synth.switching_lines import SwitchingLines
 from synth.transitions import Transitions
 
-
 TIE_M2_S2 = 1e-9
 """Gains smaller than this are rounding: hold wins."""
 
@@ -48,15 +47,18 @@ class Solution:
 
 def solve(transitions: Transitions, target_speed_m_s: float, criterion: Criterion) -> Solution:
     """Backward induction for one target speed."""
-    return solve_targets(transitions, (target_speed_m_s,), criterion)[0]
+    return solve_all(transitions, [(target_speed_m_s, criterion)])[0]
 
 
-def solve_targets(
-    transitions: Transitions, targets_m_s: Sequence[float], criterion: Criterion
-) -> tuple[Solution, ...]:
-    """Backward induction for several target speeds in one sweep: they share all motion, so an extra one is cheap."""
+def solve_all(transitions: Transitions, aims: Sequence[tuple[float, Criterion]]) -> tuple[Solution, ...]:
+    """Backward induction for several (target speed, criterion) in one sweep: they share all motion.
+
+    An extra one costs about a tenth of the first.
+    """
     t = transitions
-    targets = np.asarray(targets_m_s, dtype=np.float64)
+    targets = np.array([target for target, _ in aims], dtype=np.float64)
+    stall_costs = np.array([criterion.stall_cost_m2_s2 for _, criterion in aims])
+    change_costs = np.array([criterion.switching_tolerance_m2_s2 for _, criterion in aims])
     nodes, stages, points, width = len(t.drive_m_s2), t.actuator.stages, len(t.grid.speed_m_s), len(targets)
     shape = (len(t.scenarios.factor), nodes + 1, len(t.actuator.mode_stage), len(t.chain.levels), points * width)
     values = np.empty(shape)
@@ -64,8 +66,7 @@ def solve_targets(
     gain_down, gain_up = (np.empty((nodes, stages, width, points)) for _ in range(2))
     noise = measured_speed_std(t.plant.sensor.noise_m_s, t.plant.sensor.resolution_m_s)
     sweep(
-        ((t.grid.speed_m_s[:, None] - targets) ** 2).ravel(), targets**2 + criterion.stall_cost_m2_s2,
-        criterion.switching_tolerance_m2_s2, TIE_M2_S2, noise, *true_speed_weights(t.grid.speed_m_s, noise),
+        ((t.grid.speed_m_s[:, None] - targets) ** 2).ravel(), targets**2 + stall_costs, change_costs, TIE_M2_S2, noise, *true_speed_weights(t.grid.speed_m_s, noise),
         hidden_prior(t), *sweep_arguments(t), t.scenarios.factor, t.scenarios.extra_m_s2,
         t.grid.path_step_m, t.grid.energy_step_m2_s2, t.plant.sensor.sample_period_s, len(t.entry),
         values, lower, upper, gain_down, gain_up,
@@ -74,14 +75,14 @@ def solve_targets(
     return tuple(
         Solution(
             transitions=t,
-            target_speed_m_s=float(target),
+            target_speed_m_s=target,
             criterion=criterion,
             lines=SwitchingLines(t.grid.path_m, with_exit_node(lower[:, :, i]), with_exit_node(upper[:, :, i])),
             gain_down=gain_down[:, :, i],
             gain_up=gain_up[:, :, i],
             values=values[..., i],
         )
-        for i, target in enumerate(targets)
+        for i, (target, criterion) in enumerate(aims)
     )
 
 
@@ -90,7 +91,7 @@ def sweep_arguments(t: Transitions) -> tuple[NDArray[np.float64], ...]:
     a = t.landings
     return (
         t.grid.speed_m_s, t.actuator.mode_stage, t.actuator.mode_overpressure_kpa,
-        a.lower_chain, a.upper_chain, a.end_mode, a.travel_m, a.energy_m2_s2, a.factors,
+        a.lower_chain, a.upper_chain, a.end_mode, a.ends, a.factors,
         t.noise.probability, t.noise.mean, t.noise.std, t.chain.levels, t.chain.transition,
         t.drive_m_s2, t.brake_m_s2_per_kpa,
     )  # fmt: skip

@@ -25,7 +25,7 @@ LINE_NODES = 129
 COARSE_PASSES = 250
 """Passes for the coarse grid; whether a law brakes far too early or late shows in few."""
 
-REFINEMENTS = 40
+REFINEMENTS = 30
 """Simulations that the simplex search may take."""
 
 

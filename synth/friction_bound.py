@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from synth.backward_induction import solve_targets
+from synth.backward_induction import solve_all
 from synth.case_result import Feasibility, Measured
 from synth.closed_loop import ExitSample, LineController, simulate
 from synth.exit_statistics import pooled_statistics
@@ -15,7 +15,7 @@ from synth.problem import Criterion
 from synth.random_passes import RandomPasses
 from synth.transitions import Transitions, equally_spaced_normal, with_known_friction
 
-FRICTION_NODES = 11
+FRICTION_NODES = 9
 """Nodes of ξ_cut, four standard deviations to both sides."""
 
 
@@ -40,13 +40,14 @@ def friction_known_bounds(
     share = len(passes) // FRICTION_NODES
     for i, (factor, weight) in enumerate(zip(factors, weights, strict=True)):
         some = passes.part(i * share, (i + 1) * share)
-        for t, solution in enumerate(solve_targets(with_known_friction(transitions, factor), targets_m_s, free)):
+        known = with_known_friction(transitions, float(factor))
+        for t, solution in enumerate(solve_all(known, [(target, free) for target in targets_m_s])):
             samples[t].append(simulate(plant, LineController(solution.lines), some, cut_factor=float(factor)))
             squares[t] += weight * (solution.values[0, 0, 0] * transitions.chain.stationary[:, None]).sum(axis=0)
     bounds = []
     for target, strata, square in zip(targets_m_s, samples, squares, strict=True):
-        known = Measured("friction known", pooled_statistics(strata, list(weights), target))
-        bounds.append((known, feasibility_of(transitions, target, square, known.statistics.rms_m_s, limit_m_s)))
+        told = Measured("friction known", pooled_statistics(strata, list(weights), target))
+        bounds.append((told, feasibility_of(transitions, target, square, told.statistics.rms_m_s, limit_m_s)))
     return tuple(bounds)
 
 

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from plant_models.errors import require, require_between
 from synth.problem import Plant
 
-
 MARGIN_CELLS = 10
 """Cells of the energy grid above the fastest pass: interpolation there must not ripple into it."""
 

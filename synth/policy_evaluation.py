@@ -167,7 +167,7 @@ def shared_arguments(t: Transitions) -> tuple[NDArray[np.float64], ...]:
     a = t.landings
     return (
         t.grid.speed_m_s, t.actuator.mode_stage, t.actuator.mode_overpressure_kpa,
-        a.lower_chain, a.upper_chain, a.end_mode, a.travel_m, a.energy_m2_s2, a.factors,
+        a.lower_chain, a.upper_chain, a.end_mode, a.ends, a.factors,
         t.noise.probability, t.noise.mean, t.noise.std, t.chain.levels, t.chain.transition, t.chain.stationary,
         t.drive_m_s2, t.brake_m_s2_per_kpa,
     )  # fmt: skip

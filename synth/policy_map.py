@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from synth.backward_induction import Solution
 from synth.case_result import PolicyMap
@@ -21,14 +22,14 @@ def policy_map(solution: Solution, tolerance_m2_s2: float) -> PolicyMap:
     command = np.zeros(down.shape, dtype=np.int8)
     command[(down > 0.0) & (down >= up)] = -1
     command[(up > 0.0) & (up > down)] = 1
-    near = sum((best - gain <= tolerance_m2_s2).astype(np.int8) for gain in (np.zeros_like(best), down, up))
-    indifferent = near >= 2
+    near = np.stack([best - gain <= tolerance_m2_s2 for gain in (np.zeros_like(best), down, up)])
+    indifferent = near.sum(axis=0) >= 2
     for array in (command, indifferent):
         array.setflags(write=False)
     return PolicyMap(grid.path_m[:-1], grid.speed_m_s, command, indifferent)
 
 
-def available(gain: np.ndarray) -> np.ndarray:
+def available(gain: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Which commands a stage has at all: the sweep leaves the gain of a missing one exactly zero everywhere."""
-    exists: np.ndarray = np.any(gain != 0.0, axis=(1, 2), keepdims=True)
+    exists: NDArray[np.bool_] = np.any(gain != 0.0, axis=(1, 2), keepdims=True)
     return np.broadcast_to(exists, gain.shape)

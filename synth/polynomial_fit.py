@@ -165,10 +165,11 @@ def polish(
     free = np.nonzero(start.has_line)
     width = start.degree + 1
     matrix = basis(nodes_m, start.exit_m, start.degree)[: curvature.shape[2]]
-    before, _, _ = evaluate(start.at(nodes_m))
+    first = evaluate(start.at(nodes_m))
+    before = first[0]
     scale = whitening(curvature[free], matrix, before)
     best: list[tuple[float, PolynomialLines]] = [(before, start)]
-    calls = 1
+    calls = 0
 
     def unpack(y: NDArray[np.float64]) -> PolynomialLines:
         coefficients = start.coefficients.copy()
@@ -179,7 +180,7 @@ def polish(
         nonlocal calls
         calls += 1
         lines = unpack(y)
-        cost, by_lower, by_upper = evaluate(lines.at(nodes_m))
+        cost, by_lower, by_upper = evaluate(lines.at(nodes_m)) if y.any() else first
         if cost < best[0][0] and gap_of(lines) >= 0.5 * MINIMUM_GAP_M_S:
             best[0] = (cost, lines)
         gradient = np.stack([by_lower @ matrix, by_upper @ matrix], axis=1)[free]
@@ -191,7 +192,7 @@ def polish(
         jac=True,
         method="SLSQP",
         constraints=[gap_constraint(start, free, scale)],
-        options={"maxiter": max_iterations, "ftol": 1e-3},
+        options={"maxiter": max_iterations, "ftol": 3e-3},
     )
     cost, lines = best[0]
     return Polish(opened(lines), before, cost, calls, str(result.message))

@@ -25,18 +25,27 @@ FINE_CELLS_PER_QUANTUM = 4
 class Landings:
     """End of every neighbouring stage change from every grid node, for friction `factors` (F,).
 
-    `travel_m`, `energy_m2_s2` (N, C, F, E), see `kernels.landing.land`; `lower_chain`, `upper_chain` (H,): index of the
+    `ends` (N, C, E, F, 2), see `kernels.landing.land`; `lower_chain`, `upper_chain` (H,): index of the
     transient one stage down / up from a mode, −1 if none; `end_mode` (C,).
     """
 
     factors: NDArray[np.float64]
-    travel_m: NDArray[np.float64]
-    energy_m2_s2: NDArray[np.float64]
+    ends: NDArray[np.float64]
     lower_chain: NDArray[np.int64]
     upper_chain: NDArray[np.int64]
     end_mode: NDArray[np.int64]
     overpressure_kpa: NDArray[np.float64]
     samples: NDArray[np.int64]
+
+    @property
+    def travel_m(self) -> NDArray[np.float64]:
+        """Path until the end of the transient, or to S_exit, (N, C, F, E); −1 for a stall."""
+        return np.moveaxis(self.ends[..., 0], 2, 3)
+
+    @property
+    def energy_m2_s2(self) -> NDArray[np.float64]:
+        """v²/2 at the end of the transient, (N, C, F, E)."""
+        return np.moveaxis(self.ends[..., 1], 2, 3)
 
 
 @dataclass(frozen=True)
@@ -186,21 +195,20 @@ def make_landings(plant: Plant, grid: Grid, actuator: Actuator) -> Landings:
     factors = friction_factors(plant)
     samples = actuator.chain_samples[used]
     overpressure = np.ascontiguousarray(actuator.chain_overpressure_kpa[used, : samples.max() * actuator.substeps])
-    shape = (len(grid.path_m) - 1, len(used), len(factors), len(grid.speed_m_s))
-    travel, energy = np.empty(shape), np.empty(shape)
+    ends = np.empty((len(grid.path_m) - 1, len(used), len(grid.speed_m_s), len(factors), 2))
     dt = plant.sensor.sample_period_s / actuator.substeps
     land(
         grid.path_step_m, work, drive, overpressure, samples, actuator.substeps, dt, factors,
-        grid.speed_m_s, 0, travel, energy,
+        grid.speed_m_s, ends,
     )  # fmt: skip
-    return Landings(factors, travel, energy, lower, upper, actuator.chain_mode[used], overpressure, samples)
+    return Landings(factors, ends, lower, upper, actuator.chain_mode[used], overpressure, samples)
 
 
 def friction_factors(plant: Plant) -> NDArray[np.float64]:
     """Equally spaced factors ξ that cover four standard deviations of ξ_cut and three of η."""
     cv, std = plant.friction_cv, plant.friction.path_std
-    low = max(plant.friction.floor, 1.0 - 4.0 * cv) * max(1.0 - 3.0 * std, 0.0)
-    high = (1.0 + 4.0 * cv) * (1.0 + 3.0 * std)
+    low = min(max(plant.friction.floor, 1.0 - 4.0 * cv) * max(1.0 - 3.0 * std, 0.0), 0.9)
+    high = max((1.0 + 4.0 * cv) * (1.0 + 3.0 * std), 1.1)
     return np.linspace(low, high, max(3, math.ceil((high - low) / FACTOR_STEP) + 1))
 
 

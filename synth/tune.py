@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 
-from synth.backward_induction import solve_targets
+from synth.backward_induction import solve_all
 from synth.case_result import CaseResult, DegreeStudy
 from synth.friction_bound import friction_known_bounds
 from synth.grid import finer_for_check, require_memory
@@ -22,7 +22,7 @@ from synth.tune_case import CaseOrder, degree_study, tune_case
 from tuning_tables import ControllerTable, Generator, read_json, write_json
 
 DEGREES = (1, 2, 3, 4, 5, 6)
-TUNING_PASSES = 1000
+TUNING_PASSES = 800
 MOST_COMPARED_PASSES = 50_000
 """Passes kept in memory for the comparison of controllers; more are for `validate`."""
 
@@ -73,9 +73,11 @@ def tune_class(
     targets, criterion = config.targets_m_s, config.criterion
     design = persistent_transitions(plant, config.resolution)
     check = check_transitions(plant, finer_for_check(config.resolution))
-    solutions = solve_targets(design, targets, criterion)
-    plain = solve_targets(design, targets, replace(criterion, switching_tolerance_m2_s2=0.0))
-    published = solve_targets(as_published(design), targets, criterion)
+    priced = [(target, criterion) for target in targets]
+    free = [(target, replace(criterion, switching_tolerance_m2_s2=0.0)) for target in targets]
+    both = solve_all(design, priced + free)
+    solutions, plain = both[: len(targets)], both[len(targets) :]
+    published = solve_all(as_published(design), priced)
     bounds = friction_known_bounds(design, targets, criterion, passes, config.acceptance.rms_m_s)
     results = []
     for i, target in enumerate(targets):
@@ -98,7 +100,7 @@ def tune_class(
         results.append(tune_case(order))
         figures = results[-1].comparison[0].statistics
         progress(f"{label} to {target:g} m/s: rms {figures.rms_m_s:.3f} m/s in {figures.passes} simulated passes")
-    studies = ()
+    studies: tuple[DegreeStudy, ...] = ()
     if studied:
         studies = (degree_study(solutions[len(targets) // 2], label, DEGREES),)
         progress(f"{label} to {targets[len(targets) // 2]:g} m/s: degree study done")

@@ -18,18 +18,18 @@ from synth.kernels.thresholds import lower_threshold, upper_threshold
 from synth.kernels.transient_sweep import transient_values
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def sweep(
     terminal, stalled, change_cost, tolerance, noise, smear_start, smear, prior,
     speed, stage, pressure, lower_chain, upper_chain, chain_mode,
-    travel, energy, factors, probability, mean, std, levels, transition,
+    ends, factors, probability, mean, std, levels, transition,
     drive, brake, factor, extra, path_step, energy_step, period, reach,
     values, lower, upper, gain_down, gain_up,
 ):  # fmt: skip
     """One backward sweep over all path quanta.
 
-    `terminal` (E·T,) cost by exit energy and target, `stalled` (T,) cost of a stall, `change_cost` of a command,
-    `tolerance` below which a gain is rounding. I scenarios: `factor`, `extra` (I,); `prior` (I, H, L) weights;
+    `terminal` (E·T,) cost by exit energy and target, `stalled` (T,) cost of a stall, `change_cost` (T,) of a
+    command, `tolerance` below which a gain is rounding. I scenarios: `factor`, `extra` (I,); `prior` (I, H, L) weights;
     `smear_start` (E,), `smear` (E, W): probability of true speeds given a measured one. Outputs: `values`
     (I, N + 1, H, L, E·T), `lower`, `upper` (N, K + 1, T), `gain_down`, `gain_up` (N, K + 1, T, E): averaged cost
     saved by the change, by measured speed.
@@ -63,11 +63,13 @@ def sweep(
                             continue
                         changed = ups[i, h, l] if side == 1 else downs[i, h, l]
                         transient_values(
-                            n, nodes, c, l, factor[i], chain_mode[c], travel, energy, factors, probability, mean,
+                            n, nodes, c, l, factor[i], chain_mode[c], ends, factors, probability, mean,
                             std, drive, brake, pressure, levels, extra[i], path_step, energy_step,
                             values[i], mixed[i], stalled, changed,
                         )  # fmt: skip
-                        changed += change_cost
+                        for j in range(points):
+                            for t in range(width):
+                                changed[j * width + t] += change_cost[t]
         average_gains(holds, downs, ups, stage, prior, width, gain_down[n], gain_up[n])
         for k in range(lower.shape[1]):
             for t in range(width):
@@ -95,7 +97,7 @@ def sweep(
             ahead[i, 0] = values[i, n]
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def hold_values(ahead, speed, acceleration, period, path_step, width, out):
     """Value of holding until the next sample; `ahead` (M + 1, E·T), `out` (E·T,).
 
@@ -110,7 +112,7 @@ def hold_values(ahead, speed, acceleration, period, path_step, width, out):
             out[at] = (1.0 - x) * ahead[step, at] + x * ahead[step + 1, at]
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def sampled_value(hold, changed, value_next, value_hold, speed, acceleration, period, path_step):
     """Value at a sample: `hold` probability of holding, `changed` the changes' values times probabilities."""
     f = quanta_to_next_sample(speed, acceleration, period, path_step)
@@ -119,7 +121,7 @@ def sampled_value(hold, changed, value_next, value_hold, speed, acceleration, pe
     return hold * value_hold + changed
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def average_gains(holds, downs, ups, stage, prior, width, gain_down, gain_up):
     """Cost saved by a change, averaged over what is hidden given stage and speed; outputs (K + 1, T, E)."""
     gain_down[:] = 0.0
@@ -137,7 +139,7 @@ def average_gains(holds, downs, ups, stage, prior, width, gain_down, gain_up):
                         gain_up[k, t, j] += weight * (holds[i, h, l, at] - ups[i, h, l, at])
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def spread(gain, start, weights, scratch):
     """Average `gain` (E,) over the true speeds behind every measured speed, in place."""
     points = gain.shape[0]

@@ -10,8 +10,11 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+NO_MASS = 1e-25
+"""Probabilities below this are dropped: the tails of a density would otherwise run into slow denormal numbers."""
 
-@njit(cache=True, nogil=True)
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def pull(values, transition, shift, stalled, first, last, out, mixed):
     """`out`[h, l, j] = Σ_m transition[l, m]·values[h, m](j + shift[h, l]) for first ≤ j < last.
 
@@ -49,7 +52,7 @@ def pull(values, transition, shift, stalled, first, last, out, mixed):
                 take(mixed, j + base + x, points, width, out[h, l], j)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def take(row, position, points, width, out, j):
     """`out` at energy j = `row` interpolated at `position`, for all targets; rows (E·T,)."""
     i, c0, c1, c2, c3 = interpolation(position, points)
@@ -60,7 +63,7 @@ def take(row, position, points, width, out, j):
         )
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def push(mass, transition, shift, first, last, out, moved):
     """Transpose of `pull`: mass in first ≤ j < last at the start of a quantum goes to its end, added to `out`.
 
@@ -105,17 +108,17 @@ def push(mass, transition, shift, first, last, out, moved):
     return stalled, escaped
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def extent(row, first, last):
-    """Smallest range of indices within [first, last) that holds all non-zero entries of `row`."""
-    while first < last and row[first] == 0.0:
+    """Smallest range of indices within [first, last) that holds all entries of `row` above `NO_MASS`."""
+    while first < last and abs(row[first]) < NO_MASS:
         first += 1
-    while last > first and row[last - 1] == 0.0:
+    while last > first and abs(row[last - 1]) < NO_MASS:
         last -= 1
     return first, last
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def stencil(x):
     """Weights of cubic Lagrange interpolation at fraction x between the second and third of four points."""
     c0 = -x * (x - 1.0) * (x - 2.0) / 6.0
@@ -125,7 +128,7 @@ def stencil(x):
     return c0, c1, c2, c3
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def interpolation(position, points):
     """Second of the four grid points that interpolate at `position` (cells), and their weights.
 
@@ -144,24 +147,34 @@ def interpolation(position, points):
     return i, c0, c1, c2, c3
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def weights_at(position, points):
+    """`interpolation`, with a short cut for positions away from both ends."""
+    if 2.0 <= position < points - 3.0:
+        i = int(position)
+        c0, c1, c2, c3 = stencil(position - i)
+        return i, c0, c1, c2, c3
+    return interpolation(position, points)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def value_at(row, position):
     """`row` (E,) interpolated at `position` in cells."""
-    i, c0, c1, c2, c3 = interpolation(position, row.shape[0])
+    i, c0, c1, c2, c3 = weights_at(position, row.shape[0])
     return c0 * row[i - 1] + c1 * row[i] + c2 * row[i + 1] + c3 * row[i + 2]
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def put_at(row, position, mass):
     """Transpose of `value_at`; what arrives at or below cell 0 is found in `row`[0]."""
-    i, c0, c1, c2, c3 = interpolation(position, row.shape[0])
+    i, c0, c1, c2, c3 = weights_at(position, row.shape[0])
     row[i - 1] += c0 * mass
     row[i] += c1 * mass
     row[i + 1] += c2 * mass
     row[i + 2] += c3 * mass
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def quanta_to_next_sample(speed, acceleration, period, path_step):
     """Path until the next sample at a held stage, in quanta, never below a small positive number."""
     reach = speed * period + 0.5 * acceleration * period * period
@@ -170,7 +183,7 @@ def quanta_to_next_sample(speed, acceleration, period, path_step):
     return max(reach / path_step, 0.01)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def shifts(n, factor, levels, drive, brake, pressure, extra, path_step, energy_step, out):
     """Energy change over quantum `n` at every mode and level, in cells of the grid; `out` (H, L)."""
     for h in range(pressure.shape[0]):
@@ -179,7 +192,7 @@ def shifts(n, factor, levels, drive, brake, pressure, extra, path_step, energy_s
             out[h, l] = slope * path_step / energy_step
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def mix_values(values, transition, first, last, stalled, out):
     """`out`[h, l, j] = Σ_m transition[l, m]·values[h, m, j] for first ≤ j < last; shapes (H, L, E·T)."""
     modes, levels, _ = values.shape

@@ -6,21 +6,21 @@ import numpy as np
 from numba import njit
 
 
-@njit(cache=True, nogil=True)
-def land(path_step, work, gravity, overpressure, samples, substeps, dt, factors, speed, first, travel, energy):
-    """Integrate every transient from every node; results into `travel` and `energy`.
+@njit(cache=True, nogil=True, error_model="numpy")
+def land(path_step, work, gravity, overpressure, samples, substeps, dt, factors, speed, ends):
+    """Integrate every transient from every node; results into `ends`.
 
     Shapes: `work` (W + 1,) = ∫β ds at equal steps from 0 to S_exit, `gravity` (W,) means of g'(i − w)·1e-3;
     `overpressure` (C, ·) per substep of `dt` seconds; `samples` (C,); `factors` (F,) friction factors;
-    `speed` (E,). `travel` (N, C, F, E): path until the end of the transient, or to S_exit, −1 for a stall;
-    `energy` (N, C, F, E): v²/2 there. Rows n with n·path_step below `first`·path_step are left alone.
+    `speed` (E,). `ends` (N, C, E, F, 2): path until the end of the transient, or to S_exit, −1 for a stall; and
+    v²/2 there. Factors are next to each other because they are interpolated together.
     """
     cells = gravity.shape[0]
-    fine = (travel.shape[0] * path_step) / cells
+    fine = (ends.shape[0] * path_step) / cells
     exit_m = cells * fine
     points = speed.shape[0]
     s, v, w0 = np.empty(points), np.empty(points), np.empty(points)
-    for n in range(first, travel.shape[0]):
+    for n in range(ends.shape[0]):
         start = n * path_step
         for c in range(samples.shape[0]):
             for f in range(factors.shape[0]):
@@ -31,14 +31,14 @@ def land(path_step, work, gravity, overpressure, samples, substeps, dt, factors,
                     advance(s, v, w0, work, gravity, fine, cells, exit_m, brake, dt)
                 for j in range(points):
                     if w0[j] >= 0.0:
-                        travel[n, c, f, j], energy[n, c, f, j] = exit_m - start, w0[j]
+                        ends[n, c, j, f, 0], ends[n, c, j, f, 1] = exit_m - start, w0[j]
                     elif v[j] <= 0.0:
-                        travel[n, c, f, j], energy[n, c, f, j] = -1.0, 0.0
+                        ends[n, c, j, f, 0], ends[n, c, j, f, 1] = -1.0, 0.0
                     else:
-                        travel[n, c, f, j], energy[n, c, f, j] = s[j] - start, 0.5 * v[j] * v[j]
+                        ends[n, c, j, f, 0], ends[n, c, j, f, 1] = s[j] - start, 0.5 * v[j] * v[j]
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def advance(s, v, left_with, work, gravity, fine, cells, exit_m, brake, dt):
     """One time step for all speeds at once (structure of arrays, so that it vectorises).
 

@@ -10,16 +10,16 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from synth.kernels.flow import push, quanta_to_next_sample, shifts
+from synth.kernels.flow import extent, push, quanta_to_next_sample, shifts
 from synth.kernels.transient import put_transient
 
-NEGLIGIBLE_MASS = 1e-12
+NEGLIGIBLE_MASS = 1e-11
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def forward(
     down, up, entry, speed, stage, pressure, lower_chain, upper_chain, chain_mode,
-    travel, energy, factors, probability, mean, std, levels, transition, stationary,
+    ends, factors, probability, mean, std, levels, transition, stationary,
     drive, brake, factor, extra, path_step, energy_step, period, density, band, exits, totals,
 ):  # fmt: skip
     """Density of sampled states, and the distribution at the exit.
@@ -43,10 +43,11 @@ def forward(
         for l in range(size):
             heading[r, 0, l] = entry[r] * stationary[l]
     totals[:] = 0.0
+    first, last = 0, points
     for n in range(nodes):
         here, mixed = arriving[n % ring], mixing[n % ring]
-        mix_arrivals(here, mixed, transition)
-        first, last = occupied(heading, here)
+        first, last = mix_arrivals(here, mixed, transition, first, last)
+        first, last = occupied(heading, here, first, last)
         band[n, 0], band[n, 1] = first, last
         shifts(n, factor, levels, drive, brake, pressure, extra, path_step, energy_step, shift)
         for h in range(modes):
@@ -79,60 +80,78 @@ def forward(
                             continue
                         totals[2 + side] += share
                         totals[0] += put_transient(
-                            share, n, nodes, c, l, j, factor, chain_mode[c], travel, energy, factors, probability,
+                            share, n, nodes, c, l, j, factor, chain_mode[c], ends, factors, probability,
                             mean, std, drive, brake, pressure, levels, extra, path_step, energy_step,
                             arriving, mixing,
                         )  # fmt: skip
-        here[:] = 0.0
-        mixed[:] = 0.0
+        clear(here, 0, points)
+        clear(mixed, 0, points)
         for r in range(1, reach):
-            heading[r - 1] = 0.0
+            clear(heading[r - 1], first, last)
             fallen, escaped = push(heading[r], transition, shift, first, last, heading[r - 1], moved)
             totals[0] += fallen
             totals[1] += escaped
-        heading[reach - 1] = 0.0
+        clear(heading[reach - 1], first, last)
+        first = max(first + int(np.floor(shift.min())) - 1, 0)
+        last = min(last + int(np.floor(shift.max())) + 3, points)
     collect(arriving[nodes % ring], mixing[nodes % ring], heading, exits)
 
 
-@njit(cache=True, nogil=True)
-def mix_arrivals(arriving, mixing, transition):
-    """Mass that was deposited before the noise level changed joins `arriving` (H, L, E) after the change."""
+@njit(cache=True, nogil=True, error_model="numpy")
+def mix_arrivals(arriving, mixing, transition, first, last):
+    """Mass that was deposited before the noise level changed joins `arriving` (H, L, E) after the change.
+
+    Returns [first, last) widened to all energies at which anything arrives.
+    """
     modes, levels, points = arriving.shape
     for h in range(modes):
         for l in range(levels):
+            begin, end = extent(mixing[h, l], 0, points)
             for m in range(levels):
-                for j in range(points):
+                for j in range(begin, end):
                     arriving[h, m, j] += transition[l, m] * mixing[h, l, j]
-
-
-@njit(cache=True, nogil=True)
-def occupied(heading, arriving):
-    """Range of energy indices in which any mass stands."""
-    points = arriving.shape[2]
-    first, last = points, 0
-    for h in range(arriving.shape[0]):
-        for l in range(arriving.shape[1]):
-            for r in range(heading.shape[0]):
-                first, last = widened(heading[r, h, l], first, last)
-            first, last = widened(arriving[h, l], first, last)
-    return min(first, last), last
-
-
-@njit(cache=True, nogil=True)
-def widened(row, first, last):
-    """[first, last) extended to all entries of `row` that matter."""
-    for j in range(first):
-        if abs(row[j]) > 1e-3 * NEGLIGIBLE_MASS:
-            first = j
-            break
-    for j in range(row.shape[0] - 1, last - 1, -1):
-        if abs(row[j]) > 1e-3 * NEGLIGIBLE_MASS:
-            last = j + 1
-            break
+    for h in range(modes):
+        for l in range(levels):
+            begin, end = extent(arriving[h, l], 0, points)
+            if begin < end:
+                first, last = min(first, begin), max(last, end)
     return first, last
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
+def clear(rows, first, last):
+    """Set `rows` (H, L, E) to zero for first ≤ j < last (written out: a sliced assignment is slow in a kernel)."""
+    for h in range(rows.shape[0]):
+        for l in range(rows.shape[1]):
+            for j in range(first, last):
+                rows[h, l, j] = 0.0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def occupied(heading, arriving, first, last):
+    """[first, last) narrowed to the energies at which mass that matters stands."""
+    while first < last and column_is_empty(heading, arriving, first):
+        first += 1
+    while last > first and column_is_empty(heading, arriving, last - 1):
+        last -= 1
+    return first, last
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def column_is_empty(heading, arriving, j):
+    """Whether no mass that matters stands at energy `j`."""
+    tiny = 1e-3 * NEGLIGIBLE_MASS
+    for h in range(arriving.shape[0]):
+        for l in range(arriving.shape[1]):
+            if abs(arriving[h, l, j]) > tiny:
+                return False
+            for r in range(heading.shape[0]):
+                if abs(heading[r, h, l, j]) > tiny:
+                    return False
+    return True
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def collect(arriving, mixing, heading, exits):
     """Sum all mass at the exit over modes and levels into `exits` (E,)."""
     exits[:] = 0.0

@@ -15,10 +15,10 @@ from synth.kernels.transient import transient_value
 NEGLIGIBLE_PROBABILITY = 1e-9
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def backward(
     down, up, down_slope, up_slope, terminal, stalled, change_cost, entry, speed, stage, pressure,
-    lower_chain, upper_chain, chain_mode, travel, energy, factors, probability, mean, std,
+    lower_chain, upper_chain, chain_mode, ends, factors, probability, mean, std,
     levels, transition, stationary, drive, brake, factor, extra, path_step, energy_step, period,
     density, band, lower_gradient, upper_gradient,
 ):  # fmt: skip
@@ -65,14 +65,14 @@ def backward(
                     if lower_chain[h] >= 0 and p_down > NEGLIGIBLE_PROBABILITY:
                         c = lower_chain[h]
                         q_down = change_cost + transient_value(
-                            n, nodes, c, l, j, factor, chain_mode[c], travel, energy, factors, probability, mean,
+                            n, nodes, c, l, j, factor, chain_mode[c], ends, factors, probability, mean,
                             std, drive, brake, pressure, levels, extra, path_step, energy_step,
                             values, mixed, stalled,
                         )  # fmt: skip
                     if upper_chain[h] >= 0 and p_up > NEGLIGIBLE_PROBABILITY:
                         c = upper_chain[h]
                         q_up = change_cost + transient_value(
-                            n, nodes, c, l, j, factor, chain_mode[c], travel, energy, factors, probability, mean,
+                            n, nodes, c, l, j, factor, chain_mode[c], ends, factors, probability, mean,
                             std, drive, brake, pressure, levels, extra, path_step, energy_step,
                             values, mixed, stalled,
                         )  # fmt: skip

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from numba import njit
 
-from synth.kernels.flow import interpolation, stencil
+from synth.kernels.flow import weights_at
 from synth.kernels.transient import factor_weights, landing
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def transient_values(
-    n, last, c, l, factor, mode, travel, energy, factors, probability, mean, std,
+    n, last, c, l, factor, mode, ends, factors, probability, mean, std,
     drive, brake, pressure, levels, extra, path_step, energy_step, values, mixed, stalled, out,
 ):  # fmt: skip
     """`out` (E·T,) = expected value after transient `c` from node `n` and noise level `l`.
@@ -28,10 +28,10 @@ def transient_values(
     out[:] = 0.0
     begin = 0
     while begin < points:
-        crossed = quanta_crossed(n, c, begin, factor, travel, energy, factors, path_step, longest)
+        crossed = quanta_crossed(n, c, begin, factor, ends, factors, path_step, longest)
         end = begin + 1
         while end < points:
-            if quanta_crossed(n, c, end, factor, travel, energy, factors, path_step, longest) != crossed:
+            if quanta_crossed(n, c, end, factor, ends, factors, path_step, longest) != crossed:
                 break
             end += 1
         if crossed < 0:
@@ -48,39 +48,38 @@ def transient_values(
                 spread = std[c, crossed, l, m] * (2 * side - 1)
                 f = factor * (1.0 + mean[c, crossed, l, m] + spread)
                 add_landings(
-                    n, last, m, f, 0.5 * p, begin, end, mode, travel[n, c], energy[n, c], factors,
+                    n, last, m, f, 0.5 * p, begin, end, mode, ends[n, c], factors,
                     drive, brake, held, extra, path_step, energy_step, values, mixed, stalled, out,
                 )  # fmt: skip
         begin = end
 
 
-@njit(cache=True, nogil=True)
-def quanta_crossed(n, c, j, factor, travel, energy, factors, path_step, longest):
+@njit(cache=True, nogil=True, error_model="numpy")
+def quanta_crossed(n, c, j, factor, ends, factors, path_step, longest):
     """Path quanta crossed in the transient at the nominal friction of the scenario, −1 for a stall."""
-    path, _ = landing(n, c, j, factor, travel, energy, factors)
+    path, _ = landing(n, c, j, factor, ends, factors)
     return -1 if path < 0.0 else min(int(path / path_step + 1e-9), longest)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def add_landings(
-    n, last, m, f, share, begin, end, mode, travel, energy, factors,
+    n, last, m, f, share, begin, end, mode, ends, factors,
     drive, brake, held, extra, path_step, energy_step, values, mixed, stalled, out,
 ):  # fmt: skip
     """Add `share` of the values at the landings with friction factor `f` to `out`[begin:end].
 
-    `travel`, `energy` (F, E) of this node and transient; `held` = ξ·(1 + η)·over-pressure after it.
+    `ends` (E, F, 2) of this node and transient; `held` = ξ·(1 + η)·over-pressure after it.
     """
     width = stalled.shape[0]
     points = out.shape[0] // width
     nearest, centre, low, middle, high = factor_weights(f, factors)
-    t0, t1, t2, t_near = travel[centre - 1], travel[centre], travel[centre + 1], travel[nearest]
-    e0, e1, e2, e_near = energy[centre - 1], energy[centre], energy[centre + 1], energy[nearest]
     quanta, cells = 1.0 / path_step, 1.0 / energy_step
     for j in range(begin, end):
-        path = low * t0[j] + middle * t1[j] + high * t2[j]
-        e = low * e0[j] + middle * e1[j] + high * e2[j]
-        if min(t0[j], t1[j], t2[j]) < 0.0:
-            path, e = t_near[j], e_near[j]
+        t0, t1, t2 = ends[j, centre - 1, 0], ends[j, centre, 0], ends[j, centre + 1, 0]
+        path = low * t0 + middle * t1 + high * t2
+        e = low * ends[j, centre - 1, 1] + middle * ends[j, centre, 1] + high * ends[j, centre + 1, 1]
+        if min(t0, t1, t2) < 0.0:
+            path, e = ends[j, nearest, 0], ends[j, nearest, 1]
             if path < 0.0:
                 for t in range(width):
                     out[j * width + t] += share * stalled[t]
@@ -101,14 +100,10 @@ def add_landings(
         add(mixed[cell + 1, mode, m], forth, points, share * x, width, out, j)
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def add(row, position, points, weight, width, out, j):
     """Add `weight` times `row` (E·T,) interpolated at `position` to `out` at energy j, for all targets."""
-    if 2.0 <= position < points - 3.0:
-        i = int(position)
-        c0, c1, c2, c3 = stencil(position - i)
-    else:
-        i, c0, c1, c2, c3 = interpolation(position, points)
+    i, c0, c1, c2, c3 = weights_at(position, points)
     c0, c1, c2, c3 = weight * c0, weight * c1, weight * c2, weight * c3
     at, to = (i - 1) * width, j * width
     for t in range(width):

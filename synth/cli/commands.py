@@ -1,0 +1,152 @@
+"""The commands, their arguments and their help; what they do is in the modules that they import."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+app = typer.Typer(
+    name="retarder-synth",
+    help="Designs the controller of a hump-yard car retarder: switching lines, controller tables, and their proof.",
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+Source = Annotated[Path, typer.Argument(metavar="TABLE|BOOK", help="A table (.json) or a book (.h5).")]
+SourceOrDirectory = Annotated[
+    Path, typer.Argument(metavar="TABLE|BOOK|DIR", help="A table (.json), a book (.h5), or what a tune left.")
+]
+Config = Annotated[
+    Path | None, typer.Option("--config", metavar="C", help="Configuration with the plant; built-in unless given.")
+]
+Json = Annotated[bool, typer.Option("--json", help="Machine-readable results on stdout.")]
+
+
+def run(arguments: list[str]) -> int:
+    """Run the command in `arguments`; the exit code. A fault of use is told in one line and gives 2."""
+    from synth.cli import INPUT_FAULT, say
+
+    try:
+        code = app(arguments, prog_name="retarder-synth", standalone_mode=False)
+    except typer.TyperException as fault:
+        if not arguments:
+            typer.echo(fault.format_message(), err=True)
+        else:
+            say(f"{fault.format_message().rstrip('.')}; see 'retarder-synth --help'")
+        return INPUT_FAULT
+    return code or 0
+
+
+def show_version(wanted: bool) -> None:
+    """Print the version and end."""
+    if wanted:
+        from importlib.metadata import version
+
+        typer.echo(f"retarder-synth {version('retarder-synth')}")
+        raise typer.Exit
+
+
+@app.callback(no_args_is_help=True)
+def common(
+    version: Annotated[
+        bool, typer.Option("--version", help="Show the version and exit.", callback=show_version, is_eager=True)
+    ] = False,
+) -> None:
+    """Designs the controller of a hump-yard car retarder: switching lines, controller tables, and their proof."""
+
+
+@app.command()
+def tune(
+    config: Annotated[Path | None, typer.Argument(metavar="CONFIG.toml", help="Built-in unless given.")] = None,
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Where the results go.")] = Path("out"),
+    workers: Annotated[
+        int | None, typer.Option(min=1, max=256, help="Cut classes solved at once; by default one a processor.")
+    ] = None,
+    as_json: Json = False,
+) -> int:
+    """Make a book of tables, its pictures and report.
+
+    Exit code 1 if the table of a feasible case misses a limit of the configuration.
+    """
+    from synth.cli.tune import tune_command
+
+    return tune_command(config, output, workers, as_json)
+
+
+@app.command()
+def validate(
+    source: Source,
+    config: Config = None,
+    passes: Annotated[
+        int | None, typer.Option(min=100, max=100_000_000, help="Passes of each table; as configured unless given.")
+    ] = None,
+    seed: Annotated[
+        int | None, typer.Option(min=0, max=2**63 - 1, help="Of the random numbers; as configured unless given.")
+    ] = None,
+    as_json: Json = False,
+) -> int:
+    """Simulate exported tables once more.
+
+    Nothing is solved. Exit code 1 if a table misses a limit of the configuration.
+    """
+    from synth.cli.validate import validate_command
+
+    return validate_command(source, config, passes, seed, as_json)
+
+
+@app.command()
+def plot(
+    source: SourceOrDirectory,
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Where the pictures go.")] = Path(
+        "plots"
+    ),
+    config: Config = None,
+    as_json: Json = False,
+) -> int:
+    """Draw exported tables.
+
+    Lines and surfaces; where the plant is known, simulated passes too. Nothing is solved.
+    """
+    from synth.cli.plot import plot_command
+
+    return plot_command(source, output, config, as_json)
+
+
+@app.command()
+def inspect(source: SourceOrDirectory, as_json: Json = False) -> int:
+    """Tell what is in exported tables.
+
+    What they are for, what they promise, where their lines run; checksums are checked.
+    """
+    from synth.cli.inspect import inspect_command
+
+    return inspect_command(source, as_json)
+
+
+@app.command()
+def export(
+    source: Source,
+    form: Annotated[str, typer.Option("--format", metavar="json|csv", help="Form of the tables.")],
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Where they go.")] = Path(),
+    as_json: Json = False,
+) -> int:
+    """Write tables in another form, one file each."""
+    from synth.cli.export import export_command
+
+    return export_command(source, form, output, as_json)
+
+
+@app.command()
+def init(
+    retarder: Annotated[str | None, typer.Option(metavar="NAME", help="A retarder of the library.")] = None,
+    show_list: Annotated[bool, typer.Option("--list", help="Only list the retarders of the library.")] = False,
+    as_json: Json = False,
+) -> int:
+    """Print a commented configuration to start from."""
+    from synth.cli.init import init_command
+
+    return init_command(retarder, show_list, as_json)

@@ -1,0 +1,113 @@
+"""`retarder-synth inspect`: what tables are for, what they promise, where their lines run; read without the solver."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from synth.table_file import TableFile, read_tables, summary_beside
+from tuning_tables import DamagedTable
+from tuning_tables.document import to_document
+from tuning_tables.table import ControllerTable
+
+SHOWN_POINTS = 5
+
+
+def inspect_command(source: Path, as_json: bool) -> int:
+    """Print the contents of the tables in `source`; `TableError` for a damaged one."""
+    files = read_tables(source, directory_allowed=True)
+    summary = checked_summary(source) if source.is_dir() else None
+    if as_json:
+        found: dict[str, Any] = {"path": str(source), "files": [file_document(file) for file in files]}
+        if summary is not None:
+            found["summary"] = summary
+        print(json.dumps(found, indent=1, ensure_ascii=False))
+        return 0
+    for file in files:
+        print(f"{file.path}: {contents(file)}")
+        for table in file.tables:
+            print(*table_words(table), sep="\n")
+    if summary is not None:
+        print(f"{source / 'summary.json'}: {summary['sentence']}")
+    return 0
+
+
+def contents(file: TableFile) -> str:
+    """What is in a file, and that its sum is right."""
+    if file.kind == "book":
+        return f"a book of {len(file.tables)} tables; its seal and SHA-256 are right"
+    return "a controller table; its CRC-32 is right"
+
+
+def file_document(file: TableFile) -> dict[str, Any]:
+    """A file for programs."""
+    tables = [{**to_document(table), "lines_at": lines_at(table)} for table in file.tables]
+    return {"path": str(file.path), "kind": file.kind, "checksum": "right", "tables": tables}
+
+
+def table_words(table: ControllerTable) -> list[str]:
+    """A table in words, a line a fact."""
+    retarder, cut, predicted = table.retarder, table.cut, table.predicted
+    zones = ", ".join(f"{begin:g} to {end:g} m" for begin, end in retarder.zones_m)
+    validated = "it was not simulated"
+    if table.validated:
+        low, high = table.validated.rms_ci95_m_s
+        rms = table.validated.rms_m_s
+        validated = f"simulated rms {rms:.4f} m/s [{low:.4f}, {high:.4f}] in {table.validated.passes} passes"
+    words = [
+        f"  {table.id}: leave with {table.target_speed_m_s:g} m/s",
+        f"    retarder   {retarder.name}; zones {zones}; the pass ends at {retarder.exit_m:g} m",
+        f"    cut        category {cut.category}, {cut.mass_t:g} t on {len(cut.axle_offsets_m)} axles",
+        f"    made       {table.created} by {table.generator.name} {table.generator.version}, "
+        f"configuration {table.generator.config_sha256[:16]}…",
+        f"    promised   rms {predicted.rms_m_s:.4f} m/s, bias {predicted.bias_m_s:+.4f} m/s, over-speed "
+        f"{predicted.p_overspeed:.2g}, {predicted.switchings:.1f} switchings a pass; {validated}",
+        f"    lines      degree {table.degree}, path {table.valid.s_m[0]:g} to {table.valid.s_m[1]:g} m, "
+        f"speed {table.valid.v_m_s[0]:g} to {table.valid.v_m_s[1]:g} m/s; in m/s at",
+    ]
+    path = shown_path(table)
+    words.append(f"      {'s, m':<22}" + "".join(f"{s:>9.2f}" for s in path))
+    for line in lines_at(table):
+        name = f"stage {line['k']} ({line['pressure_kpa']:g} kPa) {line['line']}"
+        words.append(f"      {name:<22}" + "".join(f"{v:>9.3f}" for v in line["v_m_s"]))
+    return words
+
+
+def shown_path(table: ControllerTable) -> list[float]:
+    """A few places along the path, metres."""
+    return [float(s) for s in np.linspace(*table.valid.s_m, SHOWN_POINTS)]
+
+
+def lines_at(table: ControllerTable) -> list[dict[str, Any]]:
+    """Every line of the stages in use at the shown places, as evaluated in double precision."""
+    found = []
+    for stage in table.stages:
+        for name, line in (("down below", stage.lower), ("up above", stage.upper)):
+            if line is not None:
+                speeds = [float(np.polynomial.polynomial.polyval(s, line)) for s in shown_path(table)]
+                found.append({"k": stage.k, "pressure_kpa": stage.pressure_kpa, "line": name, "v_m_s": speeds})
+        if stage.upper is None:
+            break  # the stages above are never asked for
+    return found
+
+
+def checked_summary(directory: Path) -> dict[str, Any] | None:
+    """Whether all files that summary.json lists are there unchanged; None without one, `DamagedTable` otherwise."""
+    document = summary_beside(directory)
+    if document is None or not (directory / "summary.json").is_file():
+        return None
+    files = document.get("files")
+    listed = files if isinstance(files, dict) else {}
+    for name, sha256 in sorted(listed.items()):
+        file = directory / str(name)
+        if not file.is_file():
+            raise DamagedTable(f"{directory / 'summary.json'}: it lists {name}, which is not there; tune again")
+        if hashlib.sha256(file.read_bytes()).hexdigest() != sha256:
+            raise DamagedTable(f"{file}: its SHA-256 is not the one in summary.json; tune again")
+    accepted = "accepted" if document.get("accepted") else "not accepted"
+    sentence = f"all {len(listed)} files that it lists are there unchanged; {accepted}: {document.get('verdict')}"
+    return {"files": len(listed), "accepted": document.get("accepted"), "sentence": sentence}

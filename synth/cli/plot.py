@@ -1,0 +1,57 @@
+"""`retarder-synth plot`: pictures of exported tables; nothing is solved."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from synth.cli import say
+
+FACTORS = (0.8, 1.0, 1.2)
+PASSES = 5000
+
+
+def plot_command(source: Path, output: Path, config_path: Path | None, as_json: bool) -> int:
+    """Draw the tables in `source` into `output`; passes only for tables that a class of the configuration fits."""
+    from synth.cli.interrupt import interruptible
+    from synth.config_file import BUILT_IN, load_config
+    from synth.input_error import InputError
+    from synth.kernel_cache import guarded, use_kernel_cache
+    from synth.output_directory import make_directory
+    from synth.table_file import file_stem, read_tables
+
+    config = load_config(config_path)
+    tables = [table for file in read_tables(source, directory_allowed=True) for table in file.tables]
+    make_directory(output)
+    use_kernel_cache()
+    from synth.plots.figure_file import save_figure
+    from synth.plots.table_picture import Passes, table_lines, table_passes, table_surfaces
+    from synth.validate_table import plant_for
+    from tuning_tables import ControllerTable
+
+    def passes_of(table: ControllerTable) -> Passes:
+        from synth.closed_loop import TableController, simulate, trace
+        from synth.random_passes import random_passes
+
+        plant = plant_for(table, config, str(config_path or BUILT_IN))[1]
+        passes, law = random_passes(config.validation.seed, 0, PASSES), TableController(table)
+        traces = tuple(trace(plant, law, passes, i, cut_factor=factor) for i, factor in enumerate(FACTORS))
+        return Passes(simulate(plant, law, passes), traces, FACTORS)
+
+    written: list[str] = []
+    with interruptible(output):
+        for table in tables:
+            try:
+                passes = guarded(passes_of, table)
+            except InputError as fault:
+                if config_path is not None:
+                    raise
+                say(f"no passes are drawn: {fault}")
+                passes = None
+            figures = {"lines": table_lines(table, passes), "surfaces": table_surfaces(table, passes)}
+            if passes is not None:
+                figures["passes"] = table_passes(table, passes)
+            for name, figure in figures.items():
+                written += map(str, save_figure(figure, output, f"{file_stem(table)}-{name}"))
+    print(json.dumps({"files": written}, indent=1, ensure_ascii=False) if as_json else "\n".join(written))
+    return 0

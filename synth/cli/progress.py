@@ -1,0 +1,55 @@
+"""How far a tune is, on stderr: a line for each case, and on a terminal a bar below them."""
+
+from __future__ import annotations
+
+import sys
+import time
+from types import TracebackType
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
+from rich.progress import Progress as Bar
+
+
+class Progress:
+    """Counts finished cases out of `cases`; a context manager. Its methods may be called by any thread."""
+
+    def __init__(self, cases: int) -> None:
+        self._cases = cases
+        self._done = 0
+        self._started = time.monotonic()
+        self._console = Console(stderr=True, highlight=False, soft_wrap=True)
+        columns = (TextColumn("tuning"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+        self._bar = Bar(*columns, console=self._console, transient=True, disable=not self._console.is_terminal)
+        self._task = self._bar.add_task("tuning", total=cases)
+
+    def __enter__(self) -> Progress:
+        self._bar.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, fault: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._bar.stop()
+
+    def done(self, sentence: str) -> None:
+        """`sentence` tells of a finished case, or of a study beside the cases."""
+        if "study" not in sentence:
+            self._done = min(self._done + 1, self._cases)
+        self._bar.update(self._task, completed=self._done)
+        elapsed = time.monotonic() - self._started
+        left = elapsed / max(self._done, 1) * (self._cases - self._done)
+        self.note(f"[{self._done:{len(str(self._cases))}}/{self._cases}] {sentence}; {pace(elapsed, self._done, left)}")
+
+    def note(self, sentence: str) -> None:
+        """A line of its own."""
+        if self._bar.disable:
+            print(sentence, file=sys.stderr, flush=True)
+        else:
+            self._console.print(sentence, markup=False)
+
+
+def pace(elapsed_s: float, done: int, left_s: float) -> str:
+    """Rate so far and time to come."""
+    rate = f"{elapsed_s:.0f} s, {60.0 * done / max(elapsed_s, 1e-3):.0f} cases a minute"
+    return f"{rate}, about {left_s:.0f} s left" if left_s > 0.5 else rate

@@ -1,0 +1,88 @@
+"""`retarder-synth tune`: everything that can be refused is refused before anything is computed or written."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from pathlib import Path
+
+from synth.cli import LIMITS_MISSED, OK, say
+from synth.input_error import InputError
+from synth.resolved_config import ResolvedConfig
+
+
+def tune_command(path: Path | None, output: Path, workers: int | None, as_json: bool) -> int:
+    """Tune the configuration in `path` into the directory `output`; the exit code."""
+    from synth.config_file import load_config
+    from synth.output_directory import output_directory
+
+    config = load_config(path)
+    workers = workers or min(len(config.cuts), len(os.sched_getaffinity(0)))
+    require_room(config, path, workers)
+    require_date()
+    with output_directory(output) as directory:
+        for warning in config.warnings:
+            say(f"warning: {warning}")
+        return tune_into(directory, config, path, workers, as_json)
+
+
+def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, workers: int, as_json: bool) -> int:
+    """The work itself, and what is said about it."""
+    from synth.cli.interrupt import interruptible
+    from synth.cli.progress import Progress
+    from synth.kernel_cache import guarded, use_kernel_cache
+
+    started = time.monotonic()
+    cache = use_kernel_cache()
+    with interruptible(directory), Progress(len(config.cuts) * len(config.targets_m_s)) as progress:
+        if next(cache.rglob("*.nbi"), None) is None:
+            progress.note("compiling the kernels for this machine, once; this takes about a minute")
+        from synth.acceptance import judge
+        from synth.outputs import write_outputs
+        from synth.tune import tune
+        from tuning_tables import InvalidTable
+
+        try:
+            book = guarded(tune, config, directory / "tables", progress.done, workers)
+        except InvalidTable as fault:
+            raise InputError(
+                f"{path or 'built-in configuration'}: the lines that were found make no table ({fault}) "
+                "make grid.path_step_m or grid.speed_step_m_s smaller, or lower fit.degree"
+            ) from None
+        progress.note(f"{len(book.cases)} cases computed in {time.monotonic() - started:.1f} s")
+        verdict = judge(book.cases, config.acceptance)
+        summary = write_outputs(book, verdict, directory, workers, progress.note)
+        progress.note(f"all files written after {time.monotonic() - started:.1f} s")
+    if as_json:
+        sys.stdout.write((directory / "summary.json").read_text(encoding="utf-8"))
+    else:
+        from synth.cli.book_table import print_book
+
+        print_book(summary, directory)
+    return OK if verdict.accepted else LIMITS_MISSED
+
+
+def require_room(config: ResolvedConfig, path: Path | None, workers: int) -> None:
+    """`InputError` if the grid would not fit into memory."""
+    from plant_models import PlantError
+    from synth.grid import require_memory
+
+    for label, plant in config.plants():
+        try:
+            require_memory(label, plant, config.resolution, workers)
+        except PlantError as error:
+            sentence = str(error).replace("grid: ", "grid.", 1)
+            raise InputError(f"{path or 'built-in configuration'}: {sentence}") from None
+
+
+def require_date() -> None:
+    """`InputError` if SOURCE_DATE_EPOCH is set to what is no time."""
+    from datetime import UTC, datetime
+
+    text = os.environ.get("SOURCE_DATE_EPOCH")
+    try:
+        if text:
+            datetime.fromtimestamp(int(text), UTC)
+    except (OSError, OverflowError, ValueError):
+        raise InputError(f"SOURCE_DATE_EPOCH is {text!r}; it must be whole seconds since 1970") from None

@@ -1,0 +1,188 @@
+"""Pictures of an exported table, drawn from its file alone: lines by stage, surfaces; with a plant, passes too."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]  # ships no type information
+
+from synth.closed_loop import ExitSample, PassTrace
+from synth.exit_statistics import exit_statistics
+from synth.plots.house_style import (
+    BLUE,
+    GREY,
+    INK,
+    LINE_COLOURS,
+    LINE_STYLES,
+    SKY,
+    VERMILLION,
+    dress,
+    legend_below,
+    new_figure,
+    place,
+)
+from synth.plots.policy_map import DOWN, HOLD, UP, finite, parts_in_stage
+from synth.plots.sample_passes import outcome
+from synth.plots.surfaces import PATH_POINTS, ribs, sheet
+from synth.tabulate import lines_of
+from tuning_tables import ControllerTable
+
+LINE_POINTS = 201
+
+
+@dataclass(frozen=True)
+class Passes:
+    """Simulated passes of a table: a sample of exits, and a few passes with their friction factors."""
+
+    sample: ExitSample
+    traces: tuple[PassTrace, ...]
+    factors: tuple[float, ...]
+
+
+def table_lines(table: ControllerTable, passes: Passes | None) -> Figure:
+    """One panel a stage in use: where the table raises, holds and lowers, over path in m and speed in m/s."""
+    stages = stages_in_use(table)
+    columns = math.ceil((stages + 1) / 2)
+    figure = new_figure(3.7 * columns + 0.4, 6.6, "Switching lines of the exported table", subject(table))
+    place(figure, left=0.6, right=0.2, bottom=0.5, top=0.85, w=0.08, h=0.22)
+    grid = figure.subplots(2, columns, sharex=True, sharey=True)
+    for stage, axes in enumerate(grid.flat):
+        if stage < stages:
+            draw_stage(axes, table, stage, passes)
+        else:
+            axes.set_axis_off()
+    for stage in range(stages):
+        below_is_free = stage + columns >= stages
+        grid.flat[stage].tick_params(labelbottom=below_is_free)
+        if below_is_free:
+            grid.flat[stage].set_xlabel("path of the first axle, m", fontsize=9)
+    for row in grid:
+        row[0].set_ylabel("speed, m/s", fontsize=9)
+    handles = [
+        Patch(facecolor=UP, edgecolor=GREY, label="one stage up (brake more)"),
+        Patch(facecolor=HOLD, edgecolor=GREY, label="hold"),
+        Patch(facecolor=DOWN, edgecolor=GREY, label="one stage down (release)"),
+        Line2D([], [], color=VERMILLION, linewidth=2.0, label="upper line"),
+        Line2D([], [], color=BLUE, linewidth=2.0, linestyle="--", label="lower line"),
+        Patch(facecolor=INK, label="retarder zones"),
+    ]
+    if passes:
+        handles.insert(5, Line2D([], [], color=INK, linewidth=0.8, label="simulated passes while in the stage"))
+    box = grid.flat[stages].get_position()
+    where = (box.x0, box.y0, box.width, box.height)
+    figure.legend(handles=handles, loc="center", bbox_to_anchor=where, fontsize=9, frameon=False)
+    return figure
+
+
+def draw_stage(axes: Axes, table: ControllerTable, stage: int, passes: Passes | None) -> None:
+    """The panel of one stage."""
+    low, high = window_m_s(table, passes)
+    path = np.linspace(*table.valid.s_m, LINE_POINTS)
+    lines = lines_of(table, path)
+    lower, upper = lines.lower_m_s[stage], lines.upper_m_s[stage]
+    axes.set_facecolor(HOLD)
+    axes.fill_between(path, low, np.clip(lower, low, high), color=DOWN, linewidth=0)
+    axes.fill_between(path, np.clip(upper, low, high), high, color=UP, linewidth=0)
+    axes.plot(path, finite(lower), "--", color=BLUE, linewidth=2.0, zorder=5)
+    axes.plot(path, finite(upper), "-", color=VERMILLION, linewidth=2.0, zorder=5)
+    if passes:
+        axes.plot(*parts_in_stage(passes.traces, stage), color=INK, linewidth=0.8, zorder=6)
+    bars = [(start, end - start) for start, end in table.retarder.zones_m]
+    axes.broken_barh(bars, (0.0, 0.025), transform=axes.get_xaxis_transform(), facecolor=INK, zorder=4)
+    dress(axes, f"stage {stage} · {table.stages[stage].pressure_kpa:g} kPa")
+    axes.grid(False)
+    axes.set(xlim=table.valid.s_m, ylim=(low, high))
+
+
+def table_surfaces(table: ControllerTable, passes: Passes | None) -> Figure:
+    """V_lo and V_hi over path in m and pressure in kPa, linear between the stages, cut off at the speeds shown."""
+    figure = new_figure(7.6, 6.4, "Switching surfaces of the exported table", subject(table))
+    axes = Axes3D(figure, rect=(0.0, 0.04, 0.95, 0.92), computed_zorder=False)
+    figure.add_axes(axes)
+    stages, window = stages_in_use(table), window_m_s(table, passes)
+    path = np.linspace(*table.valid.s_m, PATH_POINTS)
+    pressure = np.array([stage.pressure_kpa for stage in table.stages[:stages]])
+    lines = lines_of(table, path)
+    for all_speeds, colour, alpha in ((lines.lower_m_s, BLUE, 0.75), (lines.upper_m_s, VERMILLION, 0.45)):
+        speeds = all_speeds[:stages]
+        has_line = np.isfinite(speeds).all(axis=1)
+        if has_line.any():
+            shown = np.clip(speeds[has_line], *window)
+            axes.add_collection3d(sheet(path, pressure[has_line], shown, colour, alpha), autolim=False)
+            axes.add_collection3d(ribs(path, pressure[has_line], shown, colour), autolim=False)
+    axes.set(xlim=table.valid.s_m, ylim=(pressure[0], pressure[-1]), zlim=window)
+    axes.set_xlabel("path of the first axle, m", fontsize=9)
+    axes.set_ylabel("pressure, kPa", fontsize=9)
+    axes.set_zlabel("speed, m/s", fontsize=9)
+    axes.set_yticks(pressure)
+    axes.tick_params(labelsize=8)
+    axes.view_init(elev=17.0, azim=-52.0)
+    axes.set_box_aspect((1.25, 1.0, 0.85), zoom=1.12)
+    handles = [
+        Patch(facecolor=VERMILLION, alpha=0.6, edgecolor=INK, label="above it: one stage up"),
+        Patch(facecolor=BLUE, alpha=0.6, edgecolor=INK, label="below it: one stage down"),
+    ]
+    legend_below(figure, handles, columns=2, bottom_in=0.12)
+    return figure
+
+
+def table_passes(table: ControllerTable, passes: Passes) -> Figure:
+    """A few passes over path and time on the left, the histogram of the simulated exit speeds on the right."""
+    figure = new_figure(12.0, 5.2, "Simulated passes of the exported table", subject(table))
+    place(figure, left=0.65, right=0.2, bottom=0.95, top=0.95, w=0.24, h=0.28)
+    grid = figure.add_gridspec(2, 2, width_ratios=(1.25, 1.0))
+    speed, pressure, exits = (figure.add_subplot(grid[part]) for part in ((0, 0), (1, 0), (slice(None), 1)))
+    handles: list[Line2D] = []
+    for trace, factor, colour, style in zip(passes.traces, passes.factors, LINE_COLOURS, LINE_STYLES, strict=False):
+        speed.plot(trace.path_m, trace.speed_m_s, color=colour, linestyle=style, linewidth=1.5)
+        pressure.step(trace.time_s, trace.overpressure_kpa, where="post", color=colour, linestyle=style, linewidth=1.3)
+        label = f"friction factor {factor:.2f}: {outcome(trace)}"
+        handles.append(Line2D([], [], color=colour, linestyle=style, linewidth=1.6, label=label))
+    speed.axhline(table.target_speed_m_s, color=INK, linewidth=1.0, linestyle=(0, (4, 3)), zorder=1)
+    dress(speed, "true speed, m/s", "path of the first axle, m")
+    dress(pressure, "pressure above the touch of the pads, kPa", "time since the first axle entered, s")
+    speed.set(xlim=table.valid.s_m, ylim=(0.0, None))
+    pressure.set(xlim=(0.0, None), ylim=(0.0, None))
+    draw_exits(exits, table, passes.sample)
+    legend_below(figure, handles, columns=len(handles))
+    return figure
+
+
+def draw_exits(axes: Axes, table: ControllerTable, sample: ExitSample) -> None:
+    """Histogram of the exit speeds, with the target and what the file predicts."""
+    found = exit_statistics(sample, table.target_speed_m_s)
+    low, high = found.rms_ci95_m_s
+    moving = sample.exit_speed_m_s[~sample.stalled]
+    if moving.size:
+        axes.hist(moving, bins=np.histogram_bin_edges(moving, 60).tolist(), color=SKY)
+    axes.axvline(table.target_speed_m_s, color=INK, linewidth=1.0)
+    title = (
+        f"{found.passes} passes: rms {found.rms_m_s:.3f} [{low:.3f}, {high:.3f}] m/s\n"
+        f"the file predicts {table.predicted.rms_m_s:.3f} m/s · {found.stalls} stopped"
+    )
+    dress(axes, title, "exit speed, m/s", "passes")
+
+
+def subject(table: ControllerTable) -> str:
+    """What the table is for, in one line."""
+    cut, axles = table.cut, len(table.cut.axle_offsets_m)
+    return f"{table.id} · {table.retarder.name} · category {cut.category}, {cut.mass_t:g} t, {axles} axles"
+
+
+def stages_in_use(table: ControllerTable) -> int:
+    """Number of stages that the table ever asks for."""
+    return next(stage.k for stage in table.stages if stage.upper is None) + 1
+
+
+def window_m_s(table: ControllerTable, passes: Passes | None) -> tuple[float, float]:
+    """Speeds worth drawing: around the target, and up to what the passes reach or else the range of validity."""
+    traces: Sequence[PassTrace] = passes.traces if passes else ()
+    highest = max((float(trace.speed_m_s.max()) for trace in traces), default=table.valid.v_m_s[1] - 0.4)
+    return max(0.0, table.target_speed_m_s - 1.0), highest + 0.4
