@@ -82,7 +82,10 @@ class RetarderPosition:
     max_entry_speed_m_s: float
 
     def __post_init__(self) -> None:
-        require(len(self.zones_m) >= 1 and self.zones_m[0][0] == 0.0, f"retarder: zones_m is {self.zones_m}; the first zone must start at 0")
+        require(
+            len(self.zones_m) >= 1 and self.zones_m[0][0] == 0.0,
+            f"retarder: zones_m is {self.zones_m}; the first zone must start at 0",
+        )
         flat = [edge for zone in self.zones_m for edge in zone]
         require(
             all(b > a for a, b in pairwise(flat)) and flat[-1] <= 500.0,

@@ -10,6 +10,7 @@ import numpy as np
 from synth.case_result import CaseResult
 from synth.exit_statistics import ExitStatistics
 from synth.plots.case_names import case_name, contest, honesty, why_infeasible
+from synth.report.figures import counted
 from synth.settings import AcceptanceSettings
 
 
@@ -58,12 +59,12 @@ def judge(cases: Sequence[CaseResult], limits: AcceptanceSettings) -> Verdict:
         sentence = "no case is feasible, so there is nothing to accept"
     elif bad:
         found = "; ".join(f"{verdict.name}: {', '.join(verdict.missed)}" for verdict in bad)
-        sentence = f"{len(bad)} of {cases_in_words(len(feasible))} miss a limit ({found})"
+        sentence = f"a limit is missed in {len(bad)} of {counted(len(feasible), 'feasible case')} ({found})"
     else:
         worst = max((case for case, _ in feasible), key=lambda case: contest(case).table.statistics.rms_m_s)
         rms = contest(worst).table.statistics.rms_m_s
         sentence = (
-            f"all of {cases_in_words(len(feasible))} keep the limits; the worst rms is {rms:.3f} m/s "
+            f"the limits are kept in {counted(len(feasible), 'feasible case')}; the worst rms is {rms:.3f} m/s "
             f"({case_name(worst)}) where {limits.rms_m_s:g} m/s are allowed"
         )
     outside = [f"{verdict.name} ({verdict.obstacle})" for verdict in judged if not verdict.feasible]
@@ -104,8 +105,3 @@ def missed_limits(
 def overspeed_share(exit_speeds_m_s: np.ndarray, target_m_s: float, margin_m_s: float) -> float:
     """Share of the passes that leave faster than target + margin."""
     return float(np.mean(exit_speeds_m_s.astype(np.float64) - target_m_s > margin_m_s))
-
-
-def cases_in_words(number: int) -> str:
-    """'1 feasible case', '3 feasible cases'."""
-    return f"{number} feasible case{'' if number == 1 else 's'}"

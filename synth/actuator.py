@@ -49,9 +49,7 @@ class Actuator:
         return int(self.command.shape[1])
 
 
-def stage_locked_actuator(
-    position: RetarderPosition, sensor: DopplerSensor, top_stage: int, substeps: int
-) -> Actuator:
+def stage_locked_actuator(position: RetarderPosition, sensor: DopplerSensor, top_stage: int, substeps: int) -> Actuator:
     """Modes and chains of `position` with its stages 0 … `top_stage` under the regulator's sampling."""
     touch = position.force.touch_pressure_kpa
     modes = resting_modes(position, top_stage)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,12 +66,14 @@ def solve_all(transitions: Transitions, aims: Sequence[tuple[float, Criterion]])
     lower, upper = np.empty((nodes, stages, width)), np.empty((nodes, stages, width))
     gain_down, gain_up = (np.empty((nodes, stages, width, points)) for _ in range(2))
     noise = measured_speed_std(t.plant.sensor.noise_m_s, t.plant.sensor.resolution_m_s)
-    sweep(
-        ((t.grid.speed_m_s[:, None] - targets) ** 2).ravel(), targets**2 + stall_costs, change_costs, TIE_M2_S2, noise, *true_speed_weights(t.grid.speed_m_s, noise),
+    arguments = (
+        ((t.grid.speed_m_s[:, None] - targets) ** 2).ravel(), targets**2 + stall_costs, change_costs, TIE_M2_S2,
+        noise, *true_speed_weights(t.grid.speed_m_s, noise),
         hidden_prior(t), *sweep_arguments(t), t.scenarios.factor, t.scenarios.extra_m_s2,
         t.grid.path_step_m, t.grid.energy_step_m2_s2, t.plant.sensor.sample_period_s, len(t.entry),
         values, lower, upper, gain_down, gain_up,
     )  # fmt: skip
+    sweep(*arguments)
     values = values.reshape(*shape[:-1], points, width)
     return tuple(
         Solution(
@@ -86,8 +89,8 @@ def solve_all(transitions: Transitions, aims: Sequence[tuple[float, Criterion]])
     )
 
 
-def sweep_arguments(t: Transitions) -> tuple[NDArray[np.float64], ...]:
-    """The plant's arrays in the order in which `sweep` takes them."""
+def sweep_arguments(t: Transitions) -> Any:
+    """The plant's arrays, a tuple in the order in which `sweep` takes them."""
     a = t.landings
     return (
         t.grid.speed_m_s, t.actuator.mode_stage, t.actuator.mode_overpressure_kpa,

@@ -167,7 +167,7 @@ def tune_baselines(plant: Plant, target_m_s: float, passes: RandomPasses) -> tup
 
 
 def tune(family: Family, loop: ClosedLoop, target_m_s: float, few: Draws, draws: Draws) -> TunedBaseline:
-    """The best member of `family`: a coarse grid on the passes `few`, then a simplex search on `draws`; deterministic."""
+    """The best member of `family`: a coarse grid on `few` passes, then a simplex search on `draws`; deterministic."""
     from scipy.optimize import minimize  # start-up: scipy only where it is needed
 
     def rms(stage: int, values: tuple[float, ...], draws: Draws) -> float:
@@ -176,7 +176,7 @@ def tune(family: Family, loop: ClosedLoop, target_m_s: float, few: Draws, draws:
 
     top = loop.stages - 1
     members = list(product(range(1, top + 1) if family.one_stage else (top,), product(*family.grids)))
-    stage, start = min(members, key=lambda member: rms(*member, few))
+    stage, start = min(members, key=lambda member: rms(member[0], member[1], few))
     steps = [0.5 * (grid[1] - grid[0]) for grid in family.grids]
 
     def cost(x: NDArray[np.float64]) -> float:

@@ -5,90 +5,38 @@ from __future__ import annotations
 import math
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields
-from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import path_breaks_m, path_coefficients
 from synth.actuator import stage_locked_actuator
+from synth.controllers import Controller, LineController, TableController, fixed
 from synth.kernels import closed_loop as kernel
 from synth.problem import Plant
 from synth.random_passes import PATH_CELLS, RandomPasses, random_passes
-from synth.switching_lines import SwitchingLines
-from tuning_tables.table import ControllerTable
 
-Scalar = TypeVar("Scalar", bound=np.generic)
+__all__ = [
+    "ClosedLoop",
+    "Controller",
+    "ExitSample",
+    "LineController",
+    "PassTrace",
+    "TableController",
+    "close_loop",
+    "simulate",
+    "simulate_many",
+    "trace",
+]
 
-CELL_M = 0.25
-"""Longest path cell; η is constant in a cell."""
+CELL_M = 0.5
+"""Longest path cell, at most a quarter of the correlation length; η is constant in a cell."""
 
-SUBSTEPS = 10
+SUBSTEPS = 5
 """Parts of a sampling period in which a transient is played as its mean (see the convergence test)."""
 
 CHUNK_PASSES = 2000
 """Passes whose random numbers are in memory at a time, for each thread (6 MB)."""
-
-
-@dataclass(frozen=True)
-class TableController:
-    """A regulator that runs an exported table with the table's own rule."""
-
-    table: ControllerTable
-
-    @property
-    def stages(self) -> int:
-        """Number of stages K + 1."""
-        return int(self.table.coefficients.shape[0])
-
-    def law(self) -> kernel.Rule:
-        """The rule as the kernel takes it."""
-        none = fixed(np.empty((0, 0)), np.float64)
-        table = self.table
-        arrays = (
-            fixed(table.coefficients, np.float32),
-            fixed(table.has_line, np.bool_),
-            fixed(table.valid_range, np.float32),
-        )
-        return kernel.Rule(*arrays, none, none, 1.0, False, 0.0, 0.0)
-
-
-@dataclass(frozen=True)
-class LineController:
-    """A regulator that compares speed with switching lines.
-
-    `multi_step`: the comparison is repeated at the stage reached before the command is sent, so that one
-    command may jump over stages. `lead_s` τ: compared is measured speed + τ·slope, the slope of the
-    measured speed being filtered to first order over `slope_filter_s`.
-    """
-
-    lines: SwitchingLines
-    multi_step: bool = False
-    lead_s: float = 0.0
-    slope_filter_s: float = 0.3
-
-    @property
-    def stages(self) -> int:
-        """Number of stages K + 1."""
-        return self.lines.stages
-
-    def law(self) -> kernel.Rule:
-        """The rule as the kernel takes it."""
-        lines = self.lines
-        return kernel.Rule(
-            fixed(np.empty((0, 0, 0)), np.float32),
-            fixed(np.empty((0, 0)), np.bool_),
-            fixed(np.empty(0), np.float32),
-            fixed(lines.lower_m_s, np.float64),
-            fixed(lines.upper_m_s, np.float64),
-            float(lines.nodes_m[-1]) / (lines.nodes_m.size - 1),
-            self.multi_step,
-            self.lead_s,
-            self.slope_filter_s,
-        )
-
-
-Controller = TableController | LineController
 
 
 @dataclass(frozen=True)
@@ -238,14 +186,15 @@ def path_cells(plant: Plant) -> kernel.Path:
 
 
 def cell_edges_m(plant: Plant) -> NDArray[np.float64]:
-    """Edges of at most 512 cells of at most 0.25 m, none of them with a change of N(s) or grade inside.
+    """Edges of at most 512 cells of at most 0.5 m, none of them with a change of N(s) or grade inside.
 
     Long cuts get longer cells; if their axles alone make too many breaks, cells take the mean over a break.
     """
     breaks = path_breaks_m(plant.position, plant.cut, plant.profile)
     if breaks.size > PATH_CELLS // 2:
         return np.linspace(0.0, plant.exit_m, PATH_CELLS + 1)
-    count = min(math.ceil(plant.exit_m / CELL_M), PATH_CELLS - breaks.size)
+    cell_m = min(CELL_M, plant.friction.correlation_length_m / 4.0)
+    count = min(math.ceil(plant.exit_m / cell_m), PATH_CELLS - breaks.size)
     uniform = np.linspace(0.0, plant.exit_m, count + 1)
     # A sliver between a break and a node of the mesh would only cost time and digits.
     far = np.abs(uniform[:, None] - breaks).min(axis=1) > 1e-3
@@ -292,10 +241,3 @@ def trace(
     """Pass `index` of `passes` event by event: the same pass as in `simulate`."""
     loop = close_loop(plant, controller.stages)
     return loop.follow(controller, loop.draws(passes.part(index, index + 1), cut_factor))
-
-
-def fixed(array: NDArray[Any], dtype: type[Scalar]) -> NDArray[Scalar]:
-    """Contiguous read-only view or copy: the kernel is compiled for exactly such arrays, once."""
-    view: NDArray[Scalar] = np.ascontiguousarray(array, dtype=dtype).view()
-    view.setflags(write=False)
-    return view

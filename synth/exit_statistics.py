@@ -59,9 +59,7 @@ def exit_statistics(sample: ExitSample, target_m_s: float) -> ExitStatistics:
     )
 
 
-def pooled_statistics(
-    samples: Sequence[ExitSample], weights: Sequence[float], target_m_s: float
-) -> ExitStatistics:
+def pooled_statistics(samples: Sequence[ExitSample], weights: Sequence[float], target_m_s: float) -> ExitStatistics:
     """Statistics of a mixture: stratum i has probability `weights`[i] and was sampled by `samples`[i].
 
     The intervals follow from the strata's own variances; the one of `overspeed` is normal.

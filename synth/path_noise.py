@@ -99,9 +99,7 @@ def transient_noise(
     return TransientNoise(zeroth, mean, np.sqrt(variance))
 
 
-def force_weights(
-    overpressure: NDArray[np.float64], periods: NDArray[np.int64], longest: int
-) -> NDArray[np.float64]:
+def force_weights(overpressure: NDArray[np.float64], periods: NDArray[np.int64], longest: int) -> NDArray[np.float64]:
     """g (C, R, R): share of the brake work done in quantum t = 0 … r of a transient of r + 1 quanta."""
     steps = overpressure.shape[1]
     used = np.rint(periods * (steps / periods.max())).astype(int)

@@ -7,6 +7,7 @@ expected cost backward; the two are transposes of one another and agree to round
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -112,11 +113,12 @@ def forward_pass(
     band = np.empty((len(t.scenarios.weight), len(t.drive_m_s2), 2), dtype=np.int64)
     for i, weight in enumerate(t.scenarios.weight):
         one, sums = np.empty(points), np.empty(4)
-        forward(
+        arguments = (
             policy.down, policy.up, t.entry, *shared_arguments(t), t.scenarios.factor[i], t.scenarios.extra_m_s2[i],
             t.grid.path_step_m, t.grid.energy_step_m2_s2, t.plant.sensor.sample_period_s,
             samples[i], band[i], one, sums,
         )  # fmt: skip
+        forward(*arguments)
         samples[i] *= weight
         exits += weight * one
         totals += weight * sums
@@ -125,9 +127,7 @@ def forward_pass(
     return total, band
 
 
-def expected_cost(
-    transitions: Transitions, policy: Commands, target_speed_m_s: float, criterion: Criterion
-) -> float:
+def expected_cost(transitions: Transitions, policy: Commands, target_speed_m_s: float, criterion: Criterion) -> float:
     """Expected cost of the policy by the backward recursion, every state valued."""
     return backward_pass(transitions, policy, target_speed_m_s, criterion, None)[0]
 
@@ -151,7 +151,7 @@ def backward_pass(
     nothing, no_band = np.empty((0, 0, 0, 0)), np.empty((0, 2), dtype=np.int64)
     cost = 0.0
     for i, weight in enumerate(t.scenarios.weight):
-        cost += weight * backward(
+        arguments = (
             policy.down, policy.up, policy.down_slope, policy.up_slope, terminal, stalled,
             criterion.switching_tolerance_m2_s2, t.entry,
             *shared_arguments(t), t.scenarios.factor[i], t.scenarios.extra_m_s2[i], t.grid.path_step_m,
@@ -159,11 +159,12 @@ def backward_pass(
             nothing if occupancy is None else occupancy.samples[i],
             no_band if occupancy is None else occupancy.band[i], by_lower, by_upper,
         )  # fmt: skip
+        cost += weight * backward(*arguments)
     return float(cost), by_lower.T.copy(), by_upper.T.copy()
 
 
-def shared_arguments(t: Transitions) -> tuple[NDArray[np.float64], ...]:
-    """The plant's arrays in the order in which `forward` and `backward` take them."""
+def shared_arguments(t: Transitions) -> Any:
+    """The plant's arrays, a tuple in the order in which `forward` and `backward` take them."""
     a = t.landings
     return (
         t.grid.speed_m_s, t.actuator.mode_stage, t.actuator.mode_overpressure_kpa,

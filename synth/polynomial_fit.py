@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,7 +41,7 @@ class PolynomialLines:
 
     def at(self, nodes_m: NDArray[np.float64]) -> SwitchingLines:
         """The lines at path nodes, ±inf where there is none."""
-        values = self.coefficients @ basis(nodes_m, self.exit_m, self.degree).T
+        values: NDArray[np.float64] = self.coefficients @ basis(nodes_m, self.exit_m, self.degree).T
         lower = np.where(self.has_line[:, 0, None], values[:, 0], -np.inf)
         upper = np.where(self.has_line[:, 1, None], values[:, 1], np.inf)
         return SwitchingLines(np.array(nodes_m), lower, upper)
@@ -59,8 +60,7 @@ class PolynomialLines:
 
 def basis(nodes_m: NDArray[np.float64], exit_m: float, degree: int) -> NDArray[np.float64]:
     """Legendre polynomials at the nodes, (nodes, r + 1)."""
-    values: NDArray[np.float64] = np.polynomial.legendre.legvander(2.0 * nodes_m / exit_m - 1.0, degree)
-    return values
+    return np.asarray(np.polynomial.legendre.legvander(2.0 * nodes_m / exit_m - 1.0, degree), dtype=np.float64)
 
 
 @dataclass(frozen=True)
@@ -99,9 +99,7 @@ def fit_lines(solution: Solution, occupancy: NDArray[np.float64], degree: int) -
     return Fit(opened(PolynomialLines(exit_m, coefficients, has_line)), curvature)
 
 
-def stage_occupancy(
-    occupancy: NDArray[np.float64], mode_stage: NDArray[np.int64], stages: int
-) -> NDArray[np.float64]:
+def stage_occupancy(occupancy: NDArray[np.float64], mode_stage: NDArray[np.int64], stages: int) -> NDArray[np.float64]:
     """Expected samples by node, stage and speed, (N, K + 1, E)."""
     by_mode = occupancy.sum(axis=(0, 3))
     out = np.zeros((by_mode.shape[0], stages, by_mode.shape[2]))
@@ -176,7 +174,7 @@ def polish(
         coefficients[free] += np.einsum("lab,lb->la", scale, y.reshape(-1, width))
         return PolynomialLines(start.exit_m, coefficients, start.has_line)
 
-    def objective(y: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
+    def objective(y: Any) -> Any:
         nonlocal calls
         calls += 1
         lines = unpack(y)
@@ -186,21 +184,21 @@ def polish(
         gradient = np.stack([by_lower @ matrix, by_upper @ matrix], axis=1)[free]
         return cost / before, np.einsum("lab,la->lb", scale, gradient).ravel() / before
 
+    options: Any = {"maxiter": max_iterations, "ftol": 3e-3}
+    constraints: Any = [gap_constraint(start, free, scale)]
     result = minimize(
         objective,
         np.zeros(len(free[0]) * width),
         jac=True,
         method="SLSQP",
-        constraints=[gap_constraint(start, free, scale)],
-        options={"maxiter": max_iterations, "ftol": 3e-3},
+        constraints=constraints,
+        options=options,
     )
     cost, lines = best[0]
     return Polish(opened(lines), before, cost, calls, str(result.message))
 
 
-def whitening(
-    curvature: NDArray[np.float64], matrix: NDArray[np.float64], cost: float
-) -> NDArray[np.float64]:
+def whitening(curvature: NDArray[np.float64], matrix: NDArray[np.float64], cost: float) -> NDArray[np.float64]:
     """Per line the matrix T with Tᵀ·H·T = 1, H the Hessian of cost/`cost` by the line's coefficients.
 
     `curvature` (lines, N), `matrix` (N, r + 1). A line that nothing depends on is held as if moving it by
@@ -215,7 +213,7 @@ def whitening(
 
 def gap_constraint(
     lines: PolynomialLines, free: tuple[NDArray[np.int64], ...], scale: NDArray[np.float64]
-) -> dict[str, object]:
+) -> dict[str, Any]:
     """Linear inequality V_hi,k(s) − V_lo,k(s) − gap ≥ 0 at points along the path, for SLSQP."""
     points = np.linspace(0.0, lines.exit_m, 13)
     matrix = basis(points, lines.exit_m, lines.degree)

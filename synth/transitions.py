@@ -163,7 +163,7 @@ def assemble(
     """Put the pieces of one plant together."""
     coefficients = path_coefficients(plant.position, plant.cut, plant.profile, grid.path_m)
     resistance = coefficients.resistance_m_s2_per_n_kn * plant.resistance.mean_n_per_kn
-    longest = int(math.ceil(landings.travel_m.max() / grid.path_step_m)) + 2
+    longest = math.ceil(landings.travel_m.max() / grid.path_step_m) + 2
     return Transitions(
         plant=plant,
         grid=grid,

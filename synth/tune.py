@@ -12,6 +12,7 @@ from pathlib import Path
 
 from synth.backward_induction import solve_all
 from synth.case_result import CaseResult, DegreeStudy
+from synth.closed_loop import close_loop
 from synth.friction_bound import friction_known_bounds
 from synth.grid import finer_for_check, require_memory
 from synth.problem import Plant, Problem
@@ -79,6 +80,7 @@ def tune_class(
     solutions, plain = both[: len(targets)], both[len(targets) :]
     published = solve_all(as_published(design), priced)
     bounds = friction_known_bounds(design, targets, criterion, passes, config.acceptance.rms_m_s)
+    draws = close_loop(plant, plant.top_stage + 1).draws(passes)
     results = []
     for i, target in enumerate(targets):
         order = CaseOrder(
@@ -92,6 +94,7 @@ def tune_class(
             check=check,
             degree=config.fit.degree,
             passes=passes,
+            draws=draws,
             tuning=tuning,
             generator=generator,
             created=created,

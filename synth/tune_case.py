@@ -10,8 +10,9 @@ import numpy as np
 from synth.backward_induction import Solution
 from synth.baselines import tune_baselines
 from synth.case_result import CaseResult, DegreeStudy, Feasibility, Indifference, Measured
-from synth.closed_loop import Controller, ExitSample, LineController, TableController, simulate, trace
+from synth.closed_loop import Controller, ExitSample, LineController, TableController, close_loop, trace
 from synth.exit_statistics import exit_statistics
+from synth.kernels.closed_loop import Draws
 from synth.policy_evaluation import ExitDensity, commands, cost_and_gradient, exit_density, occupancy_of
 from synth.policy_map import policy_map
 from synth.polynomial_fit import Evaluate, Fit, PolynomialLines, fit_lines, polish
@@ -34,7 +35,7 @@ class CaseOrder:
 
     `solution` on the design grid, `plain` the same without the switching tolerance, `published` in the formulation
     as published; `check` the finer grid to predict on; `tuning` are the passes that baselines are tuned on,
-    `passes` those that everything is compared on.
+    `draws` what the common passes mean for the plant.
     """
 
     label: str
@@ -47,6 +48,7 @@ class CaseOrder:
     check: Transitions
     degree: int
     passes: RandomPasses
+    draws: Draws
     tuning: RandomPasses
     generator: Generator
     created: str
@@ -67,7 +69,7 @@ def tune_case(order: CaseOrder) -> CaseResult:
     lines = polished(design, fit, target, problem.criterion)
     table, predicted = predicted_table(order, lines)
     table = order.store(table)
-    sample = simulate(problem.plant, TableController(table), order.passes)
+    sample = simulated(order, TableController(table))
     statistics = exit_statistics(sample, target)
     validated = Validated(statistics.passes, statistics.rms_m_s, statistics.rms_ci95_m_s)
     table = order.store(table.with_validated(validated))
@@ -133,9 +135,13 @@ def predict(check: Transitions, table: ControllerTable) -> ExitDensity:
 
 
 def run(order: CaseOrder, name: str, controller: Controller) -> Measured:
+    """Closed loop of `controller` on the common passes, as figures."""
+    return Measured(name, exit_statistics(simulated(order, controller), order.problem.target_speed_m_s))
+
+
+def simulated(order: CaseOrder, controller: Controller) -> ExitSample:
     """Closed loop of `controller` on the common passes."""
-    sample: ExitSample = simulate(order.problem.plant, controller, order.passes)
-    return Measured(name, exit_statistics(sample, order.problem.target_speed_m_s))
+    return close_loop(order.problem.plant, controller.stages).run(controller, order.draws)
 
 
 def rms_of_lines(transitions: Transitions, lines: SwitchingLines, target_speed_m_s: float) -> float:

@@ -12,28 +12,41 @@ from rich.text import Text
 
 Figures = dict[str, Any]
 
-WIDTH_OF_A_FILE = 150
+WIDTH_OF_A_FILE = 180
 """Columns where stdout is no terminal."""
 
 COLUMNS = (
     "case", "target\nm/s", "rms [95 %]\nm/s", "pre-\ndicted", "honesty", "table\nloss", "bound\nm/s", "regret",
-    "best baseline\nm/s", "as published\npredicted → simulated", "switch-\nings", "over-\nspeed", "stalls", "verdict",
+    "best baseline\nm/s", "as published\npred. → sim.", "switch-\nings", "over-\nspeed", "stalls", "verdict",
 )  # fmt: skip
+
+FIRST_TO_GO = (
+    "stalls",
+    "bound\nm/s",
+    "switch-\nings",
+    "over-\nspeed",
+    "best baseline\nm/s",
+    "as published\npred. → sim.",
+)
+"""Columns that a narrow terminal does without, in this order."""
+
+GAP = 2
 
 
 def print_book(summary: Figures, directory: Path) -> None:
     """Print the table of cases, what is infeasible, the verdict, and where everything is."""
     console = stdout_console()
-    table = Table(box=box.SIMPLE_HEAD, title=summary["title"], title_justify="left", pad_edge=False, padding=(0, 1))
-    for name in COLUMNS:
-        table.add_column(name, justify="left" if name in ("case", "verdict") else "right", no_wrap=name == "case")
-    previous = None
-    for case in summary["cases"]:
-        if previous not in (None, case["label"]):
-            table.add_section()
-        table.add_row(*row(case, case["label"] != previous), style=None if case["feasible"] else "dim")
-        previous = case["label"]
+    rows = rows_of(summary["cases"])
+    columns = columns_for(console.width, rows)
+    table = Table(box=box.SIMPLE_HEAD, title=summary["title"], title_justify="left", pad_edge=False)
+    for place in columns:
+        name = COLUMNS[place]
+        table.add_column(name, justify="left" if name in ("case", "verdict") else "right", no_wrap=True)
+    for case, cells in zip(summary["cases"], rows, strict=True):
+        table.add_row(*(cells[place] for place in columns), style=None if case["feasible"] else "dim")
     console.print(table)
+    if len(columns) < len(COLUMNS):
+        console.print("The terminal is too narrow for all columns; every figure is in summary.json and the report.")
     for case in summary["cases"]:
         if not case["feasible"]:
             console.print(f"infeasible: {infeasible(case)}", highlight=False)
@@ -55,6 +68,22 @@ def stdout_console() -> Console:
     return console if console.is_terminal else Console(highlight=False, width=WIDTH_OF_A_FILE)
 
 
+def rows_of(cases: list[Figures]) -> list[tuple[str, ...]]:
+    """The cells of all cases; a class is named in its first row."""
+    labels = [None, *(case["label"] for case in cases)]
+    return [row(case, case["label"] != before) for case, before in zip(cases, labels, strict=False)]
+
+
+def columns_for(width: int, rows: list[tuple[str, ...]]) -> list[int]:
+    """Places of the columns that fit into `width`."""
+    lines = [[line for cell in column for line in cell.split("\n")] for column in zip(COLUMNS, *rows, strict=True)]
+    kept = list(range(len(COLUMNS)))
+    for name in FIRST_TO_GO:
+        if sum(max(map(len, lines[place])) + GAP for place in kept) > width:
+            kept.remove(COLUMNS.index(name))
+    return kept
+
+
 def row(case: Figures, first: bool) -> tuple[str, ...]:
     """The cells of one case."""
     simulated, compared = case["simulated"], case["comparison"]
@@ -74,7 +103,7 @@ def row(case: Figures, first: bool) -> tuple[str, ...]:
         f"{simulated['switchings']:.1f}",
         share(simulated["overspeed"]),
         share(simulated["stalls"] / simulated["passes"]),
-        case["verdict"] if case["feasible"] else f"infeasible: {case['why_infeasible']}",
+        case["verdict"],
     )
 
 

@@ -40,6 +40,7 @@ def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, worker
             progress.note("compiling the kernels for this machine, once; this takes about a minute")
         from synth.acceptance import judge
         from synth.outputs import write_outputs
+        from synth.report.figures import counted
         from synth.tune import tune
         from tuning_tables import InvalidTable
 
@@ -50,7 +51,7 @@ def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, worker
                 f"{path or 'built-in configuration'}: the lines that were found make no table ({fault}) "
                 "make grid.path_step_m or grid.speed_step_m_s smaller, or lower fit.degree"
             ) from None
-        progress.note(f"{len(book.cases)} cases computed in {time.monotonic() - started:.1f} s")
+        progress.note(f"{counted(len(book.cases), 'case')} computed in {time.monotonic() - started:.1f} s")
         verdict = judge(book.cases, config.acceptance)
         summary = write_outputs(book, verdict, directory, workers, progress.note)
         progress.note(f"all files written after {time.monotonic() - started:.1f} s")

@@ -111,5 +111,5 @@ def verdict(each: Revalidation) -> str:
     """What a table's passes come to, in a few words."""
     if each.infeasible:
         return "infeasible"
-    confirmed = {True: ", as the file states", False: ", not as the file states", None: ""}[each.confirmed]
+    confirmed = {True: ", as stated", False: ", not as stated", None: ""}[each.confirmed]
     return ("limits missed" if each.missed else "limits kept") + confirmed

@@ -52,18 +52,18 @@ def sweep(
             for r in range(reach - 2, -1, -1):
                 pull(ahead[i, r], transition, shift[i], stalled, 1, points, ahead[i, r + 1], scratch)
             for h in range(modes):
-                for l in range(size):
-                    a = shift[i, h, l] * energy_step / path_step
-                    hold_values(ahead[i, :, h, l], speed, a, period, path_step, width, holds[i, h, l])
-                    downs[i, h, l] = holds[i, h, l]
-                    ups[i, h, l] = holds[i, h, l]
+                for q in range(size):
+                    a = shift[i, h, q] * energy_step / path_step
+                    hold_values(ahead[i, :, h, q], speed, a, period, path_step, width, holds[i, h, q])
+                    downs[i, h, q] = holds[i, h, q]
+                    ups[i, h, q] = holds[i, h, q]
                     for side in range(2):
                         c = upper_chain[h] if side == 1 else lower_chain[h]
                         if c < 0:
                             continue
-                        changed = ups[i, h, l] if side == 1 else downs[i, h, l]
+                        changed = ups[i, h, q] if side == 1 else downs[i, h, q]
                         transient_values(
-                            n, nodes, c, l, factor[i], chain_mode[c], ends, factors, probability, mean,
+                            n, nodes, c, q, factor[i], chain_mode[c], ends, factors, probability, mean,
                             std, drive, brake, pressure, levels, extra[i], path_step, energy_step,
                             values[i], mixed[i], stalled, changed,
                         )  # fmt: skip
@@ -85,11 +85,11 @@ def sweep(
                     up = normal_cdf((speed[j] - upper[n, k, t]) / noise)
                     at = j * width + t
                     for i in range(count):
-                        for l in range(size):
-                            changed = down * downs[i, h, l, at] + up * ups[i, h, l, at]
-                            values[i, n, h, l, at] = sampled_value(
-                                1.0 - down - up, changed, ahead[i, 1, h, l, at], holds[i, h, l, at],
-                                speed[j], shift[i, h, l] * energy_step / path_step, period, path_step,
+                        for q in range(size):
+                            changed = down * downs[i, h, q, at] + up * ups[i, h, q, at]
+                            values[i, n, h, q, at] = sampled_value(
+                                1.0 - down - up, changed, ahead[i, 1, h, q, at], holds[i, h, q, at],
+                                speed[j], shift[i, h, q] * energy_step / path_step, period, path_step,
                             )  # fmt: skip
             values[:, n, h, :, :width] = stalled
         for i in range(count):
@@ -130,13 +130,13 @@ def average_gains(holds, downs, ups, stage, prior, width, gain_down, gain_up):
     for h in range(stage.shape[0]):
         k = stage[h]
         for i in range(holds.shape[0]):
-            for l in range(holds.shape[2]):
-                weight = prior[i, h, l]
+            for q in range(holds.shape[2]):
+                weight = prior[i, h, q]
                 for j in range(1, points):
                     for t in range(width):
                         at = j * width + t
-                        gain_down[k, t, j] += weight * (holds[i, h, l, at] - downs[i, h, l, at])
-                        gain_up[k, t, j] += weight * (holds[i, h, l, at] - ups[i, h, l, at])
+                        gain_down[k, t, j] += weight * (holds[i, h, q, at] - downs[i, h, q, at])
+                        gain_up[k, t, j] += weight * (holds[i, h, q, at] - ups[i, h, q, at])
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

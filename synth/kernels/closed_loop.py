@@ -109,7 +109,7 @@ class Exits(NamedTuple):
 table_decision = njit(cache=True, nogil=True)(rule.decide)
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
 def advance(
     edges_m: Floats, free: Floats, brake: Floats, overpressure: float, duration_s: float, cell: int, s: float, v: float
 ) -> Any:
@@ -138,7 +138,7 @@ def advance(
             return cell, s, v, duration_s - left, LEFT
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
 def measure(v: float, z: float, sensor: Sensor) -> float:
     """Speed that the sensor reports; it has no sign."""
     value: float = v + sensor.noise_m_s * z
@@ -147,7 +147,7 @@ def measure(v: float, z: float, sensor: Sensor) -> float:
     return max(0.0, value)
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
 def line_at(lines: Floats, stage: int, spacing_m: float, s: float) -> float:
     """Line of `stage` at path `s`; beside an infinite node it is infinite: no command."""
     place = s / spacing_m
@@ -162,7 +162,7 @@ def line_at(lines: Floats, stage: int, spacing_m: float, s: float) -> float:
     return speed
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
 def line_decision(lower: Floats, upper: Floats, spacing_m: float, stage: int, s: float, v: float) -> int:
     """−1, 0 or +1 stage by the switching lines."""
     if v < line_at(lower, stage, spacing_m, s):
@@ -172,7 +172,7 @@ def line_decision(lower: Floats, upper: Floats, spacing_m: float, stage: int, s:
     return 0
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
 def stage_by_lines(
     lower: Floats, upper: Floats, spacing_m: float, multi_step: bool, stage: int, top: int, s: float, v: float
 ) -> int:
@@ -185,7 +185,7 @@ def stage_by_lines(
     return wanted
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
 def note(events: Floats, count: int, t: float, s: float, v: float, kpa: float, stage: int, measured: float) -> int:
     """Write one event, if a trace is wanted (`events` not empty); returns the number of events."""
     if count < events.shape[0]:
@@ -195,7 +195,7 @@ def note(events: Floats, count: int, t: float, s: float, v: float, kpa: float, s
     return count
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def run_pass(
     edges_m: Floats, free: Floats, brake: Floats, drive: Drive, sensor: Sensor, law: Rule,
     entry_m_s: float, first_sample_s: float, noise_z: NDArray[np.float32], events: Floats,
@@ -258,7 +258,7 @@ def run_pass(
     return v, time, status, switchings, count
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def run_passes(path: Path, drive: Drive, sensor: Sensor, law: Rule, draws: Draws, exits: Exits, events: Floats) -> int:
     """Simulate all passes of `draws` into `exits`; returns the number of events of the last pass."""
     cells = path.gravity_m_s2.shape[0]

@@ -16,7 +16,7 @@ NO_MASS = 1e-25
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def pull(values, transition, shift, stalled, first, last, out, mixed):
-    """`out`[h, l, j] = Σ_m transition[l, m]·values[h, m](j + shift[h, l]) for first ≤ j < last.
+    """`out`[h, q, j] = Σ_m transition[q, m]·values[h, m](j + shift[h, q]) for first ≤ j < last.
 
     `values`, `out` (H, L, E·T): T targets side by side at every energy; `stalled` (T,) values at and below cell 0;
     `shift` (H, L) in cells of the energy grid; above the grid the last value holds. `mixed` (E·T,) is scratch.
@@ -25,31 +25,29 @@ def pull(values, transition, shift, stalled, first, last, out, mixed):
     width = stalled.shape[0]
     points = size // width
     for h in range(modes):
-        for l in range(levels):
-            base = int(np.floor(shift[h, l]))
-            x = shift[h, l] - base
+        for q in range(levels):
+            base = int(np.floor(shift[h, q]))
+            x = shift[h, q] - base
             c0, c1, c2, c3 = stencil(x)
             begin = max(min(first + base - 1, points - 4), 0) * width
             end = min(max(last + base + 3, 4), points) * width
             for j in range(begin, end):
-                mixed[j] = transition[l, 0] * values[h, 0, j]
+                mixed[j] = transition[q, 0] * values[h, 0, j]
             for m in range(1, levels):
-                p = transition[l, m]
+                p = transition[q, m]
                 for j in range(begin, end):
                     mixed[j] += p * values[h, m, j]
             mixed[:width] = stalled
-            out[h, l, :width] = stalled
+            out[h, q, :width] = stalled
             low = min(max(2 - base, first), last)
             high = max(min(points - 2 - base, last), low)
             for j in range(low * width, high * width):
                 i = j + base * width
-                out[h, l, j] = (
-                    c0 * mixed[i - width] + c1 * mixed[i] + c2 * mixed[i + width] + c3 * mixed[i + 2 * width]
-                )
+                out[h, q, j] = c0 * mixed[i - width] + c1 * mixed[i] + c2 * mixed[i + width] + c3 * mixed[i + 2 * width]
             for j in range(first, low):
-                take(mixed, j + base + x, points, width, out[h, l], j)
+                take(mixed, j + base + x, points, width, out[h, q], j)
             for j in range(high, last):
-                take(mixed, j + base + x, points, width, out[h, l], j)
+                take(mixed, j + base + x, points, width, out[h, q], j)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -58,9 +56,7 @@ def take(row, position, points, width, out, j):
     i, c0, c1, c2, c3 = interpolation(position, points)
     for t in range(width):
         at = i * width + t
-        out[j * width + t] = (
-            c0 * row[at - width] + c1 * row[at] + c2 * row[at + width] + c3 * row[at + 2 * width]
-        )
+        out[j * width + t] = c0 * row[at - width] + c1 * row[at] + c2 * row[at + width] + c3 * row[at + 2 * width]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -73,12 +69,12 @@ def push(mass, transition, shift, first, last, out, moved):
     modes, levels, points = mass.shape
     stalled, escaped = 0.0, 0.0
     for h in range(modes):
-        for l in range(levels):
-            begin, end = extent(mass[h, l], first, last)
+        for q in range(levels):
+            begin, end = extent(mass[h, q], first, last)
             if begin >= end:
                 continue
-            base = int(np.floor(shift[h, l]))
-            x = shift[h, l] - base
+            base = int(np.floor(shift[h, q]))
+            x = shift[h, q] - base
             c0, c1, c2, c3 = stencil(x)
             low = min(max(2 - base, begin), end)
             high = max(min(points - 2 - base, end), low)
@@ -86,23 +82,23 @@ def push(mass, transition, shift, first, last, out, moved):
             top = min(max(end + base + 3, 4), points)
             moved[bottom:top] = 0.0
             for j in range(begin, low):
-                put_at(moved, j + base + x, mass[h, l, j])
+                put_at(moved, j + base + x, mass[h, q, j])
             for j in range(low, high):
-                moved[j + base - 1] += c0 * mass[h, l, j]
+                moved[j + base - 1] += c0 * mass[h, q, j]
             for j in range(low, high):
-                moved[j + base] += c1 * mass[h, l, j]
+                moved[j + base] += c1 * mass[h, q, j]
             for j in range(low, high):
-                moved[j + base + 1] += c2 * mass[h, l, j]
+                moved[j + base + 1] += c2 * mass[h, q, j]
             for j in range(low, high):
-                moved[j + base + 2] += c3 * mass[h, l, j]
+                moved[j + base + 2] += c3 * mass[h, q, j]
             for j in range(high, end):
-                put_at(moved, j + base + x, mass[h, l, j])
-                escaped += abs(mass[h, l, j])
+                put_at(moved, j + base + x, mass[h, q, j])
+                escaped += abs(mass[h, q, j])
             if bottom == 0:
                 stalled += moved[0]
                 moved[0] = 0.0
             for m in range(levels):
-                p = transition[l, m]
+                p = transition[q, m]
                 for j in range(bottom, top):
                     out[h, m, j] += p * moved[j]
     return stalled, escaped
@@ -187,22 +183,22 @@ def quanta_to_next_sample(speed, acceleration, period, path_step):
 def shifts(n, factor, levels, drive, brake, pressure, extra, path_step, energy_step, out):
     """Energy change over quantum `n` at every mode and level, in cells of the grid; `out` (H, L)."""
     for h in range(pressure.shape[0]):
-        for l in range(levels.shape[0]):
-            slope = drive[n] + extra - factor * (1.0 + levels[l]) * brake[n] * pressure[h]
-            out[h, l] = slope * path_step / energy_step
+        for q in range(levels.shape[0]):
+            slope = drive[n] + extra - factor * (1.0 + levels[q]) * brake[n] * pressure[h]
+            out[h, q] = slope * path_step / energy_step
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def mix_values(values, transition, first, last, stalled, out):
-    """`out`[h, l, j] = Σ_m transition[l, m]·values[h, m, j] for first ≤ j < last; shapes (H, L, E·T)."""
+    """`out`[h, q, j] = Σ_m transition[q, m]·values[h, m, j] for first ≤ j < last; shapes (H, L, E·T)."""
     modes, levels, _ = values.shape
     width = stalled.shape[0]
     for h in range(modes):
-        for l in range(levels):
-            out[h, l, :width] = stalled
+        for q in range(levels):
+            out[h, q, :width] = stalled
             for j in range(first * width, last * width):
-                out[h, l, j] = transition[l, 0] * values[h, 0, j]
+                out[h, q, j] = transition[q, 0] * values[h, 0, j]
             for m in range(1, levels):
-                p = transition[l, m]
+                p = transition[q, m]
                 for j in range(first * width, last * width):
-                    out[h, l, j] += p * values[h, m, j]
+                    out[h, q, j] += p * values[h, m, j]

@@ -40,8 +40,8 @@ def forward(
     arriving = np.zeros((ring, modes, size, points))
     mixing = np.zeros((ring, modes, size, points))
     for r in range(reach):
-        for l in range(size):
-            heading[r, 0, l] = entry[r] * stationary[l]
+        for q in range(size):
+            heading[r, 0, q] = entry[r] * stationary[q]
     totals[:] = 0.0
     first, last = 0, points
     for n in range(nodes):
@@ -52,13 +52,13 @@ def forward(
         shifts(n, factor, levels, drive, brake, pressure, extra, path_step, energy_step, shift)
         for h in range(modes):
             k = stage[h]
-            for l in range(size):
-                acceleration = shift[h, l] * energy_step / path_step
-                totals[0] += here[h, l, 0] + heading[0, h, l, 0]
+            for q in range(size):
+                acceleration = shift[h, q] * energy_step / path_step
+                totals[0] += here[h, q, 0] + heading[0, h, q, 0]
                 for j in range(max(first, 1), last):
-                    mass = here[h, l, j] + heading[0, h, l, j]
+                    mass = here[h, q, j] + heading[0, h, q, j]
                     if density.shape[0] > 0:
-                        density[n, h, l, j] = mass
+                        density[n, h, q, j] = mass
                     if abs(mass) < NEGLIGIBLE_MASS:
                         continue
                     hold = 1.0 - down[n, k, j] - up[n, k, j]
@@ -68,11 +68,11 @@ def forward(
                     if step == 0:  # the next sample may be at this node again: sum the geometric series
                         mass /= 1.0 - hold * (1.0 - x)
                         if density.shape[0] > 0:
-                            density[n, h, l, j] = mass
-                        heading[1, h, l, j] += mass * hold * x
+                            density[n, h, q, j] = mass
+                        heading[1, h, q, j] += mass * hold * x
                     else:
-                        heading[step, h, l, j] += mass * hold * (1.0 - x)
-                        heading[step + 1, h, l, j] += mass * hold * x
+                        heading[step, h, q, j] += mass * hold * (1.0 - x)
+                        heading[step + 1, h, q, j] += mass * hold * x
                     for side in range(2):
                         share = mass * (up[n, k, j] if side == 1 else down[n, k, j])
                         c = upper_chain[h] if side == 1 else lower_chain[h]
@@ -80,7 +80,7 @@ def forward(
                             continue
                         totals[2 + side] += share
                         totals[0] += put_transient(
-                            share, n, nodes, c, l, j, factor, chain_mode[c], ends, factors, probability,
+                            share, n, nodes, c, q, j, factor, chain_mode[c], ends, factors, probability,
                             mean, std, drive, brake, pressure, levels, extra, path_step, energy_step,
                             arriving, mixing,
                         )  # fmt: skip
@@ -105,14 +105,14 @@ def mix_arrivals(arriving, mixing, transition, first, last):
     """
     modes, levels, points = arriving.shape
     for h in range(modes):
-        for l in range(levels):
-            begin, end = extent(mixing[h, l], 0, points)
+        for q in range(levels):
+            begin, end = extent(mixing[h, q], 0, points)
             for m in range(levels):
                 for j in range(begin, end):
-                    arriving[h, m, j] += transition[l, m] * mixing[h, l, j]
+                    arriving[h, m, j] += transition[q, m] * mixing[h, q, j]
     for h in range(modes):
-        for l in range(levels):
-            begin, end = extent(arriving[h, l], 0, points)
+        for q in range(levels):
+            begin, end = extent(arriving[h, q], 0, points)
             if begin < end:
                 first, last = min(first, begin), max(last, end)
     return first, last
@@ -122,9 +122,9 @@ def mix_arrivals(arriving, mixing, transition, first, last):
 def clear(rows, first, last):
     """Set `rows` (H, L, E) to zero for first ≤ j < last (written out: a sliced assignment is slow in a kernel)."""
     for h in range(rows.shape[0]):
-        for l in range(rows.shape[1]):
+        for q in range(rows.shape[1]):
             for j in range(first, last):
-                rows[h, l, j] = 0.0
+                rows[h, q, j] = 0.0
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -142,11 +142,11 @@ def column_is_empty(heading, arriving, j):
     """Whether no mass that matters stands at energy `j`."""
     tiny = 1e-3 * NEGLIGIBLE_MASS
     for h in range(arriving.shape[0]):
-        for l in range(arriving.shape[1]):
-            if abs(arriving[h, l, j]) > tiny:
+        for q in range(arriving.shape[1]):
+            if abs(arriving[h, q, j]) > tiny:
                 return False
             for r in range(heading.shape[0]):
-                if abs(heading[r, h, l, j]) > tiny:
+                if abs(heading[r, h, q, j]) > tiny:
                     return False
     return True
 
@@ -156,8 +156,8 @@ def collect(arriving, mixing, heading, exits):
     """Sum all mass at the exit over modes and levels into `exits` (E,)."""
     exits[:] = 0.0
     for h in range(arriving.shape[0]):
-        for l in range(arriving.shape[1]):
+        for q in range(arriving.shape[1]):
             for j in range(arriving.shape[2]):
-                exits[j] += arriving[h, l, j] + mixing[h, l, j]
+                exits[j] += arriving[h, q, j] + mixing[h, q, j]
                 for r in range(heading.shape[0]):
-                    exits[j] += heading[r, h, l, j]
+                    exits[j] += heading[r, h, q, j]

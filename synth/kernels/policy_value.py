@@ -52,27 +52,27 @@ def backward(
             pull(ahead[r], transition, shift, stop, first, last, ahead[r + 1], scratch)
         for h in range(modes):
             k = stage[h]
-            for l in range(size):
-                acceleration = shift[h, l] * energy_step / path_step
-                here[h, l, 0] = stalled
+            for q in range(size):
+                acceleration = shift[h, q] * energy_step / path_step
+                here[h, q, 0] = stalled
                 for j in range(first, last):
-                    mass = density[n, h, l, j] if visited_only else 1.0
+                    mass = density[n, h, q, j] if visited_only else 1.0
                     if abs(mass) < NEGLIGIBLE_MASS:
-                        here[h, l, j] = ahead[1, h, l, j]
+                        here[h, q, j] = ahead[1, h, q, j]
                         continue
                     p_down, p_up = down[n, k, j], up[n, k, j]
                     q_down, q_up = 0.0, 0.0
                     if lower_chain[h] >= 0 and p_down > NEGLIGIBLE_PROBABILITY:
                         c = lower_chain[h]
                         q_down = change_cost + transient_value(
-                            n, nodes, c, l, j, factor, chain_mode[c], ends, factors, probability, mean,
+                            n, nodes, c, q, j, factor, chain_mode[c], ends, factors, probability, mean,
                             std, drive, brake, pressure, levels, extra, path_step, energy_step,
                             values, mixed, stalled,
                         )  # fmt: skip
                     if upper_chain[h] >= 0 and p_up > NEGLIGIBLE_PROBABILITY:
                         c = upper_chain[h]
                         q_up = change_cost + transient_value(
-                            n, nodes, c, l, j, factor, chain_mode[c], ends, factors, probability, mean,
+                            n, nodes, c, q, j, factor, chain_mode[c], ends, factors, probability, mean,
                             std, drive, brake, pressure, levels, extra, path_step, energy_step,
                             values, mixed, stalled,
                         )  # fmt: skip
@@ -82,12 +82,12 @@ def backward(
                     step = min(int(f), reach - 2)
                     x = min(f - step, 1.0)
                     if step == 0:
-                        value = (hold * x * ahead[1, h, l, j] + changed) / (1.0 - hold * (1.0 - x))
-                        q_hold = (1.0 - x) * value + x * ahead[1, h, l, j]
+                        value = (hold * x * ahead[1, h, q, j] + changed) / (1.0 - hold * (1.0 - x))
+                        q_hold = (1.0 - x) * value + x * ahead[1, h, q, j]
                     else:
-                        q_hold = (1.0 - x) * ahead[step, h, l, j] + x * ahead[step + 1, h, l, j]
+                        q_hold = (1.0 - x) * ahead[step, h, q, j] + x * ahead[step + 1, h, q, j]
                         value = hold * q_hold + changed
-                    here[h, l, j] = value
+                    here[h, q, j] = value
                     if visited_only and p_down > NEGLIGIBLE_PROBABILITY and lower_chain[h] >= 0:
                         lower_gradient[n, k] += mass * down_slope[n, k, j] * (q_down - q_hold)
                     if visited_only and p_up > NEGLIGIBLE_PROBABILITY and upper_chain[h] >= 0:
@@ -96,8 +96,8 @@ def backward(
         ahead[0] = here
     cost = 0.0
     for r in range(reach):
-        for l in range(size):
+        for q in range(size):
             for j in range(points):
                 if entry[r, j] != 0.0:
-                    cost += entry[r, j] * stationary[l] * ahead[r, 0, l, j]
+                    cost += entry[r, j] * stationary[q] * ahead[r, 0, q, j]
     return cost

@@ -45,10 +45,10 @@ def landing(n, c, j, f, ends, factors):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def transient_value(
-    n, last, c, l, j, factor, mode, ends, factors, probability, mean, std,
+    n, last, c, q, j, factor, mode, ends, factors, probability, mean, std,
     drive, brake, pressure, levels, extra, path_step, energy_step, values, mixed, stalled,
 ):  # fmt: skip
-    """Expected value after transient `c`; `values` (ring, H, L, E) and `mixed` the same after level mixing; `last` = N."""
+    """Expected value after transient `c`; `values` (ring, H, L, E), `mixed` the same after level mixing, `last` = N."""
     ring = values.shape[0]
     total = 0.0
     quanta, cells = 1.0 / path_step, 1.0 / energy_step
@@ -57,13 +57,13 @@ def transient_value(
         return stalled
     crossed = min(int(nominal * quanta + 1e-9), probability.shape[1] - 1)
     for m in range(levels.shape[0]):
-        p = probability[c, crossed, l, m]
+        p = probability[c, crossed, q, m]
         if p < 1e-12:
             continue
-        spread = std[c, crossed, l, m]
+        spread = std[c, crossed, q, m]
         held = factor * (1.0 + levels[m]) * pressure[mode]
         for side in range(2):
-            f = factor * (1.0 + mean[c, crossed, l, m] + (spread if side == 1 else -spread))
+            f = factor * (1.0 + mean[c, crossed, q, m] + (spread if side == 1 else -spread))
             path, e = landing(n, c, j, f, ends, factors)
             if path < 0.0:
                 total += 0.5 * p * stalled
@@ -88,7 +88,7 @@ def transient_value(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def put_transient(
-    mass, n, last, c, l, j, factor, mode, ends, factors, probability, mean, std,
+    mass, n, last, c, q, j, factor, mode, ends, factors, probability, mean, std,
     drive, brake, pressure, levels, extra, path_step, energy_step, arriving, mixing,
 ):  # fmt: skip
     """Spread `mass` over `arriving` and `mixing` (ring, H, L, E), `last` = N; returns the mass that stalls."""
@@ -100,13 +100,13 @@ def put_transient(
         return mass
     crossed = min(int(nominal * quanta + 1e-9), probability.shape[1] - 1)
     for m in range(levels.shape[0]):
-        p = probability[c, crossed, l, m]
+        p = probability[c, crossed, q, m]
         if p < 1e-12:
             continue
-        spread = std[c, crossed, l, m]
+        spread = std[c, crossed, q, m]
         held = factor * (1.0 + levels[m]) * pressure[mode]
         for side in range(2):
-            f = factor * (1.0 + mean[c, crossed, l, m] + (spread if side == 1 else -spread))
+            f = factor * (1.0 + mean[c, crossed, q, m] + (spread if side == 1 else -spread))
             path, e = landing(n, c, j, f, ends, factors)
             share = 0.5 * p * mass
             if path < 0.0:

@@ -15,7 +15,7 @@ from synth.kernels.transient import factor_weights, landing
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def transient_values(
-    n, last, c, l, factor, mode, ends, factors, probability, mean, std,
+    n, last, c, q, factor, mode, ends, factors, probability, mean, std,
     drive, brake, pressure, levels, extra, path_step, energy_step, values, mixed, stalled, out,
 ):  # fmt: skip
     """`out` (E·T,) = expected value after transient `c` from node `n` and noise level `l`.
@@ -40,13 +40,13 @@ def transient_values(
             begin = end
             continue
         for m in range(levels.shape[0]):
-            p = probability[c, crossed, l, m]
+            p = probability[c, crossed, q, m]
             if p < 1e-12:
                 continue
             held = factor * (1.0 + levels[m]) * pressure[mode]
             for side in range(2):
-                spread = std[c, crossed, l, m] * (2 * side - 1)
-                f = factor * (1.0 + mean[c, crossed, l, m] + spread)
+                spread = std[c, crossed, q, m] * (2 * side - 1)
+                f = factor * (1.0 + mean[c, crossed, q, m] + spread)
                 add_landings(
                     n, last, m, f, 0.5 * p, begin, end, mode, ends[n, c], factors,
                     drive, brake, held, extra, path_step, energy_step, values, mixed, stalled, out,

@@ -135,8 +135,8 @@ def table_surfaces(table: ControllerTable, passes: Passes | None) -> Figure:
 
 def table_passes(table: ControllerTable, passes: Passes) -> Figure:
     """A few passes over path and time on the left, the histogram of the simulated exit speeds on the right."""
-    figure = new_figure(12.0, 5.2, "Simulated passes of the exported table", subject(table))
-    place(figure, left=0.65, right=0.2, bottom=0.95, top=0.95, w=0.24, h=0.28)
+    figure = new_figure(12.0, 6.0, "Simulated passes of the exported table", subject(table))
+    place(figure, left=0.65, right=0.2, bottom=0.95, top=0.95, w=0.24, h=0.5)
     grid = figure.add_gridspec(2, 2, width_ratios=(1.25, 1.0))
     speed, pressure, exits = (figure.add_subplot(grid[part]) for part in ((0, 0), (1, 0), (slice(None), 1)))
     handles: list[Line2D] = []

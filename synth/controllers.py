@@ -1,0 +1,83 @@
+"""Regulators as the closed loop runs them: an exported table, or switching lines."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.kernels import closed_loop as kernel
+from synth.switching_lines import SwitchingLines
+from tuning_tables.table import ControllerTable
+
+Scalar = TypeVar("Scalar", bound=np.generic)
+
+
+@dataclass(frozen=True)
+class TableController:
+    """A regulator that runs an exported table with the table's own rule."""
+
+    table: ControllerTable
+
+    @property
+    def stages(self) -> int:
+        """Number of stages K + 1."""
+        return int(self.table.coefficients.shape[0])
+
+    def law(self) -> kernel.Rule:
+        """The rule as the kernel takes it."""
+        none = fixed(np.empty((0, 0)), np.float64)
+        table = self.table
+        arrays = (
+            fixed(table.coefficients, np.float32),
+            fixed(table.has_line, np.bool_),
+            fixed(table.valid_range, np.float32),
+        )
+        return kernel.Rule(*arrays, none, none, 1.0, False, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class LineController:
+    """A regulator that compares speed with switching lines.
+
+    `multi_step`: the comparison is repeated at the stage reached before the command is sent, so that one
+    command may jump over stages. `lead_s` τ: compared is measured speed + τ·slope, the slope of the
+    measured speed being filtered to first order over `slope_filter_s`.
+    """
+
+    lines: SwitchingLines
+    multi_step: bool = False
+    lead_s: float = 0.0
+    slope_filter_s: float = 0.3
+
+    @property
+    def stages(self) -> int:
+        """Number of stages K + 1."""
+        return self.lines.stages
+
+    def law(self) -> kernel.Rule:
+        """The rule as the kernel takes it."""
+        lines = self.lines
+        return kernel.Rule(
+            fixed(np.empty((0, 0, 0)), np.float32),
+            fixed(np.empty((0, 0)), np.bool_),
+            fixed(np.empty(0), np.float32),
+            fixed(lines.lower_m_s, np.float64),
+            fixed(lines.upper_m_s, np.float64),
+            float(lines.nodes_m[-1]) / (lines.nodes_m.size - 1),
+            self.multi_step,
+            self.lead_s,
+            self.slope_filter_s,
+        )
+
+
+Controller = TableController | LineController
+
+
+def fixed(array: NDArray[Any], dtype: type[Scalar]) -> NDArray[Scalar]:
+    """Contiguous read-only view or copy: the kernel is compiled for exactly such arrays, once."""
+    view: NDArray[Scalar] = np.ascontiguousarray(array, dtype=dtype).view()
+    view.setflags(write=False)
+    return view

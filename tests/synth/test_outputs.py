@@ -1,0 +1,86 @@
+"""Pieces of what a tune leaves: drawing in processes, the directory, plain values of the summary."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from synth.draw_pictures import draw_in_processes, draw_job, draw_pictures
+from synth.input_error import InputError
+from synth.output_directory import output_directory, remove_stale
+from synth.summary import plain
+from synth.table_file import file_stem, is_infeasible
+from tests.synth.case_factory import make_case, make_study
+from tuning_tables import write_csv, write_json
+
+
+def test_pictures_do_not_depend_on_the_number_of_processes() -> None:
+    jobs = [("case_pictures", (make_case(),)), ("class_pictures", ((make_case("heavy", 2.0),),))]
+    assert draw_in_processes(jobs, 2) == [draw_job(job) for job in jobs]
+
+
+def test_a_fault_in_a_drawing_process_is_raised_here() -> None:
+    with pytest.raises(AttributeError):
+        draw_in_processes([("no_such_pictures", ())], 2)
+
+
+def test_few_pictures_are_drawn_here_in_the_order_of_the_book() -> None:
+    names = [picture.name for picture in draw_pictures([make_case()], [make_study()], 0.1, 8)]
+    assert names[:4] == ["rms-by-controller", "feasibility", "switchings", "degree-study"]
+    assert names[-1] == "sample-passes-gondola-36t-target-3-m-s"
+    assert len(names) == 8
+
+
+def test_only_files_of_this_tool_are_removed(tmp_path: Path) -> None:
+    with output_directory(tmp_path):
+        table = make_case().table
+        for stem in ("old", "new"):
+            write_json(table, tmp_path / "tables" / f"{stem}.json")
+            write_csv(table, tmp_path / "tables" / f"{stem}.csv")
+        (tmp_path / "tables" / "mine.csv").write_text("record,of,mine\n")
+        (tmp_path / "tables" / "mine.json").write_text("{}")
+        for name in ("policy-map-old.png", "rms-by-controller.svg", "mine.png", "policy-map.txt"):
+            (tmp_path / "plots" / name).write_text("")
+        (tmp_path / "report.html").write_text("my own")
+        assert remove_stale(tmp_path, {"tables/new.json", "tables/new.csv"}) == ("tables/mine.json",)
+    left = {path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*") if path.is_file()}
+    assert left == {
+        "tables/new.json", "tables/new.csv", "tables/mine.csv", "tables/mine.json", "plots/mine.png",
+        "plots/policy-map.txt", "report.html",
+    }  # fmt: skip
+
+
+def test_a_directory_is_held_by_one_tune(tmp_path: Path) -> None:
+    (tmp_path / "summary.json").write_text("{}")
+    with output_directory(tmp_path) as held:
+        assert not (held / "summary.json").exists()
+        with pytest.raises(InputError, match="another tune is writing there"), output_directory(tmp_path):
+            pass
+    with output_directory(tmp_path):
+        pass
+
+
+def test_values_of_the_summary_are_plain() -> None:
+    value = {"a": (np.float64(0.5), math.nan, math.inf), "b": np.int32(3), "c": [True, None], "d": 2**60}
+    assert plain(value) == {"a": [0.5, None, None], "b": 3, "c": [True, None], "d": str(2**60)}
+
+
+def test_an_id_is_no_path() -> None:
+    from dataclasses import replace
+
+    table = make_case().table
+    ids = ("../../etc/x", "a b/ц", ".hidden", "///")
+    assert [file_stem(replace(table, id=name)) for name in ids] == ["etc-x", "a-b-ц", "hidden", "table"]
+
+
+def test_only_the_summary_of_the_same_configuration_counts() -> None:
+    table = make_case().table
+    cases = [{"id": table.id, "feasible": False}]
+    summary = {"generator": {"config_sha256": table.generator.config_sha256}, "cases": cases}
+    assert is_infeasible(table, summary)
+    assert not is_infeasible(table, {**summary, "generator": {"config_sha256": "0"}})
+    assert not is_infeasible(table, {**summary, "cases": [{"id": "other", "feasible": False}]})
+    assert not is_infeasible(table, None)
