@@ -1,0 +1,128 @@
+"""Fitted and polished lines: what the optimiser promises, checked against the exact evaluation itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from synth.backward_induction import solve
+from synth.grid import Resolution
+from synth.policy_evaluation import commands, cost_and_gradient, occupancy_of
+from synth.polynomial_fit import (
+    MINIMUM_GAP_M_S,
+    Fit,
+    PolynomialLines,
+    fit_lines,
+    gap_of,
+    opened,
+    polish,
+    whitening,
+)
+from synth.problem import Criterion, Plant
+from synth.switching_lines import SwitchingLines
+from synth.transitions import Transitions, persistent_transitions
+
+COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=3)
+TARGET_M_S = 3.0
+CRITERION = Criterion()
+
+
+@pytest.fixture(scope="module")
+def design(plant_of: Callable[[float], Plant]) -> Transitions:
+    """A coarse grid for the 22 t car."""
+    return persistent_transitions(plant_of(22.0), COARSE)
+
+
+@pytest.fixture(scope="module")
+def fit(design: Transitions) -> Fit:
+    """Weighted cubic fit of the solver's lines."""
+    solution = solve(design, TARGET_M_S, CRITERION)
+    _, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
+    return fit_lines(solution, occupancy.samples, 3)
+
+
+def evaluate_on(design: Transitions) -> Callable[[SwitchingLines], tuple[float, np.ndarray, np.ndarray]]:
+    return lambda lines: cost_and_gradient(design, commands(design, lines, staircase=False), TARGET_M_S, CRITERION)
+
+
+def lines_with(lower: float, upper: float) -> PolynomialLines:
+    """Two stages with constant lines; stage 0 has only an upper, stage 2 only a lower one."""
+    coefficients = np.zeros((3, 2, 2))
+    coefficients[:, 0, 0], coefficients[:, 1, 0] = lower, upper
+    has_line = np.ones((3, 2), dtype=bool)
+    has_line[0, 0] = has_line[-1, 1] = False
+    return PolynomialLines(30.0, coefficients, has_line)
+
+
+def test_powers_of_s_are_the_same_polynomial(fit: Fit) -> None:
+    s = np.linspace(0.0, fit.lines.exit_m, 50)
+    at = fit.lines.at(s)
+    powers = fit.lines.powers_of_s()
+    for k, side in zip(*np.nonzero(fit.lines.has_line), strict=True):
+        line = (at.lower_m_s, at.upper_m_s)[side][k]
+        assert np.polynomial.polynomial.polyval(s, powers[k, side]) == pytest.approx(line, abs=1e-10)
+
+
+def test_missing_lines_are_infinite(fit: Fit) -> None:
+    at = fit.lines.at(np.array([0.0, 10.0]))
+    assert np.all(at.lower_m_s[0] == -np.inf)
+    assert np.all(at.upper_m_s[-1] == np.inf)
+
+
+def test_opening_moves_a_pair_apart_symmetrically_and_leaves_others_alone() -> None:
+    closed, wide = opened(lines_with(3.0, 3.01)), opened(lines_with(2.0, 3.0))
+    assert gap_of(closed) == pytest.approx(MINIMUM_GAP_M_S)
+    assert closed.coefficients[1, :, 0].mean() == pytest.approx(3.005)
+    assert np.array_equal(wide.coefficients, lines_with(2.0, 3.0).coefficients)
+
+
+def test_whitening_makes_the_hessian_the_unit_matrix() -> None:
+    rng = np.random.default_rng(3)
+    matrix, curvature = rng.normal(size=(40, 4)), rng.uniform(0.0, 2.0, (2, 40))
+    scale = whitening(curvature, matrix, 0.5)
+    loose = matrix.T @ matrix / (40 * 0.3**2)
+    for t, weight in zip(scale, curvature, strict=True):
+        hessian = matrix.T @ (weight[:, None] * matrix) / 0.5 + loose
+        assert t.T @ hessian @ t == pytest.approx(np.eye(4), abs=1e-9)
+
+
+def test_polish_lowers_the_exact_cost_and_keeps_the_gap(design: Transitions, fit: Fit) -> None:
+    evaluate = evaluate_on(design)
+    result = polish(fit.lines, fit.curvature, design.grid.path_m, evaluate, 25)
+    assert result.cost_before == pytest.approx(evaluate(fit.lines.at(design.grid.path_m))[0], rel=1e-12)
+    assert result.cost_after < 0.8 * result.cost_before
+    assert evaluate(result.lines.at(design.grid.path_m))[0] == pytest.approx(result.cost_after, rel=1e-3)
+    assert gap_of(result.lines) >= MINIMUM_GAP_M_S - 1e-12
+    assert result.evaluations <= 40
+
+
+def test_polish_ends_where_the_projected_gradient_is_small(design: Transitions, fit: Fit) -> None:
+    """A Newton step along the whitened gradient must not promise more than a few per cent of the cost."""
+    evaluate = evaluate_on(design)
+    best = polish(fit.lines, fit.curvature, design.grid.path_m, evaluate, 40).lines
+    gains = []
+    for lines in (fit.lines, best):
+        cost, by_lower, by_upper = evaluate(lines.at(design.grid.path_m))
+        matrix = np.polynomial.legendre.legvander(2 * design.grid.path_m[:-1] / lines.exit_m - 1, 3)
+        free = np.nonzero(lines.has_line)
+        gradient = np.stack([by_lower @ matrix, by_upper @ matrix], axis=1)[free] / cost
+        scale = whitening(fit.curvature[free], matrix, cost)
+        gains.append(0.5 * float((np.einsum("lab,la->lb", scale, gradient) ** 2).sum()))
+    assert gains[1] < 0.2 * gains[0]
+
+
+def test_a_higher_degree_fits_no_worse_in_its_own_weights(design: Transitions) -> None:
+    """Least squares over a larger space; the lowest line of the top stage has no partner to be kept off."""
+    solution = solve(design, TARGET_M_S, CRITERION)
+    _, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
+    raw = solution.lines.lower_m_s[2, :-1]
+    known = np.isfinite(raw)
+    misfits = []
+    for degree in (1, 3, 6):
+        found = fit_lines(solution, occupancy.samples, degree)
+        line, curvature = found.lines.at(design.grid.path_m[:-1]).lower_m_s[2], found.curvature[2, 0]
+        weight = curvature[known] + 1e-3 * curvature[known].max()
+        misfits.append(float((weight * (line - raw)[known] ** 2).sum()))
+    assert misfits[0] > misfits[1] > misfits[2]

@@ -1,0 +1,118 @@
+"""One small case through the whole chain, and the pieces that only it has: bound, map, indifference."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from synth.case_result import CaseResult
+from synth.config_file import parse_config
+from synth.tabulate import lines_of
+from synth.tune import Book, tune
+from tuning_tables import read_json
+
+SMALL = """
+[[cut]]
+car = "gondola-4"
+mass_t = 52.0
+[targets]
+exit_speeds_m_s = [3.0, 4.0]
+[grid]
+path_step_m = 1.0
+speed_step_m_s = 0.05
+friction_scenarios = 3
+[validation]
+passes = 4000
+"""
+
+
+@pytest.fixture(scope="module")
+def directory(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("tables")
+
+
+@pytest.fixture(scope="module")
+def book(directory: Path) -> Book:
+    said: list[str] = []
+    result = tune(parse_config(SMALL, "small.toml"), directory, said.append, workers=2)
+    assert any("to 4 m/s" in sentence for sentence in said)
+    return result
+
+
+@pytest.fixture
+def case(book: Book) -> CaseResult:
+    return book.cases[0]
+
+
+def test_the_table_on_disk_is_the_one_that_was_validated(book: Book, directory: Path) -> None:
+    assert sorted(p.name for p in directory.iterdir()) == sorted(f"{c.table.id}.json" for c in book.cases)
+    for case in book.cases:
+        assert read_json(directory / f"{case.table.id}.json") == case.table
+        assert case.table.validated is not None
+        assert case.table.validated.rms_m_s == case.comparison[0].statistics.rms_m_s
+        assert json.loads((directory / f"{case.table.id}.json").read_bytes())["generator"]["name"] == "retarder-synth"
+
+
+def test_the_prediction_is_honest_and_the_cubic_loses_nothing(book: Book) -> None:
+    for case in book.cases:
+        figures = {m.name: m for m in case.comparison}
+        table = figures["table"]
+        assert table.statistics.rms_m_s < 0.06
+        assert 0.85 < table.predicted_rms_m_s / table.statistics.rms_m_s < 1.15
+        assert table.statistics.rms_m_s < 1.1 * figures["full lines"].statistics.rms_m_s
+        assert table.statistics.rms_m_s < 1.25 * figures["friction known"].statistics.rms_m_s
+        assert len(figures) == 8
+
+
+def test_published_formulation_promises_more_than_it_keeps(case: CaseResult) -> None:
+    assert case.published_predicted_rms_m_s < 0.9 * case.by_name("as published").statistics.rms_m_s
+
+
+def test_the_tolerance_saves_switchings_at_little_cost(book: Book) -> None:
+    for case in book.cases:
+        saved = case.indifference
+        assert saved.switchings_with < saved.switchings_without
+        gain = saved.tolerance_m2_s2 * (saved.switchings_without - saved.switchings_with)
+        assert saved.rms_with_m_s**2 <= saved.rms_without_m_s**2 + 2.0 * gain + 1e-4
+
+
+def test_the_map_agrees_with_the_lines_and_marks_indifference(case: CaseResult) -> None:
+    """Far above its line a stage goes up, far below down; where lines are infinite nothing is gained."""
+    chart, lines = case.policy_map, case.solver_lines
+    assert chart.command.shape == chart.indifferent.shape == (5, len(chart.path_m), len(chart.speed_m_s))
+    assert not (chart.command[0] == -1).any()
+    assert not (chart.command[-1] == 1).any()
+    middle = len(chart.path_m) // 2
+    above = chart.speed_m_s > lines.upper_m_s[1, middle] + 0.1
+    near = above & (chart.speed_m_s < lines.upper_m_s[1, middle] + 0.5)
+    assert (chart.command[1, middle, near] == 1).all()
+    assert 0.0 < chart.indifferent.mean() < 1.0
+
+
+def test_feasibility_falls_with_entry_speed(case: CaseResult) -> None:
+    found = case.feasibility
+    assert found.feasible
+    assert found.served_m_s is not None
+    assert found.served_m_s[0] == pytest.approx(case.target_speed_m_s)
+    assert found.bound_rms_m_s[-1] > found.bound_rms_m_s[len(found.entry_m_s) // 2]
+
+
+def test_traces_are_passes_of_the_exported_table(case: CaseResult) -> None:
+    for trace, factor in zip(case.traces, case.trace_factors, strict=True):
+        assert trace.exit_speed_m_s == pytest.approx(case.target_speed_m_s, abs=0.3), factor
+        assert np.all(np.diff(trace.path_m) >= 0.0)
+
+
+def test_table_lines_are_the_tables(case: CaseResult) -> None:
+    again = lines_of(case.table, case.table_lines.nodes_m)
+    assert np.array_equal(again.upper_m_s, case.table_lines.upper_m_s)
+
+
+def test_degree_study_covers_one_to_six_and_polishing_helps(book: Book) -> None:
+    (study,) = book.degree_studies
+    assert study.degrees == (1, 2, 3, 4, 5, 6)
+    assert (study.polished_rms_m_s <= study.fitted_rms_m_s * 1.001).all()
+    assert study.polished_rms_m_s[2] < 1.1 * study.polished_rms_m_s.min()
