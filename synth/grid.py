@@ -16,6 +16,10 @@ MARGIN_CELLS = 10
 """Cells of the energy grid above the fastest pass: interpolation there must not ripple into it."""
 
 
+CHECK_FRICTION_NODES = 13
+"""Equally spaced nodes of ξ_cut from −4 to 4 standard deviations, for the prediction of a finished table."""
+
+
 @dataclass(frozen=True)
 class Resolution:
     """How fine the state space is cut.
@@ -49,7 +53,7 @@ def finer_for_check(resolution: Resolution) -> Resolution:
         resolution,
         path_step_m=0.5 * resolution.path_step_m,
         speed_step_m_s=0.75 * resolution.speed_step_m_s,
-        friction_nodes=17,
+        friction_nodes=CHECK_FRICTION_NODES,
         path_levels=3,
         resistance_nodes=3,
     )
@@ -109,9 +113,18 @@ def memory_estimate_bytes(plant: Plant, resolution: Resolution) -> int:
 def require_memory(label: str, plant: Plant, resolution: Resolution, workers: int) -> None:
     """Raise `PlantError` if `workers` solves at once would not fit into this machine's memory."""
     needed = workers * memory_estimate_bytes(plant, resolution)
-    available = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_AVPHYS_PAGES")
+    available = available_memory_bytes()
     require(
         needed <= 0.8 * available,
         f"grid: path_step_m is {resolution.path_step_m:g} and speed_step_m_s {resolution.speed_step_m_s:g}; solving "
         f"{label} would take about {needed / 1e9:.1f} GB and {available / 1e9:.1f} GB are free: make a step larger",
     )
+
+
+def available_memory_bytes() -> int:
+    """Memory that a process can still get: what Linux says is available, elsewhere all physical memory."""
+    try:
+        with open("/proc/meminfo", encoding="ascii") as lines:
+            return next(1024 * int(line.split()[1]) for line in lines if line.startswith("MemAvailable"))
+    except (OSError, StopIteration):
+        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")

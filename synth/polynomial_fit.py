@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.errors import require
 from synth.backward_induction import Solution
 from synth.switching_lines import SwitchingLines
 
@@ -155,6 +156,8 @@ def polish(
 ) -> Polish:
     """Minimise `evaluate` over all coefficients, keeping V_hi − V_lo ≥ `MINIMUM_GAP_M_S` on the path.
 
+    Raises `PlantError` if the cost to start from is not positive: the grid is too coarse.
+
     Sequential quadratic programming in coordinates in which the `curvature` (K + 1, 2, N) of `fit_lines` is
     the unit matrix, so that the first steps are Newton steps.
     """
@@ -165,6 +168,11 @@ def polish(
     matrix = basis(nodes_m, start.exit_m, start.degree)[: curvature.shape[2]]
     first = evaluate(start.at(nodes_m))
     before = first[0]
+    require(
+        before > 0.0,
+        "grid: speed_step_m_s or path_step_m is too coarse for this plant (an expected square came out negative): "
+        "make both smaller",
+    )
     scale = whitening(curvature[free], matrix, before)
     best: list[tuple[float, PolynomialLines]] = [(before, start)]
     calls = 0

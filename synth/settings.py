@@ -201,7 +201,7 @@ class AcceptanceSettings(Section):
 
 
 class OutputSettings(Section):
-    """What is written besides the book, the JSON tables and the C source; changes no result and no hash."""
+    """What is written besides the book and the JSON tables; changes no result and no hash."""
 
     csv: bool = Field(False, description="also write the tables as CSV")
     plots: bool = Field(True, description="draw the pictures")

@@ -64,7 +64,7 @@ def tune_case(order: CaseOrder) -> CaseResult:
     """Tune one case; the table is validated as read back from its file."""
     problem, solution, target = order.problem, order.solution, order.problem.target_speed_m_s
     design, published = solution.transitions, order.published
-    _, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
+    by_lines, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
     fit = fit_lines(solution, occupancy.samples, order.degree)
     lines = polished(design, fit, target, problem.criterion)
     table, predicted = predicted_table(order, lines)
@@ -92,7 +92,7 @@ def tune_case(order: CaseOrder) -> CaseResult:
             order.known,
             *(run(order, b.name, b.controller) for b in tune_baselines(problem.plant, target, order.tuning)),
         ),
-        indifference=indifference(order),
+        indifference=indifference(order, by_lines),
         feasibility=order.feasibility,
         traces=tuple(
             trace(problem.plant, TableController(table), order.passes, i, cut_factor=factor)
@@ -149,10 +149,9 @@ def rms_of_lines(transitions: Transitions, lines: SwitchingLines, target_speed_m
     return exit_density(transitions, commands(transitions, lines, staircase=True)).rms_m_s(target_speed_m_s)
 
 
-def indifference(order: CaseOrder) -> Indifference:
+def indifference(order: CaseOrder, with_it: ExitDensity) -> Indifference:
     """Predicted switchings and rms of the solver's lines with the tolerance, and of lines solved without it."""
     design, target = order.solution.transitions, order.problem.target_speed_m_s
-    with_it = exit_density(design, commands(design, order.solution.lines, staircase=False))
     without = exit_density(design, commands(design, order.plain.lines, staircase=False))
     return Indifference(
         tolerance_m2_s2=order.problem.criterion.switching_tolerance_m2_s2,

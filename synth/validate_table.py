@@ -24,8 +24,8 @@ class Revalidation:
 
     `overspeed`: share of passes above target + margin of the limits; `honesty`: the file's predicted rms / simulated
     rms; `confirmed`: the 95 % intervals of the file and of these passes overlap, None where the file has none;
-    `missed`: the limits that the table does not keep; `infeasible`: the summary beside the file says that no table
-    could; `same_config`: the table was made from this very configuration.
+    `missed`: the limits that the table does not keep; `infeasible`: the summary beside the file calls the case
+    so; `same_config`: the table was made from this very configuration.
     """
 
     table: ControllerTable

@@ -103,7 +103,7 @@ def print_found(found: list[Revalidation], seed: int) -> None:
         if each.confirmed is False:
             console.print(f"{each.table.id}: these passes do not confirm the interval that the file states")
         if each.missed:
-            outside = "; known to be infeasible, no table could" if each.infeasible else ""
+            outside = "; summary.json calls this case infeasible, so it does not count" if each.infeasible else ""
             console.print(f"{each.table.id}: {', '.join(each.missed)}{outside}", soft_wrap=True)
 
 

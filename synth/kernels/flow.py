@@ -10,6 +10,10 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+LINEAR_CELLS = 2
+"""Cells above a stall with linear interpolation: there the value falls so steeply that a cubic would promise costs
+below zero, and the policy would brake towards them."""
+
 NO_MASS = 1e-25
 """Probabilities below this are dropped: the tails of a density would otherwise run into slow denormal numbers."""
 
@@ -39,7 +43,7 @@ def pull(values, transition, shift, stalled, first, last, out, mixed):
                     mixed[j] += p * values[h, m, j]
             mixed[:width] = stalled
             out[h, q, :width] = stalled
-            low = min(max(2 - base, first), last)
+            low = min(max(LINEAR_CELLS - base, first), last)
             high = max(min(points - 2 - base, last), low)
             for j in range(low * width, high * width):
                 i = j + base * width
@@ -76,7 +80,7 @@ def push(mass, transition, shift, first, last, out, moved):
             base = int(np.floor(shift[h, q]))
             x = shift[h, q] - base
             c0, c1, c2, c3 = stencil(x)
-            low = min(max(2 - base, begin), end)
+            low = min(max(LINEAR_CELLS - base, begin), end)
             high = max(min(points - 2 - base, end), low)
             bottom = max(min(begin + base - 1, points - 4), 0)
             top = min(max(end + base + 3, 4), points)
@@ -128,14 +132,13 @@ def stencil(x):
 def interpolation(position, points):
     """Second of the four grid points that interpolate at `position` (cells), and their weights.
 
-    Cubic inside, held constant beyond both ends, and linear next to them: the value jumps at a stall
-    (cell 0), and a cubic across the jump would promise costs below zero.
+    Cubic inside, held constant beyond both ends, linear in the last cell and in the first `LINEAR_CELLS`.
     """
     position = min(max(position, 0.0), points - 1.0)
     i = min(max(int(position), 1), points - 3)
     x = position - i
     c0, c1, c2, c3 = stencil(x)
-    before, after, low = x < 0.0, x > 1.0, position < 2.0
+    before, after, low = x < 0.0, x > 1.0, position < LINEAR_CELLS
     c0 = -x if before else (0.0 if after or low else c0)
     c1 = 1.0 + x if before else (0.0 if after else (1.0 - x if low else c1))
     c2 = 0.0 if before else (2.0 - x if after else (x if low else c2))
@@ -146,7 +149,7 @@ def interpolation(position, points):
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def weights_at(position, points):
     """`interpolation`, with a short cut for positions away from both ends."""
-    if 2.0 <= position < points - 3.0:
+    if LINEAR_CELLS <= position < points - 3.0:
         i = int(position)
         c0, c1, c2, c3 = stencil(position - i)
         return i, c0, c1, c2, c3

@@ -19,7 +19,7 @@ def degree_study(studies: Sequence[DegreeStudy]) -> Figure:
     """One panel a study: predicted rms in m/s (logarithmic, one scale for all) over the degree."""
     columns = min(len(studies), MOST_COLUMNS)
     rows = math.ceil(len(studies) / columns)
-    figure = new_figure(max(6.0, 2.7 * columns + 0.7), 2.7 * rows + 1.6, "Exit-speed error by degree of the lines")
+    figure = new_figure(max(8.0, 2.7 * columns + 0.7), 2.7 * rows + 1.6, "Exit-speed error by degree of the lines")
     place(figure, left=0.75, right=0.2, bottom=0.95, top=0.75, w=0.1, h=0.3)
     panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     for axes, study in zip(panels.flat, studies, strict=False):

@@ -1,0 +1,105 @@
+"""A tune of two cut classes on a coarse grid, done once, and the command line as a function."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from synth.cli import main
+
+CLASS = """\
+[retarder]
+name = "rnz-2m-park"
+[entry]
+high_m_s = 4.0
+[targets]
+exit_speeds_m_s = [1.5]
+[grid]
+path_step_m = 1.0
+speed_step_m_s = 0.05
+transient_step_s = 0.05
+friction_scenarios = 3
+[fit]
+degree = 2
+[validation]
+passes = 500
+[acceptance]
+honesty_high = 1.2
+[output]
+csv = true
+[[cut]]
+car = "gondola-4"
+mass_t = 22
+"""
+"""A park retarder, one light class and one target: solved in two seconds."""
+
+SECOND_CLASS = '[[cut]]\ncar = "gondola-4"\nmass_t = 30\nallowed_stage = 2\n'
+EPOCH = "1700000000"
+
+
+@dataclass(frozen=True)
+class Ran:
+    """What a command came to."""
+
+    code: int
+    out: str
+    err: str
+
+    @property
+    def sentence(self) -> str:
+        """The only line on stderr."""
+        assert self.err.startswith("retarder-synth: ")
+        assert self.err.count("\n") == 1
+        assert self.err.endswith("\n")
+        return self.err.removeprefix("retarder-synth: ").rstrip()
+
+
+Command = Callable[..., Ran]
+
+
+@pytest.fixture
+def command(capfd: pytest.CaptureFixture[str]) -> Command:
+    """Run the command line in this process."""
+
+    def run(*arguments: object) -> Ran:
+        capfd.readouterr()
+        code = main([str(argument) for argument in arguments])
+        return Ran(code, *capfd.readouterr())
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def one_class(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Configuration of one class."""
+    path = tmp_path_factory.mktemp("config") / "one.toml"
+    path.write_text(CLASS)
+    return path
+
+
+@pytest.fixture(scope="session")
+def two_classes(one_class: Path) -> Path:
+    """Configuration of two classes."""
+    path = one_class.with_name("two.toml")
+    path.write_text(CLASS + SECOND_CLASS)
+    return path
+
+
+@pytest.fixture(scope="session")
+def tuned_once(two_classes: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, int]:
+    """(directory, exit code) of a tune of two classes by two workers; not to be changed."""
+    directory = tmp_path_factory.mktemp("tuned") / "out"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SOURCE_DATE_EPOCH", EPOCH)
+        code = main(["tune", str(two_classes), "-o", str(directory), "--workers", "2"])
+    return directory, code
+
+
+@pytest.fixture
+def tuned(tuned_once: tuple[Path, int], tmp_path: Path) -> Path:
+    """A copy of the tuned directory, to be changed at will."""
+    return Path(shutil.copytree(tuned_once[0], tmp_path / "tuned"))

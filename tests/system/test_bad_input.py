@@ -1,0 +1,150 @@
+"""Whatever is wrong with the input: one sentence, the contracted code, nothing written, nothing removed."""
+
+from __future__ import annotations
+
+import os
+import random
+from pathlib import Path
+
+import pytest
+
+from tests.system.conftest import CLASS, Command
+
+ID = "gondola-4-22t-to-1.5-m-s"
+
+CONFIGURATIONS = {
+    "wrong type": (CLASS + "[friction]\ncommon_cv = '0.15'\n", "friction.common_cv is '0.15'; it must be a number"),
+    "unknown key": (CLASS + "[friction]\ncomon_cv = 0.15\n", "did you mean common_cv?"),
+    "negative mass": (CLASS.replace("mass_t = 22", "mass_t = -22"), "cut[0].mass_t is -22.0"),
+    "overlapping zones": (CLASS.replace("[entry]", "zones_m = [[0, 4], [3, 7]]\n[entry]"), "must not overlap"),
+    "stage pressures not rising": (
+        CLASS.replace("[entry]", "stage_pressures_kpa = [0, 300, 150]\n[entry]"), "retarder.stage_pressures_kpa"
+    ),
+    "target above entry speed": (CLASS.replace("[1.5]", "[4.5]"), "targets.exit_speeds_m_s holds 4.5"),
+    "not a number": (CLASS.replace("mass_t = 22", "mass_t = nan"), "cut[0].mass_t is nan; it must be a finite number"),
+    "no TOML": (CLASS + "[grid\n", "not valid TOML"),
+    "too fine a grid": (
+        CLASS.replace("path_step_m = 1.0\nspeed_step_m_s = 0.05", "path_step_m = 0.02\nspeed_step_m_s = 0.002").replace(
+            "friction_scenarios = 3", "friction_scenarios = 15\npath_levels = 9\nresistance_scenarios = 15"
+        ),
+        "would take about",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CONFIGURATIONS)
+def test_a_bad_configuration_touches_nothing(command: Command, tmp_path: Path, name: str) -> None:
+    text, said = CONFIGURATIONS[name]
+    config, out = tmp_path / "bad.toml", tmp_path / "out"
+    config.write_text(text)
+    ran = command("tune", config, "-o", out)
+    assert (ran.code, ran.out) == (2, "")
+    assert ran.sentence.startswith(f"{config}: ")
+    assert said in ran.sentence
+    assert not out.exists()
+
+
+def test_a_refused_tune_leaves_the_last_results_alone(command: Command, tuned: Path, tmp_path: Path) -> None:
+    before = {path: path.read_bytes() for path in tuned.rglob("*") if path.is_file()}
+    config = tmp_path / "bad.toml"
+    config.write_text(CONFIGURATIONS["too fine a grid"][0])
+    assert command("tune", config, "-o", tuned).code == 2
+    assert {path: path.read_bytes() for path in tuned.rglob("*") if path.is_file()} == before
+
+
+def test_missing_and_odd_configuration_files(command: Command, tmp_path: Path) -> None:
+    assert "there is no such file" in command("tune", tmp_path / "none.toml").sentence
+    assert "this is a directory" in command("tune", tmp_path).sentence
+    (tmp_path / "latin.toml").write_bytes(b'title = "\xe9"')
+    assert "not UTF-8" in command("tune", tmp_path / "latin.toml").sentence
+    assert command("validate", tmp_path / "none.json").code == 2
+
+
+@pytest.mark.parametrize("below", ["", "sub", "sub/sub"])
+def test_an_output_that_cannot_be_a_directory(command: Command, one_class: Path, tuned: Path, below: str) -> None:
+    file = tuned / "report.html"
+    before = file.read_bytes()
+    for arguments in (
+        ("tune", one_class, "-o", file / below),
+        ("plot", tuned / "book.h5", "-o", file / below),
+        ("export", tuned / "book.h5", "--format", "csv", "-o", file / below),
+    ):
+        ran = command(*arguments)
+        assert (ran.code, ran.out) == (2, "")
+        assert "give a" in ran.sentence
+    assert file.read_bytes() == before
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
+def test_an_output_without_permission(command: Command, one_class: Path, tmp_path: Path) -> None:
+    tmp_path.chmod(0o500)
+    ran = command("tune", one_class, "-o", tmp_path / "out")
+    assert ran.code == 2
+    assert "cannot be written" in ran.sentence
+
+
+def test_a_file_in_the_place_of_a_folder(command: Command, one_class: Path, tmp_path: Path) -> None:
+    (tmp_path / "tables").write_text("mine")
+    ran = command("tune", one_class, "-o", tmp_path)
+    assert ran.code == 2
+    assert "tables: this is a file" in ran.sentence
+
+
+@pytest.mark.parametrize("epoch", ["yesterday", "1e9", "-9" * 20])
+def test_a_date_that_is_none(
+    command: Command, one_class: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, epoch: str
+) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", epoch)
+    ran = command("tune", one_class, "-o", tmp_path / "out")
+    assert ran.code == 2
+    assert "SOURCE_DATE_EPOCH" in ran.sentence
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [("tuna",), ("tune", "--workers", "0"), ("tune", "--wrokers", "2"), ("export", "x.json"), ("validate",),
+     ("validate", "x.json", "--passes", "many"), ("tune", "a.toml", "b.toml")],
+)  # fmt: skip
+def test_faults_of_use(command: Command, arguments: tuple[str, ...]) -> None:
+    ran = command(*arguments)
+    assert (ran.code, ran.out) == (2, "")
+    assert "see 'retarder-synth --help'" in ran.sentence
+
+
+@pytest.mark.parametrize("name", [f"tables/{ID}.json", "book.h5"])
+def test_a_cut_off_table_or_book_is_damaged(command: Command, tuned: Path, two_classes: Path, name: str) -> None:
+    whole = (tuned / name).read_bytes()
+    for length in (0, 3, len(whole) // 2, len(whole) - 2):
+        (tuned / name).write_bytes(whole[:length])
+        for arguments in command_lines(tuned / name, two_classes, tuned / "new"):
+            ran = command(*arguments)
+            assert (ran.code, ran.out) == (3, ""), (arguments, length)
+            assert name in ran.sentence
+        assert not (tuned / "new").exists()
+
+
+@pytest.mark.parametrize("name", [f"tables/{ID}.json", "book.h5"])
+def test_a_flipped_bit_is_damage(command: Command, tuned: Path, two_classes: Path, name: str) -> None:
+    whole = (tuned / name).read_bytes()
+    rng = random.Random(20261120)
+    for _ in range(20):
+        flipped = bytearray(whole)
+        place = rng.randrange(len(flipped))
+        flipped[place] ^= 1 << rng.randrange(8)
+        if flipped[place : place + 1].isspace() and whole[place : place + 1].isspace():
+            continue  # white space of JSON is no content
+        (tuned / name).write_bytes(bytes(flipped))
+        for arguments in command_lines(tuned / name, two_classes, tuned / "new"):
+            assert command(*arguments).code == 3, (arguments, place)
+        assert not (tuned / "new").exists()
+
+
+def command_lines(table: Path, config: Path, output: Path) -> list[tuple[object, ...]]:
+    """Every command that reads a table."""
+    return [
+        ("inspect", table),
+        ("validate", table, "--config", config),
+        ("plot", table, "-o", output),
+        ("export", table, "--format", "json", "-o", output),
+    ]

@@ -1,0 +1,204 @@
+"""Every command on a real, small book: exit codes, what is printed, what is written."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from pathlib import Path
+
+import pytest
+
+from synth.config_file import parse_config
+from synth.output_directory import output_directory
+from tests.system.conftest import CLASS, Command
+from tuning_tables import from_json, read_book, read_json, to_csv, to_json
+
+ID = "gondola-4-22t-to-1.5-m-s"
+HEAVIER = "gondola-4-30t-to-1.5-m-s"
+
+
+def summary_of(directory: Path) -> dict:
+    return json.loads((directory / "summary.json").read_bytes())
+
+
+def test_tune_leaves_what_the_contract_says(tuned_once: tuple[Path, int]) -> None:
+    directory, code = tuned_once
+    assert code == 0
+    files = {path.relative_to(directory).as_posix() for path in directory.rglob("*") if path.is_file()}
+    assert {"book.h5", "report.html", "summary.json", f"tables/{ID}.json", f"tables/{ID}.csv"} <= files
+    assert {"plots/rms-by-controller.png", "plots/rms-by-controller.svg", "plots/feasibility.svg"} <= files
+    assert not (directory / "c").exists()
+    summary = summary_of(directory)
+    assert set(summary["files"]) == files - {"summary.json"}
+    for name, digest in summary["files"].items():
+        assert hashlib.sha256((directory / name).read_bytes()).hexdigest() == digest
+
+
+def test_the_summary_tells_the_figures_of_the_tables(tuned_once: tuple[Path, int], two_classes: Path) -> None:
+    directory, _ = tuned_once
+    summary = summary_of(directory)
+    assert (summary["format"], summary["version"], summary["accepted"]) == ("retarder-summary", 1, True)
+    assert summary["created"] == "2023-11-14T22:13:20Z"
+    assert summary["generator"]["config_sha256"] == parse_config(two_classes.read_text(), "two.toml").sha256
+    tables = read_book(directory / "book.h5")
+    assert [case["id"] for case in summary["cases"]] == [table.id for table in tables] == [ID, HEAVIER]
+    for case, table in zip(summary["cases"], tables, strict=True):
+        assert read_json(directory / case["table"]) == table
+        assert to_csv(table) == (directory / "tables" / f"{table.id}.csv").read_bytes()
+        assert table.validated is not None
+        assert case["simulated"]["rms_m_s"] == table.validated.rms_m_s
+        assert case["simulated"]["rms_ci95_m_s"] == list(table.validated.rms_ci95_m_s)
+        assert case["predicted"]["rms_m_s"] == pytest.approx(table.predicted.rms_m_s)
+        assert case["honesty"] == pytest.approx(table.predicted.rms_m_s / table.validated.rms_m_s)
+        bound = case["comparison"]["friction known"]["rms_m_s"]
+        assert case["regret"] == pytest.approx(table.validated.rms_m_s / bound)
+        assert case["best_baseline"] in case["comparison"]
+        assert case["verdict"] == "accepted"
+        assert set(case["hunting"]) == {"pressure", "speed"}
+
+
+def test_tune_prints_a_table_and_where_things_are(command: Command, one_class: Path, tmp_path: Path) -> None:
+    plain = one_class.with_name("plain.toml")
+    plain.write_text(CLASS.replace("csv = true", "plots = false\nreport = false"))
+    ran = command("tune", plain, "-o", tmp_path / "out")
+    assert ran.code == 0
+    assert "gondola-4-22t" in ran.out
+    assert "accepted: the limits are kept in 1 feasible case" in ran.out
+    assert str(tmp_path / "out" / "book.h5") in ran.out
+    assert "report" not in ran.out
+    assert "[1/1] gondola-4-22t to 1.5 m/s: rms 0.0" in ran.err
+    assert sorted(summary_of(tmp_path / "out")["files"]) == ["book.h5", f"tables/{ID}.json"]
+
+
+def test_missed_limits_give_1_and_stale_files_go(command: Command, one_class: Path, tuned: Path) -> None:
+    strict = one_class.with_name("strict.toml")
+    strict.write_text(
+        CLASS.replace("csv = true", "plots = false\nreport = false").replace("honesty_high = 1.2", "honesty_high = 1.0")
+    )
+    (tuned / "tables" / "my-notes.json").write_text("{}")
+    (tuned / "plots" / "my-photo.png").write_bytes(b"photo")
+    leftover = tuned / "tables" / f".{ID}.json.{'0' * 16}.part"
+    leftover.write_text("half")
+    ran = command("tune", strict, "-o", tuned, "--json")
+    assert ran.code == 1
+    summary = json.loads(ran.out)
+    assert summary == summary_of(tuned)
+    assert (summary["accepted"], summary["cases"][0]["verdict"]) == (False, "missed")
+    assert "predicted / simulated rms 1.0" in summary["cases"][0]["missed_limits"][0]
+    assert sorted(path.name for path in tuned.glob("tables/*")) == [f"{ID}.json", "my-notes.json"]
+    assert [path.name for path in tuned.glob("plots/*")] == ["my-photo.png"]
+    assert not (tuned / "report.html").exists()
+    assert not leftover.exists()
+    assert "tables/my-notes.json was there before" in ran.err
+
+
+def test_an_infeasible_book_is_not_accepted(command: Command, one_class: Path, tmp_path: Path) -> None:
+    hopeless = one_class.with_name("hopeless.toml")
+    hopeless.write_text(CLASS.replace("high_m_s = 4.0", "high_m_s = 5.5").replace("csv = true", "plots = false"))
+    ran = command("tune", hopeless, "-o", tmp_path)
+    assert ran.code == 1
+    assert "infeasible: gondola-4-22t to 1.5 m/s, out of brake power; entry speeds from 1.50 to" in ran.out
+    assert "no case is feasible" in ran.out
+    again = command("validate", tmp_path / "book.h5", "--config", hopeless)
+    assert again.code == 0  # known to be infeasible, from the summary beside it
+    assert "summary.json calls this case infeasible" in again.out
+    (tmp_path / "summary.json").unlink()
+    assert command("validate", tmp_path / "book.h5", "--config", hopeless).code == 1
+
+
+def test_a_second_tune_into_the_same_directory_is_refused(command: Command, one_class: Path, tuned: Path) -> None:
+    with output_directory(tuned):
+        ran = command("tune", one_class, "-o", tuned)
+    assert ran.code == 2
+    assert "another tune is writing there" in ran.sentence
+
+
+def test_validate_confirms_what_the_tables_say(command: Command, tuned: Path, two_classes: Path) -> None:
+    ran = command("validate", tuned / "book.h5", "--config", two_classes, "--json")
+    assert ran.code == 0
+    assert ran.err == ""
+    for each, table in zip(json.loads(ran.out), read_book(tuned / "book.h5"), strict=True):
+        assert table.validated is not None
+        assert each["simulated"]["rms_m_s"] == table.validated.rms_m_s  # the same passes
+        assert (each["confirmed"], each["same_config"], each["missed_limits"]) == (True, True, [])
+    other = command("validate", tuned / "tables" / f"{ID}.json", "--config", two_classes, "--seed", 7, "--passes", 4000)
+    assert other.code == 0
+    assert "limits kept, as stated" in other.out
+    assert "4000 passes of each table, seed 7" in other.out
+
+
+def test_validate_finds_a_table_that_lies(command: Command, tuned: Path, two_classes: Path) -> None:
+    path = tuned / "tables" / f"{ID}.json"
+    table = read_json(path)
+    text = to_json(table).decode().replace(f'"rms_m_s": {table.predicted.rms_m_s!r}', '"rms_m_s": 0.01')
+    document = json.loads(text)
+    document.pop("crc32")
+    from tuning_tables.canonical import document_checksum
+
+    document["crc32"] = document_checksum(document)
+    path.write_text(json.dumps(document))
+    ran = command("validate", path, "--config", two_classes)
+    assert ran.code == 1
+    assert "predicted / simulated rms 0.2" in ran.out
+
+
+def test_validate_refuses_a_plant_that_does_not_fit(command: Command, tuned: Path) -> None:
+    ran = command("validate", tuned / "book.h5")
+    assert ran.code == 2
+    assert "no cut class fits the table gondola-4-22t-to-1.5-m-s" in ran.sentence
+    assert "retarder.zones_m" in ran.sentence
+
+
+def test_inspect_tells_the_contents(command: Command, tuned: Path) -> None:
+    ran = command("inspect", tuned)
+    assert ran.code == 0
+    assert f"{ID}: leave with 1.5 m/s" in ran.out
+    assert "stage 1 (150 kPa) down below" in ran.out
+    assert "its CRC-32 is right" in ran.out
+    assert "that it lists are there unchanged" in ran.out
+    found = json.loads(command("inspect", tuned / "book.h5", "--json").out)
+    assert [table["id"] for table in found["files"][0]["tables"]] == [ID, HEAVIER]
+    assert found["files"][0]["tables"][0]["lines_at"][0]["k"] == 0
+
+
+def test_inspect_finds_a_file_that_does_not_belong(command: Command, tuned: Path) -> None:
+    (tuned / "report.html").write_text("another")
+    ran = command("inspect", tuned)
+    assert ran.code == 3
+    assert "report.html: its SHA-256 is not the one in summary.json" in ran.sentence
+
+
+def test_export_is_faithful(command: Command, tuned: Path, tmp_path: Path) -> None:
+    assert command("export", tuned / "book.h5", "--format", "json", "-o", tmp_path / "new").code == 0
+    for table in read_book(tuned / "book.h5"):
+        exported = tmp_path / "new" / f"{table.id}.json"
+        assert from_json(exported.read_bytes()) == table
+        assert exported.read_bytes() == (tuned / "tables" / f"{table.id}.json").read_bytes()
+    ran = command("export", tuned / "tables" / f"{ID}.json", "--format", "csv", "-o", tmp_path, "--json")
+    assert json.loads(ran.out) == {"files": [str(tmp_path / f"{ID}.csv")]}
+    for form, said in (("c", "comes in a later one"), ("st", "comes in a later one"), ("xml", "json or csv")):
+        ran = command("export", tuned / "book.h5", "--format", form)
+        assert ran.code == 2
+        assert said in ran.sentence
+
+
+def test_plot_draws_without_solving(command: Command, tuned: Path, two_classes: Path, tmp_path: Path) -> None:
+    ran = command("plot", tuned, "-o", tmp_path / "plots", "--config", two_classes, "--json")
+    assert ran.code == 0
+    names = {Path(name).name for name in json.loads(ran.out)["files"]}
+    kinds = ("lines", "surfaces", "passes")
+    assert names == {f"{i}-{kind}.{form}" for i in (ID, HEAVIER) for kind in kinds for form in ("png", "svg")}
+    assert names == {path.name for path in (tmp_path / "plots").iterdir()}
+    without = command("plot", tuned / "tables" / f"{ID}.json", "-o", tmp_path / "bare")
+    assert without.code == 0
+    assert "no passes are drawn" in without.sentence
+    assert len(list((tmp_path / "bare").iterdir())) == 4
+
+
+def test_init_prints_what_tune_reads(command: Command) -> None:
+    ran = command("init", "--retarder", "t-50-bunch")
+    assert ran.code == 0
+    assert parse_config(ran.out, "out").retarder.name == "t-50-bunch"
+    assert json.loads(command("init", "--json").out)["configuration"] == command("init").out
+    assert "knp-5-bunch" in command("init", "--list").out
+    assert "did you mean t-50-bunch?" in command("init", "--retarder", "t-50").sentence

@@ -1,0 +1,149 @@
+"""A tune that is killed or interrupted leaves nothing that looks complete and is not, and can be run again."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from synth.output_directory import LEFTOVER, PICTURES
+from tuning_tables import read_book, read_json
+
+TUNE = [sys.executable, "-c", "import sys; from synth.cli import main; raise SystemExit(main(sys.argv[1:]))", "tune"]
+
+
+def start(config: Path, out: Path) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [*TUNE, str(config), "-o", str(out)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+    )
+
+
+def wait_for(tune: subprocess.Popen[str], words: str) -> None:
+    """Until `tune` says `words`, or ends."""
+    assert tune.stderr is not None
+    for line in tune.stderr:
+        if words in line:
+            return
+
+
+def check(out: Path) -> None:
+    """Every file in `out` is whole, and a summary describes exactly the files that are there."""
+    for path in out.rglob("*"):
+        if path.is_file() and not LEFTOVER.fullmatch(path.name):
+            check_file(path)
+    if (out / "summary.json").exists():
+        files = json.loads((out / "summary.json").read_bytes())["files"]
+        for name, digest in files.items():
+            assert hashlib.sha256((out / name).read_bytes()).hexdigest() == digest, name
+
+
+def check_file(path: Path) -> None:
+    content = path.read_bytes()
+    match path.parent.name, path.suffix:
+        case "tables", ".json":
+            read_json(path)
+        case "tables", ".csv":
+            assert content.endswith(b"\r\n")
+        case "plots", ".png":
+            assert PICTURES.fullmatch(path.name)
+            assert content.startswith(b"\x89PNG")
+            assert content.endswith(b"IEND\xaeB`\x82")
+        case "plots", ".svg":
+            assert PICTURES.fullmatch(path.name)
+            ElementTree.fromstring(content)
+        case _, ".h5":
+            assert read_book(path)
+        case _, ".html":
+            assert content.endswith(b"</html>\n")
+        case _:
+            assert path.name == "summary.json"
+            json.loads(content)
+
+
+MOMENTS = (("", 3.0), ("", 3.0), ("computed in", 0.9), ("pictures drawn", 0.12), ("pictures drawn", 0.12))
+"""(what to wait for, longest further wait in seconds) of each kill."""
+
+
+def test_killed_tunes_leave_nothing_half_done(tuned: Path, one_class: Path) -> None:
+    # Begun in the results of another book: the old summary must be gone before anything else changes.
+    rng = random.Random(20261120)
+    for words, longest in MOMENTS:
+        tune = start(one_class, tuned)
+        if words:
+            wait_for(tune, words)
+        time.sleep(rng.uniform(0.0, longest))
+        tune.kill()
+        tune.communicate()
+        check(tuned)
+    last = start(one_class, tuned)
+    assert last.communicate(timeout=120) is not None
+    assert last.returncode == 0
+    check(tuned)
+    files = {path.relative_to(tuned).as_posix() for path in tuned.rglob("*") if path.is_file()}
+    assert files - {"summary.json"} == set(json.loads((tuned / "summary.json").read_bytes())["files"])
+
+
+def test_ctrl_c_ends_at_once_with_one_line(one_class: Path, tmp_path: Path) -> None:
+    tune = start(one_class, tmp_path)
+    while not (tmp_path / "tables").exists():
+        time.sleep(0.01)
+    time.sleep(1.0)
+    tune.send_signal(signal.SIGINT)
+    told = time.monotonic()
+    _, said = tune.communicate(timeout=60)
+    assert tune.returncode == 130
+    assert time.monotonic() - told < 5.0
+    assert said.splitlines()[-1] == f"retarder-synth: interrupted; {tmp_path} holds no complete book"
+    assert "Traceback" not in said
+    assert not (tmp_path / "summary.json").exists()
+    assert list(tmp_path.rglob("*.part")) == []
+
+
+DRAW_FOR_EVER = """
+from synth.draw_pictures import draw_in_processes
+from tests.synth.case_factory import make_case
+if __name__ == "__main__":
+    draw_in_processes([("case_pictures", (make_case(),))] * 500, 2)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="children are found in /proc")
+def test_drawing_processes_end_with_the_tune(tmp_path: Path) -> None:
+    script = tmp_path / "draw.py"
+    script.write_text(DRAW_FOR_EVER)
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
+    parent = subprocess.Popen([sys.executable, str(script)], env=environment, stderr=subprocess.DEVNULL)
+    drawing: set[int] = set()
+    deadline = time.monotonic() + 20.0
+    while len(drawing) < 2 and time.monotonic() < deadline:
+        time.sleep(0.05)
+        drawing = {pid for pid in children_of(parent.pid) if b"spawn_main" in command_of(pid)}
+    time.sleep(1.5)
+    parent.kill()
+    parent.wait()
+    assert len(drawing) == 2
+    deadline = time.monotonic() + 10.0
+    while any(b"spawn_main" in command_of(pid) for pid in drawing):
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+
+
+def children_of(pid: int) -> set[int]:
+    tasks = Path(f"/proc/{pid}/task").glob("*/children")
+    return {int(child) for task in tasks for child in task.read_text().split()}
+
+
+def command_of(pid: int) -> bytes:
+    try:
+        return Path(f"/proc/{pid}/cmdline").read_bytes()
+    except OSError:
+        return b""

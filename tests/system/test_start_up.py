@@ -1,0 +1,61 @@
+"""The command line answers at once, and imports nothing heavy before it must."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+HEAVY = {"control", "h5py", "matplotlib", "numba", "scipy"}
+
+
+def python(source: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-c", source, *arguments], capture_output=True, text=True, timeout=60, check=False
+    )
+
+
+def modules_after(*arguments: str) -> set[str]:
+    source = (
+        "import sys; from synth.cli import main; code = main(sys.argv[1:]); "
+        "print(*{name.partition('.')[0] for name in sys.modules}, file=sys.stderr); raise SystemExit(code)"
+    )
+    ran = python(source, *arguments)
+    assert ran.returncode == 0, ran.stderr
+    return set(ran.stderr.split())
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["tune", "--help"], ["--version"]])
+def test_help_imports_nothing_numeric(arguments: list[str]) -> None:
+    assert modules_after(*arguments).isdisjoint(HEAVY | {"numpy"})
+
+
+def test_init_needs_no_solver() -> None:
+    assert modules_after("init").isdisjoint(HEAVY)
+
+
+def test_inspect_of_a_table_needs_no_solver(tuned: Path) -> None:
+    table = next((tuned / "tables").glob("*.json"))
+    assert modules_after("inspect", str(table)).isdisjoint(HEAVY)
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["tune", "--help"]])
+def test_help_is_quick(arguments: list[str]) -> None:
+    def seconds() -> float:
+        started = time.perf_counter()
+        assert python(f"from synth.cli import main; raise SystemExit(main({arguments}))").returncode == 0
+        return time.perf_counter() - started
+
+    assert min(seconds() for _ in range(4)) < 0.4
+
+
+def test_installed_command_and_closed_pipe() -> None:
+    command = str(Path(sys.executable).with_name("retarder-synth"))
+    done = subprocess.run(
+        f"{command} init | head -n 1", shell=True, capture_output=True, text=True, timeout=60, check=True
+    )
+    assert done.stdout.startswith("# Configuration of retarder-synth")
+    assert done.stderr == ""
