@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.closed_loop import PassTrace
+from synth.exit_density import ExitDensity
 from synth.exit_statistics import ExitStatistics
-from synth.policy_evaluation import ExitDensity
+from synth.passes import PassTrace
 from synth.problem import Plant
 from synth.switching_lines import SwitchingLines
 from tuning_tables import ControllerTable

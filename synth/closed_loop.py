@@ -13,15 +13,14 @@ from plant_models import path_breaks_m, path_coefficients
 from synth.actuator import stage_locked_actuator
 from synth.controllers import Controller, LineController, TableController, fixed
 from synth.kernels import closed_loop as kernel
+from synth.passes import ExitSample, PassTrace
 from synth.problem import Plant
 from synth.random_passes import PATH_CELLS, RandomPasses, random_passes
 
 __all__ = [
     "ClosedLoop",
     "Controller",
-    "ExitSample",
     "LineController",
-    "PassTrace",
     "TableController",
     "close_loop",
     "simulate",
@@ -32,50 +31,11 @@ __all__ = [
 CELL_M = 0.5
 """Longest path cell, at most a quarter of the correlation length; η is constant in a cell."""
 
-SUBSTEPS = 5
+SUBSTEPS = 3
 """Parts of a sampling period in which a transient is played as its mean (see the convergence test)."""
 
 CHUNK_PASSES = 2000
 """Passes whose random numbers are in memory at a time, for each thread (6 MB)."""
-
-
-@dataclass(frozen=True)
-class ExitSample:
-    """How n passes ended, arrays of shape (n,); a stalled pass has exit speed 0."""
-
-    exit_speed_m_s: NDArray[np.float64]
-    stalled: NDArray[np.bool_]
-    switchings: NDArray[np.int32]
-    transit_time_s: NDArray[np.float64]
-
-    def __post_init__(self) -> None:
-        for array in vars(self).values():
-            array.setflags(write=False)
-
-    def __len__(self) -> int:
-        return len(self.exit_speed_m_s)
-
-
-@dataclass(frozen=True)
-class PassTrace:
-    """One pass, event by event, arrays of shape (events,); the last event is the end of the pass.
-
-    Overpressure max(0, P − P0) and commanded stage hold from an event to the next; `measured_m_s` is NaN
-    where nothing was sampled.
-    """
-
-    time_s: NDArray[np.float64]
-    path_m: NDArray[np.float64]
-    speed_m_s: NDArray[np.float64]
-    overpressure_kpa: NDArray[np.float64]
-    stage: NDArray[np.int64]
-    measured_m_s: NDArray[np.float64]
-    stalled: bool
-
-    @property
-    def exit_speed_m_s(self) -> float:
-        """Speed at the exit; 0 after a stall."""
-        return 0.0 if self.stalled else float(self.speed_m_s[-1])
 
 
 @dataclass(frozen=True)

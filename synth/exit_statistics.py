@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from synth.closed_loop import ExitSample
+from synth.passes import ExitSample
 
 OVERSPEED_M_S = 0.3
 """An exit that is faster than the target by more than this is an over-speed."""

@@ -9,15 +9,16 @@ import numpy as np
 
 from synth.backward_induction import solve_all
 from synth.case_result import Feasibility, Measured
-from synth.closed_loop import ExitSample, LineController, close_loop
+from synth.closed_loop import LineController, close_loop
 from synth.exit_statistics import pooled_statistics
+from synth.passes import ExitSample
 from synth.problem import Criterion
 from synth.random_passes import RandomPasses
 from synth.transitions import Transitions, equally_spaced_normal, with_known_friction
 
 ENTRY_POINTS = 41
 
-FRICTION_NODES = 11
+FRICTION_NODES = 9
 """Nodes of ξ_cut, from −4 to 4 standard deviations."""
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from synth.policy_evaluation import ExitDensity
+from synth.exit_density import ExitDensity
 from synth.polynomial_fit import PolynomialLines
 from synth.problem import Plant
 from synth.switching_lines import SwitchingLines

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 
@@ -20,6 +20,7 @@ from synth.random_passes import RandomPasses, random_passes
 from synth.resolved_config import ResolvedConfig
 from synth.transitions import as_published, check_transitions, persistent_transitions
 from synth.tune_case import CaseOrder, degree_study, tune_case
+from synth.work_queue import run_nested
 from tuning_tables import ControllerTable, Generator, read_json, write_json
 
 DEGREES = (1, 2, 3, 4, 5, 6)
@@ -43,7 +44,7 @@ class Book:
 def tune(config: ResolvedConfig, tables: Path, progress: Progress, workers: int = 2) -> Book:
     """Tune every cut class and target of `config`; the tables are written into the directory `tables`.
 
-    Classes run on `workers` threads (the kernels release the interpreter); the result does not depend on how
+    Work runs on `workers` threads (the kernels release the interpreter); the result does not depend on how
     many. `progress` is told a sentence whenever a case is done.
     """
     plants = config.plants()
@@ -55,22 +56,32 @@ def tune(config: ResolvedConfig, tables: Path, progress: Progress, workers: int 
     generator = Generator("retarder-synth", version("retarder-synth"), config.sha256)
     heaviest_first = sorted(range(len(plants)), key=lambda i: -plants[i][1].top_stage * plants[i][1].cut.mass_t)
 
-    def one_class(index: int) -> tuple[tuple[CaseResult, ...], tuple[DegreeStudy, ...]]:
+    def start(index: int) -> Callable[[], list[Callable[[], CaseResult | DegreeStudy]]]:
         label, plant = plants[index]
-        studied = index == len(plants) // 2
-        return tune_class(config, label, plant, studied, passes, tuning, generator, created, tables, progress)
+        studied = index == heaviest_first[-1]
+        return lambda: class_tasks(
+            config, label, plant, studied, passes, tuning, generator, created, tables, progress
+        )  # fmt: skip
 
-    with ThreadPoolExecutor(max_workers=workers) as pool:
-        done = dict(zip(heaviest_first, pool.map(one_class, heaviest_first), strict=True))
-    cases = tuple(case for i in range(len(plants)) for case in done[i][0])
-    return Book(config, created, cases, tuple(study for i in range(len(plants)) for study in done[i][1]))
+    found = run_nested([start(index) for index in heaviest_first], workers)
+    by_class = dict(zip(heaviest_first, found, strict=True))
+    results = [result for index in range(len(plants)) for result in by_class[index]]
+    return Book(
+        config,
+        created,
+        tuple(result for result in results if isinstance(result, CaseResult)),
+        tuple(result for result in results if isinstance(result, DegreeStudy)),
+    )
 
 
-def tune_class(
+def class_tasks(
     config: ResolvedConfig, label: str, plant: Plant, studied: bool, passes: RandomPasses, tuning: RandomPasses,
     generator: Generator, created: str, tables: Path, progress: Progress,
-) -> tuple[tuple[CaseResult, ...], tuple[DegreeStudy, ...]]:  # fmt: skip
-    """All targets of one cut class; with `studied` also the degree study of its middle target."""
+) -> list[Callable[[], CaseResult | DegreeStudy]]:  # fmt: skip
+    """Solve all targets of one cut class together; returns what is left to do for each, as tasks.
+
+    With `studied` the degree study of the first target comes first, because it takes longest.
+    """
     targets, criterion = config.targets_m_s, config.criterion
     design = persistent_transitions(plant, config.resolution)
     check = check_transitions(plant, finer_for_check(config.resolution))
@@ -81,11 +92,11 @@ def tune_class(
     published = solve_all(as_published(design), priced)
     bounds = friction_known_bounds(design, targets, criterion, passes, config.acceptance.rms_m_s)
     draws = close_loop(plant, plant.top_stage + 1).draws(passes)
-    results = []
-    for i, target in enumerate(targets):
+
+    def case(i: int) -> CaseResult:
         order = CaseOrder(
             label=label,
-            problem=Problem(plant, target, criterion),
+            problem=Problem(plant, targets[i], criterion),
             solution=solutions[i],
             plain=plain[i],
             published=published[i],
@@ -100,14 +111,18 @@ def tune_class(
             created=created,
             store=lambda table: write_and_read_back(table, tables),
         )
-        results.append(tune_case(order))
-        figures = results[-1].comparison[0].statistics
-        progress(f"{label} to {target:g} m/s: rms {figures.rms_m_s:.3f} m/s in {figures.passes} simulated passes")
-    studies: tuple[DegreeStudy, ...] = ()
-    if studied:
-        studies = (degree_study(solutions[len(targets) // 2], label, DEGREES),)
-        progress(f"{label} to {targets[len(targets) // 2]:g} m/s: degree study done")
-    return tuple(results), studies
+        result = tune_case(order)
+        figures = result.comparison[0].statistics
+        progress(f"{label} to {targets[i]:g} m/s: rms {figures.rms_m_s:.3f} m/s in {figures.passes} simulated passes")
+        return result
+
+    def study() -> DegreeStudy:
+        result = degree_study(solutions[0], label, DEGREES)
+        progress(f"{label} to {targets[0]:g} m/s: degree study done")
+        return result
+
+    tasks: list[Callable[[], CaseResult | DegreeStudy]] = [study] if studied else []
+    return tasks + [partial(case, i) for i in range(len(targets))]
 
 
 def write_and_read_back(table: ControllerTable, directory: Path) -> ControllerTable:

@@ -10,10 +10,12 @@ import numpy as np
 from synth.backward_induction import Solution
 from synth.baselines import tune_baselines
 from synth.case_result import CaseResult, DegreeStudy, Feasibility, Indifference, Measured
-from synth.closed_loop import Controller, ExitSample, LineController, TableController, close_loop, trace
+from synth.closed_loop import Controller, LineController, TableController, close_loop, trace
+from synth.exit_density import ExitDensity
 from synth.exit_statistics import exit_statistics
 from synth.kernels.closed_loop import Draws
-from synth.policy_evaluation import ExitDensity, commands, cost_and_gradient, exit_density, occupancy_of
+from synth.passes import ExitSample
+from synth.policy_evaluation import commands, cost_and_gradient, exit_density, occupancy_of
 from synth.policy_map import policy_map
 from synth.polynomial_fit import Evaluate, Fit, PolynomialLines, fit_lines, polish
 from synth.problem import Criterion, Problem

@@ -218,10 +218,13 @@ def run_pass(
     stage, chain, played = 0, -1, 0
     # One turn of the loop is one sampling period, at rest or within a chain.
     while status == MOVING and time < LONGEST_PASS_S:
-        measured = measure(v, noise_z[sample % noise_z.shape[0]], sensor)
-        if sample > 0:
-            slope += gain * ((measured - before) / period - slope)
-        before = measured
+        measured = math.nan
+        if chain < 0 or lead_s != 0.0:  # within a chain only the slope filter looks at the sensor
+            measured = measure(v, noise_z[sample % noise_z.shape[0]], sensor)
+        if lead_s != 0.0:
+            if sample > 0:
+                slope += gain * ((measured - before) / period - slope)
+            before = measured
         if chain < 0:
             if tabled:
                 wanted = min(max(stage + table_decision(coefficients, has_line, valid, stage, s, measured), 0), top)

@@ -87,14 +87,7 @@ def push(mass, transition, shift, first, last, out, moved):
             moved[bottom:top] = 0.0
             for j in range(begin, low):
                 put_at(moved, j + base + x, mass[h, q, j])
-            for j in range(low, high):
-                moved[j + base - 1] += c0 * mass[h, q, j]
-            for j in range(low, high):
-                moved[j + base] += c1 * mass[h, q, j]
-            for j in range(low, high):
-                moved[j + base + 1] += c2 * mass[h, q, j]
-            for j in range(low, high):
-                moved[j + base + 2] += c3 * mass[h, q, j]
+            spread_by_stencil(mass[h, q], low, high, base, c0, c1, c2, c3, moved)
             for j in range(high, end):
                 put_at(moved, j + base + x, mass[h, q, j])
                 escaped += abs(mass[h, q, j])
@@ -106,6 +99,30 @@ def push(mass, transition, shift, first, last, out, moved):
                 for j in range(bottom, top):
                     out[h, m, j] += p * moved[j]
     return stalled, escaped
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def spread_by_stencil(row, low, high, base, c0, c1, c2, c3, out):
+    """Add every row[j], low ≤ j < high, to out[j + base − 1 … j + base + 2] with weights c0 … c3.
+
+    Written as a gather, one pass with four products; its two ends, where terms are missing, apart.
+    """
+    if high - low < 4:
+        for j in range(low, high):
+            out[j + base - 1] += c0 * row[j]
+            out[j + base] += c1 * row[j]
+            out[j + base + 1] += c2 * row[j]
+            out[j + base + 2] += c3 * row[j]
+        return
+    for j in range(low + 2, high - 1):
+        out[j + base] += c0 * row[j + 1] + c1 * row[j] + c2 * row[j - 1] + c3 * row[j - 2]
+    first, last = low + base, high + base
+    out[first - 1] += c0 * row[low]
+    out[first] += c0 * row[low + 1] + c1 * row[low]
+    out[first + 1] += c0 * row[low + 2] + c1 * row[low + 1] + c2 * row[low]
+    out[last - 1] += c1 * row[high - 1] + c2 * row[high - 2] + c3 * row[high - 3]
+    out[last] += c2 * row[high - 1] + c3 * row[high - 2]
+    out[last + 1] += c3 * row[high - 1]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

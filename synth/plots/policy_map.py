@@ -14,7 +14,7 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from synth.case_result import CaseResult, PolicyMap
-from synth.closed_loop import PassTrace
+from synth.passes import PassTrace
 from synth.plots.case_names import cut_name, target_name
 from synth.plots.house_style import BLUE, GREY, INK, VERMILLION, dress, mark_zones, new_figure, place, speed_window_m_s
 

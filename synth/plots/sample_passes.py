@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from synth.case_result import CaseResult
-from synth.closed_loop import PassTrace
+from synth.passes import PassTrace
 from synth.plots.case_names import cut_name, target_name
 from synth.plots.house_style import (
     GREY,

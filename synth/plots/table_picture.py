@@ -13,8 +13,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]  # ships no type information
 
-from synth.closed_loop import ExitSample, PassTrace
 from synth.exit_statistics import exit_statistics
+from synth.passes import ExitSample, PassTrace
 from synth.plots.house_style import (
     BLUE,
     GREY,

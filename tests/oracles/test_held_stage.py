@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from plant_models import Friction, PressingForce, RollingResistance, TrackProfile
+from synth.exit_density import ExitDensity
 from synth.grid import Resolution
-from synth.policy_evaluation import ExitDensity, commands, exit_density
+from synth.policy_evaluation import commands, exit_density
 from synth.problem import EntrySpeed, Plant
 from synth.switching_lines import SwitchingLines
 from synth.transitions import Transitions, check_transitions, persistent_transitions

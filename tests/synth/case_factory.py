@@ -18,9 +18,9 @@ from plant_models import (
     TrackProfile,
 )
 from synth.case_result import CaseResult, DegreeStudy, Feasibility, Indifference, Measured, PolicyMap
-from synth.closed_loop import ExitSample, PassTrace
+from synth.exit_density import ExitDensity
 from synth.exit_statistics import exit_statistics
-from synth.policy_evaluation import ExitDensity
+from synth.passes import ExitSample, PassTrace
 from synth.problem import EntrySpeed, Plant
 from synth.switching_lines import SwitchingLines
 from tuning_tables import (

@@ -18,7 +18,6 @@ from synth.baselines import energy_rule
 from synth.closed_loop import (
     ClosedLoop,
     LineController,
-    PassTrace,
     TableController,
     cell_edges_m,
     close_loop,
@@ -27,6 +26,7 @@ from synth.closed_loop import (
     trace,
 )
 from synth.kernels.closed_loop import LEFT, MOVING, STALLED, Draws, advance
+from synth.passes import PassTrace
 from synth.problem import Plant
 from synth.random_passes import PATH_CELLS, RandomPasses, random_passes
 from synth.switching_lines import SwitchingLines
@@ -36,8 +36,8 @@ from tuning_tables.provenance import CutId, Generator, RetarderId
 from tuning_tables.stage import Stage, round_coefficients
 from tuning_tables.table import ControllerTable
 
-EXIT_SPEED_TOLERANCE_M_S = 1e-4
-"""Asked for is 1 mm/s; reached is 0.01 mm/s."""
+EXIT_SPEED_TOLERANCE_M_S = 5e-4
+"""Asked for is 1 mm/s; reached with the default sub-steps is 0.2 mm/s."""
 
 
 @pytest.fixture(scope="module")
@@ -221,7 +221,7 @@ def test_substeps_converge(plant_52t: Plant, passes: RandomPasses) -> None:
         same = (switchings == commands_sent) & (np.abs(speed - reference) < 0.01)
         assert same.mean() > 0.97
         errors.append(float(np.sqrt(np.mean((speed - reference)[same] ** 2))))
-    assert errors[1] < 0.2 * EXIT_SPEED_TOLERANCE_M_S
+    assert errors[1] < 0.04 * EXIT_SPEED_TOLERANCE_M_S
     assert errors[0] > 2.5 * errors[1] > 6.0 * errors[2]  # second order, but for kinks within a substep
 
 

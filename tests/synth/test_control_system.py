@@ -10,8 +10,9 @@ import pytest
 
 from plant_models import DopplerSensor, Friction, RollingResistance
 from synth.baselines import energy_rule, threshold_with_lead
-from synth.closed_loop import Controller, LineController, PassTrace, TableController, close_loop, trace
+from synth.closed_loop import Controller, LineController, TableController, close_loop, trace
 from synth.control_system import SOLVER, drive_system, motion_system, nominal_loop, nominal_response, regulator_system
+from synth.passes import PassTrace
 from synth.problem import Plant
 from synth.random_passes import random_passes
 from synth.switching_lines import SwitchingLines

@@ -9,8 +9,8 @@ import pytest
 from numpy.typing import NDArray
 from scipy import stats
 
-from synth.closed_loop import ExitSample
 from synth.exit_statistics import clopper_pearson, exit_statistics
+from synth.passes import ExitSample
 
 
 def sample_of(speed: NDArray[np.float64]) -> ExitSample:

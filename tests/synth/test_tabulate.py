@@ -7,8 +7,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from synth.exit_density import ExitDensity
 from synth.grid import Resolution
-from synth.policy_evaluation import ExitDensity, commands, exit_density
+from synth.policy_evaluation import commands, exit_density
 from synth.polynomial_fit import PolynomialLines
 from synth.problem import Plant
 from synth.switching_lines import SwitchingLines

@@ -1,0 +1,47 @@
+"""What simulated passes leave behind; nothing here needs a kernel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class ExitSample:
+    """How n passes ended, arrays of shape (n,); a stalled pass has exit speed 0."""
+
+    exit_speed_m_s: NDArray[np.float64]
+    stalled: NDArray[np.bool_]
+    switchings: NDArray[np.int32]
+    transit_time_s: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        for array in vars(self).values():
+            array.setflags(write=False)
+
+    def __len__(self) -> int:
+        return len(self.exit_speed_m_s)
+
+
+@dataclass(frozen=True)
+class PassTrace:
+    """One pass, event by event, arrays of shape (events,); the last event is the end of the pass.
+
+    Overpressure max(0, P − P0) and commanded stage hold from an event to the next; `measured_m_s` is NaN
+    where nothing was sampled.
+    """
+
+    time_s: NDArray[np.float64]
+    path_m: NDArray[np.float64]
+    speed_m_s: NDArray[np.float64]
+    overpressure_kpa: NDArray[np.float64]
+    stage: NDArray[np.int64]
+    measured_m_s: NDArray[np.float64]
+    stalled: bool
+
+    @property
+    def exit_speed_m_s(self) -> float:
+        """Speed at the exit; 0 after a stall."""
+        return 0.0 if self.stalled else float(self.speed_m_s[-1])
