@@ -22,11 +22,11 @@ from synth.switching_lines import SwitchingLines
 LINE_NODES = 129
 """Nodes of the lines; only the energy rule's are not constant."""
 
-COARSE_PASSES = 250
+COARSE_PASSES = 150
 """Passes for the coarse grid; whether a law brakes far too early or late shows in few."""
 
-REFINEMENTS = 30
-"""Simulations that the simplex search may take."""
+REFINEMENTS_PER_PARAMETER = 10
+"""Simulations that the simplex search may take, for each continuous parameter of a law."""
 
 
 @dataclass(frozen=True)
@@ -187,7 +187,10 @@ def tune(family: Family, loop: ClosedLoop, target_m_s: float, few: Draws, draws:
         np.array(start, dtype=np.float64),
         method="Nelder-Mead",
         bounds=family.bounds,
-        options={"initial_simplex": np.vstack([start, start + np.diag(steps)]), "maxfev": REFINEMENTS},
+        options={
+            "initial_simplex": np.vstack([start, start + np.diag(steps)]),
+            "maxfev": REFINEMENTS_PER_PARAMETER * len(family.grids),
+        },
     )
     values = tuple(float(value) for value in found.x)
     parameters = dict(zip(family.names, values, strict=True))

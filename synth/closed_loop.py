@@ -31,8 +31,8 @@ __all__ = [
 CELL_M = 0.5
 """Longest path cell, at most a quarter of the correlation length; η is constant in a cell."""
 
-SUBSTEPS = 3
-"""Parts of a sampling period in which a transient is played as its mean (see the convergence test)."""
+SUBSTEP_S = 0.034
+"""Longest part of a transient that is played as its mean (see the convergence test): within 0.2 mm/s at the exit."""
 
 CHUNK_PASSES = 2000
 """Passes whose random numbers are in memory at a time, for each thread (6 MB)."""
@@ -65,13 +65,17 @@ class ClosedLoop:
         factor = plant.friction.cut_factor(passes.cut_z, plant.friction_cv)
         if cut_factor is not None:
             factor = np.full(len(passes), cut_factor, dtype=np.float64)
+        factor, path_z = fixed(factor, np.float64), fixed(passes.path_z, np.float32)
+        rows = np.empty((len(passes), len(self.path.gravity_m_s2)))
+        kernel.brake_rows(self.path, factor, path_z, rows)
         return kernel.Draws(
-            fixed(factor, np.float64),
+            factor,
             fixed(self.resistance_n_kn(passes.resistance_u), np.float64),
             fixed(plant.entry.speed_m_s(passes.entry_u), np.float64),
             fixed(passes.phase_u * plant.sensor.sample_period_s, np.float64),
-            fixed(passes.path_z, np.float32),
+            path_z,
             fixed(passes.noise_z, np.float32),
+            fixed(rows, np.float64),
         )
 
     def resistance_n_kn(self, u: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -105,10 +109,12 @@ class ClosedLoop:
         return ExitSample(exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s), events[:count]
 
 
-def close_loop(plant: Plant, stages: int, substeps: int = SUBSTEPS) -> ClosedLoop:
+def close_loop(plant: Plant, stages: int, substeps: int | None = None) -> ClosedLoop:
     """`plant` with a regulator of `stages` stages: as many as its controller has, allowed or not."""
     if not 2 <= stages <= plant.position.top_stage + 1:
         raise ValueError(f"closed loop: {stages} stages; {plant.position.name} has {plant.position.top_stage + 1}")
+    if substeps is None:
+        substeps = math.ceil(plant.sensor.sample_period_s / SUBSTEP_S)
     actuator = stage_locked_actuator(plant.position, plant.sensor, stages - 1, substeps)
     drive = kernel.Drive(
         fixed(actuator.mode_overpressure_kpa, np.float64),

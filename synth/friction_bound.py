@@ -18,8 +18,8 @@ from synth.transitions import Transitions, equally_spaced_normal, with_known_fri
 
 ENTRY_POINTS = 41
 
-FRICTION_NODES = 9
-"""Nodes of ξ_cut, from −4 to 4 standard deviations."""
+FRICTION_NODES = 7
+"""Nodes of ξ_cut, from −4 to 4 standard deviations; the highest, where no brake power is missing, is left out."""
 
 
 def friction_known_bounds(
@@ -37,11 +37,12 @@ def friction_known_bounds(
     """
     plant = transitions.plant
     free = replace(criterion, switching_tolerance_m2_s2=0.0)
-    z, weights = equally_spaced_normal(FRICTION_NODES)
+    z, weights = (nodes[:-1] for nodes in equally_spaced_normal(FRICTION_NODES))
+    weights = weights / weights.sum()
     factors = plant.friction.cut_factor(z, plant.friction_cv)
     strata: list[list[ExitSample]] = [[] for _ in targets_m_s]
     squares = np.zeros((len(targets_m_s), len(transitions.grid.speed_m_s)))
-    share = len(passes) // FRICTION_NODES
+    share = len(passes) // len(z)
     loop = close_loop(plant, plant.top_stage + 1)
     for i, (factor, weight) in enumerate(zip(factors, weights, strict=True)):
         draws = loop.draws(passes.part(i * share, (i + 1) * share), float(factor))

@@ -8,7 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from synth.acceptance import Verdict
-from synth.draw_pictures import draw_pictures
+from synth.draw_pictures import Studio
 from synth.output_directory import SUMMARY, remove_stale
 from synth.plots.picture import Picture, save_picture
 from synth.report import BookReport, write_report
@@ -20,7 +20,7 @@ from tuning_tables.canonical import canonical_json
 Say = Callable[[str], None]
 
 
-def write_outputs(book: Book, verdict: Verdict, directory: Path, workers: int, say: Say) -> Document:
+def write_outputs(book: Book, verdict: Verdict, directory: Path, studio: Studio, say: Say) -> Document:
     """Write everything but the JSON tables, which are in `directory`/tables already; the summary as written.
 
     Files of an earlier tune that are not written anew are removed when all new ones are whole, and before the summary
@@ -36,7 +36,7 @@ def write_outputs(book: Book, verdict: Verdict, directory: Path, workers: int, s
             write_csv(table, files[-1])
     pictures: tuple[Picture, ...] = ()
     if config.output.plots or config.output.report:
-        pictures = draw_pictures(book.cases, book.degree_studies, config.acceptance.rms_m_s, workers)
+        pictures = studio.book(book.cases, book.degree_studies, config.acceptance.rms_m_s)
         say(f"{len(pictures)} pictures drawn")
     if config.output.plots:
         for picture in pictures:

@@ -30,7 +30,7 @@ class PassTrace:
     """One pass, event by event, arrays of shape (events,); the last event is the end of the pass.
 
     Overpressure max(0, P − P0) and commanded stage hold from an event to the next; `measured_m_s` is NaN
-    where nothing was sampled.
+    where the regulator did not look at the sensor.
     """
 
     time_s: NDArray[np.float64]

@@ -82,13 +82,7 @@ def forward_pass(
     exits, totals = np.zeros(points), np.zeros(4)
     band = np.empty((len(t.scenarios.weight), len(t.drive_m_s2), 2), dtype=np.int64)
     for i, weight in enumerate(t.scenarios.weight):
-        one, sums = np.empty(points), np.empty(4)
-        arguments = (
-            policy.down, policy.up, t.entry, *shared_arguments(t), t.scenarios.factor[i], t.scenarios.extra_m_s2[i],
-            t.grid.path_step_m, t.grid.energy_step_m2_s2, t.plant.sensor.sample_period_s,
-            samples[i], band[i], one, sums,
-        )  # fmt: skip
-        forward(*arguments)
+        one, sums = forward_one(t, policy, i, samples[i], band[i])
         samples[i] *= weight
         exits += weight * one
         totals += weight * sums
@@ -97,40 +91,69 @@ def forward_pass(
     return total, band
 
 
+def forward_one(
+    t: Transitions, policy: Commands, i: int, density: NDArray[np.float64], band: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Forward recursion in scenario `i`: exit probabilities (E,) and the kernel's totals (4,)."""
+    exits, totals = np.empty(len(t.grid.speed_m_s)), np.empty(4)
+    arguments = (
+        policy.down, policy.up, t.entry, *shared_arguments(t), t.scenarios.factor[i], t.scenarios.extra_m_s2[i],
+        t.grid.path_step_m, t.grid.energy_step_m2_s2, t.plant.sensor.sample_period_s, density, band, exits, totals,
+    )  # fmt: skip
+    forward(*arguments)
+    return exits, totals
+
+
 def expected_cost(transitions: Transitions, policy: Commands, target_speed_m_s: float, criterion: Criterion) -> float:
     """Expected cost of the policy by the backward recursion, every state valued."""
-    return backward_pass(transitions, policy, target_speed_m_s, criterion, None)[0]
+    t = transitions
+    nothing, no_band = np.empty((0, 0, 0, 0)), np.empty((0, 2), dtype=np.int64)
+    return float(
+        sum(
+            weight * backward_one(t, policy, i, target_speed_m_s, criterion, nothing, no_band)[0]
+            for i, weight in enumerate(t.scenarios.weight)
+        )
+    )
 
 
 def cost_and_gradient(
     transitions: Transitions, policy: Commands, target_speed_m_s: float, criterion: Criterion
 ) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
     """Cost and its exact derivatives by every line value: (cost, by lower (K + 1, N), by upper (K + 1, N))."""
-    _, occupancy = occupancy_of(transitions, policy)
-    return backward_pass(transitions, policy, target_speed_m_s, criterion, occupancy)
-
-
-def backward_pass(
-    t: Transitions, policy: Commands, target_speed_m_s: float, criterion: Criterion, occupancy: Occupancy | None
-) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
-    """Backward recursion over all scenarios; see `cost_and_gradient`."""
-    nodes, stages = policy.down.shape[:2]
-    by_lower, by_upper = np.zeros((nodes, stages)), np.zeros((nodes, stages))
-    terminal = (t.grid.speed_m_s - target_speed_m_s) ** 2
-    stalled = target_speed_m_s**2 + criterion.stall_cost_m2_s2
-    nothing, no_band = np.empty((0, 0, 0, 0)), np.empty((0, 2), dtype=np.int64)
-    cost = 0.0
+    t = transitions
+    nodes, stages, points = policy.down.shape
+    density = np.empty((nodes, len(t.actuator.mode_stage), len(t.chain.levels), points))
+    band = np.empty((nodes, 2), dtype=np.int64)
+    cost, by_lower, by_upper = 0.0, np.zeros((nodes, stages)), np.zeros((nodes, stages))
     for i, weight in enumerate(t.scenarios.weight):
-        arguments = (
-            policy.down, policy.up, policy.down_slope, policy.up_slope, terminal, stalled,
-            criterion.switching_tolerance_m2_s2, t.entry,
-            *shared_arguments(t), t.scenarios.factor[i], t.scenarios.extra_m_s2[i], t.grid.path_step_m,
-            t.grid.energy_step_m2_s2, t.plant.sensor.sample_period_s,
-            nothing if occupancy is None else occupancy.samples[i],
-            no_band if occupancy is None else occupancy.band[i], by_lower, by_upper,
-        )  # fmt: skip
-        cost += weight * backward(*arguments)
+        forward_one(t, policy, i, density, band)
+        one, lower, upper = backward_one(t, policy, i, target_speed_m_s, criterion, density, band)
+        cost += weight * one
+        by_lower += weight * lower
+        by_upper += weight * upper
     return float(cost), by_lower.T.copy(), by_upper.T.copy()
+
+
+def backward_one(
+    t: Transitions,
+    policy: Commands,
+    i: int,
+    target_speed_m_s: float,
+    criterion: Criterion,
+    density: NDArray[np.float64],
+    band: NDArray[np.int64],
+) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
+    """Backward recursion in scenario `i`: cost, and gradient (N, K + 1) if `density`, `band` are its forward ones."""
+    nodes, stages, _ = policy.down.shape
+    by_lower, by_upper = np.zeros((nodes, stages)), np.zeros((nodes, stages))
+    arguments = (
+        policy.down, policy.up, policy.down_slope, policy.up_slope,
+        (t.grid.speed_m_s - target_speed_m_s) ** 2, target_speed_m_s**2 + criterion.stall_cost_m2_s2,
+        criterion.switching_tolerance_m2_s2, t.entry, *shared_arguments(t), t.scenarios.factor[i],
+        t.scenarios.extra_m_s2[i], t.grid.path_step_m, t.grid.energy_step_m2_s2, t.plant.sensor.sample_period_s,
+        density, band, by_lower, by_upper,
+    )  # fmt: skip
+    return backward(*arguments), by_lower, by_upper
 
 
 def shared_arguments(t: Transitions) -> Any:

@@ -148,8 +148,8 @@ class GridSettings(Section):
 
     path_step_m: float = setting(0.5, "m", 0.02, 5.0, "path quantum, rounded so that whole quanta fill S_exit")
     speed_step_m_s: float = setting(0.03, "m/s", 0.002, 0.2, "step of the speed grid")
-    transient_step_s: float = setting(0.02, "s", 0.002, 0.2, "longest time step within a change of stage")
-    friction_scenarios: int = setting(5, "1", 1, 15, "Gauss–Hermite nodes of the friction of a cut")
+    transient_step_s: float = setting(0.05, "s", 0.002, 0.2, "longest time step within a change of stage")
+    friction_scenarios: int = setting(4, "1", 1, 15, "Gauss–Hermite nodes of the friction of a cut")
     path_levels: int = setting(2, "1", 1, 9, "levels of the friction that varies along the path")
     resistance_scenarios: int = setting(1, "1", 1, 15, "Gauss nodes of the running resistance of a cut")
 

@@ -100,14 +100,15 @@ def with_known_friction(transitions: Transitions, factor: float) -> Transitions:
     return Transitions(**{**vars(transitions), "scenarios": known})
 
 
-def as_published(transitions: Transitions) -> Transitions:
+def as_published(transitions: Transitions, levels: int = 5) -> Transitions:
     """The same plant, grid and landings in the formulation of S2: friction noise independent in every quantum.
 
     The whole spread of friction, persistent or not, is drawn anew in every quantum and not scaled to its length.
     Sampling, delays and measurement noise are those of the plant, so that only the friction is told apart.
+    `levels`: Gauss–Hermite nodes of the noise in a quantum.
     """
     plant = transitions.plant
-    chain = independent_chain(math.hypot(plant.friction_cv, plant.friction.path_std), 5)
+    chain = independent_chain(math.hypot(plant.friction_cv, plant.friction.path_std), levels)
     scenarios = Scenarios(np.ones(1), np.zeros(1), np.ones(1))
     return assemble(plant, transitions.grid, transitions.actuator, chain, scenarios, transitions.landings)
 

@@ -24,11 +24,18 @@ from synth.work_queue import run_nested
 from tuning_tables import ControllerTable, Generator, read_json, write_json
 
 DEGREES = (1, 2, 3, 4, 5, 6)
-TUNING_PASSES = 800
+TUNING_PASSES = 600
+PUBLISHED_LEVELS = 3
+
 MOST_COMPARED_PASSES = 50_000
 """Passes kept in memory for the comparison of controllers; more are for `validate`."""
 
 Progress = Callable[[str], None]
+CaseDone = Callable[[CaseResult], None]
+
+
+def no_notice(case: CaseResult) -> None:
+    """Nobody wants to know of a finished case."""
 
 
 @dataclass(frozen=True)
@@ -41,11 +48,13 @@ class Book:
     degree_studies: tuple[DegreeStudy, ...]
 
 
-def tune(config: ResolvedConfig, tables: Path, progress: Progress, workers: int = 2) -> Book:
+def tune(
+    config: ResolvedConfig, tables: Path, progress: Progress, workers: int = 2, case_done: CaseDone = no_notice
+) -> Book:
     """Tune every cut class and target of `config`; the tables are written into the directory `tables`.
 
     Work runs on `workers` threads (the kernels release the interpreter); the result does not depend on how
-    many. `progress` is told a sentence whenever a case is done.
+    many. `progress` is told a sentence whenever a case is done, `case_done` given its result.
     """
     plants = config.plants()
     for label, plant in plants:
@@ -60,7 +69,7 @@ def tune(config: ResolvedConfig, tables: Path, progress: Progress, workers: int 
         label, plant = plants[index]
         studied = index == heaviest_first[-1]
         return lambda: class_tasks(
-            config, label, plant, studied, passes, tuning, generator, created, tables, progress
+            config, label, plant, studied, passes, tuning, generator, created, tables, progress, case_done
         )  # fmt: skip
 
     found = run_nested([start(index) for index in heaviest_first], workers)
@@ -76,7 +85,7 @@ def tune(config: ResolvedConfig, tables: Path, progress: Progress, workers: int 
 
 def class_tasks(
     config: ResolvedConfig, label: str, plant: Plant, studied: bool, passes: RandomPasses, tuning: RandomPasses,
-    generator: Generator, created: str, tables: Path, progress: Progress,
+    generator: Generator, created: str, tables: Path, progress: Progress, case_done: CaseDone,
 ) -> list[Callable[[], CaseResult | DegreeStudy]]:  # fmt: skip
     """Solve all targets of one cut class together; returns what is left to do for each, as tasks.
 
@@ -89,7 +98,7 @@ def class_tasks(
     free = [(target, replace(criterion, switching_tolerance_m2_s2=0.0)) for target in targets]
     both = solve_all(design, priced + free)
     solutions, plain = both[: len(targets)], both[len(targets) :]
-    published = solve_all(as_published(design), priced)
+    published = solve_all(as_published(design, PUBLISHED_LEVELS), priced)
     bounds = friction_known_bounds(design, targets, criterion, passes, config.acceptance.rms_m_s)
     draws = close_loop(plant, plant.top_stage + 1).draws(passes)
 
@@ -112,6 +121,7 @@ def class_tasks(
             store=lambda table: write_and_read_back(table, tables),
         )
         result = tune_case(order)
+        case_done(result)
         figures = result.comparison[0].statistics
         progress(f"{label} to {targets[i]:g} m/s: rms {figures.rms_m_s:.3f} m/s in {figures.passes} simulated passes")
         return result

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import time
+from contextlib import ExitStack
 from pathlib import Path
 
 from synth.cli import LIMITS_MISSED, OK, say
@@ -35,17 +36,23 @@ def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, worker
 
     started = time.monotonic()
     cache = use_kernel_cache()
-    with interruptible(directory), Progress(len(config.cuts) * len(config.targets_m_s)) as progress:
+    cases = len(config.cuts) * len(config.targets_m_s)
+    with interruptible(directory), Progress(cases) as progress, ExitStack() as stack:
         if next(cache.rglob("*.nbi"), None) is None:
             progress.note("compiling the kernels for this machine, once; this takes about a minute")
+        from synth.draw_pictures import Studio
+
+        wanted = config.output.plots or config.output.report
+        studio = stack.enter_context(Studio(workers if wanted else 1))
         from synth.acceptance import judge
         from synth.outputs import write_outputs
         from synth.report.figures import counted
-        from synth.tune import tune
+        from synth.tune import no_notice, tune
         from tuning_tables import InvalidTable
 
+        case_done = studio.case_done if wanted else no_notice
         try:
-            book = guarded(tune, config, directory / "tables", progress.done, workers)
+            book = guarded(tune, config, directory / "tables", progress.done, workers, case_done)
         except InvalidTable as fault:
             raise InputError(
                 f"{path or 'built-in configuration'}: the lines that were found make no table ({fault}) "
@@ -53,7 +60,7 @@ def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, worker
             ) from None
         progress.note(f"{counted(len(book.cases), 'case')} computed in {time.monotonic() - started:.1f} s")
         verdict = judge(book.cases, config.acceptance)
-        summary = write_outputs(book, verdict, directory, workers, progress.note)
+        summary = write_outputs(book, verdict, directory, studio, progress.note)
         progress.note(f"all files written after {time.monotonic() - started:.1f} s")
     if as_json:
         sys.stdout.write((directory / "summary.json").read_text(encoding="utf-8"))

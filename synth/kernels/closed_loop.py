@@ -87,7 +87,10 @@ class Rule(NamedTuple):
 
 
 class Draws(NamedTuple):
-    """What chance gives to n passes: ξ_cut, w0, entry speed, first sample (n,); z of path and sensor (n, ·)."""
+    """What chance gives to n passes: ξ_cut, w0, entry speed, first sample (n,); z of path and sensor (n, ·).
+
+    `brake_m_s2_per_kpa` (n, C) follows from ξ_cut and path_z (`brake_rows`): worked out once for all controllers.
+    """
 
     cut_factor: Floats
     resistance_n_kn: Floats
@@ -95,6 +98,7 @@ class Draws(NamedTuple):
     first_sample_s: Floats
     path_z: NDArray[np.float32]
     noise_z: NDArray[np.float32]
+    brake_m_s2_per_kpa: Floats
 
 
 class Exits(NamedTuple):
@@ -262,21 +266,28 @@ def run_pass(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def brake_rows(path: Path, cut_factor: Floats, path_z: NDArray[np.float32], rows: Floats) -> None:
+    """Deceleration by one kPa in every cell of every pass, `rows` (n, C): β·ξ_cut·(1 + η), η from cell to cell."""
+    for i in range(rows.shape[0]):
+        x = 0.0
+        for j in range(rows.shape[1]):
+            x = path.eta_memory[j] * x + path.eta_fresh[j] * path_z[i, j]
+            factor = cut_factor[i] * max(0.0, 1.0 + path.eta_std[j] * x)  # bars do not push
+            rows[i, j] = path.brake_m_s2_per_kpa[j] * factor
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def run_passes(path: Path, drive: Drive, sensor: Sensor, law: Rule, draws: Draws, exits: Exits, events: Floats) -> int:
     """Simulate all passes of `draws` into `exits`; returns the number of events of the last pass."""
-    cells = path.gravity_m_s2.shape[0]
-    free, brake = np.empty(cells), np.empty(cells)
+    gravity, brakes = path.gravity_m_s2, draws.brake_m_s2_per_kpa
+    free = np.empty(gravity.shape[0])
     count = 0
     for i in range(draws.cut_factor.shape[0]):
         drag = path.drag_m_s2_per_n_kn * draws.resistance_n_kn[i]
-        x = 0.0
-        for j in range(cells):
-            x = path.eta_memory[j] * x + path.eta_fresh[j] * draws.path_z[i, j]
-            factor = draws.cut_factor[i] * max(0.0, 1.0 + path.eta_std[j] * x)  # bars do not push
-            free[j] = path.gravity_m_s2[j] - drag
-            brake[j] = path.brake_m_s2_per_kpa[j] * factor
+        for j in range(free.shape[0]):
+            free[j] = gravity[j] - drag
         v, time, status, switchings, count = run_pass(
-            path.edges_m, free, brake, drive, sensor, law,
+            path.edges_m, free, brakes[i], drive, sensor, law,
             draws.entry_m_s[i], draws.first_sample_s[i], draws.noise_z[i], events,
         )  # fmt: skip
         exits.stalled[i] = status != LEFT

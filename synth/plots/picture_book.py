@@ -66,7 +66,7 @@ def book_pictures(cases: Sequence[CaseResult], studies: Sequence[DegreeStudy], l
 
 
 def class_pictures(cases: Sequence[CaseResult]) -> Iterator[Picture]:
-    """The pictures of one cut class over its targets; surfaces for the middle target only."""
+    """The pictures of one cut class over its targets; surfaces and sample passes for the middle target only."""
     label, middle = cases[0].label, cases[len(cases) // 2]
     yield picture(
         exit_density(cases),
@@ -83,6 +83,13 @@ def class_pictures(cases: Sequence[CaseResult]) -> Iterator[Picture]:
         f"Switching surfaces of {case_name(middle)}",
         f"{case_name(middle)}: the exported lines (bold) over path and pressure, joined linearly between the stages.",
     )
+    yield picture(
+        sample_passes(middle),
+        file_stem("sample-passes", case_name(middle)),
+        "Sample passes",
+        f"Sample passes, {case_name(middle)}",
+        f"{case_name(middle)}: passes with low, nominal and high friction under the exported table.",
+    )
 
 
 def case_pictures(case: CaseResult) -> Iterator[Picture]:
@@ -95,13 +102,6 @@ def case_pictures(case: CaseResult) -> Iterator[Picture]:
         f"Best command by stage, {name}",
         f"{name}: best command by stage, the region of indifferent control (hatched), the solver's switching lines "
         "(dots), the exported polynomial lines (bold), and simulated passes while they were in the stage.",
-    )
-    yield picture(
-        sample_passes(case),
-        file_stem("sample-passes", name),
-        "Sample passes",
-        f"Sample passes, {name}",
-        f"{name}: passes with low, nominal and high friction under the exported table.",
     )
 
 

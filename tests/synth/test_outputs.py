@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from synth.draw_pictures import draw_in_processes, draw_job, draw_pictures
+from synth.draw_pictures import Studio, draw_job
 from synth.input_error import InputError
 from synth.output_directory import output_directory, remove_stale
 from synth.summary import plain
@@ -19,18 +19,21 @@ from tuning_tables import write_csv, write_json
 
 def test_pictures_do_not_depend_on_the_number_of_processes() -> None:
     jobs = [("case_pictures", (make_case(),)), ("class_pictures", ((make_case("heavy", 2.0),),))]
-    assert draw_in_processes(jobs, 2) == [draw_job(job) for job in jobs]
+    with Studio(2) as studio:
+        assert [drawn.result() for drawn in [studio.draw(job) for job in jobs]] == [draw_job(job) for job in jobs]
 
 
 def test_a_fault_in_a_drawing_process_is_raised_here() -> None:
-    with pytest.raises(AttributeError):
-        draw_in_processes([("no_such_pictures", ())], 2)
+    with Studio(2) as studio, pytest.raises(AttributeError):
+        studio.draw(("no_such_pictures", ())).result()
 
 
 def test_few_pictures_are_drawn_here_in_the_order_of_the_book() -> None:
-    names = [picture.name for picture in draw_pictures([make_case()], [make_study()], 0.1, 8)]
+    with Studio(1) as studio:
+        studio.case_done(make_case())
+        names = [picture.name for picture in studio.book([make_case()], [make_study()], 0.1)]
     assert names[:4] == ["rms-by-controller", "feasibility", "switchings", "degree-study"]
-    assert names[-1] == "sample-passes-gondola-36t-target-3-m-s"
+    assert names[-1] == "policy-map-gondola-36t-target-3-m-s"
     assert len(names) == 8
 
 

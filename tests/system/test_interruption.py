@@ -109,10 +109,12 @@ def test_ctrl_c_ends_at_once_with_one_line(one_class: Path, tmp_path: Path) -> N
 
 
 DRAW_FOR_EVER = """
-from synth.draw_pictures import draw_in_processes
+from synth.draw_pictures import Studio
 from tests.synth.case_factory import make_case
 if __name__ == "__main__":
-    draw_in_processes([("case_pictures", (make_case(),))] * 500, 2)
+    with Studio(2) as studio:
+        for drawn in [studio.draw(("class_pictures", ((make_case(),),))) for _ in range(500)]:
+            drawn.result()
 """
 
 
