@@ -104,7 +104,7 @@ def test_a_figure_is_saved_in_both_forms(tmp_path: Path, cases: list[CaseResult]
 def test_the_picture_book_names_every_picture_once_and_every_case(tmp_path: Path, cases: list[CaseResult]) -> None:
     pictures = list(all_pictures(cases, [make_study()], 0.1))
     names = [picture.name for picture in pictures]
-    assert len(set(names)) == len(names) == 4 + 2 * 2 + 2 * 4
+    assert len(set(names)) == len(names) == 4 + 2 * 3 + 4
     assert all(any(case.label in picture.title for picture in pictures) for case in cases)
     assert save_picture(pictures[0], tmp_path)[1].read_bytes() == pictures[0].drawing.svg
 

@@ -181,7 +181,6 @@ def test_unusual_values_are_warned_of_not_refused() -> None:
         ("[grid]\nfriction_scenarios = 2.5", "grid.friction_scenarios", "2.5", "a whole number"),
         ("[fit]\ndegree = 7", "fit.degree", "7", "from 1 to 6"),
         ("[validation]\nseed = -1", "validation.seed", "-1", "from 0 to"),
-        ("[output]\nplot_format = 'gif'", "output.plot_format", "'gif'", "'svg' or 'png'"),
         ("[output]\nplots = 1", "output.plots", "1", "true or false"),
         ("sensor = 5", "sensor", "5", "a table"),
         ("cut = []", "cut", "[]", "1 to 1000 [[cut]]"),
