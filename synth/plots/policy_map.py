@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -28,16 +29,25 @@ PASSES_SHOWN = 3
 def policy_map(case: CaseResult) -> Figure:
     """Path in m across, speed in m/s upwards; colours: command, hatched: several commands cost the same."""
     stages = case.solver_lines.stages
+    figure, grid = stage_panels("Best command by stage", f"{cut_name(case)}, {target_name(case)}", stages)
+    for stage in range(stages):
+        draw_stage(grid.flat[stage], case, stage)
+    box = grid.flat[stages].get_position()
+    figure.legend(
+        handles=legend_entries(), loc="center", bbox_to_anchor=(box.x0, box.y0, box.width, box.height), fontsize=9,
+        frameon=False,
+    )  # fmt: skip
+    return figure
+
+
+def stage_panels(title: str, subject: str, stages: int) -> tuple[Figure, Any]:
+    """A figure with a panel for each stage and at least one free place, path across and speed upwards; and its grid."""
     columns = math.ceil((stages + 1) / 2)
-    subject = f"{cut_name(case)}, {target_name(case)}"
-    figure = new_figure(3.7 * columns + 0.4, 6.6, "Best command by stage", subject)
+    figure = new_figure(3.7 * columns + 0.4, 6.6, title, subject)
     place(figure, left=0.6, right=0.2, bottom=0.5, top=0.85, w=0.08, h=0.22)
     grid = figure.subplots(2, columns, sharex=True, sharey=True)
-    for stage, axes in enumerate(grid.flat):
-        if stage < stages:
-            draw_stage(axes, case, stage)
-        else:
-            axes.set_axis_off()
+    for free in grid.flat[stages:]:
+        free.set_axis_off()
     for stage in range(stages):
         below_is_free = stage + columns >= stages
         grid.flat[stage].tick_params(labelbottom=below_is_free)
@@ -45,12 +55,7 @@ def policy_map(case: CaseResult) -> Figure:
             grid.flat[stage].set_xlabel("path of the first axle, m", fontsize=9)
     for row in grid:
         row[0].set_ylabel("speed, m/s", fontsize=9)
-    box = grid.flat[stages].get_position()
-    figure.legend(
-        handles=legend_entries(), loc="center", bbox_to_anchor=(box.x0, box.y0, box.width, box.height), fontsize=9,
-        frameon=False,
-    )  # fmt: skip
-    return figure
+    return figure, grid
 
 
 def draw_stage(axes: Axes, case: CaseResult, stage: int) -> None:

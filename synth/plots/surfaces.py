@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from synth.case_result import CaseResult
 from synth.plots.case_names import cut_name, target_name
 from synth.plots.house_style import BLUE, INK, VERMILLION, legend_below, new_figure, speed_window_m_s
+from synth.switching_lines import SwitchingLines
+from synth.tabulate import lines_of
 
 PATH_POINTS = 25
 POINTS_PER_STAGE = 3
@@ -19,26 +21,42 @@ POINTS_PER_STAGE = 3
 
 
 def surfaces(case: CaseResult) -> Figure:
-    """Path in m, pressure in kPa (linear between stages), speed in m/s upwards, cut off at the speeds that occur."""
-    figure = new_figure(7.6, 6.4, "Switching surfaces", f"{cut_name(case)}, {target_name(case)}")
+    """The exported lines of a case over path and pressure; see `surface_figure`."""
+    stages = case.table_lines.stages
+    path = np.linspace(0.0, case.plant.exit_m, PATH_POINTS)
+    lines = lines_of(case.table, path)
+    pressure = np.asarray(case.plant.position.stage_pressures_kpa[:stages])
+    subject = f"{cut_name(case)}, {target_name(case)}"
+    return surface_figure("Switching surfaces", subject, lines, pressure, speed_window_m_s(case))
+
+
+def surface_figure(
+    title: str,
+    subject: str,
+    lines: SwitchingLines,
+    pressure_kpa: NDArray[np.float64],
+    window_m_s: tuple[float, float],
+) -> Figure:
+    """Path in m, pressure in kPa (linear between stages), speed in m/s upwards, cut off at the speeds in the window.
+
+    `pressure_kpa` (stages,) of the stages that are shown: the first of `lines`.
+    """
+    figure = new_figure(7.6, 6.4, title, subject)
     axes = Axes3D(figure, rect=(0.0, 0.04, 0.95, 0.92), computed_zorder=False)
     figure.add_axes(axes)
-    exported, window = case.table_lines, speed_window_m_s(case)
-    path = np.linspace(0.0, case.plant.exit_m, PATH_POINTS)
-    pressure = np.asarray(case.plant.position.stage_pressures_kpa[: exported.stages])
-    for lines, colour, alpha in ((exported.lower_m_s, BLUE, 0.75), (exported.upper_m_s, VERMILLION, 0.45)):
-        has_line = np.isfinite(lines).all(axis=1)
-        if not has_line.any():
-            continue
-        stage_speeds = np.array([np.interp(path, exported.nodes_m, line) for line in lines[has_line]])
-        stage_speeds = np.clip(stage_speeds, *window)
-        axes.add_collection3d(sheet(path, pressure[has_line], stage_speeds, colour, alpha), autolim=False)
-        axes.add_collection3d(ribs(path, pressure[has_line], stage_speeds, colour), autolim=False)
-    axes.set(xlim=(0.0, case.plant.exit_m), ylim=(pressure[0], pressure[-1]), zlim=window)
+    path, stages = lines.nodes_m, len(pressure_kpa)
+    for all_speeds, colour, alpha in ((lines.lower_m_s, BLUE, 0.75), (lines.upper_m_s, VERMILLION, 0.45)):
+        speeds = all_speeds[:stages]
+        has_line = np.isfinite(speeds).all(axis=1)
+        if has_line.any():
+            shown = np.clip(speeds[has_line], *window_m_s)
+            axes.add_collection3d(sheet(path, pressure_kpa[has_line], shown, colour, alpha), autolim=False)
+            axes.add_collection3d(ribs(path, pressure_kpa[has_line], shown, colour), autolim=False)
+    axes.set(xlim=(path[0], path[-1]), ylim=(pressure_kpa[0], pressure_kpa[-1]), zlim=window_m_s)
     axes.set_xlabel("path of the first axle, m", fontsize=9)
     axes.set_ylabel("pressure, kPa", fontsize=9)
     axes.set_zlabel("speed, m/s", fontsize=9)
-    axes.set_yticks(pressure)
+    axes.set_yticks(pressure_kpa)
     axes.tick_params(labelsize=8)
     axes.view_init(elev=17.0, azim=-52.0)
     axes.set_box_aspect((1.25, 1.0, 0.85), zoom=1.12)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,7 +10,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]  # ships no type information
 
 from synth.exit_statistics import exit_statistics
 from synth.passes import ExitSample, PassTrace
@@ -28,9 +26,9 @@ from synth.plots.house_style import (
     new_figure,
     place,
 )
-from synth.plots.policy_map import DOWN, HOLD, UP, finite, parts_in_stage
+from synth.plots.policy_map import DOWN, HOLD, UP, finite, parts_in_stage, stage_panels
 from synth.plots.sample_passes import outcome
-from synth.plots.surfaces import PATH_POINTS, ribs, sheet
+from synth.plots.surfaces import PATH_POINTS, surface_figure
 from synth.tabulate import lines_of
 from tuning_tables import ControllerTable
 
@@ -49,22 +47,9 @@ class Passes:
 def table_lines(table: ControllerTable, passes: Passes | None) -> Figure:
     """One panel a stage in use: where the table raises, holds and lowers, over path in m and speed in m/s."""
     stages = stages_in_use(table)
-    columns = math.ceil((stages + 1) / 2)
-    figure = new_figure(3.7 * columns + 0.4, 6.6, "Switching lines of the exported table", subject(table))
-    place(figure, left=0.6, right=0.2, bottom=0.5, top=0.85, w=0.08, h=0.22)
-    grid = figure.subplots(2, columns, sharex=True, sharey=True)
-    for stage, axes in enumerate(grid.flat):
-        if stage < stages:
-            draw_stage(axes, table, stage, passes)
-        else:
-            axes.set_axis_off()
+    figure, grid = stage_panels("Switching lines of the exported table", subject(table), stages)
     for stage in range(stages):
-        below_is_free = stage + columns >= stages
-        grid.flat[stage].tick_params(labelbottom=below_is_free)
-        if below_is_free:
-            grid.flat[stage].set_xlabel("path of the first axle, m", fontsize=9)
-    for row in grid:
-        row[0].set_ylabel("speed, m/s", fontsize=9)
+        draw_stage(grid.flat[stage], table, stage, passes)
     handles = [
         Patch(facecolor=UP, edgecolor=GREY, label="one stage up (brake more)"),
         Patch(facecolor=HOLD, edgecolor=GREY, label="hold"),
@@ -102,35 +87,11 @@ def draw_stage(axes: Axes, table: ControllerTable, stage: int, passes: Passes | 
 
 
 def table_surfaces(table: ControllerTable, passes: Passes | None) -> Figure:
-    """V_lo and V_hi over path in m and pressure in kPa, linear between the stages, cut off at the speeds shown."""
-    figure = new_figure(7.6, 6.4, "Switching surfaces of the exported table", subject(table))
-    axes = Axes3D(figure, rect=(0.0, 0.04, 0.95, 0.92), computed_zorder=False)
-    figure.add_axes(axes)
-    stages, window = stages_in_use(table), window_m_s(table, passes)
-    path = np.linspace(*table.valid.s_m, PATH_POINTS)
-    pressure = np.array([stage.pressure_kpa for stage in table.stages[:stages]])
-    lines = lines_of(table, path)
-    for all_speeds, colour, alpha in ((lines.lower_m_s, BLUE, 0.75), (lines.upper_m_s, VERMILLION, 0.45)):
-        speeds = all_speeds[:stages]
-        has_line = np.isfinite(speeds).all(axis=1)
-        if has_line.any():
-            shown = np.clip(speeds[has_line], *window)
-            axes.add_collection3d(sheet(path, pressure[has_line], shown, colour, alpha), autolim=False)
-            axes.add_collection3d(ribs(path, pressure[has_line], shown, colour), autolim=False)
-    axes.set(xlim=table.valid.s_m, ylim=(pressure[0], pressure[-1]), zlim=window)
-    axes.set_xlabel("path of the first axle, m", fontsize=9)
-    axes.set_ylabel("pressure, kPa", fontsize=9)
-    axes.set_zlabel("speed, m/s", fontsize=9)
-    axes.set_yticks(pressure)
-    axes.tick_params(labelsize=8)
-    axes.view_init(elev=17.0, azim=-52.0)
-    axes.set_box_aspect((1.25, 1.0, 0.85), zoom=1.12)
-    handles = [
-        Patch(facecolor=VERMILLION, alpha=0.6, edgecolor=INK, label="above it: one stage up"),
-        Patch(facecolor=BLUE, alpha=0.6, edgecolor=INK, label="below it: one stage down"),
-    ]
-    legend_below(figure, handles, columns=2, bottom_in=0.12)
-    return figure
+    """V_lo and V_hi over path and pressure; see `surfaces.surface_figure`."""
+    pressure = np.array([stage.pressure_kpa for stage in table.stages[: stages_in_use(table)]])
+    lines = lines_of(table, np.linspace(*table.valid.s_m, PATH_POINTS))
+    title = "Switching surfaces of the exported table"
+    return surface_figure(title, subject(table), lines, pressure, window_m_s(table, passes))
 
 
 def table_passes(table: ControllerTable, passes: Passes) -> Figure:
