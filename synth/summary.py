@@ -96,6 +96,7 @@ def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
         "comparison": {entry.name: measured_of(entry) for entry in found.entries},
         "as_published_honesty": honesty(found.published),
         "indifference": asdict(case.indifference),
+        "escaped_probability": case.predicted.escaped,
         "hunting": {
             "pressure": [{"stage": stage, **asdict(cycle)} for stage, cycle in pressure_hunting(case.plant)],
             "speed": [asdict(each) for each in hunting_report(case.plant, case.table_lines)],

@@ -10,6 +10,7 @@ from itertools import groupby
 from synth.plots.picture import Picture
 from synth.report.book_report import BookReport
 from synth.report.case_table import case_table
+from synth.report.checks_section import checks_section
 from synth.report.honesty_section import honesty_section
 from synth.report.limits_of_use import limits_of_use
 from synth.report.markup import Cell, Markup, element, head_row, joined, table
@@ -60,6 +61,7 @@ def page_sections(book: BookReport) -> Iterator[tuple[str, str, Markup]]:
     yield "results", "Results", joined((case_table(book), element("p", HOW_TO_READ, class_="meta")))
     yield "honesty", "Predicted against simulated", honesty_section(book)
     yield "studies", "Degree of the lines and switchings", studies_section(book)
+    yield "checks", "Limit cycles and escaped probability", checks_section(book)
     if book.pictures:
         yield "pictures", "Pictures", picture_sections(book.pictures)
     yield "parameters", "Parameters", parameter_section(book.parameters)

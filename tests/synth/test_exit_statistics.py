@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy import stats
 
-from synth.exit_statistics import clopper_pearson, exit_statistics
+from synth.exit_statistics import clopper_pearson, exit_statistics, pooled_statistics
 from synth.passes import ExitSample
 
 
@@ -57,3 +57,19 @@ def test_clopper_pearson_is_the_exact_interval(hits: int, n: int) -> None:
 def test_one_pass_has_no_statistics() -> None:
     with pytest.raises(ValueError, match="at least 2"):
         exit_statistics(sample_of(np.array([3.0])), 3.0)
+
+
+def test_pooled_strata_give_the_figures_of_the_mixture() -> None:
+    """Two strata of unequal size and weight against the same mixture written out as one sample."""
+    rng = np.random.default_rng(11)
+    common, rare = 3.0 + 0.02 * rng.normal(size=600), 3.0 + 0.6 * rng.random(200)
+    strata = [sample_of(common), sample_of(rare)]
+    pooled = pooled_statistics(strata, [0.9, 0.1], 3.0)
+    mixture = exit_statistics(sample_of(np.concatenate([np.tile(common, 3), rare])), 3.0)  # 1800 to 200
+    assert pooled.passes == 800
+    for name in ("rms_m_s", "bias_m_s", "overspeed", "p99_m_s"):
+        assert getattr(pooled, name) == pytest.approx(getattr(mixture, name), rel=0.02), name
+    low, high = pooled.rms_ci95_m_s
+    assert low < pooled.rms_m_s < high
+    error = math.sqrt(sum(w**2 * ((s - 3.0) ** 2).var(ddof=1) / len(s) for w, s in ((0.9, common), (0.1, rare))))
+    assert math.log(high / low) == pytest.approx(1.96 * error / pooled.rms_m_s**2, rel=1e-3)

@@ -12,8 +12,10 @@ from pathlib import Path
 import pytest
 
 from plant_models.library import SourcedValue
+from synth.limit_cycle import hunting_report
 from synth.plots.picture import Drawing, Picture
 from synth.report import BookReport, report_page, write_report
+from synth.report.checks_section import checks_section
 from synth.report.figures import counted, percent, quotient, span
 from synth.report.markup import VOID, Markup, element
 from synth.report.verdict import verdict
@@ -195,3 +197,12 @@ def test_figures() -> None:
     assert quotient(float("nan")) == "–"
     assert [span(values) for values in ([1.0, 2.0], [1.0, 1.001])] == ["from 1.00 to 2.00", "1.00"]
     assert [counted(n, "case") for n in (1, 3)] == ["1 case", "3 cases"]
+
+
+def test_the_page_tells_limit_cycles_and_escaped_probability(book: BookReport) -> None:
+    case = make_case()
+    leaky = replace(case, predicted=replace(case.predicted, escaped=2.5e-3))
+    section = str(checks_section(replace(book, cases=(leaky,))))
+    assert "at most 2.5e-03" in section
+    assert "does not hunt" in section
+    assert ("Predicted limit cycles" in section) == bool(hunting_report(case.plant, case.table_lines))
