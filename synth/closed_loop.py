@@ -31,8 +31,8 @@ __all__ = [
 CELL_M = 0.5
 """Longest path cell, at most a quarter of the correlation length; η is constant in a cell."""
 
-SUBSTEP_S = 0.034
-"""Longest part of a transient that is played as its mean (see the convergence test): within 0.2 mm/s at the exit."""
+SUBSTEP_S = 0.02
+"""Longest part of a transient that is played as its mean (see the convergence test): within 0.1 mm/s at the exit."""
 
 CHUNK_PASSES = 2000
 """Passes whose random numbers are in memory at a time, for each thread (6 MB)."""

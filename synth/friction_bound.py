@@ -18,7 +18,7 @@ from synth.transitions import Transitions, equally_spaced_normal, with_known_fri
 
 ENTRY_POINTS = 41
 
-FRICTION_NODES = 7
+FRICTION_NODES = 6
 """Nodes of ξ_cut, from −4 to 4 standard deviations; the highest, where no brake power is missing, is left out."""
 
 

@@ -192,7 +192,7 @@ def polish(
         gradient = np.stack([by_lower @ matrix, by_upper @ matrix], axis=1)[free]
         return cost / before, np.einsum("lab,la->lb", scale, gradient).ravel() / before
 
-    options: Any = {"maxiter": max_iterations, "ftol": 3e-3}
+    options: Any = {"maxiter": max_iterations, "ftol": 5e-3}
     constraints: Any = [gap_constraint(start, free, scale)]
     result = minimize(
         objective,

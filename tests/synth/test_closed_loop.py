@@ -36,8 +36,8 @@ from tuning_tables.provenance import CutId, Generator, RetarderId
 from tuning_tables.stage import Stage, round_coefficients
 from tuning_tables.table import ControllerTable
 
-EXIT_SPEED_TOLERANCE_M_S = 5e-4
-"""Asked for is 1 mm/s; reached with the default sub-steps is 0.2 mm/s."""
+EXIT_SPEED_TOLERANCE_M_S = 1e-4
+"""Asked for is 1 mm/s."""
 
 
 @pytest.fixture(scope="module")
@@ -223,7 +223,7 @@ def test_substeps_converge(plant_52t: Plant, passes: RandomPasses) -> None:
         same = (switchings == commands_sent) & (np.abs(speed - reference) < 0.01)
         assert same.mean() > 0.97
         errors.append(float(np.sqrt(np.mean((speed - reference)[same] ** 2))))
-    assert errors[1] < 0.04 * EXIT_SPEED_TOLERANCE_M_S
+    assert errors[1] < 0.2 * EXIT_SPEED_TOLERANCE_M_S
     assert errors[0] > 2.5 * errors[1] > 6.0 * errors[2]  # second order, but for kinks within a substep
 
 
