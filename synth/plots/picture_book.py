@@ -37,7 +37,7 @@ def book_pictures(cases: Sequence[CaseResult], studies: Sequence[DegreeStudy], l
         "Accuracy",
         "Exit-speed error by controller",
         "Simulated rms with its 95 % interval, the same passes for every controller. Hollow: the rms that the method "
-        "itself predicted. Grey: infeasible, even a controller that knows the friction misses the limit.",
+        "itself predicted. Grey: infeasible, even one told the friction misses the limit.",
     )
     yield picture(
         feasibility(cases),

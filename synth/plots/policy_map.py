@@ -32,6 +32,7 @@ def policy_map(case: CaseResult) -> Figure:
     figure, grid = stage_panels("Best command by stage", f"{cut_name(case)}, {target_name(case)}", stages)
     for stage in range(stages):
         draw_stage(grid.flat[stage], case, stage)
+    label_panels(grid, stages)
     box = grid.flat[stages].get_position()
     figure.legend(
         handles=legend_entries(), loc="center", bbox_to_anchor=(box.x0, box.y0, box.width, box.height), fontsize=9,
@@ -48,14 +49,18 @@ def stage_panels(title: str, subject: str, stages: int) -> tuple[Figure, Any]:
     grid = figure.subplots(2, columns, sharex=True, sharey=True)
     for free in grid.flat[stages:]:
         free.set_axis_off()
+    return figure, grid
+
+
+def label_panels(grid: Any, stages: int) -> None:
+    """Names and units on the outer panels of `stage_panels`, after they are drawn."""
     for stage in range(stages):
-        below_is_free = stage + columns >= stages
+        below_is_free = stage + grid.shape[1] >= stages
         grid.flat[stage].tick_params(labelbottom=below_is_free)
         if below_is_free:
             grid.flat[stage].set_xlabel("path of the first axle, m", fontsize=9)
     for row in grid:
         row[0].set_ylabel("speed, m/s", fontsize=9)
-    return figure, grid
 
 
 def draw_stage(axes: Axes, case: CaseResult, stage: int) -> None:

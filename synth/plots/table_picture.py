@@ -26,7 +26,7 @@ from synth.plots.house_style import (
     new_figure,
     place,
 )
-from synth.plots.policy_map import DOWN, HOLD, UP, finite, parts_in_stage, stage_panels
+from synth.plots.policy_map import DOWN, HOLD, UP, finite, label_panels, parts_in_stage, stage_panels
 from synth.plots.sample_passes import outcome
 from synth.plots.surfaces import PATH_POINTS, surface_figure
 from synth.tabulate import lines_of
@@ -50,6 +50,7 @@ def table_lines(table: ControllerTable, passes: Passes | None) -> Figure:
     figure, grid = stage_panels("Switching lines of the exported table", subject(table), stages)
     for stage in range(stages):
         draw_stage(grid.flat[stage], table, stage, passes)
+    label_panels(grid, stages)
     handles = [
         Patch(facecolor=UP, edgecolor=GREY, label="one stage up (brake more)"),
         Patch(facecolor=HOLD, edgecolor=GREY, label="hold"),

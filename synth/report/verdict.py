@@ -17,8 +17,9 @@ def verdict(book: BookReport) -> Markup:
         parts.append(element("p", worst_case(book)))
     if book.infeasible:
         lead = (
-            f"{counted(len(book.infeasible), 'case')} of {len(book.cases)} infeasible: even a controller that knows "
-            f"the friction of every cut stays above {speed(book.acceptance_rms_m_s)} m/s there. "
+            f"{counted(len(book.infeasible), 'case')} of {len(book.cases)} infeasible: even a controller that is "
+            f"told the friction of every cut, and moves one stage a command, stays above "
+            f"{speed(book.acceptance_rms_m_s)} m/s there. "
             "They take no part in the verdict and are shown everywhere."
         )
         parts.append(element("p", lead))

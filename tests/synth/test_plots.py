@@ -101,6 +101,13 @@ def test_a_figure_is_saved_in_both_forms(tmp_path: Path, cases: list[CaseResult]
     assert all(path.stat().st_size > 1000 for path in paths)
 
 
+def test_outer_panels_say_what_is_drawn(cases: list[CaseResult]) -> None:
+    panels = policy_map(cases[1]).axes
+    stages = cases[1].solver_lines.stages
+    assert sum(axes.get_ylabel() == "speed, m/s" for axes in panels) == 2
+    assert sum(axes.get_xlabel().startswith("path") for axes in panels[:stages]) == (stages + 2) // 2
+
+
 def test_the_picture_book_names_every_picture_once_and_every_case(tmp_path: Path, cases: list[CaseResult]) -> None:
     pictures = list(all_pictures(cases, [make_study()], 0.1))
     names = [picture.name for picture in pictures]
