@@ -43,7 +43,10 @@ class SourcedValue:
         if self.range is None:
             return True
         low, high = self.range
-        return all(low <= x <= high for x in flat_numbers(self.value))
+        numbers = flat_numbers(self.value)
+        if self.unit.startswith("permille") and isinstance(self.value, tuple):
+            numbers = numbers[1::2]  # pieces of a profile are (start in m, grade): only the grade has this range
+        return all(low <= x <= high for x in numbers)
 
     def replaced(self, value: Value) -> SourcedValue:
         """The same parameter with the user's value; a value that repeats this one keeps its origin."""

@@ -254,3 +254,9 @@ def test_a_file_on_disk_is_read(tmp_path: Path) -> None:
 def test_template_of_an_unknown_retarder() -> None:
     with pytest.raises(InputError, match="did you mean t-50-bunch"):
         default_config_toml("t-50")
+
+
+def test_a_profile_in_pieces_is_warned_about_by_its_grades_alone() -> None:
+    assert parse_config("[track]\ngrade_permille = [[0.0, 9.0], [20.0, 6.0]]", "my.toml").warnings == ()
+    (warning,) = parse_config("[track]\ngrade_permille = [[0.0, 9.0], [20.0, 40.0]]", "my.toml").warnings
+    assert "track.grade_permille" in warning
