@@ -137,11 +137,6 @@ class PressureHistory:
         asymptote = self.asymptotes_kpa[piece]
         return asymptote + (self.pressures_kpa[piece] - asymptote) * decay
 
-    def mean_overpressure_kpa(self, edges_s: NDArray[np.float64], touch_kpa: float) -> NDArray[np.float64]:
-        """Exact mean of max(0, P − touch) between consecutive `edges_s`; shape (len(edges) − 1,)."""
-        integral = self.overpressure_integral(edges_s, touch_kpa)
-        return np.diff(integral) / np.diff(edges_s)
-
     def overpressure_integral(self, t_s: NDArray[np.float64], touch_kpa: float) -> NDArray[np.float64]:
         """∫₀ᵗ max(0, P − touch) dt in kPa·s, closed form piece by piece."""
         total = np.zeros_like(t_s)

@@ -9,7 +9,6 @@ from threading import Condition
 from typing import Generic, TypeVar
 
 Result = TypeVar("Result")
-Task = Callable[[], Result]
 Start = Callable[[], Sequence[Callable[[], Result]]]
 
 
