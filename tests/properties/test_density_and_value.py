@@ -50,7 +50,7 @@ def shifted(lines: SwitchingLines, by_lower: NDArray[np.float64], by_upper: NDAr
 def test_density_and_value_agree(
     small: Callable[[], Transitions], seed: int, target: float, staircase: bool, stall_cost: float
 ) -> None:
-    """rms² + stall cost + cost of commands = value at the entrance, to 1e-8: masses under `NEGLIGIBLE_MASS` are dropped."""
+    """rms² + stall cost + cost of commands = value at the entrance, to 1e-8 (`NEGLIGIBLE_MASS` is dropped)."""
     t, criterion = small(), Criterion(stall_cost, 1e-3)
     policy = commands(t, random_lines(t, seed), staircase)
     density = exit_density(t, policy)
