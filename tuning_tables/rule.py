@@ -88,9 +88,10 @@ def decide_many(
     stage (integers), s_m and v_m_s broadcast against each other; the result has the broadcast shape.
     Raises `TypeError` where the stages are not integers.
     """
-    stages, paths, speeds = np.broadcast_arrays(
-        np.asarray(stage), np.asarray(s_m, dtype=np.float64), np.asarray(v_m_s, dtype=np.float64)
-    )
+    with np.errstate(invalid="ignore"):  # a signalling NaN is an incredible reading like any other
+        stages, paths, speeds = np.broadcast_arrays(
+            np.asarray(stage), np.asarray(s_m, dtype=np.float64), np.asarray(v_m_s, dtype=np.float64)
+        )
     if stages.dtype.kind not in "iu":
         raise TypeError(f"stage has dtype {stages.dtype}, but stages are integers.")
     credible = (np.abs(paths) <= LARGEST_READING) & (speeds >= 0) & (speeds <= LARGEST_READING)

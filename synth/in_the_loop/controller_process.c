@@ -1,0 +1,109 @@
+/* An exported table book as a process that answers through its standard input and output; words in the machine's order.
+ *
+ *   decide          for {uint32 table, int32 stage, float s_m, float v_m_s}: int32 answer; all of a stream
+ *   serve N         for {int32 stage, float s_m, float v_m_s}: int32 answer of table N, each one at once
+ *   select          for {uint32 category, uint32 axles, float speed}: int32 status, the table (zeros if none)
+ *   intact          for a table: int32, whether its checksum is right
+ *   dump            all tables
+ *   self-test       nothing; the exit code is the fault
+ */
+#include "retarder_self_test.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct reading {
+    int32_t stage;
+    float s_m;
+    float v_m_s;
+} reading;
+
+static void answer(int value)
+{
+    const int32_t word = value;
+    if (fwrite(&word, sizeof word, 1, stdout) != 1) {
+        exit(9);
+    }
+}
+
+static int decide(void)
+{
+    uint32_t number;
+    reading now;
+    while (fread(&number, sizeof number, 1, stdin) == 1 && fread(&now, sizeof now, 1, stdin) == 1) {
+        answer(retarder_decide(number < retarder_table_count ? &retarder_tables[number] : 0, now.stage, now.s_m,
+                               now.v_m_s));
+    }
+    return 0;
+}
+
+static int serve(unsigned number)
+{
+    reading now;
+    if (number >= retarder_table_count) {
+        return 8;
+    }
+    setvbuf(stdin, 0, _IONBF, 0);
+    setvbuf(stdout, 0, _IONBF, 0);
+    while (fread(&now, sizeof now, 1, stdin) == 1) {
+        answer(retarder_decide(&retarder_tables[number], now.stage, now.s_m, now.v_m_s));
+    }
+    return 0;
+}
+
+static int choose(void)
+{
+    struct {
+        uint32_t category;
+        uint32_t axles;
+        float speed_m_s;
+    } command;
+    while (fread(&command, sizeof command, 1, stdin) == 1) {
+        retarder_table chosen;
+        memset(&chosen, 0, sizeof chosen);
+        answer(retarder_select(command.category, command.axles, command.speed_m_s, &chosen));
+        if (fwrite(&chosen, sizeof chosen, 1, stdout) != 1) {
+            return 9;
+        }
+    }
+    return 0;
+}
+
+static int intact(void)
+{
+    retarder_table table;
+    while (fread(&table, sizeof table, 1, stdin) == 1) {
+        answer(retarder_table_intact(&table));
+    }
+    return 0;
+}
+
+int main(int count, char **arguments)
+{
+    const char *mode = count > 1 ? arguments[1] : "";
+    if (strcmp(mode, "decide") == 0) {
+        return decide();
+    }
+    if (strcmp(mode, "serve") == 0 && count > 2) {
+        return serve((unsigned)strtoul(arguments[2], 0, 10));
+    }
+    if (strcmp(mode, "select") == 0) {
+        return choose();
+    }
+    if (strcmp(mode, "intact") == 0) {
+        return intact();
+    }
+    if (strcmp(mode, "dump") == 0) {
+        return fwrite(retarder_tables, sizeof retarder_tables[0], retarder_table_count, stdout) == retarder_table_count
+            ? 0 : 9;
+    }
+    if (strcmp(mode, "self-test") == 0) {
+        uint32_t where = 0u;
+        const int fault = retarder_self_test(&where);
+        printf("fault %d at %lu\n", fault, (unsigned long)where);
+        return fault;
+    }
+    fprintf(stderr, "unknown mode; see the head of this file\n");
+    return 7;
+}

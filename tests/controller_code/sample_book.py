@@ -1,0 +1,78 @@
+"""A book with tables of many shapes, whose numbers are as hard as numbers can be."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from tuning_tables import (
+    ControllerTable,
+    CutId,
+    Generator,
+    Predicted,
+    RetarderId,
+    Stage,
+    ValidRange,
+    round_coefficients,
+)
+from tuning_tables.table_book import TableBook
+
+FOUR_AXLES, SIX_AXLES = (0.0, 1.85, 8.65, 10.5), (0.0, 1.75, 3.5, 10.44, 12.19, 13.94)
+
+
+def sample_book() -> TableBook:
+    """Three targets of two classes; a lighter class in their shadow; other stages, degrees, ranges; odd numbers."""
+    odd = table_of("odd", "Т", 85.0, FOUR_AXLES, 3.0)
+    minute, zero = round_coefficients([1e-42, 2e-44, 0.0, 0.0]), round_coefficients([0.0, 0.0, 0.0, 0.0])
+    huge = round_coefficients([1e30, 1e27, -1e24, 1e21])
+    return TableBook(
+        (
+            *(table_of(f"light-{v}", "Л", 23.0, FOUR_AXLES, v) for v in (2.0, 3.3, 4.0)),
+            *(table_of(f"shadow-{v}", "Л", 22.0, FOUR_AXLES, v) for v in (1.5, 3.0)),
+            table_of("same-target", "Л", 23.0, FOUR_AXLES, 3.3),
+            *(table_of(f"medium-{v}", "С", 52.0, SIX_AXLES, v) for v in (4.0, 2.0)),
+            table_of("other-degree", "С", 52.0, SIX_AXLES, 3.0, degree=2),
+            table_of("many-stages", "СТ", 66.0, FOUR_AXLES, 2.0, stages=9, degree=9),
+            table_of("constant", "СТ", 66.0, FOUR_AXLES, 3.0, stages=2, degree=0),
+            replace(
+                odd,
+                stages=(
+                    Stage(0, 0.0, None, minute),
+                    Stage(1, 10.0, zero, huge),
+                    Stage(2, 20.0, minute, round_coefficients([0.5, -1e-41, 1e-3, 0.0])),
+                    Stage(3, 30.0, None, None),
+                ),
+                valid=ValidRange((-3.0, 1.0e-3), (0.0, 9.0)),
+            ),
+        )
+    )
+
+
+def braking_lines(target: float, stages: int, degree: int) -> tuple[Stage, ...]:
+    """Lines like those of a tune: a falling speed towards the exit, higher for higher stages, the last one unused."""
+    found = []
+    for k in range(stages):
+        top = [target + 1.5 + 0.4 * k, -0.05, 1e-3, -1.1e-5, 1e-7, 0.0, 0.0, 0.0, 0.0, 1e-16][: degree + 1]
+        upper = round_coefficients(top) if k < stages - 2 else None
+        lower = round_coefficients([top[0] - 0.9, *(0.9 * c for c in top[1:])]) if k > 0 else None
+        if k == stages - 1:
+            lower = round_coefficients([10.0] + [0.0] * degree)
+        found.append(Stage(k, 150.0 * k, lower, upper))
+    return tuple(found)
+
+
+def table_of(
+    name: str, category: str, mass_t: float, axles: tuple[float, ...], target: float, stages: int = 5, degree: int = 3
+) -> ControllerTable:
+    """A table of the one position that all of the book are for."""
+    return ControllerTable(
+        id=name,
+        created="2026-11-21T08:00:00Z",
+        generator=Generator("retarder-synth", "0.1.0", "0123456789abcdef" * 4),
+        retarder=RetarderId("КНП-5 /* bunch */ ??/", ((0.0, 12.475), (14.475, 26.95)), 37.45, 15.0),
+        cut=CutId(category, mass_t, axles),
+        target_speed_m_s=target,
+        degree=degree,
+        stages=braking_lines(target, stages, degree),
+        valid=ValidRange((0.0, 37.45), (0.3, 9.0)),
+        predicted=Predicted(0.05, -0.001, 0.01, 4.1),
+    )

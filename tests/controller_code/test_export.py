@@ -1,0 +1,192 @@
+"""The exported C as text: clean for every checker, complete, equal to the table to the last bit, not to be mixed."""
+
+from __future__ import annotations
+
+import csv
+import io
+import subprocess
+import zlib
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from synth.in_the_loop.controller_process import (
+    CONTRACT,
+    BuildError,
+    build_controller,
+    compile_with,
+    write_sources,
+)
+from tests.controller_code.conftest import Tool
+from tuning_tables import InvalidTable, decide_for, from_json, read_book, to_json, write_book
+from tuning_tables.c_source import c_files, hex_float
+from tuning_tables.table_block import block_of, block_size
+from tuning_tables.table_book import TableBook
+
+PEDANTIC = (
+    *CONTRACT, "-O2", "-Wconversion", "-Wshadow", "-Wcast-align", "-Wcast-qual", "-Wdouble-promotion", "-Wfloat-equal",
+    "-Wundef", "-Wstrict-prototypes", "-Wmissing-prototypes", "-Wvla", "-Wtrigraphs", "-c",
+)  # fmt: skip
+SOURCES = ("retarder_table.c", "retarder_self_test.c")
+PROGRAM = (*SOURCES, "controller_process.c")
+FLOAT_H = ("-DFLT_RADIX=2", "-DFLT_MANT_DIG=24", "-DFLT_MAX_EXP=128", "-DFLT_MAX=3.40282347e+38F")
+
+
+@pytest.mark.parametrize(
+    ("compiler", "switches"),
+    [("gcc", ()), ("clang", ()), ("clang", ("-Weverything", "-Wno-padded", "-Wno-unsafe-buffer-usage",
+                                            "-Wno-unknown-warning-option", "-Wno-declaration-after-statement")),
+     ("gcc", ("-fanalyzer",)), ("arm-linux-gnueabihf-gcc", ("-mcpu=cortex-m4", "-mthumb", "-mfloat-abi=hard",
+                                                            "-mfpu=fpv4-sp-d16"))],
+    ids=lambda value: value if isinstance(value, str) else " ".join(value[:1]),
+)  # fmt: skip
+def test_compilers_have_nothing_to_say(
+    compiler: str, switches: tuple[str, ...], book: TableBook, tmp_path: Path, tool: Tool
+) -> None:
+    write_sources(book, tmp_path)
+    for name in SOURCES:
+        said = compile_with([tool(compiler), *PEDANTIC, *switches, str(tmp_path / name), "-o", str(tmp_path / "o")])
+        assert said == ""
+
+
+def test_cppcheck_has_nothing_to_say(book: TableBook, tmp_path: Path, tool: Tool) -> None:
+    write_sources(book, tmp_path)
+    # It reads no system headers, so it is told what <float.h> says.
+    said = compile_with(
+        [tool("cppcheck"), "--enable=all", "--inconclusive", "--std=c99", "--quiet", "--error-exitcode=3",
+         "--suppress=missingIncludeSystem", *FLOAT_H, *(str(tmp_path / name) for name in PROGRAM)]
+    )  # fmt: skip
+    assert said == ""
+
+
+def test_nothing_but_itself_is_linked(book: TableBook, tmp_path: Path, tool: Tool) -> None:
+    write_sources(book, tmp_path)
+    for name in SOURCES:
+        compile_with([tool("gcc"), *CONTRACT, "-Os", "-c", str(tmp_path / name), "-o", str(tmp_path / f"{name}.o")])
+    listed = compile_with(["nm", *(str(tmp_path / f"{name}.o") for name in SOURCES)])
+    kinds = {(line.split()[-2], line.split()[-1]) for line in listed.splitlines() if len(line.split()) >= 2}
+    undefined = {name for kind, name in kinds if kind == "U"}
+    defined = {name for kind, name in kinds if kind in "TRDBC"}
+    # GCC may make memcpy and memset of a structure's assignment; a freestanding environment has to have them.
+    assert undefined - defined <= {"memcpy", "memset"}
+    assert not {kind for kind, _ in kinds} & set("dDbBC")  # no variable data at all
+
+
+def test_files_of_two_exports_are_not_compiled_together(book: TableBook, tmp_path: Path, tool: Tool) -> None:
+    write_sources(book, tmp_path)
+    other = c_files(TableBook(book.tables[1:]))
+    (tmp_path / "retarder_table.c").write_bytes(other["retarder_table.c"])
+    with pytest.raises(BuildError, match=r"retarder_table\.h is of another export"):
+        compile_with([tool("gcc"), *CONTRACT, "-c", str(tmp_path / "retarder_table.c"), "-o", str(tmp_path / "o")])
+
+
+def test_every_changed_byte_of_a_block_is_found(book: TableBook, tmp_path: Path, tool: Tool) -> None:
+    tool("gcc")
+    controller = build_controller(book, tmp_path)
+    right = block_of(book, 0).words
+    assert controller.intact(right[None, :]).all()
+    length = 4 * len(right)
+    damaged = np.repeat(right.view(np.uint8)[None, :], 255 * length, axis=0)
+    place, change = np.divmod(np.arange(255 * length), 255)
+    damaged[np.arange(255 * length), place] ^= (change + 1).astype(np.uint8)
+    assert not controller.intact(damaged.view(np.uint32)).any()
+    # Sizes that would lead out of the table are found even under a right checksum.
+    for word, value in ((2, 0x7FFFFFFF), (2, block_size(book).stages + 1), (3, 0), (3, 99)):
+        forged = right.copy()
+        forged[word] = value
+        forged[-1] = zlib.crc32(forged[:-1].astype("<u4").tobytes())
+        assert not controller.intact(forged[None, :]).any()
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "fault"),
+    [
+        ("{0x1.cp+1f", "{0x1.c00002p+1f", "fault 2 at 0"),  # the last bit of one coefficient
+        ("v_m_s < line_speed(", "v_m_s <= line_speed(", "fault 3 at"),
+        ("v_m_s > line_speed(", "v_m_s >= line_speed(", "fault 3 at"),
+        ("v_m_s >= 0.0f &&", "", "fault 3 at"),
+        ("v_m_s <= FLT_MAX))", "1))", "fault 3 at"),
+        ("s = table->s_max_m", "s = s_m", "fault 3 at"),
+        ("s_m >= -FLT_MAX &&", "", "fault 3 at"),
+        ("(lines & 2u) != 0u &&", "", "fault 3 at"),
+        ("chosen->target_m_s = speed_m_s;", "", "fault 4 at"),
+        ("rounded(rounded(speed * s_m) + coefficients[power])", "(float)((double)speed * (double)s_m + "
+         "(double)coefficients[power])", "fault 3 at"),
+        ("0xEDB88320u", "0xEDB88321u", "fault 1 at 0"),
+        ("table->mass_t < heaviest_t", "table->mass_t > heaviest_t", "fault 4 at"),
+        ("slower->target_m_s >= speed_m_s", "slower->target_m_s > speed_m_s", "fault 4 at"),
+        ("rounded(weight * rise)", "(weight * rise * 1.0000002f)", "fault 4 at"),
+        ("faster == 0 || !is_interpolable(slower, faster)", "faster == 0", "fault 4 at"),
+    ],
+)  # fmt: skip
+def test_the_self_test_finds_a_wrong_controller(
+    before: str, after: str, fault: str, book: TableBook, tmp_path: Path, tool: Tool
+) -> None:
+    tool("gcc")
+    write_sources(book, tmp_path)
+    source = (tmp_path / "retarder_table.c").read_text("ascii")
+    assert before in source
+    (tmp_path / "retarder_table.c").write_text(source.replace(before, after, 1), "ascii")
+    program = tmp_path / "controller"
+    compile_with(["gcc", "-std=c99", "-O1", *map(str, tmp_path.glob("*.c")), "-o", str(program)])
+    ran = subprocess.run([program, "self-test"], capture_output=True, text=True, timeout=60, check=False)
+    assert ran.stdout.startswith(fault)
+    assert ran.returncode == int(fault.split()[1])
+
+
+def test_json_book_and_c_hold_the_same_bits(book: TableBook, tmp_path: Path, tool: Tool) -> None:
+    tool("gcc")
+    write_book(book.tables, tmp_path / "book.h5")
+    way_round = TableBook(tuple(from_json(to_json(table)) for table in read_book(tmp_path / "book.h5")))
+    assert way_round == book
+    assert c_files(way_round) == c_files(book)
+    words = build_controller(way_round, tmp_path).dump()
+    size = block_size(book)
+    for table, held in zip(book.tables, words, strict=True):
+        coefficients = held[8 + size.stages : -1].view(np.float32).reshape(size.stages, 2, size.powers)
+        for stage in table.stages:
+            for index, line in enumerate((stage.lower, stage.upper)):
+                assert bool(held[4 + stage.k] >> index & 1) == (line is not None)
+                if line is not None:
+                    exported = coefficients[stage.k, index, : table.degree + 1].astype(np.float64)
+                    assert np.array_equal(exported.view(np.uint64), np.array(line).view(np.uint64))
+
+
+def test_golden_vectors_as_csv_are_answered_as_they_say(book: TableBook) -> None:
+    rows = list(csv.DictReader(io.StringIO(c_files(book)["golden_vectors.csv"].decode("utf-8"), newline="")))
+    assert len(rows) > 300 * len(book.tables)
+    for row in rows:
+        s, v = (np.array([int(row[key], 16)], np.uint32).view(np.float32)[0] for key in ("s_bits", "v_bits"))
+        assert np.array_equal(np.float32(row["s_m"]), s, equal_nan=True)
+        assert np.array_equal(np.float32(row["v_m_s"]), v, equal_nan=True)
+        assert decide_for(book.tables[int(row["table"])], int(row["stage"]), s, v) == int(row["answer"])
+        assert book.tables[int(row["table"])].id == row["id"]
+
+
+def test_the_text_is_plain_whatever_names_hold(book: TableBook) -> None:
+    content = c_files(book)
+    for name in content:
+        if name != "golden_vectors.csv":
+            text = content[name].decode("ascii")
+            assert "\r" not in text
+            assert "\t" not in text
+            assert "@" not in text
+            assert all(len(line.rstrip()) == len(line) for line in text.splitlines())
+    header = content["retarder_table.h"].decode("ascii")
+    assert "#define RETARDER_CATEGORY_ST 3u /* <U+0421><U+0422> */" in header
+    assert "??/" not in header
+
+
+def test_hexadecimal_floats() -> None:
+    assert [hex_float(np.float32(x)) for x in (2.5, -0.1, 0.0, -0.0, 1e-45, 3.4028235e38)] == [
+        "0x1.4p+1f", "-0x1.99999ap-4f", "0x0p+0f", "-0x0p+0f", "0x1p-149f", "0x1.fffffep+127f",
+    ]  # fmt: skip
+
+
+def test_a_book_of_two_positions_is_refused(book: TableBook) -> None:
+    first = book.tables[0]
+    other = replace(first, id="other", retarder=replace(first.retarder, name="РНЗ-2М"))
+    with pytest.raises(InvalidTable, match="a book serves one position"):
+        TableBook((first, other))

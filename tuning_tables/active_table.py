@@ -1,0 +1,58 @@
+"""What a controller holds while a cut is in the retarder: the lines of one table, or those between two tables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from tuning_tables.table import ControllerTable
+
+
+@dataclass(frozen=True)
+class ActiveTable:
+    """Lines ready for `rule.decide`; arrays are read-only, shapes and units those of `ControllerTable`.
+
+    target_speed_m_s  float32, the exit speed that the lines aim at
+    coefficients      float32 (K+1, 2, degree+1), ascending powers of s in m; NaN where there is no line
+    has_line          bool (K+1, 2)
+    valid_range       float32 (4,): s_min, s_max in m, v_min, v_max in m/s
+    """
+
+    target_speed_m_s: np.float32
+    coefficients: npt.NDArray[np.float32]
+    has_line: npt.NDArray[np.bool_]
+    valid_range: npt.NDArray[np.float32]
+
+    def __post_init__(self) -> None:
+        for array in (self.coefficients, self.has_line, self.valid_range):
+            array.setflags(write=False)
+
+
+def active(table: ControllerTable) -> ActiveTable:
+    """`table` as it stands."""
+    return ActiveTable(
+        np.float32(table.target_speed_m_s), table.coefficients.view(), table.has_line.view(), table.valid_range.view()
+    )
+
+
+def interpolable(slower: ControllerTable, faster: ControllerTable) -> bool:
+    """Whether the two have the same stages, degree, lines and path range, so that lines between them have a meaning."""
+    return (
+        slower.coefficients.shape == faster.coefficients.shape
+        and np.array_equal(slower.has_line, faster.has_line)
+        and np.array_equal(slower.valid_range[:2], faster.valid_range[:2])
+    )
+
+
+def between(slower: ControllerTable, faster: ControllerTable, target_speed_m_s: np.float32) -> ActiveTable:
+    """The lines for a target between those of two `interpolable` tables, all in float32, one rounding an operation.
+
+    w = (T - T0) / (T1 - T0), and every coefficient is c0 + w * (c1 - c0). As 0 <= w <= 1, each line lies between its
+    neighbours, at the exit as at every other place, and lower(s) < upper(s) is inherited from both.
+    """
+    below, above = np.float32(slower.target_speed_m_s), np.float32(faster.target_speed_m_s)
+    weight = (target_speed_m_s - below) / (above - below)
+    coefficients = slower.coefficients + weight * (faster.coefficients - slower.coefficients)
+    return ActiveTable(target_speed_m_s, coefficients, slower.has_line.view(), slower.valid_range.view())

@@ -1,0 +1,155 @@
+"""Tables as C99 source: the rule, the choice, the data, and a self-test with golden vectors.
+
+The C text itself is in `c99/*.in`; here its blanks are filled. Numbers are hexadecimal floats, which every C99
+compiler reads exactly; the checksum of each table proves that it did.
+"""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Mapping
+from importlib.resources import files
+
+import numpy as np
+
+from tuning_tables.category_names import category_macros, comment_text
+from tuning_tables.golden_choices import GoldenChoice, golden_choices
+from tuning_tables.golden_vectors import GoldenVectors, golden_vectors
+from tuning_tables.table_block import HAS_LOWER, HAS_UPPER, BlockSize, TableBlock, block_of, block_size
+from tuning_tables.table_book import TableBook
+
+TEMPLATES = ("retarder_table.h", "retarder_table.c", "retarder_self_test.h", "retarder_self_test.c")
+VECTORS_FILE = "golden_vectors.csv"
+
+
+def c_files(book: TableBook) -> Mapping[str, bytes]:
+    """The files of the export by name: four of C99, ASCII, and the golden vectors as CSV for other languages.
+
+    Equal books give equal bytes.
+    """
+    size, choices = block_size(book), golden_choices(book)
+    vectors = [golden_vectors(table) for table in book.tables]
+    blanks = {
+        "EXPORT": f"0x{export_tag(book):08x}u",
+        "ORIGIN": "\n".join(f" * {line}" for line in origin_lines(book)),
+        "CATEGORIES": "\n".join(category_lines(book)),
+        "STAGES": f"{size.stages}u",
+        "POWERS": f"{size.powers}u",
+        "COUNT": f"{len(book.tables)}",
+        "TABLES": ",\n".join(table_text(book, number, size) for number in range(len(book.tables))),
+        "VECTORS": f"{sum(map(len, vectors))}",
+        "CHOICES": f"{len(choices)}",
+        "GOLDEN_VECTORS": ",\n".join(line for n, each in enumerate(vectors) for line in vector_lines(n, each)),
+        "GOLDEN_CHOICES": ",\n".join(map(choice_line, choices)),
+    }
+    sources = {name: filled(name, blanks).encode("ascii") for name in TEMPLATES}
+    return {**sources, VECTORS_FILE: vectors_csv(book, vectors)}
+
+
+def filled(name: str, blanks: Mapping[str, str]) -> str:
+    """The template of the file `name` with every @BLANK@ filled."""
+    text = (files("tuning_tables") / "c99" / f"{name}.in").read_text("ascii")
+    for blank, content in blanks.items():
+        text = text.replace(f"@{blank}@", content)
+    return text
+
+
+def export_tag(book: TableBook) -> int:
+    """A number that differs for exports whose files must not be mixed: CRC-32 over categories and all blocks."""
+    content = "\n".join(book.categories).encode("utf-8")
+    for number in range(len(book.tables)):
+        content += block_of(book, number).words.astype("<u4").tobytes()
+    return zlib.crc32(content)
+
+
+def origin_lines(book: TableBook) -> list[str]:
+    """What the book is for and where it comes from, in ASCII."""
+    first = book.tables[0]
+    made = dict.fromkeys((table.generator, table.created) for table in book.tables)
+    lines = [
+        f"retarder   {comment_text(first.retarder.name)}, the pass ends at {first.retarder.exit_m:g} m",
+        f"tables     {len(book.tables)}",
+    ]
+    for generator, created in made:
+        lines.append(f"made by    {comment_text(generator.name)} {comment_text(generator.version)}, {created}")
+        lines.append(f"           configuration {generator.config_sha256}")
+    return lines
+
+
+def category_lines(book: TableBook) -> list[str]:
+    """One #define for each weight category."""
+    names = category_macros(book.categories)
+    return [
+        f"#define RETARDER_CATEGORY_{name} {number}u /* {comment_text(category)} */"
+        for number, (name, category) in enumerate(zip(names, book.categories, strict=True), start=1)
+    ]
+
+
+def table_text(book: TableBook, number: int, size: BlockSize) -> str:
+    """The initialiser of one table."""
+    block = block_of(book, number)
+    low, high = block.table.valid_range[:2]
+    target = block.table.target_speed_m_s
+    lines = ", ".join(f"{each}u" for each in block.words[4 : 4 + size.stages])
+    return "\n".join(
+        [
+            f"    /* {number}: {comment_text(book.tables[number].id)} */",
+            "    {",
+            f"        {block.category}u, /* category */",
+            f"        {block.axles}u, /* axles */",
+            f"        {block.table.coefficients.shape[0]}u, /* stages */",
+            f"        {block.table.coefficients.shape[2]}u, /* coefficients of a line */",
+            f"        {{{lines}}}, /* lines of stage 0, 1, ... */",
+            f"        {hex_float(block.mass_t)}, /* mass, {block.mass_t:g} t */",
+            f"        {hex_float(target)}, /* target speed, {target:g} m/s */",
+            f"        {hex_float(low)}, {hex_float(high)}, /* path range, {low:g} to {high:g} m */",
+            "        {",
+            ",\n".join(stage_text(block, stage, size) for stage in range(size.stages)),
+            "        },",
+            f"        0x{block.crc32:08x}u /* crc32 */",
+            "    }",
+        ]
+    )
+
+
+def stage_text(block: TableBlock, stage: int, size: BlockSize) -> str:
+    """The two lines of one stage, a row each, with their coefficients in decimal for the eye."""
+    coefficients = block.words[8 + size.stages : -1].view(np.float32).reshape(size.stages, 2, size.powers)[stage]
+    rows = []
+    for index, (name, bit) in enumerate((("lower", HAS_LOWER), ("upper", HAS_UPPER))):
+        numbers = ", ".join(map(hex_float, coefficients[index]))
+        shown = " ".join(f"{c:.6g}" for c in coefficients[index]) if block.words[4 + stage] & bit else "none"
+        rows.append(f"                {{{numbers}}}{',' if index == 0 else ''} /* {name}: {shown} */")
+    return "\n".join([f"            {{ /* stage {stage} */", *rows, "            }"])
+
+
+def hex_float(value: np.float32) -> str:
+    """`value`, finite, as a C99 hexadecimal constant of type float: 2.5 is "0x1.4p+1f"."""
+    mantissa, _, exponent = float(value).hex().partition("p")
+    return f"{mantissa.rstrip('0').rstrip('.') if '.' in mantissa else mantissa}p{exponent}f"
+
+
+def vector_lines(number: int, vectors: GoldenVectors) -> list[str]:
+    """The golden vectors of table `number` as initialisers."""
+    s_bits, v_bits = vectors.s_m.view(np.uint32), vectors.v_m_s.view(np.uint32)
+    return [
+        f"    {{{number}u, {k}, 0x{s:08x}u, 0x{v:08x}u, {answer}}}"
+        for k, s, v, answer in zip(vectors.stage, s_bits, v_bits, vectors.answer, strict=True)
+    ]
+
+
+def choice_line(choice: GoldenChoice) -> str:
+    """A golden choice as initialiser."""
+    bits = int(np.float32(choice.commanded_m_s).view(np.uint32))
+    return f"    {{{choice.category}u, {choice.axles}u, 0x{bits:08x}u, {int(choice.status)}, 0x{choice.crc32:08x}u}}"
+
+
+def vectors_csv(book: TableBook, vectors: list[GoldenVectors]) -> bytes:
+    """All golden vectors, CR LF: table number and id, stage, path and speed as bits and as numbers, answer."""
+    rows = ["table,id,stage,s_bits,v_bits,s_m,v_m_s,answer"]
+    for number, (table, each) in enumerate(zip(book.tables, vectors, strict=True)):
+        name = '"' + table.id.replace('"', '""') + '"'
+        bits = zip(each.s_m.view(np.uint32), each.v_m_s.view(np.uint32), strict=True)
+        for k, (s_bits, v_bits), s, v, answer in zip(each.stage, bits, each.s_m, each.v_m_s, each.answer, strict=True):
+            rows.append(f"{number},{name},{k},{s_bits:08x},{v_bits:08x},{s:.9g},{v:.9g},{answer}")
+    return ("\r\n".join(rows) + "\r\n").encode("utf-8")

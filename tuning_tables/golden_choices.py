@@ -1,0 +1,57 @@
+"""Golden choices of a book: commands where a wrong implementation of the choice shows, with the right answers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from tuning_tables.table_block import block_of
+from tuning_tables.table_book import Status, TableBook
+
+
+@dataclass(frozen=True)
+class GoldenChoice:
+    """A command, and how the choice ends: status, and the checksum of the chosen table's block, 0 for none."""
+
+    category: int
+    axles: int
+    commanded_m_s: np.float32
+    status: Status
+    crc32: int
+
+
+def golden_choices(book: TableBook) -> tuple[GoldenChoice, ...]:
+    """Commands at, next to, between and beyond the targets of every class; no numbers; classes that the book lacks."""
+    classes = dict.fromkeys((table.cut.category, len(table.cut.axle_offsets_m)) for table in book.tables)
+    found = [
+        golden_choice(book, category, axles, speed)
+        for category, axles in classes
+        for speed in _commands(book, category, axles)
+    ]
+    category, axles = next(iter(classes))
+    most = max(axles for _, axles in classes)
+    found.append(golden_choice(book, category, most + 1, np.float32(book.tables[0].target_speed_m_s)))
+    beyond = len(book.categories) + 1
+    for number in (0, beyond):
+        found.append(GoldenChoice(number, axles, np.float32(2.0), Status.NO_CLASS, 0))
+    return tuple(found)
+
+
+def golden_choice(book: TableBook, category: str, axles: int, commanded_m_s: np.float32) -> GoldenChoice:
+    """What `book.choose` answers to one command."""
+    choice = book.choose(category, axles, float(commanded_m_s))
+    crc32 = block_of(book, choice.numbers[0], choice.table).crc32 if choice.table is not None else 0
+    return GoldenChoice(book.categories.index(category) + 1, axles, commanded_m_s, choice.status, crc32)
+
+
+def _commands(book: TableBook, category: str, axles: int) -> list[np.float32]:
+    """Commanded speeds around the targets of one class."""
+    targets = [np.float32(book.tables[number].target_speed_m_s) for number in book.candidates(category, axles)]
+    commands = [np.float32(value) for value in (np.nan, np.inf, -np.inf, -1.0, -0.0, 0.0)]
+    for target in targets:
+        commands += [np.nextafter(target, np.float32(0.0)), target, np.nextafter(target, np.float32(np.inf))]
+    for slower, faster in pairwise(targets):
+        commands += [slower + (faster - slower) * np.float32(part) for part in (0.1, 0.5, 0.7)]
+    return [*commands, targets[-1] + np.float32(1.0), np.finfo(np.float32).max]

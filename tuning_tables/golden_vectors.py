@@ -1,0 +1,106 @@
+"""Golden vectors of a table: readings where a wrong implementation of the rule shows, with the right answers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from tuning_tables.rule import decide_many
+from tuning_tables.table import ControllerTable
+
+Floats = npt.NDArray[np.float32]
+
+LARGEST: Final = float(np.finfo(np.float32).max)
+SMALLEST: Final = float(np.finfo(np.float32).smallest_subnormal)
+STAGE_LIMITS: Final = (-32768, 32767)
+"""Of a 16-bit INT, which every controller has."""
+
+ASIDE_M_S: Final = np.float32(0.01)
+"""Distance from a line that no rounding bridges."""
+
+
+@dataclass(frozen=True)
+class GoldenVectors:
+    """n readings and their answers: stage int32, s_m and v_m_s float32, answer int8 (LOWER, HOLD, RAISE), all (n,)."""
+
+    stage: npt.NDArray[np.int32]
+    s_m: Floats
+    v_m_s: Floats
+    answer: npt.NDArray[np.int8]
+
+    def __post_init__(self) -> None:
+        for array in vars(self).values():
+            array.setflags(write=False)
+
+    def __len__(self) -> int:
+        return len(self.answer)
+
+
+def golden_vectors(table: ControllerTable) -> GoldenVectors:
+    """Readings on, next to (one float32 step) and beyond every line and both ends of the path, and incredible ones.
+
+    The same table gives the same vectors, in the same order, each once.
+    """
+    readings = [*_line_readings(table), *_incredible_readings(table)]
+    stage = np.array([reading[0] for reading in readings], dtype=np.int32)
+    s_m = np.array([reading[1] for reading in readings], dtype=np.float32)
+    v_m_s = np.array([reading[2] for reading in readings], dtype=np.float32)
+    # By bit pattern, so that NaN equals NaN and -0.0 is not 0.0.
+    bits = np.stack([stage.view(np.uint32), s_m.view(np.uint32), v_m_s.view(np.uint32)], axis=1)
+    first = np.sort(np.unique(bits, axis=0, return_index=True)[1])
+    stage, s_m, v_m_s = stage[first], s_m[first], v_m_s[first]
+    return GoldenVectors(stage, s_m, v_m_s, decide_many(table, stage, s_m, v_m_s))
+
+
+def line_speeds(coefficients: Floats, s_m: Floats) -> Floats:
+    """One line, float32 (degree+1,), at paths s_m (n,), as the rule computes it: (n,) in m/s."""
+    speed = np.full(s_m.shape, coefficients[-1], dtype=np.float32)
+    for coefficient in coefficients[-2::-1]:
+        speed = speed * s_m + coefficient
+    return speed
+
+
+def _line_readings(table: ControllerTable) -> list[tuple[int, np.float32, np.float32]]:
+    """Readings around every line, or around the target speed at a stage that has none."""
+    paths = _paths(table)
+    clamped = np.clip(paths, table.valid_range[0], table.valid_range[1])
+    target = np.full(paths.shape, table.target_speed_m_s, dtype=np.float32)
+    readings = []
+    for k in range(len(table.stages)):
+        lines = [line_speeds(table.coefficients[k, i], clamped) for i in (0, 1) if table.has_line[k, i]]
+        for line in lines or [target]:
+            for speeds in (line, _next(line, -np.inf), _next(line, np.inf), line - ASIDE_M_S, line + ASIDE_M_S):
+                readings += [(k, s, v) for s, v in zip(paths, speeds, strict=True)]
+    return readings
+
+
+def _paths(table: ControllerTable) -> Floats:
+    """Both ends, one step inside and outside them, far outside, and three places between."""
+    low, high = table.valid_range[0], table.valid_range[1]
+    ends = [low, high, _next(low, -np.inf), _next(high, np.inf), _next(low, np.inf), _next(high, -np.inf)]
+    inner = [low + (high - low) * np.float32(part) for part in (0.25, 0.5, 0.8125)]
+    return np.array([*ends, *inner, low - np.float32(1000.0), high + np.float32(1000.0)], dtype=np.float32)
+
+
+def _incredible_readings(table: ControllerTable) -> list[tuple[int, np.float32, np.float32]]:
+    """Readings that cannot be true, or only just can, at every stage; and stages that do not exist."""
+    target = np.float32(table.target_speed_m_s)
+    middle = (table.valid_range[0] + table.valid_range[1]) / np.float32(2.0)
+    speeds = (np.nan, np.inf, -np.inf, -1.0, -SMALLEST, -0.0, 0.0, SMALLEST, LARGEST, -LARGEST)
+    paths = (np.nan, np.inf, -np.inf, LARGEST, -LARGEST, SMALLEST, -SMALLEST, -0.0)
+    readings: list[tuple[int, np.float32, np.float32]] = []
+    for k in range(len(table.stages)):
+        readings += [(k, middle, np.float32(v)) for v in speeds]
+        for v in (np.float32(0.0), np.float32(100.0)):
+            readings += [(k, np.float32(s), v) for s in paths]
+    for k in (-1, len(table.stages), *STAGE_LIMITS):
+        readings += [(k, middle, target), (k, middle, np.float32(100.0)), (k, middle, np.float32(0.0))]
+    return readings
+
+
+def _next(value: npt.NDArray[np.float32] | np.float32, towards: float) -> npt.NDArray[np.float32]:
+    """The neighbouring float32 number."""
+    return np.asarray(np.nextafter(value, np.float32(towards)), dtype=np.float32)

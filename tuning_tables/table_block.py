@@ -1,0 +1,80 @@
+"""A table as the block of 32-bit words that the C controller holds, protected by a CRC-32.
+
+Words, each from its lowest byte to its highest: category number, axles, stages, powers (degree + 1); for each stage its
+lines (1 lower, 2 upper, 3 both); as binary32 mass_t, target speed in m/s, s_min and s_max in m; the coefficients by
+stage, line (lower, upper) and power; and the CRC-32 of all words before it. All tables of a book have blocks of one
+size, that of its table with most stages and powers; what a table has not is 0.
+"""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from tuning_tables.active_table import ActiveTable, active
+from tuning_tables.table_book import TableBook
+
+HAS_LOWER, HAS_UPPER = 1, 2
+
+
+@dataclass(frozen=True)
+class BlockSize:
+    """Stages and coefficients of a line that there is room for in a block."""
+
+    stages: int
+    powers: int
+
+    @property
+    def words(self) -> int:
+        """Length of a block in words of 32 bits, checksum included."""
+        return 9 + self.stages + 2 * self.stages * self.powers
+
+
+@dataclass(frozen=True)
+class TableBlock:
+    """One table as the controller holds it: its numbers, and the words of the block (uint32, checksum last)."""
+
+    category: int
+    axles: int
+    mass_t: np.float32
+    table: ActiveTable
+    words: npt.NDArray[np.uint32]
+
+    @property
+    def crc32(self) -> int:
+        """The checksum, last of the words."""
+        return int(self.words[-1])
+
+
+def block_size(book: TableBook) -> BlockSize:
+    """The least size that every table of the book fits into."""
+    return BlockSize(max(len(t.stages) for t in book.tables), max(t.degree for t in book.tables) + 1)
+
+
+def block_of(book: TableBook, number: int, table: ActiveTable | None = None) -> TableBlock:
+    """The block of table `number` of the book, or of lines `table` made from it and its faster neighbour."""
+    source = book.tables[number]
+    table = table or active(source)
+    category = book.categories.index(source.cut.category) + 1
+    axles, mass_t = len(source.cut.axle_offsets_m), np.float32(source.cut.mass_t)
+    size = block_size(book)
+    stages, _, powers = table.coefficients.shape
+    lines = np.zeros(size.stages, dtype=np.uint32)
+    lines[:stages] = HAS_LOWER * table.has_line[:, 0] + HAS_UPPER * table.has_line[:, 1]
+    coefficients = np.zeros((size.stages, 2, size.powers), dtype=np.float32)
+    coefficients[:stages, :, :powers] = np.where(table.has_line[:, :, None], table.coefficients, np.float32(0.0))
+    numbers = np.array([mass_t, table.target_speed_m_s, *table.valid_range[:2]], dtype=np.float32)
+    body = np.concatenate(
+        [
+            np.array([category, axles, stages, powers], dtype=np.uint32),
+            lines,
+            numbers.view(np.uint32),
+            coefficients.ravel().view(np.uint32),
+        ]
+    )
+    words = np.append(body, np.uint32(zlib.crc32(body.astype("<u4").tobytes())))
+    words.setflags(write=False)
+    return TableBlock(category, axles, mass_t, table, words)

@@ -1,0 +1,165 @@
+"""The tables of one retarder position, and the choice of the one to regulate a cut with.
+
+The choice knows what the yard knows of a cut: its weight category, its number of axles, the exit speed commanded.
+
+1. Candidates are the tables of that category and number of axles. If several masses answer to both, those of the
+   largest mass: they begin to brake first. None: no class of the book fits the cut.
+2. No number, not above 0, or below the lowest target: no table, for every one would let the cut out too fast.
+3. Equal to a target: that table.
+4. Above the highest target: the table of the highest target. The cut leaves slower than asked.
+5. Between two neighbouring targets: the lines between the two (`active_table.between`), or, where the two differ in
+   their stages, degree, lines or path range, the table of the lower target.
+
+So no choice aims at more than the commanded speed, and a cut that the book does not know is left to whoever commands.
+Speeds and masses are compared as float32 numbers; of equal tables the first in the book counts.
+
+How wrong the lines of rule 5 can be: on a way with the braking work A(s) per unit mass still to come, the speed from
+which the cut just leaves with T is V = sqrt(T^2 + 2 A). It is convex in T, and linear interpolation over a step
+h = T1 - T0 exceeds it by at most h^2/8 max d2V/dT2 <= h^2 / (12 sqrt(3) T0) = 0.048 h^2 / T0, nothing at the exit
+(A = 0) and nothing at both targets: 0.024 m/s between 2 and 3 m/s, at places where V is about 1.7 T.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import IntEnum
+from itertools import pairwise
+
+import numpy as np
+
+from tuning_tables.active_table import ActiveTable, active, between, interpolable
+from tuning_tables.errors import InvalidTable
+from tuning_tables.line_order import UNIT_ROUNDOFF, rounding_bound, smallest_gap
+from tuning_tables.requirement import require_kind, require_tuple
+from tuning_tables.table import ControllerTable
+
+Line = tuple[float, ...]
+
+
+class Status(IntEnum):
+    """How a choice ended; below 0 there is no table."""
+
+    TUNED = 0
+    BETWEEN = 1
+    SLOWER = 2
+    NO_CLASS = -1
+    NO_TARGET = -2
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The chosen lines, None where `status` is below 0, and the numbers of the tables in the book that they come from.
+
+    `numbers` has one entry, two for lines between two tables (lower target first), none for no table.
+    """
+
+    status: Status
+    table: ActiveTable | None
+    numbers: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class TableBook:
+    """The tables of one position, numbered in their order from 0; ids differ, the retarder is the same in all.
+
+    Raises `InvalidTable`, also where float32 might let the lines between two neighbouring tables touch.
+    """
+
+    tables: tuple[ControllerTable, ...]
+
+    def __post_init__(self) -> None:
+        require_tuple(self.tables, "tables")
+        if not self.tables:
+            raise InvalidTable("a book holds at least one table.")
+        for index, table in enumerate(self.tables):
+            require_kind(table, f"tables[{index}]", ControllerTable)
+        first, ids = self.tables[0], [table.id for table in self.tables]
+        for table in self.tables:
+            if table.retarder != first.retarder:
+                raise InvalidTable(
+                    f"{table.id} is for the retarder {table.retarder.name}, {first.id} for {first.retarder.name}, "
+                    "but a book serves one position: export them apart."
+                )
+            if ids.count(table.id) > 1:
+                raise InvalidTable(f"the id {table.id} is given to {ids.count(table.id)} tables of the book.")
+        for slower, faster in self.neighbours():
+            require_order_between(slower, faster)
+
+    @property
+    def categories(self) -> tuple[str, ...]:
+        """The weight categories in order of first appearance; C and Structured Text number them from 1."""
+        return tuple(dict.fromkeys(table.cut.category for table in self.tables))
+
+    def shadowed(self) -> tuple[ControllerTable, ...]:
+        """The tables that no choice can use: another of the same category and axles is heavier, or comes first."""
+        used = {number for category, axles in self._classes() for number in self.candidates(category, axles)}
+        return tuple(table for number, table in enumerate(self.tables) if number not in used)
+
+    def candidates(self, category: str, axles: int) -> tuple[int, ...]:
+        """Numbers of the tables that rule 1 leaves, by rising target, one a target."""
+        found = [
+            n for n, t in enumerate(self.tables) if (t.cut.category, len(t.cut.axle_offsets_m)) == (category, axles)
+        ]
+        heaviest = max((np.float32(self.tables[n].cut.mass_t) for n in found), default=np.float32(0))
+        by_target: dict[float, int] = {}
+        for number in found:
+            if np.float32(self.tables[number].cut.mass_t) == heaviest:
+                by_target.setdefault(float(np.float32(self.tables[number].target_speed_m_s)), number)
+        return tuple(by_target[target] for target in sorted(by_target))
+
+    def choose(self, category: str, axles: int, commanded_m_s: float) -> Choice:
+        """The lines for a cut of `category` on `axles` axles that shall leave with `commanded_m_s`."""
+        numbers = self.candidates(category, axles)
+        if not numbers:
+            return Choice(Status.NO_CLASS, None, ())
+        with np.errstate(over="ignore"):
+            target = np.float32(commanded_m_s)
+        targets = [np.float32(self.tables[number].target_speed_m_s) for number in numbers]
+        if not (np.isfinite(target) and target >= targets[0]):
+            return Choice(Status.NO_TARGET, None, ())
+        place = max(index for index, tuned in enumerate(targets) if tuned <= target)
+        slower = self.tables[numbers[place]]
+        if targets[place] == target:
+            return Choice(Status.TUNED, active(slower), (numbers[place],))
+        if place + 1 == len(targets) or not interpolable(slower, self.tables[numbers[place + 1]]):
+            return Choice(Status.SLOWER, active(slower), (numbers[place],))
+        faster = self.tables[numbers[place + 1]]
+        return Choice(Status.BETWEEN, between(slower, faster, target), (numbers[place], numbers[place + 1]))
+
+    def neighbours(self) -> Iterator[tuple[ControllerTable, ControllerTable]]:
+        """All pairs of tables that lines may be taken between."""
+        for category, axles in self._classes():
+            for slower, faster in pairwise(self.candidates(category, axles)):
+                if interpolable(self.tables[slower], self.tables[faster]):
+                    yield self.tables[slower], self.tables[faster]
+
+    def _classes(self) -> tuple[tuple[str, int], ...]:
+        return tuple(dict.fromkeys((t.cut.category, len(t.cut.axle_offsets_m)) for t in self.tables))
+
+
+def require_order_between(slower: ControllerTable, faster: ControllerTable) -> None:
+    """lower(s) < upper(s) holds for all lines between the two tables, however float32 rounds; raises `InvalidTable`.
+
+    The exact gap between the lines is at least the smaller of the two tables' own; what rounding can take from it is at
+    most 4 u (|c0| + |c1|) in a coefficient (three operations), and the evaluation of both lines.
+    """
+    path = (float(slower.valid_range[0]), float(slower.valid_range[1]))
+    for one, other in zip(slower.stages, faster.stages, strict=True):
+        if one.lower is None or one.upper is None or other.lower is None or other.upper is None:
+            continue
+        gap_m_s = min(smallest_gap(one.lower, one.upper, path)[0], smallest_gap(other.lower, other.upper, path)[0])
+        needed_m_s = sum(_loss(pair, path) for pair in ((one.lower, other.lower), (one.upper, other.upper)))
+        if not gap_m_s > needed_m_s:
+            raise InvalidTable(
+                f"stages[{one.k}]: the lines between {slower.id} and {faster.id} come within {gap_m_s!r} m/s of each "
+                f"other, but must stay {needed_m_s!r} apart; fit them further apart, or export the two apart."
+            )
+
+
+def _loss(pair: tuple[Line, Line], path_m: tuple[float, float]) -> float:
+    """What float32 can change in a line between the two lines of `pair`, m/s."""
+    size = tuple(abs(one) + abs(other) for one, other in zip(*pair, strict=True))
+    reach = max(abs(path_m[0]), abs(path_m[1]))
+    coefficients = 4 * UNIT_ROUNDOFF * sum(value * reach**power for power, value in enumerate(size))
+    return coefficients + rounding_bound(size, path_m)
