@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import json
+import os
 import re
+import stat
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -42,13 +45,23 @@ def read_tables(path: Path, directory_allowed: bool = False) -> tuple[TableFile,
 def read_table_file(path: Path) -> TableFile:
     """The tables in the file `path`, told apart by its first bytes."""
     try:
-        with path.open("rb") as file:
-            book = file.read(len(HDF5_SIGNATURE)) == HDF5_SIGNATURE or path.suffix in BOOK_SUFFIXES
+        book = first_bytes(path, len(HDF5_SIGNATURE)) == HDF5_SIGNATURE or path.suffix in BOOK_SUFFIXES
         return TableFile(path, "book", read_book(path)) if book else TableFile(path, "table", (read_json(path),))
     except FileNotFoundError:
         raise InputError(f"{path}: there is no such file; give a table (.json) or a book (.h5)") from None
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); check the path and its permissions") from None
+
+
+def first_bytes(path: Path, count: int) -> bytes:
+    """The beginning of the regular file at `path`; `OSError` for a pipe or device, which might never answer."""
+    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+            raise OSError(errno.EINVAL, "not a regular file", str(path))
+        return os.read(descriptor, count)
+    finally:
+        os.close(descriptor)
 
 
 def file_stem(table: ControllerTable) -> str:

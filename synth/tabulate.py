@@ -66,7 +66,7 @@ def prediction_of(density: ExitDensity, target_speed_m_s: float) -> Predicted:
     """The figures of an exit density that a table carries."""
     return Predicted(
         rms_m_s=density.rms_m_s(target_speed_m_s),
-        bias_m_s=density.bias_m_s(target_speed_m_s),
+        bias_m_s=density.bias_m_s(target_speed_m_s) + 0.0,  # no -0.0
         p_overspeed=min(density.p_overspeed(target_speed_m_s + OVERSPEED_M_S), 1.0),
         switchings=max(density.switchings, 0.0),
         p_stall=min(max(density.stalled, 0.0), 1.0),

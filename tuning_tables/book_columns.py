@@ -6,6 +6,7 @@ Tables of one book may differ in stages, degree, zones and axles: shorter ones a
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
@@ -86,13 +87,16 @@ COLUMNS: Final[tuple[Column, ...]] = (
 
 
 def columns_of(tables: Sequence[ControllerTable]) -> dict[str, npt.NDArray[Any]]:
-    """The arrays of a book, by name. Raises `InvalidTable` for no tables at all and for an id given twice."""
-    ids = [table.id for table in tables]
-    if not ids:
+    """The arrays of a book, by name.
+
+    Raises `InvalidTable` for no tables at all, for an id given twice, and where a number is -0.0, which the JSON form
+    of the same table cannot hold.
+    """
+    if not tables:
         raise InvalidTable("the book has no tables, but it must have at least one.")
-    if len(set(ids)) < len(ids):
-        twice = next(name for name in ids if ids.count(name) > 1)
-        raise InvalidTable(f"two tables of the book have the id {twice!r}, but ids must differ within a book.")
+    (name, times), *_ = Counter(table.id for table in tables).most_common(1)
+    if times > 1:
+        raise InvalidTable(f"{times} tables of the book have the id {name!r}, but ids must differ within a book.")
     return {column.name: _stacked(column, tables) for column in COLUMNS}
 
 

@@ -2,8 +2,7 @@
 
 Canonical form: RFC 8785 (JSON Canonicalization Scheme). UTF-8; no white space; the keys of each object sorted by their
 UTF-16 code units; numbers as ECMAScript prints a double (the shortest digits that read back exactly); strings with the
-fewest escapes. Only content counts, so a table may be indented, or its keys reordered, and keeps its checksum. Most
-languages have a library for the form.
+fewest escapes. It has no -0.0, which is written as 0. Most languages have a library for it.
 
 Checksum: CRC-32 of ISO 3309 / ITU-T V.42 (reflected, polynomial 04C11DB7, initial value and final xor FFFFFFFF), that
 of zlib, Ethernet and PNG, over the canonical form of the document less its key "crc32", as 8 lower-case hex digits.

@@ -6,6 +6,7 @@ from typing import Final
 
 from tuning_tables.canonical import CHECKSUM_KEY, document_checksum
 from tuning_tables.errors import DamagedTable, InvalidTable, NewerVersion, OlderVersion, UnknownFormat
+from tuning_tables.excerpt import excerpt
 from tuning_tables.figures import Predicted, Validated, ValidRange
 from tuning_tables.provenance import CutId, Generator, RetarderId
 from tuning_tables.section import Section
@@ -15,6 +16,7 @@ from tuning_tables.table import ControllerTable
 FORMAT: Final = "retarder-table"
 VERSION: Final = 1
 VARIABLE: Final = "s_m"
+LONGEST_REASON: Final = 400
 
 _KEYS: Final = (
     "format",
@@ -35,7 +37,10 @@ _KEYS: Final = (
 
 
 def to_document(table: ControllerTable) -> dict[str, object]:
-    """The document of `table`, in the order in which it is to be read, its checksum last."""
+    """The document of `table`, in the order in which it is to be read, its checksum last.
+
+    Raises `InvalidTable` where a number is -0.0: RFC 8785 writes it as 0, so the checksum would not cover its sign.
+    """
     document: dict[str, object] = {
         "format": FORMAT,
         "version": VERSION,
@@ -97,7 +102,8 @@ def from_document(document: object, source: str) -> ControllerTable:
             validated=_validated(top),
         )
     except InvalidTable as invalid:
-        raise DamagedTable(f"{source}: {invalid}") from invalid
+        # The reason may quote a value, and a file may hold one of any length.
+        raise DamagedTable(f"{source}: {excerpt(str(invalid), LONGEST_REASON)}") from invalid
 
 
 def _versioned(document: object, source: str) -> dict[str, object]:

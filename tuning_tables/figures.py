@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -14,6 +15,9 @@ from tuning_tables.requirement import (
     require_rising,
     require_tuple,
 )
+
+SHORTEST_RANGE: Final = 1e-3
+"""Of path in m, of speed in m/s."""
 
 
 @dataclass(frozen=True)
@@ -32,8 +36,9 @@ class ValidRange:
             require_rising(ends, key)
             require_between(ends[0], key, -1e6, 1e6)
             require_between(ends[1], key, -1e6, 1e6)
-            if not np.float32(ends[0]) < np.float32(ends[1]):
-                raise InvalidTable(f"{key} is {ends!r}, but its ends must differ in single precision.")
+            # Shorter ranges mean nothing on a track, and ratios of lengths stay finite.
+            if not np.float32(ends[1]) - np.float32(ends[0]) >= SHORTEST_RANGE:
+                raise InvalidTable(f"{key} is {ends!r}, but its ends must be at least {SHORTEST_RANGE:g} apart.")
         require_between(self.v_m_s[0], "valid.v_m_s[0]", 0.0)
 
 

@@ -1,35 +1,33 @@
 """A book of tables as an HDF5 file, readable by h5py and xarray without this project. Needs h5py, and only when called.
 
-Root attributes: format "retarder-book", schema_version, tool_version, config_sha256, payload_sha256, complete = 1.
-Datasets: those of `book_columns.COLUMNS`, each with attributes `units` and `meaning`, chunked in one piece with a
-fletcher32 checksum; text as fixed-length UTF-8. Each axis is a dimension scale of its own name, numbered from 0.
+Root attributes: format "retarder-book", schema_version, tool_version, config_sha256, payload_sha256 (see `payload`),
+complete = 1. Datasets: those of `book_columns.COLUMNS`, each with attributes `units` and `meaning`, chunked in one
+piece with a fletcher32 checksum. Each axis is a dimension scale of its own name, numbered from 0.
 
-payload_sha256 is the SHA-256 of the canonical JSON (see `canonical`) of
-
-    {"attributes": {root attributes less payload_sha256},
-     "datasets": {name: {"dtype", "shape", "units", "meaning", "sha256": of the values, C order, little endian}}}
-
-with `dtype` as numpy writes it ("<f4", "|S12"). Equal books give equal bytes: nothing in the file tells time or place.
-The file ends with a seal (see `seal`), and is read only under an unbroken one.
+Two attributes are for xarray: `_Encoding` has it decode text (fixed-length UTF-8), `coordinates` names what tells the
+tables apart. Equal books give equal bytes: nothing in the file tells time or place. The file ends with a seal (see
+`seal`), and is read only under an unbroken one; and only where the tables in it give the very same arrays again, so
+that nothing is in a book, not even in the padding, that was not read.
 """
 
 from __future__ import annotations
 
-import hashlib
 import io
 import os
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.atomic_file import replacing
-from tuning_tables.book_columns import AXES, COLUMNS, Column, columns_of, tables_of
-from tuning_tables.canonical import canonical_json
+from tuning_tables.book_columns import AXES, COLUMNS, Column, Columns, columns_of, tables_of
 from tuning_tables.errors import DamagedTable, InvalidTable, NewerVersion, OlderVersion, TableError, UnknownFormat
+from tuning_tables.excerpt import excerpt
+from tuning_tables.payload import payload_sha256
 from tuning_tables.provenance import Generator
+from tuning_tables.regular_file import read_regular_file
+from tuning_tables.requirement import SHA256_HEX, require_match, require_text
 from tuning_tables.seal import seal_of, unsealed
 from tuning_tables.table import ControllerTable
 
@@ -41,7 +39,10 @@ SCHEMA_VERSION: Final = 1
 SIGNATURE: Final = b"\x89HDF\r\n\x1a\n"
 # The oldest file version whose metadata carry checksums, for readers that know nothing of the seal.
 FILE_VERSION: Final = ("v108", "v108")
-LARGEST_DATASET_BYTES: Final = 2**30
+# Twice what 10 000 tables of the largest shape take (32 stages, degree 9: 33 MB).
+LARGEST_FILE_BYTES: Final = 64 * 2**20
+LONGEST_REASON: Final = 400
+COORDINATES: Final = ("id", "category", "mass_t", "target_speed_m_s")
 
 _ATTRIBUTES: Final = ("complete", "config_sha256", "format", "payload_sha256", "schema_version", "tool_version")
 
@@ -66,7 +67,7 @@ def write_book(
         "schema_version": SCHEMA_VERSION,
         "tool_version": origin.version,
     }
-    attributes["payload_sha256"] = _payload_sha256(attributes, arrays)
+    attributes["payload_sha256"] = payload_sha256(attributes, arrays)
     with replacing(path) as part:
         with h5py.File(part, "w", libver=FILE_VERSION) as file:
             for axis, meaning in AXES.items():
@@ -89,7 +90,7 @@ def read_book(path: str | os.PathLike[str]) -> tuple[ControllerTable, ...]:
     import h5py
 
     source = os.fspath(path)
-    content = Path(path).read_bytes()
+    content = read_regular_file(path, LARGEST_FILE_BYTES)
     # A beginning of the signature alone may be a book that was cut off.
     if not content.startswith(SIGNATURE[: len(content)]):
         raise UnknownFormat(f"{source}: not an HDF5 file; give a table book.")
@@ -97,14 +98,18 @@ def read_book(path: str | os.PathLike[str]) -> tuple[ControllerTable, ...]:
     try:
         # From memory: what was found unbroken is what is read.
         with h5py.File(io.BytesIO(body), "r") as file:
-            return tables_of(_checked_arrays(file, source))
+            arrays = _checked_arrays(file, len(body), source)
+        tables = tables_of(arrays)
+        _require_as_written(arrays, columns_of(tables), source)
     except InvalidTable as invalid:
-        raise DamagedTable(f"{source}: {invalid}") from invalid
+        raise DamagedTable(f"{source}: {excerpt(str(invalid), LONGEST_REASON)}") from invalid
     except TableError:
         raise
     # What is wrong with a file under a right seal surfaces in h5py as one of a dozen types.
     except Exception as fault:
-        raise DamagedTable(f"{source}: not a readable table book ({fault}); export it again.") from fault
+        reason = excerpt(" ".join(str(fault).split()), LONGEST_REASON)
+        raise DamagedTable(f"{source}: not a readable table book ({reason}); export it again.") from fault
+    return tables
 
 
 def _common_generator(tables: Sequence[ControllerTable]) -> Generator:
@@ -114,7 +119,7 @@ def _common_generator(tables: Sequence[ControllerTable]) -> Generator:
     return generators.pop()
 
 
-def _axis_length(axis: str, arrays: dict[str, npt.NDArray[Any]]) -> int:
+def _axis_length(axis: str, arrays: Columns) -> int:
     column = next(column for column in COLUMNS if axis in column.axes)
     return int(arrays[column.name].shape[column.axes.index(axis)])
 
@@ -135,68 +140,74 @@ def _write_column(file: h5py.File, column: Column, values: npt.NDArray[Any]) -> 
     )
     dataset.attrs["units"] = column.unit
     dataset.attrs["meaning"] = column.meaning
+    if text:
+        dataset.attrs["_Encoding"] = "utf-8"
+    elif column.name not in COORDINATES:
+        dataset.attrs["coordinates"] = " ".join(COORDINATES)
     for position, axis in enumerate(column.axes):
         dataset.dims[position].attach_scale(file[axis])
 
 
-def _checked_arrays(file: h5py.File, source: str) -> dict[str, npt.NDArray[Any]]:
-    """The arrays of the book, after everything about the file was found to be as written."""
-    attributes = {name: _plain(value) for name, value in file.attrs.items()}
-    _require_version(attributes, source)
-    if tuple(sorted(attributes)) != _ATTRIBUTES:
-        raise DamagedTable(f"{source}: root attributes are {sorted(attributes)}, but must be {list(_ATTRIBUTES)}.")
+def _checked_arrays(file: h5py.File, most_bytes: int, source: str) -> dict[str, npt.NDArray[Any]]:
+    """The arrays of the book, `most_bytes` in all, after everything about the file was found to be as written."""
+    from tuning_tables.stored_array import require_axis, scalar_attribute, stored_array
+
+    attributes = {name: scalar_attribute(file, name) for name in _ATTRIBUTES}
+    _require_version(attributes["format"], attributes["schema_version"], source)
+    if tuple(sorted(file.attrs)) != _ATTRIBUTES:
+        found = excerpt(str(sorted(file.attrs)), LONGEST_REASON)
+        raise DamagedTable(f"{source}: root attributes are {found}, but must be {list(_ATTRIBUTES)}.")
     if attributes["complete"] != 1:
         raise DamagedTable(f"{source}: complete is {attributes['complete']!r}, but must be 1; export the book again.")
+    require_match(attributes["config_sha256"], "config_sha256", SHA256_HEX, "of 64 lower-case hex digits")
+    require_text(attributes["tool_version"], "tool_version")
     expected = {column.name for column in COLUMNS} | set(AXES)
     if set(file) != expected:
-        raise DamagedTable(f"{source}: {sorted(set(file) ^ expected)} are missing or unknown; export the book again.")
-    arrays = {column.name: _read_column(file[column.name], column, source) for column in COLUMNS}
+        found = excerpt(str(sorted(set(file) ^ expected)), LONGEST_REASON)
+        raise DamagedTable(f"{source}: {found} are missing or unknown; export the book again.")
+    arrays: dict[str, npt.NDArray[Any]] = {}
+    for column in COLUMNS:
+        arrays[column.name] = stored_array(file, column, most_bytes, source)
+        most_bytes -= arrays[column.name].nbytes
     stored = attributes.pop("payload_sha256")
-    if stored != _payload_sha256(attributes, arrays):
-        raise DamagedTable(f"{source}: payload_sha256 is {stored!r}, but the content gives another; export it again.")
+    if stored != payload_sha256({k: v for k, v in attributes.items() if v is not None}, arrays):
+        raise DamagedTable(
+            f"{source}: payload_sha256 is {stored!r:.80}, but the content gives another; export it again."
+        )
+    for column in COLUMNS:
+        _require_lengths(column, arrays, source)
+    for axis in AXES:
+        require_axis(file, axis, _axis_length(axis, arrays), source)
     return arrays
 
 
-def _require_version(attributes: dict[str, Any], source: str) -> None:
-    if attributes.get("format") != FORMAT:
-        raise UnknownFormat(
-            f'{source}: format is {attributes.get("format")!r:.60}, but it must be "{FORMAT}"; give a table book.'
-        )
-    version = attributes.get("schema_version")
+def _require_lengths(column: Column, arrays: Columns, source: str) -> None:
+    """Every axis of `column` has one length in the whole book, and none is empty."""
+    for axis, length in zip(column.axes, arrays[column.name].shape, strict=True):
+        wanted = _axis_length(axis, arrays)
+        if length != wanted or length == 0:
+            raise DamagedTable(
+                f"{source}: {column.name} has {length} entries along {axis}, but the book has {wanted} there and needs "
+                "at least one; export the book again."
+            )
+
+
+def _require_as_written(found: Columns, written: Columns, source: str) -> None:
+    """Padding, lengths of text and missing lines are as `columns_of` makes them; values then are, too."""
+    for name, array in written.items():
+        if found[name].dtype.str != array.dtype.str or found[name].tobytes() != array.tobytes():
+            raise DamagedTable(
+                f"{source}: {name} holds values beside those of the tables, or pads them otherwise than the export; "
+                "export the book again."
+            )
+
+
+def _require_version(found: str | int | None, version: str | int | None, source: str) -> None:
+    if found != FORMAT:
+        raise UnknownFormat(f'{source}: format is {found!r:.60}, but it must be "{FORMAT}"; give a table book.')
     if not isinstance(version, int):
         raise DamagedTable(f"{source}: schema_version is {version!r:.60}, but it must be {SCHEMA_VERSION}.")
     if version > SCHEMA_VERSION:
         raise NewerVersion(f"{source}: schema_version is {version}, this reader knows {SCHEMA_VERSION}; update it.")
     if version < SCHEMA_VERSION:
         raise OlderVersion(f"{source}: schema_version is {version}, not {SCHEMA_VERSION}; export the book again.")
-
-
-def _read_column(dataset: h5py.Dataset, column: Column, source: str) -> npt.NDArray[Any]:
-    fits = dataset.dtype.kind == "S" if column.dtype == "S" else dataset.dtype == np.dtype(column.dtype)
-    if not fits or dataset.ndim != len(column.axes) or dataset.nbytes > LARGEST_DATASET_BYTES:
-        raise DamagedTable(
-            f"{source}: {column.name} is {dataset.dtype} {dataset.shape}, but it must be {column.dtype} {column.axes}."
-        )
-    if (dataset.attrs["units"], dataset.attrs["meaning"]) != (column.unit, column.meaning):
-        raise DamagedTable(f"{source}: {column.name} has other units than {column.unit!r}; export the book again.")
-    values: npt.NDArray[Any] = dataset[()]
-    return values
-
-
-def _payload_sha256(attributes: dict[str, Any], arrays: dict[str, npt.NDArray[Any]]) -> str:
-    datasets = {
-        column.name: {
-            "dtype": arrays[column.name].dtype.str,
-            "shape": list(arrays[column.name].shape),
-            "units": column.unit,
-            "meaning": column.meaning,
-            "sha256": hashlib.sha256(np.ascontiguousarray(arrays[column.name]).tobytes()).hexdigest(),
-        }
-        for column in COLUMNS
-    }
-    return hashlib.sha256(canonical_json({"attributes": attributes, "datasets": datasets})).hexdigest()
-
-
-def _plain(value: Any) -> Any:
-    """An attribute as Python value: h5py gives numbers as numpy scalars."""
-    return value.item() if isinstance(value, np.generic) else value

@@ -31,9 +31,14 @@ def require_match(value: object, key: str, pattern: str, example: str) -> None:
 
 
 def require_finite(value: object, key: str) -> None:
-    """`value` is a Python number (no bool, no numpy scalar but float64) and finite."""
-    if not _is_number(value) or not math.isfinite(value):  # type: ignore[arg-type]
-        raise InvalidTable(f"{key} is {value!r}, but it must be a finite number of type float.")
+    """`value` is a Python number (no bool, no numpy scalar but float64), finite as a double, and not -0.0.
+
+    The canonical form of a table writes -0.0 as 0, so its checksum could not tell the two apart.
+    """
+    if not _is_finite(value):
+        raise InvalidTable(f"{key} is {value!r:.60}, but it must be a finite number of type float.")
+    if value == 0 and math.copysign(1.0, value) < 0.0:
+        raise InvalidTable(f"{key} is -0.0, but a zero must have no sign; add 0.0 to it.")
 
 
 def require_between(value: object, key: str, smallest: float, largest: float = math.inf) -> None:
@@ -80,3 +85,10 @@ def require_kind(value: object, key: str, kind: type) -> None:
 
 def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _is_finite(value: object) -> bool:
+    try:
+        return _is_number(value) and math.isfinite(value)  # type: ignore[arg-type]
+    except OverflowError:  # a whole number beyond the doubles
+        return False

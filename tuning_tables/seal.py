@@ -17,17 +17,17 @@ SEAL_PREFIX: Final = b"\n# sealed, sha256 of all before this line: "
 SEAL_BYTES: Final = len(SEAL_PREFIX) + 64 + 1
 
 
-def seal_of(body: bytes) -> bytes:
+def seal_of(body: bytes | memoryview) -> bytes:
     """The line to append to `body`: SEAL_PREFIX, 64 hex digits, line feed."""
     return SEAL_PREFIX + hashlib.sha256(body).hexdigest().encode("ascii") + b"\n"
 
 
-def unsealed(content: bytes, source: str) -> bytes:
-    """The body of the sealed `content`, read from the file that `source` names in messages.
+def unsealed(content: bytes, source: str) -> memoryview:
+    """The body of the sealed `content`, not copied; `source` names the file it was read from in messages.
 
     Raises `DamagedTable` where the seal is missing or does not fit.
     """
-    body, seal = content[:-SEAL_BYTES], content[-SEAL_BYTES:]
+    body, seal = memoryview(content)[:-SEAL_BYTES], content[-SEAL_BYTES:]
     if not seal.startswith(SEAL_PREFIX):
         raise DamagedTable(
             f"{source}: there is no seal at its end, so it was cut off, edited or made by another program; "

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from typing import NoReturn
 
 from tuning_tables.errors import DamagedTable
+from tuning_tables.excerpt import excerpt
 
 
 class Section:
@@ -28,7 +30,10 @@ class Section:
         for key in value:
             if key not in required and key not in optional:
                 known = ", ".join(required + optional)
-                raise DamagedTable(f"{source}: {self._dotted(key)} is an unknown key; allowed here are {known}.")
+                found = excerpt(repr(key))
+                raise DamagedTable(
+                    f"{source}: {path or 'the document'} has the unknown key {found}; allowed are {known}."
+                )
 
     def __contains__(self, key: str) -> bool:
         return key in self._members
@@ -63,7 +68,7 @@ class Section:
         return value
 
     def number(self, key: str) -> float:
-        """The number at `key`."""
+        """The number at `key`; -0.0 is none."""
         return self._number(self._members[key], self._dotted(key))
 
     def numbers(self, key: str) -> tuple[float, ...]:
@@ -97,7 +102,11 @@ class Section:
         # JSON's true is no number, though Python's is.
         if not isinstance(value, int | float) or isinstance(value, bool):
             self._refuse(path, value, "a number")
-        return float(value)
+        number = float(value)
+        if number == 0.0 and math.copysign(1.0, number) < 0.0:
+            # The canonical form, and so the checksum, does not tell it from 0.0.
+            self._refuse(path, value, "0.0, without a sign")
+        return number
 
     def _array(self, value: object, path: str) -> list[object]:
         if not isinstance(value, list):
@@ -108,6 +117,5 @@ class Section:
         return f"{self._path}.{key}" if self._path else key
 
     def _refuse(self, path: str, value: object, wanted: str) -> NoReturn:
-        found = repr(value)
-        shown = found if len(found) <= 60 else found[:60] + "..."
-        raise DamagedTable(f"{self._source}: {path or 'the document'} is {shown}, but it must be {wanted}.")
+        found = excerpt(repr(value))
+        raise DamagedTable(f"{self._source}: {path or 'the document'} is {found}, but it must be {wanted}.")

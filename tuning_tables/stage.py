@@ -37,12 +37,12 @@ class Stage:
 
 
 def round_coefficients(values: Iterable[float]) -> tuple[float, ...]:
-    """The float32 number nearest to each of `values`, as Python floats (ties to even).
+    """The float32 number nearest to each of `values`, as Python floats (ties to even); zeros without a sign.
 
     Raises `InvalidTable` for a value that is not finite or exceeds the float32 range.
     """
     with np.errstate(over="ignore"):
-        rounded = tuple(float(np.float32(value)) for value in values)
+        rounded = tuple(float(np.float32(value)) + 0.0 for value in values)  # -0.0 becomes 0.0
     for index, value in enumerate(rounded):
         if not math.isfinite(value):
             raise InvalidTable(f"coefficient {index} has no finite float32 value; rescale the line before rounding it.")

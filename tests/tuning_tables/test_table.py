@@ -129,7 +129,11 @@ def test_wrong_stages_are_refused(linear_table, stages):
         (lambda: CutId("c", 1.0, (0.0, 0.0)), "axle_offsets_m"),
         (lambda: CutId("c", 1.0, (1.0, 2.0)), "axle_offsets_m"),
         (lambda: ValidRange((1.0, 1.0), (0.0, 1.0)), "valid.s_m"),
-        (lambda: ValidRange((1.0, 1.0 + 1e-9), (0.0, 1.0)), "single precision"),
+        (lambda: ValidRange((1.0, 1.0 + 1e-9), (0.0, 1.0)), "valid.s_m is .* at least 0.001 apart"),
+        (lambda: ValidRange((0.0, 1.0), (1.0, 1.0009)), "valid.v_m_s is .* at least 0.001 apart"),
+        (lambda: ValidRange((-0.0, 1.0), (0.0, 1.0)), "valid.s_m.0. is -0.0"),
+        (lambda: Stage(0, 0.0, None, (1.0, -0.0)), "upper.1. is -0.0"),
+        (lambda: CutId("c", 10**400, (0.0,)), "mass_t is 1000"),
         (lambda: ValidRange((0.0, 1.0), (-1.0, 1.0)), "valid.v_m_s"),
         (lambda: ValidRange((0.0, 1e7), (0.0, 1.0)), "valid.s_m"),
         (lambda: Predicted(-0.1, 0.0, 0.0, 1.0), "rms"),
@@ -186,13 +190,13 @@ def test_lines_must_keep_their_order_on_the_whole_range(crossing, lower, upper, 
             crossing(lower, upper, s_m)
 
 
-coefficients = st.floats(-8, 8, width=32)
+coefficients = st.floats(-8, 8, width=32).map(lambda c: c + 0.0)  # no -0.0
 
 
 @given(
     lower=st.lists(coefficients, min_size=4, max_size=4),
     gap=st.lists(coefficients, min_size=4, max_size=4),
-    s_m=st.tuples(st.floats(-4, 0, width=32), st.floats(0.5, 4, width=32)),
+    s_m=st.tuples(st.floats(-4, 0, width=32).map(lambda s: s + 0.0), st.floats(0.5, 4, width=32)),
 )
 @settings(derandomize=True, max_examples=300, deadline=None)
 def test_order_as_sampled_agrees_with_order_as_decided(crossing, lower, gap, s_m):

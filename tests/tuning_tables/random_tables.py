@@ -1,0 +1,95 @@
+"""Valid tables of every shape and size, for hypothesis."""
+
+from hypothesis import strategies as st
+
+from tuning_tables import (
+    ControllerTable,
+    CutId,
+    Generator,
+    InvalidTable,
+    Predicted,
+    RetarderId,
+    Stage,
+    Validated,
+    ValidRange,
+    round_coefficients,
+)
+from tuning_tables.line_order import require_order
+from tuning_tables.table import HIGHEST_DEGREE, MOST_STAGES
+
+# Whatever is printable in any script; but no space other than U+0020 is.
+texts = st.text(st.characters(exclude_categories=("C", "Z")) | st.just(" "), min_size=1, max_size=12)
+digests = st.text("0123456789abcdef", min_size=64, max_size=64)
+instants = st.datetimes().map(lambda instant: instant.isoformat(timespec="microseconds") + "Z")
+probabilities = st.floats(0.0, 1.0)
+
+
+def numbers(smallest=None, largest=None):
+    """Finite doubles, the denormal ones too, without -0.0, which no format takes."""
+    return st.floats(smallest, largest, allow_nan=False, allow_infinity=False).map(lambda value: value + 0.0)
+
+
+def above_zero():
+    return numbers(5e-324)
+
+
+def rising(entries, **sizes):
+    return st.lists(entries, unique=True, **sizes).map(sorted).map(tuple)
+
+
+@st.composite
+def retarders(draw):
+    """One to three zones, and an exit at or behind the last."""
+    ends = draw(rising(numbers(-1e3, 1e3), min_size=2, max_size=6).filter(lambda ends: len(ends) % 2 == 0))
+    exit_m = draw(numbers(ends[-1], 2e3))
+    return RetarderId(draw(texts), tuple(zip(ends[::2], ends[1::2], strict=True)), exit_m, draw(numbers(0.0)))
+
+
+@st.composite
+def stage_lists(draw, degree, s_m):
+    """2 to 32 stages; both lines where they keep their order."""
+    pressures = draw(rising(numbers(0.0, 1e4), min_size=2, max_size=MOST_STAGES))
+    coefficients = st.lists(
+        st.floats(-9.0, 9.0, width=32).map(lambda c: c + 0.0), min_size=degree + 1, max_size=degree + 1
+    )
+    stages = []
+    for k, pressure in enumerate(pressures):
+        lower = tuple(draw(coefficients)) if k > 0 and draw(st.booleans()) else None
+        upper = tuple(draw(coefficients)) if k < len(pressures) - 1 and draw(st.booleans()) else None
+        if lower and upper:
+            upper = round_coefficients([lower[0] + draw(st.floats(1e-4, 9.0)) + 0.0, *lower[1:]])
+            try:
+                require_order(lower, upper, s_m, "drawn")
+            except InvalidTable:
+                upper = None
+        stages.append(Stage(k, pressure, lower, upper))
+    return tuple(stages)
+
+
+@st.composite
+def tables(draw, names=texts, generators=None):
+    """A table whose id is one of `names`; its path range is a few hundred metres at most."""
+    degree = draw(st.integers(0, HIGHEST_DEGREE))
+    begin_m = draw(numbers(-50.0, 50.0))
+    s_m = (begin_m, begin_m + draw(st.floats(0.5, 50.0)) + 0.0)
+    low_m_s = draw(numbers(0.0, 5.0))
+    interval = sorted((draw(numbers(0.0)), draw(numbers(0.0))))
+    return ControllerTable(
+        id=draw(names),
+        created=draw(instants),
+        generator=draw(generators or st.builds(Generator, texts, texts, digests)),
+        retarder=draw(retarders()),
+        cut=CutId(draw(texts), draw(above_zero()), (0.0, *draw(rising(above_zero(), max_size=4)))),
+        target_speed_m_s=draw(above_zero()),
+        degree=degree,
+        stages=draw(stage_lists(degree, s_m)),
+        valid=ValidRange(s_m, (low_m_s, low_m_s + draw(st.floats(0.5, 20.0)))),
+        predicted=Predicted(
+            draw(numbers(0.0)),
+            draw(numbers()),
+            draw(probabilities) + 0.0,
+            draw(numbers(0.0)),
+            draw(st.none() | probabilities.map(lambda p: p + 0.0)),
+        ),
+        validated=draw(st.none() | st.builds(Validated, st.integers(1, 2**53), numbers(0.0), st.just(tuple(interval)))),
+    )

@@ -1,0 +1,91 @@
+"""A book is understood by h5py and by xarray without a line of this project: names, units, coordinates, text."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from tuning_tables import decide_many, write_book
+
+WITHOUT_THE_PROJECT = """
+import sys
+sys.modules["tuning_tables"] = None
+import h5py
+with h5py.File(sys.argv[1], "r") as book:
+    lines = book["coefficients"]
+    axes = [dimension[0].name[1:] for dimension in lines.dims]
+    row = book["id"].asstr()[:].tolist().index("linear")
+    speed = sum(c * 4.0**i for i, c in enumerate(lines[row, 0, 1][: book["degree"][row] + 1]))
+    print(axes, lines.attrs["units"], book["retarder"].asstr()[0], speed)
+"""
+
+
+@pytest.fixture
+def book(table, linear_table, tmp_path):
+    path = tmp_path / "book.h5"
+    write_book([table, linear_table], path)
+    return path
+
+
+def test_bare_h5py_reads_a_line(book):
+    command = [sys.executable, "-c", WITHOUT_THE_PROJECT, str(book)]
+    ended = subprocess.run(command, capture_output=True, text=True, check=True, cwd=book.parent)
+    assert ended.stdout == "['table', 'stage', 'line', 'power'] m/s per m^power Talbremse Süd 5.0\n"
+
+
+@pytest.fixture
+def dataset(book):
+    xarray = pytest.importorskip("xarray")
+    pytest.importorskip("h5netcdf")
+    with xarray.open_dataset(book, engine="h5netcdf") as opened:
+        yield opened.load()
+
+
+def test_xarray_knows_axes_and_coordinates(dataset, table):
+    assert dict(dataset.sizes) == {"table": 2, "stage": 4, "line": 2, "power": 4, "zone": 2, "axle": 4, "end": 2}
+    assert dataset.coefficients.dims == ("table", "stage", "line", "power")
+    for axis, length in dataset.sizes.items():
+        assert dataset.indexes[axis].tolist() == list(range(length))
+        assert dataset[axis].attrs["meaning"]
+    assert set(dataset.coords) - set(dataset.sizes) == {"id", "category", "mass_t", "target_speed_m_s"}
+    assert {"id", "category", "mass_t", "target_speed_m_s"} < set(dataset.coefficients.coords)
+    lines = dataset.set_index(table="id").coefficients.sel(table="leer-22t-4.0")
+    assert np.array_equal(lines, table.coefficients, equal_nan=True)
+    assert lines.dtype == np.float32
+
+
+def test_xarray_knows_units_and_text(dataset):
+    assert {name: dataset[name].attrs["units"] for name in ("mass_t", "pressure_kpa", "valid_s_m", "degree")} == {
+        "mass_t": "t",
+        "pressure_kpa": "kPa",
+        "valid_s_m": "m",
+        "degree": "1",
+    }
+    assert all(variable.attrs["units"] and variable.attrs["meaning"] for variable in dataset.data_vars.values())
+    assert dataset.id.values.tolist() == ["leer-22t-4.0", "linear"]
+    assert dataset.retarder.values.tolist() == ["Talbremse Süd"] * 2
+    assert dataset.attrs["format"] == "retarder-book"
+
+
+def test_what_a_table_does_not_have_is_nan_or_0(dataset):
+    linear = dataset.isel(table=1)
+    assert linear.pressure_kpa.isnull().values.tolist() == [False, False, True, True]
+    assert linear.coefficients.isel(stage=0).notnull().values.tolist() == [[False] * 4, [True, True, False, False]]
+    assert linear.validated_passes == 0
+    assert linear.has_line.dtype == np.uint8
+
+
+def test_a_decision_with_xarray_is_the_decision_of_the_rule(dataset, linear_table):
+    linear = dataset.isel(table=1)
+    upper = linear.coefficients.isel(stage=0, line=1, power=slice(0, int(linear.degree) + 1))
+    speeds = np.linspace(3.0, 7.0, 401).astype(np.float32)
+    raises = speeds > float((upper * np.float32(4.0) ** upper.power).sum())
+    assert np.array_equal(raises, decide_many(linear_table, 0, 4.0, speeds) == 1)
+
+
+def test_xarray_can_write_it_on(dataset, tmp_path):
+    xarray = pytest.importorskip("xarray")
+    dataset.drop_encoding().to_netcdf(tmp_path / "again.nc", engine="h5netcdf")
+    with xarray.open_dataset(tmp_path / "again.nc", engine="h5netcdf") as again:
+        assert again.load().equals(dataset)

@@ -1,0 +1,106 @@
+"""No change of a single byte of a JSON table goes unnoticed, at any position, in either of its two layouts."""
+
+import json
+
+import pytest
+
+from tuning_tables import (
+    ControllerTable,
+    CutId,
+    Generator,
+    Predicted,
+    RetarderId,
+    Stage,
+    TableError,
+    Validated,
+    ValidRange,
+    from_json,
+    to_json,
+)
+from tuning_tables.canonical import canonical_json
+
+TELLING_BYTES = b"\x00\t\n\r \"'+,-./0123456789:E[\\]_aefx{}\x7f\x80\xc3\xff"
+
+
+def export_layout(table):
+    return to_json(table)
+
+
+def canonical_layout(table):
+    return canonical_json(json.loads(to_json(table)))
+
+
+def smallest_table():
+    """Two stages with constant lines; numbers of every form that the two layouts write differently."""
+    return ControllerTable(
+        id="t",
+        created="2026-01-01T00:00:00Z",
+        generator=Generator("g", "1", "0" * 64),
+        retarder=RetarderId("r", ((0.0, 1.0),), 1.0, 1e-7),
+        cut=CutId("Л", 1e22, (0.0,)),
+        target_speed_m_s=2.5,
+        degree=0,
+        stages=(Stage(0, 0.0, None, (4.0,)), Stage(1, 100.0, (2.0,), None)),
+        valid=ValidRange((0.0, 1.0), (0.0, 9.0)),
+        predicted=Predicted(0.00001, -0.5, 0.0, 123456789012345678.0),
+        validated=Validated(1, 0.0, (0.0, 1e16)),
+    )
+
+
+def survivors(content, changed_texts):
+    """Those of `changed_texts` that are read although they are not `content`, and how many were tried."""
+    tried, read = 0, []
+    for changed in changed_texts:
+        if changed == content:
+            continue
+        tried += 1
+        try:
+            from_json(changed)
+        except TableError:
+            continue
+        read.append(changed)
+    return tried, read
+
+
+def replacements(content, values):
+    for position in range(len(content)):
+        before, after = content[:position], content[position + 1 :]
+        for value in values:
+            yield before + bytes([value]) + after
+
+
+@pytest.mark.parametrize("layout", [export_layout, canonical_layout])
+def test_no_replaced_byte_gets_through_whatever_the_value(layout):
+    content = layout(smallest_table())
+    assert from_json(content) == smallest_table()
+    tried, read = survivors(content, replacements(content, range(256)))
+    assert tried == 255 * len(content)
+    assert read == []
+
+
+@pytest.mark.parametrize("layout", [export_layout, canonical_layout])
+def test_no_inserted_byte_gets_through(layout):
+    content = layout(smallest_table())
+    inserted = (
+        content[:position] + bytes([value]) + content[position:]
+        for position in range(len(content) + 1)
+        for value in TELLING_BYTES
+    )
+    tried, read = survivors(content, inserted)
+    assert tried == len(TELLING_BYTES) * (len(content) + 1)
+    assert read == []
+
+
+@pytest.mark.parametrize("layout", [export_layout, canonical_layout])
+def test_no_flipped_lost_doubled_or_transposed_byte_of_a_usual_table_gets_through(layout, table):
+    content = layout(table)
+    assert from_json(content) == table
+    places = range(len(content))
+    pairs = [(content[:at], content[at : at + 1], content[at + 1 : at + 2], content[at + 2 :]) for at in places]
+    lost = [before + second + after for before, _, second, after in pairs]
+    doubled = [before + first + first + second + after for before, first, second, after in pairs]
+    transposed = [before + second + first + after for before, first, second, after in pairs]
+    flipped = [content[:at] + bytes([content[at] ^ 1 << bit]) + content[at + 1 :] for at in places for bit in range(8)]
+    tried, read = survivors(content, [*lost, *doubled, *transposed, *flipped])
+    assert tried > 10.5 * len(content)
+    assert read == []

@@ -1,0 +1,46 @@
+"""A slice of what scripts/fuzz_loader does at length: nearly right inputs are refused in order or read exactly."""
+
+import warnings
+from collections import Counter
+from itertools import islice
+
+import pytest
+
+from tests.tuning_tables.damaged_inputs import Attempt, attempts
+from tests.tuning_tables.reader_trial import Finding, outcome_of
+from tuning_tables import from_json, to_json
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_nearly_right_inputs_are_refused_in_order_or_read_exactly(table, linear_table, tmp_path, seed):
+    outcomes = Counter()
+    for attempt in islice(attempts(seed, [table, linear_table], tmp_path), 2500):
+        try:
+            outcomes[attempt.reader, attempt.kind, outcome_of(attempt, tmp_path)] += 1
+        except Finding as finding:
+            pytest.fail(f"{finding}: {attempt}")
+    assert outcomes.total() == 2500
+    # The deep kinds reach beyond the checksum: some of them are tables of their own, most are not.
+    for deep in (("json", "altered"), ("book", "forged")):
+        assert outcomes[*deep, "read"] > 0
+        assert outcomes[*deep, "DamagedTable"] > outcomes[*deep, "read"]
+
+
+def test_the_trial_finds_what_it_is_there_to_find(table, tmp_path, monkeypatch):
+    text = Attempt("bytes", "json", to_json(table))
+    assert outcome_of(text, tmp_path) == "read"
+    monkeypatch.setattr(
+        "tests.tuning_tables.reader_trial.from_json", lambda content: from_json(content.strip() + b"\n")
+    )
+    with pytest.raises(Finding, match="none of the two"):
+        outcome_of(Attempt("bytes", "json", text.content + b"\n"), tmp_path)
+
+    def fails(_):
+        raise KeyError("zones_m")
+
+    monkeypatch.setattr("tests.tuning_tables.reader_trial.from_json", fails)
+    with pytest.raises(Finding, match="KeyError instead of"):
+        outcome_of(text, tmp_path)
+    monkeypatch.setattr("tests.tuning_tables.reader_trial.from_json", lambda _: warnings.warn("overflow", stacklevel=1))
+    with pytest.raises(Finding, match="UserWarning instead of"):
+        outcome_of(text, tmp_path)

@@ -1,0 +1,41 @@
+"""The content of a file, read whole but never without bound: neither a device nor a pipe can hold the reader."""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+
+from tuning_tables.errors import DamagedTable
+
+
+def read_regular_file(path: str | os.PathLike[str], largest_bytes: int) -> bytes:
+    """The content of the regular file at `path`, at most `largest_bytes` long.
+
+    Raises `DamagedTable` for a longer file, which is not read; `OSError` for one that cannot be read and for whatever
+    is no regular file: a directory, a pipe, a socket, a device. Their content may never come, or never end.
+    """
+    source = os.fspath(path)
+    # Without O_NONBLOCK the opening of a pipe waits for somebody to write into it.
+    descriptor = os.open(source, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    try:
+        status = os.fstat(descriptor)
+        if stat.S_ISDIR(status.st_mode):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), source)
+        if not stat.S_ISREG(status.st_mode):
+            raise OSError(errno.EINVAL, "not a regular file", source)
+        _require_length(status.st_size, largest_bytes, source)
+        with open(descriptor, "rb", closefd=False) as file:
+            # One byte more than allowed: the file may have grown since its length was asked.
+            content = file.read(largest_bytes + 1)
+    finally:
+        os.close(descriptor)
+    _require_length(len(content), largest_bytes, source)
+    return content
+
+
+def _require_length(length: int, largest_bytes: int, source: str) -> None:
+    if length > largest_bytes:
+        raise DamagedTable(
+            f"{source}: {length} bytes long, but at most {largest_bytes} are allowed; give a file that was exported."
+        )
