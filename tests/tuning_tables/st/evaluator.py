@@ -1,0 +1,141 @@
+"""An evaluator of Structured Text: it reads the parse tree alone, and runs it for many inputs (lanes) at once.
+
+REAL is float32 after every operation, or, with `real=np.float64`, computed in double precision and rounded where it is
+assigned; INT has 16 bits. It knows nothing of tables.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from tests.tuning_tables.st.expressions import Arithmetic, compile_expression
+from tests.tuning_tables.st.statements import StatementCompiler
+from tests.tuning_tables.st.storage import Array, Fault, Record, Scalar, variable
+from tests.tuning_tables.st.syntax import faults, parse, parts, word
+
+SECTIONS = ("var_input", "var_in_out", "var_output", "var_block")
+
+
+@dataclass(frozen=True)
+class Block:
+    """A function block: types of its inputs and in-outs, its own variables as a record, and its statements."""
+
+    inputs: Mapping[str, Scalar]
+    references: Mapping[str, object]
+    record: Record
+    run: Callable
+
+
+class Program:
+    """All types and function blocks of a text; the order of declaration counts. Raises `Fault`."""
+
+    def __init__(self, text: bytes, real: type = np.float32):
+        root = parse(text)
+        if faults(root):
+            raise Fault(f"this is no Structured Text: {faults(root)}")
+        self.arithmetic = Arithmetic(real)
+        self.types: dict[str, object] = {kind: Scalar(kind) for kind in ("REAL", "INT", "BOOL")}
+        self.blocks: dict[str, Block] = {}
+        for node in root.named_children:
+            if node.type == "type_declaration":
+                for definition in (child for child in node.named_children if child.type == "type_definition"):
+                    self._declare_type(definition)
+            elif node.type == "function_block_declaration":
+                self._declare_block(node)
+            elif node.type != "comment":
+                raise Fault(f"{node.type} is not understood")
+
+    @property
+    def done(self) -> Counter:
+        """How often which operation was executed so far, in any lane."""
+        return self.arithmetic.done
+
+    def new(self, name: str):
+        """A new variable of a declared type, or a new instance of a function block."""
+        return variable(self.types[name.upper()])
+
+    def call(self, name: str, instance, **arguments):
+        """Call the block `name`: arrays or numbers for its inputs, variables of `new` for its in-outs."""
+        block = self.blocks[name.upper()]
+        given = {key.upper(): value for key, value in arguments.items()}
+        if set(given) != set(block.inputs) | set(block.references):
+            raise Fault(f"{name} wants {[*block.inputs, *block.references]}, not {[*given]}")
+        # What is wrong is found by its result; a NaN that is compared, or not used in any lane, is not wrong.
+        with np.errstate(all="ignore"):
+            for key in block.inputs:
+                instance[key].store(given[key], None)
+            block.run({**instance, **{key: given[key] for key in block.references}}, None)
+
+    def _declare_type(self, node) -> None:
+        name, definition = word(node.child_by_field_name("name")), node.child_by_field_name("definition")
+        if definition.type != "structure_type_inline":
+            raise Fault(f"{definition.type} is not understood")
+        members: dict[str, object] = {}
+        for member in (child for child in definition.named_children if child.type == "structure_field"):
+            if member.child_by_field_name("default") is not None:
+                raise Fault(f"{name} has an initial value inside the STRUCT")
+            _add(members, word(member.child_by_field_name("name")), (self._type(member.child_by_field_name("type")),))
+        _add(self.types, name, Record(name, members))
+
+    def _declare_block(self, node) -> None:
+        name = word(node.child_by_field_name("name"))
+        scope: dict[str, object] = {}
+        own: dict[str, object] = {}
+        inputs: dict[str, object] = {}
+        references: dict[str, object] = {}
+        constants: set[str] = set()
+        for section in (child for child in node.named_children if child.type in SECTIONS):
+            is_constant = any(child.type == "var_qualifier_list" for child in section.children)
+            for declaration in (child for child in section.named_children if child.type == "variable_declaration"):
+                kind, initial = self._type(declaration.child_by_field_name("type")), self._initial(declaration)
+                for variable_name in map(word, parts(declaration, "names")):
+                    _add(scope, variable_name, kind)
+                    if section.type == "var_in_out":
+                        references[variable_name] = kind
+                    else:
+                        own[variable_name] = (kind, initial)
+                    if section.type == "var_input":
+                        inputs[variable_name] = kind
+                    if is_constant or section.type == "var_input":
+                        constants.add(variable_name)
+        compiler = StatementCompiler(scope, frozenset(constants), self.arithmetic, self.blocks.__getitem__)
+        run = compiler.sequence(parts(node, "body"))
+        record = Record(name, own, is_block=True)
+        _add(self.types, name, record)
+        self.blocks[name] = Block(inputs, references, record, run)
+
+    def _type(self, node):
+        if node.type == "array_type":
+            (bounds,) = parts(node, "range")
+            low, high = (int(word(bounds.child_by_field_name(end))) for end in ("lower", "upper"))
+            element = self._type(node.child_by_field_name("element_type"))
+            if not isinstance(element, Scalar) or low > high:
+                raise Fault(f"{node.text!r} is not understood")
+            return Array(low, high, element)
+        if word(node) not in self.types:
+            raise Fault(f"the type {word(node)} is not declared")
+        return self.types[word(node)]
+
+    def _initial(self, declaration):
+        """The initial value of a variable, a list for an array, None where none is given."""
+        nodes = parts(declaration, "initial_value")
+        if not nodes:
+            return None
+        kind = self._type(declaration.child_by_field_name("type"))
+        values = []
+        for node in nodes:
+            literal = compile_expression(node, {}, Arithmetic())
+            if literal.kind != (kind.element if isinstance(kind, Array) else kind).kind:
+                raise Fault(f"{node.text!r} is {literal.kind}")
+            values.append(literal.run({}, None))
+        return values if isinstance(kind, Array) else values[0]
+
+
+def _add(names: dict[str, object], name: str, entry: object) -> None:
+    if name in names:
+        raise Fault(f"{name} is declared twice")
+    names[name] = entry

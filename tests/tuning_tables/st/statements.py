@@ -1,0 +1,211 @@
+"""Statements of Structured Text as functions of (frame, mask), where the mask says in which lanes they are executed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+import numpy as np
+
+from tests.tuning_tables.st.expressions import (
+    Arithmetic,
+    Scope,
+    compile_element,
+    compile_expression,
+    resolve,
+)
+from tests.tuning_tables.st.storage import Fault, Record, Scalar
+from tests.tuning_tables.st.syntax import parts, word
+
+NOWHERE = object()
+"""The mask without any lane; None is the one with all."""
+
+
+def narrowed(mask, condition):
+    """`mask` where `condition` (one for all lanes, or one each) is true too."""
+    if np.ndim(condition) == 0:
+        return mask if condition else NOWHERE
+    both = condition if mask is None else mask & condition
+    return NOWHERE if not both.any() else None if both.all() else both
+
+
+class StatementCompiler:
+    """Statements in one scope; `blocks` finds the function (frame, mask) and inputs of a function block by its name."""
+
+    def __init__(self, scope: Scope, constants: frozenset[str], arithmetic: Arithmetic, blocks: Callable):
+        self.scope = scope
+        self.constants = constants
+        self.arithmetic = arithmetic
+        self.blocks = blocks
+
+    def sequence(self, nodes: Iterable) -> Callable:
+        """The statements `nodes` one after the other."""
+        steps = [self.statement(node) for node in nodes]
+
+        def run(frame, mask):
+            for step in steps:
+                step(frame, mask)
+
+        return run
+
+    def statement(self, node) -> Callable:
+        """The statement at `node` of the parse tree."""
+        compilers = {
+            "assignment_statement": self.assignment,
+            "if_statement": self.branches,
+            "case_statement": self.cases,
+            "for_statement": self.loop,
+            "invocation_statement": self.invocation,
+        }
+        if node.type not in compilers:
+            raise Fault(f"{node.type} is not understood")
+        return compilers[node.type](node)
+
+    def expression(self, node, kind: str) -> Callable:
+        """The expression at `node`, which must be of `kind`."""
+        compiled = compile_expression(node, self.scope, self.arithmetic)
+        if compiled.kind != kind:
+            raise Fault(f"{node.text!r} is {compiled.kind}, not {kind}")
+        return compiled.run
+
+    def assignment(self, node) -> Callable:
+        """variable := expression"""
+        target = node.child_by_field_name("left")
+        done = self.arithmetic.done
+        self._require_variable(target)
+        if target.type == "index_expression":
+            row, index = compile_element(target, self.scope, self.arithmetic)
+            value = self.expression(node.child_by_field_name("right"), row.kind)
+
+            def store(frame, mask):
+                done["assignment"] += 1
+                row.find(frame).store(index(frame, mask), value(frame, mask), mask)
+
+            return store
+        kind, find = resolve(target, self.scope)
+        if not isinstance(kind, Scalar):
+            raise Fault(f"{target.text!r} is assigned as a whole")
+        value = self.expression(node.child_by_field_name("right"), kind.kind)
+
+        def assign(frame, mask):
+            done["assignment"] += 1
+            find(frame).store(value(frame, mask), mask)
+
+        return assign
+
+    def branches(self, node) -> Callable:
+        """IF, ELSIF, ELSE"""
+        arms = [(node, "consequence")] + [(child, "body") for child in node.children if child.type == "elsif_clause"]
+        compiled = [
+            (self.expression(arm.child_by_field_name("condition"), "BOOL"), self.sequence(parts(arm, body)))
+            for arm, body in arms
+        ]
+        otherwise = self._otherwise(node)
+
+        def run(frame, mask):
+            for condition, body in compiled:
+                value = condition(frame, mask)
+                chosen = narrowed(mask, value)
+                if chosen is not NOWHERE:
+                    body(frame, chosen)
+                mask = narrowed(mask, np.logical_not(value))
+                if mask is NOWHERE:
+                    return
+            otherwise(frame, mask)
+
+        return run
+
+    def cases(self, node) -> Callable:
+        """CASE of whole numbers and ranges, with ELSE"""
+        subject = self.expression(node.child_by_field_name("subject"), "INT")
+        clauses = [
+            ([_range(value) for value in clause.children if value.type == "case_value"], parts(clause, "body"))
+            for clause in node.children
+            if clause.type == "case_clause"
+        ]
+        compiled = [(ranges, self.sequence(body)) for ranges, body in clauses]
+        otherwise = self._otherwise(node)
+
+        def run(frame, mask):
+            value = subject(frame, mask)
+            for ranges, body in compiled:
+                chosen = np.any([(low <= value) & (value <= high) for low, high in ranges], axis=0)
+                here = narrowed(mask, chosen)
+                if here is not NOWHERE:
+                    body(frame, here)
+                mask = narrowed(mask, np.logical_not(chosen))
+                if mask is NOWHERE:
+                    return
+            otherwise(frame, mask)
+
+        return run
+
+    def loop(self, node) -> Callable:
+        """FOR ... TO ... BY ... DO"""
+        kind, control = resolve(node.child_by_field_name("control"), self.scope)
+        self._require_variable(node.child_by_field_name("control"))
+        if kind != Scalar("INT"):
+            raise Fault("a FOR loop counts an INT")
+        start, end = (self.expression(node.child_by_field_name(field), "INT") for field in ("start", "end"))
+        step_node = node.child_by_field_name("step")
+        step = 1 if step_node is None else int(word(step_node))
+        body = self.sequence(parts(node, "body"))
+        done = self.arithmetic.done
+
+        def run(frame, mask):
+            count, last = start(frame, mask), end(frame, mask)
+            while True:
+                done["turn"] += 1
+                mask = narrowed(mask, count <= last if step > 0 else count >= last)
+                if mask is NOWHERE:
+                    return
+                control(frame).store(count, mask)
+                body(frame, mask)
+                count = count + step
+
+        return run
+
+    def invocation(self, node) -> Callable:
+        """instance(Input := expression, InOut := variable);"""
+        call = next(child for child in node.children if child.type == "call_expression")
+        kind, find = resolve(call.child_by_field_name("function"), self.scope)
+        if not isinstance(kind, Record) or not kind.is_block:
+            raise Fault(f"{call.text!r} calls no function block")
+        block = self.blocks(kind.name)
+        given = {
+            word(child.child_by_field_name("name")): child.child_by_field_name("value")
+            for child in call.child_by_field_name("arguments").named_children
+            if child.type == "named_argument"
+        }
+        if set(given) != set(block.inputs) | set(block.references):
+            raise Fault(f"{kind.name} wants {[*block.inputs, *block.references]}, not {[*given]}")
+        inputs = {name: self.expression(given[name], block.inputs[name].kind) for name in block.inputs}
+        references = {name: resolve(given[name], self.scope) for name in block.references}
+        if any(block.references[name] != found for name, (found, _) in references.items()):
+            raise Fault(f"{call.text!r} hands over a variable of another type")
+        done = self.arithmetic.done
+
+        def run(frame, mask):
+            done["call"] += 1
+            inner = find(frame)
+            values = {name: value(frame, mask) for name, value in inputs.items()}
+            for name, value in values.items():
+                inner[name].store(value, mask)
+            block.run({**inner, **{name: found(frame) for name, (_, found) in references.items()}}, mask)
+
+        return run
+
+    def _otherwise(self, node) -> Callable:
+        clauses = [child for child in node.children if child.type == "else_clause"]
+        return self.sequence(parts(clauses[0], "body") if clauses else [])
+
+    def _require_variable(self, target) -> None:
+        name = word(target).partition("[")[0].partition(".")[0].strip()
+        if name in self.constants:
+            raise Fault(f"{name} is a constant or an input, and assigned to")
+
+
+def _range(node) -> tuple[int, int]:
+    value = node.named_child(0)
+    if value.type == "subrange":
+        return tuple(int(word(value.child_by_field_name(end))) for end in ("lower", "upper"))
+    return int(word(value)), int(word(value))

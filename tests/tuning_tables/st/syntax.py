@@ -1,0 +1,51 @@
+"""The parse tree of Structured Text, and what is wrong with a text that has none; tests skip without the parser."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from importlib import import_module
+
+import pytest
+
+# Where all tools are said to be there, a missing one is a failure.
+_find = import_module if os.environ.get("RETARDER_SYNTH_TOOLCHAIN") == "complete" else pytest.importorskip
+tree_sitter = _find("tree_sitter")
+grammar = _find("tree_sitter_iec61131_3_st")
+
+_PARSER = tree_sitter.Parser(tree_sitter.Language(grammar.language()))
+
+
+def parse(text: bytes):
+    """The root node of the tree, errors included."""
+    return _PARSER.parse(text).root_node
+
+
+def faults(node) -> list[str]:
+    """Where the text is no Structured Text: line and what stands there, from ERROR and MISSING nodes."""
+    if node.is_error or node.is_missing:
+        return [f"line {node.start_point[0] + 1}: {node.text[:60]!r}"]
+    if not node.has_error:
+        return []
+    return [fault for child in node.children for fault in faults(child)] or ["a fault without a node"]
+
+
+def walk(node) -> Iterator:
+    """`node` and all below it."""
+    yield node
+    for child in node.children:
+        yield from walk(child)
+
+
+def parts(node, field: str) -> list:
+    """The nodes in a field without comments, empty statements, commas and brackets."""
+    return [
+        child
+        for child in node.children_by_field_name(field)
+        if child.is_named and child.type not in ("comment", "empty_statement")
+    ]
+
+
+def word(node) -> str:
+    """The text of a name in the one spelling that counts: Structured Text knows no capitals."""
+    return node.text.decode("ascii").upper()

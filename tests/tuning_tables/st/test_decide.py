@@ -1,0 +1,120 @@
+"""RETARDER_DECIDE, run from its parse tree, decides as the Python rule does."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from synth.in_the_loop.agreement import ask
+from tests.tuning_tables.st.evaluator import Program
+from tests.tuning_tables.st.storage import Fault
+from tuning_tables import decide_many
+from tuning_tables.golden_vectors import golden_vectors
+from tuning_tables.st_source import TABLE_FILE, st_files
+
+READINGS = 1_000_000
+
+
+@pytest.fixture(scope="module", params=[np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
+def real(request):
+    """How the controller calculates with REAL between two assignments."""
+    return request.param
+
+
+def loaded(program, number):
+    """Table `number` as RETARDER_LOAD gives it."""
+    loader, table = program.new("RETARDER_LOAD"), program.new("RETARDER_TABLE")
+    program.call("RETARDER_LOAD", loader, TableNo=number, Table=table)
+    assert loader["FOUND"].value
+    return table
+
+
+def answers(program, table, stage, s_m, v_m_s):
+    """What RETARDER_DECIDE answers with `table`."""
+    decider = program.new("RETARDER_DECIDE")
+    program.call("RETARDER_DECIDE", decider, Stage=stage, Path_m=s_m, Speed_m_s=v_m_s, Table=table)
+    return decider["COMMAND"].value
+
+
+def decisions(book, readings, real):
+    """What the Structured Text of the book answers to readings with the fields table, stage, s_m, v_m_s."""
+    program = Program(st_files(book)[TABLE_FILE], real)
+    found = np.full(len(readings), 99)
+    for number in np.unique(readings["table"]).tolist():
+        here = readings["table"] == number
+        # An INT has 16 bits, so that a wider stage cannot reach the block.
+        stage = np.clip(readings["stage"][here], -32768, 32767)
+        found[here] = answers(program, loaded(program, number), stage, readings["s_m"][here], readings["v_m_s"][here])
+    return found
+
+
+def test_a_million_hard_readings_are_decided_alike(book, real):
+    questions = ask(book, READINGS, 10, 20261121)
+    found = decisions(book, questions.readings, real)
+    assert np.count_nonzero(found != questions.decisions) == 0
+    assert min(np.bincount(found + 1)) > 50_000
+
+
+def test_the_default_book_is_decided_alike(default_book, real):
+    questions = ask(default_book, 200_000, 10, 5)
+    assert np.count_nonzero(decisions(default_book, questions.readings, real) != questions.decisions) == 0
+
+
+def test_every_golden_vector_is_answered(default_book):
+    program = Program(st_files(default_book)[TABLE_FILE])
+    for number, source in enumerate(default_book.tables):
+        vectors = golden_vectors(source)
+        found = answers(program, loaded(program, number), vectors.stage, vectors.s_m, vectors.v_m_s)
+        assert np.array_equal(found, vectors.answer)
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("Speed_m_s < Line", "Speed_m_s <= Line"),
+        ("Speed_m_s > Line", "Speed_m_s >= Line"),
+        ("Speed_m_s >= 0.0", "Speed_m_s > 0.0"),
+        ("Path_m <= 3.4028235E+38", "Path_m <= 3.0E+38"),
+        ("Path := Table.PathMax_m", "Path := Path_m"),
+        ("Table.Powers - 2 TO 0", "Table.Powers - 2 TO 1"),
+        ("Stage * 8 + 4", "Stage * 8"),
+        ("Command := -1;", "Command := 1;"),
+    ],
+)
+def test_a_wrong_rule_is_found(default_book, right, wrong):
+    questions = ask(default_book, 60_000, 10, 6)
+    text = st_files(default_book)[TABLE_FILE].decode("ascii")
+    assert right in text
+    program = Program(text.replace(right, wrong).encode("ascii"))
+    asked = questions.readings[(questions.readings["table"] == 3) & (np.abs(questions.readings["stage"]) < 32768)]
+    expected = decide_many(default_book.tables[3], asked["stage"], asked["s_m"], asked["v_m_s"])
+    inputs = (asked["stage"], asked["s_m"], asked["v_m_s"])
+    if wrong == "Path := Path_m":
+        # Without the clamp the line leaves the float32 numbers before an answer can be wrong.
+        with pytest.raises(Fault, match="no REAL result"):
+            answers(program, loaded(program, 3), *inputs)
+    else:
+        assert np.count_nonzero(answers(program, loaded(program, 3), *inputs) != expected) > 0
+
+
+@pytest.mark.parametrize("stages", [-32768, -1, 0, 6, 32767])
+@pytest.mark.parametrize("powers", [-32768, 0, 5, 32767])
+def test_a_table_that_was_never_loaded_or_is_spoilt_holds(default_book, stages, powers):
+    program = Program(st_files(default_book)[TABLE_FILE])
+    table = program.new("RETARDER_TABLE")
+    for key, value in (("STAGES", stages), ("POWERS", powers)):
+        table[key].store(value, None)
+    for row in ("HASLOWER", "HASUPPER"):
+        table[row].data[:] = True
+    stage = np.array([-32768, -1, 0, 4, 5, 6, 32766, 32767])
+    assert not answers(program, table, stage, 10.0, 100.0).any()
+
+
+def test_no_such_table_leaves_none_behind(default_book):
+    program = Program(st_files(default_book)[TABLE_FILE])
+    for number in (-32768, -1, 6, 32767):
+        loader, table = program.new("RETARDER_LOAD"), loaded(program, 0)
+        assert table["STAGES"].value == 5
+        program.call("RETARDER_LOAD", loader, TableNo=number, Table=table)
+        assert not loader["FOUND"].value
+        assert table["STAGES"].value == 0

@@ -1,0 +1,150 @@
+"""The self-test blocks find nothing wrong in the export, and find it where one thing in it is wrong."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from tests.tuning_tables.st.conftest import shaped_book
+from tests.tuning_tables.st.evaluator import Program
+from tuning_tables.golden_vectors import golden_vectors
+from tuning_tables.st_source import SELF_TEST_FILE, TABLE_FILE, st_files
+
+OUTPUTS = ("DONE", "FAILED", "FIRSTFAILED", "FIRSTFAULT")
+
+
+def run_all(files, calls, change=lambda tables, test: (tables, test), real=np.float32):
+    """The outputs after that many calls of RETARDER_SELF_TEST, with the two texts changed."""
+    texts = change(files[TABLE_FILE].decode("ascii"), files[SELF_TEST_FILE].decode("ascii"))
+    program = Program("".join(texts).encode("ascii"), real)
+    instance = program.new("RETARDER_SELF_TEST")
+    for _ in range(calls):
+        program.call("RETARDER_SELF_TEST", instance, Restart=False)
+    return {name: instance[name].value.item() for name in OUTPUTS}
+
+
+@pytest.mark.parametrize("real", [np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
+def test_nothing_is_wrong_with_the_export(default_book, real):
+    sound = {"DONE": True, "FAILED": 0, "FIRSTFAILED": -1, "FIRSTFAULT": -1}
+    assert run_all(st_files(default_book), len(default_book.tables) + 1, real=real) == sound
+
+
+def test_nothing_is_wrong_with_other_shapes(book):
+    assert run_all(st_files(book), len(book.tables) + 1)["FAILED"] == 0
+    large = shaped_book(32, 1)
+    files = st_files(large)
+    assert b"Stage_1 : " in files[SELF_TEST_FILE]  # more vectors than one array may have
+    assert run_all(files, 2) == {"DONE": True, "FAILED": 0, "FIRSTFAILED": -1, "FIRSTFAULT": -1}
+
+
+def test_it_takes_a_call_a_table_and_one_for_the_choice_and_can_be_repeated(small_book):
+    program = Program(b"".join(st_files(small_book).values()))
+    instance = program.new("RETARDER_SELF_TEST")
+    seen = []
+    for restart in (False, False, False, False, True, False, False):
+        program.call("RETARDER_SELF_TEST", instance, Restart=restart)
+        seen.append(instance["DONE"].value.item())
+    assert seen == [False, False, True, True, False, False, True]
+
+
+def test_the_vectors_left_out_are_those_without_a_portable_literal(default_book):
+    text = st_files(default_book)[SELF_TEST_FILE].decode("ascii")
+    numbers = [int(count) for count in re.findall(r"constants and (\d+) readings", text)]
+    for source, count in zip(default_book.tables, numbers, strict=True):
+        vectors = golden_vectors(source)
+        portable = np.ones(len(vectors), bool)
+        for values in (vectors.s_m, vectors.v_m_s):
+            tiny = (np.abs(values) < np.finfo(np.float32).smallest_normal) & (values != 0)
+            portable &= np.isfinite(values) & ~tiny & ~((values == 0) & np.signbit(values))
+        assert count == np.count_nonzero(portable) > 0.65 * len(vectors)
+    assert not re.search(r"(?i)\bnan\b|\binf\b|E-(39|4\d)", re.sub(r"\(\*.*?\*\)", "", text, flags=re.DOTALL))
+
+
+def next_number(text, after, place):
+    """Span of the number at `place` in the array declared by `after`."""
+    start = text.index(after) + len(after)
+    found = re.compile(r"-?\d+\.\d+(E[+-]\d+)?|-?\d+|TRUE|FALSE")
+    matches = list(found.finditer(text, text.index("[", text.index(":=", start)), text.index("];", start)))
+    return matches[place].span()
+
+
+def another(literal):
+    """A literal of the same kind, and another value."""
+    if literal in ("TRUE", "FALSE"):
+        return "FALSE" if literal == "TRUE" else "TRUE"
+    if "." not in literal:
+        return str(int(literal) + 1) if int(literal) != 1 else "0"
+    # A digit that makes one float32 step: the seventh or eighth counts.
+    step = np.nextafter(np.float32(literal), np.float32(np.inf))
+    return f"{step:.9E}" if float(literal) else "1.000000000E-01"
+
+
+@pytest.mark.parametrize(
+    ("array", "place", "block"),
+    [
+        ("TargetOf", 1, 1),
+        ("PathMinOf", 0, 0),
+        ("PathMaxOf", 1, 1),
+        ("PowersOf", 0, 0),
+        ("Lower_0 ", 1, 0),
+        ("Upper_1 ", 0, 1),
+        ("Coefficient_0 ", 2, 0),
+        ("Coefficient_0 ", 3, 0),
+        ("Coefficient_1 ", 0, 1),
+        ("Coefficient_1 ", 4, 1),
+        ("RETARDER_SELECT\nCategoryOf", 0, 2),
+        ("RETARDER_SELECT\nAxlesOf", 1, 2),
+        ("RETARDER_SELECT\nMassOf", 0, 2),
+        ("RETARDER_SELECT\nTargetOf", 1, 2),
+    ],
+)
+def test_one_changed_constant_is_found(small_book, array, place, block):
+    def change(tables, test):
+        head, _, name = array.rpartition("\n")
+        offset = tables.index(f"FUNCTION_BLOCK {head}") if head else 0
+        begin, end = (offset + index for index in next_number(tables[offset:], name, place))
+        assert another(tables[begin:end]) != tables[begin:end]
+        return tables[:begin] + another(tables[begin:end]) + tables[end:], test
+
+    outputs = run_all(st_files(small_book), 3, change)
+    assert outputs["DONE"]
+    assert outputs["FAILED"] >= 1
+    assert outputs["FIRSTFAILED"] <= block
+    assert outputs["FIRSTFAULT"] >= 0
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("Speed_m_s < Line", "Speed_m_s <= Line"),
+        ("Speed_m_s > Line", "Speed_m_s >= Line"),
+        ("Path := Table.PathMin_m", "Path := Path_m"),
+        ("Path := Table.PathMax_m", "Path := Path_m"),
+        ("Speed_m_s >= 0.0", "TRUE"),
+        ("(Stage < Table.Stages)", "(Stage < 1)"),
+        ("Line := Line + Table", "Line := Line - Table"),
+        ("Weight := Weight / Span;", "Weight := 0.5;"),
+        ("Status := 0;", "Status := 2;"),
+    ],
+)
+def test_one_changed_statement_is_found(small_book, right, wrong):
+    def change(tables, test):
+        assert right in tables
+        return tables.replace(right, wrong), test
+
+    assert run_all(st_files(small_book), 3, change)["FAILED"] > 0
+
+
+def test_a_fused_multiplication_and_addition_is_found(default_book):
+    """One statement instead of two, and one rounding: what a compiler makes of both when it fuses them."""
+
+    def change(tables, test):
+        fused = re.sub(r"Line := Line \* Path;\s+Line := Line \+ (Table.*?\]);", r"Line := Line * Path + \1;", tables)
+        assert fused.count("Line * Path +") == 2
+        return fused, test
+
+    files, calls = st_files(default_book), len(default_book.tables) + 1
+    assert run_all(files, calls, change)["FAILED"] == 0  # two roundings, as the statement is written
+    assert run_all(files, calls, change, np.float64)["FAILED"] == len(default_book.tables)

@@ -1,0 +1,139 @@
+"""Whatever the book, the export is Structured Text, and of the small subset that it promises."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import pytest
+
+from tests.tuning_tables.st.conftest import oddly_named_book, shaped_book
+from tests.tuning_tables.st.evaluator import Program
+from tests.tuning_tables.st.syntax import faults, parse, walk
+from tuning_tables import InvalidTable
+from tuning_tables.st_source import MOST_TABLES, SELF_TEST_FILE, TABLE_FILE, st_files
+from tuning_tables.table_book import TableBook
+
+# Keywords, operators of instruction lists, standard functions and blocks, and words that single systems reserve.
+KEYWORDS = """
+    ABS ACOS ACTION ADD AND ANDN ANY ARRAY ASIN AT ATAN BEGIN BOOL BY BYTE CAL CALC CALCN CASE CD CDT CLK CONCAT
+    CONFIGURATION CONSTANT CONTINUE COS CTD CTU CTUD CU D DATE DELETE DINT DIV DO DS DT DWORD ELSE ELSIF EN END_IF ENO
+    EQ ET EXIT EXP EXPT FALSE FIND FOR FROM FUNCTION FUNCTION_BLOCK F_TRIG GE GOTO GT IF IN INSERT INT INTERFACE JMP
+    JMPC L LABEL LD LDN LE LEFT LEN LIMIT LINT LN LOG LREAL LT LWORD MAX METHOD MID MIN MOD MOVE MUL MUX N NE NOT OF ON
+    OR ORGANIZATION_BLOCK ORN P PROGRAM PROPERTY PT PV Q Q1 QD QU R R1 READ REAL REF RELEASE REPEAT REPLACE REGION
+    RESOURCE RET RETAIN RETURN RIGHT ROL ROR RS R_TRIG S S1 SD SEL SEMA SHL SHR SIN SINGLE SINT SL SQRT SR ST STEP STN
+    STRING STRUCT SUB SUPER TAN TASK THEN THIS TIME TO TOD TOF TON TP TRANSITION TRUE TRUNC TYPE UDINT UINT ULINT UNTIL
+    USINT VAR VOID WHILE WITH WORD WRITE XOR XORN
+"""
+
+BOOKS = {
+    "2-stages-degree-0": lambda: shaped_book(2, 0),
+    "2-stages-degree-9": lambda: shaped_book(2, 9),
+    "3-stages-degree-1": lambda: shaped_book(3, 1),
+    "32-stages-degree-0": lambda: shaped_book(32, 0),
+    "32-stages-degree-9": lambda: shaped_book(32, 9),
+    "odd-names": oddly_named_book,
+}
+
+
+def require_structured_text(book: TableBook) -> None:
+    files = st_files(book)
+    assert list(files) == [TABLE_FILE, SELF_TEST_FILE]
+    for text in files.values():
+        assert faults(parse(text)) == []
+    # The evaluator resolves all names and types, which the grammar does not.
+    program = Program(b"".join(files.values()))
+    assert "RETARDER_SELF_TEST" in program.blocks
+
+
+@pytest.mark.parametrize("make", BOOKS.values(), ids=BOOKS)
+def test_every_book_gives_structured_text(make):
+    require_structured_text(make())
+
+
+def test_the_usual_books_give_structured_text(book, default_book):
+    require_structured_text(book)
+    require_structured_text(default_book)
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("END_IF;", ";"),
+        ("END_FOR;", ""),
+        ("END_CASE;", ""),
+        ("END_VAR", ""),
+        ("END_STRUCT;", ""),
+        ("END_TYPE", ""),
+        ("END_FUNCTION_BLOCK", ""),
+        ("THEN", ""),
+        (" DO", ""),
+        (" *)", ""),
+        ("(* ", ""),
+        ("Command := 0;", "Command := 0"),
+        ("Command := 0;", "Command = 0;"),
+        ("];", ";"),
+        ("[", ""),
+        (" := [", " [ "),
+        ("(Stage >= 0)", "(Stage >= 0"),
+        ("Line * Path", "Line * * Path"),
+    ],
+)
+def test_a_broken_text_is_found(small_book, right, wrong):
+    text = st_files(small_book)[TABLE_FILE].decode("ascii")
+    before, found, after = text.rpartition(right)
+    assert found, right
+    assert faults(parse((before + wrong + after).encode("ascii"))) != []
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [("Table.Powers - 1]", "Table.Power - 1]"), ("Path : REAL;", "Path : INT;"), ("Stage_0[Index]", "Stage_9[Index]")],
+)
+def test_a_wrong_name_or_type_is_found(small_book, right, wrong):
+    text = b"".join(st_files(small_book).values()).decode("ascii")
+    with pytest.raises(Exception, match=r"Power|INT|STAGE_9"):
+        Program(text.replace(right, wrong, 1).encode("ascii"))
+
+
+def test_the_text_is_plain(book, default_book):
+    for files in (st_files(book), st_files(default_book), st_files(oddly_named_book())):
+        for text in files.values():
+            lines = text.decode("ascii").split("\n")
+            assert lines[-1] == ""
+            assert all(line == line.rstrip() and line.isprintable() for line in lines)
+            # A name may be long, above all in code points.
+            assert all(len(line) <= 120 for line in lines if "<U+" not in line)
+            # No comment is inside another, and none ends early: else the text would not parse.
+            comments = re.findall(rb"\(\*.*?\*\)", text, re.DOTALL)
+            assert all(comment.count(b"(*") == comment.count(b"*)") == 1 for comment in comments)
+
+
+def test_names_are_no_keywords_anywhere(default_book):
+    text = b"".join(st_files(default_book).values())
+    names = {node.text.decode("ascii").upper() for node in walk(parse(text)) if node.type == "identifier"}
+    assert {"STAGE", "PATH_M", "SPEED_M_S", "TABLE"} < names
+    assert names & set(KEYWORDS.split()) == set()
+    assert all(len(name) <= 32 and "__" not in name and not name.endswith("_") for name in names)
+
+
+def test_no_array_is_long(default_book):
+    for book in (default_book, shaped_book(32, 9)):
+        for text in st_files(book).values():
+            lengths = [int(end) + 1 for end in re.findall(rb"ARRAY\[0\.\.(\d+)\]", text)]
+            assert max(lengths) <= 999
+
+
+def test_equal_books_give_equal_bytes(book, small_book):
+    assert st_files(book) == st_files(TableBook(tuple(replace(table) for table in book.tables)))
+    assert st_files(book) != st_files(small_book)
+
+
+def test_too_many_tables_are_refused(small_book):
+    table = small_book.tables[0]
+    tables = [
+        replace(table, id=f"{n}", cut=replace(table.cut, category=f"{n % 7}"), target_speed_m_s=2.0 + n)
+        for n in range(MOST_TABLES + 1)
+    ]
+    with pytest.raises(InvalidTable, match=f"has {MOST_TABLES + 1} tables, but .* at most {MOST_TABLES}"):
+        st_files(TableBook(tuple(tables)))

@@ -1,0 +1,58 @@
+"""Numbers and constant arrays as Structured Text writes them."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterable, Sequence
+from typing import Final
+
+import numpy as np
+
+LINE_LENGTH: Final = 100
+LONGEST_ARRAY: Final = 999
+"""Entries of one constant array; longer ones are split, because compilers set limits of their own."""
+
+
+def real(value: float | np.floating) -> str:
+    """`value`, finite, as a REAL literal of ten digits, from which every compiler gets the same float32 number.
+
+    A float32 number is known from nine digits; ten leave no doubt also where the literal is read in double precision
+    first. The sign of -0.0 is not written: no comparison and no sum of the rule can tell.
+    """
+    number = np.float32(value)
+    return "0.0" if number == 0 else f"{float(number):.9E}"
+
+
+def boolean(value: bool | np.bool_) -> str:
+    """TRUE or FALSE."""
+    return "TRUE" if value else "FALSE"
+
+
+def real_array(name: str, values: Iterable[float | np.floating], row: int = 0) -> str:
+    """Declaration of the constant array `name` of REAL from index 0, `row` values a line; 0: as many as fit."""
+    return _array(name, "REAL", [real(value) for value in values], row)
+
+
+def int_array(name: str, values: Iterable[int | np.integer]) -> str:
+    """Declaration of the constant array `name` of INT from index 0; values of 16 bits."""
+    return _array(name, "INT", [str(int(value)) for value in values])
+
+
+def bool_array(name: str, values: Iterable[bool | np.bool_]) -> str:
+    """Declaration of the constant array `name` of BOOL from index 0."""
+    return _array(name, "BOOL", [boolean(value) for value in values])
+
+
+def _array(name: str, kind: str, literals: Sequence[str], row: int = 0) -> str:
+    head = f"    {name} : ARRAY[0..{len(literals) - 1}] OF {kind} := ["
+    body = ", ".join(literals) + "];"
+    if len(head) + len(body) <= LINE_LENGTH:
+        return head + body
+    row = row or len(literals)
+    rows = [", ".join(literals[start : start + row]) for start in range(0, len(literals), row)]
+    ends = [","] * (len(rows) - 1) + ["];"]
+    return "\n".join([head, *(_wrapped(text + end) for text, end in zip(rows, ends, strict=True))])
+
+
+def _wrapped(text: str) -> str:
+    return textwrap.fill(text, LINE_LENGTH, initial_indent=" " * 8, subsequent_indent=" " * 8)

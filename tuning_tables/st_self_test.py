@@ -1,0 +1,131 @@
+"""The Structured Text self-test: a block for every table with golden vectors, one for the choice, one that runs all.
+
+Only readings that have a portable literal are in it: no NaN, no infinity, no denormal number (a controller may take
+those for 0). What the text answers to them is tested in this project, on the parse tree, and not on the controller.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from string import Template
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from tuning_tables.category_names import comment_text
+from tuning_tables.golden_choices import GoldenChoice, golden_choices
+from tuning_tables.golden_vectors import golden_vectors
+from tuning_tables.st_literals import LONGEST_ARRAY, int_array, real, real_array
+from tuning_tables.st_tables import coefficients_of, constants
+from tuning_tables.st_test_blocks import (
+    CHOICE_HEAD,
+    CHOICE_LINES,
+    CHOICE_LOOP,
+    FOOT,
+    RESET,
+    RUN_ALL,
+    RUN_ONE,
+    TABLE_CONSTANTS,
+    TABLE_HEAD,
+    TABLE_LOOP,
+)
+from tuning_tables.table_block import block_of, block_size
+from tuning_tables.table_book import Choice, Status, TableBook
+
+MOST_LINE_CHECKS: Final = 16
+"""Choices between two tables of which every coefficient is checked; of all choices status and target are."""
+
+
+def self_test_blocks(book: TableBook) -> Iterator[str]:
+    """The blocks of retarder_self_test.st, in an order in which none is used before it is declared."""
+    for number in range(len(book.tables)):
+        yield _table_test(book, number)
+    yield _choice_test(book)
+    last = len(book.tables)
+    names = [str(number) for number in range(last)]
+    yield Template(RUN_ALL).substitute(
+        INSTANCES="\n".join(f"    Test_{name} : RETARDER_TEST_{name};" for name in names),
+        CASES="\n".join(Template(RUN_ONE).substitute(NUMBER=name) for name in names),
+        TABLES=last,
+    )
+
+
+def _table_test(book: TableBook, number: int) -> str:
+    """RETARDER_TEST_n: the constants of the table once more, and its golden vectors."""
+    size, block = block_size(book), block_of(book, number)
+    expected = [block.table.target_speed_m_s, *block.table.valid_range[:2], *coefficients_of(block, size)]
+    vectors = golden_vectors(book.tables[number])
+    kept = np.flatnonzero(_portable(vectors.s_m) & _portable(vectors.v_m_s))
+    blanks = {"NUMBER": number, "NAME": comment_text(book.tables[number].id), "LAST": len(expected) - 4}
+    declarations, statements = [real_array("Expected", expected)], [Template(TABLE_CONSTANTS).substitute(blanks)]
+    first = len(expected)
+    for part, chosen in _parts(kept):
+        declarations += [
+            int_array(f"Stage_{part}", vectors.stage[chosen]),
+            real_array(f"Path_{part}", vectors.s_m[chosen]),
+            real_array(f"Speed_{part}", vectors.v_m_s[chosen]),
+            int_array(f"Answer_{part}", vectors.answer[chosen]),
+        ]
+        statements.append(Template(TABLE_LOOP).substitute(PART=part, LAST=len(chosen) - 1, FIRST=first))
+        first += len(chosen)
+    head = Template(TABLE_HEAD).substitute(blanks, CONSTANTS=len(expected), READINGS=len(kept))
+    return "".join([head, constants(declarations), RESET, *statements, FOOT])
+
+
+def _choice_test(book: TableBook) -> str:
+    """RETARDER_TEST_CHOICES: golden choices by status and target, some of them by every coefficient."""
+    choices = [choice for choice in golden_choices(book) if _portable(np.array([choice.commanded_m_s]))[0]]
+    declarations, statements = [], []
+    for part, chosen in _parts(np.arange(len(choices))):
+        rows = [choices[index] for index in chosen]
+        declarations += [
+            int_array(f"Category_{part}", [row.category for row in rows]),
+            int_array(f"Axles_{part}", [row.axles for row in rows]),
+            real_array(f"Commanded_{part}", [row.commanded_m_s for row in rows]),
+            int_array(f"Status_{part}", [row.status for row in rows]),
+            real_array(f"Target_{part}", [_target(book, row) for row in rows]),
+        ]
+        statements.append(Template(CHOICE_LOOP).substitute(PART=part, LAST=len(rows) - 1, FIRST=chosen[0]))
+    size = block_size(book)
+    between = [row for row in choices if row.status == Status.BETWEEN][::3][:MOST_LINE_CHECKS]
+    for number, row in enumerate(between):
+        choice = _choose(book, row)
+        expected = coefficients_of(block_of(book, choice.numbers[0], choice.table), size)
+        declarations.append(real_array(f"Expected_{number}", expected))
+        statements.append(
+            Template(CHOICE_LINES).substitute(
+                NUMBER=number,
+                CATEGORY=row.category,
+                AXLES=row.axles,
+                COMMANDED=real(row.commanded_m_s),
+                LAST=len(expected) - 1,
+                FAULT=len(choices) + number,
+            )
+        )
+    head = Template(CHOICE_HEAD).substitute(CHOICES=len(choices), LINES=len(between))
+    return "".join([head, constants(declarations), RESET, *statements, FOOT])
+
+
+def _choose(book: TableBook, row: GoldenChoice) -> Choice:
+    return book.choose(book.categories[row.category - 1], row.axles, float(row.commanded_m_s))
+
+
+def _target(book: TableBook, row: GoldenChoice) -> np.float32:
+    """The target of the chosen table, 0 for none."""
+    table = None if row.status < 0 else _choose(book, row).table
+    return np.float32(0) if table is None else table.target_speed_m_s
+
+
+def _parts(indices: npt.NDArray[np.intp]) -> Iterator[tuple[int, npt.NDArray[np.intp]]]:
+    """Runs of `indices`, numbered, none longer than an array may be."""
+    for part, start in enumerate(range(0, len(indices), LONGEST_ARRAY)):
+        yield part, indices[start : start + LONGEST_ARRAY]
+
+
+def _portable(values: npt.NDArray[np.float32]) -> npt.NDArray[np.bool_]:
+    """Which are 0 or normal and finite numbers, and not -0.0."""
+    sizes = np.abs(values)
+    smallest = np.finfo(np.float32).smallest_normal
+    is_zero: npt.NDArray[np.bool_] = (sizes == 0) & ~np.signbit(values)
+    return is_zero | ((sizes >= smallest) & np.isfinite(values))
