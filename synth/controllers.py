@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from synth.kernels import closed_loop as kernel
 from synth.switching_lines import SwitchingLines
+from tuning_tables.active_table import ActiveTable
 from tuning_tables.table import ControllerTable
 
 Scalar = TypeVar("Scalar", bound=np.generic)
@@ -17,9 +18,9 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 
 @dataclass(frozen=True)
 class TableController:
-    """A regulator that runs an exported table with the table's own rule."""
+    """A regulator that runs an exported table, or lines chosen from a book, with the tables' own rule."""
 
-    table: ControllerTable
+    table: ControllerTable | ActiveTable
 
     @property
     def stages(self) -> int:

@@ -14,7 +14,7 @@ from synth.input_error import InputError
 from tuning_tables import TableError, read_json
 
 SUMMARY = "summary.json"
-FOLDERS = ("tables", "plots")
+FOLDERS = ("tables", "c", "plots")
 LEFTOVER = re.compile(r"\..+\.[0-9a-f]{16}\.part")
 PICTURES = re.compile(
     r"(rms-by-controller|feasibility|switchings|degree-study|(exit-density|surfaces|policy-map|sample-passes)-.+)"

@@ -1,4 +1,4 @@
-"""What a tune leaves in its directory: book, tables, pictures, report, and last of all the summary."""
+"""What a tune leaves in its directory: book, tables, controller code, pictures, report, and last of all the summary."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from synth.output_directory import SUMMARY, remove_stale
 from synth.plots.picture import Picture, save_picture
 from synth.report import BookReport, write_report
 from synth.summary import Document, summary_of
+from synth.table_forms import c_form
 from synth.tune import Book
 from tuning_tables import write_atomically, write_book, write_csv
 from tuning_tables.canonical import canonical_json
@@ -24,7 +25,8 @@ def write_outputs(book: Book, verdict: Verdict, directory: Path, studio: Studio,
     """Write everything but the JSON tables, which are in `directory`/tables already; the summary as written.
 
     Files of an earlier tune that are not written anew are removed when all new ones are whole, and before the summary
-    is written: so a summary lists files that belong together. Raises `OSError`.
+    is written: so a summary lists files that belong together. Raises `OSError`, and `InvalidTable` where the
+    tables make no C code.
     """
     config, tables = book.config, [case.table for case in book.cases]
     files = [directory / "tables" / f"{table.id}.json" for table in tables]
@@ -34,6 +36,9 @@ def write_outputs(book: Book, verdict: Verdict, directory: Path, studio: Studio,
         for table in tables:
             files.append(directory / "tables" / f"{table.id}.csv")
             write_csv(table, files[-1])
+    for name, content in c_form(tables).items():
+        files.append(directory / "c" / name)
+        write_atomically(files[-1], content)
     pictures: tuple[Picture, ...] = ()
     if config.output.plots or config.output.report:
         pictures = studio.book(book.cases, book.degree_studies, config.acceptance.rms_m_s)

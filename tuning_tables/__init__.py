@@ -3,6 +3,7 @@
 A controller needs `read_json` and `decide_for`; numpy is all they use. Books in HDF5 need h5py when called.
 """
 
+from tuning_tables.active_table import ActiveTable
 from tuning_tables.atomic_file import replacing, write_atomically
 from tuning_tables.csv_file import to_csv, write_csv
 from tuning_tables.errors import (
@@ -21,11 +22,14 @@ from tuning_tables.rule import HOLD, LOWER, RAISE, decide, decide_for, decide_ma
 from tuning_tables.schema import table_schema, write_schema
 from tuning_tables.stage import Stage, round_coefficients
 from tuning_tables.table import ControllerTable
+from tuning_tables.table_book import Choice, Status, TableBook
 
 __all__ = [
     "HOLD",
     "LOWER",
     "RAISE",
+    "ActiveTable",
+    "Choice",
     "ControllerTable",
     "CutId",
     "DamagedTable",
@@ -36,6 +40,8 @@ __all__ = [
     "Predicted",
     "RetarderId",
     "Stage",
+    "Status",
+    "TableBook",
     "TableError",
     "UnknownFormat",
     "ValidRange",

@@ -23,6 +23,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from tuning_tables.active_table import ActiveTable
 from tuning_tables.table import ControllerTable
 
 LOWER: Final = -1
@@ -75,13 +76,13 @@ def decide(
     return HOLD
 
 
-def decide_for(table: ControllerTable, stage: int, s_m: float, v_m_s: float) -> int:
-    """LOWER, HOLD or RAISE of `table` for one reading of path and speed at `stage`."""
+def decide_for(table: ControllerTable | ActiveTable, stage: int, s_m: float, v_m_s: float) -> int:
+    """LOWER, HOLD or RAISE of `table`, or of lines chosen from a book, for one reading of path and speed at `stage`."""
     return decide(table.coefficients, table.has_line, table.valid_range, stage, s_m, v_m_s)
 
 
 def decide_many(
-    table: ControllerTable, stage: npt.ArrayLike, s_m: npt.ArrayLike, v_m_s: npt.ArrayLike
+    table: ControllerTable | ActiveTable, stage: npt.ArrayLike, s_m: npt.ArrayLike, v_m_s: npt.ArrayLike
 ) -> npt.NDArray[np.int8]:
     """`decide` for whole arrays at once, with identical answers.
 
@@ -95,7 +96,7 @@ def decide_many(
     if stages.dtype.kind not in "iu":
         raise TypeError(f"stage has dtype {stages.dtype}, but stages are integers.")
     credible = (np.abs(paths) <= LARGEST_READING) & (speeds >= 0) & (speeds <= LARGEST_READING)
-    credible &= (stages >= 0) & (stages < len(table.stages))
+    credible &= (stages >= 0) & (stages < table.coefficients.shape[0])
     # An incredible reading is replaced by one that is harmless to compute with; its answer is masked below.
     index = np.where(credible, stages, 0).astype(np.intp)
     s = np.where(credible, paths, 0).astype(np.float32)
@@ -103,7 +104,7 @@ def decide_many(
     s = np.where(s < table.valid_range[0], table.valid_range[0], s)
     s = np.where(s > table.valid_range[1], table.valid_range[1], s)
     line_speed = table.coefficients[index, :, -1]
-    for power in range(table.degree - 1, -1, -1):
+    for power in range(table.coefficients.shape[2] - 2, -1, -1):
         line_speed = line_speed * s[..., np.newaxis] + table.coefficients[index, :, power]
     has_line = table.has_line[index] & credible[..., np.newaxis]
     raises = has_line[..., 1] & (v > line_speed[..., 1])

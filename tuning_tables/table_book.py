@@ -25,6 +25,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import IntEnum
 from itertools import pairwise
+from typing import Final
 
 import numpy as np
 
@@ -35,6 +36,9 @@ from tuning_tables.requirement import require_kind, require_tuple
 from tuning_tables.table import ControllerTable
 
 Line = tuple[float, ...]
+
+LEAST_FLOAT32: Final = float(np.finfo(np.float32).smallest_normal)
+LARGEST_FLOAT32: Final = float(np.finfo(np.float32).max)
 
 
 class Status(IntEnum):
@@ -83,6 +87,9 @@ class TableBook:
                 )
             if ids.count(table.id) > 1:
                 raise InvalidTable(f"the id {table.id} is given to {ids.count(table.id)} tables of the book.")
+            for key, value in (("cut.mass_t", table.cut.mass_t), ("target_speed_m_s", table.target_speed_m_s)):
+                if not LEAST_FLOAT32 <= value <= LARGEST_FLOAT32:
+                    raise InvalidTable(f"{key} of {table.id} is {value!r}, which float32 cannot hold.")
         for slower, faster in self.neighbours():
             require_order_between(slower, faster)
 

@@ -4,31 +4,45 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from synth.cli import say
 from synth.input_error import InputError
 
-FORMS = ("json", "csv")
-FORMS_TO_COME = ("c", "st")
+if TYPE_CHECKING:
+    from tuning_tables import ControllerTable
 
 
 def export_command(source: Path, form: str, output: Path, as_json: bool) -> int:
-    """Write the tables in `source` as `form` into `output`, one file each, and print their names."""
-    if form in FORMS_TO_COME:
-        raise InputError(f"--format {form}: this version writes {' and '.join(FORMS)}; {form} comes in a later one")
-    if form not in FORMS:
-        raise InputError(f"--format {form}: there is no such form; give {' or '.join(FORMS)}")
+    """Write the tables in `source` as `form` into the directory `output`, and print the names of the files."""
     from synth.output_directory import make_directory
-    from synth.table_file import file_stem, read_tables
-    from tuning_tables import write_csv, write_json
+    from synth.table_file import read_tables
+    from synth.table_forms import FORMS
+    from tuning_tables import InvalidTable, write_atomically
 
+    if form not in FORMS:
+        raise InputError(f"--format {form}: there is no such form; give {', '.join(FORMS)}")
     (file,) = read_tables(source)
-    paths = [output / f"{file_stem(table)}.{form}" for table in file.tables]
-    for path in paths:
-        if paths.count(path) > 1:
-            raise InputError(f"{source}: two of its tables would both be written to {path}; their ids are too alike")
+    try:
+        files = FORMS[form](file.tables)
+    except (InputError, InvalidTable) as fault:  # each table is right, but together they make no export
+        raise InputError(f"{source}: {fault}") from None
+    if form in ("c", "st"):
+        warn_of_shadows(source, file.tables)
     make_directory(output)
-    for table, path in zip(file.tables, paths, strict=True):
-        (write_json if form == "json" else write_csv)(table, path)
-    names = [str(path) for path in paths]
+    for name, content in files.items():
+        write_atomically(output / name, content)
+    names = [str(output / name) for name in files]
     print(json.dumps({"files": names}, indent=1, ensure_ascii=False) if as_json else "\n".join(names))
     return 0
+
+
+def warn_of_shadows(source: Path, tables: tuple[ControllerTable, ...]) -> None:
+    """Say which tables a controller will never choose."""
+    from tuning_tables.table_book import TableBook
+
+    for table in TableBook(tables).shadowed():
+        say(
+            f"warning: {source}: {table.id} is never chosen, for another table of category {table.cut.category} on "
+            f"{len(table.cut.axle_offsets_m)} axles is heavier or comes first; give it a category or book of its own"
+        )

@@ -53,14 +53,14 @@ def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, worker
         case_done = studio.case_done if wanted else no_notice
         try:
             book = guarded(tune, config, directory / "tables", progress.done, workers, case_done)
+            progress.note(f"{counted(len(book.cases), 'case')} computed in {time.monotonic() - started:.1f} s")
+            verdict = judge(book.cases, config.acceptance)
+            summary = write_outputs(book, verdict, directory, studio, progress.note)
         except InvalidTable as fault:
             raise InputError(
                 f"{path or 'built-in configuration'}: the lines that were found make no table ({fault}) "
                 "make grid.path_step_m or grid.speed_step_m_s smaller, or lower fit.degree"
             ) from None
-        progress.note(f"{counted(len(book.cases), 'case')} computed in {time.monotonic() - started:.1f} s")
-        verdict = judge(book.cases, config.acceptance)
-        summary = write_outputs(book, verdict, directory, studio, progress.note)
         progress.note(f"all files written after {time.monotonic() - started:.1f} s")
     if as_json:
         sys.stdout.write((directory / "summary.json").read_text(encoding="utf-8"))

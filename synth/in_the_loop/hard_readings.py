@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -72,7 +74,7 @@ def plausible(book: TableBook, count: int, rng: np.random.Generator) -> NDArray[
     return readings(rng.integers(0, len(book.tables), count), rng.integers(0, 5, count), s, v)
 
 
-def readings(table: NDArray, stage: NDArray, s: NDArray, v: NDArray) -> NDArray[np.void]:  # type: ignore[type-arg]
+def readings(table: NDArray[Any], stage: NDArray[Any], s: NDArray[Any], v: NDArray[Any]) -> NDArray[np.void]:
     """As an array of READING."""
     found = np.empty(len(table), READING)
     found["table"], found["stage"], found["s_m"], found["v_m_s"] = table, stage, s, v

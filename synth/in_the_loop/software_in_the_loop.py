@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from types import FunctionType
 from typing import Any
 
 import numpy as np
@@ -72,7 +73,7 @@ class PipeLine:
 
     def __init__(self) -> None:
         self._ask, self._hear = os.open(os.devnull, os.O_RDWR), os.open(os.devnull, os.O_RDWR)
-        self.run_passes = kernel.run_passes_with(_decision_through(self._ask, self._hear))
+        self.run_passes = run_passes_with(_decision_through(self._ask, self._hear))
 
     @contextmanager
     def connected(self, controller: Controller, number: int) -> Iterator[None]:
@@ -93,6 +94,17 @@ class PipeLine:
                 process.stdin.close()
         if process.returncode != 0:
             raise RuntimeError(f"{' '.join(command)} ended with exit code {process.returncode}")
+
+
+def run_passes_with(decision: Any) -> Any:
+    """`kernel.run_passes`, the same text, with `decision` in the place of the tables' own rule; compiled, not cached.
+
+    `decision`: compiled, with arguments and answer of `tuning_tables.rule.decide`. The loop around it is no other.
+    """
+    compiled = njit(nogil=True, error_model="numpy")
+    scope = {**vars(kernel), "table_decision": decision}
+    scope["run_pass"] = compiled(FunctionType(kernel.run_pass.py_func.__code__, scope))
+    return compiled(FunctionType(kernel.run_passes.py_func.__code__, scope))
 
 
 def _decision_through(ask: int, hear: int) -> Any:

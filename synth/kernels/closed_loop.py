@@ -12,7 +12,6 @@ the cache directory must be named by a hash that covers `tuning_tables/rule.py` 
 from __future__ import annotations
 
 import math
-from types import FunctionType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -296,14 +295,3 @@ def run_passes(path: Path, drive: Drive, sensor: Sensor, law: Rule, draws: Draws
         exits.time_s[i] = time
         exits.switchings[i] = switchings
     return count
-
-
-def run_passes_with(decision: Any) -> Any:
-    """`run_passes`, the same text, with `decision` in the place of the tables' own rule; compiled anew, not cached.
-
-    `decision`: compiled, with arguments and answer of `tuning_tables.rule.decide`. For a controller outside this
-    process (software in the loop); the loop itself is no other.
-    """
-    scope = {**globals(), "table_decision": decision}
-    scope["run_pass"] = njit(nogil=True, error_model="numpy")(FunctionType(run_pass.py_func.__code__, scope))
-    return njit(nogil=True, error_model="numpy")(FunctionType(run_passes.py_func.__code__, scope))

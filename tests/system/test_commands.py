@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,10 +12,14 @@ import pytest
 from synth.config_file import parse_config
 from synth.output_directory import output_directory
 from tests.system.conftest import CLASS, Command
-from tuning_tables import from_json, read_book, read_json, to_csv, to_json
+from tuning_tables import from_json, read_book, read_json, to_csv, to_json, write_book
+from tuning_tables.canonical import canonical_json, document_checksum
 
 ID = "gondola-4-22t-to-1.5-m-s"
 HEAVIER = "gondola-4-30t-to-1.5-m-s"
+C_FILES = {
+    "retarder_table.h", "retarder_table.c", "retarder_self_test.h", "retarder_self_test.c", "golden_vectors.csv",
+}  # fmt: skip
 
 
 def summary_of(directory: Path) -> dict:
@@ -27,7 +32,7 @@ def test_tune_leaves_what_the_contract_says(tuned_once: tuple[Path, int]) -> Non
     files = {path.relative_to(directory).as_posix() for path in directory.rglob("*") if path.is_file()}
     assert {"book.h5", "report.html", "summary.json", f"tables/{ID}.json", f"tables/{ID}.csv"} <= files
     assert {"plots/rms-by-controller.png", "plots/rms-by-controller.svg", "plots/feasibility.svg"} <= files
-    assert not (directory / "c").exists()
+    assert {path.name for path in (directory / "c").iterdir()} == C_FILES
     summary = summary_of(directory)
     assert set(summary["files"]) == files - {"summary.json"}
     for name, digest in summary["files"].items():
@@ -67,7 +72,8 @@ def test_tune_prints_a_table_and_where_things_are(command: Command, one_class: P
     assert str(tmp_path / "out" / "book.h5") in ran.out
     assert "report" not in ran.out
     assert "[1/1] gondola-4-22t to 1.5 m/s: rms 0.0" in ran.err
-    assert sorted(summary_of(tmp_path / "out")["files"]) == ["book.h5", f"tables/{ID}.json"]
+    controller = [f"c/{name}" for name in sorted(C_FILES)]
+    assert sorted(summary_of(tmp_path / "out")["files"]) == ["book.h5", *controller, f"tables/{ID}.json"]
 
 
 def test_missed_limits_give_1_and_stale_files_go(command: Command, one_class: Path, tuned: Path) -> None:
@@ -133,10 +139,8 @@ def test_validate_finds_a_table_that_lies(command: Command, tuned: Path, two_cla
     text = to_json(table).decode().replace(f'"rms_m_s": {table.predicted.rms_m_s!r}', '"rms_m_s": 0.01')
     document = json.loads(text)
     document.pop("crc32")
-    from tuning_tables.canonical import document_checksum
-
     document["crc32"] = document_checksum(document)
-    path.write_text(json.dumps(document))
+    path.write_bytes(canonical_json(document))
     ran = command("validate", path, "--config", two_classes)
     assert ran.code == 1
     assert "predicted / simulated rms 0.2" in ran.out
@@ -176,10 +180,35 @@ def test_export_is_faithful(command: Command, tuned: Path, tmp_path: Path) -> No
         assert exported.read_bytes() == (tuned / "tables" / f"{table.id}.json").read_bytes()
     ran = command("export", tuned / "tables" / f"{ID}.json", "--format", "csv", "-o", tmp_path, "--json")
     assert json.loads(ran.out) == {"files": [str(tmp_path / f"{ID}.csv")]}
-    for form, said in (("c", "comes in a later one"), ("st", "comes in a later one"), ("xml", "json or csv")):
-        ran = command("export", tuned / "book.h5", "--format", form)
-        assert ran.code == 2
-        assert said in ran.sentence
+    ran = command("export", tuned / "book.h5", "--format", "xml")
+    assert ran.code == 2
+    assert "json, csv, c, st" in ran.sentence
+
+
+def test_export_of_controller_code_is_what_tune_leaves(command: Command, tuned: Path, tmp_path: Path) -> None:
+    ran = command("export", tuned / "book.h5", "--format", "c", "-o", tmp_path / "c", "--json")
+    assert ran.code == 0
+    assert {Path(name).name for name in json.loads(ran.out)["files"]} == C_FILES
+    for name in C_FILES:
+        assert (tmp_path / "c" / name).read_bytes() == (tuned / "c" / name).read_bytes()
+    ran = command("export", tuned / "tables" / f"{ID}.json", "--format", "st", "-o", tmp_path / "st")
+    assert ran.code == 0
+    assert {path.name for path in (tmp_path / "st").iterdir()} == {"retarder_table.st", "retarder_self_test.st"}
+
+
+def test_export_says_which_tables_a_controller_never_chooses(command: Command, tuned: Path, tmp_path: Path) -> None:
+    first, _ = read_book(tuned / "book.h5")
+    lighter = replace(first, id="lighter", cut=replace(first.cut, mass_t=first.cut.mass_t - 1.0))
+    write_book([first, lighter], tmp_path / "both.h5")
+    ran = command("export", tmp_path / "both.h5", "--format", "c", "-o", tmp_path)
+    assert ran.code == 0
+    assert ran.sentence.startswith(f"warning: {tmp_path}/both.h5: lighter is never chosen")
+    other = replace(first, id="other", retarder=replace(first.retarder, name="another"))
+    write_book([first, other], tmp_path / "mixed.h5")
+    ran = command("export", tmp_path / "mixed.h5", "--format", "c", "-o", tmp_path / "none")
+    assert ran.code == 2
+    assert "a book serves one position" in ran.sentence
+    assert not (tmp_path / "none").exists()
 
 
 def test_plot_draws_without_solving(command: Command, tuned: Path, two_classes: Path, tmp_path: Path) -> None:

@@ -53,6 +53,11 @@ def check_file(path: Path) -> None:
             read_json(path)
         case "tables", ".csv":
             assert content.endswith(b"\r\n")
+        case "c", ".c" | ".h":
+            assert content.startswith(b"/* ")
+            assert content.endswith((b"\n}\n", b"#endif\n"))
+        case "c", ".csv":
+            assert content.endswith(b"\r\n")
         case "plots", ".png":
             assert PICTURES.fullmatch(path.name)
             assert content.startswith(b"\x89PNG")
