@@ -67,7 +67,7 @@ def origin_lines(book: TableBook) -> list[str]:
     first = book.tables[0]
     made = dict.fromkeys((table.generator, table.created) for table in book.tables)
     lines = [
-        f"retarder   {comment_text(first.retarder.name)}, the pass ends at {first.retarder.exit_m:g} m",
+        f"retarder   {comment_text(first.retarder.name)}",
         f"tables     {len(book.tables)}",
     ]
     for generator, created in made:

@@ -65,7 +65,7 @@ class Choice:
 
 @dataclass(frozen=True)
 class TableBook:
-    """The tables of one position, numbered in their order from 0; ids differ, the retarder is the same in all.
+    """The tables of one position, numbered in their order from 0; ids differ, the retarder position is the same in all.
 
     Raises `InvalidTable`, also where float32 might let the lines between two neighbouring tables touch.
     """
@@ -80,10 +80,10 @@ class TableBook:
             require_kind(table, f"tables[{index}]", ControllerTable)
         first, ids = self.tables[0], [table.id for table in self.tables]
         for table in self.tables:
-            if table.retarder != first.retarder:
+            if position_of(table) != position_of(first):
                 raise InvalidTable(
                     f"{table.id} is for the retarder {table.retarder.name}, {first.id} for {first.retarder.name}, "
-                    "but a book serves one position: export them apart."
+                    "or their zones or dead bands differ, but a book serves one position: export them apart."
                 )
             if ids.count(table.id) > 1:
                 raise InvalidTable(f"the id {table.id} is given to {ids.count(table.id)} tables of the book.")
@@ -143,6 +143,11 @@ class TableBook:
 
     def _classes(self) -> tuple[tuple[str, int], ...]:
         return tuple(dict.fromkeys((t.cut.category, len(t.cut.axle_offsets_m)) for t in self.tables))
+
+
+def position_of(table: ControllerTable) -> tuple[object, ...]:
+    """What makes the retarder position of a table; where the pass ends depends on the length of the cut as well."""
+    return table.retarder.name, table.retarder.zones_m, table.retarder.dead_band_kpa
 
 
 def require_order_between(slower: ControllerTable, faster: ControllerTable) -> None:

@@ -53,6 +53,7 @@ def test_import_contracts_are_kept() -> None:
         ("tuning_tables/rule.py", "import scipy.stats", "table-is-light"),
         ("synth/kernels/intruder.py", "import scipy.special", "kernels-are-bare"),
         ("synth/kernels/intruder.py", "from synth.kernel_cache import guarded", "kernels-are-bare"),
+        ("synth/checker/claims.py", "from tuning_tables import rule", "checker-is-independent"),
     ],
 )
 def test_an_import_against_the_contracts_is_found(tmp_path: Path, name: str, source: str, contract: str) -> None:

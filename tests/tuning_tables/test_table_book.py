@@ -157,7 +157,10 @@ def test_a_book_that_is_none_is_refused(table: ControllerTable) -> None:
     with pytest.raises(InvalidTable, match="given to 2 tables"):
         TableBook((table, table))
     with pytest.raises(InvalidTable, match="serves one position"):
-        TableBook((table, replace(table, id="x", retarder=replace(table.retarder, exit_m=40.0))))
+        TableBook((table, replace(table, id="x", retarder=replace(table.retarder, dead_band_kpa=16.0))))
+    # A longer cut leaves later: the same position all the same.
+    longer = replace(table, id="x", retarder=replace(table.retarder, exit_m=40.0), cut=replace(table.cut, category="T"))
+    assert len(TableBook((table, longer)).tables) == 2
 
 
 @pytest.mark.parametrize("value", [1e39, 1e300, 1e-39])

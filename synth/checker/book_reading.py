@@ -1,0 +1,155 @@
+"""Tables in an HDF5 book, as the documents that their JSON files would hold; the only part that needs h5py."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import math
+from collections.abc import Mapping
+from typing import Any, Final
+
+from synth.checker.canonical import canonical_form
+from synth.checker.finding import DamagedError, shown
+from synth.checker.source_file import LARGEST_BYTES
+
+SIGNATURE: Final = b"\x89HDF\r\n\x1a\n"
+SEAL: Final = b"\n# sealed, sha256 of all before this line: "
+AXES: Final = frozenset({"table", "stage", "line", "power", "zone", "axle", "end"})
+ATTRIBUTES: Final = frozenset(
+    {"format", "schema_version", "tool_version", "config_sha256", "payload_sha256", "complete"}
+)
+NAMES: Final = frozenset(
+    {
+        *("id", "created", "generator_name", "generator_version", "config_sha256", "retarder", "category"),
+        *("target_speed_m_s", "mass_t", "exit_m", "dead_band_kpa", "degree", "n_stages", "zones_m", "axle_offsets_m"),
+        *("pressure_kpa", "coefficients", "has_line", "valid_s_m", "valid_v_m_s"),
+        *(f"predicted_{name}" for name in ("rms_m_s", "bias_m_s", "p_overspeed", "switchings", "p_stall")),
+        *(f"validated_{name}" for name in ("passes", "rms_m_s", "rms_ci95_m_s")),
+    }
+)
+"""The datasets of docs/table-format.md."""
+
+Row = Mapping[str, Any]
+
+
+def read_documents(content: bytes) -> list[dict[str, Any]]:
+    """The documents of the tables in a book, less their checksums, in their order; `DamagedError` otherwise."""
+    body = unsealed(content)
+    try:
+        import h5py
+    except ImportError:
+        raise DamagedError("it is an HDF5 book, which cannot be checked without h5py; install h5py") from None
+    try:
+        with h5py.File(io.BytesIO(body), "r") as book:
+            columns = checked_columns(book)
+            count = len(columns["id"])
+            if any(len(column) != count for column in columns.values()):
+                raise DamagedError("its columns are of different lengths")
+            return [document_of({name: column[row] for name, column in columns.items()}) for row in range(count)]
+    except DamagedError:
+        raise
+    except Exception as fault:  # h5py tells what it finds wrong in a dozen types
+        raise DamagedError(f"it is no readable book ({type(fault).__name__}: {fault})") from None
+
+
+def unsealed(content: bytes) -> bytes:
+    """What stands before the seal, which must fit."""
+    if not content.startswith(SIGNATURE):
+        raise DamagedError("it is no HDF5 file")
+    body, mark, rest = content.rpartition(SEAL)
+    if not mark or rest != hashlib.sha256(body).hexdigest().encode("ascii") + b"\n":
+        raise DamagedError("its seal is missing or broken: it was cut off, edited, or made by another program")
+    return body
+
+
+def checked_columns(book: Any) -> dict[str, list[Any]]:
+    """All columns as lists, once attributes, names and `payload_sha256` are right."""
+    attributes = {name: plain(value) for name, value in book.attrs.items()}
+    if attributes.keys() != ATTRIBUTES or attributes["format"] != "retarder-book" or attributes["complete"] != 1:
+        raise DamagedError(f"its attributes {shown(attributes)} are not those of a complete book")
+    if attributes["schema_version"] != 1:
+        raise DamagedError(f"its schema_version is {attributes['schema_version']}; this checker knows version 1 only")
+    if set(book) != NAMES | AXES:
+        raise DamagedError(f"the datasets {sorted(set(book) ^ (NAMES | AXES))} are missing or unknown")
+    stored = attributes.pop("payload_sha256")
+    for name in NAMES:
+        require_own(book, name)
+    values = {name: book[name][()] for name in NAMES}
+    described = {
+        name: {
+            "dtype": array.dtype.str,
+            "shape": list(array.shape),
+            "units": book[name].attrs["units"],
+            "meaning": book[name].attrs["meaning"],
+            "sha256": hashlib.sha256(array.tobytes()).hexdigest(),
+        }
+        for name, array in values.items()
+    }
+    payload = canonical_form({"attributes": attributes, "datasets": described})
+    if stored != hashlib.sha256(payload.encode("utf-8")).hexdigest():
+        raise DamagedError("its payload_sha256 does not fit its content")
+    return {name: array.tolist() for name, array in values.items()}
+
+
+def require_own(book: Any, name: str) -> None:
+    """Raise `DamagedError` unless the dataset lies in this very file, for HDF5 can point anywhere, and is not huge."""
+    import h5py
+
+    if not isinstance(book.get(name, getlink=True), h5py.HardLink) or not isinstance(book[name], h5py.Dataset):
+        raise DamagedError(f"{name} is no dataset of its own")
+    dataset = book[name]
+    if dataset.is_virtual or dataset.external or dataset.nbytes > LARGEST_BYTES:
+        raise DamagedError(f"{name} does not lie in the file, or is larger than {LARGEST_BYTES} bytes")
+
+
+def plain(value: Any) -> Any:
+    """An attribute as a Python value."""
+    return value.item() if hasattr(value, "item") else value
+
+
+def document_of(row: Row) -> dict[str, Any]:
+    """The document of one table."""
+    predicted = {name: row[f"predicted_{name}"] for name in ("rms_m_s", "bias_m_s", "p_overspeed", "switchings")}
+    if not math.isnan(row["predicted_p_stall"]):
+        predicted["p_stall"] = row["predicted_p_stall"]
+    interval = {"rms_m_s": row["validated_rms_m_s"], "rms_ci95_m_s": row["validated_rms_ci95_m_s"]}
+    return {
+        "format": "retarder-table",
+        "version": 1,
+        "id": text(row["id"]),
+        "created": text(row["created"]),
+        "generator": {
+            "name": text(row["generator_name"]),
+            "version": text(row["generator_version"]),
+            "config_sha256": text(row["config_sha256"]),
+        },
+        "retarder": {
+            "name": text(row["retarder"]),
+            "zones_m": [zone for zone in row["zones_m"] if not math.isnan(zone[0])],
+            "exit_m": row["exit_m"],
+            "dead_band_kpa": row["dead_band_kpa"],
+        },
+        "cut": {
+            "category": text(row["category"]),
+            "mass_t": row["mass_t"],
+            "axle_offsets_m": [x for x in row["axle_offsets_m"] if not math.isnan(x)],
+        },
+        "target_speed_m_s": row["target_speed_m_s"],
+        "polynomial": {"variable": "s_m", "degree": row["degree"]},
+        "stages": [stage_of(row, k) for k in range(row["n_stages"])],
+        "valid": {"s_m": row["valid_s_m"], "v_m_s": row["valid_v_m_s"]},
+        "predicted": predicted,
+        "validated": {"passes": row["validated_passes"], **interval} if row["validated_passes"] else None,
+    }
+
+
+def stage_of(row: Row, k: int) -> dict[str, Any]:
+    """Stage `k` of one table."""
+    powers = row["degree"] + 1
+    lower, upper = (row["coefficients"][k][line][:powers] if row["has_line"][k][line] == 1 else None for line in (0, 1))
+    return {"k": k, "pressure_kpa": row["pressure_kpa"][k], "lower": lower, "upper": upper}
+
+
+def text(value: bytes) -> str:
+    """A cell of text."""
+    return value.decode("utf-8")

@@ -1,0 +1,127 @@
+"""The C99 export against the tables: the initialisers of `retarder_tables` read by a parser of their own."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+from synth.checker.canonical import crc32
+from synth.checker.finding import DamagedError
+from synth.checker.float32 import FLOAT, WORD, bits, is_float32
+from synth.checker.table_reading import Table
+
+TOKEN: Final = re.compile(
+    r"\s+|/\*.*?\*/|(?P<mark>[{},])|(?P<real>-?0x[01](?:\.[0-9a-f]{1,6})?p[+-]\d{1,3}f)"
+    r"|(?P<whole>(?:0x[0-9a-f]{1,8}|\d{1,10})u)",
+    re.DOTALL,
+)
+ARRAY: Final = re.compile(r"const retarder_table retarder_tables\[\w*\]\s*=\s*(\{.*?\})\s*;", re.DOTALL)
+COUNT: Final = re.compile(r"const unsigned retarder_table_count\s*=\s*(\d{1,6})u\s*;")
+CATEGORY: Final = re.compile(r"#define RETARDER_CATEGORY_(\w+) (\d{1,6})u /\* (.*?) \*/")
+SIZE: Final = "#define RETARDER_{} (\\d{{1,6}})u"
+
+Words = tuple[int, ...]
+
+
+def read_blocks(source: str) -> list[Words]:
+    """The words of each table in `retarder_table.c`; `DamagedError` where the array is not as documented."""
+    array, count = ARRAY.search(source), COUNT.search(source)
+    if array is None or count is None:
+        raise DamagedError("it has no array retarder_tables or no retarder_table_count")
+    blocks: list[list[int]] = []
+    depth = place = 0
+    text = array[1]
+    while place < len(text):
+        token = TOKEN.match(text, place)
+        if token is None:
+            raise DamagedError(f"{text[place : place + 30]!r} is no number of a table")
+        place = token.end()
+        if token["mark"] == "{":
+            depth += 1
+            if depth == 2:
+                blocks.append([])
+        elif token["mark"] == "}":
+            depth -= 1
+        elif token["real"] or token["whole"]:
+            if depth < 2:
+                raise DamagedError("a number stands outside the tables")
+            blocks[-1].append(word_of(token["real"], token["whole"]))
+    if depth != 0 or len(blocks) != int(count[1]):
+        raise DamagedError(f"retarder_table_count is {count[1]}, but the array holds {len(blocks)} tables")
+    return [tuple(block) for block in blocks]
+
+
+def word_of(real: str | None, whole: str | None) -> int:
+    """The 32 bits of a constant."""
+    if real is not None:
+        value = float.fromhex(real[:-1])
+        if not is_float32(value):
+            raise DamagedError(f"{real} is no float32 number")
+        return bits(value)
+    number = int(str(whole)[:-1], 0)
+    if number >= 2**32:
+        raise DamagedError(f"{whole} does not fit into 32 bits")
+    return number
+
+
+def differences(blocks: Sequence[Words], tables: Sequence[Table], header: str) -> Iterator[tuple[str, str]]:
+    """(about, sentence) for each disagreement; `tables` in the order of the book, "" stands for the export."""
+    if len(blocks) != len(tables):
+        yield "", f"it holds {len(blocks)} tables, but there are {len(tables)}"
+        return
+    stages, powers = (re.search(SIZE.format(name), header) for name in ("STAGES", "POWERS"))
+    if stages is None or powers is None:
+        yield "", "its header does not tell RETARDER_STAGES and RETARDER_POWERS"
+        return
+    size = int(stages[1]), int(powers[1])
+    categories = list(dict.fromkeys(table.category for table in tables))
+    yield from (("", sentence) for sentence in category_differences(categories, header))
+    for number, (block, table) in enumerate(zip(blocks, tables, strict=True)):
+        body = b"".join(WORD.pack(word) for word in block[:-1])
+        if block[-1] != crc32(body):
+            yield table.id, f"the crc32 of table {number} is {block[-1]:08x}, but its words give {crc32(body):08x}"
+        wanted = words_of(table, categories.index(table.category) + 1, size)
+        if block[:-1] != wanted:
+            yield table.id, word_difference(number, block[:-1], wanted)
+
+
+def category_differences(categories: Sequence[str], header: str) -> Iterator[str]:
+    """What is wrong with the constants of the weight categories."""
+    found = [(number, comment) for _, number, comment in CATEGORY.findall(header)]
+    wanted = [(str(number), ascii_comment(name)) for number, name in enumerate(categories, start=1)]
+    if found != wanted:
+        yield f"its header defines the categories {found}, but the tables have {wanted}"
+    if len({name for name, _, _ in CATEGORY.findall(header)}) < len(found):
+        yield "its header gives two categories one name"
+
+
+def ascii_comment(text: str) -> str:
+    """A name as the export writes it into comments."""
+    return "".join(x if x.isascii() and (x.isalnum() or x in " ._+,()-") else f"<U+{ord(x):04X}>" for x in text)
+
+
+def words_of(table: Table, category: int, size: tuple[int, int]) -> Words:
+    """The words that a table should have, its checksum left out; missing lines, stages and powers are 0."""
+    stages, powers = size
+    lines = [(lower is not None) + 2 * (upper is not None) for lower, upper in table.lines]
+    words = [category, len(table.axle_offsets_m), len(table.lines), table.degree + 1]
+    words += lines + [0] * (stages - len(lines))
+    words += [bits(x) for x in (table.mass_t, table.target_m_s, *table.path_m)]
+    for k in range(stages):
+        for line in table.lines[k] if k < len(table.lines) else (None, None):
+            coefficients = line or ()
+            words += [bits(c) for c in coefficients] + [0] * (powers - len(coefficients))
+    return tuple(words)
+
+
+def word_difference(number: int, block: Words, wanted: Words) -> str:
+    """The first word in which two blocks differ."""
+    if len(block) != len(wanted):
+        return f"table {number} has {len(block)} words, but {len(wanted)} are due"
+    at = next(i for i, (a, b) in enumerate(zip(block, wanted, strict=True)) if a != b)
+    values = [FLOAT.unpack(WORD.pack(words[at]))[0] for words in (block, wanted)]
+    return (
+        f"word {at} of table {number} is {block[at]:08x} ({values[0]:.9g}), "
+        f"but the table says {wanted[at]:08x} ({values[1]:.9g})"
+    )

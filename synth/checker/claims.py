@@ -1,0 +1,128 @@
+"""The figures of quality in a table against a coarse simulation, and against one another.
+
+An rms is made by rare passes: the few cuts with too little friction can hold most of the mean square, and 300 passes
+may meet none of them, or one too many. So the two directions are tested differently. That a table is *worse* than it
+says is looked for in ordinary passes too: squares count up to a cap, of which several are tried. The mean of capped
+squares is at most the mean square, so a true claim is not doubted more often, and being bounded it is normal. That a
+table is *better* than it says may only be luck: the standard error is then the larger of the sample's and the one that
+follows from the stated 95 % interval (without one, the largest that any law of the error allows).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+from synth.checker.plant import Plant
+from synth.checker.statistics import QUANTILE, ExitFigures, mean_and_std, too_few, too_many
+from synth.checker.table_reading import Table
+
+RMS_ALLOWANCE: Final = 0.04
+"""Relative systematic error of the coarse simulation's rms (measured: docs/verification.md)."""
+RMS_ALLOWANCE_M_S: Final = 0.001
+BIAS_ALLOWANCE: Final = 0.1
+"""Of the rms; the bias of the coarse simulation, and that of the solver's grid."""
+BIAS_ALLOWANCE_M_S: Final = 0.003
+SWITCHINGS_ALLOWANCE: Final = 0.1
+PROBABILITY_ALLOWANCE: Final = 1.5
+"""Factor; a limit of 0.3 m/s in a steep tail moves with the bias."""
+PROBABILITY_ALLOWANCE_ABSOLUTE: Final = 0.002
+CAPS: Final = (9.0, 100.0, math.inf)
+"""Squares count up to so many times the largest mean square that the claim allows."""
+NORMAL_95: Final = 1.959963984540054
+
+
+@dataclass(frozen=True)
+class Honesty:
+    """Limits of predicted rms / simulated rms, as the configuration of the tune sets them."""
+
+    low: float
+    high: float
+
+
+def own_faults(table: Table, honesty: Honesty) -> Iterator[str]:
+    """Claims that contradict themselves or one another, without any simulation."""
+    rms, bias = table.predicted_rms_m_s, table.bias_m_s
+    if rms < 0.0 or abs(bias) > rms * (1.0 + 1e-9):
+        yield f"the predicted bias of {bias:.4g} m/s exceeds the predicted rms of {rms:.4g} m/s"
+    for name, p in (("over-speed", table.p_overspeed), ("a stall", table.p_stall or 0.0)):
+        if not 0.0 <= p <= 1.0:
+            yield f"the predicted probability of {name} is {p:.4g}"
+    if table.switchings < 0.0:
+        yield f"the predicted number of switchings is {table.switchings:.4g}"
+    if table.validated_rms_m_s is None or table.validated_ci95_m_s is None or table.passes is None:
+        return
+    low, high = table.validated_ci95_m_s
+    if table.passes < 1 or not 0.0 <= low <= table.validated_rms_m_s <= high:
+        stated = table.validated_rms_m_s
+        yield f"the validated rms of {stated:.4g} m/s is not within its interval, {low:.4g} to {high:.4g}"
+        return
+    least, most = low * honesty.low, high * honesty.high
+    if not least <= rms <= most:
+        yield (
+            f"the predicted rms of {rms:.4f} m/s does not agree with the validated one: its interval and the honesty "
+            f"limits of the configuration allow {least:.4f} to {most:.4f} m/s"
+        )
+
+
+def simulated_faults(table: Table, plant: Plant, found: ExitFigures, honesty: Honesty) -> Iterator[str]:
+    """Claims that the coarse simulation does not confirm."""
+    spread = claimed_square_std(table, plant)
+    if table.validated_rms_m_s is not None:
+        yield from rms_fault("validated", table.validated_rms_m_s, (1.0, 1.0), spread, found)
+    limits = (1.0 / honesty.high, 1.0 / honesty.low)
+    yield from rms_fault("predicted", table.predicted_rms_m_s, limits, spread, found)
+    root_n = math.sqrt(found.passes)
+    error_std = max(found.error_std, table.predicted_rms_m_s)
+    allowed = BIAS_ALLOWANCE * table.predicted_rms_m_s + BIAS_ALLOWANCE_M_S + QUANTILE * error_std / root_n
+    if abs(found.bias_m_s - table.bias_m_s) > allowed:
+        yield f"the predicted bias is {table.bias_m_s:+.4f} m/s, but the coarse simulation gives {found.bias_m_s:+.4f}"
+    allowed = SWITCHINGS_ALLOWANCE * max(1.0, table.switchings) + QUANTILE * found.switchings_std / root_n
+    if abs(found.switchings - table.switchings) > allowed:
+        yield (
+            f"{table.switchings:.2f} switchings a pass are predicted, but the coarse simulation gives "
+            f"{found.switchings:.2f}"
+        )
+    yield from probability_fault("over-speed", table.p_overspeed, found.over, found.passes)
+    if table.p_stall is not None:
+        yield from probability_fault("stalls", table.p_stall, found.stalls, found.passes)
+
+
+def rms_fault(
+    name: str, rms_m_s: float, limits: tuple[float, float], square_std: float, found: ExitFigures
+) -> Iterator[str]:
+    """Whether the mean square confirms an rms of at least and at most `limits` times `rms_m_s`."""
+    least = max(0.0, rms_m_s * limits[0] * (1.0 - RMS_ALLOWANCE) - RMS_ALLOWANCE_M_S) ** 2
+    most = (rms_m_s * limits[1] * (1.0 + RMS_ALLOWANCE) + RMS_ALLOWANCE_M_S) ** 2
+    root_n = math.sqrt(found.passes)
+    capped = [mean_and_std([min(square, cap * most) for square in found.squares]) for cap in CAPS]
+    worse = any(mean - most > QUANTILE * std / root_n for mean, std in capped)
+    better = least - found.mean_square > QUANTILE * max(found.square_std, square_std) / root_n
+    if worse or better:
+        yield (
+            f"the {name} rms is {rms_m_s:.4f} m/s, but the coarse simulation gives {found.rms_m_s:.4f} m/s in "
+            f"{found.passes} passes, {'more' if worse else 'less'} than chance and coarseness explain"
+        )
+
+
+def claimed_square_std(table: Table, plant: Plant) -> float:
+    """Standard deviation of the squared error that the table's own interval implies.
+
+    The interval is rms·exp(±1.96·std/(2·ms·sqrt(passes))). Without one: sqrt(ms·largest square), the most that a
+    variable between 0 and the largest square with this mean can have (Bhatia and Davis 2000).
+    """
+    if table.validated_ci95_m_s is not None and table.validated_rms_m_s and table.validated_ci95_m_s[0] > 0.0:
+        low, high = table.validated_ci95_m_s
+        return math.log(high / low) / NORMAL_95 * math.sqrt(table.passes or 1) * table.validated_rms_m_s**2
+    largest = max(table.target_m_s, plant.entry_m_s[1] - table.target_m_s) ** 2
+    return table.predicted_rms_m_s * math.sqrt(largest)
+
+
+def probability_fault(name: str, claimed: float, hits: int, passes: int) -> Iterator[str]:
+    """Whether `hits` of `passes` confirm the probability."""
+    most = claimed * PROBABILITY_ALLOWANCE + PROBABILITY_ALLOWANCE_ABSOLUTE
+    least = claimed / PROBABILITY_ALLOWANCE - PROBABILITY_ALLOWANCE_ABSOLUTE
+    if too_many(hits, passes, most) or (least > 0.0 and too_few(hits, passes, least)):
+        yield f"the predicted probability of {name} is {claimed:.4g}, but {hits} of {passes} coarse passes had it"

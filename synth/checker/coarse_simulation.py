@@ -1,0 +1,169 @@
+"""Passes of a cut under a table, in plain Python and coarse steps of time.
+
+Everything moves on in steps of a quarter of the sampling period: position and speed by the acceleration at the middle
+of the step, pressure by the valves as they stand. The regulator of the pressure is played as the relay that it is,
+with its delays, and not from histories known in advance; friction is a random walk over short stretches of path; the
+lines are evaluated in double precision. All this differs from the simulator that made the claims.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from random import Random
+from typing import Final
+
+from synth.checker.brake_drive import BrakeDrive
+from synth.checker.plant import GRAVITY_M_S2, Plant
+from synth.checker.table_reading import Line, Table
+
+STEPS_A_PERIOD: Final = 4
+LONGEST_STEP_S: Final = 0.025
+CELL_M: Final = 0.05
+MOST_CELLS: Final = 2000
+NOISE_CELLS_A_LENGTH: Final = 8
+LONGEST_PASS_S: Final = 300.0
+"""A cut that is still inside then has stalled: it creeps."""
+
+
+@dataclass(frozen=True)
+class Ground:
+    """The path in cells: free acceleration without resistance, and deceleration by one kPa, of each."""
+
+    cell_m: float
+    gravity_m_s2: tuple[float, ...]
+    brake_m_s2_per_kpa: tuple[float, ...]
+    drag_m_s2_per_n_kn: float
+    friction_cv: float
+    noise_cell_m: float
+    noise_cells: int
+
+
+@dataclass(frozen=True)
+class Passes:
+    """How the passes ended: exit speeds (0 after a stall), stalls, changes of stage."""
+
+    exit_m_s: tuple[float, ...]
+    stalled: tuple[bool, ...]
+    switchings: tuple[int, ...]
+
+
+def simulate(plant: Plant, table: Table, count: int, seed: int) -> Passes:
+    """`count` passes of `plant` under `table`; equal arguments give equal passes."""
+    ground, random = ground_of(plant), Random(f"{seed} {table.id}")
+    rest_kpa = released_kpa(plant)
+    found = [one_pass(plant, ground, table, rest_kpa, random) for _ in range(count)]
+    speeds, stalled, switchings = zip(*found, strict=True)
+    return Passes(speeds, stalled, switchings)
+
+
+def ground_of(plant: Plant) -> Ground:
+    """The path of `plant` in cells; coefficients are those at the middle of a cell."""
+    count = min(MOST_CELLS, math.ceil(plant.exit_m / CELL_M))
+    cell_m = plant.exit_m / count
+    middles = [(i + 0.5) * cell_m for i in range(count)]
+    braked = [plant.braked(s) for s in middles]
+    reduced = GRAVITY_M_S2 * plant.mass_t / plant.inertia_t * 1e-3
+    busy = [n for n in braked if n > 0]
+    mean_braked = max(1.0, sum(busy) / max(1, len(busy)))
+    noise_cells = min(MOST_CELLS, math.ceil(plant.exit_m * NOISE_CELLS_A_LENGTH / plant.correlation_m))
+    return Ground(
+        cell_m=cell_m,
+        gravity_m_s2=tuple(reduced * plant.grade_permille(s) for s in middles),
+        brake_m_s2_per_kpa=tuple(n * plant.slope_kn_per_kpa[n - 1] / plant.inertia_t if n else 0.0 for n in braked),
+        drag_m_s2_per_n_kn=reduced,
+        friction_cv=math.hypot(plant.friction_cv, plant.axle_cv / math.sqrt(mean_braked)),
+        noise_cell_m=plant.exit_m / noise_cells,
+        noise_cells=noise_cells,
+    )
+
+
+def released_kpa(plant: Plant) -> float:
+    """Pressure at which stage 0 rests after stage 1 was left."""
+    drive = BrakeDrive(plant.drive, plant.stages_kpa[1])
+    drive.command(plant.stages_kpa[0], 0.0)
+    for _ in range(1000):
+        drive.overpressure(0.1)
+        if drive.resting:
+            break
+    return drive.pressure_kpa
+
+
+def friction_row(plant: Plant, ground: Ground, random: Random) -> list[float]:
+    """The friction factor ξ in each noise cell of one pass."""
+    x = ground.noise_cell_m / plant.correlation_m
+    memory = math.exp(-x)
+    fresh = math.sqrt(1.0 - memory * memory)
+    std = plant.path_std * math.sqrt(math.tanh(x / 2.0) / (x / 2.0))  # keeps the variance of the work (model §2, 3)
+    factor = max(plant.friction_floor, 1.0 + ground.friction_cv * random.gauss(0.0, 1.0))
+    eta, row = random.gauss(0.0, 1.0), []
+    for _ in range(ground.noise_cells):
+        row.append(factor * max(0.0, 1.0 + std * eta))
+        eta = memory * eta + fresh * random.gauss(0.0, 1.0)
+    return row
+
+
+def one_pass(plant: Plant, ground: Ground, table: Table, rest_kpa: float, random: Random) -> tuple[float, bool, int]:
+    """(exit speed, stalled, changes of stage) of one pass."""
+    friction = friction_row(plant, ground, random)
+    mean, std = plant.resistance_n_kn
+    w = random.gammavariate((mean / std) ** 2, std * std / mean) if std > 0.0 else mean
+    drag = w * ground.drag_m_s2_per_n_kn
+    drive = BrakeDrive(plant.drive, rest_kpa)
+    low, high = plant.entry_m_s
+    s, v, stage, switchings = 0.0, low + (high - low) * random.random(), 0, 0
+    period = plant.period_s
+    steps = max(STEPS_A_PERIOD, math.ceil(period / LONGEST_STEP_S))
+    # The first sample comes at a random time after the entrance: until then one short row of steps.
+    dt, time, end_m = random.random() * period / steps, 0.0, plant.exit_m
+    held = drive.overpressure_kpa
+    while time < LONGEST_PASS_S:
+        for _ in range(steps):
+            if drive.resting:
+                p = held
+            else:
+                p, held = drive.overpressure(dt), drive.overpressure_kpa
+            middle = s + 0.5 * v * dt
+            cell = min(int(middle / ground.cell_m), len(ground.gravity_m_s2) - 1)
+            xi = friction[min(int(middle / ground.noise_cell_m), ground.noise_cells - 1)]
+            a = ground.gravity_m_s2[cell] - drag - xi * ground.brake_m_s2_per_kpa[cell] * p
+            s_next = s + (v + 0.5 * a * dt) * dt
+            if s_next >= end_m:
+                return math.sqrt(max(0.0, v * v + 2.0 * a * (end_m - s))), False, switchings
+            s, v = s_next, v + a * dt
+            if v <= 0.0:
+                return 0.0, True, switchings
+        time += dt * steps
+        dt = period / steps
+        if drive.resting:
+            change = decision(table, stage, s, measured(plant, v, random))
+            if change:
+                stage = min(max(stage + change, 0), len(table.lines) - 1)
+                switchings += 1
+                drive.command(plant.stages_kpa[stage], plant.computing_s)
+    return 0.0, True, switchings
+
+
+def measured(plant: Plant, v: float, random: Random) -> float:
+    """What the sensor reports of the speed `v`."""
+    seen = v + plant.noise_m_s * random.gauss(0.0, 1.0)
+    if plant.resolution_m_s > 0.0:
+        seen = round(seen / plant.resolution_m_s) * plant.resolution_m_s
+    return max(0.0, seen)
+
+
+def decision(table: Table, stage: int, s: float, v: float) -> int:
+    """The rule, in double precision."""
+    s = min(max(s, table.path_m[0]), table.path_m[1])
+    lower, upper = table.lines[stage]
+    if lower is not None and v < speed_at(lower, s):
+        return -1
+    return 1 if upper is not None and v > speed_at(upper, s) else 0
+
+
+def speed_at(line: Line, s: float) -> float:
+    """A line at `s`."""
+    value = 0.0
+    for coefficient in reversed(line):
+        value = value * s + coefficient
+    return value

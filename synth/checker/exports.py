@@ -1,0 +1,108 @@
+"""The other exports in the directory of a tune, each against the same tables."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from synth.checker import c_export, csv_export, golden_export, st_export
+from synth.checker.finding import DamagedError, Finding, Kind
+from synth.checker.source import Source, named
+from synth.checker.source_file import content_of, text_of
+from synth.checker.table_reading import Table
+
+FOLDERS: Final = ("", "c", "st")
+PLACE: Final = re.compile(r"[/(]\* (\d{1,6}): (.*?) \*[/)]")
+"""How C and Structured Text name a table: its number in the book, and its id in ASCII."""
+
+Differences = Iterator[tuple[str, str]]
+
+
+@dataclass(frozen=True)
+class ExportReport:
+    """What was compared, and what was found."""
+
+    files: tuple[str, ...]
+    findings: tuple[Finding, ...]
+
+
+def check_exports(source: Source, folder: Path) -> ExportReport:
+    """Compare every export that there is in `folder`."""
+    files: list[str] = []
+    findings: list[Finding] = []
+
+    def check(file: Path, compare: Callable[[Path], Differences]) -> None:
+        files.append(named(file, folder))
+        try:
+            for about, sentence in compare(file):
+                where = f"{files[-1]}: {sentence}"
+                findings.append(Finding(Kind.DISAGREES, about or files[-1], where if about else sentence))
+        except DamagedError as fault:
+            findings.append(Finding(Kind.DAMAGED, files[-1], str(fault)))
+
+    for place in FOLDERS:
+        check_file(folder / place / "retarder_table.c", lambda file: c_differences(file, source), check)
+        check_file(folder / place / "golden_vectors.csv", lambda file: golden_differences(file, source), check)
+        check_file(folder / place / "retarder_table.st", lambda file: st_differences(file, source), check)
+    tables = {table.id: table for table in source.tables}
+    csv_files = sorted((folder / "tables").glob("*.csv"))
+    seen: set[str] = set()
+    for file in csv_files:
+        check(file, lambda file: csv_differences(file, tables, seen))
+    if csv_files:
+        missing = sorted(tables.keys() - seen)
+        findings += [Finding(Kind.DISAGREES, name, "other tables have a CSV file, it has none") for name in missing]
+    return ExportReport(tuple(files), tuple(findings))
+
+
+def check_file(
+    file: Path, compare: Callable[[Path], Differences], check: Callable[[Path, Callable[[Path], Differences]], None]
+) -> None:
+    """Check a file that may be missing."""
+    if file.exists():
+        check(file, compare)
+
+
+def c_differences(file: Path, source: Source) -> Differences:
+    """The C export in `file`, and the header beside it."""
+    text, header = text_of(file), text_of(file.with_suffix(".h"))
+    return c_export.differences(c_export.read_blocks(text), in_order(source, text), header)
+
+
+def st_differences(file: Path, source: Source) -> Differences:
+    """The Structured Text in `file`."""
+    text = text_of(file)
+    return st_export.differences(st_export.read_arrays(text), in_order(source, text))
+
+
+def golden_differences(file: Path, source: Source) -> Differences:
+    """The golden vectors in `file`; their own ids tell the order where there is no book."""
+    content = content_of(file)
+    text = content.decode("utf-8", "replace")
+    rows = dict.fromkeys(re.findall(r'^(\d{1,6}),"?([^",]*)"?,', text, re.MULTILINE))
+    order = "".join(f"/* {number}: {c_export.ascii_comment(name)} */" for number, name in rows)
+    return golden_export.differences(content, in_order(source, order))
+
+
+def csv_differences(file: Path, tables: dict[str, Table], seen: set[str]) -> Differences:
+    """The CSV table in `file`, whose id is added to `seen`."""
+    rows = csv_export.read_rows(content_of(file))
+    name = (rows.get(("text", "id")) or ("",))[0]
+    if name not in tables:
+        yield "", f"it is of the table {name!r}, which no other file holds"
+        return
+    seen.add(name)
+    yield from ((name, sentence) for sentence in csv_export.differences(rows, tables[name]))
+
+
+def in_order(source: Source, text: str) -> list[Table]:
+    """The tables in the order of the book; without a book, in the order that the comments of `text` tell."""
+    if source.has_book:
+        return list(source.tables)
+    by_name = {c_export.ascii_comment(table.id): table for table in source.tables}
+    names = [name for _, name in sorted((int(number), name) for number, name in PLACE.findall(text))]
+    ordered = [by_name[name] for name in dict.fromkeys(names) if name in by_name]
+    return ordered + [table for table in source.tables if table not in ordered]

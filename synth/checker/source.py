@@ -1,0 +1,122 @@
+"""What there is to verify at a path: tables from JSON files and from a book, and the order of the book."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from synth.checker.book_reading import SIGNATURE, read_documents
+from synth.checker.canonical import canonical_form
+from synth.checker.finding import DamagedError, Finding, Kind, NothingToVerifyError, shown
+from synth.checker.source_file import content_of
+from synth.checker.table_reading import SHAPE, Table, read_table, require_shape, table_of
+
+
+@dataclass(frozen=True)
+class Source:
+    """The tables at `path`, in the order of the book where there is one, else by file name.
+
+    `folder` is the directory whose other exports belong to them, None for a single file. `files`: what was read.
+    """
+
+    path: Path
+    folder: Path | None
+    tables: tuple[Table, ...]
+    has_book: bool
+    files: tuple[str, ...]
+    findings: tuple[Finding, ...]
+
+
+def read_source(path: Path) -> Source:
+    """Everything at `path`; `NothingToVerifyError` where there is nothing."""
+    if path.is_dir():
+        return read_directory(path)
+    if not path.exists():
+        raise NothingToVerifyError(f"{path}: there is no such file; give a table (.json), a book (.h5) or a directory")
+    try:
+        content = content_of(path)
+        if content.startswith(SIGNATURE) or path.suffix in (".h5", ".hdf5"):
+            tables, is_book = tables_of_book(content), True
+        else:
+            tables, is_book = (read_table(content),), False
+    except DamagedError as fault:
+        return Source(path, None, (), False, (str(path),), (Finding(Kind.DAMAGED, str(path), str(fault)),))
+    return Source(path, None, tables, is_book, (str(path),), ())
+
+
+def read_directory(path: Path) -> Source:
+    """What a tune left in `path`."""
+    folder = path / "tables" if (path / "tables").is_dir() else path
+    files = sorted(file for file in folder.glob("*.json") if file.name != "summary.json")
+    book_file = path / "book.h5"
+    if not files and not book_file.exists():
+        raise NothingToVerifyError(
+            f"{path}: there are neither tables (.json) nor a book.h5 in it; give what a tune left"
+        )
+    findings: list[Finding] = []
+    single: dict[str, Table] = {}
+    for file in files:
+        try:
+            table = read_table(content_of(file))
+        except DamagedError as fault:
+            findings.append(Finding(Kind.DAMAGED, named(file, path), str(fault)))
+            continue
+        if table.id in single:
+            findings.append(Finding(Kind.DISAGREES, named(file, path), f"another file has the id {table.id}, too"))
+        single[table.id] = table
+    bound: tuple[Table, ...] = ()
+    if book_file.exists():
+        try:
+            bound = tables_of_book(content_of(book_file))
+        except DamagedError as fault:
+            findings.append(Finding(Kind.DAMAGED, "book.h5", str(fault)))
+        else:
+            findings += differences(single, bound) if files else []
+    order = [single.get(table.id, table) for table in bound]
+    order += [table for table in single.values() if table.id not in {each.id for each in bound}]
+    names = [named(file, path) for file in files] + (["book.h5"] if book_file.exists() else [])
+    return Source(path, path, tuple(order), bool(bound), tuple(names), tuple(findings))
+
+
+def named(file: Path, path: Path) -> str:
+    """A file as messages call it."""
+    return str(file.relative_to(path))
+
+
+def tables_of_book(content: bytes) -> tuple[Table, ...]:
+    """The tables in a book; `DamagedError` for a book without any, with an id twice, or with what is no table."""
+    tables = []
+    for document in read_documents(content):
+        require_shape({**document, "crc32": "none"}, SHAPE, "")
+        tables.append(table_of(document))
+    ids = [table.id for table in tables]
+    if not ids or len(set(ids)) < len(ids):
+        raise DamagedError(f"it holds the tables {shown(ids)}, but must hold at least one, and each id once")
+    return tuple(tables)
+
+
+def differences(single: Mapping[str, Table], bound: tuple[Table, ...]) -> Iterator[Finding]:
+    """Where JSON tables and book do not say the same."""
+    in_book = {table.id: table for table in bound}
+    for name in sorted(single.keys() | in_book.keys()):
+        if name not in in_book:
+            yield Finding(Kind.DISAGREES, name, "it has a JSON file, but it is not in book.h5")
+        elif name not in single:
+            yield Finding(Kind.DISAGREES, name, "it is in book.h5, but has no sound JSON file")
+        else:
+            one, other = single[name].document, in_book[name].document
+            if canonical_form(dict(one)) != canonical_form(dict(other)):
+                yield Finding(Kind.DISAGREES, name, first_difference(one, other, ""))
+
+
+def first_difference(one: Any, other: Any, path: str) -> str:
+    """Where two documents first differ, as a sentence."""
+    if isinstance(one, Mapping) and isinstance(other, Mapping) and one.keys() == other.keys():
+        pairs = [(f"{path}.{key}".lstrip("."), one[key], other[key]) for key in one]
+    elif isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
+        pairs = [(f"{path}[{i}]", a, b) for i, (a, b) in enumerate(zip(one, other, strict=True))]
+    else:
+        return f"{path} is {shown(one)} in its JSON file, but {shown(other)} in book.h5"
+    return next(first_difference(a, b, key) for key, a, b in pairs if canonical_form(a) != canonical_form(b))

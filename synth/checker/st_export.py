@@ -1,0 +1,82 @@
+"""The Structured Text export against the tables: its constant arrays, read as float32."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import Any, Final
+
+from synth.checker.finding import DamagedError, shown
+from synth.checker.float32 import rounded
+from synth.checker.table_reading import Table
+
+ARRAY: Final = re.compile(r"\b(\w+) : ARRAY\[0\.\.(\d{1,6})\] OF (REAL|INT|BOOL) := \[([^\]]*)\];")
+COMMENT: Final = re.compile(r"\(\*.*?\*\)", re.DOTALL)
+OWN_ARRAYS: Final = ("Lower", "Upper", "Coefficient")
+
+Arrays = dict[str, list[list[Any]]]
+
+
+def read_arrays(source: str) -> Arrays:
+    """All constant arrays by name, each as often as it is declared; `DamagedError` for one that cannot be read."""
+    found: Arrays = {}
+    for name, last, kind, content in ARRAY.findall(COMMENT.sub(" ", source)):
+        try:
+            values = [value_of(literal.strip(), kind) for literal in content.split(",")]
+        except ValueError:
+            raise DamagedError(f"the array {name} holds something else than {kind}") from None
+        if len(values) != int(last) + 1:
+            raise DamagedError(f"the array {name} holds {len(values)} values, but is declared with {int(last) + 1}")
+        found.setdefault(name, []).append(values)
+    return found
+
+
+def value_of(literal: str, kind: str) -> Any:
+    """The value of a literal; a REAL as float32 number."""
+    if kind == "BOOL":
+        return {"TRUE": True, "FALSE": False}.get(literal) if literal in ("TRUE", "FALSE") else int("no BOOL")
+    if kind == "INT":
+        return int(literal)
+    return rounded(float(literal))
+
+
+def differences(arrays: Arrays, tables: Sequence[Table]) -> Iterator[tuple[str, str]]:
+    """(about, sentence) for each disagreement; `tables` in the order of the book, "" stands for the export."""
+    parts = [name.rpartition("_") for name in arrays]
+    numbered = {int(n) for stem, _, n in parts if stem in OWN_ARRAYS and n.isdigit()}
+    if numbered != set(range(len(tables))):
+        yield "", f"it holds {len(numbered)} tables, but there are {len(tables)}"
+        return
+    categories = list(dict.fromkeys(table.category for table in tables))
+    columns: dict[str, list[Any]] = {
+        "StagesOf": [len(table.lines) for table in tables],
+        "PowersOf": [table.degree + 1 for table in tables],
+        "TargetOf": [rounded(table.target_m_s) for table in tables],
+        "PathMinOf": [rounded(table.path_m[0]) for table in tables],
+        "PathMaxOf": [rounded(table.path_m[1]) for table in tables],
+        "CategoryOf": [categories.index(table.category) + 1 for table in tables],
+        "AxlesOf": [len(table.axle_offsets_m) for table in tables],
+        "MassOf": [rounded(table.mass_t) for table in tables],
+    }
+    for name, wanted in columns.items():
+        yield from array_differences(name, arrays, wanted, "")
+    stages, powers = max(len(t.lines) for t in tables), max(t.degree for t in tables) + 1
+    for number, table in enumerate(tables):
+        for line, name in enumerate(OWN_ARRAYS[:2]):
+            has = [both[line] is not None for both in table.lines]
+            yield from array_differences(f"{name}_{number}", arrays, has + [False] * (stages - len(has)), table.id)
+        padded = [*table.lines, *[(None, None)] * (stages - len(table.lines))]
+        flat = [c for both in padded for each in both for c in [*(each or ()), *[0.0] * (powers - len(each or ()))]]
+        yield from array_differences(f"Coefficient_{number}", arrays, flat, table.id)
+
+
+def array_differences(name: str, arrays: Arrays, wanted: list[Any], about: str) -> Iterator[tuple[str, str]]:
+    """What is wrong with every declaration of the array `name`."""
+    if name not in arrays:
+        yield about, f"the array {name} is missing"
+    for found in arrays.get(name, []):
+        if len(found) != len(wanted):
+            yield about, f"{name} has {len(found)} values, but {len(wanted)} are due"
+        elif found != wanted:
+            at = next(i for i, (a, b) in enumerate(zip(found, wanted, strict=True)) if a != b)
+            yield about, f"{name}[{at}] is {shown(found[at])}, but the table says {shown(wanted[at])}"

@@ -1,0 +1,131 @@
+"""summary.json of a tune: the configuration, what it says of the tables, and the hashes of the files beside it."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from synth.checker.canonical import canonical_form, parse_json
+from synth.checker.claims import Honesty
+from synth.checker.finding import DamagedError, shown
+from synth.checker.plant import Plant, Reader, UnusableConfigError, config_sha256, plant_of
+from synth.checker.source_file import content_of
+from synth.checker.table_reading import Table
+
+DEFAULT_HONESTY: Final = Honesty(0.9, 1.1)
+"""Where no configuration sets others."""
+CARRIERS: Final = ("book.h5", "tables/", "c/", "st/")
+"""What files that hold tables are called; pictures and report may go without a word."""
+FIGURES: Final = ("rms_m_s", "bias_m_s", "p_overspeed", "switchings", "p_stall")
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What the file holds; `config_sha256` is what it says of its configuration."""
+
+    path: Path
+    config: Mapping[str, Any]
+    config_sha256: str
+    cases: Mapping[str, Mapping[str, Any]]
+    files: Mapping[str, str]
+
+    def config_fault(self) -> str | None:
+        """Why the configuration is not the one that the tables were made from, if it is not."""
+        try:
+            found = config_sha256(self.config)
+        except (ValueError, OverflowError, RecursionError):
+            found = "none"
+        if found == self.config_sha256:
+            return None
+        return f"its configuration hashes to {found[:16]}…, but it says {self.config_sha256[:16]}…"
+
+    def honesty(self) -> Honesty:
+        """The limits that predicted rms / simulated rms must keep."""
+        at = Reader(self.config)
+        try:
+            low, high = at.number("acceptance.honesty_low", 0.1, 1.0), at.number("acceptance.honesty_high", 1.0, 10.0)
+        except UnusableConfigError:
+            return DEFAULT_HONESTY
+        return Honesty(low, high)
+
+    def plant(self, table: Table) -> Plant:
+        """The plant that `table` is for; `UnusableConfigError` if the configuration has none that fits it."""
+        cuts = self.config.get("cut")
+        for cut in cuts if isinstance(cuts, list) else []:
+            if not isinstance(cut, dict) or cut.get("category") != table.category:
+                continue
+            plant = plant_of(self.config, cut)
+            if (plant.mass_t, plant.axle_offsets_m) == (table.mass_t, table.axle_offsets_m):
+                require_fit(plant, table)
+                return plant
+        raise UnusableConfigError("the configuration beside it has no cut of its category, mass and axles")
+
+    def case_faults(self, table: Table) -> Iterator[str]:
+        """Where the summary states other figures than the table."""
+        case = self.cases.get(table.id)
+        if case is None:
+            yield "summary.json does not tell of it"
+            return
+        stated, predicted = case.get("predicted"), table.document["predicted"]
+        of = stated if isinstance(stated, dict) else {}
+        for name in FIGURES:
+            said, other = predicted.get(name), of.get(name)
+            if said != other:
+                yield f"its predicted {name} is {shown(said)}, but summary.json says {shown(other)}"
+        simulated, validated = case.get("simulated"), table.document["validated"] or {}
+        of = simulated if isinstance(simulated, dict) else {}
+        for name in validated:
+            if of.get(name) != validated[name]:
+                yield f"its validated {name} is {shown(validated[name])}, but summary.json says {shown(of.get(name))}"
+
+    def file_faults(self) -> Iterator[tuple[str, str]]:
+        """(file, sentence) for each file with tables that is not what the summary lists."""
+        for name, sha256 in sorted(self.files.items()):
+            path = self.path.parent / name
+            if not name.startswith(CARRIERS):
+                continue
+            if not path.is_file():
+                yield name, "summary.json lists it, but it is not there"
+            elif hashlib.sha256(content_of(path)).hexdigest() != sha256:
+                yield name, "its SHA-256 is not the one in summary.json"
+
+
+def require_fit(plant: Plant, table: Table) -> None:
+    """Raise `UnusableConfigError` where plant and table differ in what both state."""
+    for name, one, other in (
+        ("zones", plant.zones_m, table.zones_m),
+        ("stage pressures", plant.stages_kpa, table.pressures_kpa),
+        ("dead band", plant.drive.band_kpa, table.dead_band_kpa),
+    ):
+        if one != other:
+            raise UnusableConfigError(f"the configuration beside it has other {name}: {shown(one)}, not {shown(other)}")
+    low, high = plant.entry_m_s
+    flat = [edge for zone in plant.zones_m for edge in zone]
+    if low > high or sorted(flat) != flat or sorted(plant.axle_offsets_m) != list(plant.axle_offsets_m):
+        raise UnusableConfigError("the configuration beside it describes no possible plant")
+
+
+def read_summary(path: Path) -> Summary:
+    """The summary in the file `path`; `DamagedError` for whatever is not one."""
+    document = parse_json(content_of(path), 64 * 2**20)
+    match document:
+        case {
+            "format": "retarder-summary",
+            "config": dict(config),
+            "generator": {"config_sha256": str(sha256)},
+            "cases": list(cases),
+            "files": dict(files),
+        }:
+            canonical_form(document)  # nothing in it that JSON cannot hold faithfully
+            named = {case["id"]: case for case in cases if isinstance(case, dict) and isinstance(case.get("id"), str)}
+            hashes = {name: sha for name, sha in files.items() if isinstance(sha, str) and is_inside(name)}
+            return Summary(path, config, sha256, named, hashes)
+    raise DamagedError("it is no summary of a tune")
+
+
+def is_inside(name: str) -> bool:
+    """Whether a file name stays in its directory."""
+    return not Path(name).is_absolute() and ".." not in Path(name).parts and "\0" not in name

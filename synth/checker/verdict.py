@@ -1,0 +1,128 @@
+"""All checks of one source, and what they come to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from synth.checker.canonical import require_right_crc32
+from synth.checker.claims import own_faults, simulated_faults
+from synth.checker.coarse_simulation import simulate
+from synth.checker.exports import ExportReport, check_exports
+from synth.checker.finding import DamagedError, Finding, Kind
+from synth.checker.plant import UnusableConfigError
+from synth.checker.source import Source, read_source
+from synth.checker.statistics import ExitFigures, figures_of
+from synth.checker.summary import DEFAULT_HONESTY, Summary, read_summary
+from synth.checker.table_reading import Table
+from synth.checker.table_sense import exit_gap_m_s, sense
+
+CONFIRMED, NOT_CONFIRMED, DAMAGED = 0, 1, 3
+
+
+@dataclass(frozen=True)
+class TableVerdict:
+    """One table: what was found, what the coarse simulation gave; `skipped` says why there was none."""
+
+    table: Table
+    findings: tuple[Finding, ...]
+    figures: ExitFigures | None
+    skipped: str | None
+    exit_gap_m_s: float
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Everything about a source; `others` are findings that belong to no sound table."""
+
+    path: Path
+    passes: int
+    seed: int
+    tables: tuple[TableVerdict, ...]
+    others: tuple[Finding, ...]
+    files: tuple[str, ...]
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """All of them."""
+        return tuple(finding for each in self.tables for finding in each.findings) + self.others
+
+    @property
+    def code(self) -> int:
+        """0 all confirmed, 1 a claim is not confirmed, 3 something is damaged or disagrees."""
+        kinds = {finding.kind for finding in self.findings}
+        if kinds & {Kind.DAMAGED, Kind.DISAGREES}:
+            return DAMAGED
+        return NOT_CONFIRMED if kinds else CONFIRMED
+
+
+def verify(path: Path, passes: int, seed: int) -> Verdict:
+    """Check the table, book or directory at `path`; `NothingToVerifyError` where there is nothing to read."""
+    require_right_crc32()
+    source = read_source(path)
+    report = check_exports(source, source.folder) if source.folder else ExportReport((), ())
+    summary, summary_findings = summary_beside(source)
+    found = [*source.findings, *report.findings, *summary_findings]
+    tables = tuple(judge(table, summary, passes, seed, found) for table in source.tables)
+    ids = {table.id for table in source.tables}
+    others = tuple(finding for finding in found if finding.about not in ids)
+    files = (*source.files, *report.files, *([summary.path.name] if summary else []))
+    return Verdict(path, passes, seed, tables, others, files)
+
+
+def judge(table: Table, summary: Summary | None, passes: int, seed: int, found: list[Finding]) -> TableVerdict:
+    """Everything about one table; `found` are findings of files, some of them about it."""
+    findings = [finding for finding in found if finding.about == table.id]
+    senseless = list(sense(table))
+    findings += senseless
+    honesty = summary.honesty() if summary else DEFAULT_HONESTY
+    claims = list(own_faults(table, honesty))
+    figures, skipped = None, None
+    if senseless:
+        skipped = "its lines make no sense"
+    elif summary is None:
+        skipped = "no usable summary.json of a tune is beside it, so the plant is not known"
+    elif summary.config_sha256 != table.config_sha256:
+        skipped = "summary.json beside it belongs to another configuration"
+    else:
+        findings += [Finding(Kind.DISAGREES, table.id, sentence) for sentence in summary.case_faults(table)]
+        try:
+            plant = summary.plant(table)
+            figures = figures_of(simulate(plant, table, passes, seed), table.target_m_s)
+            claims += simulated_faults(table, plant, figures, honesty)
+        except UnusableConfigError as fault:
+            findings.append(Finding(Kind.DISAGREES, table.id, str(fault)))
+            skipped = "the plant is not known"
+    findings += [Finding(Kind.CLAIM, table.id, sentence) for sentence in claims]
+    return TableVerdict(table, tuple(findings), figures, skipped, exit_gap_m_s(table))
+
+
+def summary_beside(source: Source) -> tuple[Summary | None, list[Finding]]:
+    """The summary that belongs to the source, and what is wrong with it and, for a directory, with its files."""
+    here = source.folder or source.path.parent
+    places = [here] if source.folder else [here, here.parent]
+    file = next((place / "summary.json" for place in places if (place / "summary.json").is_file()), None)
+    if file is None:
+        return None, []
+    try:
+        summary = read_summary(file)
+    except DamagedError as fault:
+        return None, [Finding(Kind.DAMAGED, "summary.json", str(fault))] if source.folder else []
+    fault_of_config = summary.config_fault()
+    if fault_of_config is not None:
+        return None, [Finding(Kind.DISAGREES, "summary.json", fault_of_config)]
+    return summary, list(directory_findings(source, summary)) if source.folder else []
+
+
+def directory_findings(source: Source, summary: Summary) -> Iterator[Finding]:
+    """Files and tables that the summary of a directory tells otherwise."""
+    try:
+        yield from (Finding(Kind.DISAGREES, name, sentence) for name, sentence in summary.file_faults())
+    except DamagedError as fault:
+        yield Finding(Kind.DAMAGED, "summary.json", f"a file that it lists is odd: {fault}")
+    for name in sorted(summary.cases.keys() - {table.id for table in source.tables}):
+        yield Finding(Kind.DISAGREES, "summary.json", f"it tells of {name}, which is not there")
+    for table in source.tables:
+        if table.config_sha256 != summary.config_sha256:
+            yield Finding(Kind.DISAGREES, table.id, "it was made from another configuration than summary.json tells")

@@ -1,0 +1,57 @@
+"""A small tune with every export, done once."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from synth.cli import main
+
+CONFIG = """\
+[retarder]
+name = "rnz-2m-park"
+[entry]
+high_m_s = 4.0
+[targets]
+exit_speeds_m_s = [1.5, 2.5]
+[grid]
+path_step_m = 1.0
+speed_step_m_s = 0.05
+transient_step_s = 0.05
+friction_scenarios = 3
+[fit]
+degree = 2
+[validation]
+passes = 4000
+[acceptance]
+honesty_low = 0.8
+honesty_high = 1.25
+[output]
+csv = true
+plots = false
+report = false
+[[cut]]
+car = "gondola-4"
+mass_t = 22
+"""
+"""A park retarder, one light class and two targets, on a coarse grid."""
+
+
+@pytest.fixture(scope="session")
+def tuned_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The directory of the tune, C99 in c/ and Structured Text in st/; not to be changed."""
+    folder = tmp_path_factory.mktemp("checked")
+    (folder / "config.toml").write_text(CONFIG)
+    out = folder / "out"
+    assert main(["tune", str(folder / "config.toml"), "-o", str(out), "--workers", "1"]) == 0
+    for form in ("c", "st"):
+        assert main(["export", str(out / "book.h5"), "--format", form, "-o", str(out / form)]) == 0
+    return out
+
+
+@pytest.fixture
+def tuned(tuned_once: Path, tmp_path: Path) -> Path:
+    """A copy of it, to be changed at will."""
+    return Path(shutil.copytree(tuned_once, tmp_path / "out"))

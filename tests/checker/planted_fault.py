@@ -1,0 +1,49 @@
+"""Planting faults in the files of a tune, and looking for the finding that each must give."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from synth.checker.finding import Kind
+from synth.checker.verdict import DAMAGED, NOT_CONFIRMED, Verdict, verify
+from tuning_tables.canonical import document_checksum
+
+Document = dict[str, Any]
+
+
+def rewrite(file: Path, change: Callable[[Document], None]) -> None:
+    """Change the document of a table and give it the checksum that the changed content has."""
+    document = json.loads(file.read_text(encoding="utf-8"))
+    change(document)
+    document["crc32"] = document_checksum(document)
+    file.write_text(json.dumps(document, indent=1, ensure_ascii=False), encoding="utf-8")
+
+
+def alone(tuned: Path) -> Path:
+    """The first JSON table, with the summary beside it but no other export to contradict it."""
+    for name in ("book.h5", "c", "st"):
+        path = tuned / name
+        shutil.rmtree(path) if path.is_dir() else path.unlink()
+    return min((tuned / "tables").glob("*.json"))
+
+
+def sentences(verdict: Verdict, kind: Kind) -> list[str]:
+    return [f"{finding.about}: {finding.sentence}" for finding in verdict.findings if finding.kind is kind]
+
+
+def found(verdict: Verdict, kind: Kind, words: str) -> bool:
+    """Whether a finding of this kind says `words`, a regular expression; and the exit code is the kind's."""
+    code = NOT_CONFIRMED if kind is Kind.CLAIM else DAMAGED
+    assert verdict.code == code, verdict.findings
+    assert any(re.search(words, sentence) for sentence in sentences(verdict, kind)), verdict.findings
+    return True
+
+
+def look(path: Path) -> Verdict:
+    """The verdict with few passes: what is planted here does not need more."""
+    return verify(path, 100, 1)

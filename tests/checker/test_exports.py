@@ -1,0 +1,136 @@
+"""One changed digit, one table more or less, in any export of a tune is found."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+import shutil
+from pathlib import Path
+
+import h5py
+import pytest
+
+from synth.checker.finding import Kind
+from tests.checker.planted_fault import Document, alone, found, look, rewrite
+
+
+def swap_coefficients(document: Document) -> None:
+    line = document["stages"][0]["upper"]
+    line[0], line[1] = line[1], line[0]
+
+
+def test_swapped_coefficients_are_found_in_every_export(tuned: Path) -> None:
+    rewrite(min((tuned / "tables").glob("*.json")), swap_coefficients)
+    verdict = look(tuned)
+    for words in (
+        r"but .* in book.h5",
+        r"retarder_table.c: word",
+        r"retarder_table.st: Coefficient",
+        r"\.csv: the row",
+    ):
+        assert found(verdict, Kind.DISAGREES, words)
+
+
+def test_a_wrong_checksum_is_damage(tuned: Path) -> None:
+    table = alone(tuned)
+    table.write_text(table.read_text(encoding="utf-8").replace('"target_speed_m_s": 1.5', '"target_speed_m_s": 1.25'))
+    assert found(look(table), Kind.DAMAGED, "crc32")
+
+
+def change_text(file: Path, pattern: str, replacement: str) -> None:
+    text, count = re.subn(pattern, replacement, file.read_bytes().decode("utf-8"), count=1)
+    assert count == 1
+    file.write_bytes(text.encode("utf-8"))
+
+
+@pytest.mark.parametrize(
+    ("name", "pattern", "replacement", "words"),
+    [
+        ("c/retarder_table.c", r"(-?0x1\.)([0-8])", r"\g<1>9", "the crc32 of table 0"),
+        ("c/retarder_table.c", r"(-?0x1\.)([0-8])", r"\g<1>9", "but the table says"),
+        ("c/retarder_table.c", r"retarder_table_count = 2u", "retarder_table_count = 1u", "retarder_table_count is 1"),
+        ("c/retarder_table.h", r"(CATEGORY_\w+) 1u", r"\1 2u", "defines the categories"),
+        ("c/golden_vectors.csv", r"(?m),0\r$", ",1\r", r"golden_vectors.csv: row \d+ says 1"),
+        ("st/retarder_table.st", r"(-?\d\.\d{8})\d(E-\d\d)", r"\g<1>X\2", "something else than REAL"),
+        ("st/retarder_table.st", r"FALSE, TRUE", "TRUE, TRUE", r"retarder_table.st: Lower_0\[0\] is True"),
+        ("st/retarder_table.st", r"MassOf : ARRAY(.*?)\[(\s*)2", r"MassOf : ARRAY\1[\g<2>3", r"MassOf\[0\]"),
+    ],
+)
+def test_one_changed_digit_in_controller_code_is_found(
+    tuned: Path, name: str, pattern: str, replacement: str, words: str
+) -> None:
+    change_text(tuned / name, pattern, replacement)
+    kind = Kind.DAMAGED if "else than" in words or "count is" in words else Kind.DISAGREES
+    assert found(look(tuned), kind, words)
+
+
+def test_one_changed_digit_in_csv_is_found(tuned: Path) -> None:
+    file = min((tuned / "tables").glob("*.csv"))
+    change_text(file, r"(upper,0,[-0-9.e]*)([0-8])([,\r])", r"\g<1>9\3")
+    assert found(look(tuned), Kind.DISAGREES, "the row upper,0 holds")
+
+
+def test_a_flipped_bit_in_the_book_is_found(tuned: Path) -> None:
+    content = bytearray((tuned / "book.h5").read_bytes())
+    content[len(content) // 2] ^= 1
+    (tuned / "book.h5").write_bytes(content)
+    assert found(look(tuned), Kind.DAMAGED, "book.h5: its seal")
+
+
+def seal_anew(book: Path) -> None:
+    """Give a changed book the seal that fits it."""
+    body = book.read_bytes().partition(b"\n# sealed")[0]
+    seal = f"\n# sealed, sha256 of all before this line: {hashlib.sha256(body).hexdigest()}\n"
+    book.write_bytes(body + seal.encode())
+
+
+def test_a_changed_number_under_a_right_seal_is_found(tuned: Path) -> None:
+    book = tuned / "book.h5"
+    with h5py.File(book, "r+") as file:
+        file["coefficients"][0, 0, 1, 0] += 0.5
+    seal_anew(book)
+    assert found(look(book), Kind.DAMAGED, "payload_sha256")
+
+
+def test_a_book_that_points_elsewhere_is_not_followed(tuned: Path) -> None:
+    book = tuned / "book.h5"
+    other = Path(shutil.copy(book, tuned / "other.h5"))
+    with h5py.File(book, "r+") as file:
+        del file["mass_t"]
+        file["mass_t"] = h5py.ExternalLink(str(other), "mass_t")
+    seal_anew(book)
+    assert found(look(book), Kind.DAMAGED, "mass_t is no dataset of its own")
+
+
+def test_a_removed_table_is_missed(tuned: Path) -> None:
+    min((tuned / "tables").glob("*.json")).unlink()
+    verdict = look(tuned)
+    assert found(verdict, Kind.DISAGREES, "in book.h5, but has no sound JSON file")
+    assert found(verdict, Kind.DISAGREES, "lists it, but it is not there")
+
+
+def test_a_removed_csv_is_missed(tuned: Path) -> None:
+    min((tuned / "tables").glob("*.csv")).unlink()
+    assert found(look(tuned), Kind.DISAGREES, "it has none")
+
+
+def test_a_table_too_many_is_found(tuned: Path) -> None:
+    table = min((tuned / "tables").glob("*.json"))
+    copy = Path(shutil.copy(table, table.with_name("copy.json")))
+    rewrite(copy, lambda document: document.update(id="another"))
+    verdict = look(tuned)
+    assert found(verdict, Kind.DISAGREES, "another: it has a JSON file, but it is not in book.h5")
+    assert found(verdict, Kind.DISAGREES, "it holds 2 tables, but there are 3")
+
+
+def test_a_changed_configuration_is_not_believed(tuned: Path) -> None:
+    change_text(tuned / "summary.json", r'"common_cv":\s*0\.15', '"common_cv":0.05')
+    assert found(look(tuned), Kind.DISAGREES, "its configuration hashes to")
+
+
+def test_other_figures_in_the_summary_are_found(tuned: Path) -> None:
+    summary = json.loads((tuned / "summary.json").read_text(encoding="utf-8"))
+    summary["cases"][0]["predicted"]["rms_m_s"] *= 0.5
+    (tuned / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    assert found(look(tuned), Kind.DISAGREES, "but summary.json says")

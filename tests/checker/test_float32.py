@@ -1,0 +1,118 @@
+"""The checker's own arithmetic against numpy, zlib and the tables' canonical form."""
+
+from __future__ import annotations
+
+import json
+import math
+import zlib
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from synth.checker.canonical import canonical_form, crc32, parse_json, require_right_crc32
+from synth.checker.finding import DamagedError
+from synth.checker.float32 import above, below, bits, decide, from_bits, horner, is_float32, rounded
+from tuning_tables import rule
+from tuning_tables.canonical import canonical_json
+
+REAL = st.floats(allow_nan=False)
+SINGLE = st.floats(allow_nan=False, allow_infinity=False, width=32)
+JSON = st.recursive(
+    st.none() | st.booleans() | st.integers(-(2**53), 2**53) | st.floats(allow_nan=False, allow_infinity=False)
+    | st.text(st.characters(exclude_categories=["Cs"])),
+    lambda inner: st.lists(inner, max_size=4)
+    | st.dictionaries(st.text(st.characters(exclude_categories=["Cs"])), inner, max_size=4),
+    max_leaves=12,
+)  # fmt: skip
+
+
+@given(REAL)
+def test_rounding_is_that_of_numpy(x: float) -> None:
+    with np.errstate(over="ignore"):
+        assert bits(x) == int(np.float32(x).view(np.uint32))
+        assert rounded(x) == float(np.float32(x))
+        assert is_float32(x) == (math.isfinite(x) and float(np.float32(x)) == x)
+
+
+@given(SINGLE)
+def test_neighbours_are_those_of_numpy(x: float) -> None:
+    with np.errstate(over="ignore"):
+        up, down = (float(np.nextafter(np.float32(x), np.float32(end))) for end in (np.inf, -np.inf))
+    assert (above(x), below(x)) == (up, down)
+    assert from_bits(bits(x)) == x
+
+
+@given(st.lists(SINGLE, min_size=1, max_size=10), SINGLE)
+def test_horner_is_that_of_numpy(line: list[float], s: float) -> None:
+    with np.errstate(all="ignore"):
+        value = np.float32(line[-1])
+        for coefficient in line[-2::-1]:
+            value = np.float32(np.float32(value * np.float32(s)) + np.float32(coefficient))
+        assert horner(line, s) == pytest.approx(float(value), abs=0.0, rel=0.0, nan_ok=True)
+
+
+LINE = st.none() | st.lists(st.floats(-8, 8, width=32), min_size=3, max_size=3)
+READING = st.floats(-2, 12, width=32) | st.floats()
+
+
+@given(st.lists(st.tuples(LINE, LINE), min_size=2, max_size=4), st.integers(-1, 5), READING, READING)
+def test_rule_is_that_of_the_controller(
+    lines: list[tuple[list[float] | None, list[float] | None]], stage: int, s: float, v: float
+) -> None:
+    missing = [math.nan] * 3
+    coefficients = np.array([[line or missing for line in both] for both in lines], dtype=np.float32)
+    has_line = np.array([[line is not None for line in both] for both in lines])
+    valid = np.array([0.0, 10.0, 0.0, 9.0], dtype=np.float32)
+    expected = rule.decide(coefficients, has_line, valid, stage, s, v)
+    assert decide(lines, (0.0, 10.0), stage, s, v) == expected
+
+
+@given(st.binary(max_size=300))
+def test_crc_is_that_of_zlib(content: bytes) -> None:
+    assert crc32(content) == zlib.crc32(content)
+
+
+def test_crc_check_value() -> None:
+    assert crc32(b"123456789") == 0xCBF43926
+    require_right_crc32()
+
+
+def test_a_wrong_crc_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("synth.checker.canonical.POLYNOMIAL", 0xEDB88321)
+    with pytest.raises(ArithmeticError, match="cbf43926"):
+        require_right_crc32()
+
+
+@given(JSON)
+def test_canonical_form_is_that_of_the_tables(value: object) -> None:
+    assert canonical_form(value).encode("utf-8") == canonical_json(value)
+    assert parse_json(json.dumps(value).encode("utf-8")) == value
+
+
+@pytest.mark.parametrize(
+    ("x", "text"),
+    [(1e21, "1e+21"), (1e20, "100000000000000000000"), (1e-6, "0.000001"), (1e-7, "1e-7"), (5e-324, "5e-324"),
+     (333333333.3333333, "333333333.3333333"), (-0.0, "0"), (1.5e300, "1.5e+300")],
+)  # fmt: skip
+def test_numbers_are_printed_as_by_ecmascript(x: float, text: str) -> None:
+    """Samples of RFC 8785, appendix B, and the limits of the layouts."""
+    assert canonical_form(x) == text
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [('{"a":1,"a":2}', "stands twice"), ("[NaN]", "no JSON number"), ("[1e999]", "double precision"),
+     ("[1", "not JSON"), ("[" * 100_000, "nested"), ("[" + "9" * 5000 + "]", "not JSON")],
+)  # fmt: skip
+def test_what_is_no_strict_json_is_refused(text: str, reason: str) -> None:
+    with pytest.raises(DamagedError, match=reason):
+        parse_json(text.encode())
+
+
+def test_what_is_no_utf8_is_refused() -> None:
+    with pytest.raises(DamagedError, match="byte 1 is not UTF-8"):
+        parse_json(b'"\xff"')
+    with pytest.raises(DamagedError, match="surrogate"):
+        canonical_form("\ud800")
