@@ -13,6 +13,7 @@ from plant_models import path_breaks_m, path_coefficients
 from synth.actuator import stage_locked_actuator
 from synth.controllers import Controller, LineController, TableController, fixed
 from synth.kernels import closed_loop as kernel
+from synth.kernels import regulator
 from synth.passes import ExitSample, PassTrace
 from synth.problem import Plant
 from synth.random_passes import PATH_CELLS, RandomPasses, random_passes
@@ -45,7 +46,7 @@ class ClosedLoop:
     plant: Plant
     path: kernel.Path
     drive: kernel.Drive
-    sensor: kernel.Sensor
+    sensor: regulator.Sensor
 
     @property
     def stages(self) -> int:
@@ -130,7 +131,7 @@ def close_loop(plant: Plant, stages: int, substeps: int | None = None) -> Closed
         plant=plant,
         path=path_cells(plant),
         drive=drive,
-        sensor=kernel.Sensor(sensor.sample_period_s, sensor.noise_m_s, sensor.resolution_m_s),
+        sensor=regulator.Sensor(sensor.sample_period_s, sensor.noise_m_s, sensor.resolution_m_s),
     )
 
 

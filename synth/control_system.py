@@ -31,6 +31,7 @@ from plant_models import PressureHistory, path_breaks_m, path_coefficients
 from synth.actuator import Actuator, stage_locked_actuator
 from synth.closed_loop import Controller
 from synth.kernels import closed_loop as kernel
+from synth.kernels import regulator
 from synth.problem import Plant
 
 if TYPE_CHECKING:
@@ -146,7 +147,7 @@ def regulator_system(plant: Plant, controller: Controller) -> NonlinearIOSystem:
 
     actuator = regulated_actuator(plant, controller)
     period = plant.sensor.sample_period_s
-    sensor = kernel.Sensor(period, 0.0, plant.sensor.resolution_m_s)
+    sensor = regulator.Sensor(period, 0.0, plant.sensor.resolution_m_s)
     law = controller.law()
     gain = period / (period + law.filter_s)
 
@@ -158,13 +159,13 @@ def regulator_system(plant: Plant, controller: Controller) -> NonlinearIOSystem:
         stage, top = int(x[0]), actuator.stages - 1
         if x[2] > 0:
             return [stage]
-        measured = kernel.measure(float(u[1]), 0.0, sensor)
+        measured = regulator.measure(float(u[1]), 0.0, sensor)
         if law.coefficients.shape[0] > 0:
-            step = kernel.table_decision(law.coefficients, law.has_line, law.valid, stage, float(u[0]), measured)
+            step = regulator.table_decision(law.coefficients, law.has_line, law.valid, stage, float(u[0]), measured)
             return [min(max(stage + step, 0), top)]
         ahead = measured + law.lead_s * filtered_slope(x, measured)
         lines = (law.lower, law.upper, law.spacing_m, law.multi_step)
-        return [kernel.stage_by_lines(*lines, stage, top, float(u[0]), ahead)]
+        return [regulator.stage_by_lines(*lines, stage, top, float(u[0]), ahead)]
 
     def next_state(t: float, x: Any, u: Any, params: dict[str, float]) -> list[float]:
         [wanted] = stage_wanted(t, x, u, params)
@@ -172,7 +173,7 @@ def regulator_system(plant: Plant, controller: Controller) -> NonlinearIOSystem:
         if wanted != int(x[0]):
             chain = actuator.command[mode, wanted]
             mode, locked = int(actuator.chain_mode[chain]), int(actuator.chain_samples[chain])
-        measured = kernel.measure(float(u[1]), 0.0, sensor)
+        measured = regulator.measure(float(u[1]), 0.0, sensor)
         return [wanted, mode, max(0, locked - 1), filtered_slope(x, measured), measured]
 
     return control.nlsys(

@@ -8,9 +8,10 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.kernels import closed_loop as kernel
+from synth.kernels import regulator
 from synth.switching_lines import SwitchingLines
 from tuning_tables.active_table import ActiveTable
+from tuning_tables.estimator import Estimator
 from tuning_tables.table import ControllerTable
 
 Scalar = TypeVar("Scalar", bound=np.generic)
@@ -18,16 +19,20 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 
 @dataclass(frozen=True)
 class TableController:
-    """A regulator that runs an exported table, or lines chosen from a book, with the tables' own rule."""
+    """A regulator that runs an exported table, or lines chosen from a book, with the tables' own rule.
+
+    With an `estimator` the rule is asked with the estimated speed.
+    """
 
     table: ControllerTable | ActiveTable
+    estimator: Estimator | None = None
 
     @property
     def stages(self) -> int:
         """Number of stages K + 1."""
         return int(self.table.coefficients.shape[0])
 
-    def law(self) -> kernel.Rule:
+    def law(self) -> regulator.Rule:
         """The rule as the kernel takes it."""
         none = fixed(np.empty((0, 0)), np.float64)
         table = self.table
@@ -36,7 +41,7 @@ class TableController:
             fixed(table.has_line, np.bool_),
             fixed(table.valid_range, np.float32),
         )
-        return kernel.Rule(*arrays, none, none, 1.0, False, 0.0, 0.0)
+        return regulator.Rule(*arrays, none, none, 1.0, False, 0.0, 0.0, *estimator_arrays(self.estimator))
 
 
 @dataclass(frozen=True)
@@ -45,23 +50,25 @@ class LineController:
 
     `multi_step`: the comparison is repeated at the stage reached before the command is sent, so that one
     command may jump over stages. `lead_s` τ: compared is measured speed + τ·slope, the slope of the
-    measured speed being filtered to first order over `slope_filter_s`.
+    measured speed being filtered to first order over `slope_filter_s`. With an `estimator` the estimated
+    speed is compared instead of the measured one.
     """
 
     lines: SwitchingLines
     multi_step: bool = False
     lead_s: float = 0.0
     slope_filter_s: float = 0.3
+    estimator: Estimator | None = None
 
     @property
     def stages(self) -> int:
         """Number of stages K + 1."""
         return self.lines.stages
 
-    def law(self) -> kernel.Rule:
+    def law(self) -> regulator.Rule:
         """The rule as the kernel takes it."""
         lines = self.lines
-        return kernel.Rule(
+        return regulator.Rule(
             fixed(np.empty((0, 0, 0)), np.float32),
             fixed(np.empty((0, 0)), np.bool_),
             fixed(np.empty(0), np.float32),
@@ -71,10 +78,18 @@ class LineController:
             self.multi_step,
             self.lead_s,
             self.slope_filter_s,
+            *estimator_arrays(self.estimator),
         )
 
 
 Controller = TableController | LineController
+
+
+def estimator_arrays(estimator: Estimator | None) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Parameters and work of the estimator as the kernel takes them; no work for none."""
+    if estimator is None:
+        return fixed(np.zeros(0), np.float32), fixed(np.zeros((3, 0)), np.float32)
+    return fixed(estimator.parameters, np.float32), fixed(estimator.work, np.float32)
 
 
 def fixed(array: NDArray[Any], dtype: type[Scalar]) -> NDArray[Scalar]:

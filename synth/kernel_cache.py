@@ -27,7 +27,12 @@ _P = ParamSpec("_P")
 _R = TypeVar("_R")
 
 _OWNER = "retarder-synth"
-_KERNEL_SOURCES = ("plant_models/**/*.py", "synth/kernels/**/*.py", "tuning_tables/rule.py")
+_KERNEL_SOURCES = (
+    "plant_models/**/*.py",
+    "synth/kernels/**/*.py",
+    "tuning_tables/rule.py",
+    "tuning_tables/estimator.py",
+)
 _COMPILERS = ("llvmlite", "numba", "numpy")
 _FINGERPRINT = re.compile(r"[0-9a-f]{16}")
 _UNUSED_AFTER_S = 30 * 24 * 3600.0

@@ -23,7 +23,7 @@ class RandomPasses:
 
     `cut_z` (n,) standard normal for ξ_cut; `entry_u`, `phase_u`, `resistance_u` (n,) uniform in [0, 1) for
     the entry speed, the phase of the sampling and the rolling resistance; `path_z` (n, 512) and `noise_z`
-    (n, 256) standard normal float32 for η along the path and the sensor.
+    (n, 256) standard normal float32 for η along the path and the sensor. A NaN in `noise_z` is a missing reading.
     """
 
     cut_z: NDArray[np.float64]

@@ -4,9 +4,7 @@ Motion is exact: within a path cell and a piece of constant overpressure the acc
 positions and times of cell edges are closed forms. The only approximation is that a transient is played as
 its exact mean overpressure over each part of a sampling period.
 
-The tables' own rule is compiled here unchanged, so that the loop is driven by what a controller runs: the
-one import that is neither numpy nor numba. Numba does not notice that an imported function has changed:
-the cache directory must be named by a hash that covers `tuning_tables/rule.py` too.
+What the regulator measures and wants is in `kernels.regulator`.
 """
 
 from __future__ import annotations
@@ -18,7 +16,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from tuning_tables import rule
+from synth.kernels.regulator import Rule, Sensor, estimated_speed, measure, stage_by_lines, table_decision
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -59,33 +57,6 @@ class Drive(NamedTuple):
     substeps: int
 
 
-class Sensor(NamedTuple):
-    """Sampling period, noise and resolution of the speed sensor."""
-
-    period_s: float
-    noise_m_s: float
-    resolution_m_s: float
-
-
-class Rule(NamedTuple):
-    """Switching rule: a polynomial table, or lines if the table has no stage (`coefficients` of size 0).
-
-    Table: `coefficients` float32 (K + 1, 2, r + 1), `has_line` (K + 1, 2), `valid` float32 (4,). Lines: `lower`,
-    `upper` (K + 1, N + 1) over nodes `spacing_m` apart; with `multi_step` the comparison is repeated at the
-    stage reached; the speed compared is measured + `lead_s`·slope, the slope filtered over `filter_s`.
-    """
-
-    coefficients: NDArray[np.float32]
-    has_line: NDArray[np.bool_]
-    valid: NDArray[np.float32]
-    lower: Floats
-    upper: Floats
-    spacing_m: float
-    multi_step: bool
-    lead_s: float
-    filter_s: float
-
-
 class Draws(NamedTuple):
     """What chance gives to n passes: ξ_cut, w0, entry speed, first sample (n,); z of path and sensor (n, ·).
 
@@ -108,9 +79,6 @@ class Exits(NamedTuple):
     time_s: Floats
     stalled: NDArray[np.bool_]
     switchings: NDArray[np.int32]
-
-
-table_decision = njit(cache=True, nogil=True)(rule.decide)
 
 
 @njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
@@ -143,53 +111,6 @@ def advance(
 
 
 @njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
-def measure(v: float, z: float, sensor: Sensor) -> float:
-    """Speed that the sensor reports; it has no sign."""
-    value: float = v + sensor.noise_m_s * z
-    if sensor.resolution_m_s > 0.0:
-        value = np.rint(value / sensor.resolution_m_s) * sensor.resolution_m_s
-    return max(0.0, value)
-
-
-@njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
-def line_at(lines: Floats, stage: int, spacing_m: float, s: float) -> float:
-    """Line of `stage` at path `s`; beside an infinite node it is infinite: no command."""
-    place = s / spacing_m
-    node = min(int(place), lines.shape[1] - 2)
-    low: float = lines[stage, node]
-    high: float = lines[stage, node + 1]
-    if math.isinf(low):
-        return low
-    if math.isinf(high):
-        return high
-    speed: float = low + (place - node) * (high - low)
-    return speed
-
-
-@njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
-def line_decision(lower: Floats, upper: Floats, spacing_m: float, stage: int, s: float, v: float) -> int:
-    """−1, 0 or +1 stage by the switching lines."""
-    if v < line_at(lower, stage, spacing_m, s):
-        return -1
-    if v > line_at(upper, stage, spacing_m, s):
-        return 1
-    return 0
-
-
-@njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
-def stage_by_lines(
-    lower: Floats, upper: Floats, spacing_m: float, multi_step: bool, stage: int, top: int, s: float, v: float
-) -> int:
-    """Stage that switching lines want at (s, v) while `stage` rests, within 0 … `top`."""
-    step = line_decision(lower, upper, spacing_m, stage, s, v)
-    wanted = min(max(stage + step, 0), top)
-    if multi_step and step != 0:
-        while 0 < wanted < top and line_decision(lower, upper, spacing_m, wanted, s, v) == step:
-            wanted += step
-    return wanted
-
-
-@njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
 def note(events: Floats, count: int, t: float, s: float, v: float, kpa: float, stage: int, measured: float) -> int:
     """Write one event, if a trace is wanted (`events` not empty); returns the number of events."""
     if count < events.shape[0]:
@@ -209,10 +130,11 @@ def run_pass(
     A pressure, stage or speed in `events` holds from its time on; the last event is the end of the pass.
     """
     # Unpacked once: numba counts references each time that an array is taken from a tuple.
-    coefficients, has_line, valid, lower, upper, spacing_m, multi_step, lead_s, filter_s = law
+    coefficients, has_line, valid, lower, upper, spacing_m, multi_step, lead_s, filter_s, parameters, work = law
     mode_kpa, command, chain_mode, chain_samples, chain_kpa, substeps = drive
     period, part = sensor.period_s, sensor.period_s / substeps
-    tabled = coefficients.shape[0] > 0
+    tabled, estimating = coefficients.shape[0] > 0, work.shape[1] > 0
+    known, passed_kpa = np.zeros(7, np.float32), 0.0
     top = command.shape[1] - 1
     gain = period / (period + filter_s)
     mode, sample, switchings, slope, before = 0, 0, 0, 0.0, math.nan
@@ -223,12 +145,15 @@ def run_pass(
     # One turn of the loop is one sampling period, at rest or within a chain.
     while status == MOVING and time < LONGEST_PASS_S:
         measured = math.nan
-        if chain < 0 or lead_s != 0.0:  # within a chain only the slope filter looks at the sensor
+        if chain < 0 or lead_s != 0.0 or estimating:  # within a chain only filters look at the sensor
             measured = measure(v, noise_z[sample % noise_z.shape[0]], sensor)
         if lead_s != 0.0:
-            if sample > 0:
+            if not math.isnan(measured - before):  # neither at the first sample nor beside a missing reading
                 slope += gain * ((measured - before) / period - slope)
             before = measured
+        if estimating:
+            estimated = float(estimated_speed(parameters, work, known, s, measured, passed_kpa))
+            measured = estimated if chain < 0 else math.nan  # compared, and noted, only at rest
         if chain < 0:
             if tabled:
                 wanted = min(max(stage + table_decision(coefficients, has_line, valid, stage, s, measured), 0), top)
@@ -240,12 +165,14 @@ def run_pass(
                 switchings += 1
         if chain < 0:
             kpa = mode_kpa[mode]
+            passed_kpa = kpa
             count = note(events, count, time, s, v, kpa, stage, measured)
             cell, s, v, used, status = advance(edges_m, free, brake, kpa, period, cell, s, v)
         else:
-            i = 0
+            i, at = 0, played * substeps
+            passed_kpa = chain_kpa[chain, at : at + substeps].mean() if estimating else 0.0
             while i < substeps and status == MOVING:
-                first, at = i, played * substeps
+                first = i
                 kpa = chain_kpa[chain, at + i]
                 while i < substeps and chain_kpa[chain, at + i] == kpa:
                     i += 1  # dead times and rests are one step

@@ -1,0 +1,106 @@
+"""Tables for the estimated speed: the estimator knows the plant's work, its error is what is designed for, it helps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from plant_models import Friction
+from synth.closed_loop import LineController, close_loop, simulate, trace
+from synth.estimated_table import controller_of, estimated_table, trimmed
+from synth.estimator_design import as_estimated, estimator_of, speed_error_m_s
+from synth.grid import Resolution
+from synth.problem import Criterion, Plant, Problem
+from synth.random_passes import RandomPasses, random_passes
+from synth.switching_lines import SwitchingLines
+
+
+@pytest.fixture(scope="module")
+def passes() -> RandomPasses:
+    return random_passes(11, 0, 1500)
+
+
+def climbing(plant: Plant) -> SwitchingLines:
+    """Some lines under which every stage is used."""
+    nodes = np.linspace(0.0, plant.exit_m, 5)
+    stages = plant.top_stage + 1
+    upper = np.array([np.linspace(5.5 + 0.3 * k, 3.2 + 0.3 * k, 5) for k in range(stages)])
+    lower = upper - 0.8
+    lower[0], upper[-1] = -np.inf, np.inf
+    return SwitchingLines(nodes, lower, upper)
+
+
+def test_the_work_is_that_of_the_simulated_cut(plant_of: Callable[[float], Plant], passes: RandomPasses) -> None:
+    """Energy along a simulated pass without path noise, at the friction of the cut, follows D(s) − ξ p W(s)."""
+    quiet = replace(plant_of(36.0), friction=Friction(0.15, 0.0, 0.0, 2.0))
+    quiet = replace(quiet, resistance=replace(quiet.resistance, std_n_per_kn=0.0))
+    estimator = estimator_of(quiet)
+    factor = 0.85
+    seen = trace(quiet, LineController(climbing(quiet)), passes, 3, cut_factor=factor)
+    drive = np.diff(np.interp(seen.path_m, estimator.s_m, estimator.drive_m2_s2))
+    brake = np.diff(np.interp(seen.path_m, estimator.s_m, estimator.brake_m2_s2_per_kpa))
+    gained = drive - factor * seen.overpressure_kpa[:-1] * brake
+    assert seen.stage.max() >= 2
+    assert np.cumsum(gained) == pytest.approx(0.5 * seen.speed_m_s[1:] ** 2 - 0.5 * seen.speed_m_s[0] ** 2, abs=1e-6)
+
+
+def test_the_estimate_is_closer_than_the_sensor(plant_of: Callable[[float], Plant], passes: RandomPasses) -> None:
+    plant = plant_of(36.0)
+    loop, lines = close_loop(plant, plant.top_stage + 1), climbing(plant)
+    raw = speed_error_m_s(loop, LineController(lines), passes.part(0, 100))
+    estimated = speed_error_m_s(loop, LineController(lines, estimator=estimator_of(plant)), passes.part(0, 100))
+    sensor = plant.sensor
+    assert raw == pytest.approx(np.hypot(sensor.noise_m_s, sensor.resolution_m_s / np.sqrt(12.0)), rel=0.05)
+    assert estimated < 0.55 * raw
+
+
+def test_a_missing_reading_is_bridged_by_the_estimator_alone(
+    plant_of: Callable[[float], Plant], passes: RandomPasses
+) -> None:
+    plant, one = plant_of(36.0), passes.part(7, 8)
+    gap = one.noise_z.copy()
+    gap[:, 15:25] = np.nan
+    blind = replace(one, noise_z=gap)
+    still = np.full((plant.top_stage + 1, 2), np.inf)
+    lines = SwitchingLines(np.array([0.0, plant.exit_m]), -still, still)  # no command: every sample is one at rest
+    without = trace(plant, LineController(lines), blind, 0)
+    bridged = trace(plant, LineController(lines, estimator=estimator_of(plant)), blind, 0)
+    sampled = slice(1, -1)  # the first event is the entrance, the last the exit
+    assert np.isnan(without.measured_m_s[sampled]).sum() == 10
+    assert np.abs(bridged.measured_m_s - bridged.speed_m_s)[sampled].max() < 0.2
+
+
+@pytest.mark.slow
+def test_it_is_designed_for_its_own_error_and_better_than_no_estimator(
+    plant_of: Callable[[float], Plant], passes: RandomPasses
+) -> None:
+    plant = plant_of(36.0)
+    problem = Problem(plant, 3.0, Criterion())
+    coarse = Resolution(path_step_m=1.0, speed_step_m_s=0.05)
+    made = estimated_table(problem, coarse, 3, passes)
+    assert made.rms_after_m_s <= made.rms_before_m_s
+    assert made.rounds <= 3
+    lines = made.lines.at(np.linspace(0.0, plant.exit_m, 301))
+    fresh = random_passes(12, 0, 4000)
+    exits = [simulate(plant, c, fresh) for c in (LineController(lines), controller_of(made.lines, made.estimator))]
+    squares = [(sample.exit_speed_m_s - 3.0) ** 2 for sample in exits]
+    gain = squares[0] - squares[1]
+    assert gain.mean() > 3.0 * gain.std() / np.sqrt(len(gain))  # on the same passes
+    assert np.sqrt(squares[1].mean()) < 0.04
+
+
+def test_a_trim_never_makes_worse() -> None:
+    assert trimmed(lambda a, b: 1.0 + a * a + b * b) == ((0.0, 0.0), 1.0, 1.0)
+    (a, b), before, after = trimmed(lambda a, b: 1.0 + (a - 0.03) ** 2 + 4.0 * (b + 0.01) ** 2)
+    assert (a, b) == pytest.approx((0.03, -0.01), abs=0.005)
+    assert after < before
+
+
+def test_as_estimated_changes_the_sensor_alone(plant_of: Callable[[float], Plant]) -> None:
+    plant = plant_of(36.0)
+    seen = as_estimated(plant, 0.02)
+    assert (seen.sensor.noise_m_s, seen.sensor.resolution_m_s) == (0.02, 0.0)
+    assert replace(seen, sensor=plant.sensor) == plant

@@ -1,0 +1,146 @@
+"""The estimator against a Kalman filter in matrix form, against cuts whose friction is known, and bit by bit."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numba import njit
+
+from tuning_tables import InvalidTable
+from tuning_tables.estimator import LEAST_SPEED_M_S, Estimator, begin, observe
+
+PERIOD_S = 0.1
+BREAKS = (0.0, 1.85, 8.0, 12.5, 20.0, 30.0)
+DRIVE = tuple(0.066 * s for s in BREAKS)
+BRAKE = (0.0, 0.0008, 0.008, 0.018, 0.031, 0.031)
+
+
+@pytest.fixture(scope="module")
+def estimator() -> Estimator:
+    return Estimator(0.05, 0.15, 0.1, 2.0, BREAKS, DRIVE, BRAKE)
+
+
+def passes_of(seed: int, factor: float, noise_m_s: float, kpa: float = 250.0) -> np.ndarray:
+    """Samples (s, true v, measured v, overpressure) of a cut with constant friction, exact in energy."""
+    rng = np.random.default_rng(seed)
+    s, v, rows = 0.0, 6.0, []
+    while s < 30.0:
+        rows.append((s, v, v + noise_m_s * rng.standard_normal(), kpa))
+        for _ in range(20):
+            ahead = s + v * PERIOD_S / 20
+            gained = np.interp(ahead, BREAKS, DRIVE) - np.interp(s, BREAKS, DRIVE)
+            lost = factor * kpa * (np.interp(ahead, BREAKS, BRAKE) - np.interp(s, BREAKS, BRAKE))
+            s, v = ahead, np.sqrt(max(v * v + 2.0 * (gained - lost), 0.04))
+    return np.array(rows)
+
+
+def run(estimator: Estimator, samples: np.ndarray, step=observe) -> tuple[np.ndarray, np.ndarray]:
+    """Estimates and states after every sample; the overpressure before the first counts for nothing."""
+    state, speeds, states = begin(), [], []
+    for s, _, v, p in samples:
+        speeds.append(step(estimator.parameters, estimator.work, state, s, v, p))
+        states.append(state.copy())
+    return np.array(speeds), np.array(states)
+
+
+def test_it_is_the_kalman_filter(estimator: Estimator) -> None:
+    """The same recursion in double precision, with matrices and the exact square root."""
+    samples = passes_of(1, 1.15, 0.05)
+    speeds, states = run(estimator, samples)
+    x, P = np.array([samples[0, 2], 1.0]), np.diag([0.05**2, 0.15**2])
+    for (s0, *_), (s, _, v, p), speed, state in zip(samples, samples[1:], speeds[1:], states[1:], strict=False):
+        w = p * (np.interp(s, BREAKS, BRAKE) - np.interp(s0, BREAKS, BRAKE))
+        de = np.interp(s, BREAKS, DRIVE) - np.interp(s0, BREAKS, DRIVE) - x[1] * w
+        ahead = np.sqrt(x[0] ** 2 + 2.0 * de)
+        g = w / (0.5 * (x[0] + ahead))
+        F = np.array([[x[0] / ahead, -g], [0.0, 1.0]])
+        P = F @ P @ F.T + np.diag([g**2 * 2.0 * 0.1**2 * 2.0 / (s - s0), 0.0])
+        K = P[:, 0] / (P[0, 0] + 0.05**2)
+        x = np.array([ahead, x[1]]) + K * (v - ahead)
+        P = P - np.outer(K, P[0])
+        assert speed == pytest.approx(x[0], abs=2e-4)
+        assert state[3] == pytest.approx(x[1], abs=2e-3)
+        assert [state[4], state[5], state[6]] == pytest.approx([P[0, 0], P[0, 1], P[1, 1]], rel=2e-2, abs=1e-6)
+
+
+@pytest.mark.parametrize("factor", [0.7, 1.0, 1.3])
+def test_it_finds_the_friction_of_a_cut(estimator: Estimator, factor: float) -> None:
+    exact = replace(estimator, path_std=0.0)
+    samples = passes_of(2, factor, 1e-6)
+    speeds, states = run(exact, samples)
+    assert np.abs(speeds[-10:] - samples[-10:, 1]).max() < 0.005
+    # Shrunk towards 1 by what it does not know yet: the variance that is left of that before.
+    left = states[-1, 6] / 0.15**2
+    assert left < 0.1
+    assert states[-1, 3] == pytest.approx(factor + left * (1.0 - factor), abs=0.01)
+
+
+def test_its_errors_are_as_large_as_it_says(estimator: Estimator) -> None:
+    exact = replace(estimator, path_std=0.0)
+    rng = np.random.default_rng(3)
+    errors, stated = [], []
+    for seed in range(200):
+        samples = passes_of(seed, 1.0 + 0.15 * rng.standard_normal(), 0.05)[:40]
+        speeds, states = run(exact, samples)
+        errors.append([speeds[-1] - samples[-1, 1], states[-1, 3]])
+        stated.append(np.sqrt(states[-1, 4]))
+    spread = np.array(errors)[:, 0].std()
+    assert spread < 0.03  # of 0.05 measured
+    # 200 samples: the standard deviation is known to 5 %, so 20 % is four standard errors.
+    assert spread == pytest.approx(np.mean(stated), rel=0.2)
+
+
+def test_a_drop_out_is_bridged_by_the_model(estimator: Estimator) -> None:
+    samples = passes_of(4, 1.2, 0.05)
+    seen, _ = run(estimator, samples)
+    samples[15:25, 2] = np.nan
+    bridged, _ = run(estimator, samples)
+    assert np.array_equal(seen[:15], bridged[:15])
+    assert np.abs(bridged[15:25] - samples[15:25, 1]).max() < 0.15
+    # Without the model the last reading would be off by what the cut has lost since.
+    assert samples[14, 1] - samples[24, 1] > 0.4
+
+
+def test_nothing_is_estimated_before_a_speed_was_measured(estimator: Estimator) -> None:
+    state = begin()
+    for v in (np.nan, np.inf, -1.0):
+        assert observe(estimator.parameters, estimator.work, state, 0.1, v, 0.0) == -1.0
+        assert np.array_equal(state, begin())
+    assert observe(estimator.parameters, estimator.work, state, 0.2, 5.5, 0.0) == np.float32(5.5)
+
+
+def test_compiled_it_gives_the_same_bits(estimator: Estimator) -> None:
+    compiled = njit(observe)
+    rng = np.random.default_rng(6)
+    special = np.array([np.nan, np.inf, -np.inf, 0.0, -0.0, -1.0, 1e-45, 3e38, 1e39])
+    for trial in range(60):
+        samples = passes_of(trial, rng.uniform(0.4, 1.8), 0.05, rng.uniform(0.0, 600.0))
+        wild = rng.random(samples.shape) < 0.05 * (trial % 3)
+        samples = np.where(wild, rng.choice(special, samples.shape), samples)
+        with np.errstate(over="ignore", invalid="ignore"):
+            plain, states = run(estimator, samples)
+        fast, fast_states = run(estimator, samples, compiled)
+        assert np.array_equal(plain.astype(np.float32).view(np.uint32), fast.astype(np.float32).view(np.uint32))
+        assert np.array_equal(states.view(np.uint32), fast_states.view(np.uint32))
+        assert np.isfinite(states).all()
+        assert ((plain == -1.0) | (plain >= np.float32(LEAST_SPEED_M_S))).all()
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"speed_noise_m_s": 0.0}, "estimator.speed_noise_m_s is 0.0"),
+        ({"friction_cv": -0.1}, "estimator.friction_cv"),
+        ({"path_std": np.nan}, "estimator.path_std"),
+        ({"correlation_length_m": 0.0}, "estimator.correlation_length_m"),
+        ({"s_m": (0.0,)}, "1 breaks"),
+        ({"s_m": (0.0, 1.0, 1.0, 3.0, 4.0, 5.0)}, "rise strictly"),
+        ({"drive_m2_s2": (0.0, 1.0)}, "estimator.drive_m2_s2 .* 6 entries"),
+        ({"brake_m2_s2_per_kpa": (0.0, 0.1, 0.05, 0.2, 0.3, 0.4)}, "only takes energy away"),
+    ],
+)
+def test_what_makes_no_estimator_is_refused(estimator: Estimator, changes: dict, said: str) -> None:
+    with pytest.raises(InvalidTable, match=said):
+        replace(estimator, **changes)
