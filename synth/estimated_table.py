@@ -15,17 +15,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.backward_induction import measured_speed_std, solve
+from synth.backward_induction import measured_speed_std
 from synth.closed_loop import ClosedLoop, LineController, close_loop
 from synth.estimator_design import as_estimated, estimator_of, speed_error_m_s
 from synth.grid import Resolution
 from synth.kernels.closed_loop import Draws
-from synth.policy_evaluation import commands, occupancy_of
-from synth.polynomial_fit import PolynomialLines, fit_lines
+from synth.polynomial_fit import PolynomialLines
 from synth.problem import Problem
 from synth.random_passes import RandomPasses
 from synth.transitions import persistent_transitions
-from synth.tune_case import polished
+from synth.tuned_lines import tuned_lines
 from tuning_tables.estimator import Estimator
 
 FIRST_SHARE = 0.45
@@ -82,10 +81,7 @@ def designed_lines(problem: Problem, resolution: Resolution, degree: int, error_
     """Solved, fitted and polished for a regulator that sees the speed with a white error."""
     finer = replace(resolution, speed_step_m_s=min(resolution.speed_step_m_s, STEP_SHARE * error_m_s))
     design = persistent_transitions(as_estimated(problem.plant, error_m_s), finer)
-    solution = solve(design, problem.target_speed_m_s, problem.criterion)
-    _, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
-    fit = fit_lines(solution, occupancy.samples, degree)
-    return polished(design, fit, problem.target_speed_m_s, problem.criterion)
+    return tuned_lines(design, problem.target_speed_m_s, problem.criterion, degree)
 
 
 def controller_of(lines: PolynomialLines, estimator: Estimator) -> LineController:

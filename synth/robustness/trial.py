@@ -1,0 +1,92 @@
+"""One table on its nominal plant, and the same passes on any other plant."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from synth.closed_loop import TableController, simulate
+from synth.exit_statistics import NORMAL_95, ExitStatistics, clopper_pearson, exit_statistics
+from synth.passes import ExitSample
+from synth.problem import Plant
+from synth.random_passes import RandomPasses
+from synth.robustness.perturbation import Perturbation
+from tuning_tables import ControllerTable
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a table does under one perturbation.
+
+    `ratio`: rms / rms of the nominal plant on the same passes, with its 95 % interval (paired); stalls as a share with
+    the interval of Clopper and Pearson; `note` says where a value was clipped.
+    """
+
+    name: str
+    note: str
+    statistics: ExitStatistics
+    stall_ci95: tuple[float, float]
+    bias_ci95_m_s: tuple[float, float]
+    ratio: float
+    ratio_ci95: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A table, the plant it was tuned for, common random passes, and how they end there."""
+
+    label: str
+    table: ControllerTable
+    plant: Plant
+    passes: RandomPasses
+    nominal: ExitSample
+
+    @property
+    def target_m_s(self) -> float:
+        """The commanded exit speed."""
+        return self.table.target_speed_m_s
+
+    def first(self, count: int) -> Trial:
+        """The same with the first `count` passes only."""
+        names = vars(self.nominal)
+        nominal = ExitSample(**{name: array[:count] for name, array in names.items()})
+        return Trial(self.label, self.table, self.plant, self.passes.part(0, count), nominal)
+
+    def sample(self, perturbation: Perturbation, table: ControllerTable | None = None) -> ExitSample:
+        """The passes under `perturbation`, by the trial's table or another; `PlantError` for an impossible plant."""
+        plant = perturbation.change(self.plant)
+        passes = perturbation.fault(self.passes, plant, self.nominal.transit_time_s)
+        return simulate(plant, TableController(table or self.table), passes)
+
+    def outcome(self, perturbation: Perturbation, table: ControllerTable | None = None) -> Outcome:
+        """Figures of `sample`, compared with the nominal passes of the trial's table."""
+        sample = self.sample(perturbation, table)
+        found = exit_statistics(sample, self.target_m_s)
+        ratio, interval = rms_ratio(sample, self.nominal, self.target_m_s)
+        half = NORMAL_95 * found.std_m_s / math.sqrt(found.passes)
+        return Outcome(
+            name=perturbation.name,
+            note=perturbation.note,
+            statistics=found,
+            stall_ci95=clopper_pearson(found.stalls, found.passes),
+            bias_ci95_m_s=(found.bias_m_s - half, found.bias_m_s + half),
+            ratio=ratio,
+            ratio_ci95=interval,
+        )
+
+
+def trial_of(label: str, table: ControllerTable, plant: Plant, passes: RandomPasses) -> Trial:
+    """The trial of `table`, tuned for `plant`."""
+    return Trial(label, table, plant, passes, simulate(plant, TableController(table), passes))
+
+
+def rms_ratio(sample: ExitSample, other: ExitSample, target_m_s: float) -> tuple[float, tuple[float, float]]:
+    """rms of `sample` / rms of `other`, same passes, and its 95 % interval (delta method on the logarithm, paired)."""
+    a, b = ((x.exit_speed_m_s - target_m_s) ** 2 for x in (sample, other))
+    if a.mean() == 0.0 or b.mean() == 0.0:
+        raise ValueError("rms ratio: a sample without any error has no ratio")
+    ratio = math.sqrt(a.mean() / b.mean())
+    of_log = 0.5 * float(np.std(a / a.mean() - b / b.mean(), ddof=1)) / math.sqrt(len(a))
+    return ratio, (ratio * math.exp(-NORMAL_95 * of_log), ratio * math.exp(NORMAL_95 * of_log))

@@ -1,0 +1,23 @@
+"""The polynomial lines of one case: solved, fitted, polished; nothing else of a tune."""
+
+from __future__ import annotations
+
+from synth.backward_induction import Solution, solve
+from synth.policy_evaluation import commands, occupancy_of
+from synth.polynomial_fit import PolynomialLines, fit_lines
+from synth.problem import Criterion
+from synth.transitions import Transitions
+from synth.tune_case import polished
+
+
+def tuned_lines(design: Transitions, target_speed_m_s: float, criterion: Criterion, degree: int) -> PolynomialLines:
+    """Lines of `degree` for one target speed on `design`."""
+    return lines_of_solution(solve(design, target_speed_m_s, criterion), degree)
+
+
+def lines_of_solution(solution: Solution, degree: int) -> PolynomialLines:
+    """Lines of `degree` fitted to a solution, and polished."""
+    design = solution.transitions
+    _, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
+    fit = fit_lines(solution, occupancy.samples, degree)
+    return polished(design, fit, solution.target_speed_m_s, solution.criterion)
