@@ -57,17 +57,16 @@ def solve_all(transitions: Transitions, aims: Sequence[tuple[float, Criterion]])
     An extra one costs about a tenth of the first.
     """
     t = transitions
-    targets = np.array([target for target, _ in aims], dtype=np.float64)
-    stall_costs = np.array([criterion.stall_cost_m2_s2 for _, criterion in aims])
+    exit_costs, stall_costs = zip(*(c.exit_costs(t.grid.speed_m_s, target) for target, c in aims), strict=True)
     change_costs = np.array([criterion.switching_tolerance_m2_s2 for _, criterion in aims])
-    nodes, stages, points, width = len(t.drive_m_s2), t.actuator.stages, len(t.grid.speed_m_s), len(targets)
+    nodes, stages, points, width = len(t.drive_m_s2), t.actuator.stages, len(t.grid.speed_m_s), len(aims)
     shape = (len(t.scenarios.factor), nodes + 1, len(t.actuator.mode_stage), len(t.chain.levels), points * width)
     values = np.empty(shape)
     lower, upper = np.empty((nodes, stages, width)), np.empty((nodes, stages, width))
     gain_down, gain_up = (np.empty((nodes, stages, width, points)) for _ in range(2))
     noise = measured_speed_std(t.plant.sensor.noise_m_s, t.plant.sensor.resolution_m_s)
     arguments = (
-        ((t.grid.speed_m_s[:, None] - targets) ** 2).ravel(), targets**2 + stall_costs, change_costs, TIE_M2_S2,
+        np.stack(exit_costs, axis=1).ravel(), np.array(stall_costs), change_costs, TIE_M2_S2,
         noise, *true_speed_weights(t.grid.speed_m_s, noise),
         hidden_prior(t), *sweep_arguments(t), t.scenarios.factor, t.scenarios.extra_m_s2,
         t.grid.path_step_m, t.grid.energy_step_m2_s2, t.plant.sensor.sample_period_s, len(t.entry),

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from synth.exit_density import ExitDensity
 from synth.exit_statistics import ExitStatistics
 from synth.passes import PassTrace
-from synth.problem import Plant
+from synth.problem import SQUARED_ERROR_CRITERION, Criterion, Plant
+from synth.requirement_found import Finding
 from synth.switching_lines import SwitchingLines
 from tuning_tables import ControllerTable
 
@@ -87,7 +88,8 @@ class CaseResult:
     `table`, `table_lines` the exported polynomial lines (sampled densely), `solver_lines` the raw matrices;
     `predicted` exact density of the exported table; `exit_speeds_m_s` simulated, stalls as 0; `comparison` by
     controller: first our table, then full lines, as published, friction known, baselines; `traces` a few passes
-    of the table (low, nominal and high friction) with `trace_factors` their ξ_cut.
+    of the table (low, nominal and high friction) with `trace_factors` their ξ_cut; `criterion` in force and, where it
+    requires something, `finding`: what that took.
     """
 
     label: str
@@ -105,6 +107,8 @@ class CaseResult:
     feasibility: Feasibility
     traces: tuple[PassTrace, ...]
     trace_factors: tuple[float, ...]
+    criterion: Criterion = SQUARED_ERROR_CRITERION
+    finding: Finding | None = None
 
     def by_name(self, name: str) -> Measured:
         """The controller called `name` in the comparison."""

@@ -33,7 +33,12 @@ class ExitDensity:
 
     def p_overspeed(self, limit_m_s: float) -> float:
         """P(exit speed > limit), the cell that holds the limit shared linearly in energy."""
-        energy = 0.5 * self.speed_m_s**2
-        step = energy[1] - energy[0]
-        above = np.clip((energy - 0.5 * limit_m_s**2) / step + 0.5, 0.0, 1.0)
-        return float(max((self.probability * above).sum(), 0.0))
+        return float(max((self.probability * share_above(self.speed_m_s, limit_m_s)).sum(), 0.0))
+
+
+def share_above(speed_m_s: NDArray[np.float64], limit_m_s: float) -> NDArray[np.float64]:
+    """Share (E,) of the cell of every grid speed that lies above `limit_m_s`; the grid is even in v²/2."""
+    energy = 0.5 * speed_m_s**2
+    step = energy[1] - energy[0]
+    above: NDArray[np.float64] = np.clip((energy - 0.5 * limit_m_s**2) / step + 0.5, 0.0, 1.0)
+    return above

@@ -91,6 +91,14 @@ def forward_pass(
     return total, band
 
 
+def scenario_density(transitions: Transitions, policy: Commands, i: int) -> ExitDensity:
+    """Exit-speed density in scenario `i` alone."""
+    band = np.empty((len(transitions.drive_m_s2), 2), dtype=np.int64)
+    exits, totals = forward_one(transitions, policy, i, np.empty((0, 0, 0, 0)), band)
+    stalled, escaped = max(float(totals[0]), 0.0), float(totals[1])
+    return ExitDensity(transitions.grid.speed_m_s, exits, stalled, escaped, float(totals[2] + totals[3]))
+
+
 def forward_one(
     t: Transitions, policy: Commands, i: int, density: NDArray[np.float64], band: NDArray[np.int64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -116,22 +124,57 @@ def expected_cost(transitions: Transitions, policy: Commands, target_speed_m_s: 
     )
 
 
+@dataclass(frozen=True)
+class ScenarioCosts:
+    """Cost of a policy in every hidden scenario (I,), and its derivatives by the line values (I, K + 1, N)."""
+
+    cost: NDArray[np.float64]
+    by_lower: NDArray[np.float64]
+    by_upper: NDArray[np.float64]
+
+    def weighted(self, weight: NDArray[np.float64]) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
+        """Sum over the scenarios: (cost, by lower (K + 1, N), by upper (K + 1, N))."""
+        cost, by_lower, by_upper = 0.0, np.zeros(self.by_lower.shape[1:]), np.zeros(self.by_upper.shape[1:])
+        for one, share in enumerate(weight):
+            cost += share * self.cost[one]
+            by_lower += share * self.by_lower[one]
+            by_upper += share * self.by_upper[one]
+        return float(cost), by_lower, by_upper
+
+    def grouped(self, weight: NDArray[np.float64]) -> ScenarioCosts:
+        """The mean over every group of scenarios that stand side by side, by the groups' own `weight` (G, members)."""
+        groups, members = weight.shape
+
+        def mean(values: NDArray[np.float64]) -> NDArray[np.float64]:
+            apart = values.reshape(groups, members, *values.shape[1:])
+            over_group: NDArray[np.float64] = np.einsum("gm,gm...->g...", weight, apart)
+            return over_group
+
+        return ScenarioCosts(mean(self.cost), mean(self.by_lower), mean(self.by_upper))
+
+
+def scenario_costs(
+    transitions: Transitions, policy: Commands, target_speed_m_s: float, criterion: Criterion
+) -> ScenarioCosts:
+    """Cost and exact gradient in every scenario; their weights play no part."""
+    t = transitions
+    nodes, _, points = policy.down.shape
+    density = np.empty((nodes, len(t.actuator.mode_stage), len(t.chain.levels), points))
+    band = np.empty((nodes, 2), dtype=np.int64)
+    found = []
+    for i in range(len(t.scenarios.weight)):
+        forward_one(t, policy, i, density, band)
+        one, lower, upper = backward_one(t, policy, i, target_speed_m_s, criterion, density, band)
+        found.append((one, lower.T, upper.T))
+    return ScenarioCosts(*(np.array(each) for each in zip(*found, strict=True)))
+
+
 def cost_and_gradient(
     transitions: Transitions, policy: Commands, target_speed_m_s: float, criterion: Criterion
 ) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
     """Cost and its exact derivatives by every line value: (cost, by lower (K + 1, N), by upper (K + 1, N))."""
-    t = transitions
-    nodes, stages, points = policy.down.shape
-    density = np.empty((nodes, len(t.actuator.mode_stage), len(t.chain.levels), points))
-    band = np.empty((nodes, 2), dtype=np.int64)
-    cost, by_lower, by_upper = 0.0, np.zeros((nodes, stages)), np.zeros((nodes, stages))
-    for i, weight in enumerate(t.scenarios.weight):
-        forward_one(t, policy, i, density, band)
-        one, lower, upper = backward_one(t, policy, i, target_speed_m_s, criterion, density, band)
-        cost += weight * one
-        by_lower += weight * lower
-        by_upper += weight * upper
-    return float(cost), by_lower.T.copy(), by_upper.T.copy()
+    costs = scenario_costs(transitions, policy, target_speed_m_s, criterion)
+    return costs.weighted(transitions.scenarios.weight)
 
 
 def backward_one(
@@ -148,7 +191,7 @@ def backward_one(
     by_lower, by_upper = np.zeros((nodes, stages)), np.zeros((nodes, stages))
     arguments = (
         policy.down, policy.up, policy.down_slope, policy.up_slope,
-        (t.grid.speed_m_s - target_speed_m_s) ** 2, target_speed_m_s**2 + criterion.stall_cost_m2_s2,
+        *criterion.exit_costs(t.grid.speed_m_s, target_speed_m_s),
         criterion.switching_tolerance_m2_s2, t.entry, *shared_arguments(t), t.scenarios.factor[i],
         t.scenarios.extra_m_s2[i], t.grid.path_step_m, t.grid.energy_step_m2_s2, t.plant.sensor.sample_period_s,
         density, band, by_lower, by_upper,

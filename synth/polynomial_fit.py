@@ -153,8 +153,11 @@ def polish(
     nodes_m: NDArray[np.float64],
     evaluate: Evaluate,
     max_iterations: int,
+    tolerance: float = 5e-3,
 ) -> Polish:
     """Minimise `evaluate` over all coefficients, keeping V_hi − V_lo ≥ `MINIMUM_GAP_M_S` on the path.
+
+    It ends when a step changes the cost by less than `tolerance` of the first cost.
 
     Raises `PlantError` if the cost to start from is not positive: the grid is too coarse.
 
@@ -192,7 +195,7 @@ def polish(
         gradient = np.stack([by_lower @ matrix, by_upper @ matrix], axis=1)[free]
         return cost / before, np.einsum("lab,la->lb", scale, gradient).ravel() / before
 
-    options: Any = {"maxiter": max_iterations, "ftol": 5e-3}
+    options: Any = {"maxiter": max_iterations, "ftol": tolerance}
     constraints: Any = [gap_constraint(start, free, scale)]
     result = minimize(
         objective,

@@ -22,6 +22,7 @@ from synth.problem import Criterion, EntrySpeed, Plant, Problem
 from synth.settings import (
     NUMERICAL_SECTIONS,
     AcceptanceSettings,
+    CriterionSettings,
     FitSettings,
     GridSettings,
     OutputSettings,
@@ -63,7 +64,7 @@ class ResolvedConfig:
     entry: EntrySpeed
     cuts: tuple[CutClass, ...]
     targets_m_s: tuple[float, ...]
-    criterion: Criterion
+    criterion_settings: CriterionSettings
     grid: GridSettings
     fit: FitSettings
     validation: ValidationSettings
@@ -85,6 +86,11 @@ class ResolvedConfig:
         return tuple((label, Problem(p, v, self.criterion)) for label, p in self.plants() for v in self.targets_m_s)
 
     @property
+    def criterion(self) -> Criterion:
+        """The criterion settings as the solver takes them."""
+        return self.criterion_settings.criterion()
+
+    @property
     def resolution(self) -> Resolution:
         """The grid settings as the solver takes them."""
         return self.grid.resolution(self.retarder.sensor.sample_period_s)
@@ -100,11 +106,13 @@ class ResolvedConfig:
                 table = table.setdefault(part, {})
             table[name] = parameter.value
         tree["cut"] = [c.canonical() for c in self.cuts]
-        tree["criterion"] = {
-            "stall_cost_m2_s2": self.criterion.stall_cost_m2_s2,
-            "switching_tolerance_m2_s2": self.criterion.switching_tolerance_m2_s2,
+        sections = {
+            "criterion": self.criterion_settings,
+            "grid": self.grid,
+            "fit": self.fit,
+            "validation": self.validation,
+            "acceptance": self.acceptance,
         }
-        sections = {"grid": self.grid, "fit": self.fit, "validation": self.validation, "acceptance": self.acceptance}
         tree |= {name: section.model_dump() for name, section in sections.items()}
         return json.dumps(tree, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
 
@@ -127,7 +135,6 @@ def resolve(settings: Settings, file: str) -> ResolvedConfig:
             )
     low, high = retarder.entry_speed_m_s
     targets = resolve_targets(retarder.target_speeds_m_s, high, file)
-    criterion = Criterion(**settings.criterion.model_dump())
     parameters = (
         *retarder.provenance,
         *(value for c in cuts for value in c.provenance),
@@ -140,7 +147,7 @@ def resolve(settings: Settings, file: str) -> ResolvedConfig:
             entry=EntrySpeed(low, high),
             cuts=cuts,
             targets_m_s=targets,
-            criterion=criterion,
+            criterion_settings=settings.criterion,
             grid=settings.grid,
             fit=settings.fit,
             validation=settings.validation,

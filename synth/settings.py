@@ -12,10 +12,13 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, PlainValidator
 
+from plant_models.errors import require
 from plant_models.library import Value
 from plant_models.library.data_file import Form, form_name, number_or_pairs, numbers, pairs
 from synth.grid import Resolution
 from synth.problem import Criterion
+from synth.requirement import FrictionRange, OverspeedLimit, Requirement
+from synth.terminal_cost import AsymmetricSquare, SquaredError
 
 DEFAULT_RETARDER = "knp-5-bunch"
 
@@ -172,7 +175,7 @@ class FitSettings(Section):
 
 
 class CriterionSettings(Section):
-    """Cost of a pass besides the squared exit-speed error."""
+    """Cost of a pass; the last five keys choose another criterion than the mean squared exit-speed error."""
 
     stall_cost_m2_s2: float = setting(
         Criterion.stall_cost_m2_s2, "m2/s2", 0.0, 1e4, "cost of a cut that stops in the position"
@@ -180,6 +183,46 @@ class CriterionSettings(Section):
     switching_tolerance_m2_s2: float = setting(
         Criterion.switching_tolerance_m2_s2, "m2/s2", 0.0, 1.0, "a change of stage must gain more than this"
     )
+    overspeed_factor: float = setting(
+        1.0, "1", 1.0, 1000.0, "asymmetric cost: a squared error above the target weighs this much; 1: as one below"
+    )
+    p_overspeed: float = setting(
+        1.0, "1", 1e-4, 1.0, "chance constraint: highest P(exit > target + overspeed_margin_m_s); 1: none"
+    )
+    overspeed_margin_m_s: float = setting(0.1, "m/s", 0.01, 5.0, "margin of the chance constraint p_overspeed")
+    worst_friction_low: float = setting(
+        1.0, "1", 0.05, 5.0, "worst case: lowest friction factor of the range whose worst counts; both 1: the mean does"
+    )
+    worst_friction_high: float = setting(1.0, "1", 0.05, 5.0, "worst case: highest friction factor of that range")
+
+    def criterion(self) -> Criterion:
+        """The same for the solver; `PlantError` where two of the three other criteria are asked for at once."""
+        worst = (self.worst_friction_low, self.worst_friction_high) != (1.0, 1.0)
+        asked = [
+            name
+            for name, wanted in (
+                (f"overspeed_factor is {self.overspeed_factor:g}", self.overspeed_factor != 1.0),
+                (f"p_overspeed is {self.p_overspeed:g}", self.p_overspeed != 1.0),
+                (f"worst_friction_low is {self.worst_friction_low:g}", worst),
+            )
+            if wanted
+        ]
+        require(
+            len(asked) <= 1,
+            f"criterion: {' and '.join(asked)}, but only one of asymmetric cost, chance constraint and worst case can "
+            "be in force: set the others back to 1",
+        )
+        requirement: Requirement | None = None
+        if self.p_overspeed != 1.0:
+            requirement = OverspeedLimit(self.overspeed_margin_m_s, self.p_overspeed)
+        elif worst:
+            requirement = FrictionRange(self.worst_friction_low, self.worst_friction_high)
+        return Criterion(
+            stall_cost_m2_s2=self.stall_cost_m2_s2,
+            switching_tolerance_m2_s2=self.switching_tolerance_m2_s2,
+            terminal=SquaredError() if self.overspeed_factor == 1.0 else AsymmetricSquare(self.overspeed_factor),
+            requirement=requirement,
+        )
 
 
 class ValidationSettings(Section):

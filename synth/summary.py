@@ -19,6 +19,7 @@ from synth.acceptance import CaseVerdict, Verdict
 from synth.case_result import CaseResult, DegreeStudy, Measured
 from synth.limit_cycle import hunting_report, pressure_hunting
 from synth.plots.case_names import contest, honesty
+from synth.requirement_found import Finding
 from synth.tabulate import prediction_of
 from synth.tune import Book
 from tuning_tables.canonical import LARGEST_EXACT_INTEGER
@@ -42,6 +43,7 @@ def summary_of(book: Book, verdict: Verdict, file_hashes: Mapping[str, str]) -> 
         "config": json.loads(config.canonical_json()),
         "warnings": config.warnings,
         "parameters_assumed": [value.key for value in config.parameters if value.assumed],
+        "criterion": config.criterion.sentence,
         "accepted": verdict.accepted,
         "verdict": verdict.sentence,
         "overall": overall(book.cases),
@@ -95,6 +97,7 @@ def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
         "best_baseline": found.best_baseline.name if found.best_baseline else None,
         "comparison": {entry.name: measured_of(entry) for entry in found.entries},
         "as_published_honesty": honesty(found.published),
+        "requirement": None if case.finding is None else requirement_of(case.finding),
         "indifference": asdict(case.indifference),
         "escaped_probability": case.predicted.escaped,
         "hunting": {
@@ -107,6 +110,11 @@ def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
 def measured_of(entry: Measured) -> Document:
     """The statistics of one controller, with what it promised."""
     return {**asdict(entry.statistics), "predicted_rms_m_s": entry.predicted_rms_m_s}
+
+
+def requirement_of(finding: Finding) -> Document:
+    """What keeping the criterion's requirement took, with its sentence."""
+    return {**asdict(finding), "sentence": finding.sentence}
 
 
 def study_of(study: DegreeStudy) -> Document:

@@ -99,7 +99,7 @@ def class_tasks(
     both = solve_all(design, priced + free)
     solutions, plain = both[: len(targets)], both[len(targets) :]
     published = solve_all(as_published(design, PUBLISHED_LEVELS), priced)
-    bounds = friction_known_bounds(design, targets, criterion, passes, config.acceptance.rms_m_s)
+    bounds = friction_known_bounds(design, targets, criterion.squared(), passes, config.acceptance.rms_m_s)
     draws = close_loop(plant, plant.top_stage + 1).draws(passes)
 
     def case(i: int) -> CaseResult:
@@ -124,6 +124,8 @@ def class_tasks(
         case_done(result)
         figures = result.comparison[0].statistics
         progress(f"{label} to {targets[i]:g} m/s: rms {figures.rms_m_s:.3f} m/s in {figures.passes} simulated passes")
+        if result.finding is not None:
+            progress(f"{label} to {targets[i]:g} m/s: {result.finding.sentence}")
         return result
 
     def study() -> DegreeStudy:

@@ -10,19 +10,23 @@ import numpy as np
 from synth.backward_induction import Solution
 from synth.baselines import tune_baselines
 from synth.case_result import CaseResult, DegreeStudy, Feasibility, Indifference, Measured
+from synth.chance_constraint import evaluator, keep_overspeed_limit
 from synth.closed_loop import Controller, LineController, TableController, close_loop, trace
 from synth.exit_density import ExitDensity
 from synth.exit_statistics import exit_statistics
 from synth.kernels.closed_loop import Draws
 from synth.passes import ExitSample
-from synth.policy_evaluation import commands, cost_and_gradient, exit_density, occupancy_of
+from synth.policy_evaluation import commands, exit_density, occupancy_of
 from synth.policy_map import policy_map
-from synth.polynomial_fit import Evaluate, Fit, PolynomialLines, fit_lines, polish
+from synth.polynomial_fit import Fit, PolynomialLines, fit_lines, polish
 from synth.problem import Criterion, Problem
 from synth.random_passes import RandomPasses
+from synth.requirement import FrictionRange, OverspeedLimit
+from synth.requirement_found import Finding
 from synth.switching_lines import SwitchingLines
 from synth.tabulate import lines_of, prediction_of, tabulate
 from synth.transitions import Transitions
+from synth.worst_case import guard_worst_case
 from tuning_tables import ControllerTable, Generator, Predicted, Validated
 
 POLISH_ITERATIONS = 25
@@ -68,7 +72,7 @@ def tune_case(order: CaseOrder) -> CaseResult:
     design, published = solution.transitions, order.published
     by_lines, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
     fit = fit_lines(solution, occupancy.samples, order.degree)
-    lines = polished(design, fit, target, problem.criterion)
+    lines, finding = required(design, order.check, fit, target, problem.criterion)
     table, predicted = predicted_table(order, lines)
     table = order.store(table)
     sample = simulated(order, TableController(table))
@@ -101,22 +105,29 @@ def tune_case(order: CaseOrder) -> CaseResult:
             for i, factor in enumerate(TRACE_FACTORS)
         ),
         trace_factors=TRACE_FACTORS,
+        criterion=problem.criterion,
+        finding=finding,
     )
-
-
-def evaluator(design: Transitions, target_speed_m_s: float, criterion: Criterion) -> Evaluate:
-    """Exact cost and gradient of lines, as `polish` wants them."""
-
-    def evaluate(lines: SwitchingLines) -> tuple[float, np.ndarray, np.ndarray]:
-        return cost_and_gradient(design, commands(design, lines, staircase=False), target_speed_m_s, criterion)
-
-    return evaluate
 
 
 def polished(design: Transitions, fit: Fit, target_speed_m_s: float, criterion: Criterion) -> PolynomialLines:
     """The fitted lines after the polish."""
     evaluate = evaluator(design, target_speed_m_s, criterion)
     return polish(fit.lines, fit.curvature, design.grid.path_m, evaluate, POLISH_ITERATIONS).lines
+
+
+def required(
+    design: Transitions, check: Transitions, fit: Fit, target_speed_m_s: float, criterion: Criterion
+) -> tuple[PolynomialLines, Finding | None]:
+    """The polished lines that keep what the criterion requires, and what that took."""
+    lines = polished(design, fit, target_speed_m_s, criterion)
+    match criterion.requirement:
+        case OverspeedLimit() as limit:
+            return keep_overspeed_limit(design, check, lines, fit, target_speed_m_s, criterion, limit)
+        case FrictionRange() as friction:
+            return guard_worst_case(design, check, lines, fit, target_speed_m_s, criterion, friction)
+        case None:
+            return lines, None
 
 
 def predicted_table(order: CaseOrder, lines: PolynomialLines) -> tuple[ControllerTable, ExitDensity]:

@@ -11,6 +11,7 @@ from synth.plots.picture import Picture
 from synth.report.book_report import BookReport
 from synth.report.case_table import case_table
 from synth.report.checks_section import checks_section
+from synth.report.criterion_section import criterion_section
 from synth.report.honesty_section import honesty_section
 from synth.report.limits_of_use import limits_of_use
 from synth.report.markup import Cell, Markup, element, head_row, joined, table
@@ -61,6 +62,7 @@ def report_page(book: BookReport) -> str:
 def page_sections(book: BookReport) -> Iterator[tuple[str, str, Markup]]:
     """(anchor, heading, content) in the order of the page."""
     yield "results", "Results", joined((case_table(book), element("p", HOW_TO_READ, class_="meta")))
+    yield "criterion", "Criterion", criterion_section(book)
     yield "honesty", "Predicted against simulated", honesty_section(book)
     yield "studies", "Degree of the lines and switchings", studies_section(book)
     yield "checks", "Limit cycles and escaped probability", checks_section(book)

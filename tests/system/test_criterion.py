@@ -1,0 +1,54 @@
+"""A tune by another criterion than the mean square: it is obeyed, and summary and report say so."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.system.conftest import CLASS, EPOCH, Command
+
+
+@pytest.fixture
+def default_case(tuned_once: tuple[Path, int]) -> Any:
+    """The case of the default criterion in its summary."""
+    summary = json.loads((tuned_once[0] / "summary.json").read_text())
+    assert summary["criterion"] == "mean squared exit-speed error"
+    assert summary["cases"][0]["requirement"] is None
+    return summary["cases"][0]
+
+
+def tuned_by(command: Command, criterion: str, out: Path) -> tuple[Any, str]:
+    """(summary, report) of a tune with that [criterion]."""
+    config = out.with_suffix(".toml")
+    config.write_text(CLASS.replace("csv = true", "plots = false") + f"[criterion]\n{criterion}\n")
+    assert command("tune", config, "-o", out, "--workers", "1").code in (0, 1)
+    return json.loads((out / "summary.json").read_text()), (out / "report.html").read_text()
+
+
+def test_dearer_overspeed_makes_slower_exits(command: Command, default_case: Any, tmp_path: Path) -> None:
+    summary, report = tuned_by(command, "overspeed_factor = 4.0", tmp_path / "out")
+    assert "over-speed weighing 4 times" in summary["criterion"]
+    assert summary["criterion"] in report
+    slower = summary["cases"][0]["simulated"]
+    assert slower["bias_m_s"] < default_case["simulated"]["bias_m_s"] - 0.003
+
+
+def test_a_limit_that_is_kept_anyway_changes_no_line(
+    command: Command,
+    default_case: Any,
+    tuned_once: tuple[Path, int],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", EPOCH)
+    summary, report = tuned_by(command, "p_overspeed = 0.5\noverspeed_margin_m_s = 0.3", tmp_path / "out")
+    (case,) = summary["cases"]
+    assert case["requirement"]["multiplier_m2_s2"] == 0.0
+    assert case["requirement"]["sentence"].replace(">", "&gt;") in report
+    assert case["predicted"] == default_case["predicted"]
+    tables = [json.loads((at / case["table"]).read_text()) for at in (tmp_path / "out", tuned_once[0])]
+    assert tables[0]["stages"] == tables[1]["stages"]
+    assert tables[0]["generator"]["config_sha256"] != tables[1]["generator"]["config_sha256"]
