@@ -102,8 +102,8 @@ def observe(parameters: Floats, work: Floats, state: Floats, s_m: float, v_m_s: 
 
     To be called at every sample, also while a change of stage is under way, with the path, the measured speed, and the
     mean of max(0, P - P0) since the sample before. What cannot be true changes little: a speed above 40 m/s, negative
-    or not finite corrects nothing, such an overpressure counts as 0, a path that goes back or on by more than 20 m as no
-    movement. `state` is changed in place. `numba.njit(observe)` compiles this text and gives the same numbers.
+    or not finite corrects nothing, such an overpressure counts as 0, a path that goes back, or on by more than 20 m, as
+    no movement. `state` is changed in place. `numba.njit(observe)` compiles this text and gives the same numbers.
     """
     nought, one, two = parameters[7], parameters[8], parameters[9]
     last = work.shape[1] - 1

@@ -12,7 +12,13 @@ import pytest
 
 from synth.kernel_cache import empty_kernel_cache, guarded, kernel_fingerprint, use_kernel_cache
 
-SOURCES = ("plant_models/motion.py", "synth/kernels/bellman.py", "synth/kernels/deep/er.py", "tuning_tables/rule.py", "tuning_tables/estimator.py")
+SOURCES = (
+    "plant_models/motion.py",
+    "synth/kernels/bellman.py",
+    "synth/kernels/deep/er.py",
+    "tuning_tables/rule.py",
+    "tuning_tables/estimator.py",
+)
 
 
 @pytest.fixture
