@@ -51,10 +51,13 @@ def solve(transitions: Transitions, target_speed_m_s: float, criterion: Criterio
     return solve_all(transitions, [(target_speed_m_s, criterion)])[0]
 
 
-def solve_all(transitions: Transitions, aims: Sequence[tuple[float, Criterion]]) -> tuple[Solution, ...]:
+def solve_all(
+    transitions: Transitions, aims: Sequence[tuple[float, Criterion]], weights: NDArray[np.float64] | None = None
+) -> tuple[Solution, ...]:
     """Backward induction for several (target speed, criterion) in one sweep: they share all motion.
 
-    An extra one costs about a tenth of the first.
+    An extra one costs about a tenth of the first. `weights` (1 or N, I, H, L, 1 or E): of what is hidden, by path node
+    and speed, instead of the prior.
     """
     t = transitions
     exit_costs, stall_costs = zip(*(c.exit_costs(t.grid.speed_m_s, target) for target, c in aims), strict=True)
@@ -65,10 +68,11 @@ def solve_all(transitions: Transitions, aims: Sequence[tuple[float, Criterion]])
     lower, upper = np.empty((nodes, stages, width)), np.empty((nodes, stages, width))
     gain_down, gain_up = (np.empty((nodes, stages, width, points)) for _ in range(2))
     noise = measured_speed_std(t.plant.sensor.noise_m_s, t.plant.sensor.resolution_m_s)
+    hidden = hidden_prior(t)[None, ..., None] if weights is None else weights
     arguments = (
         np.stack(exit_costs, axis=1).ravel(), np.array(stall_costs), change_costs, TIE_M2_S2,
         noise, *true_speed_weights(t.grid.speed_m_s, noise),
-        hidden_prior(t), *sweep_arguments(t), t.scenarios.factor, t.scenarios.extra_m_s2,
+        hidden, *sweep_arguments(t), t.scenarios.factor, t.scenarios.extra_m_s2,
         t.grid.path_step_m, t.grid.energy_step_m2_s2, t.plant.sensor.sample_period_s, len(t.entry),
         values, lower, upper, gain_down, gain_up,
     )  # fmt: skip

@@ -29,7 +29,8 @@ def sweep(
     """One backward sweep over all path quanta.
 
     `terminal` (E·T,) cost by exit energy and target, `stalled` (T,) cost of a stall, `change_cost` (T,) of a
-    command, `tolerance` below which a gain is rounding. I scenarios: `factor`, `extra` (I,); `prior` (I, H, L) weights;
+    command, `tolerance` below which a gain is rounding. I scenarios: `factor`, `extra` (I,); `prior` (1 or N, I, H, L,
+    1 or E) weights of what is hidden;
     `smear_start` (E,), `smear` (E, W): probability of true speeds given a measured one. Outputs: `values`
     (I, N + 1, H, L, E·T), `lower`, `upper` (N, K + 1, T), `gain_down`, `gain_up` (N, K + 1, T, E): averaged cost
     saved by the change, by measured speed.
@@ -70,7 +71,7 @@ def sweep(
                         for j in range(points):
                             for t in range(width):
                                 changed[j * width + t] += change_cost[t]
-        average_gains(holds, downs, ups, stage, prior, width, gain_down[n], gain_up[n])
+        average_gains(holds, downs, ups, stage, prior[min(n, prior.shape[0] - 1)], width, gain_down[n], gain_up[n])
         for k in range(lower.shape[1]):
             for t in range(width):
                 spread(gain_down[n, k, t], smear_start, smear, scratch)
@@ -131,8 +132,10 @@ def average_gains(holds, downs, ups, stage, prior, width, gain_down, gain_up):
         k = stage[h]
         for i in range(holds.shape[0]):
             for q in range(holds.shape[2]):
-                weight = prior[i, h, q]
+                weight = prior[i, h, q, 0]
                 for j in range(1, points):
+                    if prior.shape[3] > 1:
+                        weight = prior[i, h, q, j]
                     for t in range(width):
                         at = j * width + t
                         gain_down[k, t, j] += weight * (holds[i, h, q, at] - downs[i, h, q, at])
