@@ -18,10 +18,11 @@ from plant_models import PlantError
 from synth.backward_induction import solve
 from synth.chance_constraint import evaluator
 from synth.exit_density import ExitDensity
-from synth.policy_evaluation import commands, exit_density, occupancy_of
-from synth.polynomial_fit import Fit, Polish, PolynomialLines, fit_lines, polish
+from synth.policy_evaluation import commands, exit_density
+from synth.polynomial_fit import Fit, Polish, PolynomialLines, polish
 from synth.problem import Criterion
 from synth.transitions import Transitions, with_known_friction
+from synth.tuned_lines import fitted
 
 ITERATIONS, TOLERANCE, ROUNDS = 100, 1e-4, 2
 """Of each polish, which is begun anew from its own end once: that forgets a bad Hessian."""
@@ -58,23 +59,16 @@ def told_friction(
     plant = design.plant
     z, weight = np.polynomial.hermite_e.hermegauss(nodes)
     factors = plant.friction.cut_factor(z, plant.friction_cv)
-    unknown = fitted(design, target_speed_m_s, criterion, degree)
+    unknown = fitted(solve(design, target_speed_m_s, criterion), degree)
     common = best_polished(design, target_speed_m_s, criterion, [(unknown.lines, unknown)])
     densities = []
     for factor in factors:
         known = with_known_friction(design, float(factor))
-        own = fitted(known, target_speed_m_s, criterion, degree)
+        own = fitted(solve(known, target_speed_m_s, criterion), degree)
         begins = [(own.lines, own), (common, own), (common, unknown)]
         lines = best_polished(known, target_speed_m_s, criterion, begins)
         densities.append(exit_density(known, commands(known, lines.at(known.grid.path_m), staircase=False)))
     return ToldFriction(factors, weight / weight.sum(), tuple(densities))
-
-
-def fitted(design: Transitions, target_speed_m_s: float, criterion: Criterion, degree: int) -> Fit:
-    """The solver's lines as polynomials."""
-    solution = solve(design, target_speed_m_s, criterion)
-    _, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
-    return fit_lines(solution, occupancy.samples, degree)
 
 
 def best_polished(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from synth.backward_induction import Solution, solve
 from synth.policy_evaluation import commands, occupancy_of
-from synth.polynomial_fit import PolynomialLines, fit_lines
+from synth.polynomial_fit import Fit, PolynomialLines, fit_lines
 from synth.problem import Criterion
 from synth.transitions import Transitions
 from synth.tune_case import polished
@@ -17,7 +17,12 @@ def tuned_lines(design: Transitions, target_speed_m_s: float, criterion: Criteri
 
 def lines_of_solution(solution: Solution, degree: int) -> PolynomialLines:
     """Lines of `degree` fitted to a solution, and polished."""
+    fit = fitted(solution, degree)
+    return polished(solution.transitions, fit, solution.target_speed_m_s, solution.criterion)
+
+
+def fitted(solution: Solution, degree: int) -> Fit:
+    """Lines of `degree` fitted to a solution, weighted by where its own policy takes the cuts."""
     design = solution.transitions
     _, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
-    fit = fit_lines(solution, occupancy.samples, degree)
-    return polished(design, fit, solution.target_speed_m_s, solution.criterion)
+    return fit_lines(solution, occupancy.samples, degree)

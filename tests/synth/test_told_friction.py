@@ -7,12 +7,14 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from synth.backward_induction import solve
 from synth.chance_constraint import evaluator
 from synth.grid import Resolution
 from synth.policy_evaluation import commands, exit_density
 from synth.problem import Criterion, Plant
-from synth.told_friction import best_polished, fitted, told_friction
+from synth.told_friction import best_polished, told_friction
 from synth.transitions import persistent_transitions
+from synth.tuned_lines import fitted
 
 COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.05)
 CRITERION = Criterion(switching_tolerance_m2_s2=0.0)
@@ -21,7 +23,7 @@ CRITERION = Criterion(switching_tolerance_m2_s2=0.0)
 def test_knowing_more_is_never_worse(plant_of: Callable[[float], Plant]) -> None:
     design = persistent_transitions(plant_of(22.0), COARSE)
     told = told_friction(design, 3.0, CRITERION, 3, 3)
-    fit = fitted(design, 3.0, CRITERION, 3)
+    fit = fitted(solve(design, 3.0, CRITERION), 3)
     common = best_polished(design, 3.0, CRITERION, [(fit.lines, fit)])
     unknown = exit_density(design, commands(design, common.at(design.grid.path_m), staircase=False))
     assert told.rms_m_s(3.0) < unknown.rms_m_s(3.0)
@@ -36,7 +38,7 @@ def test_knowing_more_is_never_worse(plant_of: Callable[[float], Plant]) -> None
 
 def test_the_best_beginning_is_kept(plant_of: Callable[[float], Plant]) -> None:
     design = persistent_transitions(plant_of(22.0), Resolution(path_step_m=1.0, speed_step_m_s=0.04))
-    fit, other = fitted(design, 3.0, CRITERION, 3), fitted(design, 2.8, CRITERION, 3)
+    fit, other = (fitted(solve(design, target, CRITERION), 3) for target in (3.0, 2.8))
     evaluate, nodes = evaluator(design, 3.0, CRITERION), design.grid.path_m
     costs = [
         evaluate(best_polished(design, 3.0, CRITERION, begins).at(nodes))[0]
