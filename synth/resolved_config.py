@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -30,6 +29,7 @@ from synth.settings import (
     Settings,
     ValidationSettings,
 )
+from tuning_tables.canonical import canonical_json
 
 TOOL_DEFAULT = "default of the tool"
 
@@ -96,7 +96,7 @@ class ResolvedConfig:
         return self.grid.resolution(self.retarder.sensor.sample_period_s)
 
     def canonical_json(self) -> str:
-        """What the results depend on, as JSON with sorted keys and no spaces (title and [output] are left out)."""
+        """What the results depend on, in the canonical form of RFC 8785 (title and [output] are left out)."""
         tree: dict[str, Any] = {"format": "retarder-config", "version": 1}
         tree["retarder"] = {"name": self.retarder.name, "law": self.retarder.law}
         for parameter in self.retarder.provenance:
@@ -114,7 +114,7 @@ class ResolvedConfig:
             "acceptance": self.acceptance,
         }
         tree |= {name: section.model_dump() for name, section in sections.items()}
-        return json.dumps(tree, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+        return canonical_json(tree).decode("utf-8")
 
     @property
     def sha256(self) -> str:

@@ -3,24 +3,17 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
+from synth.checker.canonical import canonical_form
 from synth.checker.finding import shown
 
 GRAVITY_M_S2: Final = 9.81
 WHEELSET_T: Final = 0.42
 """Equivalent mass of a rotating wheel set (model §1)."""
-WHOLE_NUMBERS: Final = frozenset(
-    {
-        *("version", "cars", "allowed_stage", "friction_scenarios", "path_levels", "resistance_scenarios"),
-        *("degree", "passes", "seed"),
-    }
-)
-"""Keys whose values are counts; all other numbers of a configuration are hashed in the form of a float, 8.0."""
 
 
 class UnusableConfigError(Exception):
@@ -193,15 +186,5 @@ def drive_of(at: Reader) -> Drive:
 
 
 def config_sha256(config: Mapping[str, Any]) -> str:
-    """The hash of a resolved configuration: sorted keys, no white space, floats with their point."""
-
-    def spelled(value: Any, key: str) -> Any:
-        if isinstance(value, dict):
-            return {name: spelled(member, name) for name, member in value.items()}
-        if isinstance(value, list):
-            return [spelled(member, key) for member in value]
-        whole = isinstance(value, bool) or key in WHOLE_NUMBERS or not isinstance(value, int)
-        return value if whole else float(value)
-
-    text = json.dumps(spelled(config, ""), sort_keys=True, separators=(",", ":"), ensure_ascii=False)
-    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
+    """The hash of a resolved configuration in its canonical form."""
+    return hashlib.sha256(canonical_form(config).encode("utf-8")).hexdigest()

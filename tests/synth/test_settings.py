@@ -1,5 +1,6 @@
 """Configuration files: defaults, overrides, origin of numbers, and one sentence for each fault."""
 
+import hashlib
 import json
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from synth.config_file import load_config, parse_config
 from synth.config_template import default_config_toml
 from synth.grid import Resolution
 from synth.input_error import InputError
+from tuning_tables.canonical import canonical_json
 
 CUT = '[[cut]]\ncar = "gondola-4"\nmass_t = 22\n'
 
@@ -67,7 +69,8 @@ def test_canonical_json_is_sorted_and_ignores_spelling_title_and_output() -> Non
     assert one.canonical_json() == two.canonical_json()
     assert one.sha256 == two.sha256
     tree = json.loads(one.canonical_json())
-    assert one.canonical_json() == json.dumps(tree, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
+    assert one.canonical_json().encode() == canonical_json(tree)
+    assert one.sha256 == hashlib.sha256(one.canonical_json().encode()).hexdigest()
 
 
 def test_every_parameter_is_listed_once() -> None:
