@@ -113,3 +113,19 @@ def is_declared_elsewhere(node: ast.stmt) -> bool:
     """Whether a part of a class has its contract elsewhere: an override, or a validator that pydantic calls."""
     decorators = [ast.unparse(decorator) for decorator in getattr(node, "decorator_list", [])]
     return any("override" in text or "validator" in text or "serializer" in text for text in decorators)
+
+
+SCRIPTS = sorted(path for path in (ROOT / "scripts").iterdir() if path.suffix not in (".in", ".lock"))
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.name)
+def test_scripts_can_be_started(script: Path) -> None:
+    """A shell must be able to read every script up to where Python takes over; ruff's formatter breaks that."""
+    text = script.read_text(encoding="utf-8")
+    assert script.stat().st_mode & 0o111
+    if text.startswith("#!/bin/sh"):
+        assert text.splitlines()[1:4] == ["''':'", 'exec "$("${0%/*}/setup")/bin/python" "$0" "$@"', "'''"]
+        compile(text, script.name, "exec")
+    else:
+        assert text.startswith("#!/usr/bin/env bash")
+        assert subprocess.run(["bash", "-n", script], capture_output=True, timeout=60, check=False).returncode == 0
