@@ -12,16 +12,13 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from synth.exit_density import ExitDensity
 from synth.finer_speed import finer_in_speed
-from synth.policy_evaluation import commands, cost_and_gradient, exit_density
-from synth.polynomial_fit import Evaluate, Fit, PolynomialLines, polish
+from synth.policy_evaluation import commands, evaluator, exit_density
+from synth.polynomial_fit import Fit, PolynomialLines, polish
 from synth.problem import Criterion
 from synth.requirement import OverspeedLimit
 from synth.requirement_found import OverspeedLimitFound
-from synth.switching_lines import SwitchingLines
 from synth.terminal_cost import PenalisedOverspeed
 from synth.transitions import Transitions
 
@@ -122,15 +119,6 @@ def bisected(tried: list[Candidate], highest: float, candidate: Callable[..., Ca
         else:
             low, lowest = middle, middle.price_m2_s2
     return added
-
-
-def evaluator(ground: Transitions, target_speed_m_s: float, criterion: Criterion) -> Evaluate:
-    """Exact cost and gradient of lines on `ground`, as `polish` wants them."""
-
-    def evaluate(lines: SwitchingLines) -> tuple[float, np.ndarray, np.ndarray]:
-        return cost_and_gradient(ground, commands(ground, lines, staircase=False), target_speed_m_s, criterion)
-
-    return evaluate
 
 
 def predicted_density(check: Transitions, lines: PolynomialLines) -> ExitDensity:

@@ -6,6 +6,7 @@ expected cost backward; the two are transposes of one another and agree to round
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -175,6 +176,19 @@ def cost_and_gradient(
     """Cost and its exact derivatives by every line value: (cost, by lower (K + 1, N), by upper (K + 1, N))."""
     costs = scenario_costs(transitions, policy, target_speed_m_s, criterion)
     return costs.weighted(transitions.scenarios.weight)
+
+
+def evaluator(
+    transitions: Transitions, target_speed_m_s: float, criterion: Criterion
+) -> Callable[[SwitchingLines], tuple[float, NDArray[np.float64], NDArray[np.float64]]]:
+    """Exact cost and gradient as a function of lines at the path nodes: what `polynomial_fit.polish` minimises."""
+
+    def evaluate(lines: SwitchingLines) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
+        return cost_and_gradient(
+            transitions, commands(transitions, lines, staircase=False), target_speed_m_s, criterion
+        )
+
+    return evaluate
 
 
 def backward_one(

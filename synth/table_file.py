@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import errno
 import json
-import os
 import re
-import stat
 from dataclasses import dataclass
 from pathlib import Path
 
 from synth.input_error import InputError
 from tuning_tables import ControllerTable, read_book, read_json
+from tuning_tables.regular_file import first_bytes
 
 HDF5_SIGNATURE = b"\x89HDF"
 BOOK_SUFFIXES = (".h5", ".hdf5")
@@ -51,17 +49,6 @@ def read_table_file(path: Path) -> TableFile:
         raise InputError(f"{path}: there is no such file; give a table (.json) or a book (.h5)") from None
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); check the path and its permissions") from None
-
-
-def first_bytes(path: Path, count: int) -> bytes:
-    """The beginning of the regular file at `path`; `OSError` for a pipe or device, which might never answer."""
-    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
-    try:
-        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-            raise OSError(errno.EINVAL, "not a regular file", str(path))
-        return os.read(descriptor, count)
-    finally:
-        os.close(descriptor)
 
 
 def file_stem(table: ControllerTable) -> str:

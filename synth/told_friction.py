@@ -16,9 +16,8 @@ from numpy.typing import NDArray
 
 from plant_models import PlantError
 from synth.backward_induction import solve
-from synth.chance_constraint import evaluator
 from synth.exit_density import ExitDensity
-from synth.policy_evaluation import commands, exit_density
+from synth.policy_evaluation import commands, evaluator, exit_density
 from synth.polynomial_fit import Fit, Polish, PolynomialLines, polish
 from synth.problem import Criterion
 from synth.transitions import Transitions, with_known_friction

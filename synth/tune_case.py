@@ -10,7 +10,7 @@ import numpy as np
 from synth.backward_induction import Solution
 from synth.baselines import tune_baselines
 from synth.case_result import CaseResult, DegreeStudy, Feasibility, Indifference, Measured
-from synth.chance_constraint import evaluator, keep_overspeed_limit
+from synth.chance_constraint import keep_overspeed_limit
 from synth.closed_loop import Controller, LineController, TableController, close_loop, trace
 from synth.exit_density import ExitDensity
 from synth.exit_statistics import exit_statistics
@@ -18,7 +18,7 @@ from synth.kernels.closed_loop import Draws
 from synth.passes import ExitSample
 from synth.policy_evaluation import commands, exit_density, occupancy_of
 from synth.policy_map import policy_map
-from synth.polynomial_fit import Fit, PolynomialLines, fit_lines, polish
+from synth.polynomial_fit import Fit, PolynomialLines, fit_lines
 from synth.problem import Criterion, Problem
 from synth.random_passes import RandomPasses
 from synth.requirement import FrictionRange, OverspeedLimit
@@ -26,10 +26,10 @@ from synth.requirement_found import Finding
 from synth.switching_lines import SwitchingLines
 from synth.tabulate import lines_of, prediction_of, tabulate
 from synth.transitions import Transitions
+from synth.tuned_lines import polished
 from synth.worst_case import guard_worst_case
 from tuning_tables import ControllerTable, Generator, Predicted, Validated
 
-POLISH_ITERATIONS = 25
 TRACE_FACTORS = (0.8, 1.0, 1.2)
 INDIFFERENCE_SHOWN_M2_S2 = 1e-4
 """Costs that differ by less than (1 cm/s)² are drawn as equal."""
@@ -108,12 +108,6 @@ def tune_case(order: CaseOrder) -> CaseResult:
         criterion=problem.criterion,
         finding=finding,
     )
-
-
-def polished(design: Transitions, fit: Fit, target_speed_m_s: float, criterion: Criterion) -> PolynomialLines:
-    """The fitted lines after the polish."""
-    evaluate = evaluator(design, target_speed_m_s, criterion)
-    return polish(fit.lines, fit.curvature, design.grid.path_m, evaluate, POLISH_ITERATIONS).lines
 
 
 def required(

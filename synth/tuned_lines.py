@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from synth.backward_induction import Solution, solve
-from synth.policy_evaluation import commands, occupancy_of
-from synth.polynomial_fit import Fit, PolynomialLines, fit_lines
+from synth.policy_evaluation import commands, evaluator, occupancy_of
+from synth.polynomial_fit import Fit, PolynomialLines, fit_lines, polish
 from synth.problem import Criterion
 from synth.transitions import Transitions
-from synth.tune_case import polished
+
+POLISH_ITERATIONS = 25
 
 
 def tuned_lines(design: Transitions, target_speed_m_s: float, criterion: Criterion, degree: int) -> PolynomialLines:
@@ -26,3 +27,9 @@ def fitted(solution: Solution, degree: int) -> Fit:
     design = solution.transitions
     _, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
     return fit_lines(solution, occupancy.samples, degree)
+
+
+def polished(design: Transitions, fit: Fit, target_speed_m_s: float, criterion: Criterion) -> PolynomialLines:
+    """The fitted lines after the polish."""
+    evaluate = evaluator(design, target_speed_m_s, criterion)
+    return polish(fit.lines, fit.curvature, design.grid.path_m, evaluate, POLISH_ITERATIONS).lines

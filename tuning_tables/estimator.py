@@ -35,6 +35,8 @@ STATE_SIZE: Final = 7
 LEAST_SPEED_M_S: Final = 0.2
 LEAST_STEP_M: Final = 0.001
 FACTOR_RANGE: Final = (0.3, 1.9)
+"""Beyond the default floor of ξ_cut, and six standard deviations at a CV of 0.15."""
+
 LARGEST_SPEED_M_S: Final = 40.0
 LARGEST_OVERPRESSURE_KPA: Final = 2000.0
 LARGEST_STEP_M: Final = 20.0

@@ -24,14 +24,13 @@ class GoldenChoice:
 
 def golden_choices(book: TableBook) -> tuple[GoldenChoice, ...]:
     """Commands at, next to, between and beyond the targets of every class; no numbers; classes that the book lacks."""
-    classes = dict.fromkeys((table.cut.category, len(table.cut.axle_offsets_m)) for table in book.tables)
     found = [
         golden_choice(book, category, axles, speed)
-        for category, axles in classes
+        for category, axles in book.by_class
         for speed in _commands(book, category, axles)
     ]
-    category, axles = next(iter(classes))
-    most = max(axles for _, axles in classes)
+    category, axles = next(iter(book.by_class))
+    most = max(axles for _, axles in book.by_class)
     found.append(golden_choice(book, category, most + 1, np.float32(book.tables[0].target_speed_m_s)))
     beyond = len(book.categories) + 1
     for number in (0, beyond):

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import os
 import stat
+from collections.abc import Iterator
 
 from tuning_tables.errors import DamagedTable
 
@@ -16,22 +18,34 @@ def read_regular_file(path: str | os.PathLike[str], largest_bytes: int) -> bytes
     is no regular file: a directory, a pipe, a socket, a device. Their content may never come, or never end.
     """
     source = os.fspath(path)
-    # Without O_NONBLOCK the opening of a pipe waits for somebody to write into it.
-    descriptor = os.open(source, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
-    try:
-        status = os.fstat(descriptor)
-        if stat.S_ISDIR(status.st_mode):
-            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), source)
-        if not stat.S_ISREG(status.st_mode):
-            raise OSError(errno.EINVAL, "not a regular file", source)
-        _require_length(status.st_size, largest_bytes, source)
+    with _opened(source) as descriptor:
+        _require_length(os.fstat(descriptor).st_size, largest_bytes, source)
         with open(descriptor, "rb", closefd=False) as file:
             # One byte more than allowed: the file may have grown since its length was asked.
             content = file.read(largest_bytes + 1)
-    finally:
-        os.close(descriptor)
     _require_length(len(content), largest_bytes, source)
     return content
+
+
+def first_bytes(path: str | os.PathLike[str], count: int) -> bytes:
+    """At most `count` bytes from the beginning of the regular file at `path`; `OSError` as `read_regular_file`."""
+    with _opened(os.fspath(path)) as descriptor:
+        return os.read(descriptor, count)
+
+
+@contextlib.contextmanager
+def _opened(source: str) -> Iterator[int]:
+    # Without O_NONBLOCK the opening of a pipe waits for somebody to write into it.
+    descriptor = os.open(source, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    try:
+        mode = os.fstat(descriptor).st_mode
+        if stat.S_ISDIR(mode):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), source)
+        if not stat.S_ISREG(mode):
+            raise OSError(errno.EINVAL, "not a regular file", source)
+        yield descriptor
+    finally:
+        os.close(descriptor)
 
 
 def _require_length(length: int, largest_bytes: int, source: str) -> None:

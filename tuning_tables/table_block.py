@@ -51,7 +51,7 @@ class TableBlock:
 
 def block_size(book: TableBook) -> BlockSize:
     """The least size that every table of the book fits into."""
-    return BlockSize(max(len(t.stages) for t in book.tables), max(t.degree for t in book.tables) + 1)
+    return BlockSize(book.most_stages, book.highest_degree + 1)
 
 
 def block_of(book: TableBook, number: int, table: ActiveTable | None = None) -> TableBlock:

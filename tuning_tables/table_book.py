@@ -21,10 +21,13 @@ h = T1 - T0 exceeds it by at most h^2/8 max d2V/dT2 <= h^2 / (12 sqrt(3) T0) = 0
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
 from itertools import pairwise
+from types import MappingProxyType
 from typing import Final
 
 import numpy as np
@@ -78,42 +81,52 @@ class TableBook:
             raise InvalidTable("a book holds at least one table.")
         for index, table in enumerate(self.tables):
             require_kind(table, f"tables[{index}]", ControllerTable)
-        first, ids = self.tables[0], [table.id for table in self.tables]
+        first, times = self.tables[0], Counter(table.id for table in self.tables)
         for table in self.tables:
             if position_of(table) != position_of(first):
                 raise InvalidTable(
                     f"{table.id} is for the retarder {table.retarder.name}, {first.id} for {first.retarder.name}, "
                     "or their zones or dead bands differ, but a book serves one position: export them apart."
                 )
-            if ids.count(table.id) > 1:
-                raise InvalidTable(f"the id {table.id} is given to {ids.count(table.id)} tables of the book.")
+            if times[table.id] > 1:
+                raise InvalidTable(f"the id {table.id} is given to {times[table.id]} tables of the book.")
             for key, value in (("cut.mass_t", table.cut.mass_t), ("target_speed_m_s", table.target_speed_m_s)):
                 if not LEAST_FLOAT32 <= value <= LARGEST_FLOAT32:
                     raise InvalidTable(f"{key} of {table.id} is {value!r}, which float32 cannot hold.")
         for slower, faster in self.neighbours():
             require_order_between(slower, faster)
 
-    @property
+    @cached_property
     def categories(self) -> tuple[str, ...]:
         """The weight categories in order of first appearance; C and Structured Text number them from 1."""
         return tuple(dict.fromkeys(table.cut.category for table in self.tables))
 
     def shadowed(self) -> tuple[ControllerTable, ...]:
         """The tables that no choice can use: another of the same category and axles is heavier, or comes first."""
-        used = {number for category, axles in self._classes() for number in self.candidates(category, axles)}
+        used = {number for numbers in self.by_class.values() for number in numbers}
         return tuple(table for number, table in enumerate(self.tables) if number not in used)
 
     def candidates(self, category: str, axles: int) -> tuple[int, ...]:
         """Numbers of the tables that rule 1 leaves, by rising target, one a target."""
-        found = [
-            n for n, t in enumerate(self.tables) if (t.cut.category, len(t.cut.axle_offsets_m)) == (category, axles)
-        ]
-        heaviest = max((np.float32(self.tables[n].cut.mass_t) for n in found), default=np.float32(0))
-        by_target: dict[float, int] = {}
-        for number in found:
-            if np.float32(self.tables[number].cut.mass_t) == heaviest:
-                by_target.setdefault(float(np.float32(self.tables[number].target_speed_m_s)), number)
-        return tuple(by_target[target] for target in sorted(by_target))
+        return self.by_class.get((category, axles), ())
+
+    @cached_property
+    def by_class(self) -> Mapping[tuple[str, int], tuple[int, ...]]:
+        """The candidates of every class (category, axles), classes in order of first appearance."""
+        members: dict[tuple[str, int], list[int]] = {}
+        for number, table in enumerate(self.tables):
+            members.setdefault((table.cut.category, len(table.cut.axle_offsets_m)), []).append(number)
+        return MappingProxyType({each: self._heaviest_by_target(numbers) for each, numbers in members.items()})
+
+    @cached_property
+    def most_stages(self) -> int:
+        """Stages of the table that has most."""
+        return max(len(table.stages) for table in self.tables)
+
+    @cached_property
+    def highest_degree(self) -> int:
+        """Degree of the lines of the table where it is highest."""
+        return max(table.degree for table in self.tables)
 
     def choose(self, category: str, axles: int, commanded_m_s: float) -> Choice:
         """The lines for a cut of `category` on `axles` axles that shall leave with `commanded_m_s`."""
@@ -134,15 +147,20 @@ class TableBook:
         faster = self.tables[numbers[place + 1]]
         return Choice(Status.BETWEEN, between(slower, faster, target), (numbers[place], numbers[place + 1]))
 
+    def _heaviest_by_target(self, numbers: Sequence[int]) -> tuple[int, ...]:
+        heaviest = max(np.float32(self.tables[number].cut.mass_t) for number in numbers)
+        by_target: dict[float, int] = {}
+        for number in numbers:
+            if np.float32(self.tables[number].cut.mass_t) == heaviest:
+                by_target.setdefault(float(np.float32(self.tables[number].target_speed_m_s)), number)
+        return tuple(by_target[target] for target in sorted(by_target))
+
     def neighbours(self) -> Iterator[tuple[ControllerTable, ControllerTable]]:
         """All pairs of tables that lines may be taken between."""
-        for category, axles in self._classes():
-            for slower, faster in pairwise(self.candidates(category, axles)):
+        for numbers in self.by_class.values():
+            for slower, faster in pairwise(numbers):
                 if interpolable(self.tables[slower], self.tables[faster]):
                     yield self.tables[slower], self.tables[faster]
-
-    def _classes(self) -> tuple[tuple[str, int], ...]:
-        return tuple(dict.fromkeys((t.cut.category, len(t.cut.axle_offsets_m)) for t in self.tables))
 
 
 def position_of(table: ControllerTable) -> tuple[object, ...]:

@@ -11,7 +11,7 @@ import pytest
 
 from plant_models import PlantError, PressingForce, RetarderPosition, RollingResistance
 from synth.backward_induction import solve
-from synth.chance_constraint import evaluator, keep_overspeed_limit, predicted_density
+from synth.chance_constraint import keep_overspeed_limit, predicted_density
 from synth.closed_loop import LineController, simulate
 from synth.config_file import parse_config
 from synth.config_template import default_config_toml
@@ -21,6 +21,7 @@ from synth.grid import Resolution, finer_for_check
 from synth.input_error import InputError
 from synth.policy_evaluation import (
     commands,
+    evaluator,
     exit_density,
     expected_cost,
     occupancy_of,
@@ -35,7 +36,8 @@ from synth.requirement_found import OverspeedLimitFound
 from synth.switching_lines import SwitchingLines
 from synth.terminal_cost import AsymmetricSquare, PenalisedOverspeed, SquaredError, TerminalCost
 from synth.transitions import Transitions, check_transitions, persistent_transitions
-from synth.tune_case import polished, required
+from synth.tune_case import required
+from synth.tuned_lines import polished
 from synth.worst_case import FACTORS, guard_worst_case
 
 COARSE = Resolution(path_step_m=0.5, speed_step_m_s=0.05, friction_nodes=3)

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from synth.backward_induction import solve
-from synth.chance_constraint import evaluator
 from synth.grid import Resolution
-from synth.policy_evaluation import commands, exit_density
+from synth.policy_evaluation import commands, evaluator, exit_density
 from synth.problem import Criterion, Plant
 from synth.told_friction import best_polished, told_friction
 from synth.transitions import persistent_transitions
