@@ -21,11 +21,10 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 class TableController:
     """A regulator that runs an exported table, or lines chosen from a book, with the tables' own rule.
 
-    With an `estimator` the rule is asked with the estimated speed.
+    If the table has an estimator, the rule is asked with the estimated speed.
     """
 
     table: ControllerTable | ActiveTable
-    estimator: Estimator | None = None
 
     @property
     def stages(self) -> int:
@@ -41,7 +40,7 @@ class TableController:
             fixed(table.has_line, np.bool_),
             fixed(table.valid_range, np.float32),
         )
-        return regulator.Rule(*arrays, none, none, 1.0, False, 0.0, 0.0, *estimator_arrays(self.estimator))
+        return regulator.Rule(*arrays, none, none, 1.0, False, 0.0, 0.0, *estimator_arrays(table.estimator))
 
 
 @dataclass(frozen=True)

@@ -15,19 +15,22 @@ from synth.controllers import Controller
 from synth.kernels.closed_loop import Draws
 from synth.problem import Plant
 from synth.random_passes import RandomPasses
-from tuning_tables.estimator import Estimator
+from tuning_tables.estimator import MOST_BREAKS, Estimator
 
 
 def estimator_of(plant: Plant) -> Estimator:
     """The estimator that knows this plant: its work by grade, mean resistance and brake, its sensor and friction.
 
-    Quantisation counts as noise, resolution/√12. D and W are exact at the breaks of N(s) and grade.
+    Quantisation counts as noise, resolution/√12. D and W are exact at the breaks of N(s) and grade; very long cuts, with
+    more breaks than a table takes, have evenly spaced ones instead.
     """
     breaks = path_breaks_m(plant.position, plant.cut, plant.profile)
     inside = breaks[(breaks > 0.0) & (breaks < plant.exit_m)]
     edges = np.unique(np.concatenate([[0.0], inside, [plant.exit_m]]))
     # Slivers between nearly equal breaks would vanish in float32.
-    edges = edges[np.concatenate([[True], np.diff(edges) > 1e-3])]
+    edges = edges[np.concatenate([[True], np.diff(edges) > 2e-3])]
+    if len(edges) > MOST_BREAKS:
+        edges = np.linspace(0.0, plant.exit_m, MOST_BREAKS)
     cells = path_coefficients(plant.position, plant.cut, plant.profile, edges)
     drive = cells.gravity_m_s2 - cells.resistance_m_s2_per_n_kn * plant.resistance.mean_n_per_kn
     length = np.diff(edges)
@@ -37,6 +40,7 @@ def estimator_of(plant: Plant) -> Estimator:
         friction_cv=plant.friction_cv,
         path_std=friction.path_std,
         correlation_length_m=friction.correlation_length_m,
+        touch_pressure_kpa=plant.position.force.touch_pressure_kpa,
         s_m=tuple(edges.tolist()),
         drive_m2_s2=(0.0, *np.cumsum(drive * length).tolist()),
         brake_m2_s2_per_kpa=(0.0, *np.cumsum(cells.brake_m_s2_per_kpa * length).tolist()),

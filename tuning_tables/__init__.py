@@ -14,11 +14,12 @@ from tuning_tables.errors import (
     TableError,
     UnknownFormat,
 )
+from tuning_tables.estimator import Estimator, begin
 from tuning_tables.figures import Predicted, Validated, ValidRange
 from tuning_tables.hdf5_file import read_book, write_book
 from tuning_tables.json_file import from_json, read_json, to_json, write_json
 from tuning_tables.provenance import CutId, Generator, RetarderId
-from tuning_tables.rule import HOLD, LOWER, RAISE, decide, decide_for, decide_many
+from tuning_tables.rule import HOLD, LOWER, RAISE, decide, decide_for, decide_many, speed_for
 from tuning_tables.schema import table_schema, write_schema
 from tuning_tables.stage import Stage, round_coefficients
 from tuning_tables.table import ControllerTable
@@ -33,6 +34,7 @@ __all__ = [
     "ControllerTable",
     "CutId",
     "DamagedTable",
+    "Estimator",
     "Generator",
     "InvalidTable",
     "NewerVersion",
@@ -46,6 +48,7 @@ __all__ = [
     "UnknownFormat",
     "ValidRange",
     "Validated",
+    "begin",
     "decide",
     "decide_for",
     "decide_many",
@@ -54,6 +57,7 @@ __all__ = [
     "read_json",
     "replacing",
     "round_coefficients",
+    "speed_for",
     "table_schema",
     "to_csv",
     "to_json",

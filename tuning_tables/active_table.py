@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from tuning_tables.estimator import Estimator
 from tuning_tables.table import ControllerTable
 
 
@@ -18,12 +19,14 @@ class ActiveTable:
     coefficients      float32 (K+1, 2, degree+1), ascending powers of s in m; NaN where there is no line
     has_line          bool (K+1, 2)
     valid_range       float32 (4,): s_min, s_max in m, v_min, v_max in m/s
+    estimator         of the speed that the lines are for; None: for the measured speed
     """
 
     target_speed_m_s: np.float32
     coefficients: npt.NDArray[np.float32]
     has_line: npt.NDArray[np.bool_]
     valid_range: npt.NDArray[np.float32]
+    estimator: Estimator | None = None
 
     def __post_init__(self) -> None:
         for array in (self.coefficients, self.has_line, self.valid_range):
@@ -33,17 +36,29 @@ class ActiveTable:
 def active(table: ControllerTable) -> ActiveTable:
     """`table` as it stands."""
     return ActiveTable(
-        np.float32(table.target_speed_m_s), table.coefficients.view(), table.has_line.view(), table.valid_range.view()
+        np.float32(table.target_speed_m_s),
+        table.coefficients.view(),
+        table.has_line.view(),
+        table.valid_range.view(),
+        table.estimator,
     )
 
 
 def interpolable(slower: ControllerTable, faster: ControllerTable) -> bool:
-    """Whether the two have the same stages, degree, lines and path range, so that lines between them have a meaning."""
+    """Whether stages, degree, lines, path range and estimator are the same, so that lines between have a meaning."""
     return (
         slower.coefficients.shape == faster.coefficients.shape
         and np.array_equal(slower.has_line, faster.has_line)
         and np.array_equal(slower.valid_range[:2], faster.valid_range[:2])
+        and same_estimator(slower.estimator, faster.estimator)
     )
+
+
+def same_estimator(one: Estimator | None, other: Estimator | None) -> bool:
+    """Whether both compute the same from the same readings: all their float32 numbers are equal."""
+    if one is None or other is None:
+        return one is other
+    return np.array_equal(one.parameters, other.parameters) and np.array_equal(one.work, other.work)
 
 
 def between(slower: ControllerTable, faster: ControllerTable, target_speed_m_s: np.float32) -> ActiveTable:
@@ -55,4 +70,6 @@ def between(slower: ControllerTable, faster: ControllerTable, target_speed_m_s: 
     below, above = np.float32(slower.target_speed_m_s), np.float32(faster.target_speed_m_s)
     weight = (target_speed_m_s - below) / (above - below)
     coefficients = slower.coefficients + weight * (faster.coefficients - slower.coefficients)
-    return ActiveTable(target_speed_m_s, coefficients, slower.has_line.view(), slower.valid_range.view())
+    return ActiveTable(
+        target_speed_m_s, coefficients, slower.has_line.view(), slower.valid_range.view(), slower.estimator
+    )

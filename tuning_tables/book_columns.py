@@ -1,7 +1,8 @@
 """A book of tables as columns: one array per quantity, the first axis running over the tables.
 
 Tables of one book may differ in stages, degree, zones and axles: shorter ones are filled up with NaN (float columns) or
-0 (the rest). `COLUMNS` states every array with its axes, type, unit and meaning; this is the layout of "book.h5".
+0 (the rest). A `Layout` states every array with its axes, type, unit and meaning, as "book.h5" holds it: `PLAIN`, or
+`WITH_ESTIMATORS` where a table has one.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.errors import InvalidTable
+from tuning_tables.estimator import Estimator
 from tuning_tables.figures import Predicted, Validated, ValidRange
 from tuning_tables.provenance import CutId, Generator, RetarderId
 from tuning_tables.stage import Stage
@@ -48,6 +50,7 @@ AXES: Final[Mapping[str, str]] = {
     "axle": "index of the axle from the front",
     "end": "0: beginning or smallest, 1: end or largest",
 }
+ESTIMATOR_AXES: Final[Mapping[str, str]] = {"break": "index of the path break of the estimator's work"}
 
 COLUMNS: Final[tuple[Column, ...]] = (
     Column("id", ("table",), "S", "1", "name of the table", lambda t: t.id),
@@ -86,6 +89,58 @@ COLUMNS: Final[tuple[Column, ...]] = (
 )  # fmt: skip
 
 
+def of_estimator(name: str, absent: Any) -> Callable[[ControllerTable], Any]:
+    """The content of a column: an attribute of the table's estimator, `absent` without one."""
+    return lambda table: absent if table.estimator is None else getattr(table.estimator, name)
+
+
+ESTIMATOR_COLUMNS: Final[tuple[Column, ...]] = (
+    Column("predicted_passes", ("table",), "<i8", "1", "simulated passes that the prediction comes from, 0: exact",
+           lambda t: t.predicted.passes or 0),
+    Column("estimator_breaks", ("table",), "<i4", "1", "path breaks of the estimator, 0: no estimator",
+           lambda t: 0 if t.estimator is None else len(t.estimator.s_m)),
+    Column("estimator_speed_noise_m_s", ("table",), "<f8", "m/s", "standard deviation of a measured speed",
+           of_estimator("speed_noise_m_s", np.nan)),
+    Column("estimator_friction_cv", ("table",), "<f8", "1", "spread of the friction factor between cuts",
+           of_estimator("friction_cv", np.nan)),
+    Column("estimator_path_std", ("table",), "<f8", "1", "spread of the friction along the path",
+           of_estimator("path_std", np.nan)),
+    Column("estimator_correlation_length_m", ("table",), "<f8", "m", "its correlation length",
+           of_estimator("correlation_length_m", np.nan)),
+    Column("estimator_touch_pressure_kpa", ("table",), "<f8", "kPa", "overpressure counts from here",
+           of_estimator("touch_pressure_kpa", np.nan)),
+    Column("estimator_s_m", ("table", "break"), "<f8", "m", "path breaks", of_estimator("s_m", ())),
+    Column("estimator_drive_m2_s2", ("table", "break"), "<f8", "m2/s2", "work of grade and resistance from s = 0",
+           of_estimator("drive_m2_s2", ())),
+    Column("estimator_brake_m2_s2_per_kpa", ("table", "break"), "<f8", "m2/s2 per kPa", "work of the brake",
+           of_estimator("brake_m2_s2_per_kpa", ())),
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Layout:
+    """What a book consists of: its schema version, its columns, and the meaning of their axes."""
+
+    version: int
+    columns: tuple[Column, ...]
+    axes: Mapping[str, str]
+
+    def length(self, axis: str, arrays: Columns) -> int:
+        """The length of `axis` in the arrays of a book of this layout."""
+        column = next(column for column in self.columns if axis in column.axes)
+        return int(arrays[column.name].shape[column.axes.index(axis)])
+
+
+PLAIN: Final = Layout(1, COLUMNS, AXES)
+WITH_ESTIMATORS: Final = Layout(2, COLUMNS + ESTIMATOR_COLUMNS, {**AXES, **ESTIMATOR_AXES})
+LAYOUTS: Final[Mapping[int, Layout]] = {layout.version: layout for layout in (PLAIN, WITH_ESTIMATORS)}
+
+
+def layout_of(tables: Sequence[ControllerTable]) -> Layout:
+    """The oldest layout that can hold the tables."""
+    return WITH_ESTIMATORS if any(table.estimator is not None for table in tables) else PLAIN
+
+
 def columns_of(tables: Sequence[ControllerTable]) -> dict[str, npt.NDArray[Any]]:
     """The arrays of a book, by name.
 
@@ -97,11 +152,11 @@ def columns_of(tables: Sequence[ControllerTable]) -> dict[str, npt.NDArray[Any]]
     (name, times), *_ = Counter(table.id for table in tables).most_common(1)
     if times > 1:
         raise InvalidTable(f"{times} tables of the book have the id {name!r}, but ids must differ within a book.")
-    return {column.name: _stacked(column, tables) for column in COLUMNS}
+    return {column.name: _stacked(column, tables) for column in layout_of(tables).columns}
 
 
 def tables_of(columns: Columns) -> tuple[ControllerTable, ...]:
-    """The tables in the arrays of a book, which must have the names, types and numbers of axes of `COLUMNS`.
+    """The tables in the arrays of a book, which must have the names, types and numbers of axes of a layout.
 
     Raises `InvalidTable` for values that make no table, `UnicodeDecodeError` for text that is no UTF-8.
     """
@@ -145,8 +200,30 @@ def _table(row: Mapping[str, Any]) -> ControllerTable:
             float(row["predicted_p_overspeed"]),
             float(row["predicted_switchings"]),
             None if np.isnan(p_stall) else p_stall,
+            int(row.get("predicted_passes", 0)) or None,
         ),
         validated=_validated(row),
+        estimator=_estimator(row),
+    )
+
+
+def _estimator(row: Mapping[str, Any]) -> Estimator | None:
+    breaks = int(row.get("estimator_breaks", 0))
+    if breaks == 0:
+        return None
+    if not 0 < breaks <= len(row["estimator_s_m"]):
+        raise InvalidTable(f"estimator_breaks is {breaks}, but the book has room for {len(row['estimator_s_m'])}.")
+    work = (row[f"estimator_{name}"][:breaks].tolist() for name in ("s_m", "drive_m2_s2", "brake_m2_s2_per_kpa"))
+    s_m, drive, brake = map(tuple, work)
+    return Estimator(
+        float(row["estimator_speed_noise_m_s"]),
+        float(row["estimator_friction_cv"]),
+        float(row["estimator_path_std"]),
+        float(row["estimator_correlation_length_m"]),
+        float(row["estimator_touch_pressure_kpa"]),
+        s_m,
+        drive,
+        brake,
     )
 
 

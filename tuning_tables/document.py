@@ -6,6 +6,7 @@ from typing import Final
 
 from tuning_tables.canonical import CHECKSUM_KEY, document_checksum
 from tuning_tables.errors import DamagedTable, InvalidTable, NewerVersion, OlderVersion, UnknownFormat
+from tuning_tables.estimator import Estimator
 from tuning_tables.excerpt import excerpt
 from tuning_tables.figures import Predicted, Validated, ValidRange
 from tuning_tables.provenance import CutId, Generator, RetarderId
@@ -15,6 +16,8 @@ from tuning_tables.table import ControllerTable
 
 FORMAT: Final = "retarder-table"
 VERSION: Final = 1
+ESTIMATOR_VERSION: Final = 2
+"""Of tables with an estimator, so that readers who do not know of it refuse them: their lines are for another speed."""
 VARIABLE: Final = "s_m"
 LONGEST_REASON: Final = 400
 
@@ -33,6 +36,16 @@ _KEYS: Final = (
     "predicted",
     "validated",
     CHECKSUM_KEY,
+)
+_ESTIMATOR_KEYS: Final = (
+    "speed_noise_m_s",
+    "friction_cv",
+    "path_std",
+    "correlation_length_m",
+    "touch_pressure_kpa",
+    "s_m",
+    "drive_m2_s2",
+    "brake_m2_s2_per_kpa",
 )
 
 
@@ -69,6 +82,8 @@ def to_document(table: ControllerTable) -> dict[str, object]:
         "predicted": _predicted_document(table.predicted),
         "validated": None if table.validated is None else _validated_document(table.validated),
     }
+    if table.estimator is not None:
+        document |= {"version": ESTIMATOR_VERSION, "estimator": _estimator_document(table.estimator)}
     return {**document, CHECKSUM_KEY: document_checksum(document)}
 
 
@@ -79,7 +94,8 @@ def from_document(document: object, source: str) -> ControllerTable:
     checksum, a missing or unknown key, a wrong type, and values that make no table. Checked in this order.
     """
     members = _versioned(document, source)
-    top = Section(members, source, "", _KEYS)
+    extended = members["version"] == ESTIMATOR_VERSION
+    top = Section(members, source, "", (*_KEYS, "estimator") if extended else _KEYS)
     _require_checksum(members, top.text(CHECKSUM_KEY), source)
     polynomial = top.section("polynomial", ("variable", "degree"))
     if polynomial.text("variable") != VARIABLE:
@@ -96,10 +112,9 @@ def from_document(document: object, source: str) -> ControllerTable:
             degree=polynomial.count("degree"),
             stages=tuple(map(_stage, top.sections("stages", ("k", "pressure_kpa", "lower", "upper")))),
             valid=_valid_range(top.section("valid", ("s_m", "v_m_s"))),
-            predicted=_predicted(
-                top.section("predicted", ("rms_m_s", "bias_m_s", "p_overspeed", "switchings"), ("p_stall",))
-            ),
+            predicted=_predicted(top, ("p_stall", "passes") if extended else ("p_stall",)),
             validated=_validated(top),
+            estimator=_estimator(top.section("estimator", _ESTIMATOR_KEYS)) if extended else None,
         )
     except InvalidTable as invalid:
         # The reason may quote a value, and a file may hold one of any length.
@@ -113,11 +128,14 @@ def _versioned(document: object, source: str) -> dict[str, object]:
         raise UnknownFormat(f'{source}: format is {found!r:.60}, but it must be "{FORMAT}"; give a controller table.')
     version = document.get("version")
     if not isinstance(version, int) or isinstance(version, bool):
-        raise DamagedTable(f"{source}: version is {version!r:.60}, but it must be the whole number {VERSION}.")
-    if version > VERSION:
-        raise NewerVersion(f"{source}: version is {version}, this reader knows only {VERSION}; update retarder-synth.")
+        raise DamagedTable(
+            f"{source}: version is {version!r:.60}, but it must be the whole number {VERSION} or {ESTIMATOR_VERSION}."
+        )
+    known = f"this reader knows only {VERSION} and {ESTIMATOR_VERSION}"
+    if version > ESTIMATOR_VERSION:
+        raise NewerVersion(f"{source}: version is {version}, {known}; update retarder-synth.")
     if version < VERSION:
-        raise OlderVersion(f"{source}: version is {version}, this reader knows only {VERSION}; export it again.")
+        raise OlderVersion(f"{source}: version is {version}, {known}; export it again.")
     return document
 
 
@@ -153,7 +171,16 @@ def _predicted_document(predicted: Predicted) -> dict[str, object]:
         "p_overspeed": float(predicted.p_overspeed),
         "switchings": float(predicted.switchings),
     }
-    return document if predicted.p_stall is None else {**document, "p_stall": float(predicted.p_stall)}
+    if predicted.p_stall is not None:
+        document["p_stall"] = float(predicted.p_stall)
+    if predicted.passes is not None:
+        document["passes"] = predicted.passes
+    return document
+
+
+def _estimator_document(estimator: Estimator) -> dict[str, object]:
+    values = {key: getattr(estimator, key) for key in _ESTIMATOR_KEYS}
+    return {key: _floats(value) if isinstance(value, tuple) else float(value) for key, value in values.items()}
 
 
 def _validated_document(validated: Validated) -> dict[str, object]:
@@ -191,13 +218,28 @@ def _valid_range(section: Section) -> ValidRange:
     return ValidRange(section.pair("s_m"), section.pair("v_m_s"))
 
 
-def _predicted(section: Section) -> Predicted:
+def _predicted(top: Section, optional: tuple[str, ...]) -> Predicted:
+    section = top.section("predicted", ("rms_m_s", "bias_m_s", "p_overspeed", "switchings"), optional)
     return Predicted(
         section.number("rms_m_s"),
         section.number("bias_m_s"),
         section.number("p_overspeed"),
         section.number("switchings"),
         section.number("p_stall") if "p_stall" in section else None,
+        section.count("passes") if "passes" in section else None,
+    )
+
+
+def _estimator(section: Section) -> Estimator:
+    return Estimator(
+        section.number("speed_noise_m_s"),
+        section.number("friction_cv"),
+        section.number("path_std"),
+        section.number("correlation_length_m"),
+        section.number("touch_pressure_kpa"),
+        section.numbers("s_m"),
+        section.numbers("drive_m2_s2"),
+        section.numbers("brake_m2_s2_per_kpa"),
     )
 
 

@@ -25,7 +25,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.errors import InvalidTable
-from tuning_tables.requirement import require_between, require_finite, require_rising, require_tuple
+from tuning_tables.requirement import require_between, require_tuple
 
 Floats = npt.NDArray[np.float32]
 
@@ -43,6 +43,8 @@ LARGEST_STEP_M: Final = 20.0
 """Readings beyond these cannot be true, and one of them would spoil the state for the rest of the pass."""
 
 MOST_BREAKS: Final = 256
+FARTHEST_M: Final = 1e4
+LARGEST_WORK: Final = 1e6
 
 
 @dataclass(frozen=True)
@@ -52,8 +54,10 @@ class Estimator:
     speed_noise_m_s        standard deviation of a measured speed, > 0
     friction_cv            standard deviation of the friction factor of cuts around 1
     path_std, correlation_length_m   σ_η and ℓ of the friction along the path, ℓ in m
+    touch_pressure_kpa     P0, at which the beams touch the wheels: the overpressure is max(0, P - P0)
     s_m, drive_m2_s2, brake_m2_s2_per_kpa   D and W at path breaks, linear between: kinetic energy per mass gained from
-                           the entrance to s, and lost for each kPa of overpressure at ξ = 1; W never falls
+                           the entrance to s, and lost for each kPa of overpressure at ξ = 1; W never falls, breaks are
+                           a millimetre apart at least
 
     Derived, for `observe` (read-only): parameters float32 (13,), work float32 (3, B). Raises `InvalidTable`.
     """
@@ -62,6 +66,7 @@ class Estimator:
     friction_cv: float
     path_std: float
     correlation_length_m: float
+    touch_pressure_kpa: float
     s_m: tuple[float, ...]
     drive_m2_s2: tuple[float, ...]
     brake_m2_s2_per_kpa: tuple[float, ...]
@@ -73,15 +78,8 @@ class Estimator:
         require_between(self.friction_cv, "estimator.friction_cv", 0.0, 1.0)
         require_between(self.path_std, "estimator.path_std", 0.0, 1.0)
         require_between(self.correlation_length_m, "estimator.correlation_length_m", 1e-3, 1e4)
-        require_rising(self.s_m, "estimator.s_m")
-        if not 2 <= len(self.s_m) <= MOST_BREAKS:
-            raise InvalidTable(f"estimator.s_m has {len(self.s_m)} breaks, but 2 to {MOST_BREAKS} are allowed.")
-        for key, values in (("drive_m2_s2", self.drive_m2_s2), ("brake_m2_s2_per_kpa", self.brake_m2_s2_per_kpa)):
-            require_tuple(values, f"estimator.{key}", len(self.s_m))
-            for index, value in enumerate(values):
-                require_finite(value, f"estimator.{key}[{index}]")
-        if any(later < earlier for earlier, later in pairwise(self.brake_m2_s2_per_kpa)):
-            raise InvalidTable("estimator.brake_m2_s2_per_kpa falls, but a brake only takes energy away.")
+        require_between(self.touch_pressure_kpa, "estimator.touch_pressure_kpa", 0.0, LARGEST_OVERPRESSURE_KPA)
+        self._require_work()
         variance = 2.0 * self.path_std**2 * self.correlation_length_m
         numbers = (
             self.speed_noise_m_s**2, self.friction_cv**2, variance, *FACTOR_RANGE, LEAST_SPEED_M_S, LEAST_STEP_M,
@@ -92,6 +90,24 @@ class Estimator:
             array = np.array(content, dtype=np.float32)
             array.setflags(write=False)
             object.__setattr__(self, name, array)
+
+    def _require_work(self) -> None:
+        require_tuple(self.s_m, "estimator.s_m")
+        if not 2 <= len(self.s_m) <= MOST_BREAKS:
+            raise InvalidTable(f"estimator.s_m has {len(self.s_m)} breaks, but 2 to {MOST_BREAKS} are allowed.")
+        for key, values, largest in (
+            ("s_m", self.s_m, FARTHEST_M),
+            ("drive_m2_s2", self.drive_m2_s2, LARGEST_WORK),
+            ("brake_m2_s2_per_kpa", self.brake_m2_s2_per_kpa, LARGEST_WORK),
+        ):
+            require_tuple(values, f"estimator.{key}", len(self.s_m))
+            for index, value in enumerate(values):
+                require_between(value, f"estimator.{key}[{index}]", -largest, largest)
+        # In float32, as they are divided by.
+        if not (np.diff(np.array(self.s_m, dtype=np.float32)) >= LEAST_STEP_M).all():
+            raise InvalidTable(f"estimator.s_m must rise by {LEAST_STEP_M:g} m at least from break to break.")
+        if any(later < earlier for earlier, later in pairwise(self.brake_m2_s2_per_kpa)):
+            raise InvalidTable("estimator.brake_m2_s2_per_kpa falls, but a brake only takes energy away.")
 
 
 def begin() -> Floats:

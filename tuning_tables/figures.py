@@ -46,7 +46,8 @@ class ValidRange:
 class Predicted:
     """Quality that the solver expects of this table; speeds in m/s, probabilities in [0, 1], switchings per pass.
 
-    `p_stall`: probability that the cut comes to a stand in the retarder; None where it was not computed.
+    `p_stall`: probability that the cut comes to a stand in the retarder; None where it was not computed. `passes`:
+    simulated passes that the figures come from, None where they were computed exactly.
     """
 
     rms_m_s: float
@@ -54,6 +55,7 @@ class Predicted:
     p_overspeed: float
     switchings: float
     p_stall: float | None = None
+    passes: int | None = None
 
     def __post_init__(self) -> None:
         require_between(self.rms_m_s, "predicted.rms_m_s", 0.0)
@@ -62,6 +64,8 @@ class Predicted:
         require_between(self.switchings, "predicted.switchings", 0.0)
         if self.p_stall is not None:
             require_between(self.p_stall, "predicted.p_stall", 0.0, 1.0)
+        if self.passes is not None:
+            require_count(self.passes, "predicted.passes", 1)
 
 
 @dataclass(frozen=True)

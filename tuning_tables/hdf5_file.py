@@ -1,8 +1,9 @@
 """A book of tables as an HDF5 file, readable by h5py and xarray without this project. Needs h5py, and only when called.
 
 Root attributes: format "retarder-book", schema_version, tool_version, config_sha256, payload_sha256 (see `payload`),
-complete = 1. Datasets: those of `book_columns.COLUMNS`, each with attributes `units` and `meaning`, chunked in one
-piece with a fletcher32 checksum. Each axis is a dimension scale of its own name, numbered from 0.
+complete = 1. The schema version is 2 where a table has an estimator, else 1. Datasets: the columns of that version
+(`book_columns.LAYOUTS`), each with attributes `units` and `meaning`, chunked in one piece with a fletcher32 checksum.
+Each axis is a dimension scale of its own name, numbered from 0.
 
 Two attributes are for xarray: `_Encoding` has it decode text (fixed-length UTF-8), `coordinates` names what tells the
 tables apart. Equal books give equal bytes: nothing in the file tells time or place. The file ends with a seal (see
@@ -21,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.atomic_file import replacing
-from tuning_tables.book_columns import AXES, COLUMNS, Column, Columns, columns_of, tables_of
+from tuning_tables.book_columns import LAYOUTS, Column, Columns, Layout, columns_of, layout_of, tables_of
 from tuning_tables.errors import DamagedTable, InvalidTable, NewerVersion, OlderVersion, TableError, UnknownFormat
 from tuning_tables.excerpt import excerpt
 from tuning_tables.payload import payload_sha256
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
     import h5py
 
 FORMAT: Final = "retarder-book"
-SCHEMA_VERSION: Final = 1
+KNOWN: Final = " or ".join(map(str, LAYOUTS))
 SIGNATURE: Final = b"\x89HDF\r\n\x1a\n"
 # The oldest file version whose metadata carry checksums, for readers that know nothing of the seal.
 FILE_VERSION: Final = ("v108", "v108")
@@ -58,21 +59,21 @@ def write_book(
     """
     import h5py
 
-    arrays = columns_of(tables)
+    arrays, layout = columns_of(tables), layout_of(tables)
     origin = generator or _common_generator(tables)
     attributes: dict[str, str | int] = {
         "complete": 1,
         "config_sha256": origin.config_sha256,
         "format": FORMAT,
-        "schema_version": SCHEMA_VERSION,
+        "schema_version": layout.version,
         "tool_version": origin.version,
     }
-    attributes["payload_sha256"] = payload_sha256(attributes, arrays)
+    attributes["payload_sha256"] = payload_sha256(attributes, arrays, layout)
     with replacing(path) as part:
         with h5py.File(part, "w", libver=FILE_VERSION) as file:
-            for axis, meaning in AXES.items():
-                _write_axis(file, axis, _axis_length(axis, arrays), meaning)
-            for column in COLUMNS:
+            for axis, meaning in layout.axes.items():
+                _write_axis(file, axis, layout.length(axis, arrays), meaning)
+            for column in layout.columns:
                 _write_column(file, column, arrays[column.name])
             for name in _ATTRIBUTES:
                 file.attrs[name] = attributes[name]
@@ -119,11 +120,6 @@ def _common_generator(tables: Sequence[ControllerTable]) -> Generator:
     return generators.pop()
 
 
-def _axis_length(axis: str, arrays: Columns) -> int:
-    column = next(column for column in COLUMNS if axis in column.axes)
-    return int(arrays[column.name].shape[column.axes.index(axis)])
-
-
 def _write_axis(file: h5py.File, axis: str, length: int, meaning: str) -> None:
     scale = file.create_dataset(axis, data=np.arange(length, dtype="<i4"), track_times=False)
     scale.make_scale(axis)
@@ -153,7 +149,7 @@ def _checked_arrays(file: h5py.File, most_bytes: int, source: str) -> dict[str, 
     from tuning_tables.stored_array import require_axis, scalar_attribute, stored_array
 
     attributes = {name: scalar_attribute(file, name) for name in _ATTRIBUTES}
-    _require_version(attributes["format"], attributes["schema_version"], source)
+    layout = _layout(attributes["format"], attributes["schema_version"], source)
     if tuple(sorted(file.attrs)) != _ATTRIBUTES:
         found = excerpt(str(sorted(file.attrs)), LONGEST_REASON)
         raise DamagedTable(f"{source}: root attributes are {found}, but must be {list(_ATTRIBUTES)}.")
@@ -161,30 +157,30 @@ def _checked_arrays(file: h5py.File, most_bytes: int, source: str) -> dict[str, 
         raise DamagedTable(f"{source}: complete is {attributes['complete']!r}, but must be 1; export the book again.")
     require_match(attributes["config_sha256"], "config_sha256", SHA256_HEX, "of 64 lower-case hex digits")
     require_text(attributes["tool_version"], "tool_version")
-    expected = {column.name for column in COLUMNS} | set(AXES)
+    expected = {column.name for column in layout.columns} | set(layout.axes)
     if set(file) != expected:
         found = excerpt(str(sorted(set(file) ^ expected)), LONGEST_REASON)
         raise DamagedTable(f"{source}: {found} are missing or unknown; export the book again.")
     arrays: dict[str, npt.NDArray[Any]] = {}
-    for column in COLUMNS:
+    for column in layout.columns:
         arrays[column.name] = stored_array(file, column, most_bytes, source)
         most_bytes -= arrays[column.name].nbytes
     stored = attributes.pop("payload_sha256")
-    if stored != payload_sha256({k: v for k, v in attributes.items() if v is not None}, arrays):
+    if stored != payload_sha256({k: v for k, v in attributes.items() if v is not None}, arrays, layout):
         raise DamagedTable(
             f"{source}: payload_sha256 is {stored!r:.80}, but the content gives another; export it again."
         )
-    for column in COLUMNS:
-        _require_lengths(column, arrays, source)
-    for axis in AXES:
-        require_axis(file, axis, _axis_length(axis, arrays), source)
+    for column in layout.columns:
+        _require_lengths(column, arrays, layout, source)
+    for axis in layout.axes:
+        require_axis(file, axis, layout.length(axis, arrays), source)
     return arrays
 
 
-def _require_lengths(column: Column, arrays: Columns, source: str) -> None:
+def _require_lengths(column: Column, arrays: Columns, layout: Layout, source: str) -> None:
     """Every axis of `column` has one length in the whole book, and none is empty."""
     for axis, length in zip(column.axes, arrays[column.name].shape, strict=True):
-        wanted = _axis_length(axis, arrays)
+        wanted = layout.length(axis, arrays)
         if length != wanted or length == 0:
             raise DamagedTable(
                 f"{source}: {column.name} has {length} entries along {axis}, but the book has {wanted} there and needs "
@@ -194,6 +190,8 @@ def _require_lengths(column: Column, arrays: Columns, source: str) -> None:
 
 def _require_as_written(found: Columns, written: Columns, source: str) -> None:
     """Padding, lengths of text and missing lines are as `columns_of` makes them; values then are, too."""
+    if found.keys() != written.keys():
+        raise DamagedTable(f"{source}: no table has an estimator, but the book has arrays for it; export it again.")
     for name, array in written.items():
         if found[name].dtype.str != array.dtype.str or found[name].tobytes() != array.tobytes():
             raise DamagedTable(
@@ -202,12 +200,13 @@ def _require_as_written(found: Columns, written: Columns, source: str) -> None:
             )
 
 
-def _require_version(found: str | int | None, version: str | int | None, source: str) -> None:
+def _layout(found: str | int | None, version: str | int | None, source: str) -> Layout:
     if found != FORMAT:
         raise UnknownFormat(f'{source}: format is {found!r:.60}, but it must be "{FORMAT}"; give a table book.')
     if not isinstance(version, int):
-        raise DamagedTable(f"{source}: schema_version is {version!r:.60}, but it must be {SCHEMA_VERSION}.")
-    if version > SCHEMA_VERSION:
-        raise NewerVersion(f"{source}: schema_version is {version}, this reader knows {SCHEMA_VERSION}; update it.")
-    if version < SCHEMA_VERSION:
-        raise OlderVersion(f"{source}: schema_version is {version}, not {SCHEMA_VERSION}; export the book again.")
+        raise DamagedTable(f"{source}: schema_version is {version!r:.60}, but it must be {KNOWN}.")
+    if version > max(LAYOUTS):
+        raise NewerVersion(f"{source}: schema_version is {version}, this reader knows {KNOWN}; update it.")
+    if version < min(LAYOUTS):
+        raise OlderVersion(f"{source}: schema_version is {version}, not {KNOWN}; export the book again.")
+    return LAYOUTS[version]

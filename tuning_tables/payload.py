@@ -15,12 +15,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tuning_tables.book_columns import COLUMNS, Columns
+from tuning_tables.book_columns import Columns, Layout
 from tuning_tables.canonical import canonical_json
 
 
-def payload_sha256(attributes: Mapping[str, str | int], arrays: Columns) -> str:
-    """64 hex digits over `attributes`, which must be without payload_sha256, and the arrays of all `COLUMNS`."""
+def payload_sha256(attributes: Mapping[str, str | int], arrays: Columns, layout: Layout) -> str:
+    """64 hex digits over `attributes`, which must be without payload_sha256, and all arrays of `layout`."""
     datasets = {
         column.name: {
             "dtype": arrays[column.name].dtype.str,
@@ -29,6 +29,6 @@ def payload_sha256(attributes: Mapping[str, str | int], arrays: Columns) -> str:
             "meaning": column.meaning,
             "sha256": hashlib.sha256(np.ascontiguousarray(arrays[column.name]).tobytes()).hexdigest(),
         }
-        for column in COLUMNS
+        for column in layout.columns
     }
     return hashlib.sha256(canonical_json({"attributes": dict(attributes), "datasets": datasets})).hexdigest()

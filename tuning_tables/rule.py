@@ -24,6 +24,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.active_table import ActiveTable
+from tuning_tables.estimator import observe
 from tuning_tables.table import ControllerTable
 
 LOWER: Final = -1
@@ -79,6 +80,23 @@ def decide(
 def decide_for(table: ControllerTable | ActiveTable, stage: int, s_m: float, v_m_s: float) -> int:
     """LOWER, HOLD or RAISE of `table`, or of lines chosen from a book, for one reading of path and speed at `stage`."""
     return decide(table.coefficients, table.has_line, table.valid_range, stage, s_m, v_m_s)
+
+
+def speed_for(
+    table: ControllerTable | ActiveTable,
+    state: npt.NDArray[np.float32],
+    s_m: float,
+    v_m_s: float,
+    overpressure_kpa: float,
+) -> float:
+    """The speed to ask `decide_for` with, m/s: that of the table's estimator, or the measured one if it has none.
+
+    To be called once at every sample, also during a change of stage; `state` is the cut's own (`estimator.begin`), the
+    overpressure the mean of max(0, P - P0) since the sample before. See `estimator.observe`.
+    """
+    if table.estimator is None:
+        return v_m_s
+    return float(observe(table.estimator.parameters, table.estimator.work, state, s_m, v_m_s, overpressure_kpa))
 
 
 def decide_many(

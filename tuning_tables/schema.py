@@ -11,7 +11,8 @@ import os
 from typing import Final
 
 from tuning_tables.atomic_file import write_atomically
-from tuning_tables.document import FORMAT, VARIABLE, VERSION
+from tuning_tables.document import ESTIMATOR_VERSION, FORMAT, VARIABLE, VERSION
+from tuning_tables.estimator import FARTHEST_M, LARGEST_OVERPRESSURE_KPA, LARGEST_WORK, MOST_BREAKS
 from tuning_tables.requirement import SHA256_HEX, UTC_INSTANT
 from tuning_tables.table import HIGHEST_DEGREE, MOST_STAGES
 
@@ -19,15 +20,16 @@ DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 
 
 def table_schema() -> dict[str, object]:
-    """A new dict with the JSON Schema of the format "retarder-table", version 1."""
+    """A new dict with the JSON Schema of the format "retarder-table", version 1, and 2 with an estimator."""
     line = {"anyOf": [{"type": "null"}, _array({"type": "number"}, 1, HIGHEST_DEGREE + 1)]}
     stage = _object(k=_whole(0, MOST_STAGES - 1), pressure_kpa=_number(0), lower=line, upper=line)
     validated = _object(passes=_whole(1), rms_m_s=_number(0), rms_ci95_m_s=_pair(_number(0)))
     predicted = _object(rms_m_s=_number(0), bias_m_s=_number(), p_overspeed=_number(0, 1), switchings=_number(0))
     predicted["properties"]["p_stall"] = _number(0, 1)
+    predicted["properties"]["passes"] = _whole(1)
     top = _object(
         format={"const": FORMAT},
-        version={"const": VERSION},
+        version={"enum": [VERSION, ESTIMATOR_VERSION]},
         id=_text(),
         created={"type": "string", "pattern": UTC_INSTANT},
         generator=_object(name=_text(), version=_text(), config_sha256={"type": "string", "pattern": SHA256_HEX}),
@@ -41,7 +43,25 @@ def table_schema() -> dict[str, object]:
         validated={"anyOf": [{"type": "null"}, validated]},
         crc32={"type": "string", "pattern": "^[0-9a-f]{8}$"},
     )
-    return {"$schema": DIALECT, "title": f"{FORMAT} {VERSION}", **top}
+    top["properties"]["estimator"] = _estimator()
+    exact: dict[str, object] = {"properties": {"passes": False}}
+    plain = {"properties": {"version": {"const": VERSION}, "estimator": False, "predicted": exact}}
+    estimated = {"properties": {"version": {"const": ESTIMATOR_VERSION}}, "required": ["estimator"]}
+    title = f"{FORMAT} {VERSION} and {ESTIMATOR_VERSION}"
+    return {"$schema": DIALECT, "title": title, **top, "oneOf": [plain, estimated]}
+
+
+def _estimator() -> dict[str, dict[str, object]]:
+    return _object(
+        speed_noise_m_s=_number(1e-4, 10.0),
+        friction_cv=_number(0, 1),
+        path_std=_number(0, 1),
+        correlation_length_m=_number(1e-3, 1e4),
+        touch_pressure_kpa=_number(0, LARGEST_OVERPRESSURE_KPA),
+        s_m=_array(_number(-FARTHEST_M, FARTHEST_M), 2, MOST_BREAKS),
+        drive_m2_s2=_array(_number(-LARGEST_WORK, LARGEST_WORK), 2, MOST_BREAKS),
+        brake_m2_s2_per_kpa=_array(_number(-LARGEST_WORK, LARGEST_WORK), 2, MOST_BREAKS),
+    )
 
 
 def write_schema(path: str | os.PathLike[str]) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.errors import InvalidTable
+from tuning_tables.estimator import Estimator
 from tuning_tables.figures import Predicted, Validated, ValidRange
 from tuning_tables.line_order import require_order, require_representable
 from tuning_tables.provenance import CutId, Generator, RetarderId
@@ -40,6 +41,7 @@ class ControllerTable:
                       stage 0, no `upper` at stage K; no `upper` at stage k says that stage k+1 must not be entered
     valid             path and speed range of the lines
     predicted         figures of the solver; `validated` those of a closed loop, None before it was run
+    estimator         with it the lines are for the estimated speed: see `rule.speed_for`; None: for the measured one
 
     Derived from these, as arrays for `rule.decide` (read-only; line 0 is `lower`, line 1 is `upper`):
 
@@ -63,6 +65,7 @@ class ControllerTable:
     valid: ValidRange
     predicted: Predicted
     validated: Validated | None = None
+    estimator: Estimator | None = None
     coefficients: npt.NDArray[np.float32] = field(init=False, repr=False, compare=False)
     has_line: npt.NDArray[np.bool_] = field(init=False, repr=False, compare=False)
     valid_range: npt.NDArray[np.float32] = field(init=False, repr=False, compare=False)
@@ -93,6 +96,10 @@ class ControllerTable:
         require_kind(self.predicted, "predicted", Predicted)
         if self.validated is not None:
             require_kind(self.validated, "validated", Validated)
+        if self.estimator is not None:
+            require_kind(self.estimator, "estimator", Estimator)
+        elif self.predicted.passes is not None:
+            raise InvalidTable("predicted.passes is given, but without an estimator the prediction is exact.")
 
     def _require_stages(self) -> None:
         require_tuple(self.stages, "stages")

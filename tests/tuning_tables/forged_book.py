@@ -3,7 +3,7 @@
 import h5py
 import numpy as np
 
-from tuning_tables.book_columns import COLUMNS
+from tuning_tables.book_columns import PLAIN, WITH_ESTIMATORS
 from tuning_tables.canonical import canonical_json
 from tuning_tables.payload import payload_sha256
 from tuning_tables.seal import seal_of
@@ -41,8 +41,9 @@ def _correct_payload(file):
     attributes = {name: value.item() if isinstance(value, np.generic) else value for name, value in file.attrs.items()}
     attributes.pop("payload_sha256", None)
     try:
-        arrays = {column.name: file[column.name][()] for column in COLUMNS}
+        layout = PLAIN if file.attrs.get("schema_version") == PLAIN.version else WITH_ESTIMATORS
+        arrays = {column.name: file[column.name][()] for column in layout.columns}
         canonical_json(attributes)
     except (KeyError, ValueError):
         return
-    file.attrs["payload_sha256"] = payload_sha256(attributes, arrays)
+    file.attrs["payload_sha256"] = payload_sha256(attributes, arrays, layout)

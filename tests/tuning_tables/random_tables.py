@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 from tuning_tables import (
     ControllerTable,
     CutId,
+    Estimator,
     Generator,
     InvalidTable,
     Predicted,
@@ -67,6 +68,26 @@ def stage_lists(draw, degree, s_m):
 
 
 @st.composite
+def estimators(draw):
+    """An estimator with two to six breaks."""
+    steps = draw(st.lists(st.floats(0.5, 50.0), min_size=1, max_size=5))
+    breaks = [draw(numbers(-50.0, 50.0))]
+    for step in steps:
+        breaks.append(breaks[-1] + step + 0.0)
+    length = len(breaks)
+    return Estimator(
+        draw(st.floats(1e-4, 10.0)),
+        draw(numbers(0.0, 1.0)),
+        draw(numbers(0.0, 1.0)),
+        draw(st.floats(1e-3, 1e4)),
+        draw(numbers(0.0, 2e3)),
+        tuple(breaks),
+        tuple(draw(st.lists(numbers(-1e6, 1e6), min_size=length, max_size=length))),
+        tuple(sorted(draw(st.lists(numbers(-1e6, 1e6), min_size=length, max_size=length)))),
+    )
+
+
+@st.composite
 def tables(draw, names=texts, generators=None):
     """A table whose id is one of `names`; its path range is a few hundred metres at most."""
     degree = draw(st.integers(0, HIGHEST_DEGREE))
@@ -74,6 +95,7 @@ def tables(draw, names=texts, generators=None):
     s_m = (begin_m, begin_m + draw(st.floats(0.5, 50.0)) + 0.0)
     low_m_s = draw(numbers(0.0, 5.0))
     interval = sorted((draw(numbers(0.0)), draw(numbers(0.0))))
+    estimator = draw(st.none() | estimators())
     return ControllerTable(
         id=draw(names),
         created=draw(instants),
@@ -90,6 +112,8 @@ def tables(draw, names=texts, generators=None):
             draw(probabilities) + 0.0,
             draw(numbers(0.0)),
             draw(st.none() | probabilities.map(lambda p: p + 0.0)),
+            None if estimator is None else draw(st.none() | st.integers(1, 2**53)),
         ),
         validated=draw(st.none() | st.builds(Validated, st.integers(1, 2**53), numbers(0.0), st.just(tuple(interval)))),
+        estimator=estimator,
     )

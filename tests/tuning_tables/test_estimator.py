@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from numba import njit
 
-from tuning_tables import InvalidTable
+from tuning_tables import ControllerTable, InvalidTable, Predicted, Status, TableBook, speed_for
+from tuning_tables.active_table import active
 from tuning_tables.estimator import LEAST_SPEED_M_S, Estimator, begin, observe
 
 PERIOD_S = 0.1
@@ -19,7 +20,7 @@ BRAKE = (0.0, 0.0008, 0.008, 0.018, 0.031, 0.031)
 
 @pytest.fixture(scope="module")
 def estimator() -> Estimator:
-    return Estimator(0.05, 0.15, 0.1, 2.0, BREAKS, DRIVE, BRAKE)
+    return Estimator(0.05, 0.15, 0.1, 2.0, 60.0, BREAKS, DRIVE, BRAKE)
 
 
 def passes_of(seed: int, factor: float, noise_m_s: float, kpa: float = 250.0) -> np.ndarray:
@@ -136,7 +137,10 @@ def test_compiled_it_gives_the_same_bits(estimator: Estimator) -> None:
         ({"path_std": np.nan}, "estimator.path_std"),
         ({"correlation_length_m": 0.0}, "estimator.correlation_length_m"),
         ({"s_m": (0.0,)}, "1 breaks"),
-        ({"s_m": (0.0, 1.0, 1.0, 3.0, 4.0, 5.0)}, "rise strictly"),
+        ({"s_m": (0.0, 1.0, 1.0, 3.0, 4.0, 5.0)}, "must rise by 0.001 m"),
+        ({"s_m": (0.0, 1.0, 2.0, 3.0, 4.0, 2e4)}, r"estimator.s_m\[5\] is 20000"),
+        ({"touch_pressure_kpa": -1.0}, "estimator.touch_pressure_kpa"),
+        ({"drive_m2_s2": (0.0, np.nan, 0.0, 0.0, 0.0, 0.0)}, r"estimator.drive_m2_s2\[1\]"),
         ({"drive_m2_s2": (0.0, 1.0)}, "estimator.drive_m2_s2 .* 6 entries"),
         ({"brake_m2_s2_per_kpa": (0.0, 0.1, 0.05, 0.2, 0.3, 0.4)}, "only takes energy away"),
     ],
@@ -144,3 +148,30 @@ def test_compiled_it_gives_the_same_bits(estimator: Estimator) -> None:
 def test_what_makes_no_estimator_is_refused(estimator: Estimator, changes: dict, said: str) -> None:
     with pytest.raises(InvalidTable, match=said):
         replace(estimator, **changes)
+
+
+def test_the_rule_is_asked_with_the_estimated_speed(estimated_table: ControllerTable) -> None:
+    """Through the table, sample by sample, as a controller does it; without an estimator nothing is changed."""
+    rng, estimator = np.random.default_rng(8), estimated_table.estimator
+    state, direct = begin(), begin()
+    for s in np.linspace(0.0, 9.0, 40):
+        reading = (float(s), 5.0 + 0.05 * rng.standard_normal(), 120.0)
+        speed = speed_for(estimated_table, state, *reading)
+        assert speed == float(observe(estimator.parameters, estimator.work, direct, *reading))
+        assert speed == speed_for(active(estimated_table), state.copy(), reading[0] - 30.0, np.nan, 0.0)
+        assert (
+            speed_for(replace(estimated_table, estimator=None, predicted=Predicted(0, 0, 0, 0)), state, *reading)
+            == reading[1]
+        )
+
+
+def test_lines_are_taken_between_tables_of_one_estimator_only(estimated_table: ControllerTable) -> None:
+    faster = replace(estimated_table, id="faster", target_speed_m_s=estimated_table.target_speed_m_s + 1.0)
+    other = replace(faster, estimator=replace(estimated_table.estimator, friction_cv=0.2))
+    plain = replace(faster, estimator=None, predicted=Predicted(0.0, 0.0, 0.0, 0.0))
+    asked = ("medium", 4, estimated_table.target_speed_m_s + 0.5)
+    choice = TableBook((estimated_table, faster)).choose(*asked)
+    assert choice.status is Status.BETWEEN
+    assert choice.table.estimator == estimated_table.estimator
+    for unlike in (other, plain):
+        assert TableBook((estimated_table, unlike)).choose(*asked).status is Status.SLOWER

@@ -8,8 +8,9 @@ import pytest
 
 from tests.tuning_tables.forged_book import forge, put, reseal
 from tuning_tables import DamagedTable, NewerVersion, OlderVersion, TableError, UnknownFormat, read_book, write_book
-from tuning_tables.book_columns import AXES, COLUMNS
+from tuning_tables.book_columns import WITH_ESTIMATORS
 
+COLUMNS, AXES = WITH_ESTIMATORS.columns, WITH_ESTIMATORS.axes
 NAMES = [column.name for column in COLUMNS]
 FLOATS = [column.name for column in COLUMNS if column.dtype in ("<f4", "<f8")]
 TEXTS = [column.name for column in COLUMNS if column.dtype == "S"]
@@ -20,10 +21,10 @@ NAN, INF = float("nan"), float("inf")
 
 
 @pytest.fixture(scope="module")
-def original(table, linear_table, tmp_path_factory):
-    """The bytes of a book of two tables that differ in every length."""
+def original(table, estimated_table, tmp_path_factory):
+    """The bytes of a book of two tables that differ in every length, one with an estimator."""
     path = tmp_path_factory.mktemp("original") / "book.h5"
-    write_book([table, linear_table], path)
+    write_book([table, estimated_table], path)
     return path.read_bytes()
 
 
@@ -46,11 +47,11 @@ def refuse(original, tmp_path):
     return refused
 
 
-def test_a_book_that_is_forged_without_a_change_is_read(original, table, linear_table, tmp_path):
+def test_a_book_that_is_forged_without_a_change_is_read(original, table, estimated_table, tmp_path):
     path = tmp_path / "book.h5"
     path.write_bytes(original)
     forge(path, lambda file: put(file, "mass_t", file["mass_t"][()]))
-    assert read_book(path) == (table, linear_table)
+    assert read_book(path) == (table, estimated_table)
 
 
 @pytest.mark.parametrize("name", [*NAMES, *AXES])
@@ -83,7 +84,8 @@ def test_every_dataset_tells_its_unit_and_meaning(refuse, name, attribute, value
         ("format", np.bytes_(b"retarder-book"), UnknownFormat),
         ("format", ["retarder-book"], UnknownFormat),
         ("schema_version", None, DamagedTable),
-        ("schema_version", 2, NewerVersion),
+        ("schema_version", 1, DamagedTable),
+        ("schema_version", 3, NewerVersion),
         ("schema_version", 2**63 - 1, NewerVersion),
         ("schema_version", 0, OlderVersion),
         ("schema_version", -1, OlderVersion),

@@ -146,7 +146,8 @@ def change_shape(file):
     ("edit", "error", "reason"),
     [
         (edit_attribute("format", "kea-image"), UnknownFormat, "format is"),
-        (edit_attribute("schema_version", 2), NewerVersion, "schema_version is 2"),
+        (edit_attribute("schema_version", 3), NewerVersion, "schema_version is 3"),
+        (edit_attribute("schema_version", 2), DamagedTable, "missing or unknown"),
         (edit_attribute("schema_version", 0), OlderVersion, "schema_version is 0"),
         (edit_attribute("schema_version", "1"), DamagedTable, "schema_version is"),
         (edit_attribute("complete", 0), DamagedTable, "complete is 0"),

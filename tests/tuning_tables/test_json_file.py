@@ -173,7 +173,8 @@ def test_no_value_of_another_type_gets_through(table, wrong):
     [
         ({"format": "retarder-book"}, UnknownFormat),
         ({"format": None}, UnknownFormat),
-        ({"version": 2}, NewerVersion),
+        ({"version": 2}, DamagedTable),
+        ({"version": 3}, NewerVersion),
         ({"version": 10**12}, NewerVersion),
         ({"version": 0}, OlderVersion),
         ({"version": -1}, OlderVersion),

@@ -16,8 +16,8 @@ def validator():
     return jsonschema.Draft202012Validator(table_schema())
 
 
-def test_exported_tables_conform(validator, table, linear_table):
-    for exported in (table, linear_table):
+def test_exported_tables_conform(validator, table, linear_table, estimated_table):
+    for exported in (table, linear_table, estimated_table):
         assert list(validator.iter_errors(json.loads(to_json(exported)))) == []
 
 
@@ -38,8 +38,9 @@ def altered(document, path, value):
 
 
 @pytest.mark.parametrize("wrong", [None, True, "", [], {}, -1], ids=repr)
-def test_what_the_schema_refuses_the_reader_refuses_too(validator, table, wrong):
-    document = json.loads(to_json(table))
+@pytest.mark.parametrize("version", [1, 2])
+def test_what_the_schema_refuses_the_reader_refuses_too(validator, table, estimated_table, version, wrong):
+    document = json.loads(to_json(table if version == 1 else estimated_table))
     refused = 0
     for path in places(document):
         if not path or path[0] in ("format", "version", "crc32"):
@@ -75,3 +76,15 @@ def value_at(document, path):
 def test_the_schema_file_is_the_schema(tmp_path):
     write_schema(tmp_path / "schema.json")
     assert json.loads((tmp_path / "schema.json").read_bytes()) == table_schema()
+
+
+def test_an_estimator_and_its_version_belong_together(validator, table, estimated_table):
+    plain, extended = json.loads(to_json(table)), json.loads(to_json(estimated_table))
+    assert (plain["version"], extended["version"]) == (1, 2)
+    without = {key: value for key, value in extended.items() if key != "estimator"}
+    simulated = {**plain, "predicted": extended["predicted"]}
+    for wrong in ({**extended, "version": 1}, {**plain, "version": 2}, without, {**without, "version": 1}, simulated):
+        assert not validator.is_valid(wrong)
+        wrong["crc32"] = document_checksum(wrong)
+        with pytest.raises(DamagedTable):
+            from_json(canonical_json(wrong))
