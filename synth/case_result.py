@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.estimated_table import EstimatedTable
 from synth.exit_density import ExitDensity
 from synth.exit_statistics import ExitStatistics
 from synth.passes import PassTrace
@@ -14,6 +15,9 @@ from synth.problem import SQUARED_ERROR_CRITERION, Criterion, Plant
 from synth.requirement_found import Finding
 from synth.switching_lines import SwitchingLines
 from tuning_tables import ControllerTable
+
+WITHOUT_ESTIMATOR = "without estimator"
+"""Name of the polished lines for the measured speed, where the table has an estimator."""
 
 
 @dataclass(frozen=True)
@@ -87,9 +91,10 @@ class CaseResult:
 
     `table`, `table_lines` the exported polynomial lines (sampled densely), `solver_lines` the raw matrices;
     `predicted` exact density of the exported table; `exit_speeds_m_s` simulated, stalls as 0; `comparison` by
-    controller: first our table, then full lines, as published, friction known, baselines; `traces` a few passes
-    of the table (low, nominal and high friction) with `trace_factors` their ξ_cut; `criterion` in force and, where it
-    requires something, `finding`: what that took.
+    controller: first our table, then full lines, as published, friction known, baselines; `traces` a few passes of
+    the table (low, nominal and high friction) with `trace_factors` their ξ_cut; `criterion` in force and, where it
+    requires something, `finding`: what that took. With an estimator, `estimate`: how its lines were designed; then
+    `predicted` is simulated, and the comparison ends with lines for the measured speed, `WITHOUT_ESTIMATOR`.
     """
 
     label: str
@@ -109,6 +114,7 @@ class CaseResult:
     trace_factors: tuple[float, ...]
     criterion: Criterion = SQUARED_ERROR_CRITERION
     finding: Finding | None = None
+    estimate: EstimatedTable | None = None
 
     def by_name(self, name: str) -> Measured:
         """The controller called `name` in the comparison."""

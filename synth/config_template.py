@@ -9,7 +9,14 @@ from itertools import groupby
 from plant_models.library import SourcedValue, Value, car_names, retarder_names
 from synth.cut_class import CutClass
 from synth.resolved_config import ResolvedConfig, resolve, setting_limits, setting_unit
-from synth.settings import DEFAULT_RETARDER, NUMERICAL_SECTIONS, OutputSettings, RetarderSettings, Settings
+from synth.settings import (
+    DEFAULT_RETARDER,
+    NUMERICAL_SECTIONS,
+    OutputSettings,
+    RegulatorSettings,
+    RetarderSettings,
+    Settings,
+)
 
 HEAD = """\
 # Configuration of retarder-synth. Every line shows its default and may be left out.
@@ -47,9 +54,10 @@ def lines(config: ResolvedConfig) -> Iterator[str]:
             limits = setting_limits(field)
             span = f"{limits[0]:g} to {limits[1]:g}" if limits else "any"
             yield from (f"# {setting_unit(field)}; {span}; setting: {field.description}", f"{key} = {field.default!r}")
-    yield from ("", "[output]")
-    for key, field in OutputSettings.model_fields.items():
-        yield from (f"# {field.description}", f"{key} = {json.dumps(field.default)}")
+    for name, switches in (("regulator", RegulatorSettings), ("output", OutputSettings)):
+        yield from ("", f"[{name}]")
+        for key, field in switches.model_fields.items():
+            yield from (f"# {field.description}", f"{key} = {json.dumps(field.default)}")
     for cut_class in config.cuts:
         yield from cut_lines(cut_class)
 

@@ -21,9 +21,9 @@ from synth.estimator_design import as_estimated, estimator_of, speed_error_m_s
 from synth.grid import Resolution
 from synth.kernels.closed_loop import Draws
 from synth.polynomial_fit import PolynomialLines
-from synth.problem import Problem
+from synth.problem import Plant, Problem
 from synth.random_passes import RandomPasses
-from synth.transitions import persistent_transitions
+from synth.transitions import Transitions, persistent_transitions
 from synth.tuned_lines import tuned_lines
 from tuning_tables.estimator import Estimator
 
@@ -35,7 +35,7 @@ SETTLED = 0.05
 """Designs are repeated until the error found in the closed loop differs by less than this share, at most so often."""
 
 STEP_SHARE = 0.65
-"""Largest speed step of the grid, in standard deviations of what the regulator sees: coarser ones are exploited."""
+"""Largest speed step of the grid, in standard deviations of the guessed error: coarser ones are exploited."""
 
 ERROR_PASSES = 100
 TRIM_EVALUATIONS = 25
@@ -59,15 +59,29 @@ class EstimatedTable:
     rounds: int
 
 
-def estimated_table(problem: Problem, resolution: Resolution, degree: int, tuning: RandomPasses) -> EstimatedTable:
-    """Design the lines of one case for its estimator; `tuning` are passes to find the error and the trim on."""
+def estimator_design(plant: Plant, resolution: Resolution) -> Transitions:
+    """The grid to design lines for estimated speeds on, for all targets and errors of a plant."""
+    step = min(resolution.speed_step_m_s, STEP_SHARE * guessed_error_m_s(plant))
+    return persistent_transitions(plant, replace(resolution, speed_step_m_s=step))
+
+
+def guessed_error_m_s(plant: Plant) -> float:
+    """Of the estimated speed, before any pass was simulated."""
+    return FIRST_SHARE * measured_speed_std(plant.sensor.noise_m_s, plant.sensor.resolution_m_s)
+
+
+def estimated_table(problem: Problem, design: Transitions, degree: int, tuning: RandomPasses) -> EstimatedTable:
+    """Design the lines of one case for its estimator, on the `estimator_design` of its plant.
+
+    `tuning` are passes to find the error and the trim on.
+    """
     plant, estimator = problem.plant, estimator_of(problem.plant)
     loop = close_loop(plant, plant.top_stage + 1)
-    error = FIRST_SHARE * measured_speed_std(plant.sensor.noise_m_s, plant.sensor.resolution_m_s)
+    error = guessed_error_m_s(plant)
     rounds, settled = 0, False
     while not settled and rounds < ROUNDS:
         rounds += 1
-        lines = designed_lines(problem, resolution, degree, error)
+        lines = designed_lines(problem, design, degree, error)
         controller = controller_of(lines, estimator)
         found = speed_error_m_s(loop, controller, tuning.part(0, min(ERROR_PASSES, len(tuning))))
         settled = abs(found - error) <= SETTLED * error
@@ -77,11 +91,11 @@ def estimated_table(problem: Problem, resolution: Resolution, degree: int, tunin
     return EstimatedTable(shifted(lines, *shifts), estimator, error, shifts, before, after, rounds)
 
 
-def designed_lines(problem: Problem, resolution: Resolution, degree: int, error_m_s: float) -> PolynomialLines:
+def designed_lines(problem: Problem, design: Transitions, degree: int, error_m_s: float) -> PolynomialLines:
     """Solved, fitted and polished for a regulator that sees the speed with a white error."""
-    finer = replace(resolution, speed_step_m_s=min(resolution.speed_step_m_s, STEP_SHARE * error_m_s))
-    design = persistent_transitions(as_estimated(problem.plant, error_m_s), finer)
-    return tuned_lines(design, problem.target_speed_m_s, problem.criterion, degree)
+    # The error of the sensor enters where commands are weighed; motion and grid do not know of it.
+    seen = replace(design, plant=as_estimated(problem.plant, error_m_s))
+    return tuned_lines(seen, problem.target_speed_m_s, problem.criterion, degree)
 
 
 def controller_of(lines: PolynomialLines, estimator: Estimator) -> LineController:

@@ -21,8 +21,8 @@ from tuning_tables.estimator import MOST_BREAKS, Estimator
 def estimator_of(plant: Plant) -> Estimator:
     """The estimator that knows this plant: its work by grade, mean resistance and brake, its sensor and friction.
 
-    Quantisation counts as noise, resolution/√12. D and W are exact at the breaks of N(s) and grade; very long cuts, with
-    more breaks than a table takes, have evenly spaced ones instead.
+    Quantisation counts as noise, resolution/√12. D and W are exact at the breaks of N(s) and grade; very long cuts,
+    with more breaks than a table takes, have evenly spaced ones instead.
     """
     breaks = path_breaks_m(plant.position, plant.cut, plant.profile)
     inside = breaks[(breaks > 0.0) & (breaks < plant.exit_m)]

@@ -25,6 +25,7 @@ from synth.settings import (
     FitSettings,
     GridSettings,
     OutputSettings,
+    RegulatorSettings,
     Section,
     Settings,
     ValidationSettings,
@@ -67,6 +68,7 @@ class ResolvedConfig:
     criterion_settings: CriterionSettings
     grid: GridSettings
     fit: FitSettings
+    regulator: RegulatorSettings
     validation: ValidationSettings
     acceptance: AcceptanceSettings
     output: OutputSettings
@@ -110,6 +112,7 @@ class ResolvedConfig:
             "criterion": self.criterion_settings,
             "grid": self.grid,
             "fit": self.fit,
+            "regulator": self.regulator,
             "validation": self.validation,
             "acceptance": self.acceptance,
         }
@@ -150,6 +153,7 @@ def resolve(settings: Settings, file: str) -> ResolvedConfig:
             criterion_settings=settings.criterion,
             grid=settings.grid,
             fit=settings.fit,
+            regulator=settings.regulator,
             validation=settings.validation,
             acceptance=settings.acceptance,
             output=settings.output,
@@ -157,6 +161,11 @@ def resolve(settings: Settings, file: str) -> ResolvedConfig:
             warnings=tuple(range_warnings(parameters)) + tuple(category_warnings(cuts)),
         )
         config.problems()
+        if config.regulator.estimator and config.criterion.requirement is not None:
+            raise InputError(
+                f"{file}: regulator.estimator is true, but criterion.p_overspeed and criterion.worst_friction_* can be "
+                "kept only without an estimator; leave one of the two out"
+            )
     except PlantError as error:
         raise InputError(f"{file}: {with_key_path(str(error))}") from None
     return config

@@ -174,6 +174,12 @@ class FitSettings(Section):
     degree: int = setting(3, "1", 1, 6, "degree of the polynomials of the switching lines")
 
 
+class RegulatorSettings(Section):
+    """What the regulator on the track computes besides the rule."""
+
+    estimator: bool = Field(False, description="compare an estimated speed with the lines: tables of version 2")
+
+
 class CriterionSettings(Section):
     """Cost of a pass; the last five keys choose another criterion than the mean squared exit-speed error."""
 
@@ -264,6 +270,7 @@ class Settings(Section):
     cut: tuple[CutSettings, ...] = Field(DEFAULT_CUTS, min_length=1, max_length=1000, strict=False)
     grid: GridSettings = GridSettings()
     fit: FitSettings = FitSettings()
+    regulator: RegulatorSettings = RegulatorSettings()
     criterion: CriterionSettings = CriterionSettings()
     validation: ValidationSettings = ValidationSettings()
     acceptance: AcceptanceSettings = AcceptanceSettings()

@@ -17,10 +17,10 @@ import numpy as np
 
 from synth.acceptance import CaseVerdict, Verdict
 from synth.case_result import CaseResult, DegreeStudy, Measured
+from synth.estimated_table import EstimatedTable
 from synth.limit_cycle import hunting_report, pressure_hunting
 from synth.plots.case_names import contest, honesty
 from synth.requirement_found import Finding
-from synth.tabulate import prediction_of
 from synth.tune import Book
 from tuning_tables.canonical import LARGEST_EXACT_INTEGER
 
@@ -89,7 +89,7 @@ def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
         "why_infeasible": verdict.obstacle or None,
         "entry_m_s": (entry.low_m_s, entry.high_m_s),
         "served_entry_m_s": served,
-        "predicted": asdict(prediction_of(case.predicted, case.target_speed_m_s)),
+        "predicted": asdict(case.table.predicted),
         "simulated": measured_of(found.table),
         "honesty": honesty(found.table),
         "table_loss": found.table_loss,
@@ -99,6 +99,7 @@ def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
         "as_published_honesty": honesty(found.published),
         "requirement": None if case.finding is None else requirement_of(case.finding),
         "indifference": asdict(case.indifference),
+        "estimate": None if case.estimate is None else estimate_of(case.estimate),
         "escaped_probability": case.predicted.escaped,
         "hunting": {
             "pressure": [{"stage": stage, **asdict(cycle)} for stage, cycle in pressure_hunting(case.plant)],
@@ -110,6 +111,17 @@ def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
 def measured_of(entry: Measured) -> Document:
     """The statistics of one controller, with what it promised."""
     return {**asdict(entry.statistics), "predicted_rms_m_s": entry.predicted_rms_m_s}
+
+
+def estimate_of(made: EstimatedTable) -> Document:
+    """How lines for the estimated speed were designed."""
+    return {
+        "error_m_s": made.error_m_s,
+        "trim_m_s": made.trim_m_s,
+        "rounds": made.rounds,
+        "tuning_rms_before_trim_m_s": made.rms_before_m_s,
+        "tuning_rms_m_s": made.rms_after_m_s,
+    }
 
 
 def requirement_of(finding: Finding) -> Document:

@@ -11,6 +11,7 @@ from synth.switching_lines import SwitchingLines
 from tuning_tables import (
     ControllerTable,
     CutId,
+    Estimator,
     Generator,
     Predicted,
     RetarderId,
@@ -27,9 +28,11 @@ LOWEST_VALID_SPEED_M_S = 0.3
 
 def tabulate(
     plant: Plant, lines: PolynomialLines, target_speed_m_s: float, predicted: Predicted, generator: Generator,
-    table_id: str, created: str,
+    table_id: str, created: str, estimator: Estimator | None = None,
 ) -> ControllerTable:  # fmt: skip
-    """The exported table. A stage that the cut may not use has a lower line above every speed: leave it at once.
+    """The exported table, with `estimator` for the estimated speed.
+
+    A stage that the cut may not use has a lower line above every speed: leave it at once.
 
     Raises `tuning_tables.InvalidTable` if rounding to float32 would let a pair of lines touch.
     """
@@ -59,6 +62,7 @@ def tabulate(
         stages=tuple(stages),
         valid=ValidRange((0.0, float(plant.exit_m)), (LOWEST_VALID_SPEED_M_S, highest)),
         predicted=predicted,
+        estimator=estimator,
     )
 
 

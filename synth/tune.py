@@ -13,19 +13,25 @@ from pathlib import Path
 from synth.backward_induction import solve_all
 from synth.case_result import CaseResult, DegreeStudy
 from synth.closed_loop import close_loop
+from synth.estimated_table import estimator_design
 from synth.friction_bound import friction_known_bounds
 from synth.grid import finer_for_check, require_memory
 from synth.problem import Plant, Problem
 from synth.random_passes import RandomPasses, random_passes
 from synth.resolved_config import ResolvedConfig
+from synth.simulated_prediction import weighted_passes
 from synth.transitions import as_published, check_transitions, persistent_transitions
-from synth.tune_case import CaseOrder, degree_study, tune_case
+from synth.tune_case import CaseOrder, EstimatorOrder, degree_study, tune_case
 from synth.work_queue import run_nested
 from tuning_tables import ControllerTable, Generator, read_json, write_json
 
 DEGREES = (1, 2, 3, 4, 5, 6)
 TUNING_PASSES = 600
 PUBLISHED_LEVELS = 3
+
+TRIM_PASSES = 3000
+PREDICTION_PASSES = 10_000
+"""Only for tables with an estimator, which have no exact prediction."""
 
 MOST_COMPARED_PASSES = 50_000
 """Passes kept in memory for the comparison of controllers; more are for `validate`."""
@@ -101,6 +107,7 @@ def class_tasks(
     published = solve_all(as_published(design, PUBLISHED_LEVELS), priced)
     bounds = friction_known_bounds(design, targets, criterion.squared(), passes, config.acceptance.rms_m_s)
     draws = close_loop(plant, plant.top_stage + 1).draws(passes)
+    estimator = estimator_order(config, plant) if config.regulator.estimator else None
 
     def case(i: int) -> CaseResult:
         order = CaseOrder(
@@ -119,6 +126,7 @@ def class_tasks(
             generator=generator,
             created=created,
             store=lambda table: write_and_read_back(table, tables),
+            estimator=estimator,
         )
         result = tune_case(order)
         case_done(result)
@@ -135,6 +143,19 @@ def class_tasks(
 
     tasks: list[Callable[[], CaseResult | DegreeStudy]] = [study] if studied else []
     return tasks + [partial(case, i) for i in range(len(targets))]
+
+
+def estimator_order(config: ResolvedConfig, plant: Plant) -> EstimatorOrder:
+    """Grid and passes to design for the estimator of `plant`; the passes are nobody else's."""
+    seed = config.validation.seed
+    loop = close_loop(plant, plant.top_stage + 1)
+    prediction = weighted_passes(seed + 2, PREDICTION_PASSES)
+    return EstimatorOrder(
+        design=estimator_design(plant, config.resolution),
+        tuning=random_passes(seed + 1, TUNING_PASSES, TUNING_PASSES + TRIM_PASSES),
+        prediction=loop.draws(prediction.passes),
+        weight=prediction.weight,
+    )
 
 
 def write_and_read_back(table: ControllerTable, directory: Path) -> ControllerTable:

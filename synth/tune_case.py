@@ -6,12 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from synth.backward_induction import Solution
 from synth.baselines import tune_baselines
-from synth.case_result import CaseResult, DegreeStudy, Feasibility, Indifference, Measured
+from synth.case_result import WITHOUT_ESTIMATOR, CaseResult, DegreeStudy, Feasibility, Indifference, Measured
 from synth.chance_constraint import keep_overspeed_limit
 from synth.closed_loop import Controller, LineController, TableController, close_loop, trace
+from synth.estimated_table import EstimatedTable, estimated_table
 from synth.exit_density import ExitDensity
 from synth.exit_statistics import exit_statistics
 from synth.kernels.closed_loop import Draws
@@ -23,6 +25,7 @@ from synth.problem import Criterion, Problem
 from synth.random_passes import RandomPasses
 from synth.requirement import FrictionRange, OverspeedLimit
 from synth.requirement_found import Finding
+from synth.simulated_prediction import density_of, simulated_prediction
 from synth.switching_lines import SwitchingLines
 from synth.tabulate import lines_of, prediction_of, tabulate
 from synth.transitions import Transitions
@@ -36,12 +39,22 @@ INDIFFERENCE_SHOWN_M2_S2 = 1e-4
 
 
 @dataclass(frozen=True)
+class EstimatorOrder:
+    """A grid for estimated speeds, passes to find error and trim on, and others, as weighted draws, to predict from."""
+
+    design: Transitions
+    tuning: RandomPasses
+    prediction: Draws
+    weight: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
 class CaseOrder:
     """What to do for one case, and with what; `store` writes a table and reads it back from its file.
 
     `solution` on the design grid, `plain` the same without the switching tolerance, `published` in the formulation
     as published; `check` the finer grid to predict on; `tuning` are the passes that baselines are tuned on,
-    `draws` what the common passes mean for the plant.
+    `draws` what the common passes mean for the plant; `estimator`: what is needed to design for one, None without.
     """
 
     label: str
@@ -59,6 +72,7 @@ class CaseOrder:
     generator: Generator
     created: str
     store: Callable[[ControllerTable], ControllerTable]
+    estimator: EstimatorOrder | None = None
 
     @property
     def table_id(self) -> str:
@@ -73,7 +87,12 @@ def tune_case(order: CaseOrder) -> CaseResult:
     by_lines, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
     fit = fit_lines(solution, occupancy.samples, order.degree)
     lines, finding = required(design, order.check, fit, target, problem.criterion)
-    table, predicted = predicted_table(order, lines)
+    made = None
+    if order.estimator is None:
+        table, predicted = predicted_table(order, lines)
+    else:
+        made = estimated_table(problem, order.estimator.design, order.degree, order.estimator.tuning)
+        table, predicted = predicted_by_passes(order, made, order.estimator)
     table = order.store(table)
     sample = simulated(order, TableController(table))
     statistics = exit_statistics(sample, target)
@@ -92,11 +111,12 @@ def tune_case(order: CaseOrder) -> CaseResult:
         published_predicted_rms_m_s=rms_of_lines(published.transitions, published.lines, target),
         exit_speeds_m_s=sample.exit_speed_m_s.astype(np.float32),
         comparison=(
-            Measured("table", statistics, predicted.rms_m_s(target)),
+            Measured("table", statistics, table.predicted.rms_m_s),
             run(order, "full lines", LineController(solution.lines)),
             run(order, "as published", LineController(published.lines)),
             order.known,
             *(run(order, b.name, b.controller) for b in tune_baselines(problem.plant, target, order.tuning)),
+            *(() if made is None else (run(order, WITHOUT_ESTIMATOR, LineController(lines.at(nodes))),)),
         ),
         indifference=indifference(order, by_lines),
         feasibility=order.feasibility,
@@ -107,6 +127,7 @@ def tune_case(order: CaseOrder) -> CaseResult:
         trace_factors=TRACE_FACTORS,
         criterion=problem.criterion,
         finding=finding,
+        estimate=made,
     )
 
 
@@ -131,6 +152,19 @@ def predicted_table(order: CaseOrder, lines: PolynomialLines) -> tuple[Controlle
     table = tabulate(plant, lines, target, unknown, order.generator, order.table_id, order.created)
     predicted = predict(order.check, table)
     return replace(table, predicted=prediction_of(predicted, target)), predicted
+
+
+def predicted_by_passes(
+    order: CaseOrder, made: EstimatedTable, estimator: EstimatorOrder
+) -> tuple[ControllerTable, ExitDensity]:
+    """The rounded table for the estimated speed, with what passes that nothing else uses say of it."""
+    unknown = Predicted(0.0, 0.0, 0.0, 0.0)
+    plant, target = order.problem.plant, order.problem.target_speed_m_s
+    origin = (order.generator, order.table_id, order.created)
+    table = tabulate(plant, made.lines, target, unknown, *origin, made.estimator)
+    sample = close_loop(plant, plant.position.top_stage + 1).run(TableController(table), estimator.prediction)
+    density = density_of(sample, estimator.weight, estimator.design.grid.speed_m_s)
+    return replace(table, predicted=simulated_prediction(sample, estimator.weight, target)), density
 
 
 def predict(check: Transitions, table: ControllerTable) -> ExitDensity:

@@ -12,6 +12,7 @@ import numpy as np
 from synth.table_file import TableFile, read_tables, summary_beside
 from tuning_tables import DamagedTable
 from tuning_tables.document import to_document
+from tuning_tables.estimator import Estimator
 from tuning_tables.table import ControllerTable
 
 SHOWN_POINTS = 5
@@ -58,6 +59,7 @@ def table_words(table: ControllerTable) -> list[str]:
         low, high = table.validated.rms_ci95_m_s
         rms = table.validated.rms_m_s
         validated = f"simulated rms {rms:.4f} m/s [{low:.4f}, {high:.4f}] in {table.validated.passes} passes"
+    origin = "exact" if predicted.passes is None else f"from {predicted.passes} simulated passes"
     words = [
         f"  {table.id}: leave with {table.target_speed_m_s:g} m/s",
         f"    retarder   {retarder.name}; zones {zones}; the pass ends at {retarder.exit_m:g} m",
@@ -65,16 +67,28 @@ def table_words(table: ControllerTable) -> list[str]:
         f"    made       {table.created} by {table.generator.name} {table.generator.version}, "
         f"configuration {table.generator.config_sha256[:16]}…",
         f"    promised   rms {predicted.rms_m_s:.4f} m/s, bias {predicted.bias_m_s:+.4f} m/s, over-speed "
-        f"{predicted.p_overspeed:.2g}, {predicted.switchings:.1f} switchings a pass; {validated}",
+        f"{predicted.p_overspeed:.2g}, {predicted.switchings:.1f} switchings a pass ({origin}); {validated}",
         f"    lines      degree {table.degree}, path {table.valid.s_m[0]:g} to {table.valid.s_m[1]:g} m, "
         f"speed {table.valid.v_m_s[0]:g} to {table.valid.v_m_s[1]:g} m/s; in m/s at",
     ]
+    if table.estimator is not None:
+        words.insert(-1, f"    estimator  {estimator_words(table.estimator)}")
     path = shown_path(table)
     words.append(f"      {'s, m':<22}" + "".join(f"{s:>9.2f}" for s in path))
     for line in lines_at(table):
         name = f"stage {line['k']} ({line['pressure_kpa']:g} kPa) {line['line']}"
         words.append(f"      {name:<22}" + "".join(f"{v:>9.3f}" for v in line["v_m_s"]))
     return words
+
+
+def estimator_words(estimator: Estimator) -> str:
+    """What the estimator of a table takes for granted."""
+    return (
+        f"the lines are for the estimated speed; sensor {estimator.speed_noise_m_s:.3f} m/s, friction of cuts +-"
+        f"{estimator.friction_cv:.0%}, along the path +-{estimator.path_std:.0%} over "
+        f"{estimator.correlation_length_m:g} m, beams touch at {estimator.touch_pressure_kpa:g} kPa, "
+        f"{len(estimator.s_m)} path breaks"
+    )
 
 
 def shown_path(table: ControllerTable) -> list[float]:

@@ -17,11 +17,13 @@ class Contest:
     published: Measured
     known_friction: Measured
     baselines: tuple[Measured, ...]
+    without_estimator: Measured | None = None
 
     @property
     def entries(self) -> tuple[Measured, ...]:
         """All controllers, in the order of `CaseResult.comparison`."""
-        return (self.table, self.lines, self.published, self.known_friction, *self.baselines)
+        last = () if self.without_estimator is None else (self.without_estimator,)
+        return (self.table, self.lines, self.published, self.known_friction, *self.baselines, *last)
 
     @property
     def best_baseline(self) -> Measured | None:
@@ -45,9 +47,10 @@ def contest(case: CaseResult) -> Contest:
     The predictions of the table and of the formulation as published are those that the case itself states.
     """
     table, lines, published, known, *baselines = case.comparison
-    table = replace(table, predicted_rms_m_s=case.predicted.rms_m_s(case.target_speed_m_s))
+    table = replace(table, predicted_rms_m_s=case.table.predicted.rms_m_s)
     published = replace(published, predicted_rms_m_s=case.published_predicted_rms_m_s)
-    return Contest(table, lines, published, known, tuple(baselines))
+    without = baselines.pop() if case.estimate is not None else None
+    return Contest(table, lines, published, known, tuple(baselines), without)
 
 
 def honesty(entry: Measured) -> float:

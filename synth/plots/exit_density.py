@@ -30,9 +30,18 @@ def exit_density(cases: Sequence[CaseResult]) -> Figure:
         draw_case(panels[0, column], panels[1, column], case)
     panels[0, 0].set_ylabel("density, 1/(m/s)", fontsize=9)
     panels[1, 0].set_ylabel("the same, logarithmic", fontsize=9)
+    predicted = "predicted" if cases[0].estimate is None else "predicted from other simulated passes"
     handles = [
         Patch(facecolor=SKY, label="simulated passes"),
-        Line2D([], [], color=VERMILLION, marker="o", markersize=3, linewidth=1.4, label="predicted"),
+        Line2D(
+            [],
+            [],
+            color=VERMILLION,
+            marker="o",
+            markersize=3,
+            linewidth=1.4,
+            label=predicted,
+        ),
         Line2D([], [], color=INK, linewidth=1.2, label="target"),
         Line2D([], [], color=GREY, linewidth=1.2, linestyle="--", label=f"target ± {OVERSPEED_M_S:g} m/s"),
     ]

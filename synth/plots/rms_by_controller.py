@@ -48,11 +48,15 @@ LOOKS = (
     Look(GREY, "<"),
     Look(ORANGE, "^"),
     Look(GREEN, "P"),
+    Look(BLUE, "X"),
 )
 """By the order of `CaseResult.comparison`; further controllers take them again from the start."""
 
 WITH_PROMISE = (0, 2)
 """Table and as published: their own predicted rms is drawn too, hollow."""
+
+MOST_COMMON = 8
+"""Controllers of a case without estimator: their dots stand at the same places in every figure."""
 
 SLOT = 0.78
 """Share of a case's width that its dots take."""
@@ -72,7 +76,9 @@ def rms_by_controller(cases: Sequence[CaseResult], limit_m_s: float) -> Figure:
     axes.set_xlim(-0.5, len(cases) - 0.5)
     axes.text(-0.47, limit_m_s * 1.02, "acceptance limit", fontsize=8, va="bottom")
     mark_cases(axes, cases)
-    legend_below(figure, legend_entries(cases[0].comparison), columns=4)
+    # Four columns of entries, the longest of which is a sentence, need 8.6 inches.
+    columns = 4 if figure.get_size_inches()[0] >= 8.6 else 3
+    legend_below(figure, legend_entries(cases[0].comparison), columns=columns)
     return figure
 
 
@@ -86,7 +92,7 @@ def draw_controller(axes: Axes, place_no: int, entries: Sequence[Measured]) -> N
     look = LOOKS[place_no % len(LOOKS)]
     rms = np.array([entry.statistics.rms_m_s for entry in entries])
     interval = np.array([entry.statistics.rms_ci95_m_s for entry in entries]).T
-    x = np.arange(len(entries)) + offset(place_no, max(len(LOOKS), place_no + 1))
+    x = np.arange(len(entries)) + offset(place_no, max(MOST_COMMON, place_no + 1))
     axes.errorbar(
         x, rms, (rms - interval[0], interval[1] - rms), fmt=look.marker, color=look.colour, markersize=6,
         elinewidth=1.0, markeredgewidth=2.0 if look.marker == "_" else 0.5, zorder=3,

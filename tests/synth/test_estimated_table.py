@@ -10,7 +10,7 @@ import pytest
 
 from plant_models import Friction
 from synth.closed_loop import LineController, close_loop, simulate, trace
-from synth.estimated_table import controller_of, estimated_table, trimmed
+from synth.estimated_table import controller_of, estimated_table, estimator_design, trimmed
 from synth.estimator_design import as_estimated, estimator_of, speed_error_m_s
 from synth.grid import Resolution
 from synth.problem import Criterion, Plant, Problem
@@ -80,7 +80,7 @@ def test_it_is_designed_for_its_own_error_and_better_than_no_estimator(
     plant = plant_of(36.0)
     problem = Problem(plant, 3.0, Criterion())
     coarse = Resolution(path_step_m=1.0, speed_step_m_s=0.05)
-    made = estimated_table(problem, coarse, 3, passes)
+    made = estimated_table(problem, estimator_design(plant, coarse), 3, passes)
     assert made.rms_after_m_s <= made.rms_before_m_s
     assert made.rounds <= 3
     lines = made.lines.at(np.linspace(0.0, plant.exit_m, 301))

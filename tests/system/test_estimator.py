@@ -1,0 +1,72 @@
+"""A tune with the estimator: tables of version 2 that do better, are read, validated and shown like any other."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from synth.cli import main
+from tests.system.conftest import CLASS, EPOCH, Command
+from tuning_tables import read_book, read_json
+
+Tuned = tuple[Path, Path, int]
+CONFIG = CLASS.replace("csv = true", "plots = false") + "[regulator]\nestimator = true\n"
+
+
+@pytest.fixture(scope="module")
+def tuned(tmp_path_factory: pytest.TempPathFactory) -> Tuned:
+    """(configuration, output directory, exit code)."""
+    config = tmp_path_factory.mktemp("estimator") / "estimator.toml"
+    config.write_text(CONFIG)
+    out = config.with_suffix("")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SOURCE_DATE_EPOCH", EPOCH)
+        return config, out, main(["tune", str(config), "-o", str(out), "--workers", "2"])
+
+
+@pytest.fixture
+def case(tuned: Tuned) -> Any:
+    """The first case of the summary."""
+    return json.loads((tuned[1] / "summary.json").read_text())["cases"][0]
+
+
+def test_its_tables_are_of_version_2_and_say_where_the_prediction_comes_from(tuned: Tuned, case: Any) -> None:
+    assert tuned[2] == 0
+    written = json.loads((tuned[1] / case["table"]).read_text())
+    assert written["version"] == 2
+    assert written["predicted"]["passes"] >= 1000
+    table = read_json(tuned[1] / case["table"])
+    assert table.estimator is not None
+    assert table.estimator.s_m[-1] == pytest.approx(table.retarder.exit_m)
+    assert read_book(tuned[1] / "book.h5")[0] == table
+
+
+def test_it_does_better_than_without_on_the_same_passes(tuned: Tuned, case: Any) -> None:
+    without = case["comparison"]["without estimator"]
+    assert case["simulated"]["rms_ci95_m_s"][1] < without["rms_ci95_m_s"][0]
+    assert 0.8 < case["honesty"] < 1.25
+    assert 0.01 < case["estimate"]["error_m_s"] < 0.035  # of 0.05 measured
+    assert case["best_baseline"] != "without estimator"
+    assert "it tests the sample, not the model" in (tuned[1] / "report.html").read_text()
+
+
+def test_validate_runs_the_estimator_of_the_file(command: Command, tuned: Tuned, case: Any) -> None:
+    """On fresh passes it is as good as the tune found it."""
+    run = command(
+        "validate", tuned[1] / case["table"], "--config", tuned[0], "--passes", "4000", "--seed", "5", "--json"
+    )
+    found = json.loads(run.out)[0]["simulated"]
+    low, high = case["simulated"]["rms_ci95_m_s"]
+    assert 0.8 * low < found["rms_m_s"] < 1.25 * high
+
+
+def test_what_cannot_be_had_together_is_said(command: Command, tmp_path: Path) -> None:
+    config = tmp_path / "both.toml"
+    config.write_text(CONFIG + "[criterion]\np_overspeed = 0.01\n")
+    run = command("tune", config, "-o", tmp_path / "out")
+    assert run.code == 2
+    assert "regulator.estimator is true" in run.err
+    assert not (tmp_path / "out").exists()
