@@ -23,16 +23,26 @@ from synth.problem import Criterion
 from synth.transitions import Transitions, with_known_friction
 from synth.tuned_lines import fitted
 
-ITERATIONS, TOLERANCE, ROUNDS = 100, 1e-4, 2
-"""Of each polish, which is begun anew from its own end once: that forgets a bad Hessian."""
+
+@dataclass(frozen=True)
+class Effort:
+    """Of each polish; begun anew from its own end in further `rounds`, it forgets a bad Hessian."""
+
+    iterations: int = 100
+    tolerance: float = 1e-4
+    rounds: int = 2
+
+
+TO_THE_END = Effort()
 
 
 @dataclass(frozen=True)
 class ToldFriction:
-    """Exact exit-speed densities for known factors (I,) that occur with probability `weight` (I,)."""
+    """Lines and exact exit-speed densities for known factors (I,) that occur with probability `weight` (I,)."""
 
     factor: NDArray[np.float64]
     weight: NDArray[np.float64]
+    lines: tuple[PolynomialLines, ...]
     densities: tuple[ExitDensity, ...]
 
     def rms_m_s(self, target_speed_m_s: float) -> float:
@@ -52,26 +62,36 @@ class ToldFriction:
 
 
 def told_friction(
-    design: Transitions, target_speed_m_s: float, criterion: Criterion, degree: int, nodes: int
+    design: Transitions,
+    target_speed_m_s: float,
+    criterion: Criterion,
+    degree: int,
+    nodes: int,
+    effort: Effort = TO_THE_END,
 ) -> ToldFriction:
     """Lines for each of `nodes` Gauss–Hermite factors of ξ_cut, and for the friction unknown as one more beginning."""
     plant = design.plant
     z, weight = np.polynomial.hermite_e.hermegauss(nodes)
     factors = plant.friction.cut_factor(z, plant.friction_cv)
     unknown = fitted(solve(design, target_speed_m_s, criterion), degree)
-    common = best_polished(design, target_speed_m_s, criterion, [(unknown.lines, unknown)])
-    densities = []
+    common = best_polished(design, target_speed_m_s, criterion, [(unknown.lines, unknown)], effort)
+    best, densities = [], []
     for factor in factors:
         known = with_known_friction(design, float(factor))
         own = fitted(solve(known, target_speed_m_s, criterion), degree)
         begins = [(own.lines, own), (common, own), (common, unknown)]
-        lines = best_polished(known, target_speed_m_s, criterion, begins)
+        lines = best_polished(known, target_speed_m_s, criterion, begins, effort)
+        best.append(lines)
         densities.append(exit_density(known, commands(known, lines.at(known.grid.path_m), staircase=False)))
-    return ToldFriction(factors, weight / weight.sum(), tuple(densities))
+    return ToldFriction(factors, weight / weight.sum(), tuple(best), tuple(densities))
 
 
 def best_polished(
-    design: Transitions, target_speed_m_s: float, criterion: Criterion, begins: list[tuple[PolynomialLines, Fit]]
+    design: Transitions,
+    target_speed_m_s: float,
+    criterion: Criterion,
+    begins: list[tuple[PolynomialLines, Fit]],
+    effort: Effort = TO_THE_END,
 ) -> PolynomialLines:
     """The best end of polishes from several lines, each in the coordinates of a fit.
 
@@ -82,9 +102,9 @@ def best_polished(
     def ends() -> Iterator[Polish]:
         for lines, fit in begins:
             try:
-                found = polish(lines, fit.curvature, nodes, evaluate, ITERATIONS, TOLERANCE)
-                for _ in range(ROUNDS - 1):
-                    found = polish(found.lines, fit.curvature, nodes, evaluate, ITERATIONS, TOLERANCE)
+                found = polish(lines, fit.curvature, nodes, evaluate, effort.iterations, effort.tolerance)
+                for _ in range(effort.rounds - 1):
+                    found = polish(found.lines, fit.curvature, nodes, evaluate, effort.iterations, effort.tolerance)
             except PlantError:
                 continue
             yield found
