@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.kernels.bellman import sweep
+from synth.kernels.packs import FOUR
 from synth.problem import Criterion
 from synth.switching_lines import SwitchingLines
 from synth.transitions import Transitions
@@ -25,7 +26,7 @@ class Solution:
 
     `lines`: the common policy; `gain_down`, `gain_up` (N, K + 1, E): mean-square cost saved by a change of stage
     at a measured speed (what the lines bound, and what R5's indifferent region is read from); `values`
-    (I, N + 1, H, L, E): estimated cost to go by scenario.
+    (I, N + 1, H, L, E), or of fewer nodes: estimated cost to go by scenario.
     """
 
     transitions: Transitions
@@ -41,7 +42,7 @@ class Solution:
         """One sentence: what was solved."""
         shape = self.values.shape
         return (
-            f"solved {shape[1] - 1} path quanta × {shape[2]} resting modes × {shape[4]} speeds × "
+            f"solved {len(self.gain_up)} path quanta × {shape[2]} resting modes × {shape[4]} speeds × "
             f"{shape[0]} scenarios × {shape[3]} noise levels for {self.target_speed_m_s:g} m/s"
         )
 
@@ -52,32 +53,37 @@ def solve(transitions: Transitions, target_speed_m_s: float, criterion: Criterio
 
 
 def solve_all(
-    transitions: Transitions, aims: Sequence[tuple[float, Criterion]], weights: NDArray[np.float64] | None = None
+    transitions: Transitions,
+    aims: Sequence[tuple[float, Criterion]],
+    weights: NDArray[np.float64] | None = None,
+    nodes_kept: int | None = None,
 ) -> tuple[Solution, ...]:
     """Backward induction for several (target speed, criterion) in one sweep: they share all motion.
 
-    An extra one costs about a tenth of the first. `weights` (1 or N, I, H, L, 1 or E): of what is hidden, by path node
-    and speed, instead of the prior.
+    An extra one costs about an eighth of the first. `weights` (1 or N, I, H, L, 1 or E): of what is hidden, by path
+    node and speed, instead of the prior. `nodes_kept`: at how many path nodes, from the entrance on, the solutions hold
+    values, by default at all; they are most of the memory of a solution.
     """
     t = transitions
     exit_costs, stall_costs = zip(*(c.exit_costs(t.grid.speed_m_s, target) for target, c in aims), strict=True)
     change_costs = np.array([criterion.switching_tolerance_m2_s2 for _, criterion in aims])
     nodes, stages, points, width = len(t.drive_m_s2), t.actuator.stages, len(t.grid.speed_m_s), len(aims)
-    shape = (len(t.scenarios.factor), nodes + 1, len(t.actuator.mode_stage), len(t.chain.levels), points * width)
-    values = np.empty(shape)
+    kept = nodes + 1 if nodes_kept is None else nodes_kept
+    states = (len(t.actuator.mode_stage), len(t.chain.levels), points)
+    values = np.empty((len(t.scenarios.factor), kept, *states, width))
     lower, upper = np.empty((nodes, stages, width)), np.empty((nodes, stages, width))
     gain_down, gain_up = (np.empty((nodes, stages, width, points)) for _ in range(2))
     noise = measured_speed_std(t.plant.sensor.noise_m_s, t.plant.sensor.resolution_m_s)
     hidden = hidden_prior(t)[None, ..., None] if weights is None else weights
     arguments = (
-        np.stack(exit_costs, axis=1).ravel(), np.array(stall_costs), change_costs, TIE_M2_S2,
+        in_packs_of_targets(np.stack(exit_costs, axis=1)).ravel(), in_packs_of_targets(np.array(stall_costs)),
+        in_packs_of_targets(change_costs), TIE_M2_S2,
         noise, *true_speed_weights(t.grid.speed_m_s, noise),
         hidden, *sweep_arguments(t), t.scenarios.factor, t.scenarios.extra_m_s2,
         t.grid.path_step_m, t.grid.energy_step_m2_s2, t.plant.sensor.sample_period_s, len(t.entry),
         values, lower, upper, gain_down, gain_up,
     )  # fmt: skip
     sweep(*arguments)
-    values = values.reshape(*shape[:-1], points, width)
     return tuple(
         Solution(
             transitions=t,
@@ -90,6 +96,12 @@ def solve_all(
         )
         for i, (target, criterion) in enumerate(aims)
     )
+
+
+def in_packs_of_targets(by_target: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Zeros added for targets that nobody asked for, until the last axis fills whole packs of the kernel."""
+    missing = -by_target.shape[-1] % FOUR
+    return np.pad(by_target, [(0, 0)] * (by_target.ndim - 1) + [(0, missing)])
 
 
 def sweep_arguments(t: Transitions) -> Any:

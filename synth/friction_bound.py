@@ -47,7 +47,7 @@ def friction_known_bounds(
     for i, (factor, weight) in enumerate(zip(factors, weights, strict=True)):
         draws = loop.draws(passes.part(i * share, (i + 1) * share), float(factor))
         known = with_known_friction(transitions, float(factor))
-        for t, solution in enumerate(solve_all(known, [(target, free) for target in targets_m_s])):
+        for t, solution in enumerate(solve_all(known, [(target, free) for target in targets_m_s], nodes_kept=1)):
             strata[t].append(loop.run(LineController(solution.lines), draws))
             squares[t] += weight * (solution.values[0, 0, 0] * transitions.chain.stationary[:, None]).sum(axis=0)
     bounds = []

@@ -190,7 +190,8 @@ def polish(
         calls += 1
         lines = unpack(y)
         cost, by_lower, by_upper = evaluate(lines.at(nodes_m)) if y.any() else first
-        if cost < best[0][0] and gap_of(lines) >= 0.5 * MINIMUM_GAP_M_S:
+        # Below 0 the grid is too coarse for these lines, and its error would be what is minimised.
+        if 0.0 < cost < best[0][0] and gap_of(lines) >= 0.5 * MINIMUM_GAP_M_S:
             best[0] = (cost, lines)
         gradient = np.stack([by_lower @ matrix, by_upper @ matrix], axis=1)[free]
         return cost / before, np.einsum("lab,la->lb", scale, gradient).ravel() / before

@@ -12,6 +12,7 @@ from plant_models import path_coefficients
 from synth.actuator import Actuator, stage_locked_actuator
 from synth.grid import Grid, Resolution, make_grid
 from synth.kernels.landing import land
+from synth.kernels.packs import EIGHT, SIXTEEN
 from synth.path_noise import PathChain, TransientNoise, correlated_chain, independent_chain, transient_noise
 from synth.problem import Plant
 
@@ -27,8 +28,8 @@ FINE_CELLS_PER_QUANTUM = 4
 class Landings:
     """End of every neighbouring stage change from every grid node, for friction `factors` (F,).
 
-    `ends` (N, C, E, F, 2), see `kernels.landing.land`; `lower_chain`, `upper_chain` (H,): index of the
-    transient one stage down / up from a mode, −1 if none; `end_mode` (C,).
+    `ends` (N, C, F, 2, E'), see `kernels.landing.land`, of which `points` E are energies of the grid; `lower_chain`,
+    `upper_chain` (H,): index of the transient one stage down / up from a mode, −1 if none; `end_mode` (C,).
     """
 
     factors: NDArray[np.float64]
@@ -38,16 +39,17 @@ class Landings:
     end_mode: NDArray[np.int64]
     overpressure_kpa: NDArray[np.float64]
     samples: NDArray[np.int64]
+    points: int
 
     @property
     def travel_m(self) -> NDArray[np.float64]:
         """Path until the end of the transient, or to S_exit, (N, C, F, E); −1 for a stall."""
-        return np.moveaxis(self.ends[..., 0], 2, 3)
+        return self.ends[..., 0, : self.points]
 
     @property
     def energy_m2_s2(self) -> NDArray[np.float64]:
         """v²/2 at the end of the transient, (N, C, F, E)."""
-        return np.moveaxis(self.ends[..., 1], 2, 3)
+        return self.ends[..., 1, : self.points]
 
 
 @dataclass(frozen=True)
@@ -198,13 +200,19 @@ def make_landings(plant: Plant, grid: Grid, actuator: Actuator) -> Landings:
     factors = friction_factors(plant)
     samples = actuator.chain_samples[used]
     overpressure = np.ascontiguousarray(actuator.chain_overpressure_kpa[used, : samples.max() * actuator.substeps])
-    ends = np.empty((len(grid.path_m) - 1, len(used), len(grid.speed_m_s), len(factors), 2))
+    speed = in_whole_packs(grid.speed_m_s)
+    ends = np.empty((len(grid.path_m) - 1, len(used), len(factors), 2, len(speed)))
     dt = plant.sensor.sample_period_s / actuator.substeps
     land(
         grid.path_step_m, work, drive, overpressure, samples, actuator.substeps, dt, factors,
-        grid.speed_m_s, ends,
+        speed, ends,
     )  # fmt: skip
-    return Landings(factors, ends, lower, upper, actuator.chain_mode[used], overpressure, samples)
+    return Landings(factors, ends, lower, upper, actuator.chain_mode[used], overpressure, samples, len(grid.speed_m_s))
+
+
+def in_whole_packs(speed_m_s: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The speeds, the last one repeated, so that whole packs may be read from any of them on (`kernels.packs`)."""
+    return np.pad(speed_m_s, (0, EIGHT + -(len(speed_m_s) + EIGHT) % SIXTEEN), mode="edge")
 
 
 def friction_factors(plant: Plant) -> NDArray[np.float64]:
@@ -223,7 +231,8 @@ def entry_distribution(plant: Plant, grid: Grid) -> NDArray[np.float64]:
     count = 2000 if plant.entry.high_m_s > plant.entry.low_m_s else 1
     v = plant.entry.speed_m_s((np.arange(count) + 0.5) / count)
     period, step = plant.sensor.sample_period_s, grid.path_step_m
-    reach = math.ceil(grid.speed_m_s[-1] * period / step) + 2
+    most_quanta = 1.01 * grid.speed_m_s[-1] * period / step  # a hundredth: downhill it runs a little faster
+    reach = math.floor(most_quanta) + 2
     position = 0.5 * v**2 / grid.energy_m2_s2[1]
     cell = np.minimum(position.astype(int), len(grid.energy_m2_s2) - 2)
     share = position - cell

@@ -29,6 +29,9 @@ DEGREES = (1, 2, 3, 4, 5, 6)
 TUNING_PASSES = 600
 PUBLISHED_LEVELS = 3
 
+VALUES_KEPT = 1
+"""Path nodes at which a case needs the values of its solution: the entrance."""
+
 TRIM_PASSES = 3000
 PREDICTION_PASSES = 10_000
 """Only for tables with an estimator, which have no exact prediction."""
@@ -102,9 +105,9 @@ def class_tasks(
     check = check_transitions(plant, finer_for_check(config.resolution))
     priced = [(target, criterion) for target in targets]
     free = [(target, replace(criterion, switching_tolerance_m2_s2=0.0)) for target in targets]
-    both = solve_all(design, priced + free)
+    both = solve_all(design, priced + free, nodes_kept=VALUES_KEPT)
     solutions, plain = both[: len(targets)], both[len(targets) :]
-    published = solve_all(as_published(design, PUBLISHED_LEVELS), priced)
+    published = solve_all(as_published(design, PUBLISHED_LEVELS), priced, nodes_kept=VALUES_KEPT)
     bounds = friction_known_bounds(design, targets, criterion.squared(), passes, config.acceptance.rms_m_s)
     draws = close_loop(plant, plant.top_stage + 1).draws(passes)
     estimator = estimator_order(config, plant) if config.regulator.estimator else None

@@ -12,10 +12,14 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from synth.kernels.borrowing import borrowing
 from synth.kernels.commands import normal_cdf
-from synth.kernels.flow import mix_values, pull, quanta_to_next_sample, shifts
+from synth.kernels.flow import mix_values, pull, shifts
+from synth.kernels.landing_plan import landing_scratch, quanta_crossed
+from synth.kernels.next_sample import quanta_to_next_sample
+from synth.kernels.packs import FOUR, load4, store
 from synth.kernels.thresholds import lower_threshold, upper_threshold
-from synth.kernels.transient_sweep import transient_values
+from synth.kernels.transient_sweep import add_transient_values
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -28,127 +32,193 @@ def sweep(
 ):  # fmt: skip
     """One backward sweep over all path quanta.
 
-    `terminal` (E·T,) cost by exit energy and target, `stalled` (T,) cost of a stall, `change_cost` (T,) of a
-    command, `tolerance` below which a gain is rounding. I scenarios: `factor`, `extra` (I,); `prior` (1 or N, I, H, L,
-    1 or E) weights of what is hidden;
-    `smear_start` (E,), `smear` (E, W): probability of true speeds given a measured one. Outputs: `values`
-    (I, N + 1, H, L, E·T), `lower`, `upper` (N, K + 1, T), `gain_down`, `gain_up` (N, K + 1, T, E): averaged cost
-    saved by the change, by measured speed.
+    `terminal` (E·T',) cost by exit energy and target, `stalled` (T',) cost of a stall, `change_cost` (T',) of a
+    command, where T' ≥ T are whole packs of four; `tolerance` below which a gain is rounding. I scenarios: `factor`,
+    `extra` (I,); `prior` (1 or N, I, H, L, 1 or E) weights of what is hidden; `smear_start` (E,), `smear` (E, W):
+    probability of true speeds given a measured one. Outputs: `values` (I, N + 1, H, L, E, T), or of the first nodes
+    only, `lower`, `upper` (N, K + 1, T), `gain_down`, `gain_up` (N, K + 1, T, E): averaged cost saved by the change,
+    by measured speed.
     """
     count, nodes, width = factor.shape[0], drive.shape[0], stalled.shape[0]
     modes, size, points = pressure.shape[0], levels.shape[0], speed.shape[0]
-    ahead = np.empty((count, reach, modes, size, points * width))
-    mixed = np.empty((count, nodes + 1, modes, size, points * width))
-    holds = np.empty((count, modes, size, points * width))
-    downs = np.empty((count, modes, size, points * width))
-    ups = np.empty((count, modes, size, points * width))
+    ring = probability.shape[1] + 3
+    row = points * width
+    recent = np.zeros((count, ring, modes, size, row))
+    mixed = np.zeros((count, ring, modes, size, row))
+    ahead = np.empty((count, reach, modes, size, row))
+    holds = np.empty((count, modes, size, row))
+    changes = np.zeros((2, count, modes, size, row))
+    quanta = np.empty((count, modes, size, points))
     shift = np.empty((count, modes, size))
-    scratch = np.empty(points * width)
-    values[:, nodes] = terminal
-    mixed[:, nodes] = terminal
-    ahead[:] = terminal
+    gains = np.empty((2, lower.shape[1], row))
+    chance = np.empty((2, row))
+    undecided = np.empty(points, np.bool_)
+    scratch = np.empty(row)
+    crossed, place, weight = landing_scratch(ends.shape[4])
+    recent[:, nodes % ring] = terminal
+    mixed[:, nodes % ring] = terminal
+    ahead[:, 1:] = terminal
+    copy_out(recent[:, nodes % ring], values, nodes, points)
     for n in range(nodes - 1, -1, -1):
+        gains[:] = 0.0
+        weights = prior[min(n, prior.shape[0] - 1)]
         for i in range(count):
             shifts(n, factor[i], levels, drive, brake, pressure, extra[i], path_step, energy_step, shift[i])
-            for r in range(reach - 2, -1, -1):
-                pull(ahead[i, r], transition, shift[i], stalled, 1, points, ahead[i, r + 1], scratch)
+            for r in range(reach - 2, 0, -1):
+                pull(ahead[i, r], points, transition, shift[i], stalled, 1, points, ahead[i, r + 1], scratch)
+            pull(recent[i, (n + 1) % ring], points, transition, shift[i], stalled, 1, points, ahead[i, 1], scratch)
             for h in range(modes):
                 for q in range(size):
                     a = shift[i, h, q] * energy_step / path_step
-                    hold_values(ahead[i, :, h, q], speed, a, period, path_step, width, holds[i, h, q])
-                    downs[i, h, q] = holds[i, h, q]
-                    ups[i, h, q] = holds[i, h, q]
-                    for side in range(2):
-                        c = upper_chain[h] if side == 1 else lower_chain[h]
-                        if c < 0:
-                            continue
-                        changed = ups[i, h, q] if side == 1 else downs[i, h, q]
-                        transient_values(
-                            n, nodes, c, q, factor[i], chain_mode[c], ends, factors, probability, mean,
+                    quanta_to_next_sample(speed, 0, points, a, period, path_step, quanta[i, h, q])
+                    hold_values(ahead[i], h * size + q, quanta[i, h, q], width, holds[i, h, q])
+            for side in range(2):
+                for h in range(modes):
+                    c = upper_chain[h] if side == 1 else lower_chain[h]
+                    if c < 0:
+                        continue
+                    quanta_crossed(
+                        n, c, 0, points, factor[i], ends, factors, path_step, probability.shape[1] - 1, crossed
+                    )
+                    for q in range(size):
+                        changed = changes[side, i, h, q]
+                        in_every_cell(change_cost, changed)
+                        add_transient_values(
+                            n, nodes, c, q, crossed, factor[i], chain_mode[c], ends, factors, probability, mean,
                             std, drive, brake, pressure, levels, extra[i], path_step, energy_step,
-                            values[i], mixed[i], stalled, changed,
+                            recent[i], mixed[i], stalled, place, weight, changed,
                         )  # fmt: skip
-                        for j in range(points):
-                            for t in range(width):
-                                changed[j * width + t] += change_cost[t]
-        average_gains(holds, downs, ups, stage, prior[min(n, prior.shape[0] - 1)], width, gain_down[n], gain_up[n])
+                        add_gains(holds[i, h, q], changed, weights[i, h, q], width, gains[side, stage[h]])
         for k in range(lower.shape[1]):
-            for t in range(width):
-                spread(gain_down[n, k, t], smear_start, smear, scratch)
-                spread(gain_up[n, k, t], smear_start, smear, scratch)
+            for side, each in ((0, gain_down), (1, gain_up)):
+                spread(gains[side, k], smear_start, smear, width, scratch)
+                apart(scratch, width, each[n, k])
+            for t in range(lower.shape[2]):
                 lower[n, k, t] = lower_threshold(gain_down[n, k, t], speed, tolerance)
                 upper[n, k, t] = max(upper_threshold(gain_up[n, k, t], speed, tolerance), lower[n, k, t])
-        for h in range(modes):
-            k = stage[h]
-            for j in range(1, points):
-                for t in range(width):
-                    down = normal_cdf((lower[n, k, t] - speed[j]) / noise)
-                    up = normal_cdf((speed[j] - upper[n, k, t]) / noise)
-                    at = j * width + t
-                    for i in range(count):
-                        for q in range(size):
-                            changed = down * downs[i, h, q, at] + up * ups[i, h, q, at]
-                            values[i, n, h, q, at] = sampled_value(
-                                1.0 - down - up, changed, ahead[i, 1, h, q, at], holds[i, h, q, at],
-                                speed[j], shift[i, h, q] * energy_step / path_step, period, path_step,
-                            )  # fmt: skip
-            values[:, n, h, :, :width] = stalled
+            command_chances(lower[n, k], upper[n, k], speed, noise, width, chance, undecided)
+            for h in range(modes):
+                if stage[h] != k:
+                    continue
+                for i in range(count):
+                    for q in range(size):
+                        sampled_values(
+                            chance, changes[0, i, h, q], changes[1, i, h, q], ahead[i, 1, h, q], holds[i, h, q],
+                            quanta[i, h, q], undecided, stalled, recent[i, n % ring, h, q],
+                        )  # fmt: skip
         for i in range(count):
-            mix_values(values[i, n], transition, 1, points, stalled, mixed[i, n])
-            ahead[i, 0] = values[i, n]
+            mix_values(recent[i, n % ring], transition, 1, points, stalled, mixed[i, n % ring])
+        copy_out(recent[:, n % ring], values, n, points)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def hold_values(ahead, speed, acceleration, period, path_step, width, out):
-    """Value of holding until the next sample; `ahead` (M + 1, E·T), `out` (E·T,).
+@borrowing
+def hold_values(ahead, state, quanta, width, out):
+    """Value of holding until the next sample, `quanta` (E,) further, into `out` (E·T,).
 
-    Where the next sample falls into the same quantum, holding means going on to the next node.
+    `ahead` (M + 1, H, L, E·T), of which the mode and level at flat index `state`. Where the next sample falls into the
+    same quantum, holding means going on to the next node.
     """
     last = ahead.shape[0] - 2
+    row = ahead.shape[3]
+    stride = ahead.shape[1] * ahead.shape[2] * row
+    for j in range(quanta.shape[0]):
+        step = min(int(quanta[j]), last)
+        near = max(step, 1) * stride + state * row
+        x = min(quanta[j] - step, 1.0)
+        for at in range(j * width, (j + 1) * width, FOUR):
+            if step == 0:
+                store(out, at, load4(ahead, near + at))
+            else:
+                store(out, at, load4(ahead, near + at) * (1.0 - x) + load4(ahead, near + stride + at) * x)
+
+
+@borrowing
+def in_every_cell(numbers, out):
+    """`out` (E·T,) = `numbers` (T,) at every energy."""
+    width = numbers.shape[0]
+    for at in range(0, out.shape[0], width):
+        for t in range(0, width, FOUR):
+            store(out, at + t, load4(numbers, t))
+
+
+@borrowing
+def add_gains(hold, changed, prior, width, gain):
+    """Add the cost saved by a change, weighted by `prior` (1 or E,), to `gain` (E·T,)."""
+    for j in range(1, gain.shape[0] // width):
+        weight = prior[j] if prior.shape[0] > 1 else prior[0]
+        for at in range(j * width, (j + 1) * width, FOUR):
+            store(gain, at, load4(gain, at) + (load4(hold, at) - load4(changed, at)) * weight)
+
+
+@borrowing
+def spread(gain, start, weights, width, out):
+    """`out` (E·T,) = `gain` averaged over the true speeds behind every measured speed."""
+    for j in range(start.shape[0]):
+        for t in range(0, width, FOUR):
+            found = load4(gain, start[j] * width + t) * weights[j, 0]
+            for m in range(1, weights.shape[1]):
+                found = found + load4(gain, (start[j] + m) * width + t) * weights[j, m]
+            store(out, j * width + t, found)
+
+
+@borrowing
+def apart(row, width, out):
+    """`row` (E·T,), with targets padded, as `out` (T, E)."""
+    for t in range(out.shape[0]):
+        for j in range(out.shape[1]):
+            out[t, j] = row[j * width + t]
+
+
+@borrowing
+def command_chances(lower, upper, speed, noise, width, out, undecided):
+    """P(down), P(up) at every true speed and target, `out` (2, E·T); lines `lower`, `upper` (T,).
+
+    `undecided` (E,): whether any target may get another command than holding.
+    """
+    out[:] = 0.0
     for j in range(speed.shape[0]):
-        f = quanta_to_next_sample(speed[j], acceleration, period, path_step)
-        step = min(int(f), last)
-        x = 1.0 if step == 0 else min(f - step, 1.0)
-        for at in range(j * width, (j + 1) * width):
-            out[at] = (1.0 - x) * ahead[step, at] + x * ahead[step + 1, at]
+        undecided[j] = False
+        for t in range(lower.shape[0]):
+            down = normal_cdf((lower[t] - speed[j]) / noise)
+            up = normal_cdf((speed[j] - upper[t]) / noise)
+            out[0, j * width + t], out[1, j * width + t] = down, up
+            undecided[j] = undecided[j] or down > 0.0 or up > 0.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def sampled_value(hold, changed, value_next, value_hold, speed, acceleration, period, path_step):
-    """Value at a sample: `hold` probability of holding, `changed` the changes' values times probabilities."""
-    f = quanta_to_next_sample(speed, acceleration, period, path_step)
-    if f < 1.0:  # the next sample may be at this node again: sum the geometric series
-        return (hold * f * value_next + changed) / (1.0 - hold * (1.0 - f))
-    return hold * value_hold + changed
+@borrowing
+def sampled_values(chance, down, up, value_next, value_hold, quanta, undecided, stalled, out):
+    """Values at a sample (E·T,), of commands given with the chances (2, E·T) of `command_chances`.
+
+    Where the next sample may be at this node again, the geometric series is summed. `undecided` (E,): elsewhere the
+    command is to hold.
+    """
+    width, row = stalled.shape[0], out.shape[0]
+    for t in range(0, width, FOUR):
+        store(out, t, load4(stalled, t))
+    for j in range(1, quanta.shape[0]):
+        f = quanta[j]
+        for at in range(j * width, (j + 1) * width, FOUR):
+            if not undecided[j]:
+                store(out, at, load4(value_hold, at))
+                continue
+            lowers, raises = load4(chance, at), load4(chance, row + at)
+            changed = lowers * load4(down, at) + raises * load4(up, at)
+            hold = 1.0 - lowers - raises
+            if f < 1.0:
+                store(out, at, (hold * f * load4(value_next, at) + changed) / (1.0 - hold * (1.0 - f)))
+            else:
+                store(out, at, hold * load4(value_hold, at) + changed)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def average_gains(holds, downs, ups, stage, prior, width, gain_down, gain_up):
-    """Cost saved by a change, averaged over what is hidden given stage and speed; outputs (K + 1, T, E)."""
-    gain_down[:] = 0.0
-    gain_up[:] = 0.0
-    points = holds.shape[3] // width
-    for h in range(stage.shape[0]):
-        k = stage[h]
-        for i in range(holds.shape[0]):
-            for q in range(holds.shape[2]):
-                weight = prior[i, h, q, 0]
-                for j in range(1, points):
-                    if prior.shape[3] > 1:
-                        weight = prior[i, h, q, j]
-                    for t in range(width):
-                        at = j * width + t
-                        gain_down[k, t, j] += weight * (holds[i, h, q, at] - downs[i, h, q, at])
-                        gain_up[k, t, j] += weight * (holds[i, h, q, at] - ups[i, h, q, at])
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def spread(gain, start, weights, scratch):
-    """Average `gain` (E,) over the true speeds behind every measured speed, in place."""
-    points = gain.shape[0]
-    for j in range(points):
-        total = 0.0
-        for m in range(weights.shape[1]):
-            total += weights[j, m] * gain[start[j] + m]
-        scratch[j] = total
-    gain[:] = scratch[:points]
+@borrowing
+def copy_out(rows, values, n, points):
+    """Node `n` of `values` (I, ·, H, L, E, T), if it is kept, from `rows` (I, H, L, E·T'), whose targets are padded."""
+    if n >= values.shape[1]:
+        return
+    width = rows.shape[3] // points
+    for i in range(rows.shape[0]):
+        for h in range(rows.shape[1]):
+            for q in range(rows.shape[2]):
+                for j in range(points):
+                    for t in range(values.shape[5]):
+                        values[i, n, h, q, j, t] = rows[i, h, q, j * width + t]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
+from synth.kernels.borrowing import borrowing
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@borrowing
 def command_probabilities(lower, upper, speed, noise, down, up, down_slope, up_slope):
     """P(measured < lower), P(measured > upper) and their derivatives by the line, at every node.
 
@@ -25,7 +25,7 @@ def command_probabilities(lower, upper, speed, noise, down, up, down_slope, up_s
                 up_slope[n, k, j] = -normal_density(b) * scale
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@borrowing
 def normal_cdf(z):
     """Φ(z), exactly 0 or 1 beyond six standard deviations."""
     if z > 6.0:
@@ -35,7 +35,7 @@ def normal_cdf(z):
     return 0.5 * math.erfc(-z * 0.7071067811865476)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@borrowing
 def normal_density(z):
     """φ(z), zero beyond six standard deviations."""
     if abs(z) > 6.0:

@@ -8,7 +8,9 @@ transpose of `pull`, so forward densities and backward values agree to rounding.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from synth.kernels.borrowing import borrowing, borrowing_inline
+from synth.kernels.packs import EIGHT, eight, holds_anywhere, load8, magnitude, store
 
 LINEAR_CELLS = 2
 """Cells above a stall with linear interpolation: there the value falls so steeply that a cubic would promise costs
@@ -18,16 +20,16 @@ NO_MASS = 1e-25
 """Probabilities below this are dropped: the tails of a density would otherwise run into slow denormal numbers."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def pull(values, transition, shift, stalled, first, last, out, mixed):
+@borrowing
+def pull(values, points, transition, shift, stalled, first, last, out, mixed):
     """`out`[h, q, j] = Σ_m transition[q, m]·values[h, m](j + shift[h, q]) for first ≤ j < last.
 
-    `values`, `out` (H, L, E·T): T targets side by side at every energy; `stalled` (T,) values at and below cell 0;
-    `shift` (H, L) in cells of the energy grid; above the grid the last value holds. `mixed` (E·T,) is scratch.
+    `values`, `out` (H, L, E·T): T targets side by side at each of `points` E energies, then room; `stalled` (T,) values
+    at and below cell 0; `shift` (H, L) in cells of the energy grid; above the grid the last value holds. `mixed`
+    (E·T,) is scratch.
     """
-    modes, levels, size = values.shape
+    modes, levels, _ = values.shape
     width = stalled.shape[0]
-    points = size // width
     for h in range(modes):
         for q in range(levels):
             base = int(np.floor(shift[h, q]))
@@ -35,26 +37,49 @@ def pull(values, transition, shift, stalled, first, last, out, mixed):
             c0, c1, c2, c3 = stencil(x)
             begin = max(min(first + base - 1, points - 4), 0) * width
             end = min(max(last + base + 3, 4), points) * width
-            for j in range(begin, end):
-                mixed[j] = transition[q, 0] * values[h, 0, j]
-            for m in range(1, levels):
-                p = transition[q, m]
-                for j in range(begin, end):
-                    mixed[j] += p * values[h, m, j]
-            mixed[:width] = stalled
-            out[h, q, :width] = stalled
+            mix_row(values, h, transition[q], begin, end, mixed)
+            for t in range(width):
+                mixed[t] = out[h, q, t] = stalled[t]
             low = min(max(LINEAR_CELLS - base, first), last)
             high = max(min(points - 2 - base, last), low)
-            for j in range(low * width, high * width):
-                i = j + base * width
-                out[h, q, j] = c0 * mixed[i - width] + c1 * mixed[i] + c2 * mixed[i + width] + c3 * mixed[i + 2 * width]
+            stencil_row(mixed, base * width, width, c0, c1, c2, c3, low * width, high * width, out[h, q])
             for j in range(first, low):
                 take(mixed, j + base + x, points, width, out[h, q], j)
             for j in range(high, last):
                 take(mixed, j + base + x, points, width, out[h, q], j)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@borrowing
+def mix_row(values, h, share, begin, end, out):
+    """`out`[begin:end] = Σ_m share[m]·values[h, m, begin:end], `values` (H, L, E·T)."""
+    levels, size = values.shape[1], values.shape[2]
+    row = h * levels * size
+    stop = begin + (end - begin) // EIGHT * EIGHT
+    for j in range(begin, stop, EIGHT):
+        found = load8(values, row + j) * share[0]
+        for m in range(1, levels):
+            found = found + load8(values, row + m * size + j) * share[m]
+        store(out, j, found)
+    for j in range(stop, end):
+        out[j] = share[0] * values[h, 0, j]
+        for m in range(1, levels):
+            out[j] += share[m] * values[h, m, j]
+
+
+@borrowing
+def stencil_row(row, ahead, width, c0, c1, c2, c3, begin, end, out):
+    """`out`[j] = the four of `row` around j + `ahead`, a distance of `width` apart, for begin ≤ j < end."""
+    stop = begin + (end - begin) // EIGHT * EIGHT
+    for j in range(begin, stop, EIGHT):
+        i = j + ahead
+        near = load8(row, i - width) * c0 + load8(row, i) * c1
+        store(out, j, near + load8(row, i + width) * c2 + load8(row, i + 2 * width) * c3)
+    for j in range(stop, end):
+        i = j + ahead
+        out[j] = c0 * row[i - width] + c1 * row[i] + c2 * row[i + width] + c3 * row[i + 2 * width]
+
+
+@borrowing
 def take(row, position, points, width, out, j):
     """`out` at energy j = `row` interpolated at `position`, for all targets; rows (E·T,)."""
     i, c0, c1, c2, c3 = interpolation(position, points)
@@ -63,50 +88,77 @@ def take(row, position, points, width, out, j):
         out[j * width + t] = c0 * row[at - width] + c1 * row[at] + c2 * row[at + width] + c3 * row[at + 2 * width]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def push(mass, transition, shift, first, last, out, moved):
+@borrowing
+def push(mass, spans, transition, shift, points, first, last, out, reached, moved):
     """Transpose of `pull`: mass in first ≤ j < last at the start of a quantum goes to its end, added to `out`.
 
-    Returns (stalled, escaped): mass that stopped, and mass that ran into the top of the grid (it is kept in
-    the last cell). `moved` (E,) is scratch.
+    `mass`, `out` (H, L, E') hold `points` energies and zeros up to whole packs; `spans` (H, L, 2) ranges of energies
+    out of which `mass` is zero, `reached` those of `out`, widened. Returns (stalled, escaped): mass that stopped, and
+    mass that ran into the top of the grid (it is kept in the last cell). `moved` (E',) is scratch.
     """
-    modes, levels, points = mass.shape
+    modes, levels, width = mass.shape
     stalled, escaped = 0.0, 0.0
     for h in range(modes):
         for q in range(levels):
-            begin, end = extent(mass[h, q], first, last)
+            row = mass[h, q]
+            begin, end = extent(row, max(spans[h, q, 0], first), min(spans[h, q, 1], last), NO_MASS)
             if begin >= end:
                 continue
             base = int(np.floor(shift[h, q]))
             x = shift[h, q] - base
-            c0, c1, c2, c3 = stencil(x)
             low = min(max(LINEAR_CELLS - base, begin), end)
             high = max(min(points - 2 - base, end), low)
             bottom = max(min(begin + base - 1, points - 4), 0)
             top = min(max(end + base + 3, 4), points)
-            moved[bottom:top] = 0.0
+            clear(moved, bottom, top + EIGHT)
             for j in range(begin, low):
-                put_at(moved, j + base + x, mass[h, q, j])
-            spread_by_stencil(mass[h, q], low, high, base, c0, c1, c2, c3, moved)
+                put_at(moved, points, j + base + x, row[j])
+            spread_by_stencil(row, low, high, base, stencil(x), moved)
             for j in range(high, end):
-                put_at(moved, j + base + x, mass[h, q, j])
-                escaped += abs(mass[h, q, j])
+                put_at(moved, points, j + base + x, row[j])
+                escaped += abs(row[j])
             if bottom == 0:
                 stalled += moved[0]
                 moved[0] = 0.0
             for m in range(levels):
-                p = transition[q, m]
-                for j in range(bottom, top):
-                    out[h, m, j] += p * moved[j]
+                add_row(moved, transition[q, m], bottom, top, out, (h * levels + m) * width)
+                widen(reached[h, m], bottom, top)
     return stalled, escaped
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def spread_by_stencil(row, low, high, base, c0, c1, c2, c3, out):
-    """Add every row[j], low ≤ j < high, to out[j + base − 1 … j + base + 2] with weights c0 … c3.
+@borrowing
+def widen(span, begin, end):
+    """Make the range `span` (2,), empty where it does not end beyond its beginning, hold begin ≤ j < end too."""
+    if span[0] < span[1]:
+        begin, end = min(begin, span[0]), max(end, span[1])
+    span[0], span[1] = begin, end
+
+
+@borrowing
+def add_row(row, share, begin, end, out, at):
+    """Add `share` of `row`[begin:end] to `out` from flat index `at` + begin on; beyond it stand zeros."""
+    for j in range(begin, end, EIGHT):
+        store(out, at + j, load8(out, at + j) + load8(row, j) * share)
+
+
+@borrowing
+def clear(rows, first, last):
+    """Set the flat indices first ≤ j < `last` of `rows` to zero, and what whole packs need beyond, within `rows`."""
+    last = min(last, rows.size)
+    stop = first + (last - first) // EIGHT * EIGHT
+    for j in range(first, stop, EIGHT):
+        store(rows, j, eight(0.0))
+    for j in range(stop, last):
+        rows[j] = 0.0
+
+
+@borrowing
+def spread_by_stencil(row, low, high, base, weights, out):
+    """Add every row[j], low ≤ j < high, to out[j + base − 1 … j + base + 2] with its four weights.
 
     Written as a gather, one pass with four products; its two ends, where terms are missing, apart.
     """
+    c0, c1, c2, c3 = weights
     if high - low < 4:
         for j in range(low, high):
             out[j + base - 1] += c0 * row[j]
@@ -114,7 +166,12 @@ def spread_by_stencil(row, low, high, base, c0, c1, c2, c3, out):
             out[j + base + 1] += c2 * row[j]
             out[j + base + 2] += c3 * row[j]
         return
-    for j in range(low + 2, high - 1):
+    begin, end = low + 2, high - 1
+    stop = begin + (end - begin) // EIGHT * EIGHT
+    for j in range(begin, stop, EIGHT):
+        added = load8(row, j + 1) * c0 + load8(row, j) * c1 + load8(row, j - 1) * c2 + load8(row, j - 2) * c3
+        store(out, j + base, load8(out, j + base) + added)
+    for j in range(stop, end):
         out[j + base] += c0 * row[j + 1] + c1 * row[j] + c2 * row[j - 1] + c3 * row[j - 2]
     first, last = low + base, high + base
     out[first - 1] += c0 * row[low]
@@ -125,17 +182,21 @@ def spread_by_stencil(row, low, high, base, c0, c1, c2, c3, out):
     out[last + 1] += c3 * row[high - 1]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def extent(row, first, last):
-    """Smallest range of indices within [first, last) that holds all entries of `row` above `NO_MASS`."""
-    while first < last and abs(row[first]) < NO_MASS:
+@borrowing
+def extent(row, first, last, least_mass):
+    """Smallest range of indices within [first, last) that holds all entries of `row` of at least `least_mass`."""
+    while first + EIGHT <= last and not holds_anywhere(magnitude(load8(row, first)) >= least_mass):
+        first += EIGHT
+    while first < last and abs(row[first]) < least_mass:
         first += 1
-    while last > first and abs(row[last - 1]) < NO_MASS:
+    while first + EIGHT <= last and not holds_anywhere(magnitude(load8(row, last - EIGHT)) >= least_mass):
+        last -= EIGHT
+    while last > first and abs(row[last - 1]) < least_mass:
         last -= 1
     return first, last
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@borrowing_inline
 def stencil(x):
     """Weights of cubic Lagrange interpolation at fraction x between the second and third of four points."""
     c0 = -x * (x - 1.0) * (x - 2.0) / 6.0
@@ -145,7 +206,7 @@ def stencil(x):
     return c0, c1, c2, c3
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+@borrowing_inline
 def interpolation(position, points):
     """Second of the four grid points that interpolate at `position` (cells), and their weights.
 
@@ -163,43 +224,17 @@ def interpolation(position, points):
     return i, c0, c1, c2, c3
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def weights_at(position, points):
-    """`interpolation`, with a short cut for positions away from both ends."""
-    if LINEAR_CELLS <= position < points - 3.0:
-        i = int(position)
-        c0, c1, c2, c3 = stencil(position - i)
-        return i, c0, c1, c2, c3
-    return interpolation(position, points)
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def value_at(row, position):
-    """`row` (E,) interpolated at `position` in cells."""
-    i, c0, c1, c2, c3 = weights_at(position, row.shape[0])
-    return c0 * row[i - 1] + c1 * row[i] + c2 * row[i + 1] + c3 * row[i + 2]
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def put_at(row, position, mass):
-    """Transpose of `value_at`; what arrives at or below cell 0 is found in `row`[0]."""
-    i, c0, c1, c2, c3 = weights_at(position, row.shape[0])
+@borrowing
+def put_at(row, points, position, mass):
+    """Transpose of `take`, `row` of `points` energies; what arrives at or below cell 0 is found in `row`[0]."""
+    i, c0, c1, c2, c3 = interpolation(position, points)
     row[i - 1] += c0 * mass
     row[i] += c1 * mass
     row[i + 1] += c2 * mass
     row[i + 2] += c3 * mass
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def quanta_to_next_sample(speed, acceleration, period, path_step):
-    """Path until the next sample at a held stage, in quanta, never below a small positive number."""
-    reach = speed * period + 0.5 * acceleration * period * period
-    if speed + acceleration * period < 0.0:
-        reach = -0.5 * speed * speed / acceleration
-    return max(reach / path_step, 0.01)
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
+@borrowing
 def shifts(n, factor, levels, drive, brake, pressure, extra, path_step, energy_step, out):
     """Energy change over quantum `n` at every mode and level, in cells of the grid; `out` (H, L)."""
     for h in range(pressure.shape[0]):
@@ -208,17 +243,13 @@ def shifts(n, factor, levels, drive, brake, pressure, extra, path_step, energy_s
             out[h, q] = slope * path_step / energy_step
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@borrowing
 def mix_values(values, transition, first, last, stalled, out):
     """`out`[h, q, j] = Σ_m transition[q, m]·values[h, m, j] for first ≤ j < last; shapes (H, L, E·T)."""
     modes, levels, _ = values.shape
     width = stalled.shape[0]
     for h in range(modes):
         for q in range(levels):
-            out[h, q, :width] = stalled
-            for j in range(first * width, last * width):
-                out[h, q, j] = transition[q, 0] * values[h, 0, j]
-            for m in range(1, levels):
-                p = transition[q, m]
-                for j in range(first * width, last * width):
-                    out[h, q, j] += p * values[h, m, j]
+            for t in range(width):
+                out[h, q, t] = stalled[t]
+            mix_row(values, h, transition[q], first * width, last * width, out[h, q])

@@ -5,6 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from synth.kernels.borrowing import borrowing
+from synth.kernels.packs import SIXTEEN, choose, fraction, gather, greatest, holds_anywhere, least, load16, store, whole
+
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def land(path_step, work, gravity, overpressure, samples, substeps, dt, factors, speed, ends):
@@ -12,55 +15,61 @@ def land(path_step, work, gravity, overpressure, samples, substeps, dt, factors,
 
     Shapes: `work` (W + 1,) = ∫β ds at equal steps from 0 to S_exit, `gravity` (W,) means of g'(i − w)·1e-3;
     `overpressure` (C, ·) per substep of `dt` seconds; `samples` (C,); `factors` (F,) friction factors;
-    `speed` (E,). `ends` (N, C, E, F, 2): path until the end of the transient, or to S_exit, −1 for a stall; and
-    v²/2 there. Factors are next to each other because they are interpolated together.
+    `speed` (E',), whole packs. `ends` (N, C, F, 2, E'): path until the end of the transient, or to S_exit, −1 for a
+    stall; and v²/2 there.
     """
-    cells = gravity.shape[0]
+    cells, points = gravity.shape[0], speed.shape[0]
     fine = (ends.shape[0] * path_step) / cells
-    exit_m = cells * fine
-    points = speed.shape[0]
-    s, v, w0 = np.empty(points), np.empty(points), np.empty(points)
+    rise = np.empty(cells)
+    for i in range(cells):
+        rise[i] = work[i + 1] - work[i]
+    count, numbers = samples.shape[0], factors.shape[0]
     for n in range(ends.shape[0]):
         start = n * path_step
-        for c in range(samples.shape[0]):
-            for f in range(factors.shape[0]):
-                for j in range(points):
-                    s[j], v[j], w0[j] = start, speed[j], -1.0
-                for step in range(samples[c] * substeps):
-                    brake = factors[f] * overpressure[c, step]
-                    advance(s, v, w0, work, gravity, fine, cells, exit_m, brake, dt)
-                for j in range(points):
-                    if w0[j] >= 0.0:
-                        ends[n, c, j, f, 0], ends[n, c, j, f, 1] = exit_m - start, w0[j]
-                    elif v[j] <= 0.0:
-                        ends[n, c, j, f, 0], ends[n, c, j, f, 1] = -1.0, 0.0
-                    else:
-                        ends[n, c, j, f, 0], ends[n, c, j, f, 1] = s[j] - start, 0.5 * v[j] * v[j]
+        for c in range(count):
+            for f in range(numbers):
+                at = ((n * count + c) * numbers + f) * 2 * points
+                for j in range(0, points, SIXTEEN):
+                    path, energy = landing_of_pack(
+                        start, load16(speed, j), work, rise, gravity, fine, overpressure[c], samples[c] * substeps,
+                        factors[f], dt,
+                    )  # fmt: skip
+                    store(ends, at + j, path)
+                    store(ends, at + points + j, energy)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def advance(s, v, left_with, work, gravity, fine, cells, exit_m, brake, dt):
-    """One time step for all speeds at once (structure of arrays, so that it vectorises).
+@borrowing
+def landing_of_pack(start, v, work, rise, gravity, fine, overpressure, steps, factor, dt):
+    """(path, v²/2) at the end of one transient for a pack of speeds at `start`.
 
     The brake work is taken from the integral of β over the step's own path, so a jump of N(s) costs no
-    accuracy; `left_with` becomes the energy at S_exit in the step in which it is crossed.
+    accuracy; where S_exit is crossed inside a step, the energy there is kept. No pack is followed further than that
+    all its speeds have left or stopped.
     """
-    scale = 1.0 / fine
-    for j in range(s.shape[0]):
-        reach = v[j] * dt
-        x0 = min(s[j] * scale, cells - 1e-9)
-        x1 = min((s[j] + reach) * scale, cells - 1e-9)
-        i0, i1 = int(x0), int(x1)
-        a = work[i0] + (x0 - i0) * (work[i0 + 1] - work[i0])
-        b = work[i1] + (x1 - i1) * (work[i1 + 1] - work[i1])
-        mean = (b - a) / max(reach, 1e-9)
-        change = gravity[i0] - brake * mean
-        faster = v[j] + change * dt
-        ahead = s[j] + 0.5 * (v[j] + max(faster, 0.0)) * dt
-        crosses = left_with[j] < 0.0 and ahead >= exit_m and v[j] > 0.0
-        left = gravity[i0] * (exit_m - s[j]) - brake * (work[cells] - a)
-        at_exit = max(0.5 * v[j] * v[j] + left, 0.0)
-        left_with[j] = at_exit if crosses else left_with[j]
-        moves = v[j] > 0.0
-        s[j] = min(ahead, exit_m) if moves else s[j]
-        v[j] = max(faster, 0.0) if moves else 0.0
+    cells = gravity.shape[0]
+    exit_m, scale, top = cells * fine, 1.0 / fine, cells - 1e-9
+    s = v * 0.0 + start
+    left_with = v * 0.0 - 1.0
+    for step in range(steps):
+        brake = factor * overpressure[step]
+        reach = v * dt
+        x0, x1 = least(s * scale, top), least((s + reach) * scale, top)
+        i0, i1 = whole(x0), whole(x1)
+        a = gather(work, i0) + (x0 - fraction(i0)) * gather(rise, i0)
+        b = gather(work, i1) + (x1 - fraction(i1)) * gather(rise, i1)
+        pull = gather(gravity, i0)
+        faster = v + (pull - brake * ((b - a) / greatest(reach, 1e-9))) * dt
+        ahead = s + (v + greatest(faster, 0.0)) * 0.5 * dt
+        moves = v > 0.0
+        crosses = (left_with < 0.0) & (ahead >= exit_m) & moves
+        if holds_anywhere(crosses):
+            left = pull * (exit_m - s) - brake * (work[cells] - a)
+            left_with = choose(crosses, greatest(v * v * 0.5 + left, 0.0), left_with)
+        s = choose(moves, least(ahead, exit_m), s)
+        v = choose(moves, greatest(faster, 0.0), 0.0)
+        if not holds_anywhere((v > 0.0) & (left_with < 0.0)):
+            break
+    left = left_with >= 0.0
+    stopped = v <= 0.0
+    path = choose(left, exit_m - start, choose(stopped, -1.0, s - start))
+    return path, choose(left, left_with, choose(stopped, 0.0, v * v * 0.5))

@@ -10,10 +10,18 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from synth.kernels.flow import extent, push, quanta_to_next_sample, shifts
-from synth.kernels.transient import put_transient
+from synth.kernels.borrowing import borrowing
+from synth.kernels.flow import NO_MASS, add_row, clear, extent, push, shifts, widen
+from synth.kernels.landing_plan import landing_scratch
+from synth.kernels.next_sample import quanta_to_next_sample
+from synth.kernels.packs import EIGHT, choose, fraction, holds_anywhere, least, load8, magnitude, store, whole
+from synth.kernels.transient import spread_changes
 
 NEGLIGIBLE_MASS = 1e-11
+"""A state with less mass is left out."""
+
+MATTERS = 1e-3 * NEGLIGIBLE_MASS
+"""Energies at which no state has this mass are not looked at."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -30,134 +38,195 @@ def forward(
     energies that are met at a node; `exits` (E,) exit probability by energy; `totals` (4,): stalled mass,
     escaped mass, changes down, changes up.
     """
-    nodes = drive.shape[0]
-    modes, size, points = pressure.shape[0], levels.shape[0], speed.shape[0]
-    reach = entry.shape[0]
-    ring = probability.shape[1] + 3
-    heading = np.zeros((reach + 1, modes, size, points))
-    moved = np.empty(points)
-    shift = np.empty((modes, size))
-    arriving = np.zeros((ring, modes, size, points))
-    mixing = np.zeros((ring, modes, size, points))
+    modes, size, points, row = pressure.shape[0], levels.shape[0], speed.shape[0], ends.shape[4]
+    reach, ring = entry.shape[0], probability.shape[1] + 3
+    heading = np.zeros((reach, modes, size, row))
     for r in range(reach):
         for q in range(size):
-            heading[r, 0, q] = entry[r] * stationary[q]
+            heading[r, 0, q, :points] = entry[r] * stationary[q]
+    follow(
+        heading, np.zeros((ring, modes, size, row)), np.zeros((ring, modes, size, row)), np.zeros(row), np.zeros(row),
+        np.ones(row), np.zeros((2, row)), np.empty((modes, size)), landing_scratch(row),
+        np.zeros((reach, modes, size, 2), np.int64), np.zeros((modes, size, 2), np.int64), np.full(modes, -1),
+        down, up, speed, stage, pressure, lower_chain, upper_chain, chain_mode,
+        ends, factors, probability, mean, std, levels, transition,
+        drive, brake, factor, extra, path_step, energy_step, period, density, band, exits, totals,
+    )  # fmt: skip
+
+
+@borrowing
+def follow(
+    heading, arriving, mixing, moved, mass, quanta, chance, shift, scratch, spans, arrived, until,
+    down, up, speed, stage, pressure, lower_chain, upper_chain, chain_mode,
+    ends, factors, probability, mean, std, levels, transition,
+    drive, brake, factor, extra, path_step, energy_step, period, density, band, exits, totals,
+):  # fmt: skip
+    """`forward` with its memory: masses on their way (`heading`) and after transients (`arriving`, `mixing`: rings).
+
+    Most states are empty, and it is known which: `spans` (M + 1, H, L, 2) ranges of energies out of which `heading` is
+    zero, `arrived` (H, L, 2) the same of arrivals at this node, `until` (H,) last node at which any may arrive.
+    """
+    nodes, reach, ring = drive.shape[0], heading.shape[0], arriving.shape[0]
+    modes, size, points = pressure.shape[0], levels.shape[0], speed.shape[0]
     totals[:] = 0.0
     first, last = 0, points
+    for r in range(reach):
+        for q in range(size):
+            widen(spans[r, 0, q], 0, points)
     for n in range(nodes):
         here, mixed = arriving[n % ring], mixing[n % ring]
-        first, last = mix_arrivals(here, mixed, transition, first, last)
-        first, last = occupied(heading, here, first, last)
+        find_arrivals(here, mixed, transition, points, n, until, arrived)
+        first, last = occupied(heading, spans, arrived)
         band[n, 0], band[n, 1] = first, last
         shifts(n, factor, levels, drive, brake, pressure, extra, path_step, energy_step, shift)
+        lowest = max(first, 1)
         for h in range(modes):
             k = stage[h]
             for q in range(size):
-                acceleration = shift[h, q] * energy_step / path_step
                 totals[0] += here[h, q, 0] + heading[0, h, q, 0]
-                for j in range(max(first, 1), last):
-                    mass = here[h, q, j] + heading[0, h, q, j]
-                    if density.shape[0] > 0:
-                        density[n, h, q, j] = mass
-                    if abs(mass) < NEGLIGIBLE_MASS:
+                begin, end = masses_at_sample(
+                    here[h, q], arrived[h, q], heading[0, h, q], spans[0, h, q], lowest, last, mass
+                )
+                acceleration = shift[h, q] * energy_step / path_step
+                quanta_to_next_sample(speed, begin, end, acceleration, period, path_step, quanta)
+                for j in range(begin, end):
+                    chance[0, j], chance[1, j] = down[n, k, j], up[n, k, j]
+                go_on(mass, chance, quanta, begin, end, heading, spans, h, q)
+                if density.shape[0] > 0:
+                    for j in range(lowest, last):
+                        density[n, h, q, j] = mass[j] if begin <= j < end else 0.0
+                for side in range(2):
+                    c = upper_chain[h] if side == 1 else lower_chain[h]
+                    share = chance[side]
+                    low, high = extent(share, begin, end, NEGLIGIBLE_MASS)
+                    if c < 0 or low >= high:
                         continue
-                    hold = 1.0 - down[n, k, j] - up[n, k, j]
-                    f = quanta_to_next_sample(speed[j], acceleration, period, path_step)
-                    step = min(int(f), reach - 2)
-                    x = min(f - step, 1.0)
-                    if step == 0:  # the next sample may be at this node again: sum the geometric series
-                        mass /= 1.0 - hold * (1.0 - x)
-                        if density.shape[0] > 0:
-                            density[n, h, q, j] = mass
-                        heading[1, h, q, j] += mass * hold * x
-                    else:
-                        heading[step, h, q, j] += mass * hold * (1.0 - x)
-                        heading[step + 1, h, q, j] += mass * hold * x
-                    for side in range(2):
-                        share = mass * (up[n, k, j] if side == 1 else down[n, k, j])
-                        c = upper_chain[h] if side == 1 else lower_chain[h]
-                        if abs(share) < NEGLIGIBLE_MASS or c < 0:
-                            continue
-                        totals[2 + side] += share
-                        totals[0] += put_transient(
-                            share, n, nodes, c, q, j, factor, chain_mode[c], ends, factors, probability,
-                            mean, std, drive, brake, pressure, levels, extra, path_step, energy_step,
-                            arriving, mixing,
-                        )  # fmt: skip
-        clear(here, 0, points)
-        clear(mixed, 0, points)
+                    for j in range(low, high):
+                        totals[2 + side] += share[j]
+                    totals[0] += spread_changes(
+                        share, n, nodes, c, q, low, high, factor, chain_mode[c], ends, factors, probability, mean, std,
+                        drive, brake, pressure, levels, extra, path_step, energy_step, points, arriving, mixing,
+                        scratch,
+                    )  # fmt: skip
+                    until[chain_mode[c]] = n + probability.shape[1]
+        for h in range(modes):
+            if until[h] >= n:
+                for q in range(size):
+                    clear(here[h, q], 0, points)
+                    clear(mixed[h, q], 0, points)
         for r in range(1, reach):
-            clear(heading[r - 1], first, last)
-            fallen, escaped = push(heading[r], transition, shift, first, last, heading[r - 1], moved)
+            clear_spans(heading[r - 1], spans[r - 1])
+            fallen, escaped = push(
+                heading[r], spans[r], transition, shift, points, first, last, heading[r - 1], spans[r - 1], moved
+            )
             totals[0] += fallen
             totals[1] += escaped
-        clear(heading[reach - 1], first, last)
-        first = max(first + int(np.floor(shift.min())) - 1, 0)
-        last = min(last + int(np.floor(shift.max())) + 3, points)
+        clear_spans(heading[reach - 1], spans[reach - 1])
     collect(arriving[nodes % ring], mixing[nodes % ring], heading, exits)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def mix_arrivals(arriving, mixing, transition, first, last):
-    """Mass that was deposited before the noise level changed joins `arriving` (H, L, E) after the change.
+@borrowing
+def find_arrivals(here, mixed, transition, points, n, until, arrived):
+    """Mass that was deposited before the noise level changed joins `here` (H, L, E') after the change.
 
-    Returns [first, last) widened to all energies at which anything arrives.
+    `arrived` (H, L, 2) becomes the ranges of energies out of which nothing that matters has arrived.
     """
-    modes, levels, points = arriving.shape
+    modes, levels, row = here.shape
     for h in range(modes):
         for q in range(levels):
-            begin, end = extent(mixing[h, q], 0, points)
-            for m in range(levels):
-                for j in range(begin, end):
-                    arriving[h, m, j] += transition[q, m] * mixing[h, q, j]
-    for h in range(modes):
+            if until[h] >= n:
+                begin, end = extent(mixed[h, q], 0, points, NO_MASS)
+                for m in range(levels):
+                    add_row(mixed[h, q], transition[q, m], begin, end, here, (h * levels + m) * row)
         for q in range(levels):
-            begin, end = extent(arriving[h, q], 0, points)
-            if begin < end:
-                first, last = min(first, begin), max(last, end)
-    return first, last
+            arrived[h, q, 0], arrived[h, q, 1] = 0, 0
+            if until[h] >= n:
+                arrived[h, q, 0], arrived[h, q, 1] = extent(here[h, q], 0, points, MATTERS)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def clear(rows, first, last):
-    """Set `rows` (H, L, E) to zero for first ≤ j < last (written out: a sliced assignment is slow in a kernel)."""
+@borrowing
+def occupied(heading, spans, arrived):
+    """The range of energies at which mass that matters stands, has arrived or is on its way."""
+    low, high = heading.shape[3], 0
+    for h in range(arrived.shape[0]):
+        for q in range(arrived.shape[1]):
+            if arrived[h, q, 0] < arrived[h, q, 1]:
+                low, high = min(low, arrived[h, q, 0]), max(high, arrived[h, q, 1])
+            for r in range(heading.shape[0]):
+                begin, end = extent(heading[r, h, q], spans[r, h, q, 0], spans[r, h, q, 1], MATTERS)
+                if begin < end:
+                    low, high = min(low, begin), max(high, end)
+    return min(low, high), high
+
+
+@borrowing
+def masses_at_sample(here, arrived, heading, span, first, last, mass):
+    """`mass` (E',) = `here` + `heading` where it is not negligible: the range returned, which zeros follow."""
+    begin, end = span[0], span[1]
+    if begin >= end:
+        begin, end = arrived[0], arrived[1]
+    elif arrived[0] < arrived[1]:
+        begin, end = min(begin, arrived[0]), max(end, arrived[1])
+    begin, end = max(begin, first), min(end, last)
+    for j in range(begin, end):
+        mass[j] = here[j] + heading[j]
+    begin, end = extent(mass, begin, end, NEGLIGIBLE_MASS)
+    for j in range(end, end + EIGHT):
+        mass[j] = 0.0
+    return begin, end
+
+
+@borrowing
+def go_on(mass, chance, quanta, begin, end, heading, spans, h, q):
+    """What holds is on its way to its next sample, in `heading` (M + 1, H, L, E') at mode `h` and level `q`.
+
+    `mass` (E',) becomes the expected number of samples at this node: where the next sample may be at it again, the
+    geometric series is summed. `chance` (2, E'), probabilities of the commands down and up, becomes the masses that
+    get them. What is negligible goes nowhere.
+    """
+    reach, row = heading.shape[0], mass.shape[0]
+    size = heading.shape[2]
+    stride, state = heading.shape[1] * size * row, (h * size + q) * row
+    for j in range(begin, end, EIGHT):
+        found, f = load8(mass, j), load8(quanta, j)
+        down, up = load8(chance, j), load8(chance, row + j)
+        matters = magnitude(found) >= NEGLIGIBLE_MASS
+        step = least(whole(f), reach - 2)
+        x = least(f - fraction(step), 1.0)
+        hold, again = 1.0 - down - up, step < 1
+        samples = choose(again, found / (1.0 - hold * (1.0 - x)), found)
+        store(mass, j, choose(matters, samples, found))
+        samples = choose(matters, samples, 0.0)
+        far, near = samples * hold * x, choose(again, 0.0, samples * hold * (1.0 - x))
+        for r in range(reach - 1):
+            lanes = step == r
+            if holds_anywhere(lanes):
+                at = r * stride + state + j
+                widen(spans[r, h, q], j, min(j + EIGHT, row))
+                widen(spans[r + 1, h, q], j, min(j + EIGHT, row))
+                store(heading, at, load8(heading, at) + choose(lanes, near, 0.0))
+                store(heading, at + stride, load8(heading, at + stride) + choose(lanes, far, 0.0))
+        down, up = samples * down, samples * up
+        store(chance, j, choose(magnitude(down) >= NEGLIGIBLE_MASS, down, 0.0))
+        store(chance, row + j, choose(magnitude(up) >= NEGLIGIBLE_MASS, up, 0.0))
+
+
+@borrowing
+def clear_spans(rows, spans):
+    """Set `rows` (H, L, E') to zero in the ranges `spans` (H, L, 2), which become empty."""
     for h in range(rows.shape[0]):
         for q in range(rows.shape[1]):
-            for j in range(first, last):
-                rows[h, q, j] = 0.0
+            clear(rows[h, q], spans[h, q, 0], spans[h, q, 1])
+            spans[h, q, 0], spans[h, q, 1] = 0, 0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def occupied(heading, arriving, first, last):
-    """[first, last) narrowed to the energies at which mass that matters stands."""
-    while first < last and column_is_empty(heading, arriving, first):
-        first += 1
-    while last > first and column_is_empty(heading, arriving, last - 1):
-        last -= 1
-    return first, last
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def column_is_empty(heading, arriving, j):
-    """Whether no mass that matters stands at energy `j`."""
-    tiny = 1e-3 * NEGLIGIBLE_MASS
-    for h in range(arriving.shape[0]):
-        for q in range(arriving.shape[1]):
-            if abs(arriving[h, q, j]) > tiny:
-                return False
-            for r in range(heading.shape[0]):
-                if abs(heading[r, h, q, j]) > tiny:
-                    return False
-    return True
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
+@borrowing
 def collect(arriving, mixing, heading, exits):
     """Sum all mass at the exit over modes and levels into `exits` (E,)."""
     exits[:] = 0.0
     for h in range(arriving.shape[0]):
         for q in range(arriving.shape[1]):
-            for j in range(arriving.shape[2]):
+            for j in range(exits.shape[0]):
                 exits[j] += arriving[h, q, j] + mixing[h, q, j]
                 for r in range(heading.shape[0]):
                     exits[j] += heading[r, h, q, j]

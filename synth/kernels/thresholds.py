@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from synth.kernels.borrowing import borrowing
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@borrowing
 def upper_threshold(gain, speed, tolerance):
     """Speed above which the change pays most in total; +inf if nowhere. Ties go to holding."""
     best, total, at = 0.0, 0.0, -1
@@ -19,7 +20,7 @@ def upper_threshold(gain, speed, tolerance):
     return crossing(gain[at - 1] - tolerance, gain[at] - tolerance, speed[at - 1], speed[at])
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@borrowing
 def lower_threshold(gain, speed, tolerance):
     """Speed below which the change pays most in total; −inf if nowhere. Ties go to holding."""
     best, total, at = 0.0, 0.0, -1
@@ -32,7 +33,7 @@ def lower_threshold(gain, speed, tolerance):
     return crossing(gain[at] - tolerance, gain[at + 1] - tolerance, speed[at], speed[at + 1])
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@borrowing
 def beyond(gain, tolerance):
     """The part of a gain or loss that exceeds the tolerance."""
     if gain > tolerance:
@@ -42,7 +43,7 @@ def beyond(gain, tolerance):
     return 0.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@borrowing
 def crossing(a, b, low, high):
     """Where the line through (low, a) and (high, b) is zero, kept within [low, high]."""
     if (a < 0.0) == (b < 0.0):

@@ -1,111 +1,56 @@
-"""The value of one change of stage from all energies and for all targets (`transient.transient_value`).
+"""The value of one change of stage from all energies and for all targets.
 
-Where a cut lands does not depend on the target speed; only the value there does. So the landing is worked out
-once and the targets, side by side in memory, are interpolated with the same weights. Energies that cross
-equally many path quanta share the noise and so the interpolation in the friction factor: they are done in runs.
+Where a cut lands does not depend on the target speed; only the value there does. So landings are planned once
+(`landing_plan`) and the targets, side by side in memory in packs of four, are interpolated with the same weights.
 """
 
 from __future__ import annotations
 
-from numba import njit
+from synth.kernels.borrowing import borrowing
+from synth.kernels.landing_plan import plan_landings
+from synth.kernels.packs import FOUR, load4, store
 
-from synth.kernels.flow import weights_at
-from synth.kernels.transient import factor_weights, landing
 
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def transient_values(
-    n, last, c, q, factor, mode, ends, factors, probability, mean, std,
-    drive, brake, pressure, levels, extra, path_step, energy_step, values, mixed, stalled, out,
+@borrowing
+def add_transient_values(
+    n, last, c, q, crossed, factor, mode, ends, factors, probability, mean, std,
+    drive, brake, pressure, levels, extra, path_step, energy_step, values, mixed, stalled, place, weight, out,
 ):  # fmt: skip
-    """`out` (E·T,) = expected value after transient `c` from node `n` and noise level `l`.
+    """Add to `out` (E·T,) the expected value after transient `c` from node `n` and noise level `q`.
 
-    `values`, `mixed` (N + 1, H, L, E·T) hold every node; `stalled` (T,); the rest as in `transient_value`.
+    `values` (ring, H, L, E·T) at a sample and `mixed` before the noise level changes; `stalled` (T,), T whole packs of
+    four; `crossed` (E',) from `quanta_crossed`; `place`, `weight` are scratch; the rest as in `landing_plan`.
     """
+    ring, modes, size = values.shape[0], values.shape[1], values.shape[2]
     width = stalled.shape[0]
     points = out.shape[0] // width
-    longest = probability.shape[1] - 1
-    out[:] = 0.0
-    begin = 0
-    while begin < points:
-        crossed = quanta_crossed(n, c, begin, factor, ends, factors, path_step, longest)
-        end = begin + 1
-        while end < points:
-            if quanta_crossed(n, c, end, factor, ends, factors, path_step, longest) != crossed:
-                break
-            end += 1
-        if crossed < 0:
-            for j in range(begin, end):
-                out[j * width : (j + 1) * width] = stalled
-            begin = end
-            continue
-        for m in range(levels.shape[0]):
-            p = probability[c, crossed, q, m]
-            if p < 1e-12:
-                continue
-            held = factor * (1.0 + levels[m]) * pressure[mode]
-            for side in range(2):
-                spread = std[c, crossed, q, m] * (2 * side - 1)
-                f = factor * (1.0 + mean[c, crossed, q, m] + spread)
-                add_landings(
-                    n, last, m, f, 0.5 * p, begin, end, mode, ends[n, c], factors,
-                    drive, brake, held, extra, path_step, energy_step, values, mixed, stalled, out,
-                )  # fmt: skip
-        begin = end
+    for m in range(size):
+        held = factor * (1.0 + levels[m]) * pressure[mode]
+        for side in range(2):
+            plan_landings(
+                n, last, c, q, m, side, 0, points, crossed, held, factor, ends, factors, probability, mean, std,
+                drive, brake, extra, path_step, energy_step, points, ring, modes * size * points,
+                (mode * size + m) * points, place, weight,
+            )  # fmt: skip
+            add_planned(place, weight, 0, points, width, stalled, values, mixed, out)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def quanta_crossed(n, c, j, factor, ends, factors, path_step, longest):
-    """Path quanta crossed in the transient at the nominal friction of the scenario, −1 for a stall."""
-    path, _ = landing(n, c, j, factor, ends, factors)
-    return -1 if path < 0.0 else min(int(path / path_step + 1e-9), longest)
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def add_landings(
-    n, last, m, f, share, begin, end, mode, ends, factors,
-    drive, brake, held, extra, path_step, energy_step, values, mixed, stalled, out,
-):  # fmt: skip
-    """Add `share` of the values at the landings with friction factor `f` to `out`[begin:end].
-
-    `ends` (E, F, 2) of this node and transient; `held` = ξ·(1 + η)·over-pressure after it.
-    """
-    width = stalled.shape[0]
-    points = out.shape[0] // width
-    nearest, centre, low, middle, high = factor_weights(f, factors)
-    quanta, cells = 1.0 / path_step, 1.0 / energy_step
+@borrowing
+def add_planned(place, weight, begin, end, width, stalled, values, mixed, out):
+    """Add the planned values at every energy to `out` (E·T,)."""
     for j in range(begin, end):
-        t0, t1, t2 = ends[j, centre - 1, 0], ends[j, centre, 0], ends[j, centre + 1, 0]
-        path = low * t0 + middle * t1 + high * t2
-        e = low * ends[j, centre - 1, 1] + middle * ends[j, centre, 1] + high * ends[j, centre + 1, 1]
-        if min(t0, t1, t2) < 0.0:
-            path, e = ends[j, nearest, 0], ends[j, nearest, 1]
-            if path < 0.0:
-                for t in range(width):
-                    out[j * width + t] += share * stalled[t]
-                continue
-        e += extra * path
-        ahead = path * quanta
-        whole = int(ahead + 1e-9)
-        cell, x = n + whole, max(ahead - whole, 0.0)
-        if cell >= last:
-            add(values[last, mode, m], e * cells, points, share, width, out, j)
+        a, b, to = place[0, j] * width, place[1, j] * width, j * width
+        if a < 0:
+            for t in range(width):
+                out[to + t] += weight[0, j, 0] * stalled[t]
             continue
-        slope = (drive[cell] + extra - held * brake[cell]) * path_step
-        forth = (e + slope * (1.0 - x)) * cells
-        if whole == 0:  # see `transient`: decided on at the quantum's end
-            add(mixed[cell + 1, mode, m], forth, points, share, width, out, j)
-            continue
-        add(values[cell, mode, m], (e - slope * x) * cells, points, share * (1.0 - x), width, out, j)
-        add(mixed[cell + 1, mode, m], forth, points, share * x, width, out, j)
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def add(row, position, points, weight, width, out, j):
-    """Add `weight` times `row` (E·T,) interpolated at `position` to `out` at energy j, for all targets."""
-    i, c0, c1, c2, c3 = weights_at(position, points)
-    c0, c1, c2, c3 = weight * c0, weight * c1, weight * c2, weight * c3
-    at, to = (i - 1) * width, j * width
-    for t in range(width):
-        value = c0 * row[at + t] + c1 * row[at + width + t]
-        out[to + t] += value + c2 * row[at + 2 * width + t] + c3 * row[at + 3 * width + t]
+        a0, a1, a2, a3 = weight[0, j, 0], weight[0, j, 1], weight[0, j, 2], weight[0, j, 3]
+        b0, b1, b2, b3 = weight[1, j, 0], weight[1, j, 1], weight[1, j, 2], weight[1, j, 3]
+        for t in range(0, width, FOUR):
+            at = a + t
+            v = load4(values, at) * a0 + load4(values, at + width) * a1
+            v = v + (load4(values, at + 2 * width) * a2 + load4(values, at + 3 * width) * a3)
+            at = b + t
+            w = load4(mixed, at) * b0 + load4(mixed, at + width) * b1
+            w = w + (load4(mixed, at + 2 * width) * b2 + load4(mixed, at + 3 * width) * b3)
+            store(out, to + t, load4(out, to + t) + (v + w))

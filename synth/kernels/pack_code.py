@@ -1,0 +1,283 @@
+"""What the machine does for `packs`: numba types for vectors of LLVM, and the instructions of every function."""
+
+from __future__ import annotations
+
+import operator
+from typing import Any
+
+from llvmlite import ir
+from numba import extending
+from numba.core import cgutils, types
+from numba.core.typing.templates import AbstractTemplate, infer_global, signature
+from numba.extending import lower_builtin, models, register_model
+
+intrinsic: Any = extending.intrinsic
+"""numba's own type for it counts the typing context among the arguments of a call."""
+
+
+class Pack(types.Type):
+    """`lanes` numbers of a scalar numba type side by side."""
+
+    def __init__(self, element, lanes):
+        self.element, self.lanes = element, lanes
+        super().__init__(name=f"Pack({element}, {lanes})")
+
+
+@register_model(Pack)
+class PackModel(models.PrimitiveModel):
+    """A pack is one vector of LLVM."""
+
+    def __init__(self, manager, pack):
+        super().__init__(manager, pack, ir.VectorType(machine_type(pack.element), pack.lanes))
+
+
+def machine_type(element):
+    """LLVM's type of a lane."""
+    if element == types.boolean:
+        return ir.IntType(1)
+    return ir.DoubleType() if element == types.float64 else ir.IntType(64)
+
+
+def lanes_of(context, builder, value, given, wanted):
+    """`value` of numba type `given` as a vector of the pack type `wanted`, plain numbers in every lane."""
+    if isinstance(given, Pack):
+        return value
+    scalar = context.cast(builder, value, given, wanted.element)
+    vector = ir.Constant(ir.VectorType(scalar.type, wanted.lanes), ir.Undefined)
+    vector = builder.insert_element(vector, scalar, ir.Constant(ir.IntType(32), 0))
+    zeros = ir.Constant(ir.VectorType(ir.IntType(32), wanted.lanes), [0] * wanted.lanes)
+    return builder.shuffle_vector(vector, vector, zeros)
+
+
+def is_number(given):
+    """Whether a numba type is a plain number (a literal counts)."""
+    return isinstance(types.unliteral(given), types.Number)
+
+
+def common_pack(a, b):
+    """The pack type of an operation on `a` and `b`, None if there is none."""
+    if isinstance(a, Pack) and (a == b or is_number(b)):
+        return a
+    if isinstance(b, Pack) and is_number(a):
+        return b
+    return None
+
+
+def addresses(context, builder, array_type, array, at):
+    """Pointer to element `at` of a contiguous array, in flat order."""
+    return builder.gep(context.make_array(array_type)(context, builder, array).data, [at])
+
+
+ARITHMETIC = {
+    operator.add: ("fadd", "add"),
+    operator.sub: ("fsub", "sub"),
+    operator.mul: ("fmul", "mul"),
+    operator.truediv: ("fdiv", None),
+}
+COMPARISON = {operator.lt: "<", operator.le: "<=", operator.gt: ">", operator.ge: ">=", operator.eq: "=="}
+
+
+def register_arithmetic(symbol, names):
+    """Teach numba the operation `symbol` between packs, and between packs and numbers."""
+
+    @infer_global(symbol)
+    class Typed(AbstractTemplate):
+        def generic(self, args, kws):
+            if len(args) == 2 and (pack := common_pack(*args)) is not None:
+                return signature(pack, *args)
+            return None
+
+    def lower(context, builder, sig, args):
+        pack = sig.return_type
+        a, b = (lanes_of(context, builder, x, t, pack) for x, t in zip(args, sig.args, strict=True))
+        return getattr(builder, names[0 if pack.element == types.float64 else 1])(a, b)
+
+    register_lowering(symbol, lower)
+
+
+def register_comparison(symbol, sign):
+    """Teach numba a comparison, lane by lane."""
+
+    @infer_global(symbol)
+    class Typed(AbstractTemplate):
+        def generic(self, args, kws):
+            if len(args) == 2 and (pack := common_pack(*args)) is not None:
+                return signature(Pack(types.boolean, pack.lanes), *args)
+            return None
+
+    def lower(context, builder, sig, args):
+        pack = common_pack(*sig.args)
+        a, b = (lanes_of(context, builder, x, t, pack) for x, t in zip(args, sig.args, strict=True))
+        compare = builder.fcmp_ordered if pack.element == types.float64 else builder.icmp_signed
+        return compare(sign, a, b)
+
+    register_lowering(symbol, lower)
+
+
+def register_lowering(symbol, lower):
+    """Use `lower` for every combination of packs and numbers."""
+    for pair in ((Pack, Pack), (Pack, types.Number), (types.Number, Pack)):
+        lower_builtin(symbol, *pair)(lower)
+
+
+for each, instructions in ARITHMETIC.items():
+    register_arithmetic(each, instructions)
+for each, comparison in COMPARISON.items():
+    register_comparison(each, comparison)
+for each in (operator.and_, operator.or_):
+    register_arithmetic(each, (None, each.__name__))
+
+
+def loading(lanes):
+    """The intrinsic that loads `lanes` neighbours."""
+
+    @intrinsic
+    def load(typing, array, at):
+        def code(context, builder, sig, args):
+            vector = ir.VectorType(machine_type(sig.args[0].dtype), lanes)
+            pointer = addresses(context, builder, sig.args[0], *args)
+            return builder.load(builder.bitcast(pointer, vector.as_pointer()), align=8)
+
+        return Pack(array.dtype, lanes)(array, types.intp), code
+
+    return load
+
+
+@intrinsic
+def item(typing, array, at):
+    """Read one element."""
+
+    def code(context, builder, sig, args):
+        return builder.load(addresses(context, builder, sig.args[0], *args))
+
+    return array.dtype(array, types.intp), code
+
+
+@intrinsic
+def add_to(typing, array, at, number):
+    """Add to one element."""
+
+    def code(context, builder, sig, args):
+        place = addresses(context, builder, sig.args[0], *args[:2])
+        builder.store(builder.fadd(builder.load(place), args[2]), place)
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp, types.float64), code
+
+
+@intrinsic
+def store(typing, array, at, pack):
+    """Write a pack."""
+
+    def code(context, builder, sig, args):
+        pointer = addresses(context, builder, sig.args[0], *args[:2])
+        builder.store(args[2], builder.bitcast(pointer, args[2].type.as_pointer()), align=8)
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp, pack), code
+
+
+@intrinsic
+def gather(typing, array, where):
+    """Read a pack from scattered places."""
+
+    def code(context, builder, sig, args):
+        data = context.make_array(sig.args[0])(context, builder, args[0]).data
+        whole_numbers = args[1].type
+        every = lanes_of(context, builder, builder.ptrtoint(data, ir.IntType(64)), types.int64, where)
+        eight = ir.Constant(whole_numbers, [8] * where.lanes)
+        places = builder.inttoptr(
+            builder.add(every, builder.mul(args[1], eight)), ir.VectorType(data.type, where.lanes)
+        )
+        found = ir.VectorType(machine_type(array.dtype), where.lanes)
+        mask = ir.VectorType(ir.IntType(1), where.lanes)
+        kind = ir.FunctionType(found, [places.type, ir.IntType(32), mask, found])
+        name = f"llvm.masked.gather.v{where.lanes}f64.v{where.lanes}p0"
+        function = cgutils.get_or_insert_function(builder.module, kind, name)
+        arguments = [places, ir.IntType(32)(8), ir.Constant(mask, [1] * where.lanes), ir.Constant(found, ir.Undefined)]
+        return builder.call(function, arguments)
+
+    return Pack(array.dtype, where.lanes)(array, where), code
+
+
+@intrinsic
+def transposed_store(typing, array, at, a, b, c, d):
+    """Write four packs of eight so that those of a lane stand side by side."""
+
+    def code(context, builder, sig, args):
+        def joined(x, y, order):
+            return builder.shuffle_vector(x, y, ir.Constant(ir.VectorType(ir.IntType(32), len(order)), order))
+
+        low, high = (joined(x, y, list(range(16))) for x, y in (args[2:4], args[4:6]))
+        both = joined(low, high, [8 * k + i for i in range(8) for k in range(4)])
+        pointer = addresses(context, builder, sig.args[0], *args[:2])
+        builder.store(both, builder.bitcast(pointer, both.type.as_pointer()), align=8)
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp, a, b, c, d), code
+
+
+@intrinsic
+def eight(typing, number):
+    """A number in eight lanes."""
+
+    pack = Pack(types.float64, 8)
+
+    def code(context, builder, sig, args):
+        return lanes_of(context, builder, args[0], sig.args[0], pack)
+
+    return pack(number), code
+
+
+@intrinsic
+def choose(typing, mask, yes, no):
+    """Lane by lane one of two."""
+
+    pack = common_pack(yes, no) or Pack(types.float64, mask.lanes)
+
+    def code(context, builder, sig, args):
+        a, b = (lanes_of(context, builder, x, t, pack) for x, t in zip(args[1:], sig.args[1:], strict=True))
+        return builder.select(args[0], a, b)
+
+    return pack(mask, yes, no), code
+
+
+@intrinsic
+def holds_anywhere(typing, mask):
+    """Whether a mask holds in a lane."""
+
+    def code(context, builder, sig, args):
+        bits = builder.bitcast(args[0], ir.IntType(mask.lanes))
+        return builder.icmp_unsigned("!=", bits, ir.Constant(bits.type, 0))
+
+    return types.boolean(mask), code
+
+
+def conversion(instruction, element):
+    """The intrinsic that converts every lane."""
+
+    @intrinsic
+    def convert(typing, pack):
+        wanted = Pack(element, pack.lanes)
+
+        def code(context, builder, sig, args):
+            return getattr(builder, instruction)(args[0], ir.VectorType(machine_type(element), pack.lanes))
+
+        return wanted(pack), code
+
+    return convert
+
+
+@intrinsic
+def total(typing, pack):
+    """Sum of a pack of four."""
+
+    def code(context, builder, sig, args):
+        lane = [builder.extract_element(args[0], ir.Constant(ir.IntType(32), i)) for i in range(pack.lanes)]
+        return builder.fadd(builder.fadd(lane[0], lane[1]), builder.fadd(lane[2], lane[3]))
+
+    return pack.element(pack), code
+
+
+load16, load8, load4 = loading(16), loading(8), loading(4)
+whole, fraction = conversion("fptosi", types.int64), conversion("sitofp", types.float64)

@@ -1,0 +1,126 @@
+"""Packs: some numbers that the processor works on at once, for loops that the compiler cannot vectorise by itself.
+
+The compiler leaves a loop scalar where it reads places that it cannot foresee (a landing's value) or where outputs
+could overlay inputs. With packs the kernel says itself what goes side by side. They follow the same IEEE operations in
+the same order as the scalar form, so results do not depend on how wide the machine is.
+
+A pack is loaded from, and stored to, a contiguous array at a flat index; arithmetic, comparison, `least`, `greatest`
+and `choose` work lane by lane, with plain numbers standing for equal lanes. Nothing checks bounds. Below stands what
+each function means, in numpy, which is also what runs without the compiler; `pack_code` has what the machine does.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba.extending import overload
+
+from synth.kernels import pack_code
+
+SIXTEEN, EIGHT, FOUR = 16, 8, 4
+"""Lanes of a pack: two packs of energies at once, energies, and targets or the points of a cubic stencil."""
+
+
+def item(array, at):
+    """The element of a contiguous array at flat index `at`."""
+    return array.reshape(-1)[at]
+
+
+def add_to(array, at, number):
+    """Add a number to the element of a contiguous array at flat index `at`."""
+    array.reshape(-1)[at] += number
+
+
+def eight(number):
+    """The same number in eight lanes."""
+    return np.full(EIGHT, float(number))
+
+
+def load16(array, at):
+    """Sixteen neighbours of a contiguous array from flat index `at` on."""
+    return array.reshape(-1)[at : at + SIXTEEN].copy()
+
+
+def load8(array, at):
+    """Eight neighbours of a contiguous array from flat index `at` on."""
+    return array.reshape(-1)[at : at + EIGHT].copy()
+
+
+def load4(array, at):
+    """Four neighbours of a contiguous array from flat index `at` on."""
+    return array.reshape(-1)[at : at + FOUR].copy()
+
+
+def store(array, at, pack):
+    """Write a pack into a contiguous array from flat index `at` on."""
+    array.reshape(-1)[at : at + len(pack)] = pack
+
+
+def gather(array, where):
+    """The elements of a contiguous array at the flat indices of a pack of whole numbers."""
+    return array.reshape(-1)[where]
+
+
+def transposed_store(array, at, a, b, c, d):
+    """Write four packs of eight as eight groups of four: lane i goes to `at` + 4 i … `at` + 4 i + 3."""
+    array.reshape(-1)[at : at + 4 * EIGHT] = np.stack([a, b, c, d], axis=1).ravel()
+
+
+def choose(mask, yes, no):
+    """`yes` in the lanes where the mask holds, else `no`."""
+    return np.where(mask, yes, no)
+
+
+def least(a, b):
+    """The smaller of two in every lane."""
+    return np.where(b < a, b, a)
+
+
+def greatest(a, b):
+    """The larger of two in every lane."""
+    return np.where(b > a, b, a)
+
+
+def magnitude(pack):
+    """Absolute values."""
+    return np.abs(pack)
+
+
+def holds_anywhere(mask):
+    """Whether the mask holds in any lane."""
+    return bool(np.any(mask))
+
+
+def whole(pack):
+    """Rounded towards zero, as whole numbers."""
+    return np.asarray(pack).astype(np.int64)
+
+
+def fraction(pack):
+    """Whole numbers as floating-point ones."""
+    return np.asarray(pack).astype(np.float64)
+
+
+def total(pack):
+    """Sum of a pack of four, as (0 + 1) + (2 + 3)."""
+    return (pack[0] + pack[1]) + (pack[2] + pack[3])
+
+
+overload(item)(lambda array, at: lambda array, at: pack_code.item(array, at))
+overload(add_to)(lambda array, at, number: lambda array, at, number: pack_code.add_to(array, at, number))
+overload(eight)(lambda number: lambda number: pack_code.eight(number))
+overload(load16)(lambda array, at: lambda array, at: pack_code.load16(array, at))
+overload(load8)(lambda array, at: lambda array, at: pack_code.load8(array, at))
+overload(load4)(lambda array, at: lambda array, at: pack_code.load4(array, at))
+overload(store)(lambda array, at, pack: lambda array, at, pack: pack_code.store(array, at, pack))
+overload(gather)(lambda array, where: lambda array, where: pack_code.gather(array, where))
+overload(transposed_store)(
+    lambda array, at, a, b, c, d: lambda array, at, a, b, c, d: pack_code.transposed_store(array, at, a, b, c, d)
+)
+overload(choose)(lambda mask, yes, no: lambda mask, yes, no: pack_code.choose(mask, yes, no))
+overload(least)(lambda a, b: lambda a, b: pack_code.choose(b < a, b, a))
+overload(greatest)(lambda a, b: lambda a, b: pack_code.choose(b > a, b, a))
+overload(magnitude)(lambda pack: lambda pack: pack_code.choose(pack < 0.0, pack * -1.0, pack))
+overload(holds_anywhere)(lambda mask: lambda mask: pack_code.holds_anywhere(mask))
+overload(whole)(lambda pack: lambda pack: pack_code.whole(pack))
+overload(fraction)(lambda pack: lambda pack: pack_code.fraction(pack))
+overload(total)(lambda pack: lambda pack: pack_code.total(pack))

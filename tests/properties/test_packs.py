@@ -1,0 +1,112 @@
+"""Packs compute what their plain definitions say, and solving targets side by side changes no target."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from numba import njit
+
+from synth.backward_induction import solve, solve_all
+from synth.grid import Resolution
+from synth.kernels import packs
+from synth.policy_evaluation import commands, cost_and_gradient, exit_density
+from synth.problem import Criterion, Plant
+from synth.transitions import Transitions, persistent_transitions
+
+CRITERION = Criterion(1.0, 1e-5)
+
+
+def everything(numbers, places, out):  # type: ignore[no-untyped-def]  # numba infers the types
+    """Every function and operator of `packs` once; the results in `out`."""
+    a, b = packs.load8(numbers, 3), packs.load8(numbers, 17)
+    where = packs.load8(places, 1)
+    low = (a < b) & (a >= -1.0) | (b <= -1.5)
+    mixed = packs.choose(low, a * 2.0 - b, (1.0 - a) / (b * b + 1.0))
+    packs.store(out, 0, mixed)
+    packs.store(out, 8, packs.least(packs.greatest(a, -0.5), b) + packs.gather(numbers, where))
+    packs.store(out, 16, packs.fraction(packs.whole(a * 7.0) * 3 - where + 2))
+    packs.store(out, 24, packs.magnitude(b) + packs.eight(0.25))
+    packs.transposed_store(out, 32, a, b, mixed, a + b)
+    packs.store(out, 64, packs.load16(numbers, 5) * packs.load16(numbers, 6))
+    out[80] = packs.total(packs.load4(numbers, 9))
+    out[81] = packs.item(numbers, 11)
+    packs.add_to(out, 81, 0.5)
+    out[82] = 1.0 if packs.holds_anywhere(low) else 0.0
+    out[83] = 1.0 if packs.holds_anywhere((a > 9.0) | (where == 99)) else 0.0
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_compiled_packs_are_the_plain_ones_to_the_bit(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    numbers, places = rng.uniform(-2.0, 2.0, 40), rng.integers(0, 40, 12)
+    compiled, plain = np.zeros(84), np.zeros(84)
+    njit(everything)(numbers, places, compiled)
+    everything(numbers, places, plain)
+    np.testing.assert_array_equal(compiled, plain)
+    assert np.count_nonzero(plain) > 80  # all but a few were written
+    assert (plain[82], plain[83]) == (1.0, 0.0)
+
+
+@pytest.mark.parametrize("count", [1, 3, 4, 5])
+def test_targets_side_by_side_are_solved_as_alone(small: Callable[[], Transitions], count: int) -> None:
+    """Padding to whole packs and neighbours in a pack change lines and values by rounding at most."""
+    targets = np.linspace(1.5, 3.5, count)
+    together = solve_all(small(), [(float(target), CRITERION) for target in targets])
+    for target, one in zip(targets, together, strict=True):
+        alone = solve(small(), float(target), CRITERION)
+        np.testing.assert_allclose(one.lines.lower_m_s, alone.lines.lower_m_s, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(one.lines.upper_m_s, alone.lines.upper_m_s, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(one.values, alone.values, rtol=0, atol=1e-12)
+
+
+def test_what_is_kept_of_the_values_does_not_matter(small: Callable[[], Transitions]) -> None:
+    whole, first = (solve_all(small(), [(2.5, CRITERION)], nodes_kept=kept)[0] for kept in (None, 1))
+    np.testing.assert_array_equal(first.values, whole.values[:, :1])
+    np.testing.assert_array_equal(first.gain_up, whole.gain_up)
+    np.testing.assert_array_equal(first.lines.lower_m_s, whole.lines.lower_m_s)
+    assert first.status == whole.status
+
+
+TINY = Resolution(path_step_m=2.0, speed_step_m_s=0.4, transient_substeps=2, friction_nodes=2, path_levels=2)
+
+
+def figures(plant: Plant) -> list[float]:
+    """Sums over a solution of a tiny grid, its density, and the gradient of its cost."""
+    t = persistent_transitions(plant, TINY)
+    solution = solve(t, 2.5, CRITERION)
+    policy = commands(t, solution.lines, staircase=False)
+    density = exit_density(t, policy)
+    cost, by_lower, by_upper = cost_and_gradient(t, policy, 2.5, CRITERION)
+    lines = solution.lines.upper_m_s[np.isfinite(solution.lines.upper_m_s)]
+    sums = (t.landings.ends, solution.values, solution.gain_up, lines, density.probability**2, by_lower**2, by_upper**2)
+    return [cost, density.stalled, *(float(each.sum()) for each in sums)]
+
+
+WITHOUT_COMPILER = """
+import importlib.util, json, sys
+def load(path):
+    spec = importlib.util.spec_from_file_location("loaded", path)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["loaded"] = module
+    spec.loader.exec_module(module)
+    return module
+print(json.dumps(load(sys.argv[1]).figures(load(sys.argv[2]).random_plant())))
+"""
+
+
+def test_the_kernels_mean_the_same_without_the_compiler(plant_with: Callable[..., Plant], request: Any) -> None:
+    """Solve, density and gradient as plain Python loops over numpy packs, in an interpreter of their own."""
+    conftest = request.path.with_name("conftest.py")
+    plain = subprocess.run(
+        [sys.executable, "-c", WITHOUT_COMPILER, str(request.path), str(conftest)],
+        env={**os.environ, "NUMBA_DISABLE_JIT": "1"}, capture_output=True, text=True, timeout=120, check=False,
+    )  # fmt: skip
+    assert plain.returncode == 0, plain.stderr
+    np.testing.assert_allclose(json.loads(plain.stdout), figures(plant_with()), rtol=1e-11)
