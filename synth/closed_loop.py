@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 from plant_models import path_breaks_m, path_coefficients
 from synth.actuator import stage_locked_actuator
 from synth.controllers import Controller, LineController, TableController, fixed
+from synth.drive_pieces import drive_pieces
 from synth.kernels import closed_loop as kernel
+from synth.kernels import closed_loop_lanes as lanes
 from synth.kernels import regulator
 from synth.passes import ExitSample, PassTrace
 from synth.problem import Plant
@@ -36,7 +38,7 @@ SUBSTEP_S = 0.02
 """Longest part of a transient that is played as its mean (see the convergence test): within 0.1 mm/s at the exit."""
 
 CHUNK_PASSES = 2000
-"""Passes whose random numbers are in memory at a time, for each thread (6 MB)."""
+"""Passes whose random numbers are in memory at a time, for each thread (4 MB)."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +49,7 @@ class ClosedLoop:
     path: kernel.Path
     drive: kernel.Drive
     sensor: regulator.Sensor
+    pieces: lanes.Pieces
 
     @property
     def stages(self) -> int:
@@ -90,24 +93,54 @@ class ClosedLoop:
 
     def run(self, controller: Controller, draws: kernel.Draws) -> ExitSample:
         """All passes of `draws` under `controller`."""
-        return self._record(controller, draws, np.empty((0, kernel.EVENT_FIELDS)))[0]
+        law = self._law(controller)
+        if law.estimator_work.shape[1] > 0 or law.lead_s != 0.0:  # looks at the sensor at every sample: nothing to gain
+            return self._alone(law, draws, np.empty((0, kernel.EVENT_FIELDS)))[0]
+        exits = empty_exits(len(draws.cut_factor))
+        lanes.run_lanes(self.path, self.pieces, self.sensor, law, draws, exits, lane_memory())
+        return sample_of(exits)
 
     def follow(self, controller: Controller, draws: kernel.Draws) -> PassTrace:
         """The only pass of `draws` under `controller`, event by event."""
-        longest = math.ceil(kernel.LONGEST_PASS_S / self.sensor.period_s + 2) * self.drive.substeps + 2
-        sample, events = self._record(controller, draws, np.empty((longest, kernel.EVENT_FIELDS)))
+        samples = math.ceil(kernel.LONGEST_PASS_S / self.sensor.period_s + 2) + int(self.drive.chain_samples.max())
+        events = np.empty((samples * self.drive.substeps + 2, kernel.EVENT_FIELDS))
+        sample, events = self._alone(self._law(controller), draws, events)
         time, path, speed, overpressure, stage, measured = np.ascontiguousarray(events.T)
         return PassTrace(time, path, speed, overpressure, stage.astype(np.int64), measured, bool(sample.stalled[0]))
 
-    def _record(
-        self, controller: Controller, draws: kernel.Draws, events: NDArray[np.float64]
-    ) -> tuple[ExitSample, NDArray[np.float64]]:
+    def _law(self, controller: Controller) -> regulator.Rule:
         if controller.stages != self.stages:
             raise ValueError(f"closed loop: the controller has {controller.stages} stages, the loop {self.stages}")
-        n = len(draws.cut_factor)
-        exits = kernel.Exits(np.empty(n), np.empty(n), np.empty(n, dtype=np.bool_), np.empty(n, dtype=np.int32))
-        count = kernel.run_passes(self.path, self.drive, self.sensor, controller.law(), draws, exits, events)
-        return ExitSample(exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s), events[:count]
+        return controller.law()
+
+    def _alone(
+        self, law: regulator.Rule, draws: kernel.Draws, events: NDArray[np.float64]
+    ) -> tuple[ExitSample, NDArray[np.float64]]:
+        """One pass after the other, with the events of the last."""
+        exits = empty_exits(len(draws.cut_factor))
+        count = kernel.run_passes(self.path, self.drive, self.sensor, law, draws, exits, events)
+        return sample_of(exits), events[:count]
+
+
+def empty_exits(passes: int) -> kernel.Exits:
+    """Memory for the results of `passes` passes."""
+    return kernel.Exits(
+        np.empty(passes), np.empty(passes), np.empty(passes, dtype=np.bool_), np.empty(passes, dtype=np.int32)
+    )
+
+
+def lane_memory() -> lanes.Work:
+    """Memory for one call of the kernel that runs passes side by side."""
+    return lanes.Work(
+        np.zeros(lanes.FLOATS * lanes.LANES),
+        np.zeros(lanes.INTS * lanes.LANES, dtype=np.int64),
+        np.zeros(lanes.LANES + 1, dtype=np.int64),
+    )
+
+
+def sample_of(exits: kernel.Exits) -> ExitSample:
+    """What the kernel has filled in, for reading."""
+    return ExitSample(exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s)
 
 
 def close_loop(plant: Plant, stages: int, substeps: int | None = None) -> ClosedLoop:
@@ -127,11 +160,13 @@ def close_loop(plant: Plant, stages: int, substeps: int | None = None) -> Closed
         actuator.substeps,
     )
     sensor = plant.sensor
+    period = sensor.sample_period_s
     return ClosedLoop(
         plant=plant,
         path=path_cells(plant),
         drive=drive,
-        sensor=regulator.Sensor(sensor.sample_period_s, sensor.noise_m_s, sensor.resolution_m_s),
+        sensor=regulator.Sensor(period, sensor.noise_m_s, sensor.resolution_m_s),
+        pieces=drive_pieces(drive, period),
     )
 
 
@@ -188,13 +223,13 @@ def simulate_many(
     The result does not depend on `threads` nor on how the passes are split.
     """
     loop = close_loop(plant, controller.stages)
-    end = first_pass + count
+    cells, end = len(loop.path.gravity_m_s2), first_pass + count
     # Chunks end at multiples of their size, so that no block of random numbers is drawn twice.
     inner = range((first_pass // CHUNK_PASSES + 1) * CHUNK_PASSES, end, CHUNK_PASSES)
     starts, ends = [first_pass, *inner], [*inner, end]
 
     def chunk(start: int, stop: int) -> ExitSample:
-        return loop.run(controller, loop.draws(random_passes(seed, start, stop - start), cut_factor))
+        return loop.run(controller, loop.draws(random_passes(seed, start, stop - start, cells), cut_factor))
 
     with ThreadPoolExecutor(max_workers=threads) as pool:
         samples = list(pool.map(chunk, starts, ends))

@@ -7,11 +7,16 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.kernels.normal_numbers import normal_rows
+
 BLOCK_PASSES = 1000
 """Passes that share one random stream; fixed, because pass i must not depend on how many are asked for."""
 
 PATH_CELLS = 512
-"""Random numbers along the path of one pass; a closed loop uses the first of them, one a cell."""
+"""Most random numbers along the path of one pass; a closed loop uses the first of them, one a cell."""
+
+TOGETHER = 32
+"""Passes whose numbers are worked out at a time: their rows stay in the cache."""
 
 NOISE_SAMPLES = 256
 """Random numbers of the speed sensor in one pass; after that many samples they come again (25 s at 0.1 s)."""
@@ -22,7 +27,7 @@ class RandomPasses:
     """Standard random numbers of n passes; what they mean physically is decided by the plant.
 
     `cut_z` (n,) standard normal for ξ_cut; `entry_u`, `phase_u`, `resistance_u` (n,) uniform in [0, 1) for
-    the entry speed, the phase of the sampling and the rolling resistance; `path_z` (n, 512) and `noise_z`
+    the entry speed, the phase of the sampling and the rolling resistance; `path_z` (n, cells) and `noise_z`
     (n, 256) standard normal float32 for η along the path and the sensor. A NaN in `noise_z` is a missing reading.
     """
 
@@ -50,33 +55,46 @@ class RandomPasses:
 NAMES = tuple(field.name for field in fields(RandomPasses))
 
 
-def random_passes(seed: int, first_pass: int, count: int) -> RandomPasses:
+def random_passes(seed: int, first_pass: int, count: int, path_cells: int = PATH_CELLS) -> RandomPasses:
     """Passes `first_pass` … `first_pass + count − 1` of the endless row that `seed` stands for.
 
-    Pass i has the same numbers whatever `first_pass` and `count`: block b of 1000 passes is drawn whole
-    from `SeedSequence(seed, spawn_key=(b,))`.
+    Pass i has the same numbers whatever `first_pass` and `count`: block b of 1000 passes is drawn whole from
+    `SeedSequence(seed, spawn_key=(b,))` and its children. Who needs no more than `path_cells` numbers along the path
+    saves the time for the others; it does not change them.
     """
+    if not 1 <= path_cells <= PATH_CELLS:
+        raise ValueError(f"random passes: {path_cells} path cells, but 1 to {PATH_CELLS} are possible")
     if seed < 0 or first_pass < 0 or count < 0:
         raise ValueError(f"random passes: seed {seed}, first pass {first_pass} and count {count} must not be negative")
     end = first_pass + count
     pieces: list[RandomPasses] = []
     for block in range(first_pass // BLOCK_PASSES, max(-(-end // BLOCK_PASSES), first_pass // BLOCK_PASSES + 1)):
         start = block * BLOCK_PASSES
-        drawn = block_of_passes(seed, block)
+        drawn = block_of_passes(seed, block, path_cells)
         pieces.append(drawn.part(max(first_pass, start) - start, min(end, start + BLOCK_PASSES) - start))
     if len(pieces) == 1:
         return pieces[0]
     return RandomPasses(**{name: np.concatenate([getattr(piece, name) for piece in pieces]) for name in NAMES})
 
 
-def block_of_passes(seed: int, block: int) -> RandomPasses:
+def block_of_passes(seed: int, block: int, path_cells: int) -> RandomPasses:
     """All passes of one block, in the order of drawing that the row is defined by."""
-    rng = np.random.Generator(np.random.SFC64(np.random.SeedSequence(seed, spawn_key=(block,))))
+    sequence = np.random.SeedSequence(seed, spawn_key=(block,))
+    path, noise = sequence.spawn(2)
+    rng = np.random.Generator(np.random.SFC64(sequence))
     return RandomPasses(
         cut_z=rng.standard_normal(BLOCK_PASSES),
         entry_u=rng.random(BLOCK_PASSES),
         phase_u=rng.random(BLOCK_PASSES),
         resistance_u=rng.random(BLOCK_PASSES),
-        noise_z=rng.standard_normal((BLOCK_PASSES, NOISE_SAMPLES), dtype=np.float32),
-        path_z=rng.standard_normal((BLOCK_PASSES, PATH_CELLS), dtype=np.float32),
+        noise_z=normal_columns(noise, NOISE_SAMPLES),
+        path_z=normal_columns(path, path_cells),
     )
+
+
+def normal_columns(sequence: np.random.SeedSequence, columns: int) -> NDArray[np.float32]:
+    """Standard normal numbers of one block, (1000, columns): two columns are drawn at a time, for all passes."""
+    words = np.random.SFC64(sequence).random_raw(-(-columns // 2) * BLOCK_PASSES)
+    drawn = np.empty((BLOCK_PASSES, columns), dtype=np.float32)
+    normal_rows(words, drawn, np.empty((2, TOGETHER), dtype=np.float32))
+    return drawn

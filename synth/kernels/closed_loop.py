@@ -16,6 +16,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from synth.kernels.borrowing import borrowing, borrowing_inline
 from synth.kernels.regulator import Rule, Sensor, estimated_speed, measure, stage_by_lines, table_decision
 
 Floats = NDArray[np.float64]
@@ -24,7 +25,10 @@ Ints = NDArray[np.int64]
 MOVING, LEFT, STALLED = 0, 1, 2
 
 LONGEST_PASS_S = 300.0
-"""A cut that is still inside after this time has stalled: it creeps."""
+"""A cut that is still inside, at rest between two commands, after this time has stalled: it creeps."""
+
+TOGETHER = 16
+"""Passes of which η is followed at a time."""
 
 EVENT_FIELDS = 6
 """Columns of a trace: time, path, speed, overpressure, stage, measured speed (NaN between samples)."""
@@ -81,7 +85,7 @@ class Exits(NamedTuple):
     switchings: NDArray[np.int32]
 
 
-@njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
+@borrowing_inline
 def advance(
     edges_m: Floats, free: Floats, brake: Floats, overpressure: float, duration_s: float, cell: int, s: float, v: float
 ) -> Any:
@@ -110,7 +114,7 @@ def advance(
             return cell, s, v, duration_s - left, LEFT
 
 
-@njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
+@borrowing_inline
 def note(events: Floats, count: int, t: float, s: float, v: float, kpa: float, stage: int, measured: float) -> int:
     """Write one event, if a trace is wanted (`events` not empty); returns the number of events."""
     if count < events.shape[0]:
@@ -120,30 +124,30 @@ def note(events: Floats, count: int, t: float, s: float, v: float, kpa: float, s
     return count
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@borrowing
 def run_pass(
     edges_m: Floats, free: Floats, brake: Floats, drive: Drive, sensor: Sensor, law: Rule,
-    entry_m_s: float, first_sample_s: float, noise_z: NDArray[np.float32], events: Floats,
+    entry_m_s: float, first_sample_s: float, noise_z: NDArray[np.float32], events: Floats, known: NDArray[np.float32],
 ) -> Any:  # fmt: skip
     """One pass from the entrance, released, to the exit; returns (v, time, status, switchings, events).
 
-    A pressure, stage or speed in `events` holds from its time on; the last event is the end of the pass.
+    A pressure, stage or speed in `events` holds from its time on; the last event is the end of the pass. `known` (7,)
+    is memory for the estimator.
     """
-    # Unpacked once: numba counts references each time that an array is taken from a tuple.
     coefficients, has_line, valid, lower, upper, spacing_m, multi_step, lead_s, filter_s, parameters, work = law
     mode_kpa, command, chain_mode, chain_samples, chain_kpa, substeps = drive
     period, part = sensor.period_s, sensor.period_s / substeps
     tabled, estimating = coefficients.shape[0] > 0, work.shape[1] > 0
-    known, passed_kpa = np.zeros(7, np.float32), 0.0
+    known[:], passed_kpa = 0.0, 0.0
     top = command.shape[1] - 1
-    gain = period / (period + filter_s)
+    gain, longest = period / (period + filter_s), int(LONGEST_PASS_S / period)
     mode, sample, switchings, slope, before = 0, 0, 0, 0.0, math.nan
     kpa = mode_kpa[0]
     count = note(events, 0, 0.0, 0.0, entry_m_s, kpa, 0, math.nan)
     cell, s, v, time, status = advance(edges_m, free, brake, kpa, first_sample_s, 0, 0.0, entry_m_s)
     stage, chain, played = 0, -1, 0
     # One turn of the loop is one sampling period, at rest or within a chain.
-    while status == MOVING and time < LONGEST_PASS_S:
+    while status == MOVING and (chain >= 0 or sample < longest):
         measured = math.nan
         if chain < 0 or lead_s != 0.0 or estimating:  # within a chain only filters look at the sensor
             measured = measure(v, noise_z[sample % noise_z.shape[0]], sensor)
@@ -195,19 +199,29 @@ def run_pass(
 @njit(cache=True, nogil=True, error_model="numpy")
 def brake_rows(path: Path, cut_factor: Floats, path_z: NDArray[np.float32], rows: Floats) -> None:
     """Deceleration by one kPa in every cell of every pass, `rows` (n, C): β·ξ_cut·(1 + η), η from cell to cell."""
-    for i in range(rows.shape[0]):
-        x = 0.0
-        for j in range(rows.shape[1]):
-            x = path.eta_memory[j] * x + path.eta_fresh[j] * path_z[i, j]
-            factor = cut_factor[i] * max(0.0, 1.0 + path.eta_std[j] * x)  # bars do not push
-            rows[i, j] = path.brake_m_s2_per_kpa[j] * factor
+    # Several passes at once: a pass alone would wait for each cell's η before the next.
+    x, cells = np.empty(TOGETHER), rows.shape[1]
+    for first in range(0, rows.shape[0], TOGETHER):
+        x[:] = 0.0
+        passes = min(TOGETHER, rows.shape[0] - first)
+        for j in range(cells):
+            memory, fresh, std, brake = (
+                path.eta_memory[j],
+                path.eta_fresh[j],
+                path.eta_std[j],
+                path.brake_m_s2_per_kpa[j],
+            )
+            for k in range(passes):
+                x[k] = memory * x[k] + fresh * path_z[first + k, j]
+                factor = cut_factor[first + k] * max(0.0, 1.0 + std * x[k])  # bars do not push
+                rows[first + k, j] = brake * factor
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def run_passes(path: Path, drive: Drive, sensor: Sensor, law: Rule, draws: Draws, exits: Exits, events: Floats) -> int:
     """Simulate all passes of `draws` into `exits`; returns the number of events of the last pass."""
     gravity, brakes = path.gravity_m_s2, draws.brake_m_s2_per_kpa
-    free = np.empty(gravity.shape[0])
+    free, known = np.empty(gravity.shape[0]), np.empty(7, np.float32)
     count = 0
     for i in range(draws.cut_factor.shape[0]):
         drag = path.drag_m_s2_per_n_kn * draws.resistance_n_kn[i]
@@ -215,7 +229,7 @@ def run_passes(path: Path, drive: Drive, sensor: Sensor, law: Rule, draws: Draws
             free[j] = gravity[j] - drag
         v, time, status, switchings, count = run_pass(
             path.edges_m, free, brakes[i], drive, sensor, law,
-            draws.entry_m_s[i], draws.first_sample_s[i], draws.noise_z[i], events,
+            draws.entry_m_s[i], draws.first_sample_s[i], draws.noise_z[i], events, known,
         )  # fmt: skip
         exits.stalled[i] = status != LEFT
         exits.speed_m_s[i] = v if status == LEFT else 0.0

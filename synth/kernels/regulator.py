@@ -7,13 +7,13 @@ directory must be named by a hash that covers `tuning_tables/rule.py` and `estim
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from synth.kernels.borrowing import borrowing_inline
 from tuning_tables import estimator, rule
 
 Floats = NDArray[np.float64]
@@ -53,7 +53,7 @@ table_decision = njit(cache=True, nogil=True)(rule.decide)
 estimated_speed = njit(cache=True, nogil=True)(estimator.observe)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
+@borrowing_inline
 def measure(v: float, z: float, sensor: Sensor) -> float:
     """Speed that the sensor reports; it has no sign. A missing reading, z = NaN, stays NaN: the rule holds."""
     value: float = v + sensor.noise_m_s * z
@@ -62,38 +62,50 @@ def measure(v: float, z: float, sensor: Sensor) -> float:
     return 0.0 if value < 0.0 else value  # not max(0, value): it would report a standstill for NaN
 
 
-@njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
-def line_at(lines: Floats, stage: int, spacing_m: float, s: float) -> float:
-    """Line of `stage` at path `s`; beside an infinite node it is infinite: no command."""
-    place = s / spacing_m
-    node = min(int(place), lines.shape[1] - 2)
-    low: float = lines[stage, node]
-    high: float = lines[stage, node + 1]
-    if math.isinf(low):
-        return low
-    if math.isinf(high):
-        return high
-    speed: float = low + (place - node) * (high - low)
-    return speed
+@borrowing_inline
+def speaks(
+    coefficients: NDArray[np.float32], has_line: NDArray[np.bool_], valid: NDArray[np.float32],
+    stage: int, s_m: float, v_m_s: float,
+) -> bool:  # fmt: skip
+    """Whether the table has a command at this reading, by the arithmetic of `rule.decide` but without its branches.
+
+    For readings within the numbers of float32, which is all that the loop has; NaN: no command.
+    """
+    s, v, row = np.float32(s_m), np.float32(v_m_s), np.uint64(stage)
+    s = valid[0] if s < valid[0] else s
+    s = valid[1] if s > valid[1] else s
+    highest = coefficients.shape[2] - 1
+    lower, upper = coefficients[row, 0, highest], coefficients[row, 1, highest]
+    for power in range(highest - 1, -1, -1):
+        lower = lower * s + coefficients[row, 0, np.uint64(power)]
+        upper = upper * s + coefficients[row, 1, np.uint64(power)]
+    told: bool = (has_line[row, 0] & (v < lower)) | (has_line[row, 1] & (v > upper))
+    return told
 
 
-@njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
+@borrowing_inline
 def line_decision(lower: Floats, upper: Floats, spacing_m: float, stage: int, s: float, v: float) -> int:
-    """−1, 0 or +1 stage by the switching lines."""
-    if v < line_at(lower, stage, spacing_m, s):
-        return -1
-    if v > line_at(upper, stage, spacing_m, s):
-        return 1
-    return 0
+    """−1, 0 or +1 stage by the switching lines; beside an infinite node there is no command.
+
+    Without branches: which way they go could not be foretold, and that would cost more than all the arithmetic.
+    Beside an infinite node a line is infinite or NaN, and no speed is beyond either.
+    """
+    place = s / spacing_m
+    node = np.uint64(min(int(place), lower.shape[1] - 2))
+    row, after = np.uint64(stage), node + np.uint64(1)
+    part = place - node
+    below = v < lower[row, node] + part * (lower[row, after] - lower[row, node])
+    above = v > upper[row, node] + part * (upper[row, after] - upper[row, node])
+    return int(above and not below) - int(below)
 
 
-@njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
+@borrowing_inline
 def stage_by_lines(
     lower: Floats, upper: Floats, spacing_m: float, multi_step: bool, stage: int, top: int, s: float, v: float
 ) -> int:
     """Stage that switching lines want at (s, v) while `stage` rests, within 0 … `top`."""
     step = line_decision(lower, upper, spacing_m, stage, s, v)
-    wanted = min(max(stage + step, 0), top)
+    wanted: int = min(max(stage + step, 0), top)
     if multi_step and step != 0:
         while 0 < wanted < top and line_decision(lower, upper, spacing_m, wanted, s, v) == step:
             wanted += step

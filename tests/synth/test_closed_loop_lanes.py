@@ -1,0 +1,135 @@
+"""Passes side by side are, to the bit, the passes one after the other: two kernels written apart."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from plant_models import RollingResistance, TrackProfile
+from synth.baselines import energy_rule, threshold_with_lead
+from synth.closed_loop import ClosedLoop, Controller, LineController, TableController, close_loop
+from synth.kernels import closed_loop as kernel
+from synth.kernels.closed_loop_lanes import LANES
+from synth.passes import ExitSample
+from synth.problem import Plant
+from synth.random_passes import RandomPasses, random_passes
+from synth.switching_lines import SwitchingLines
+from tuning_tables.figures import Predicted, ValidRange
+from tuning_tables.provenance import CutId, Generator, RetarderId
+from tuning_tables.stage import Stage, round_coefficients
+from tuning_tables.table import ControllerTable
+
+
+@pytest.fixture(scope="module")
+def passes() -> RandomPasses:
+    return random_passes(seed=11, first_pass=0, count=3 * LANES + 7)
+
+
+def alone(loop: ClosedLoop, controller: Controller, draws: kernel.Draws) -> ExitSample:
+    """The same passes by the kernel that traces are made with."""
+    n = len(draws.cut_factor)
+    exits = kernel.Exits(np.empty(n), np.empty(n), np.empty(n, dtype=np.bool_), np.empty(n, dtype=np.int32))
+    none = np.empty((0, kernel.EVENT_FIELDS))
+    kernel.run_passes(loop.path, loop.drive, loop.sensor, controller.law(), draws, exits, none)
+    return ExitSample(exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s)
+
+
+def assert_same(loop: ClosedLoop, controller: Controller, draws: kernel.Draws) -> ExitSample:
+    by_lanes, one_by_one = loop.run(controller, draws), alone(loop, controller, draws)
+    for name, array in vars(one_by_one).items():
+        assert getattr(by_lanes, name).tobytes() == array.tobytes(), name
+    return by_lanes
+
+
+def constant_lines(plant: Plant, lower: list[float], upper: list[float]) -> LineController:
+    nodes = np.linspace(0.0, plant.exit_m, 2)
+    return LineController(SwitchingLines(nodes, np.outer(lower, [1.0, 1.0]), np.outer(upper, [1.0, 1.0])))
+
+
+@pytest.mark.parametrize(("lead_s", "multi_step"), [(0.0, False), (0.0, True), (0.3, True)])
+def test_lines(plant_52t: Plant, passes: RandomPasses, lead_s: float, multi_step: bool) -> None:
+    loop = close_loop(plant_52t, 5)
+    controller = replace(energy_rule(loop, 3.0, 4, 0.8, 0.15, lead_s, 0.15), multi_step=multi_step)
+    sample = assert_same(loop, controller, loop.draws(passes))
+    assert sample.switchings.mean() > 3.0
+
+
+def wavy_table(plant: Plant, target_m_s: float) -> ControllerTable:
+    """A table of cubics that are close to each other, so that commands are many."""
+    stages = []
+    for k in range(plant.top_stage + 1):
+        lower, upper = ([target_m_s + shift + 0.1 * k, 0.03, -0.003, 4e-5] for shift in (0.0, 0.3))
+        stages.append(
+            Stage(
+                k,
+                plant.position.stage_pressures_kpa[k],
+                round_coefficients(np.array(lower)) if k > 0 else None,
+                round_coefficients(np.array(upper)) if k < plant.top_stage else None,
+            )
+        )
+    return ControllerTable(
+        id="wavy",
+        created="2026-11-20T22:46:00Z",
+        generator=Generator("test", "0", "0" * 64),
+        retarder=RetarderId("pilot", plant.position.zones_m, plant.exit_m, 15.0),
+        cut=CutId(plant.cut.category, plant.cut.mass_t, plant.cut.axle_offsets_m),
+        target_speed_m_s=target_m_s,
+        degree=3,
+        stages=tuple(stages),
+        # Narrower than the position: the ends are clamped.
+        valid=ValidRange((1.0, plant.exit_m - 2.0), (0.3, 9.0)),
+        predicted=Predicted(0.05, 0.0, 0.01, 4.0),
+    )
+
+
+@pytest.mark.parametrize("target_m_s", [2.0, 4.0])
+def test_tables(plant_52t: Plant, passes: RandomPasses, target_m_s: float) -> None:
+    loop = close_loop(plant_52t, 5)
+    controller = TableController(wavy_table(plant_52t, target_m_s))
+    sample = assert_same(loop, controller, loop.draws(passes))
+    assert sample.switchings.mean() > 5.0
+
+
+@pytest.mark.parametrize("count", [1, LANES - 1, LANES, LANES + 1])
+def test_any_number_of_passes(plant_52t: Plant, passes: RandomPasses, count: int) -> None:
+    loop = close_loop(plant_52t, 5)
+    controller = threshold_with_lead(loop, 3.0, 3, 0.1, 0.2)
+    draws = loop.draws(passes.part(0, count))
+    few = assert_same(loop, controller, draws)
+    many = loop.run(controller, loop.draws(passes))
+    assert few.exit_speed_m_s.tobytes() == many.exit_speed_m_s[:count].tobytes()
+
+
+def test_missing_readings_and_a_sensor_without_steps(plant_52t: Plant, passes: RandomPasses) -> None:
+    loop = close_loop(replace(plant_52t, sensor=replace(plant_52t.sensor, resolution_m_s=0.0)), 5)
+    noise = np.where(np.arange(passes.noise_z.shape[1]) % 5 == 3, np.float32(np.nan), passes.noise_z)
+    draws = loop.draws(replace(passes, noise_z=noise))
+    for lead_s in (0.0, 0.4):
+        assert_same(loop, energy_rule(loop, 3.0, 4, 0.8, 0.15, lead_s, 0.15), draws)
+
+
+def test_stalls_and_passes_longer_than_their_noise(plant_22t: Plant, passes: RandomPasses) -> None:
+    level = replace(plant_22t, profile=TrackProfile.uniform(1.5), resistance=RollingResistance(1.4, 0.2))
+    loop = close_loop(level, 3)
+    draws = loop.draws(passes)
+    stopped = assert_same(loop, constant_lines(level, [-math.inf] * 3, [0.0, 0.0, math.inf]), draws)
+    assert stopped.stalled.all()
+    slow = draws._replace(entry_m_s=np.linspace(0.5, 3.0, len(passes)))
+    sample = assert_same(loop, constant_lines(level, [-math.inf, 0.6, 0.6], [0.8, 0.8, math.inf]), slow)
+    assert 0 < sample.stalled.sum() < len(passes)
+    assert sample.transit_time_s.max() > 0.1 * passes.noise_z.shape[1]
+
+
+def test_a_creeping_cut_is_given_up(plant_22t: Plant, passes: RandomPasses) -> None:
+    crawl = replace(plant_22t, profile=TrackProfile.uniform(1.4), resistance=RollingResistance(1.4, 0.0))
+    loop = close_loop(crawl, 3)
+    draws = loop.draws(passes)
+    draws = draws._replace(entry_m_s=np.full(len(passes), 0.1))
+    sample = assert_same(loop, constant_lines(crawl, [-math.inf] * 3, [math.inf] * 3), draws)
+    assert sample.stalled.all()
+    assert not sample.exit_speed_m_s.any()
+    longest = kernel.LONGEST_PASS_S
+    assert np.all((sample.transit_time_s >= longest) & (sample.transit_time_s < longest + 0.11))
