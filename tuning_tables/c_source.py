@@ -1,4 +1,4 @@
-"""Tables as C99 source: the rule, the choice, the data, and a self-test with golden vectors.
+"""Tables as C99 source: the rule, the estimator, the choice, the data, and a self-test with golden vectors and tracks.
 
 The C text itself is in `c99/*.in`; here its blanks are filled. Numbers are hexadecimal floats, which every C99
 compiler reads exactly; the checksum of each table proves that it did.
@@ -12,38 +12,48 @@ from importlib.resources import files
 
 import numpy as np
 
+from tuning_tables.c_estimator import estimator_blanks, estimator_text, track_blanks, tracks_csv
+from tuning_tables.c_literals import hex_float
 from tuning_tables.category_names import category_macros, comment_text
 from tuning_tables.golden_choices import GoldenChoice, golden_choices
+from tuning_tables.golden_tracks import golden_tracks
 from tuning_tables.golden_vectors import GoldenVectors, golden_vectors
 from tuning_tables.table_block import HAS_LOWER, HAS_UPPER, BlockSize, TableBlock, block_of, block_size
 from tuning_tables.table_book import TableBook
 
 TEMPLATES = ("retarder_table.h", "retarder_table.c", "retarder_self_test.h", "retarder_self_test.c")
 VECTORS_FILE = "golden_vectors.csv"
+TRACKS_FILE = "golden_tracks.csv"
 
 
 def c_files(book: TableBook) -> Mapping[str, bytes]:
     """The files of the export by name: four of C99, ASCII, and the golden vectors as CSV for other languages.
 
-    Equal books give equal bytes.
+    If a table has an estimator, the golden tracks are there as CSV too. Equal books give equal bytes.
     """
     size, choices = block_size(book), golden_choices(book)
-    vectors = [golden_vectors(table) for table in book.tables]
+    vectors, tracks = [golden_vectors(table) for table in book.tables], golden_tracks(book)
     blanks = {
         "EXPORT": f"0x{export_tag(book):08x}u",
         "ORIGIN": "\n".join(f" * {line}" for line in origin_lines(book)),
         "CATEGORIES": "\n".join(category_lines(book)),
         "STAGES": f"{size.stages}u",
         "POWERS": f"{size.powers}u",
+        "BREAKS": f"{size.breaks}u",
         "COUNT": f"{len(book.tables)}",
         "TABLES": ",\n".join(table_text(book, number, size) for number in range(len(book.tables))),
         "VECTORS": f"{sum(map(len, vectors))}",
         "CHOICES": f"{len(choices)}",
         "GOLDEN_VECTORS": ",\n".join(line for n, each in enumerate(vectors) for line in vector_lines(n, each)),
         "GOLDEN_CHOICES": ",\n".join(map(choice_line, choices)),
+        **track_blanks(book, tracks),
+        **estimator_blanks(),
     }
     sources = {name: filled(name, blanks).encode("ascii") for name in TEMPLATES}
-    return {**sources, VECTORS_FILE: vectors_csv(book, vectors)}
+    tables = {VECTORS_FILE: vectors_csv(book, vectors)}
+    if size.breaks:
+        tables[TRACKS_FILE] = tracks_csv(book, tracks)
+    return {**sources, **tables}
 
 
 def filled(name: str, blanks: Mapping[str, str]) -> str:
@@ -57,8 +67,9 @@ def filled(name: str, blanks: Mapping[str, str]) -> str:
 def export_tag(book: TableBook) -> int:
     """A number that differs for exports whose files must not be mixed: CRC-32 over categories and all blocks."""
     content = "\n".join(book.categories).encode("utf-8")
+    size = block_size(book)
     for number in range(len(book.tables)):
-        content += block_of(book, number).words.astype("<u4").tobytes()
+        content += block_of(book, number, size=size).words.astype("<u4").tobytes()
     return zlib.crc32(content)
 
 
@@ -87,7 +98,7 @@ def category_lines(book: TableBook) -> list[str]:
 
 def table_text(book: TableBook, number: int, size: BlockSize) -> str:
     """The initialiser of one table."""
-    block = block_of(book, number)
+    block = block_of(book, number, size=size)
     low, high = block.table.valid_range[:2]
     target = block.table.target_speed_m_s
     lines = ", ".join(f"{each}u" for each in block.words[4 : 4 + size.stages])
@@ -106,6 +117,7 @@ def table_text(book: TableBook, number: int, size: BlockSize) -> str:
             "        {",
             ",\n".join(stage_text(block, stage, size) for stage in range(size.stages)),
             "        },",
+            *estimator_text(block, size),
             f"        0x{block.crc32:08x}u /* crc32 */",
             "    }",
         ]
@@ -114,19 +126,13 @@ def table_text(book: TableBook, number: int, size: BlockSize) -> str:
 
 def stage_text(block: TableBlock, stage: int, size: BlockSize) -> str:
     """The two lines of one stage, a row each, with their coefficients in decimal for the eye."""
-    coefficients = block.words[8 + size.stages : -1].view(np.float32).reshape(size.stages, 2, size.powers)[stage]
+    coefficients = block.words[size.coefficients].view(np.float32).reshape(size.stages, 2, size.powers)[stage]
     rows = []
     for index, (name, bit) in enumerate((("lower", HAS_LOWER), ("upper", HAS_UPPER))):
         numbers = ", ".join(map(hex_float, coefficients[index]))
         shown = " ".join(f"{c:.6g}" for c in coefficients[index]) if block.words[4 + stage] & bit else "none"
         rows.append(f"                {{{numbers}}}{',' if index == 0 else ''} /* {name}: {shown} */")
     return "\n".join([f"            {{ /* stage {stage} */", *rows, "            }"])
-
-
-def hex_float(value: np.float32) -> str:
-    """`value`, finite, as a C99 hexadecimal constant of type float: 2.5 is "0x1.4p+1f"."""
-    mantissa, _, exponent = float(value).hex().partition("p")
-    return f"{mantissa.rstrip('0').rstrip('.') if '.' in mantissa else mantissa}p{exponent}f"
 
 
 def vector_lines(number: int, vectors: GoldenVectors) -> list[str]:

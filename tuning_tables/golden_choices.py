@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from tuning_tables.table_block import block_of
+from tuning_tables.table_block import BlockSize, block_of, block_size
 from tuning_tables.table_book import Status, TableBook
 
 
@@ -24,24 +24,27 @@ class GoldenChoice:
 
 def golden_choices(book: TableBook) -> tuple[GoldenChoice, ...]:
     """Commands at, next to, between and beyond the targets of every class; no numbers; classes that the book lacks."""
+    size = block_size(book)
     found = [
-        golden_choice(book, category, axles, speed)
+        golden_choice(book, category, axles, speed, size)
         for category, axles in book.by_class
         for speed in _commands(book, category, axles)
     ]
     category, axles = next(iter(book.by_class))
     most = max(axles for _, axles in book.by_class)
-    found.append(golden_choice(book, category, most + 1, np.float32(book.tables[0].target_speed_m_s)))
+    found.append(golden_choice(book, category, most + 1, np.float32(book.tables[0].target_speed_m_s), size))
     beyond = len(book.categories) + 1
     for number in (0, beyond):
         found.append(GoldenChoice(number, axles, np.float32(2.0), Status.NO_CLASS, 0))
     return tuple(found)
 
 
-def golden_choice(book: TableBook, category: str, axles: int, commanded_m_s: np.float32) -> GoldenChoice:
+def golden_choice(
+    book: TableBook, category: str, axles: int, commanded_m_s: np.float32, size: BlockSize
+) -> GoldenChoice:
     """What `book.choose` answers to one command."""
     choice = book.choose(category, axles, float(commanded_m_s))
-    crc32 = block_of(book, choice.numbers[0], choice.table).crc32 if choice.table is not None else 0
+    crc32 = block_of(book, choice.numbers[0], choice.table, size).crc32 if choice.table is not None else 0
     return GoldenChoice(book.categories.index(category) + 1, axles, commanded_m_s, choice.status, crc32)
 
 

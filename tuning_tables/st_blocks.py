@@ -21,6 +21,8 @@ $CATEGORIES
 
    Blocks
    RETARDER_SELECT  once for a cut, when its class and exit speed are known: fills a RETARDER_TABLE
+   RETARDER_BEGIN   once for a cut, before its first sample: nothing is known of it
+   RETARDER_OBSERVE at every sample: the speed to decide with, estimated if the table has an estimator, else as measured
    RETARDER_DECIDE  at every sample at which no change of stage is under way: what to do with the stage
    RETARDER_LOAD    a table by its number in the book, unchanged
 
@@ -48,12 +50,13 @@ TYPE
         Target_m_s : REAL; (* exit speed aimed at *)
         PathMin_m : REAL; (* the path is clamped into this range *)
         PathMax_m : REAL;
+        Touch_kpa : REAL; (* pressure above which cylinders brake, for RETARDER_OBSERVE; 0 without estimator *)
         Stages : INT; (* stages 0 to Stages - 1; 0: no table *)
         Powers : INT; (* coefficients of a line: its degree + 1 *)
         HasLower : ARRAY[0..$LAST_STAGE] OF BOOL; (* by stage *)
         HasUpper : ARRAY[0..$LAST_STAGE] OF BOOL;
         (* at (stage * 2 + line) * $POWERS + power, line 0 lower, 1 upper; m/s per m^power *)
-        Coefficient : ARRAY[0..$LAST_COEFFICIENT] OF REAL;
+        Coefficient : ARRAY[0..$LAST_COEFFICIENT] OF REAL;$ESTIMATOR_MEMBERS
     END_STRUCT;
 END_TYPE
 """
@@ -64,7 +67,7 @@ FUNCTION_BLOCK RETARDER_DECIDE
 VAR_INPUT
     Stage : INT; (* pressure stage in force, 0: released *)
     Path_m : REAL; (* first axle, from the entrance of the first retarder *)
-    Speed_m_s : REAL; (* measured *)
+    Speed_m_s : REAL; (* that of RETARDER_OBSERVE *)
 END_VAR
 VAR_IN_OUT
     Table : RETARDER_TABLE; (* only read; it is not copied *)
@@ -125,8 +128,8 @@ SELECT_DECLARATIONS: Final = """\
 FUNCTION_BLOCK RETARDER_SELECT
 (* The table for a cut. Candidates are the tables of its category and number of axles; of several masses the largest.
    The command equal to a target: that table. Between two targets: the lines between them, if the two tables have the
-   same stages, degree, lines and path range. Otherwise the table of the next target below the command: the cut never
-   leaves faster than commanded. Below all targets, or no number: no table. *)
+   same stages, degree, lines, path range and estimator. Otherwise the table of the next target below the command: the
+   cut never leaves faster than commanded. Below all targets, or no number: no table. *)
 VAR_INPUT
     Category : INT; (* number as in the head of this file *)
     Axles : INT;
@@ -197,7 +200,7 @@ IF (SlowerNo >= 0) AND (Commanded_m_s > 0.0) AND (Commanded_m_s <= 3.4028235E+38
         IF FasterNo >= 0 THEN
             Loader(TableNo := FasterNo, Table := Faster);
             Fits := (Table.Stages = Faster.Stages) AND (Table.Powers = Faster.Powers)
-                AND (Table.PathMin_m = Faster.PathMin_m) AND (Table.PathMax_m = Faster.PathMax_m);
+                AND (Table.PathMin_m = Faster.PathMin_m) AND (Table.PathMax_m = Faster.PathMax_m)$SAME_ESTIMATOR;
             FOR Index := 0 TO $LAST_STAGE DO
                 IF (Table.HasLower[Index] XOR Faster.HasLower[Index])
                     OR (Table.HasUpper[Index] XOR Faster.HasUpper[Index]) THEN
@@ -236,7 +239,7 @@ VAR_OUTPUT
     Found : BOOL; (* there is such a table *)
 END_VAR
 VAR
-    Index : INT;
+    Index : INT;$LOAD_VARIABLES
 END_VAR
 """
 
@@ -252,6 +255,7 @@ IF Found THEN
     CASE TableNo OF
 $CASES
     END_CASE;
+$LOAD_ESTIMATOR
 END_IF;
 END_FUNCTION_BLOCK
 """

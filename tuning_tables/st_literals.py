@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
 LINE_LENGTH: Final = 100
 LONGEST_ARRAY: Final = 999
@@ -21,6 +22,14 @@ def real(value: float | np.floating) -> str:
     """
     number = np.float32(value)
     return "0.0" if number == 0 else f"{float(number):.9E}"
+
+
+def is_portable(values: npt.NDArray[np.float32]) -> npt.NDArray[np.bool_]:
+    """Which have a literal in every language: 0, or normal and finite numbers, and not -0.0."""
+    sizes = np.abs(values)
+    smallest = np.finfo(np.float32).smallest_normal
+    is_zero: npt.NDArray[np.bool_] = (sizes == 0) & ~np.signbit(values)
+    return is_zero | ((sizes >= smallest) & np.isfinite(values))
 
 
 def boolean(value: bool | np.bool_) -> str:

@@ -1,5 +1,7 @@
 """The Structured Text self-test: a block for every table with golden vectors, one for the choice, one that runs all.
 
+The blocks for the estimators are in `st_test_estimators`.
+
 Only readings that have a portable literal are in it: no NaN, no infinity, no denormal number (a controller may take
 those for 0). What the text answers to them is tested in this project, on the parse tree, and not on the controller.
 """
@@ -14,9 +16,10 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.category_names import comment_text
+from tuning_tables.distinct_estimators import distinct_estimators
 from tuning_tables.golden_choices import GoldenChoice, golden_choices
 from tuning_tables.golden_vectors import golden_vectors
-from tuning_tables.st_literals import LONGEST_ARRAY, int_array, real, real_array
+from tuning_tables.st_literals import LONGEST_ARRAY, int_array, is_portable, real, real_array
 from tuning_tables.st_tables import coefficients_of, constants
 from tuning_tables.st_test_blocks import (
     CHOICE_HEAD,
@@ -24,12 +27,12 @@ from tuning_tables.st_test_blocks import (
     CHOICE_LOOP,
     FOOT,
     RESET,
-    RUN_ALL,
-    RUN_ONE,
     TABLE_CONSTANTS,
     TABLE_HEAD,
     TABLE_LOOP,
 )
+from tuning_tables.st_test_estimators import estimator_check, estimator_test
+from tuning_tables.st_test_order import run_all
 from tuning_tables.table_block import block_of, block_size
 from tuning_tables.table_book import Choice, Status, TableBook
 
@@ -39,26 +42,26 @@ MOST_LINE_CHECKS: Final = 16
 
 def self_test_blocks(book: TableBook) -> Iterator[str]:
     """The blocks of retarder_self_test.st, in an order in which none is used before it is declared."""
+    found = distinct_estimators(book)
     for number in range(len(book.tables)):
-        yield _table_test(book, number)
+        yield _table_test(book, number, found.of_table[number])
     yield _choice_test(book)
-    last = len(book.tables)
-    names = [str(number) for number in range(last)]
-    yield Template(RUN_ALL).substitute(
-        INSTANCES="\n".join(f"    Test_{name} : RETARDER_TEST_{name};" for name in names),
-        CASES="\n".join(Template(RUN_ONE).substitute(NUMBER=name) for name in names),
-        TABLES=last,
-    )
+    for place, number in enumerate(found.first_tables):
+        yield estimator_test(book, place, number)
+    yield run_all(book)
 
 
-def _table_test(book: TableBook, number: int) -> str:
-    """RETARDER_TEST_n: the constants of the table once more, and its golden vectors."""
-    size, block = block_size(book), block_of(book, number)
+def _table_test(book: TableBook, number: int, estimator: int) -> str:
+    """RETARDER_TEST_n: the constants of the table once more, the number of its estimator, and its golden vectors."""
+    size = block_size(book)
+    block = block_of(book, number, size=size)
     expected = [block.table.target_speed_m_s, *block.table.valid_range[:2], *coefficients_of(block, size)]
     vectors = golden_vectors(book.tables[number])
-    kept = np.flatnonzero(_portable(vectors.s_m) & _portable(vectors.v_m_s))
+    kept = np.flatnonzero(is_portable(vectors.s_m) & is_portable(vectors.v_m_s))
     blanks = {"NUMBER": number, "NAME": comment_text(book.tables[number].id), "LAST": len(expected) - 4}
     declarations, statements = [real_array("Expected", expected)], [Template(TABLE_CONSTANTS).substitute(blanks)]
+    if size.breaks:
+        statements.append(estimator_check(book, number, estimator))
     first = len(expected)
     for part, chosen in _parts(kept):
         declarations += [
@@ -75,7 +78,7 @@ def _table_test(book: TableBook, number: int) -> str:
 
 def _choice_test(book: TableBook) -> str:
     """RETARDER_TEST_CHOICES: golden choices by status and target, some of them by every coefficient."""
-    choices = [choice for choice in golden_choices(book) if _portable(np.array([choice.commanded_m_s]))[0]]
+    choices = [choice for choice in golden_choices(book) if is_portable(np.array([choice.commanded_m_s]))[0]]
     declarations, statements = [], []
     for part, chosen in _parts(np.arange(len(choices))):
         rows = [choices[index] for index in chosen]
@@ -91,7 +94,7 @@ def _choice_test(book: TableBook) -> str:
     between = [row for row in choices if row.status == Status.BETWEEN][::3][:MOST_LINE_CHECKS]
     for number, row in enumerate(between):
         choice = _choose(book, row)
-        expected = coefficients_of(block_of(book, choice.numbers[0], choice.table), size)
+        expected = coefficients_of(block_of(book, choice.numbers[0], choice.table, size), size)
         declarations.append(real_array(f"Expected_{number}", expected))
         statements.append(
             Template(CHOICE_LINES).substitute(
@@ -121,11 +124,3 @@ def _parts(indices: npt.NDArray[np.intp]) -> Iterator[tuple[int, npt.NDArray[np.
     """Runs of `indices`, numbered, none longer than an array may be."""
     for part, start in enumerate(range(0, len(indices), LONGEST_ARRAY)):
         yield part, indices[start : start + LONGEST_ARRAY]
-
-
-def _portable(values: npt.NDArray[np.float32]) -> npt.NDArray[np.bool_]:
-    """Which are 0 or normal and finite numbers, and not -0.0."""
-    sizes = np.abs(values)
-    smallest = np.finfo(np.float32).smallest_normal
-    is_zero: npt.NDArray[np.bool_] = (sizes == 0) & ~np.signbit(values)
-    return is_zero | ((sizes >= smallest) & np.isfinite(values))

@@ -1,6 +1,7 @@
-"""Tables as IEC 61131-3 Structured Text: the type, the rule, the choice, the data, and a self-test.
+"""Tables as IEC 61131-3 Structured Text: the types, the rule, the estimator, the choice, the data, and a self-test.
 
-What is fixed in the text stands in `st_blocks` and `st_test_blocks`; how it is used, in docs/structured-text.md.
+What is fixed in the text stands in `st_blocks`, `st_observe` and `st_test_blocks`; how it is used, in
+docs/structured-text.md.
 """
 
 from __future__ import annotations
@@ -13,6 +14,8 @@ from tuning_tables.c_source import origin_lines
 from tuning_tables.category_names import category_macros, comment_text
 from tuning_tables.errors import InvalidTable
 from tuning_tables.st_blocks import DECIDE, HEAD, TABLE_TYPE
+from tuning_tables.st_estimator import observe_blocks
+from tuning_tables.st_observe import ESTIMATE_TYPE
 from tuning_tables.st_self_test import self_test_blocks
 from tuning_tables.st_tables import blanks_of, load_block, select_block
 from tuning_tables.table_book import TableBook
@@ -27,9 +30,10 @@ SELF_TEST_HEAD: Final = """\
 (* Self-test of retarder_table.st, for the controller that is to run it. Generated: do not edit, export again.
 
    Call one instance of RETARDER_SELF_TEST once a cycle until Done; Failed must be 0. It compares every constant with a
-   second copy, and the answers of RETARDER_DECIDE and RETARDER_SELECT with those of the reference implementation: on
-   every line, one float32 step beside it, and at both ends of the path. Readings that are not finite or denormal are
-   left out, because they have no portable literal. Remove the blocks after the test if memory is short. *)
+   second copy, and the answers of RETARDER_DECIDE, RETARDER_SELECT and RETARDER_OBSERVE with those of the reference
+   implementation: on every line, one float32 step beside it, at both ends of the path, and over whole cuts. Readings
+   that are not finite or denormal are left out, because they have no portable literal. Remove the blocks after the test
+   if memory is short. *)
 """
 
 
@@ -43,9 +47,11 @@ def st_files(book: TableBook) -> Mapping[str, bytes]:
     origin = "\n".join(f"   {line}" for line in origin_lines(book))
     blocks = [
         HEAD.substitute(ORIGIN=origin, CATEGORIES="\n".join(category_lines(book))),
-        Template(TABLE_TYPE).substitute(blanks),
+        Template(Template(TABLE_TYPE).safe_substitute(blanks)).substitute(blanks),
+        ESTIMATE_TYPE,
         load_block(book),
         select_block(book),
+        *observe_blocks(blanks),
         Template(DECIDE).substitute(blanks),
     ]
     return {

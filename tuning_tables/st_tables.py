@@ -10,6 +10,7 @@ import numpy as np
 
 from tuning_tables.category_names import comment_text
 from tuning_tables.st_blocks import LOAD_BODY, LOAD_DECLARATIONS, SELECT_BODY, SELECT_DECLARATIONS
+from tuning_tables.st_estimator import estimator_blanks, estimator_constants
 from tuning_tables.st_literals import bool_array, int_array, real_array
 from tuning_tables.table_block import HAS_LOWER, HAS_UPPER, BlockSize, TableBlock, block_of, block_size
 from tuning_tables.table_book import TableBook
@@ -26,7 +27,7 @@ def blanks_of(book: TableBook) -> Mapping[str, str]:
         "LAST_STAGE": size.stages - 1,
         "LAST_COEFFICIENT": 2 * size.stages * size.powers - 1,
     }
-    return {name: str(number) for name, number in numbers.items()}
+    return {**{name: str(number) for name, number in numbers.items()}, **estimator_blanks(book, size)}
 
 
 def load_block(book: TableBook) -> str:
@@ -41,6 +42,7 @@ def load_block(book: TableBook) -> str:
     ]
     for number, block in enumerate(blocks):
         declarations += _table_constants(book, number, block, size)
+    declarations += estimator_constants(book, size)
     blanks = blanks_of(book)
     cases = "\n".join(Template(_CASE).substitute(blanks, NUMBER=number) for number in range(len(blocks)))
     return "".join(
@@ -72,7 +74,7 @@ def constants(declarations: list[str]) -> str:
 
 def coefficients_of(block: TableBlock, size: BlockSize) -> np.ndarray[tuple[int], np.dtype[np.float32]]:
     """All coefficients of a block in the order of RETARDER_TABLE, float32 (stages * 2 * powers,)."""
-    return block.words[8 + size.stages : -1].view(np.float32)
+    return block.words[size.coefficients].view(np.float32)
 
 
 _CASE = """\
@@ -87,7 +89,8 @@ $NUMBER:
 
 
 def _blocks(book: TableBook) -> list[TableBlock]:
-    return [block_of(book, number) for number in range(len(book.tables))]
+    size = block_size(book)
+    return [block_of(book, number, size=size) for number in range(len(book.tables))]
 
 
 def _table_constants(book: TableBook, number: int, block: TableBlock, size: BlockSize) -> list[str]:

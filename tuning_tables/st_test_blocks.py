@@ -109,63 +109,62 @@ IF NOT Agrees THEN
 END_IF;
 """
 
-RUN_ALL: Final = """\
-FUNCTION_BLOCK RETARDER_SELF_TEST
-(* Call it once a cycle until Done: each call tests one table, the last one the choice. *)
-VAR_INPUT
-    Restart : BOOL; (* begin again *)
+ESTIMATOR_CHECK: Final = """\
+IF (Table.Estimator <> $ESTIMATOR) OR (Table.Touch_kpa <> $TOUCH) THEN
+    IF Failed = 0 THEN
+        FirstFailed := 0;
+    END_IF;
+    Failed := Failed + 1;
+END_IF;
+"""
+
+ESTIMATOR_HEAD: Final = """\
+FUNCTION_BLOCK RETARDER_TEST_ESTIMATOR_$PLACE
+(* $NAME: $CONSTANTS constants and $SAMPLES samples. *)
+VAR_IN_OUT
+    Table : RETARDER_TABLE; (* as RETARDER_LOAD gives it for TableNo $NUMBER *)
 END_VAR
 VAR_OUTPUT
-    Done : BOOL;
-    Failed : INT; (* blocks in which something is wrong; 0 when Done: all is as exported *)
-    FirstFailed : INT; (* the first of them: number of the table, $TABLES for the choice; -1: none *)
-    FirstFault : INT; (* FirstFailed of that block *)
+    Failed : INT; (* constants and samples that are wrong *)
+    FirstFailed : INT; (* the first of them, -1: none *)
 END_VAR
 VAR
-    Loader : RETARDER_LOAD;
-    Choices : RETARDER_TEST_CHOICES;
-$INSTANCES
-    Table : RETARDER_TABLE;
-    Number : INT;
-    Begun : BOOL;
-    Faults : INT;
-    Fault : INT;
+    Beginner : RETARDER_BEGIN;
+    Observer : RETARDER_OBSERVE;
+    Estimate : RETARDER_ESTIMATE;
+    Index : INT;
 END_VAR
+"""
 
-IF Restart OR NOT Begun THEN
-    Begun := TRUE;
-    Done := FALSE;
-    Number := 0;
-    Failed := 0;
-    FirstFailed := -1;
-    FirstFault := -1;
+ESTIMATOR_CONSTANTS: Final = """\
+IF (Table.Breaks <> $BREAKS) OR (Table.SpeedVariance <> Expected[0]) OR (Table.FactorVariance <> Expected[1])
+    OR (Table.PathVariance <> Expected[2]) THEN
+    Failed := Failed + 1;
+    FirstFailed := 0;
 END_IF;
-IF NOT Done THEN
-    Faults := 0;
-    Fault := -1;
-    Loader(TableNo := Number, Table := Table);
-    CASE Number OF
-$CASES
-        $TABLES:
-            Choices();
-            Faults := Choices.Failed;
-            Fault := Choices.FirstFailed;
-    END_CASE;
-    IF Faults > 0 THEN
+FOR Index := 0 TO $LAST_BREAK DO
+    IF (Table.BreakPath_m[Index] <> Expected[Index + 3]) OR (Table.Drive[Index] <> Expected[Index + $DRIVE])
+        OR (Table.Brake[Index] <> Expected[Index + $BRAKE]) THEN
         IF Failed = 0 THEN
-            FirstFailed := Number;
-            FirstFault := Fault;
+            FirstFailed := Index + 3;
         END_IF;
         Failed := Failed + 1;
     END_IF;
-    Done := Number >= $TABLES;
-    Number := Number + 1;
-END_IF;
-END_FUNCTION_BLOCK
+END_FOR;
 """
 
-RUN_ONE: Final = """\
-        $NUMBER:
-            Test_$NUMBER(Table := Table);
-            Faults := Test_$NUMBER.Failed;
-            Fault := Test_$NUMBER.FirstFailed;"""
+TRACK_LOOP: Final = """\
+FOR Index := 0 TO $LAST DO
+    IF Begins[Index] THEN
+        Beginner(Estimate := Estimate);
+    END_IF;
+    Observer(Path_m := Path[Index], Speed_m_s := Speed[Index], Overpressure_kpa := Pressure[Index], Table := Table,
+        Estimate := Estimate);
+    IF Observer.Observed_m_s <> Observed[Index] THEN
+        IF Failed = 0 THEN
+            FirstFailed := Index + $FIRST;
+        END_IF;
+        Failed := Failed + 1;
+    END_IF;
+END_FOR;
+"""

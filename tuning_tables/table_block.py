@@ -2,8 +2,10 @@
 
 Words, each from its lowest byte to its highest: category number, axles, stages, powers (degree + 1); for each stage its
 lines (1 lower, 2 upper, 3 both); as binary32 mass_t, target speed in m/s, s_min and s_max in m; the coefficients by
-stage, line (lower, upper) and power; and the CRC-32 of all words before it. All tables of a book have blocks of one
-size, that of its table with most stages and powers; what a table has not is 0.
+stage, line (lower, upper) and power; if any table of the book has an estimator, its number of breaks (0: none), and as
+binary32 the variance of a measured speed, of the factor, and of the path, the touch pressure in kPa, and of all breaks
+first s, then D, then W; and the CRC-32 of all words before it. All tables of a book have blocks of one size, that of
+its table with most stages, powers and breaks; what a table has not is 0.
 """
 
 from __future__ import annotations
@@ -15,22 +17,39 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.active_table import ActiveTable, active
+from tuning_tables.estimator import Estimator
 from tuning_tables.table_book import TableBook
 
 HAS_LOWER, HAS_UPPER = 1, 2
 
+ESTIMATOR_HEAD = 5
+"""Words of an estimator before its breaks: their number, three variances, the touch pressure."""
+
 
 @dataclass(frozen=True)
 class BlockSize:
-    """Stages and coefficients of a line that there is room for in a block."""
+    """Stages, coefficients of a line, and breaks of an estimator that there is room for in a block."""
 
     stages: int
     powers: int
+    breaks: int
 
     @property
     def words(self) -> int:
         """Length of a block in words of 32 bits, checksum included."""
-        return 9 + self.stages + 2 * self.stages * self.powers
+        return int(self.estimator.stop) + 1
+
+    @property
+    def coefficients(self) -> slice:
+        """Where the coefficients are, (stages, 2, powers)."""
+        first = 8 + self.stages
+        return slice(first, first + 2 * self.stages * self.powers)
+
+    @property
+    def estimator(self) -> slice:
+        """Where the estimator is: nowhere if the book has none."""
+        first = self.coefficients.stop
+        return slice(first, first + (ESTIMATOR_HEAD + 3 * self.breaks if self.breaks else 0))
 
 
 @dataclass(frozen=True)
@@ -51,16 +70,22 @@ class TableBlock:
 
 def block_size(book: TableBook) -> BlockSize:
     """The least size that every table of the book fits into."""
-    return BlockSize(book.most_stages, book.highest_degree + 1)
+    breaks = max(0 if table.estimator is None else len(table.estimator.s_m) for table in book.tables)
+    return BlockSize(book.most_stages, book.highest_degree + 1, breaks)
 
 
-def block_of(book: TableBook, number: int, table: ActiveTable | None = None) -> TableBlock:
-    """The block of table `number` of the book, or of lines `table` made from it and its faster neighbour."""
+def block_of(
+    book: TableBook, number: int, table: ActiveTable | None = None, size: BlockSize | None = None
+) -> TableBlock:
+    """The block of table `number` of the book, or of lines `table` made from it and its faster neighbour.
+
+    `size`: that of the book, where the caller knows it; else it is found anew.
+    """
     source = book.tables[number]
     table = table or active(source)
     category = book.categories.index(source.cut.category) + 1
     axles, mass_t = len(source.cut.axle_offsets_m), np.float32(source.cut.mass_t)
-    size = block_size(book)
+    size = size or block_size(book)
     stages, _, powers = table.coefficients.shape
     lines = np.zeros(size.stages, dtype=np.uint32)
     lines[:stages] = HAS_LOWER * table.has_line[:, 0] + HAS_UPPER * table.has_line[:, 1]
@@ -73,8 +98,20 @@ def block_of(book: TableBook, number: int, table: ActiveTable | None = None) -> 
             lines,
             numbers.view(np.uint32),
             coefficients.ravel().view(np.uint32),
+            estimator_words(table.estimator, size),
         ]
     )
     words = np.append(body, np.uint32(zlib.crc32(body.astype("<u4").tobytes())))
     words.setflags(write=False)
     return TableBlock(category, axles, mass_t, table, words)
+
+
+def estimator_words(estimator: Estimator | None, size: BlockSize) -> npt.NDArray[np.uint32]:
+    """The words of an estimator in a block, zeros for none."""
+    words = np.zeros(size.estimator.stop - size.estimator.start, dtype=np.uint32)
+    if estimator is not None:
+        breaks = len(estimator.s_m)
+        numbers = np.array([*estimator.parameters[:3], estimator.touch_pressure_kpa], dtype=np.float32)
+        words[0], words[1:ESTIMATOR_HEAD] = breaks, numbers.view(np.uint32)
+        words[ESTIMATOR_HEAD:].reshape(3, size.breaks)[:, :breaks] = estimator.work.view(np.uint32)
+    return words

@@ -1,4 +1,4 @@
-"""Whether a compiled controller decides and chooses as the Python rule does."""
+"""Whether a compiled controller decides, chooses and estimates as the Python rule does."""
 
 from __future__ import annotations
 
@@ -9,8 +9,10 @@ from numpy.typing import NDArray
 
 from synth.in_the_loop.controller_process import Controller
 from synth.in_the_loop.hard_readings import hard_commands, hard_readings
+from synth.in_the_loop.hard_samples import hard_samples
+from synth.in_the_loop.observed import observed, same_nan
 from tuning_tables import decide_many
-from tuning_tables.table_block import block_of
+from tuning_tables.table_block import block_of, block_size
 from tuning_tables.table_book import TableBook
 
 
@@ -27,18 +29,31 @@ class Questions:
 
 
 @dataclass(frozen=True)
+class Tracks:
+    """Samples, dtype SAMPLE, (n,), and the bits of speed and estimate after each by the Python estimator, (n, 8)."""
+
+    samples: NDArray[np.void]
+    estimates: NDArray[np.uint32]
+
+
+@dataclass(frozen=True)
 class Differences:
-    """How many answers of a controller are others, words of tables that are others, and what its self-test says."""
+    """How many answers of a controller are others, words of tables that are others, and what its self-test says.
+
+    `estimates`: samples after which the speed or anything in the estimate has another bit; a NaN is as good as any.
+    """
 
     decisions: int
     choices: int
+    estimates: int
     tables: int
     self_test: str
 
     @property
     def none(self) -> bool:
         """Whether the controller agrees in everything."""
-        return self.decisions == self.choices == self.tables == 0 and self.self_test == "fault 0 at 0"
+        wrong = self.decisions + self.choices + self.estimates + self.tables
+        return wrong == 0 and self.self_test == "fault 0 at 0"
 
 
 def ask(book: TableBook, readings: int, commands: int, seed: int) -> Questions:
@@ -47,15 +62,23 @@ def ask(book: TableBook, readings: int, commands: int, seed: int) -> Questions:
     return Questions(book, asked, decisions_of(book, asked), commanded, *choices_of(book, commanded))
 
 
-def differences(controller: Controller, questions: Questions) -> Differences:
-    """Put the same questions to `controller`."""
+def follow(book: TableBook, samples: int, seed: int) -> Tracks:
+    """At least `samples` hard samples of `seed`, followed by the Python estimator."""
+    given = hard_samples(book, samples, seed)
+    return Tracks(given, observed(book, given))
+
+
+def differences(controller: Controller, questions: Questions, tracks: Tracks) -> Differences:
+    """Put the same questions and tracks to `controller`."""
     book = questions.book
     statuses, chosen = controller.select(questions.commands)
     wrong = (statuses != questions.statuses) | (chosen != questions.chosen).any(axis=1)
+    astray = (same_nan(controller.observe(tracks.samples)) != same_nan(tracks.estimates)).any(axis=1)
     words = np.array([block_of(book, number).words for number in range(len(book.tables))])
     return Differences(
         decisions=int(np.count_nonzero(controller.decide(questions.readings) != questions.decisions)),
         choices=int(np.count_nonzero(wrong)),
+        estimates=int(np.count_nonzero(astray)),
         tables=int(np.count_nonzero(controller.dump() != words)),
         self_test=controller.self_test(),
     )
@@ -73,12 +96,13 @@ def decisions_of(book: TableBook, readings: NDArray[np.void]) -> NDArray[np.int8
 
 def choices_of(book: TableBook, commands: NDArray[np.void]) -> tuple[NDArray[np.int32], NDArray[np.uint32]]:
     """What `TableBook.choose` answers, as the controller writes it: words of no table are 0."""
-    chosen = np.zeros((len(commands), len(block_of(book, 0).words)), np.uint32)
+    size = block_size(book)
+    chosen = np.zeros((len(commands), size.words), np.uint32)
     statuses = np.empty(len(commands), np.int32)
     for place, (category, axles, speed) in enumerate(commands.tolist()):
         name = book.categories[category - 1] if 1 <= category <= len(book.categories) else "no category"
         choice = book.choose(name, axles, speed)
         statuses[place] = choice.status
         if choice.table is not None:
-            chosen[place] = block_of(book, choice.numbers[0], choice.table).words
+            chosen[place] = block_of(book, choice.numbers[0], choice.table, size).words
     return statuses, chosen

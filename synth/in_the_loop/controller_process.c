@@ -1,7 +1,11 @@
 /* An exported table book as a process that answers through its standard input and output; words in the machine's order.
  *
  *   decide          for {uint32 table, int32 stage, float s_m, float v_m_s}: int32 answer; all of a stream
- *   serve N         for {int32 stage, float s_m, float v_m_s}: int32 answer of table N, each one at once
+ *   observe         for {uint32 table, uint32 start, float s_m, float v_m_s, float overpressure_kpa, 7 words}: the
+ *                   estimated speed and the 7 words of the estimate; all of a stream. start 0: the estimate goes on,
+ *                   1: it begins, 2: it is the 7 words, whatever they are
+ *   serve N         for {int32 what, float s_m, float v_m_s, float overpressure_kpa}, at once: what OBSERVE, or BEGIN
+ *                   and observe: float estimated speed of table N; else its int32 decision, `what` being the stage
  *   select          for {uint32 category, uint32 axles, float speed}: int32 status, the table (zeros if none)
  *   intact          for a table: int32, whether its checksum is right
  *   dump            all tables
@@ -13,11 +17,31 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { OBSERVE = -1, BEGIN = -2 }; /* no stages of a closed loop */
+
 typedef struct reading {
     int32_t stage;
     float s_m;
     float v_m_s;
 } reading;
+
+typedef struct request {
+    int32_t what;
+    float s_m;
+    float v_m_s;
+    float overpressure_kpa;
+} request;
+
+typedef struct sample {
+    uint32_t table;
+    uint32_t start;
+    float s_m;
+    float v_m_s;
+    float overpressure_kpa;
+    retarder_estimate given;
+} sample;
+
+typedef char estimate_has_seven_words[(sizeof(retarder_estimate) == 28u) ? 1 : -1];
 
 static void answer(int value)
 {
@@ -38,16 +62,53 @@ static int decide(void)
     return 0;
 }
 
+static void answer_speed(float value)
+{
+    if (fwrite(&value, sizeof value, 1, stdout) != 1) {
+        exit(9);
+    }
+}
+
+static int observe(void)
+{
+    sample now;
+    retarder_estimate estimate;
+    retarder_begin(&estimate);
+    while (fread(&now, sizeof now, 1, stdin) == 1) {
+        if (now.start == 1u) {
+            retarder_begin(&estimate);
+        } else if (now.start == 2u) {
+            estimate = now.given;
+        }
+        answer_speed(retarder_observe(now.table < retarder_table_count ? &retarder_tables[now.table] : 0, &estimate,
+                                      now.s_m, now.v_m_s, now.overpressure_kpa));
+        if (fwrite(&estimate, sizeof estimate, 1, stdout) != 1) {
+            return 9;
+        }
+    }
+    return 0;
+}
+
 static int serve(unsigned number)
 {
-    reading now;
+    request now;
+    retarder_estimate estimate;
+    retarder_begin(&estimate);
     if (number >= retarder_table_count) {
         return 8;
     }
     setvbuf(stdin, 0, _IONBF, 0);
     setvbuf(stdout, 0, _IONBF, 0);
     while (fread(&now, sizeof now, 1, stdin) == 1) {
-        answer(retarder_decide(&retarder_tables[number], now.stage, now.s_m, now.v_m_s));
+        const retarder_table *table = &retarder_tables[number];
+        if (now.what == BEGIN) {
+            retarder_begin(&estimate);
+        }
+        if (now.what == BEGIN || now.what == OBSERVE) {
+            answer_speed(retarder_observe(table, &estimate, now.s_m, now.v_m_s, now.overpressure_kpa));
+        } else {
+            answer(retarder_decide(table, now.what, now.s_m, now.v_m_s));
+        }
     }
     return 0;
 }
@@ -84,6 +145,9 @@ int main(int count, char **arguments)
     const char *mode = count > 1 ? arguments[1] : "";
     if (strcmp(mode, "decide") == 0) {
         return decide();
+    }
+    if (strcmp(mode, "observe") == 0) {
+        return observe();
     }
     if (strcmp(mode, "serve") == 0 && count > 2) {
         return serve((unsigned)strtoul(arguments[2], 0, 10));

@@ -23,6 +23,14 @@ EXPORTED = ("retarder_table.c", "retarder_self_test.c")
 TIMEOUT_S = 300.0
 
 READING = np.dtype([("table", "u4"), ("stage", "i4"), ("s_m", "f4"), ("v_m_s", "f4")])
+ESTIMATE_WORDS = 7
+SAMPLE = np.dtype(
+    [("table", "u4"), ("start", "u4"), ("s_m", "f4"), ("v_m_s", "f4"), ("overpressure_kpa", "f4"),
+     ("given", "u4", ESTIMATE_WORDS)]
+)  # fmt: skip
+"""`start`: ON, BEGIN or GIVEN: the estimate goes on, begins, or is `given`, whatever that is."""
+
+ON, BEGIN, GIVEN = 0, 1, 2
 COMMAND = np.dtype([("category", "u4"), ("axles", "u4"), ("speed_m_s", "f4")])
 
 
@@ -44,6 +52,11 @@ class Controller:
     def decide(self, readings: NDArray[np.void]) -> NDArray[np.int8]:
         """The decisions for `readings`, dtype READING, (n,)."""
         return np.frombuffer(self._answer(("decide",), readings), f"{self.order}i4").astype(np.int8)
+
+    def observe(self, samples: NDArray[np.void]) -> NDArray[np.uint32]:
+        """For `samples`, dtype SAMPLE, (n,): the bits of the estimated speed and of the estimate after it, (n, 8)."""
+        words = np.frombuffer(self._answer(("observe",), samples), f"{self.order}u4")
+        return words.reshape(len(samples), 1 + ESTIMATE_WORDS).astype(np.uint32)
 
     def select(self, commands: NDArray[np.void]) -> tuple[NDArray[np.int32], NDArray[np.uint32]]:
         """For commands, dtype COMMAND, (n,): statuses (n,), and the words of the chosen tables (n, words)."""

@@ -1,4 +1,7 @@
-"""The closed loop with the compiled C controller as a separate process, asked through a pipe at every decision."""
+"""The closed loop with the compiled C controller as a separate process, asked through a pipe at every decision.
+
+If the table has an estimator, the process observes as well, at every sample.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from types import FunctionType
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numba import njit
@@ -22,6 +25,10 @@ from synth.passes import ExitSample
 from synth.problem import Plant
 from synth.random_passes import RandomPasses
 from tuning_tables import ControllerTable
+
+OBSERVE: Final = -1
+BEGIN: Final = -2
+"""What is asked for, in the place of a stage (controller_process.c)."""
 
 
 @dataclass(frozen=True)
@@ -66,14 +73,14 @@ def run_passes(loop: ClosedLoop, law: TableController, draws: kernel.Draws, run:
 
 
 class PipeLine:
-    """The kernel of the closed loop compiled with a decision that asks through two file descriptors.
+    """The kernel of the closed loop compiled with a decision and an estimator that ask through two file descriptors.
 
     Compiling takes some seconds; after that any controller process can be connected, one at a time.
     """
 
     def __init__(self) -> None:
         self._ask, self._hear = os.open(os.devnull, os.O_RDWR), os.open(os.devnull, os.O_RDWR)
-        self.run_passes = run_passes_with(_decision_through(self._ask, self._hear))
+        self.run_passes = run_passes_with(*_controller_through(self._ask, self._hear))
 
     @contextmanager
     def connected(self, controller: Controller, number: int) -> Iterator[None]:
@@ -96,19 +103,20 @@ class PipeLine:
             raise RuntimeError(f"{' '.join(command)} ended with exit code {process.returncode}")
 
 
-def run_passes_with(decision: Any) -> Any:
-    """`kernel.run_passes`, the same text, with `decision` in the place of the tables' own rule; compiled, not cached.
+def run_passes_with(decision: Any, estimated_speed: Any) -> Any:
+    """`kernel.run_passes`, the same text, with other functions in the place of the tables' own; compiled, not cached.
 
-    `decision`: compiled, with arguments and answer of `tuning_tables.rule.decide`. The loop around it is no other.
+    Both compiled, with arguments and answers of `tuning_tables.rule.decide` and `tuning_tables.estimator.observe`. The
+    loop around them is no other.
     """
     compiled = njit(nogil=True, error_model="numpy")
-    scope = {**vars(kernel), "table_decision": decision}
+    scope = {**vars(kernel), "table_decision": decision, "estimated_speed": estimated_speed}
     scope["run_pass"] = compiled(FunctionType(kernel.run_pass.py_func.__code__, scope))
     return compiled(FunctionType(kernel.run_passes.py_func.__code__, scope))
 
 
-def _decision_through(ask: int, hear: int) -> Any:
-    """A decision, with the arguments of `rule.decide`, that writes a reading to `ask`, reads at `hear`."""
+def _controller_through(ask: int, hear: int) -> tuple[Any, Any]:
+    """A decision and an estimator that write a request to `ask` and read the answer at `hear`."""
     library = ctypes.CDLL(None)
     write, read = library.write, library.read
     for call in (write, read):
@@ -116,14 +124,25 @@ def _decision_through(ask: int, hear: int) -> Any:
         call.restype = ctypes.c_ssize_t
 
     @njit
-    def decide(coefficients, has_line, valid, stage, s, v):  # type: ignore[no-untyped-def]
-        request = np.empty(3, np.int32)
+    def answered(what, s, v, kpa):  # type: ignore[no-untyped-def]
+        request = np.empty(4, np.int32)
         reading = request.view(np.float32)
-        request[0], reading[1], reading[2] = stage, s, v
+        request[0], reading[1], reading[2], reading[3] = what, s, v, kpa
         answer = np.empty(1, np.int32)
-        # Writes and reads of twelve and four bytes are never split in a pipe.
-        if write(ask, request.ctypes.data, 12) != 12 or read(hear, answer.ctypes.data, 4) != 4:
+        # Writes and reads of sixteen and four bytes are never split in a pipe.
+        if write(ask, request.ctypes.data, 16) != 16 or read(hear, answer.ctypes.data, 4) != 4:
             raise RuntimeError("the controller process does not answer")
-        return answer[0]
+        return answer
 
-    return decide
+    @njit
+    def decide(coefficients, has_line, valid, stage, s, v):  # type: ignore[no-untyped-def]
+        return answered(stage, s, v, 0.0)[0]
+
+    @njit
+    def observe(parameters, work, state, s, v, kpa):  # type: ignore[no-untyped-def]
+        # The process has the state; what the kernel holds only tells whether a pass begins.
+        what = OBSERVE if state[0] != 0.0 else BEGIN
+        state[0] = 1.0
+        return answered(what, s, v, kpa).view(np.float32)[0]
+
+    return decide, observe

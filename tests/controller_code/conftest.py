@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.controller_code.sample_book import sample_book
+from tests.controller_code.sample_book import estimating_book, sample_book
 from tuning_tables.table_book import TableBook
 
 Tool = Callable[[str], str]
@@ -29,7 +29,8 @@ def tool() -> Tool:
     return find
 
 
-@pytest.fixture(scope="session")
-def book() -> TableBook:
-    """Tables of many shapes."""
-    return sample_book()
+@pytest.fixture(scope="session", params=[sample_book, estimating_book], ids=["measured", "estimated"])
+def book(request: pytest.FixtureRequest) -> TableBook:
+    """Tables of many shapes, without and with estimators."""
+    made: TableBook = request.param()
+    return made

@@ -7,6 +7,7 @@ from dataclasses import replace
 from tuning_tables import (
     ControllerTable,
     CutId,
+    Estimator,
     Generator,
     Predicted,
     RetarderId,
@@ -45,6 +46,32 @@ def sample_book() -> TableBook:
             ),
         )
     )
+
+
+def estimating_book() -> TableBook:
+    """The sample book with estimators: few and many breaks, one from before the path on, one with next to no noise.
+
+    Of the class with three targets the first two share an estimator, but for the touch pressure, and the third has
+    another, so that lines between them have a meaning only below the second; three tables have none.
+    """
+    usual, odd = estimator_of(16, 37.45), estimator_of(40, 120.0)
+    given = {
+        "light-2.0": usual, "light-3.3": replace(usual, touch_pressure_kpa=75.0),
+        "light-4.0": replace(usual, friction_cv=0.1500001), "shadow-1.5": usual, "medium-4.0": odd, "medium-2.0": odd,
+        "other-degree": odd, "many-stages": estimator_of(2, 3.0, -4.0, 1.0), "constant": replace(odd, path_std=0.0),
+        "odd": Estimator(1e-4, 0.0, 1.0, 1e3, 0.0, (0.0, 1e-3, 2.5), (0.0, -1.0, 5.0), (0.0, 0.02, 0.02)),
+    }  # fmt: skip
+    return TableBook(tuple(replace(table, estimator=given.get(table.id)) for table in sample_book().tables))
+
+
+def estimator_of(breaks: int, end_m: float, begin_m: float = 0.0, noise_m_s: float = 0.05) -> Estimator:
+    """A retarder that brakes hard in the second and third quarter of the path, on a slope.
+
+    At break 5 of 16 on 37.45 m float32 gives the two lines that meet there another value.
+    """
+    s = [begin_m + (end_m - begin_m) * (index / (breaks - 1)) ** 1.1 for index in range(breaks)]
+    brake = [0.0007 * (x - begin_m) + 0.004 * max(0.0, min(x, 0.75 * end_m) - 0.25 * end_m) for x in s]
+    return Estimator(noise_m_s, 0.15, 0.1, 2.0, 50.0, tuple(s), tuple(0.06 * x for x in s), tuple(brake))
 
 
 def braking_lines(target: float, stages: int, degree: int) -> tuple[Stage, ...]:

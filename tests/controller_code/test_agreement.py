@@ -7,14 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from synth.in_the_loop.agreement import Questions, ask, decisions_of, differences
+from synth.in_the_loop.agreement import Questions, Tracks, ask, decisions_of, differences, follow
 from synth.in_the_loop.builds import BUILDS, Build
 from synth.in_the_loop.controller_process import BuildError, build_controller
 from tests.controller_code.conftest import Tool
-from tuning_tables import decide_for
+from tuning_tables import decide_for, speed_for
+from tuning_tables.estimator import begin
 from tuning_tables.table_book import Status, TableBook
 
-READINGS, COMMANDS = 1_000_000, 20_000
+READINGS, COMMANDS, SAMPLES = 1_000_000, 20_000, 500_000
 
 
 @pytest.fixture(scope="session")
@@ -22,11 +23,18 @@ def questions(book: TableBook) -> Questions:
     return ask(book, READINGS, COMMANDS, 20261121)
 
 
+@pytest.fixture(scope="session")
+def tracks(book: TableBook) -> Tracks:
+    return follow(book, SAMPLES, 20261122)
+
+
 @pytest.mark.parametrize("build", BUILDS, ids=str)
-def test_c_decides_and_chooses_as_python(build: Build, questions: Questions, tmp_path: Path, tool: Tool) -> None:
+def test_c_decides_chooses_and_estimates_as_python(
+    build: Build, questions: Questions, tracks: Tracks, tmp_path: Path, tool: Tool
+) -> None:
     for name in build.missing():
         tool(name)
-    assert differences(build.controller(questions.book, tmp_path), questions).none
+    assert differences(build.controller(questions.book, tmp_path), questions, tracks).none
 
 
 def test_the_readings_reach_every_answer_and_many_ties(questions: Questions) -> None:
@@ -64,3 +72,33 @@ def test_switches_that_break_the_rule_are_refused(
 ) -> None:
     with pytest.raises(BuildError, match="compile without -ffast-math"):
         build_controller(book, tmp_path, tool(compiler), (flag,))
+
+
+def test_the_samples_reach_every_branch_of_the_estimator(tracks: Tracks, book: TableBook) -> None:
+    samples, speeds = tracks.samples, tracks.estimates[:, 0].view(np.float32)
+    assert len(samples) >= SAMPLES
+    if all(table.estimator is None for table in book.tables):
+        assert np.array_equal(tracks.estimates[:, 0], samples["v_m_s"].view(np.uint32))
+        return
+    factors = tracks.estimates[:, 4].view(np.float32)
+    for count in (speeds == -1.0, speeds == np.float32(0.2), factors == np.float32(0.3), factors == np.float32(1.9)):
+        assert np.count_nonzero(count) > 200
+    # Most of what is compared are numbers, and no two of them alike.
+    assert np.count_nonzero(np.isnan(speeds)) < 0.1 * len(speeds)
+    assert len(np.unique(tracks.estimates[:, 0])) > 0.6 * len(speeds)
+    for name in ("s_m", "v_m_s", "overpressure_kpa"):
+        assert np.count_nonzero(~np.isfinite(samples[name])) > 1000
+    assert np.count_nonzero(samples["start"] == 2) > 1000
+
+
+def test_one_sample_at_a_time_is_observed_as_compiled(tracks: Tracks, book: TableBook) -> None:
+    """The estimates of the golden tracks, and those of the first tracks of others, by the interpreted text."""
+    begins = np.flatnonzero(tracks.samples["start"] == 1)
+    for first in begins[np.linspace(0, len(begins) - 2, 40).astype(np.int64)].tolist():
+        state, table = begin(), book.tables[tracks.samples["table"][first]]
+        for sample, words in zip(tracks.samples[first:], tracks.estimates[first:], strict=True):
+            if (sample["start"] == 1 and state[0] != 0.0) or sample["start"] == 2:
+                break
+            with np.errstate(all="ignore"):
+                speed = speed_for(table, state, *(float(sample[name]) for name in ("s_m", "v_m_s", "overpressure_kpa")))
+            assert np.array_equal(np.float32(speed), words[:1].view(np.float32)[0], equal_nan=True)

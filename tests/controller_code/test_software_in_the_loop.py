@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from synth.estimator_design import estimator_of
 from synth.in_the_loop.controller_process import build_controller
 from synth.in_the_loop.software_in_the_loop import PipeLine, closed_loop_with_process
 from synth.random_passes import random_passes
@@ -19,13 +21,20 @@ from tuning_tables.table_book import TableBook
 def test_a_process_controls_as_the_rule_in_the_simulator(tmp_path: Path, tool: Tool) -> None:
     tool("gcc")
     first = make_case().table
+    plant = make_plant(36.0, len(first.stages))
     other = replace(make_case(target=4.0).table, id="other")
-    book = TableBook((first, other))
+    observing = replace(first, id="observing", target_speed_m_s=2.0, estimator=estimator_of(plant))
+    book = TableBook((first, other, observing))
     controller = build_controller(book, tmp_path)
-    plant, passes, line = make_plant(36.0, len(first.stages)), random_passes(3, 0, 50), PipeLine()
+    passes, line = random_passes(3, 0, 50), PipeLine()
+    exits = []
     for number, table in enumerate(book.tables):
         found = closed_loop_with_process(plant, table, number, controller, passes, line)
         assert found.differing == 0
         assert found.process.switchings.sum() > 50  # it did decide something
-    # The wrong table in the process is seen at once.
+        exits.append(found.process.exit_speed_m_s)
+    # The same lines, asked with the estimated speed, are another controller.
+    assert np.count_nonzero(exits[0] != exits[2]) > 10
+    # The wrong table in the process is seen at once, and so is one that does not estimate.
     assert closed_loop_with_process(plant, first, 1, controller, passes, line).differing > 40
+    assert closed_loop_with_process(plant, observing, 0, controller, passes, line).differing > 10

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.controller_code.sample_book import FOUR_AXLES, sample_book, table_of
+from tests.controller_code.sample_book import estimating_book as book_with_estimators
 from tuning_tables import read_json
 from tuning_tables.table_book import TableBook
 
@@ -16,6 +17,12 @@ from tuning_tables.table_book import TableBook
 def book() -> TableBook:
     """Tables of many shapes, with numbers as hard as numbers can be."""
     return sample_book()
+
+
+@pytest.fixture(scope="session")
+def estimating_book() -> TableBook:
+    """The same tables with estimators, a few without."""
+    return book_with_estimators()
 
 
 @pytest.fixture(scope="session")

@@ -9,8 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.controller_code.sample_book import estimator_of
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Array, Record, Scalar
+from tuning_tables.golden_tracks import golden_tracks
 from tuning_tables.st_source import SELF_TEST_FILE, TABLE_FILE, st_files
 from tuning_tables.table_book import TableBook
 
@@ -66,6 +68,50 @@ def test_operations_of_a_decision(program, default_book):
     assert stated("`RETARDER_DECIDE`") == list(worst)
 
 
+@pytest.fixture(scope="module")
+def estimating(default_book):
+    """The default book with an estimator of 16 breaks for each class."""
+    made = estimator_of(16, 37.45)
+    return TableBook(
+        tuple(
+            replace(table, estimator=replace(made, friction_cv=0.15 if table.cut.mass_t < 30.0 else 0.16))
+            for table in default_book.tables
+        )
+    )
+
+
+def test_operations_of_an_estimate(estimating):
+    program = Program(st_files(estimating)[TABLE_FILE])
+    table, estimate, observer = (program.new(f"RETARDER_{name}") for name in ("TABLE", "ESTIMATE", "OBSERVE"))
+    executed(program, "RETARDER_LOAD", TableNo=0, Table=table)
+    worst = (0, 0)
+    for track in golden_tracks(estimating)[:7]:
+        program.call("RETARDER_BEGIN", program.new("RETARDER_BEGIN"), Estimate=estimate)
+        for s, v, kpa, _ in zip(*track.samples, strict=True):
+            program.done.clear()
+            program.call("RETARDER_OBSERVE", observer, Path_m=s, Speed_m_s=v, Overpressure_kpa=kpa, Table=table,
+                         Estimate=estimate)  # fmt: skip
+            worst = max(worst, counted(program.done))
+    assert stated("`RETARDER_OBSERVE`, 16 breaks") == list(worst)
+    twice = executed(program, "RETARDER_LOAD", TableNo=0, Table=table)
+    assert stated("`RETARDER_LOAD`, table with an estimator") == list(twice)
+
+
+def test_bytes_of_an_estimator(estimating, default_book):
+    program, plain = (Program(st_files(book)[TABLE_FILE]) for book in (estimating, default_book))
+    assert stated("one `RETARDER_ESTIMATE`") == [size(program.types["RETARDER_ESTIMATE"])]
+    assert stated("one `RETARDER_TABLE` with estimator") == [size(program.types["RETARDER_TABLE"])]
+    three = Program(st_files(TableBook(estimating.tables[:3]))[TABLE_FILE])
+    few = Program(st_files(TableBook(estimating.tables[:4]))[TABLE_FILE])
+    growth = size(few.types["RETARDER_LOAD"]) - size(three.types["RETARDER_LOAD"])
+    lines = Program(st_files(TableBook(default_book.tables[:4]))[TABLE_FILE])
+    fewer = Program(st_files(TableBook(default_book.tables[:3]))[TABLE_FILE])
+    # The fourth table brings its own constants, its touch pressure and number, and the second estimator.
+    alone = growth - (size(lines.types["RETARDER_LOAD"]) - size(fewer.types["RETARDER_LOAD"])) - 6
+    assert stated("constants of one estimator") == [alone]
+    assert plain.blocks["RETARDER_DECIDE"].inputs == program.blocks["RETARDER_DECIDE"].inputs
+
+
 def test_operations_of_a_choice(program, default_book):
     def choice(book, speed):
         each = Program(st_files(book)[TABLE_FILE])
@@ -81,7 +127,7 @@ def test_operations_of_a_choice(program, default_book):
     assert stated("`RETARDER_SELECT`, each further") == [(more[0] - between[0]) // len(others), 0]
     assert (more[0] - between[0]) % len(others) == 0
     table = program.new("RETARDER_TABLE")
-    assert stated("`RETARDER_LOAD`") == list(executed(program, "RETARDER_LOAD", TableNo=0, Table=table))
+    assert stated("`RETARDER_LOAD`, table without") == list(executed(program, "RETARDER_LOAD", TableNo=0, Table=table))
 
 
 def test_operations_of_the_self_test(default_book):
@@ -101,7 +147,7 @@ def test_bytes(default_book):
     constants = sum(
         size(program.types[name]) - size(few.types[name]) for name in ("RETARDER_LOAD", "RETARDER_SELECT")
     ) - (size(program.types["RETARDER_LOAD"]) - size(few.types["RETARDER_LOAD"]))  # SELECT holds an instance of LOAD
-    assert stated("one `RETARDER_TABLE`") == [size(program.types["RETARDER_TABLE"])]
+    assert stated("one `RETARDER_TABLE` without") == [size(program.types["RETARDER_TABLE"])]
     assert stated("constants of one table") == [constants]
     tests = [size(program.types[f"RETARDER_TEST_{number}"]) for number in range(len(default_book.tables))]
     assert stated("self-test of one table") == [min(tests), max(tests)]

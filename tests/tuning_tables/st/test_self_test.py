@@ -9,10 +9,18 @@ import pytest
 
 from tests.tuning_tables.st.conftest import shaped_book
 from tests.tuning_tables.st.evaluator import Program
+from tests.tuning_tables.st.storage import Fault
+from tuning_tables.distinct_estimators import distinct_estimators
 from tuning_tables.golden_vectors import golden_vectors
 from tuning_tables.st_source import SELF_TEST_FILE, TABLE_FILE, st_files
+from tuning_tables.table_book import TableBook
 
 OUTPUTS = ("DONE", "FAILED", "FIRSTFAILED", "FIRSTFAULT")
+
+
+def calls_of(book):
+    """Of the self-test: one a table, one for the choice, one an estimator, and one for the tables without any."""
+    return len(book.tables) + 1 + len(distinct_estimators(book).first_tables)
 
 
 def run_all(files, calls, change=lambda tables, test: (tables, test), real=np.float32):
@@ -26,27 +34,28 @@ def run_all(files, calls, change=lambda tables, test: (tables, test), real=np.fl
 
 
 @pytest.mark.parametrize("real", [np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
-def test_nothing_is_wrong_with_the_export(default_book, real):
+def test_nothing_is_wrong_with_the_export(default_book, estimating_book, real):
     sound = {"DONE": True, "FAILED": 0, "FIRSTFAILED": -1, "FIRSTFAULT": -1}
-    assert run_all(st_files(default_book), len(default_book.tables) + 1, real=real) == sound
+    for book in (default_book, estimating_book):
+        assert run_all(st_files(book), calls_of(book), real=real) == sound
 
 
 def test_nothing_is_wrong_with_other_shapes(book):
-    assert run_all(st_files(book), len(book.tables) + 1)["FAILED"] == 0
+    assert run_all(st_files(book), calls_of(book))["FAILED"] == 0
     large = shaped_book(32, 1)
     files = st_files(large)
     assert b"Stage_1 : " in files[SELF_TEST_FILE]  # more vectors than one array may have
-    assert run_all(files, 2) == {"DONE": True, "FAILED": 0, "FIRSTFAILED": -1, "FIRSTFAULT": -1}
+    assert run_all(files, calls_of(large)) == {"DONE": True, "FAILED": 0, "FIRSTFAILED": -1, "FIRSTFAULT": -1}
 
 
-def test_it_takes_a_call_a_table_and_one_for_the_choice_and_can_be_repeated(small_book):
+def test_it_takes_a_call_a_part_and_can_be_repeated(small_book):
     program = Program(b"".join(st_files(small_book).values()))
     instance = program.new("RETARDER_SELF_TEST")
     seen = []
-    for restart in (False, False, False, False, True, False, False):
+    for restart in (False, False, False, False, False, True, False, False, False):
         program.call("RETARDER_SELF_TEST", instance, Restart=restart)
         seen.append(instance["DONE"].value.item())
-    assert seen == [False, False, True, True, False, False, True]
+    assert seen == [False, False, False, True, True, False, False, False, True]
 
 
 def test_the_vectors_left_out_are_those_without_a_portable_literal(default_book):
@@ -108,7 +117,7 @@ def test_one_changed_constant_is_found(small_book, array, place, block):
         assert another(tables[begin:end]) != tables[begin:end]
         return tables[:begin] + another(tables[begin:end]) + tables[end:], test
 
-    outputs = run_all(st_files(small_book), 3, change)
+    outputs = run_all(st_files(small_book), calls_of(small_book), change)
     assert outputs["DONE"]
     assert outputs["FAILED"] >= 1
     assert outputs["FIRSTFAILED"] <= block
@@ -134,7 +143,7 @@ def test_one_changed_statement_is_found(small_book, right, wrong):
         assert right in tables
         return tables.replace(right, wrong), test
 
-    assert run_all(st_files(small_book), 3, change)["FAILED"] > 0
+    assert run_all(st_files(small_book), calls_of(small_book), change)["FAILED"] > 0
 
 
 def test_a_fused_multiplication_and_addition_is_found(default_book):
@@ -145,6 +154,71 @@ def test_a_fused_multiplication_and_addition_is_found(default_book):
         assert fused.count("Line * Path +") == 2
         return fused, test
 
-    files, calls = st_files(default_book), len(default_book.tables) + 1
+    files, calls = st_files(default_book), calls_of(default_book)
     assert run_all(files, calls, change)["FAILED"] == 0  # two roundings, as the statement is written
     assert run_all(files, calls, change, np.float64)["FAILED"] == len(default_book.tables)
+
+
+SAME = {
+    ("Place > Table.BreakPath_m[Table", " > "), ("Place < Table.BreakPath_m[0]", " < "),
+    ("Overpressure_kpa >= 0.0", " >= "), ("Path_m >= Before", " >= "), ("Path_m >= Path)", " >= "),
+    ("Mean < Least", " < "), ("Predicted < Least", " < "), ("Way < Least", " < "), ("Speed_m_s < Least", " < "),
+    ("Factor < Least", " < "), ("Factor > Largest", " > "), ("FactorVariance < 0.0", " < "),
+    ("Table.Breaks < 2", " < "), ("Table.Breaks > 40", " > "), ("Table.Breaks > 16", " > "),  # no such table
+    ("Table.Breaks >= 2", " >= "), ("Table.Breaks <= 16", " <= "),
+}  # fmt: skip
+"""Comparisons where what happens to equal numbers changes nothing, or which only a spoilt table can fail."""
+
+
+def swapped_operators(code):
+    """(line, code) with one operator of an assignment or comparison turned into another, each in its turn."""
+    swapped = {"+": "-", "-": "+", "*": "/", "/": "*", "<": "<=", ">": ">=", "<=": "<", ">=": ">"}
+    for match in re.finditer(r" ([-+*/<>]|[<>]=) ", code):
+        line = code[code.rfind("\n", 0, match.start()) + 1 : code.index("\n", match.start())]
+        around = code[match.start() - 30 : match.end() + 32]
+        is_comment = code.rfind("(*", 0, match.start()) > code.rfind("*)", 0, match.start())
+        if not is_comment and not any(part in around and operator == match[0] for part, operator in SAME):
+            yield line.strip(), f"{code[: match.start()]} {swapped[match[1]]} {code[match.end() :]}"
+
+
+@pytest.mark.slow
+def test_every_wrong_operation_of_the_estimator_is_found(estimating_book):
+    """By the golden tracks in the self-test, or by an operation that has no result."""
+    book = TableBook(estimating_book.tables[:1])
+    files = st_files(book)
+    text, tests = (files[name].decode("ascii") for name in (TABLE_FILE, SELF_TEST_FILE))
+    begin, end = (text.index(f"FUNCTION_BLOCK RETARDER_{name}") for name in ("WORK", "DECIDE"))
+    test = tests[tests.index("FUNCTION_BLOCK RETARDER_TEST_ESTIMATOR_0") : tests.index("FUNCTION_BLOCK RETARDER_SELF")]
+
+    def failed(code):
+        try:
+            program = Program((text[:begin] + code + text[end:] + test).encode("ascii"))
+            loader, table, tester = (program.new(f"RETARDER_{name}") for name in ("LOAD", "TABLE", "TEST_ESTIMATOR_0"))
+            program.call("RETARDER_LOAD", loader, TableNo=0, Table=table)
+            program.call("RETARDER_TEST_ESTIMATOR_0", tester, Table=table)
+            return tester["FAILED"].value > 0
+        except Fault:
+            return True
+
+    assert not failed(text[begin:end])
+    changes = list(swapped_operators(text[begin:end]))
+    assert len(changes) > 60
+    assert [line for line, code in changes if not failed(code)] == []
+
+
+@pytest.mark.parametrize(
+    ("array", "place"),
+    [("TouchOf", 0), ("EstimatorOf", 1), ("BreaksOf", 0), ("SpeedVarianceOf", 0), ("FactorVarianceOf", 1),
+     ("PathVarianceOf", 0), ("BreakPath_0", 3), ("Drive_0", 15), ("Brake_1", 2)],
+)  # fmt: skip
+def test_one_changed_constant_of_an_estimator_is_found(estimating_book, array, place):
+    tables = estimating_book.tables[:3]  # the third has the second estimator
+
+    def change(tables, test):
+        begin, finish = next_number(tables, f"    {array} ", place)
+        return tables[:begin] + another(tables[begin:finish]) + tables[finish:], test
+
+    book = TableBook(tables)
+    outputs = run_all(st_files(book), calls_of(book), change)
+    assert outputs["DONE"]
+    assert outputs["FAILED"] >= 1

@@ -51,9 +51,9 @@ def test_every_book_gives_structured_text(make):
     require_structured_text(make())
 
 
-def test_the_usual_books_give_structured_text(book, default_book):
-    require_structured_text(book)
-    require_structured_text(default_book)
+def test_the_usual_books_give_structured_text(book, default_book, estimating_book):
+    for each in (book, default_book, estimating_book):
+        require_structured_text(each)
 
 
 @pytest.mark.parametrize(
@@ -96,8 +96,8 @@ def test_a_wrong_name_or_type_is_found(small_book, right, wrong):
         Program(text.replace(right, wrong, 1).encode("ascii"))
 
 
-def test_the_text_is_plain(book, default_book):
-    for files in (st_files(book), st_files(default_book), st_files(oddly_named_book())):
+def test_the_text_is_plain(book, default_book, estimating_book):
+    for files in map(st_files, (book, default_book, oddly_named_book(), estimating_book)):
         for text in files.values():
             lines = text.decode("ascii").split("\n")
             assert lines[-1] == ""
@@ -109,16 +109,16 @@ def test_the_text_is_plain(book, default_book):
             assert all(comment.count(b"(*") == comment.count(b"*)") == 1 for comment in comments)
 
 
-def test_names_are_no_keywords_anywhere(default_book):
-    text = b"".join(st_files(default_book).values())
+def test_names_are_no_keywords_anywhere(default_book, estimating_book):
+    text = b"".join([*st_files(default_book).values(), *st_files(estimating_book).values()])
     names = {node.text.decode("ascii").upper() for node in walk(parse(text)) if node.type == "identifier"}
     assert {"STAGE", "PATH_M", "SPEED_M_S", "TABLE"} < names
     assert names & set(KEYWORDS.split()) == set()
     assert all(len(name) <= 32 and "__" not in name and not name.endswith("_") for name in names)
 
 
-def test_no_array_is_long(default_book):
-    for book in (default_book, shaped_book(32, 9)):
+def test_no_array_is_long(default_book, estimating_book):
+    for book in (default_book, shaped_book(32, 9), estimating_book):
         for text in st_files(book).values():
             lengths = [int(end) + 1 for end in re.findall(rb"ARRAY\[0\.\.(\d+)\]", text)]
             assert max(lengths) <= 999

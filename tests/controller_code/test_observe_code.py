@@ -1,0 +1,241 @@
+"""The estimator in the exported C: wrong ones are found by the self-test, spoilt tables and estimates do no harm."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+import subprocess
+import zlib
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from synth.in_the_loop.builds import SANITIZED
+from synth.in_the_loop.controller_process import CONTRACT, build_controller, compile_with, write_sources
+from synth.in_the_loop.hard_samples import hard_samples
+from tests.controller_code.conftest import Tool
+from tests.controller_code.sample_book import estimating_book, sample_book, table_of
+from tuning_tables import speed_for
+from tuning_tables.c_source import c_files
+from tuning_tables.estimator import begin
+from tuning_tables.golden_tracks import golden_tracks
+from tuning_tables.table_block import block_of, block_size
+from tuning_tables.table_book import TableBook
+
+SWAPPED = {
+    " + ": " - ", " - ": " + ", " * ": " / ", " / ": " * ", " < ": " <= ", " > ": " >= ", " <= ": " < ", " >= ": " > ",
+    " && ": " || ", " == ": " != ",
+}  # fmt: skip
+SAME = {
+    ("least > value", " > "), ("most < value", " < "),  # of two equal numbers one is as good as the other
+    ("j + 1u < last", " < "),  # no place is beyond the last break
+    ("overpressure_kpa >= 0.0f", " >= "), ("s_m >= before", " >= "),  # what replaces it is equal
+}  # fmt: skip
+"""Changes that change nothing."""
+
+HARDLY = ("LEAST_STEP_M", "LEAST_FACTOR", "LARGEST_FACTOR")
+"""Constants of which a last bit is lost when it comes to speeds: these are changed by 1 %."""
+
+
+@pytest.fixture(scope="module")
+def estimating() -> TableBook:
+    return estimating_book()
+
+
+def changed_code(code: str) -> list[tuple[str, str]]:
+    """(what was changed, the code) for every operator swapped and every constant changed."""
+    found = []
+    for match in re.finditer(r" (?:[-+*/<>]|[<>=]=|&&) ", code):
+        line = code[code.rfind("\n", 0, match.start()) + 1 : code.index("\n", match.start())]
+        in_comment = code.rfind("/*", 0, match.start()) > code.rfind("*/", 0, match.start())
+        if in_comment or (match[0] == " * " and "rounded" not in line):
+            continue
+        around = code[match.start() - 16 : match.end() + 12]
+        if not any(place in around and operator == match[0] for place, operator in SAME):
+            found.append((f"{match[0]}in {line}", code[: match.start()] + SWAPPED[match[0]] + code[match.end() :]))
+    for match in re.finditer(r"(#define (\w+) )(0x1\S+f)", code):
+        factor = "1.01f" if match[2] in HARDLY else "1.0000002f"
+        found.append((match[2], code[: match.start()] + f"{match[1]}({match[3]} * {factor})" + code[match.end() :]))
+    return found
+
+
+@pytest.mark.slow
+def test_the_self_test_finds_every_wrong_operation(estimating: TableBook, tmp_path: Path, tool: Tool) -> None:
+    gcc = tool("gcc")
+    wanted = ("light-2.0", "light-3.3", "odd", "shadow-1.5")
+    write_sources(TableBook(tuple(table for table in estimating.tables if table.id in wanted)), tmp_path)
+    others = [str(tmp_path / f"{name}.o") for name in ("retarder_self_test", "controller_process")]
+    for made in others:
+        compile_with([gcc, "-std=c99", "-O1", "-c", made.removesuffix("o") + "c", "-o", made])
+    text = (tmp_path / "retarder_table.c").read_text("ascii")
+    begin_at = text.index("#define LEAST_SPEED_M_S")
+    code, rest = text[begin_at : text.index("#else", begin_at)], text[text.index("#else", begin_at) :]
+
+    def self_test(changed: str) -> str:
+        (tmp_path / "retarder_table.c").write_text(text[:begin_at] + changed + rest, "ascii")
+        program = str(tmp_path / "changed")
+        compile_with([gcc, "-std=c99", "-O1", str(tmp_path / "retarder_table.c"), *others, "-o", program])
+        ran = subprocess.run([program, "self-test"], capture_output=True, text=True, timeout=60, check=False)
+        return ran.stdout.strip() or f"signal {-ran.returncode}"
+
+    assert self_test(code) == "fault 0 at 0"
+    changes = changed_code(code)
+    assert len(changes) > 70
+    answers = {change: self_test(changed) for change, changed in changes}
+    assert [change for change, answer in answers.items() if not answer.startswith(("fault 5", "signal"))] == []
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "fault"),
+    [
+        ("rounded(rounded(slope * p12) - rounded(effect * p22))", "(float)((double)slope * (double)p12 - "
+         "(double)effect * (double)p22)", "fault 5 at"),
+        ("rounded(work[j] + rounded(part * rounded(work[j + 1u] - work[j])))",
+         "(float)((double)work[j] + (double)part * (double)rounded(work[j + 1u] - work[j]))", "fault 5 at"),
+        ("table->touch_kpa;", "table->touch_kpa + 1.0f;", "fault 5 at 0"),
+        ("*estimate = unknown;", "(void)unknown;", "fault 5 at 0"),
+        ("table->breaks == 0u ? v_m_s :", "table->breaks == 0u ? 0.0f :", "fault 5 at"),
+        ("return is_same_estimator(slower, faster);", "return 1;", "fault 4 at"),
+        ("if (differ(slower->work[row][j], faster->work[row][j]))", "if (row > j)", "fault 4 at"),
+        ("slower->breaks != faster->breaks ||", "slower->breaks == faster->breaks ||", "fault 4 at"),
+    ],
+)  # fmt: skip
+def test_other_faults_are_found(
+    before: str, after: str, fault: str, estimating: TableBook, tmp_path: Path, tool: Tool
+) -> None:
+    gcc = tool("gcc")
+    # A neighbour whose estimator differs in the last bit of one break only.
+    first = estimating.tables[1]
+    assert first.estimator is not None
+    work = (*first.estimator.drive_m2_s2[:-1], float(np.nextafter(np.float32(first.estimator.drive_m2_s2[-1]), 9.0)))
+    other = replace(first, id="other", target_speed_m_s=3.5, estimator=replace(first.estimator, drive_m2_s2=work))
+    write_sources(TableBook((*estimating.tables, other)), tmp_path)
+    source = (tmp_path / "retarder_table.c").read_text("ascii")
+    assert before in source
+    (tmp_path / "retarder_table.c").write_text(source.replace(before, after, 1), "ascii")
+    compile_with([gcc, "-std=c99", "-O1", *map(str, tmp_path.glob("*.c")), "-o", str(tmp_path / "changed")])
+    ran = subprocess.run([tmp_path / "changed", "self-test"], capture_output=True, text=True, timeout=60, check=False)
+    assert ran.stdout.startswith(fault)
+
+
+PROBE = r"""
+#include "retarder_table.h"
+#include <stdio.h>
+#include <string.h>
+int main(void)
+{
+    static retarder_table table;
+    retarder_estimate estimate;
+    float readings[3];
+    unsigned long count = 0u;
+    memset(&estimate, 0xff, sizeof estimate);
+    retarder_begin(0);
+    if (retarder_observe(0, &estimate, 1.0f, 2.0f, 3.0f) != -1.0f || retarder_touch_pressure(0) != 0.0f
+        || retarder_observe(&retarder_tables[0], 0, 1.0f, 2.0f, 3.0f) != -1.0f) {
+        return 1;
+    }
+    while (fread(&table, sizeof table, 1, stdin) == 1 && fread(&estimate, sizeof estimate, 1, stdin) == 1
+           && fread(readings, sizeof readings, 1, stdin) == 1) {
+        const float speed = retarder_observe(&table, &estimate, readings[0], readings[1], readings[2]);
+        count += retarder_decide(&table, 1, readings[0], speed) != 0;
+    }
+    printf("%lu\n", count);
+    return 0;
+}
+"""
+
+
+def test_spoilt_tables_and_estimates_and_null_pointers_do_no_harm(
+    estimating: TableBook, tmp_path: Path, tool: Tool
+) -> None:
+    """Any number of breaks, any bits in every word, under the sanitizers; each call ends."""
+    write_sources(estimating, tmp_path)
+    (tmp_path / "probe.c").write_text(PROBE, "ascii")
+    program = str(tmp_path / "probe")
+    sources = [str(tmp_path / name) for name in ("probe.c", "retarder_table.c")]
+    compile_with([tool("gcc"), "-std=c99", *SANITIZED, *sources, "-o", program])
+    rng, size, calls = np.random.default_rng(8), block_size(estimating), 20_000
+    blocks = np.array([block_of(estimating, number, size=size).words for number in range(len(estimating.tables))])
+    words = blocks[rng.integers(0, len(blocks), calls)]
+    wild = rng.integers(0, 2**32, words.shape, dtype=np.uint32)
+    words = np.where(rng.random(words.shape) < rng.choice([0.0, 0.01, 0.3], (calls, 1)), wild, words)
+    near = rng.choice([0, 1, 2, size.breaks, size.breaks + 1, 2**31, 2**32 - 1], calls)
+    words[:, size.estimator.start] = np.where(rng.random(calls) < 0.5, near, words[:, size.estimator.start])
+    estimates = rng.integers(0, 2**32, (calls, 7), dtype=np.uint32)
+    samples = hard_samples(estimating, calls, 9)[:calls]
+    readings = np.stack([samples[name] for name in ("s_m", "v_m_s", "overpressure_kpa")], axis=1).view(np.uint32)
+    given = np.concatenate([words, estimates, readings], axis=1).astype(np.uint32).tobytes()
+    ran = subprocess.run([program], input=given, capture_output=True, timeout=60, check=False)
+    assert (ran.returncode, ran.stderr) == (0, b"")
+    assert int(ran.stdout) > 100  # some of them did decide
+
+
+def test_a_table_without_estimator_hands_every_bit_on(estimating: TableBook, tmp_path: Path, tool: Tool) -> None:
+    tool("gcc")
+    for place, book in enumerate((sample_book(), estimating)):
+        (tmp_path / str(place)).mkdir()
+        controller = build_controller(book, tmp_path / str(place))
+        samples = hard_samples(book, 20_000, 10)
+        samples["table"] = next(n for n, table in enumerate(book.tables) if table.estimator is None)
+        samples["v_m_s"] = np.random.default_rng(1).integers(0, 2**32, len(samples), np.uint32).view(np.float32)
+        assert np.array_equal(controller.observe(samples)[:, 0], samples["v_m_s"].view(np.uint32))
+
+
+def test_without_estimators_the_blocks_are_what_they_were(tmp_path: Path, tool: Tool) -> None:
+    """No word of a table more than its 9 + stages + 2 stages powers, and no code of the estimator."""
+    book = sample_book()
+    size = block_size(book)
+    assert size.words == 9 + size.stages + 2 * size.stages * size.powers
+    assert "golden_tracks.csv" not in c_files(book)
+    write_sources(book, tmp_path)
+    compile_with([tool("gcc"), *CONTRACT, "-Os", "-c", str(tmp_path / "retarder_table.c"), "-o", str(tmp_path / "t.o")])
+    names = compile_with(["nm", str(tmp_path / "t.o")])
+    assert "retarder_observe" in names
+    assert not re.search(r"\b(predict|correct|work_until|observe)\b", names)
+
+
+def test_golden_tracks_as_csv_are_estimated_as_they_say(estimating: TableBook) -> None:
+    rows = list(csv.DictReader(io.StringIO(c_files(estimating)["golden_tracks.csv"].decode("utf-8"), newline="")))
+    tracks, state, last = set(), begin(), ""
+    for row in rows:
+        table = estimating.tables[int(row["table"])]
+        assert row["id"] == table.id
+        if row["track"] != last:
+            state, last = begin(), row["track"]
+            tracks.add(row["track"])
+        readings = []
+        for name, unit in (("s", "s_m"), ("v", "v_m_s"), ("overpressure", "overpressure_kpa")):
+            value = np.array([int(row[f"{name}_bits"], 16)], np.uint32).view(np.float32)[0]
+            assert np.array_equal(np.float32(row[unit]), value, equal_nan=True)
+            readings.append(float(value))
+        with np.errstate(all="ignore"):
+            estimate = np.float32(speed_for(table, state, *readings))
+        assert f"{int(estimate.view(np.uint32)):08x}" == row["estimate_bits"]
+        assert np.float32(row["estimate_m_s"]) == estimate
+    assert len(tracks) == len(golden_tracks(estimating))
+
+
+def test_the_tracks_of_a_large_book_are_few() -> None:
+    """Of 330 classes with three targets, each class of one estimator: a tenth of what the vectors take."""
+    base = estimating_book().tables[0]
+    assert base.estimator is not None
+    tables = []
+    for mass in range(330):
+        estimator = replace(base.estimator, friction_cv=0.1 + 1e-4 * mass)
+        for target in (2.0, 3.0, 4.0):
+            table = table_of(f"{mass}-{target}", f"{mass}", 20.0 + mass, (0.0, 2.0), target)
+            tables.append(replace(table, estimator=estimator))
+    tracks = golden_tracks(TableBook(tuple(tables)))
+    assert len({track.number for track in tracks}) == 330
+    assert sum(map(len, tracks)) < 330 * 250
+
+
+def test_the_checksum_covers_the_estimator(estimating: TableBook) -> None:
+    words = block_of(estimating, 0).words
+    estimator = block_size(estimating).estimator
+    assert words[-1] == zlib.crc32(words[:-1].astype("<u4").tobytes())
+    assert words[estimator].any()
+    assert estimator.stop == len(words) - 1

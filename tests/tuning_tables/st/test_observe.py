@@ -1,0 +1,156 @@
+"""RETARDER_OBSERVE, run from its parse tree, estimates as the Python estimator does, to the last bit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from synth.in_the_loop.hard_samples import TRACK_SAMPLES, hard_samples
+from synth.in_the_loop.observed import observed
+from tests.tuning_tables.st.evaluator import Program
+from tests.tuning_tables.st.test_decide import loaded
+from tuning_tables.golden_tracks import golden_tracks
+from tuning_tables.st_source import TABLE_FILE, st_files
+from tuning_tables.table_book import TableBook
+
+SAMPLES = 200_000
+MEMBERS = ("PATH_M", "SPEED_M_S", "FACTOR", "SPEEDVARIANCE", "COVARIANCE", "FACTORVARIANCE")
+
+
+@pytest.fixture(scope="module")
+def tracks(estimating_book):
+    """Samples in tracks of 100, (tracks, 100), and the bits of speed and estimate after each, (tracks, 100, 8)."""
+    samples = hard_samples(estimating_book, SAMPLES, 20261123)
+    samples["start"] = np.where(samples["start"] == 2, 0, samples["start"])
+    # The golden tracks come first, and are of other lengths.
+    samples = samples[sum(map(len, golden_tracks(estimating_book))) :]
+    answers = observed(estimating_book, samples)
+    return samples.reshape(-1, TRACK_SAMPLES), answers.reshape(-1, TRACK_SAMPLES, 8)
+
+
+def follow(program, number, samples):
+    """Speeds and estimates after every sample of tracks of table `number`, a lane a track: float32 (8, tracks, n)."""
+    table, estimate = loaded(program, number), program.new("RETARDER_ESTIMATE")
+    observer, beginner = program.new("RETARDER_OBSERVE"), program.new("RETARDER_BEGIN")
+    found = []
+    program.call("RETARDER_BEGIN", beginner, Estimate=estimate)
+    for now in samples.T:
+        program.call(
+            "RETARDER_OBSERVE", observer, Path_m=now["s_m"], Speed_m_s=now["v_m_s"],
+            Overpressure_kpa=now["overpressure_kpa"], Table=table, Estimate=estimate,
+        )  # fmt: skip
+        values = [observer["OBSERVED_M_S"].value, estimate["BEGUN"].value, *(estimate[name].value for name in MEMBERS)]
+        found.append([np.broadcast_to(value, now.shape).astype(np.float32) for value in values])
+    return np.moveaxis(np.array(found), 0, 2)
+
+
+def differing(program, tracks, numbers):
+    """How many samples of the tables `numbers` have another bit in speed or estimate; 0 has no sign."""
+    samples, answers = tracks
+    count = 0
+    for number in numbers:
+        here = samples["table"][:, 0] == number
+        right = np.moveaxis(answers[here].view(np.float32), 2, 0)
+        found = follow(program, number, samples[here])
+        count += np.count_nonzero(~((found == right) | (np.isnan(found) & np.isnan(right))).all(axis=0))
+    return count
+
+
+@pytest.mark.parametrize("real", [np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
+def test_hard_samples_are_estimated_alike(estimating_book, tracks, real):
+    program = Program(st_files(estimating_book)[TABLE_FILE], real)
+    numbers = np.unique(tracks[0]["table"]).tolist()
+    assert len(numbers) == len(estimating_book.tables)
+    assert differing(program, tracks, numbers) == 0
+    speeds = tracks[1][..., 0].view(np.float32)
+    assert all(np.count_nonzero(speeds == value) > 50 for value in (-1.0, np.float32(0.2)))
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("Speed_m_s <= LargestSpeed_m_s", "Speed_m_s < LargestSpeed_m_s"),
+        ("Path_m <= Farthest", "Path_m <= 1.0E6"),
+        ("Overpressure_kpa <= LargestPressure_kpa", "Overpressure_kpa < LargestPressure_kpa"),
+        ("Path_m >= Before", "Path_m >= -1.0E6"),
+        ("Place > Table.BreakPath_m[Index]", "Place > Table.BreakPath_m[Index + 1]"),
+        ("PathPart := Estimate.FactorVariance + PathPart;", ""),
+        ("CrossPart := 2.0 * Slope", "CrossPart := 1.0 * Slope"),
+        ("IF Estimate.FactorVariance < 0.0", "IF Estimate.FactorVariance < 0.01"),
+        ("Change := Gain * CrossPart", "Change := Gain * SpeedPart"),
+    ],
+)
+def test_a_wrong_estimator_is_found(estimating_book, tracks, right, wrong):
+    text = st_files(estimating_book)[TABLE_FILE].decode("ascii")
+    assert right in text
+    program = Program(text.replace(right, wrong).encode("ascii"))
+    assert differing(program, tracks, [0]) > 0
+
+
+def test_every_golden_track_is_estimated(estimating_book):
+    program = Program(st_files(estimating_book)[TABLE_FILE])
+    for track in golden_tracks(estimating_book):
+        samples = np.empty((1, len(track)), [(name, "f4") for name in ("s_m", "v_m_s", "overpressure_kpa")])
+        samples["s_m"], samples["v_m_s"], samples["overpressure_kpa"] = track.samples[:3]
+        assert np.array_equal(follow(program, track.number, samples)[0, 0], track.estimate_m_s)
+
+
+def test_a_book_without_estimators_hands_the_speed_on(small_book, estimating_book):
+    """The blocks have the same inputs and outputs, so that one program fits both."""
+    plain, full = (Program(st_files(book)[TABLE_FILE]) for book in (small_book, estimating_book))
+    for name in ("RETARDER_OBSERVE", "RETARDER_BEGIN", "RETARDER_DECIDE", "RETARDER_SELECT", "RETARDER_LOAD"):
+        assert plain.blocks[name].inputs == full.blocks[name].inputs
+        assert plain.blocks[name].references == full.blocks[name].references
+    speeds = np.random.default_rng(2).integers(0, 2**32, 1000, np.uint32).view(np.float32)
+    observer, estimate = plain.new("RETARDER_OBSERVE"), plain.new("RETARDER_ESTIMATE")
+    plain.call(
+        "RETARDER_OBSERVE", observer, Path_m=1.0, Speed_m_s=speeds, Overpressure_kpa=2.0, Table=loaded(plain, 0),
+        Estimate=estimate,
+    )  # fmt: skip
+    assert np.array_equal(observer["OBSERVED_M_S"].value, speeds, equal_nan=True)
+    assert loaded(plain, 0)["TOUCH_KPA"].value == 0.0
+
+
+def test_every_table_is_loaded_with_its_estimator(estimating_book):
+    program = Program(st_files(estimating_book)[TABLE_FILE])
+    for number, table in enumerate(estimating_book.tables):
+        held, estimator = loaded(program, number), table.estimator
+        breaks = held["BREAKS"].value
+        if estimator is None:
+            assert (held["ESTIMATOR"].value, breaks, held["TOUCH_KPA"].value) == (-1, 0, 0.0)
+            continue
+        assert held["TOUCH_KPA"].value == np.float32(estimator.touch_pressure_kpa)
+        assert [held[name].value for name in ("SPEEDVARIANCE", "FACTORVARIANCE", "PATHVARIANCE")] == list(
+            estimator.parameters[:3]
+        )
+        for name, row in zip(("BREAKPATH_M", "DRIVE", "BRAKE"), estimator.work, strict=True):
+            assert np.array_equal(held[name].data[:breaks], row)
+
+
+@pytest.mark.parametrize("breaks", [-32768, -1, 1, 41, 32767])
+def test_a_spoilt_number_of_breaks_is_not_followed(estimating_book, breaks):
+    program = Program(st_files(estimating_book)[TABLE_FILE])
+    table, worker = loaded(program, 0), program.new("RETARDER_WORK")
+    table["BREAKS"].store(breaks, None)
+    observer, estimate = program.new("RETARDER_OBSERVE"), program.new("RETARDER_ESTIMATE")
+    readings = {"Path_m": 1.0, "Speed_m_s": 3.0, "Overpressure_kpa": 100.0}
+    program.call("RETARDER_OBSERVE", observer, **readings, Table=table, Estimate=estimate)
+    assert observer["OBSERVED_M_S"].value == -1.0
+    program.call("RETARDER_WORK", worker, Path_m=1.0, Table=table)
+    assert (worker["DRIVE"].value, worker["BRAKE"].value) == (0.0, 0.0)
+
+
+def test_lines_between_tables_of_two_estimators_are_not_taken(estimating_book):
+    """By `TableBook.choose`; the first two targets of the class share an estimator, the third has another."""
+    program = Program(st_files(estimating_book)[TABLE_FILE])
+    for book in (estimating_book, TableBook(estimating_book.tables[::-1])):
+        program = Program(st_files(book)[TABLE_FILE])
+        for speed in (2.5, 3.0, 3.5, 3.9):
+            selector, table = program.new("RETARDER_SELECT"), program.new("RETARDER_TABLE")
+            program.call("RETARDER_SELECT", selector, Category=book.categories.index("Л") + 1, Axles=4,
+                         Commanded_m_s=np.float32(speed), Table=table)  # fmt: skip
+            choice = book.choose("Л", 4, speed)
+            assert selector["STATUS"].value == choice.status
+            assert book is not estimating_book or choice.status == (1 if speed < 3.3 else 2)
+            estimator = choice.table.estimator
+            assert table["TOUCH_KPA"].value == np.float32(0.0 if estimator is None else estimator.touch_pressure_kpa)

@@ -1,0 +1,74 @@
+"""The blocks of the Structured Text self-test for estimators: their constants once more, and their golden tracks."""
+
+from __future__ import annotations
+
+from string import Template
+
+import numpy as np
+
+from tuning_tables.category_names import comment_text
+from tuning_tables.estimator import Estimator
+from tuning_tables.golden_tracks import Floats, GoldenTrack, table_tracks
+from tuning_tables.st_estimator import padded_work, touch_kpa
+from tuning_tables.st_literals import bool_array, is_portable, real, real_array
+from tuning_tables.st_tables import constants
+from tuning_tables.st_test_blocks import (
+    ESTIMATOR_CHECK,
+    ESTIMATOR_CONSTANTS,
+    ESTIMATOR_HEAD,
+    FOOT,
+    RESET,
+    TRACK_LOOP,
+)
+from tuning_tables.table_block import BlockSize, block_size
+from tuning_tables.table_book import TableBook
+
+
+def estimator_check(book: TableBook, number: int, estimator: int) -> str:
+    """Whether table `number` has the number of its estimator and the touch pressure that it should have."""
+    return Template(ESTIMATOR_CHECK).substitute(ESTIMATOR=estimator, TOUCH=real(touch_kpa(book, number)))
+
+
+def estimator_test(book: TableBook, place: int, number: int) -> str:
+    """RETARDER_TEST_ESTIMATOR_place: the estimator of table `number`, or that there is none."""
+    table, size = book.tables[number], block_size(book)
+    begins, samples = _portable_samples(table_tracks(number, table), table.estimator is not None)
+    declarations, statements, count = [], [], 0
+    if table.estimator is not None:
+        expected = _expected(table.estimator, size)
+        declarations.append(real_array("Expected", expected))
+        statements.append(_constants_check(table.estimator, size))
+        count = len(expected)
+    declarations.append(bool_array("Begins", begins))
+    for name, values in zip(("Path", "Speed", "Pressure", "Observed"), samples, strict=True):
+        declarations.append(real_array(name, values))
+    statements.append(Template(TRACK_LOOP).substitute(LAST=len(begins) - 1, FIRST=count))
+    name = "no estimator" if table.estimator is None else f"the estimator of {comment_text(table.id)}"
+    head = Template(ESTIMATOR_HEAD).substitute(
+        PLACE=place, NAME=name.capitalize(), NUMBER=number, CONSTANTS=count, SAMPLES=len(begins)
+    )
+    return "".join([head, constants(declarations), RESET, *statements, FOOT])
+
+
+def _expected(estimator: Estimator, size: BlockSize) -> Floats:
+    return np.concatenate([estimator.parameters[:3], padded_work(estimator, size).ravel()])
+
+
+def _constants_check(estimator: Estimator, size: BlockSize) -> str:
+    return Template(ESTIMATOR_CONSTANTS).substitute(
+        BREAKS=len(estimator.s_m), LAST_BREAK=size.breaks - 1, DRIVE=3 + size.breaks, BRAKE=3 + 2 * size.breaks
+    )
+
+
+def _portable_samples(tracks: tuple[GoldenTrack, ...], remembered: bool) -> tuple[list[bool], tuple[Floats, ...]]:
+    """Whether each sample begins a cut, and path, speed, overpressure, estimate.
+
+    Kept are tracks of which all numbers are portable; where nothing is `remembered`, all samples that are.
+    """
+    kept = []
+    for track in tracks:
+        portable = np.all([is_portable(values) for values in track.samples], axis=0)
+        if portable.all() or not remembered:
+            kept.append(tuple(values[portable] for values in track.samples))
+    begins = [index == 0 for samples in kept for index in range(len(samples[0]))]
+    return begins, tuple(np.concatenate(columns) for columns in zip(*kept, strict=True))
