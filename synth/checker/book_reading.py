@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 from synth.checker.canonical import canonical_form
+from synth.checker.document_shape import ESTIMATOR_NUMBERS, ESTIMATOR_ROWS
 from synth.checker.finding import DamagedError, shown
 from synth.checker.source_file import LARGEST_BYTES
 
@@ -28,6 +29,14 @@ NAMES: Final = frozenset(
     }
 )
 """The datasets of docs/table-format.md."""
+ESTIMATOR_NAMES: Final = frozenset(
+    {"predicted_passes", "estimator_breaks", *(f"estimator_{name}" for name in (*ESTIMATOR_NUMBERS, *ESTIMATOR_ROWS))}
+)
+SCHEMAS: Final[Mapping[int, tuple[frozenset[str], frozenset[str]]]] = {
+    1: (NAMES, AXES),
+    2: (NAMES | ESTIMATOR_NAMES, AXES | {"break"}),
+}
+"""Datasets and axes by schema version."""
 
 Row = Mapping[str, Any]
 
@@ -67,14 +76,16 @@ def checked_columns(book: Any) -> dict[str, list[Any]]:
     attributes = {name: plain(value) for name, value in book.attrs.items()}
     if attributes.keys() != ATTRIBUTES or attributes["format"] != "retarder-book" or attributes["complete"] != 1:
         raise DamagedError(f"its attributes {shown(attributes)} are not those of a complete book")
-    if attributes["schema_version"] != 1:
-        raise DamagedError(f"its schema_version is {attributes['schema_version']}; this checker knows version 1 only")
-    if set(book) != NAMES | AXES:
-        raise DamagedError(f"the datasets {sorted(set(book) ^ (NAMES | AXES))} are missing or unknown")
+    version = attributes["schema_version"]
+    if not isinstance(version, int) or version not in SCHEMAS:
+        raise DamagedError(f"its schema_version is {shown(version)}; this checker knows the versions 1 and 2 only")
+    names, axes = SCHEMAS[version]
+    if set(book) != names | axes:
+        raise DamagedError(f"the datasets {sorted(set(book) ^ (names | axes))} are missing or unknown")
     stored = attributes.pop("payload_sha256")
-    for name in NAMES:
+    for name in names:
         require_own(book, name)
-    values = {name: book[name][()] for name in NAMES}
+    values = {name: book[name][()] for name in names}
     described = {
         name: {
             "dtype": array.dtype.str,
@@ -88,6 +99,8 @@ def checked_columns(book: Any) -> dict[str, list[Any]]:
     payload = canonical_form({"attributes": attributes, "datasets": described})
     if stored != hashlib.sha256(payload.encode("utf-8")).hexdigest():
         raise DamagedError("its payload_sha256 does not fit its content")
+    if version == 2 and not values["estimator_breaks"].any():
+        raise DamagedError("its schema_version is 2, but none of its tables has an estimator")
     return {name: array.tolist() for name, array in values.items()}
 
 
@@ -112,10 +125,13 @@ def document_of(row: Row) -> dict[str, Any]:
     predicted = {name: row[f"predicted_{name}"] for name in ("rms_m_s", "bias_m_s", "p_overspeed", "switchings")}
     if not math.isnan(row["predicted_p_stall"]):
         predicted["p_stall"] = row["predicted_p_stall"]
+    if row.get("predicted_passes", 0):
+        predicted["passes"] = row["predicted_passes"]
+    estimator = estimator_section(row)
     interval = {"rms_m_s": row["validated_rms_m_s"], "rms_ci95_m_s": row["validated_rms_ci95_m_s"]}
     return {
         "format": "retarder-table",
-        "version": 1,
+        "version": 2 if estimator else 1,
         "id": text(row["id"]),
         "created": text(row["created"]),
         "generator": {
@@ -140,7 +156,20 @@ def document_of(row: Row) -> dict[str, Any]:
         "valid": {"s_m": row["valid_s_m"], "v_m_s": row["valid_v_m_s"]},
         "predicted": predicted,
         "validated": {"passes": row["validated_passes"], **interval} if row["validated_passes"] else None,
+        **({"estimator": estimator} if estimator else {}),
     }
+
+
+def estimator_section(row: Row) -> dict[str, Any] | None:
+    """The estimator of one table, None where it has none; `DamagedError` where its rows are not that long."""
+    breaks = row.get("estimator_breaks", 0)
+    numbers = {name: row.get(f"estimator_{name}", math.nan) for name in ESTIMATOR_NUMBERS}
+    rows = {name: row.get(f"estimator_{name}", []) for name in ESTIMATOR_ROWS}
+    filled = {breaks if not math.isnan(value) else 0 for value in numbers.values()}
+    filled |= {sum(not math.isnan(x) for x in values) for values in rows.values()}
+    if filled != {breaks} or any(math.isnan(x) for values in rows.values() for x in values[:breaks]):
+        raise DamagedError(f"the estimator of {text(row['id'])!r} has {breaks} breaks, but not as many values")
+    return numbers | {name: values[:breaks] for name, values in rows.items()} if breaks else None
 
 
 def stage_of(row: Row, k: int) -> dict[str, Any]:

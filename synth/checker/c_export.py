@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from synth.checker.canonical import crc32
+from synth.checker.estimator import Estimator
 from synth.checker.finding import DamagedError
 from synth.checker.float32 import FLOAT, WORD, bits, is_float32
 from synth.checker.table_reading import Table
@@ -74,9 +75,12 @@ def differences(blocks: Sequence[Words], tables: Sequence[Table], header: str) -
     if stages is None or powers is None:
         yield "", "its header does not tell RETARDER_STAGES and RETARDER_POWERS"
         return
-    size = int(stages[1]), int(powers[1])
+    size = int(stages[1]), int(powers[1]), most_breaks(tables)
     categories = list(dict.fromkeys(table.category for table in tables))
     yield from (("", sentence) for sentence in category_differences(categories, header))
+    breaks = re.search(SIZE.format("BREAKS"), header)  # not in exports from before there were estimators
+    if int(breaks[1] if breaks else 0) != size[2]:
+        yield "", f"its header has room for {breaks[1] if breaks else 'no'} breaks, but the tables have {size[2]}"
     for number, (block, table) in enumerate(zip(blocks, tables, strict=True)):
         body = b"".join(WORD.pack(word) for word in block[:-1])
         if block[-1] != crc32(body):
@@ -101,9 +105,14 @@ def ascii_comment(text: str) -> str:
     return "".join(x if x.isascii() and (x.isalnum() or x in " ._+,()-") else f"<U+{ord(x):04X}>" for x in text)
 
 
-def words_of(table: Table, category: int, size: tuple[int, int]) -> Words:
-    """The words that a table should have, its checksum left out; missing lines, stages and powers are 0."""
-    stages, powers = size
+def most_breaks(tables: Sequence[Table]) -> int:
+    """Breaks that each block of an export has room for: 0 if none of its tables has an estimator."""
+    return max(len(table.estimator.s_m) if table.estimator else 0 for table in tables)
+
+
+def words_of(table: Table, category: int, size: tuple[int, int, int]) -> Words:
+    """The words that a table should have, its checksum left out; missing lines, stages, powers and breaks are 0."""
+    stages, powers, breaks = size
     lines = [(lower is not None) + 2 * (upper is not None) for lower, upper in table.lines]
     words = [category, len(table.axle_offsets_m), len(table.lines), table.degree + 1]
     words += lines + [0] * (stages - len(lines))
@@ -112,7 +121,17 @@ def words_of(table: Table, category: int, size: tuple[int, int]) -> Words:
         for line in table.lines[k] if k < len(table.lines) else (None, None):
             coefficients = line or ()
             words += [bits(c) for c in coefficients] + [0] * (powers - len(coefficients))
-    return tuple(words)
+    return tuple(words + (estimator_words(table.estimator, breaks) if breaks else []))
+
+
+def estimator_words(estimator: Estimator | None, breaks: int) -> list[int]:
+    """Number of breaks, three variances, touch pressure; then all s, all D, all W."""
+    if estimator is None:
+        return [0] * (5 + 3 * breaks)
+    numbers = bits(estimator.noise), bits(estimator.spread), bits(estimator.along), bits(estimator.touch_pressure_kpa)
+    rows = (estimator.s_m, estimator.drive_m2_s2, estimator.brake_m2_s2_per_kpa)
+    padded = [word for row in rows for word in [*map(bits, row), *[0] * (breaks - len(row))]]
+    return [len(estimator.s_m), *numbers, *padded]
 
 
 def word_difference(number: int, block: Words, wanted: Words) -> str:

@@ -6,6 +6,9 @@ says is looked for in ordinary passes too: squares count up to a cap, of which s
 squares is at most the mean square, so a true claim is not doubted more often, and being bounded it is normal. That a
 table is *better* than it says may only be luck: the standard error is then the larger of the sample's and the one that
 follows from the stated 95 % interval (without one, the largest that any law of the error allows).
+
+A prediction that was itself simulated (tables of version 2) is a mean over so many passes, and has the sampling error
+of that: wherever it is compared, with the validated figures or with the coarse ones, both errors count.
 """
 
 from __future__ import annotations
@@ -16,7 +19,15 @@ from dataclasses import dataclass
 from typing import Final
 
 from synth.checker.plant import Plant
-from synth.checker.statistics import QUANTILE, ExitFigures, mean_and_std, too_few, too_many
+from synth.checker.statistics import (
+    QUANTILE,
+    ExitFigures,
+    joint_count,
+    mean_and_std,
+    score_interval,
+    too_few,
+    too_many,
+)
 from synth.checker.table_reading import Table
 
 RMS_ALLOWANCE: Final = 0.04
@@ -59,6 +70,7 @@ def own_faults(table: Table, honesty: Honesty) -> Iterator[str]:
         stated = table.validated_rms_m_s
         yield f"the validated rms of {stated:.4g} m/s is not within its interval, {low:.4g} to {high:.4g}"
         return
+    low, high = chance_interval(table.validated_rms_m_s, (low, high), table.passes, table.predicted_passes)
     least, most = low * honesty.low, high * honesty.high
     if not least <= rms <= most:
         yield (
@@ -67,14 +79,28 @@ def own_faults(table: Table, honesty: Honesty) -> Iterator[str]:
         )
 
 
+def chance_interval(
+    rms_m_s: float, ci95_m_s: tuple[float, float], passes: int, predicted_passes: int | None
+) -> tuple[float, float]:
+    """Where a predicted rms may lie by chance alone: in the 95 % interval of the validated one if it is exact.
+
+    If it comes from `predicted_passes`: the interval of the difference of two samples in log(rms), at the level of the
+    other tests, for then nothing but chance can part them.
+    """
+    if predicted_passes is None or ci95_m_s[0] <= 0.0:
+        return ci95_m_s
+    wider = QUANTILE / NORMAL_95 * math.sqrt(1.0 + passes / predicted_passes)
+    return rms_m_s * (ci95_m_s[0] / rms_m_s) ** wider, rms_m_s * (ci95_m_s[1] / rms_m_s) ** wider
+
+
 def simulated_faults(table: Table, plant: Plant, found: ExitFigures, honesty: Honesty) -> Iterator[str]:
     """Claims that the coarse simulation does not confirm."""
     spread = claimed_square_std(table, plant)
     if table.validated_rms_m_s is not None:
-        yield from rms_fault("validated", table.validated_rms_m_s, (1.0, 1.0), spread, found)
+        yield from rms_fault("validated", table.validated_rms_m_s, (1.0, 1.0), spread, found, None)
     limits = (1.0 / honesty.high, 1.0 / honesty.low)
-    yield from rms_fault("predicted", table.predicted_rms_m_s, limits, spread, found)
-    root_n = math.sqrt(found.passes)
+    yield from rms_fault("predicted", table.predicted_rms_m_s, limits, spread, found, table.predicted_passes)
+    root_n = math.sqrt(joint_count(found.passes, table.predicted_passes))
     error_std = max(found.error_std, table.predicted_rms_m_s)
     allowed = BIAS_ALLOWANCE * table.predicted_rms_m_s + BIAS_ALLOWANCE_M_S + QUANTILE * error_std / root_n
     if abs(found.bias_m_s - table.bias_m_s) > allowed:
@@ -85,18 +111,21 @@ def simulated_faults(table: Table, plant: Plant, found: ExitFigures, honesty: Ho
             f"{table.switchings:.2f} switchings a pass are predicted, but the coarse simulation gives "
             f"{found.switchings:.2f}"
         )
-    yield from probability_fault("over-speed", table.p_overspeed, found.over, found.passes)
+    yield from probability_fault("over-speed", table.p_overspeed, table.predicted_passes, found.over, found.passes)
     if table.p_stall is not None:
-        yield from probability_fault("stalls", table.p_stall, found.stalls, found.passes)
+        yield from probability_fault("stalls", table.p_stall, table.predicted_passes, found.stalls, found.passes)
 
 
 def rms_fault(
-    name: str, rms_m_s: float, limits: tuple[float, float], square_std: float, found: ExitFigures
+    name: str, rms_m_s: float, limits: tuple[float, float], square_std: float, found: ExitFigures, stated: int | None
 ) -> Iterator[str]:
-    """Whether the mean square confirms an rms of at least and at most `limits` times `rms_m_s`."""
+    """Whether the mean square confirms an rms of at least and at most `limits` times `rms_m_s`.
+
+    `stated`: passes that this one comes from, None where its own error is not to be counted.
+    """
     least = max(0.0, rms_m_s * limits[0] * (1.0 - RMS_ALLOWANCE) - RMS_ALLOWANCE_M_S) ** 2
     most = (rms_m_s * limits[1] * (1.0 + RMS_ALLOWANCE) + RMS_ALLOWANCE_M_S) ** 2
-    root_n = math.sqrt(found.passes)
+    root_n = math.sqrt(joint_count(found.passes, stated))
     capped = [mean_and_std([min(square, cap * most) for square in found.squares]) for cap in CAPS]
     worse = any(mean - most > QUANTILE * std / root_n for mean, std in capped)
     better = least - found.mean_square > QUANTILE * max(found.square_std, square_std) / root_n
@@ -120,9 +149,10 @@ def claimed_square_std(table: Table, plant: Plant) -> float:
     return table.predicted_rms_m_s * math.sqrt(largest)
 
 
-def probability_fault(name: str, claimed: float, hits: int, passes: int) -> Iterator[str]:
-    """Whether `hits` of `passes` confirm the probability."""
-    most = claimed * PROBABILITY_ALLOWANCE + PROBABILITY_ALLOWANCE_ABSOLUTE
-    least = claimed / PROBABILITY_ALLOWANCE - PROBABILITY_ALLOWANCE_ABSOLUTE
+def probability_fault(name: str, claimed: float, stated: int | None, hits: int, passes: int) -> Iterator[str]:
+    """Whether `hits` of `passes` confirm the probability, `claimed` exactly or as a share of `stated` passes."""
+    low, high = (claimed, claimed) if stated is None else score_interval(min(max(claimed, 0.0), 1.0), stated)
+    most = high * PROBABILITY_ALLOWANCE + PROBABILITY_ALLOWANCE_ABSOLUTE
+    least = low / PROBABILITY_ALLOWANCE - PROBABILITY_ALLOWANCE_ABSOLUTE
     if too_many(hits, passes, most) or (least > 0.0 and too_few(hits, passes, least)):
         yield f"the predicted probability of {name} is {claimed:.4g}, but {hits} of {passes} coarse passes had it"

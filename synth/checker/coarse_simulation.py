@@ -3,7 +3,8 @@
 Everything moves on in steps of a quarter of the sampling period: position and speed by the acceleration at the middle
 of the step, pressure by the valves as they stand. The regulator of the pressure is played as the relay that it is,
 with its delays, and not from histories known in advance; friction is a random walk over short stretches of path; the
-lines are evaluated in double precision. All this differs from the simulator that made the claims.
+lines are evaluated in double precision; an estimator of the table runs in float32 and hears at every sample the mean
+overpressure since the last. All this differs from the simulator that made the claims.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from random import Random
 from typing import Final
 
 from synth.checker.brake_drive import BrakeDrive
+from synth.checker.estimator import Observer
 from synth.checker.plant import GRAVITY_M_S2, Plant
 from synth.checker.table_reading import Line, Table
 
@@ -52,7 +54,8 @@ def simulate(plant: Plant, table: Table, count: int, seed: int) -> Passes:
     """`count` passes of `plant` under `table`; equal arguments give equal passes."""
     ground, random = ground_of(plant), Random(f"{seed} {table.id}")
     rest_kpa = released_kpa(plant)
-    found = [one_pass(plant, ground, table, rest_kpa, random) for _ in range(count)]
+    observer = Observer(table.estimator) if table.estimator else None
+    found = [one_pass(plant, ground, table, observer, rest_kpa, random) for _ in range(count)]
     speeds, stalled, switchings = zip(*found, strict=True)
     return Passes(speeds, stalled, switchings)
 
@@ -103,8 +106,12 @@ def friction_row(plant: Plant, ground: Ground, random: Random) -> list[float]:
     return row
 
 
-def one_pass(plant: Plant, ground: Ground, table: Table, rest_kpa: float, random: Random) -> tuple[float, bool, int]:
+def one_pass(
+    plant: Plant, ground: Ground, table: Table, observer: Observer | None, rest_kpa: float, random: Random
+) -> tuple[float, bool, int]:
     """(exit speed, stalled, changes of stage) of one pass."""
+    if observer is not None:
+        observer.begin()
     friction = friction_row(plant, ground, random)
     mean, std = plant.resistance_n_kn
     w = random.gammavariate((mean / std) ** 2, std * std / mean) if std > 0.0 else mean
@@ -118,11 +125,13 @@ def one_pass(plant: Plant, ground: Ground, table: Table, rest_kpa: float, random
     dt, time, end_m = random.random() * period / steps, 0.0, plant.exit_m
     held = drive.overpressure_kpa
     while time < LONGEST_PASS_S:
+        pressed = 0.0
         for _ in range(steps):
             if drive.resting:
                 p = held
             else:
                 p, held = drive.overpressure(dt), drive.overpressure_kpa
+            pressed += p
             middle = s + 0.5 * v * dt
             cell = min(int(middle / ground.cell_m), len(ground.gravity_m_s2) - 1)
             xi = friction[min(int(middle / ground.noise_cell_m), ground.noise_cells - 1)]
@@ -135,8 +144,13 @@ def one_pass(plant: Plant, ground: Ground, table: Table, rest_kpa: float, random
                 return 0.0, True, switchings
         time += dt * steps
         dt = period / steps
+        if observer is None and not drive.resting:
+            continue  # nobody looks
+        seen = measured(plant, v, random)
+        if observer is not None:
+            seen = observer.observe(s, seen, pressed / steps)
         if drive.resting:
-            change = decision(table, stage, s, measured(plant, v, random))
+            change = decision(table, stage, s, seen)
             if change:
                 stage = min(max(stage + change, 0), len(table.lines) - 1)
                 switchings += 1

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from synth.checker import c_export, csv_export, golden_export, st_export
+from synth.checker import c_export, csv_export, golden_export, st_export, track_export
 from synth.checker.finding import DamagedError, Finding, Kind
 from synth.checker.source import Source, named
 from synth.checker.source_file import content_of, text_of
@@ -46,6 +46,7 @@ def check_exports(source: Source, folder: Path) -> ExportReport:
     for place in FOLDERS:
         check_file(folder / place / "retarder_table.c", lambda file: c_differences(file, source), check)
         check_file(folder / place / "golden_vectors.csv", lambda file: golden_differences(file, source), check)
+        check_file(folder / place / "golden_tracks.csv", lambda file: track_differences(file, source), check)
         check_file(folder / place / "retarder_table.st", lambda file: st_differences(file, source), check)
     tables = {table.id: table for table in source.tables}
     csv_files = sorted((folder / "tables").glob("*.csv"))
@@ -85,6 +86,11 @@ def golden_differences(file: Path, source: Source) -> Differences:
     rows = dict.fromkeys(re.findall(r'^(\d{1,6}),"?([^",]*)"?,', text, re.MULTILINE))
     order = "".join(f"/* {number}: {c_export.ascii_comment(name)} */" for number, name in rows)
     return golden_export.differences(content, in_order(source, order))
+
+
+def track_differences(file: Path, source: Source) -> Differences:
+    """The golden tracks in `file`."""
+    return track_export.differences(content_of(file), source.tables, source.has_book)
 
 
 def csv_differences(file: Path, tables: dict[str, Table], seen: set[str]) -> Differences:

@@ -9,9 +9,10 @@ from typing import Any
 
 from synth.checker.book_reading import SIGNATURE, read_documents
 from synth.checker.canonical import canonical_form
+from synth.checker.document_shape import require_document
 from synth.checker.finding import DamagedError, Finding, Kind, NothingToVerifyError, shown
 from synth.checker.source_file import content_of
-from synth.checker.table_reading import SHAPE, Table, read_table, require_shape, table_of
+from synth.checker.table_reading import Table, read_table, table_of
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,7 @@ def tables_of_book(content: bytes) -> tuple[Table, ...]:
     """The tables in a book; `DamagedError` for a book without any, with an id twice, or with what is no table."""
     tables = []
     for document in read_documents(content):
-        require_shape({**document, "crc32": "none"}, SHAPE, "")
+        require_document({**document, "crc32": "none"})
         tables.append(table_of(document))
     ids = [table.id for table in tables]
     if not ids or len(set(ids)) < len(ids):

@@ -13,6 +13,8 @@ from synth.checker.table_reading import Table
 ARRAY: Final = re.compile(r"\b(\w+) : ARRAY\[0\.\.(\d{1,6})\] OF (REAL|INT|BOOL) := \[([^\]]*)\];")
 COMMENT: Final = re.compile(r"\(\*.*?\*\)", re.DOTALL)
 OWN_ARRAYS: Final = ("Lower", "Upper", "Coefficient")
+ESTIMATOR_COLUMNS: Final = ("BreaksOf", "SpeedVarianceOf", "FactorVarianceOf", "PathVarianceOf")
+ESTIMATOR_ROWS: Final = ("BreakPath", "Drive", "Brake")
 
 Arrays = dict[str, list[list[Any]]]
 
@@ -68,6 +70,28 @@ def differences(arrays: Arrays, tables: Sequence[Table]) -> Iterator[tuple[str, 
         padded = [*table.lines, *[(None, None)] * (stages - len(table.lines))]
         flat = [c for both in padded for each in both for c in [*(each or ()), *[0.0] * (powers - len(each or ()))]]
         yield from array_differences(f"Coefficient_{number}", arrays, flat, table.id)
+    yield from estimator_differences(arrays, tables)
+
+
+def estimator_differences(arrays: Arrays, tables: Sequence[Table]) -> Iterator[tuple[str, str]]:
+    """What is wrong with the estimators, which stand there once each, however many tables share one."""
+    each = list(dict.fromkeys(table.estimator.computed_with for table in tables if table.estimator))
+    numbered = [name for name in arrays if name.rpartition("_")[0] in ESTIMATOR_ROWS]
+    if len(numbered) != len(ESTIMATOR_ROWS) * len(each):
+        yield "", f"it holds {len(numbered)} rows of work, but the tables have {len(each)} estimators of three each"
+    if not each:
+        return
+    of = [each.index(table.estimator.computed_with) if table.estimator else -1 for table in tables]
+    touch = [rounded(table.estimator.touch_pressure_kpa) if table.estimator else 0.0 for table in tables]
+    columns = zip(*((float(len(row)), *numbers) for numbers, row, _, _ in each), strict=True)
+    wanted: dict[str, list[Any]] = {"EstimatorOf": of, "TouchOf": touch}
+    wanted |= zip(ESTIMATOR_COLUMNS, map(list, columns), strict=True)
+    most = max(len(row) for _, row, _, _ in each)
+    for number, (_, *rows) in enumerate(each):
+        padded = ([*row, *[0.0] * (most - len(row))] for row in rows)
+        wanted |= {f"{name}_{number}": row for name, row in zip(ESTIMATOR_ROWS, padded, strict=True)}
+    for name, values in wanted.items():
+        yield from array_differences(name, arrays, values, "")
 
 
 def array_differences(name: str, arrays: Arrays, wanted: list[Any], about: str) -> Iterator[tuple[str, str]]:

@@ -15,8 +15,9 @@ OVERSPEED_M_S: Final = 0.3
 
 FALSE_ALARM: Final = 1e-3
 """Chance that a table whose claims are true has any of them doubted."""
-TESTS_A_TABLE: Final = 16
-"""Both rms, worse at three caps and better; bias, switchings, over-speed and stalls, too many and too few."""
+TESTS_A_TABLE: Final = 18
+"""Both rms, worse at three caps and better; bias, switchings, over-speed and stalls, too many and too few; with a
+simulated prediction also predicted against validated rms, above and below."""
 LEVEL: Final = FALSE_ALARM / TESTS_A_TABLE
 """Of one one-sided test."""
 QUANTILE: Final = NormalDist().inv_cdf(1.0 - LEVEL)
@@ -87,6 +88,18 @@ def binomial_tail(hits: int, n: int, p: float) -> float:
     log_n = math.lgamma(n + 1)
     terms = (log_n - math.lgamma(k + 1) - math.lgamma(n - k + 1) + k * log_odds + log_rest for k in range(hits, n + 1))
     return min(1.0, math.fsum(map(math.exp, terms)))
+
+
+def joint_count(n: int, others: int | None) -> float:
+    """As many values have a mean as uncertain as the difference of means of `n` and `others` values; None: exact."""
+    return float(n) if others is None else n * others / (n + others)
+
+
+def score_interval(share: float, n: int) -> tuple[float, float]:
+    """Probabilities that a share of `n` trials does not contradict at `LEVEL`, either way (Wilson 1927)."""
+    centre, square = share + QUANTILE**2 / (2 * n), QUANTILE**2 / n
+    half = QUANTILE * math.sqrt(share * (1.0 - share) / n + square / (4 * n))
+    return max(0.0, (centre - half) / (1.0 + square)), min(1.0, (centre + half) / (1.0 + square))
 
 
 def too_many(hits: int, n: int, p: float) -> bool:

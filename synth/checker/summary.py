@@ -19,7 +19,7 @@ DEFAULT_HONESTY: Final = Honesty(0.9, 1.1)
 """Where no configuration sets others."""
 CARRIERS: Final = ("book.h5", "tables/", "c/", "st/")
 """What files that hold tables are called; pictures and report may go without a word."""
-FIGURES: Final = ("rms_m_s", "bias_m_s", "p_overspeed", "switchings", "p_stall")
+FIGURES: Final = ("rms_m_s", "bias_m_s", "p_overspeed", "switchings", "p_stall", "passes")
 
 
 @dataclass(frozen=True)
@@ -50,6 +50,12 @@ class Summary:
         except UnusableConfigError:
             return DEFAULT_HONESTY
         return Honesty(low, high)
+
+    @property
+    def estimating(self) -> bool:
+        """Whether the regulator is to compare an estimated speed; configurations from before that have no such key."""
+        regulator = self.config.get("regulator")
+        return isinstance(regulator, dict) and regulator.get("estimator") is True
 
     def plant(self, table: Table) -> Plant:
         """The plant that `table` is for; `UnusableConfigError` if the configuration has none that fits it."""

@@ -9,6 +9,7 @@ from pathlib import Path
 from synth.checker.canonical import require_right_crc32
 from synth.checker.claims import own_faults, simulated_faults
 from synth.checker.coarse_simulation import simulate
+from synth.checker.estimator_sense import estimator_faults
 from synth.checker.exports import ExportReport, check_exports
 from synth.checker.finding import DamagedError, Finding, Kind
 from synth.checker.plant import UnusableConfigError
@@ -89,6 +90,8 @@ def judge(table: Table, summary: Summary | None, passes: int, seed: int, found: 
         findings += [Finding(Kind.DISAGREES, table.id, sentence) for sentence in summary.case_faults(table)]
         try:
             plant = summary.plant(table)
+            others = estimator_faults(table.estimator, plant, summary.estimating)
+            findings += [Finding(Kind.DISAGREES, table.id, sentence) for sentence in others]
             figures = figures_of(simulate(plant, table, passes, seed), table.target_m_s)
             claims += simulated_faults(table, plant, figures, honesty)
         except UnusableConfigError as fault:

@@ -39,11 +39,9 @@ mass_t = 22
 """A park retarder, one light class and two targets, on a coarse grid."""
 
 
-@pytest.fixture(scope="session")
-def tuned_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The directory of the tune, C99 in c/ and Structured Text in st/; not to be changed."""
-    folder = tmp_path_factory.mktemp("checked")
-    (folder / "config.toml").write_text(CONFIG)
+def tune(folder: Path, config: str) -> Path:
+    """The directory of a tune with every export."""
+    (folder / "config.toml").write_text(config)
     out = folder / "out"
     assert main(["tune", str(folder / "config.toml"), "-o", str(out), "--workers", "1"]) == 0
     for form in ("c", "st"):
@@ -51,7 +49,27 @@ def tuned_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
+@pytest.fixture(scope="session")
+def tuned_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The directory of the tune, C99 in c/ and Structured Text in st/; not to be changed."""
+    folder = tmp_path_factory.mktemp("checked")
+    return tune(folder, CONFIG)
+
+
+@pytest.fixture(scope="session")
+def estimated_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The directory of the same tune with an estimator, version 2; not to be changed."""
+    folder = tmp_path_factory.mktemp("estimated")
+    return tune(folder, f"{CONFIG}[regulator]\nestimator = true\n")
+
+
 @pytest.fixture
 def tuned(tuned_once: Path, tmp_path: Path) -> Path:
     """A copy of it, to be changed at will."""
     return Path(shutil.copytree(tuned_once, tmp_path / "out"))
+
+
+@pytest.fixture
+def estimated(estimated_once: Path, tmp_path: Path) -> Path:
+    """A copy of it, to be changed at will."""
+    return Path(shutil.copytree(estimated_once, tmp_path / "out"))

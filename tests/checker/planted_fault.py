@@ -28,7 +28,7 @@ def alone(tuned: Path) -> Path:
     """The first JSON table, with the summary beside it but no other export to contradict it."""
     for name in ("book.h5", "c", "st"):
         path = tuned / name
-        shutil.rmtree(path) if path.is_dir() else path.unlink()
+        shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
     return min((tuned / "tables").glob("*.json"))
 
 

@@ -98,3 +98,14 @@ def test_broken_bytes_never_raise(tuned: Path, name: str, comments: bool) -> Non
         assert codes.count(3) >= 5
     else:
         assert set(codes) == {3}
+
+
+@pytest.mark.parametrize("name", ["tables/*1.5*.json", "book.h5", "c/retarder_table.c", "c/golden_tracks.csv"])
+def test_broken_bytes_of_an_estimator_never_raise(estimated: Path, name: str) -> None:
+    (file,) = estimated.glob(name)
+    whole, chance, codes = file.read_bytes(), random.Random(name), []
+    for _ in range(25):
+        file.write_bytes(broken(whole, chance))
+        if file.read_bytes() != whole:
+            codes.append(verify(estimated, 2, 1).code)
+    assert set(codes) == {3}

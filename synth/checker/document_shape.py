@@ -1,0 +1,118 @@
+"""What JSON documents of controller tables must look like, of either version, and the comparison with it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+from synth.checker.finding import DamagedError, shown
+
+TEXT, NUMBER, COUNT = "a string", "a number", "a whole number"
+
+
+@dataclass(frozen=True)
+class OrNull:
+    """`form`, or null."""
+
+    form: Any
+
+
+@dataclass(frozen=True)
+class Pair:
+    """An array of two numbers, the first not above the second."""
+
+
+@dataclass(frozen=True)
+class Optional:
+    """A member that may be missing."""
+
+    form: Any
+
+
+NUMBERS: Final = [NUMBER]
+PREDICTED: Final[Mapping[str, Any]] = {
+    "rms_m_s": NUMBER,
+    "bias_m_s": NUMBER,
+    "p_overspeed": NUMBER,
+    "switchings": NUMBER,
+    "p_stall": Optional(NUMBER),
+}
+SHAPE: Final[Mapping[str, Any]] = {
+    "format": TEXT,
+    "version": COUNT,
+    "id": TEXT,
+    "created": TEXT,
+    "generator": {"name": TEXT, "version": TEXT, "config_sha256": TEXT},
+    "retarder": {"name": TEXT, "zones_m": [Pair()], "exit_m": NUMBER, "dead_band_kpa": NUMBER},
+    "cut": {"category": TEXT, "mass_t": NUMBER, "axle_offsets_m": NUMBERS},
+    "target_speed_m_s": NUMBER,
+    "polynomial": {"variable": TEXT, "degree": COUNT},
+    "stages": [{"k": COUNT, "pressure_kpa": NUMBER, "lower": OrNull(NUMBERS), "upper": OrNull(NUMBERS)}],
+    "valid": {"s_m": Pair(), "v_m_s": Pair()},
+    "predicted": PREDICTED,
+    "validated": OrNull({"passes": COUNT, "rms_m_s": NUMBER, "rms_ci95_m_s": Pair()}),
+    "crc32": TEXT,
+}
+"""Version 1. A dict: exactly these members; a list: an array of what it holds."""
+
+ESTIMATOR_NUMBERS: Final = (
+    "speed_noise_m_s", "friction_cv", "path_std", "correlation_length_m", "touch_pressure_kpa",
+)  # fmt: skip
+ESTIMATOR_ROWS: Final = ("s_m", "drive_m2_s2", "brake_m2_s2_per_kpa")
+SHAPE_WITH_ESTIMATOR: Final[Mapping[str, Any]] = {
+    **SHAPE,
+    "predicted": {**PREDICTED, "passes": Optional(COUNT)},
+    "estimator": {**dict.fromkeys(ESTIMATOR_NUMBERS, NUMBER), **dict.fromkeys(ESTIMATOR_ROWS, NUMBERS)},
+}
+"""Version 2: its lines are for the speed that the estimator gives."""
+
+SHAPES: Final[Mapping[int, Mapping[str, Any]]] = {1: SHAPE, 2: SHAPE_WITH_ESTIMATOR}
+
+
+def require_document(document: Mapping[str, Any]) -> None:
+    """Raise `DamagedError` unless `document` is of a known version and looks as that must."""
+    version = document.get("version")
+    if isinstance(version, bool) or not isinstance(version, int) or version not in SHAPES:
+        raise DamagedError(f"its version is {shown(version)}, but this checker knows the versions 1 and 2 only")
+    require_shape(document, SHAPES[version], "")
+
+
+def require_shape(value: Any, form: Any, path: str) -> None:
+    """Raise `DamagedError` unless `value`, found at `path`, looks like `form`."""
+    match form:
+        case OrNull():
+            if value is not None:
+                require_shape(value, form.form, path)
+        case Pair():
+            require_shape(value, NUMBERS, path)
+            refuse_unless(len(value) == 2 and value[0] <= value[1], value, path, "two numbers, the smaller one first")
+        case Mapping():
+            refuse_unless(isinstance(value, dict), value, path, "an object")
+            needed = {key for key, member in form.items() if not isinstance(member, Optional)}
+            wrong = sorted((value.keys() - form.keys()) | (needed - value.keys()))
+            refuse_unless(not wrong, wrong, path, "an object without missing or unknown keys such as these")
+            for key, member in value.items():
+                of = form[key]
+                require_shape(member, of.form if isinstance(of, Optional) else of, f"{path}.{key}".lstrip("."))
+        case [inner]:
+            refuse_unless(isinstance(value, list) and len(value) > 0, value, path, "an array that is not empty")
+            for index, item in enumerate(value):
+                require_shape(item, inner, f"{path}[{index}]")
+        case _:
+            refuse_unless(is_a(form, value), value, path, form)
+
+
+def is_a(form: str, value: Any) -> bool:
+    """Whether `value` is of the simple kind `form`."""
+    if form == TEXT:
+        return isinstance(value, str) and value != "" and value.isprintable()
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    return abs(value) <= 2**53 if isinstance(value, int) else form == NUMBER
+
+
+def refuse_unless(holds: bool, value: Any, path: str, wanted: str) -> None:
+    """Raise `DamagedError` unless `holds`."""
+    if not holds:
+        raise DamagedError(f"{path or 'the document'} is {shown(value)}, but it must be {wanted}")

@@ -1,0 +1,71 @@
+"""The golden tracks beside the controller code: sequences of readings, each estimate worked out anew."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import struct
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from typing import Final
+
+from synth.checker.estimator import Estimator, Observer
+from synth.checker.finding import DamagedError, shown
+from synth.checker.float32 import bits, from_bits
+from synth.checker.table_reading import Table
+
+WORDS: Final = ("s_bits", "v_bits", "overpressure_bits", "estimate_bits")
+HEAD: Final = ["track", "table", "id", *WORDS, "s_m", "v_m_s", "overpressure_kpa", "estimate_m_s"]
+
+Sample = tuple[int, int, int, int]
+
+
+def differences(content: bytes, tables: Sequence[Table], numbered: bool) -> Iterator[tuple[str, str]]:
+    """(about, sentence) for each wrong track; `numbered`: whether `tables` have the order of the book."""
+    try:
+        rows = list(csv.reader(io.StringIO(content.decode("utf-8"), newline=""), strict=True))
+    except (UnicodeDecodeError, csv.Error) as fault:
+        raise DamagedError(f"it is no CSV: {fault}") from None
+    if not rows or rows[0] != HEAD:
+        raise DamagedError(f"its first line is not {','.join(HEAD)}")
+    if any(len(row) != len(HEAD) for row in rows):
+        raise DamagedError(f"one of its rows has not {len(HEAD)} fields")
+    numbers = {table.id: number for number, table in enumerate(tables)}
+    tracked = set()
+    for (track, number, name), group in groupby(rows[1:], lambda row: (row[0], row[1], row[2])):
+        samples = [sample_of(row) for row in group]
+        if name not in numbers or (numbered and number != str(numbers[name])):
+            yield "", f"track {shown(track)} is of table {shown(number)}, {shown(name)}, which is not there"
+            continue
+        table = tables[numbers[name]]
+        if table.estimator is not None:
+            tracked.add(table.estimator.computed_with)
+        at = first_fault(table.estimator, samples)
+        if at is not None:
+            yield table.id, f"the estimate at sample {at} of track {shown(track)} is another by its estimator"
+    for table in tables:
+        if table.estimator is not None and table.estimator.computed_with not in tracked:
+            yield table.id, "its estimator has no golden track"
+
+
+def sample_of(row: Sequence[str]) -> Sample:
+    """The words of one row."""
+    try:
+        words = [int(cell, 16) for cell in row[3:7]]
+        for word in words:
+            from_bits(word)
+    except (ValueError, struct.error) as fault:
+        raise DamagedError(f"{shown(row)} is no sample: {fault}") from None
+    return words[0], words[1], words[2], words[3]
+
+
+def first_fault(estimator: Estimator | None, samples: Sequence[Sample]) -> int | None:
+    """The first sample with another estimate; without estimator that is the measured speed, bit for bit."""
+    observer = Observer(estimator) if estimator is not None else None
+    for at, (s, v, kpa, estimate) in enumerate(samples):
+        right = v if observer is None else bits(observer.observe(from_bits(s), from_bits(v), from_bits(kpa)))
+        both = math.isnan(from_bits(right)) and math.isnan(from_bits(estimate))  # of absurd work; there are many NaN
+        if right != estimate and not both:
+            return at
+    return None

@@ -1,0 +1,185 @@
+"""Tables with an estimator: what a tune writes passes, and each planted fault in one is found for the right reason."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from synth.checker.c_export import most_breaks, words_of
+from synth.checker.finding import Kind
+from synth.checker.table_reading import read_table
+from synth.checker.verdict import CONFIRMED, verify
+from tests.checker.planted_fault import Document, alone, found, look, rewrite
+from tuning_tables import TableBook, read_book
+from tuning_tables.json_file import to_json
+from tuning_tables.table_block import block_of
+
+
+def test_a_tune_with_an_estimator_passes(estimated_once: Path) -> None:
+    """JSON, book and CSV say the same, the data are those of the plant, claims confirmed; so is the book alone."""
+    verdict = verify(estimated_once, 300, 1)
+    assert verdict.findings == ()
+    assert [each.skipped for each in verdict.tables] == [None, None]
+    assert all(each.table.estimator and each.table.predicted_passes == 10_000 for each in verdict.tables)
+    assert verify(estimated_once / "book.h5", 100, 1).code == CONFIRMED
+
+
+def more_brake(document: Document) -> None:
+    document["estimator"]["brake_m2_s2_per_kpa"] = [1.1 * w for w in document["estimator"]["brake_m2_s2_per_kpa"]]
+
+
+def swapped_drive(document: Document) -> None:
+    drive = document["estimator"]["drive_m2_s2"]
+    drive[3], drive[4] = drive[4], drive[3]
+
+
+def late_break(document: Document) -> None:
+    places = document["estimator"]["s_m"]
+    places[3] = 0.2 * places[3] + 0.8 * places[4]
+
+
+def times(key: str, factor: float) -> Callable[[Document], None]:
+    def change(document: Document) -> None:
+        document["estimator"][key] *= factor
+
+    return change
+
+
+def no_estimator(document: Document) -> None:
+    del document["estimator"], document["predicted"]["passes"]
+    document["version"] = 1
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (more_brake, r"estimator's W is .* but the plant gives"),
+        (swapped_drive, r"estimator's D is .* but the plant gives"),
+        (late_break, r"estimator's [DW] is .* but the plant gives"),
+        (times("speed_noise_m_s", 2.0), "estimator's speed noise is"),
+        (times("friction_cv", 1.01), "estimator's friction_cv is"),
+        (times("path_std", 0.99), "estimator's path_std is"),
+        (times("correlation_length_m", 2.0), "estimator's correlation length is"),
+        (times("touch_pressure_kpa", 1.1), "estimator's touch pressure is"),
+        (no_estimator, "asks for an estimator, it has none"),
+    ],
+)
+def test_an_estimator_of_another_plant_is_found(
+    estimated: Path, change: Callable[[Document], None], words: str
+) -> None:
+    file = alone(estimated)
+    rewrite(file, change)
+    assert found(look(file), Kind.DISAGREES, words)
+
+
+def swapped_breaks(document: Document) -> None:
+    places = document["estimator"]["s_m"]
+    places[3], places[4] = places[4], places[3]
+
+
+def falling_brake(document: Document) -> None:
+    brake = document["estimator"]["brake_m2_s2_per_kpa"]
+    brake[3], brake[4] = brake[4], brake[3]
+
+
+def short_row(document: Document) -> None:
+    document["estimator"]["drive_m2_s2"].pop()
+
+
+def no_passes(document: Document) -> None:
+    document["predicted"]["passes"] = 0
+
+
+def old_version(document: Document) -> None:
+    document["version"] = 1
+
+
+def next_version(document: Document) -> None:
+    document["version"] = 3
+
+
+def unknown_key(document: Document) -> None:
+    document["estimator"]["delay_s"] = 0.1
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (swapped_breaks, "rising by a millimetre"),
+        (falling_brake, "without a fall"),
+        (short_row, "lengths of the estimator's rows"),
+        (no_passes, "predicted.passes"),
+        (times("speed_noise_m_s", 1e-9), "estimator.speed_noise_m_s is .* from 0.0001 to 10"),
+        (old_version, "unknown keys"),
+        (next_version, "versions 1 and 2 only"),
+        (unknown_key, "delay_s"),
+    ],
+)
+def test_what_makes_no_estimator_is_damage(estimated: Path, change: Callable[[Document], None], words: str) -> None:
+    file = alone(estimated)
+    rewrite(file, change)
+    assert found(look(file), Kind.DAMAGED, words)
+
+
+def test_another_estimator_in_the_json_file_is_found_in_every_export(estimated: Path) -> None:
+    rewrite(min((estimated / "tables").glob("*.json")), more_brake)
+    verdict = look(estimated)
+    assert found(verdict, Kind.DISAGREES, r"estimator.brake_m2_s2_per_kpa\[\d+\] is .* in book.h5")
+    assert found(verdict, Kind.DISAGREES, r"\.csv: the row number,estimator.brake_m2_s2_per_kpa")
+
+
+def test_words_in_c_are_those_of_the_exporter(estimated_once: Path, tuned_once: Path) -> None:
+    """A book of tables with estimator, without, and of both: there the ones without hold zeros."""
+    plain, made = (list(read_book(out / "book.h5")) for out in (tuned_once, estimated_once))
+    for chosen in (plain, made, [replace(made[0], id="another"), *plain]):
+        book = TableBook(tuple(chosen))
+        own = [read_table(to_json(table)) for table in book.tables]
+        size = book.most_stages, book.highest_degree + 1, most_breaks(own)
+        for number, table in enumerate(own):
+            words = block_of(book, number).words.tolist()
+            assert [*words_of(table, 1, size)] == words[:-1]
+
+
+def change_text(file: Path, pattern: str, replacement: str) -> None:
+    """Change one place in a file."""
+    text, count = re.subn(pattern, replacement, file.read_bytes().decode("utf-8"), count=1)
+    assert count == 1
+    file.write_bytes(text.encode("utf-8"))
+
+
+@pytest.mark.parametrize(
+    ("name", "pattern", "replacement", "words"),
+    [
+        ("c/retarder_table.c", r"24u, /\* breaks", "23u, /* breaks", "word 43 of table 0"),
+        ("c/retarder_table.c", r"(touch pressure, .*\n\s*\{\s*\{\S+ 0x1\.)d", r"\g<1>e", "word 49 of table 0"),
+        (
+            "c/retarder_table.h",
+            r"RETARDER_BREAKS 24u",
+            "RETARDER_BREAKS 25u",
+            "room for 25 breaks, but the tables have",
+        ),
+        (
+            "c/golden_tracks.csv",
+            r'\n(0,0,"[^"]*",\w+,\w+,\w+),\w+,',
+            r"\n\1,40000000,",
+            r"the estimate at sample \d+ of track '0'",
+        ),
+        ("c/golden_tracks.csv", r"\n1,0,", "\n1,7,", "track '1' is of table '7'"),
+        ("c/golden_tracks.csv", r"(?s)\n.*", "\n", "its estimator has no golden track"),
+        ("c/golden_tracks.csv", r'\n(0,0,"[^"]*"),\w+,', r"\n\1,x,", "is no sample"),
+        ("st/retarder_table.st", r"(\bBreaksOf : .*\[)24", r"\g<1>23", r"BreaksOf\[0\] is 23"),
+        ("st/retarder_table.st", r"(\bTouchOf : .*\[)5", r"\g<1>6", r"TouchOf\[0\] is 60"),
+        ("st/retarder_table.st", r"(\bDrive_0 : [^,]*, -\d\.)\d", r"\g<1>9", r"Drive_0\[1\] is"),
+        ("st/retarder_table.st", r"\bBrake_0 : ", "Brake_1 : ", "the array Brake_0 is missing"),
+    ],
+)
+def test_one_changed_digit_of_the_estimator_in_controller_code_is_found(
+    estimated: Path, name: str, pattern: str, replacement: str, words: str
+) -> None:
+    change_text(estimated / name, pattern, replacement)
+    kind = Kind.DAMAGED if words == "is no sample" else Kind.DISAGREES
+    assert found(look(estimated), kind, words)
