@@ -20,7 +20,7 @@ from synth.closed_loop import ClosedLoop, LineController, close_loop
 from synth.estimator_design import as_estimated, estimator_of, speed_error_m_s
 from synth.grid import Resolution
 from synth.kernels.closed_loop import Draws
-from synth.polynomial_fit import PolynomialLines
+from synth.polynomial_fit import PolynomialLines, opened
 from synth.problem import Plant, Problem
 from synth.random_passes import RandomPasses
 from synth.transitions import Transitions, persistent_transitions
@@ -104,11 +104,12 @@ def controller_of(lines: PolynomialLines, estimator: Estimator) -> LineControlle
 
 
 def shifted(lines: PolynomialLines, lower_m_s: float, upper_m_s: float) -> PolynomialLines:
-    """All lower and all upper lines moved; the constant Legendre polynomial is 1."""
+    """All lower and all upper lines moved, and no pair nearer than the polish allows."""
     coefficients: NDArray[np.float64] = lines.coefficients.copy()
+    # The constant Legendre polynomial is 1.
     coefficients[:, 0, 0] += lower_m_s
     coefficients[:, 1, 0] += upper_m_s
-    return replace(lines, coefficients=coefficients)
+    return opened(replace(lines, coefficients=coefficients))
 
 
 def rms_of(loop: ClosedLoop, draws: Draws, lines: PolynomialLines, estimator: Estimator, problem: Problem) -> float:

@@ -63,7 +63,7 @@ def density_of(sample: ExitSample, weight: NDArray[np.float64], speed_m_s: NDArr
     probability = np.bincount(cell, part * (1.0 - share), size) + np.bincount(cell + 1, part * share, size)
     return ExitDensity(
         speed_m_s=speed_m_s,
-        probability=probability,
+        probability=probability.astype(np.float64),
         stalled=float(weight[sample.stalled].sum()),
         escaped=0.0,
         switchings=float(weight @ sample.switchings),

@@ -10,9 +10,10 @@ import pytest
 
 from plant_models import Friction
 from synth.closed_loop import LineController, close_loop, simulate, trace
-from synth.estimated_table import controller_of, estimated_table, estimator_design, trimmed
+from synth.estimated_table import controller_of, estimated_table, estimator_design, shifted, trimmed
 from synth.estimator_design import as_estimated, estimator_of, speed_error_m_s
 from synth.grid import Resolution
+from synth.polynomial_fit import PolynomialLines
 from synth.problem import Criterion, Plant, Problem
 from synth.random_passes import RandomPasses, random_passes
 from synth.switching_lines import SwitchingLines
@@ -97,6 +98,16 @@ def test_a_trim_never_makes_worse() -> None:
     (a, b), before, after = trimmed(lambda a, b: 1.0 + (a - 0.03) ** 2 + 4.0 * (b + 0.01) ** 2)
     assert (a, b) == pytest.approx((0.03, -0.01), abs=0.005)
     assert after < before
+
+
+def test_a_trim_cannot_make_lines_meet(plant_of: Callable[[float], Plant]) -> None:
+    lines = PolynomialLines(37.0, np.zeros((2, 2, 2)), np.array([[False, True], [True, True]]))
+    lines.coefficients[:, 0, 0], lines.coefficients[:, 1, 0] = 3.0, 3.1
+    at = shifted(lines, 0.09, -0.05).at(np.linspace(0.0, 37.0, 5))
+    assert (at.upper_m_s - at.lower_m_s)[1] == pytest.approx(0.04)
+    assert (0.5 * (at.upper_m_s + at.lower_m_s))[1] == pytest.approx(3.07)
+    near = shifted(lines, 0.01, -0.02)
+    assert near.coefficients[1, :, 0] == pytest.approx([3.01, 3.08])
 
 
 def test_as_estimated_changes_the_sensor_alone(plant_of: Callable[[float], Plant]) -> None:
