@@ -78,6 +78,33 @@ def tune(
 
 
 @app.command()
+def sweep(
+    words: Annotated[
+        list[Path],
+        typer.Argument(metavar="CONFIG.toml | status DIR | failed DIR", help="What to sweep, or what to tell of."),
+    ],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="DIR", help="Where a sweep keeps everything.")
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(min=1, max=1024, help="Processes on this machine; by default one a processor.")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Compute on the workers of this Dask scheduler instead.")
+    ] = None,
+    as_json: Json = False,
+) -> int:
+    """Make books over a grid of cut classes, targets and conditions; resumable.
+
+    The table [sweep] of CONFIG.toml says what is swept. The same command goes on after an end of any kind. Exit code 1
+    if a unit failed; `sweep failed DIR` tells why, `sweep status DIR` how far a sweep is.
+    """
+    from synth.cli.sweep import sweep_command
+
+    return sweep_command(words, output, workers, scheduler, as_json)
+
+
+@app.command()
 def validate(
     source: Source,
     config: Config = None,

@@ -1,0 +1,1 @@
+"""A table book over a grid of cut classes, targets and conditions: planned, computed anywhere, resumed, bound."""

@@ -1,0 +1,139 @@
+"""summary.json of a sweep's books, in the form of that of a tune so far as a sweep knows it."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass, field
+from importlib.metadata import version
+from statistics import median
+from typing import Any
+
+from synth.sweep.refinement import Gap
+from synth.sweep.sweep_file import Condition
+from synth.sweep.unit_result import Row
+from tuning_tables import ControllerTable
+
+Document = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A unit without a result, and why, in one sentence."""
+
+    key: str
+    condition: str
+    label: str
+    reason: str
+
+
+@dataclass
+class BookFigures:
+    """What is collected while the book of a condition is bound: small figures, no tables."""
+
+    condition: Condition
+    cases: list[Document] = field(default_factory=list)
+    gaps: list[tuple[str, Gap]] = field(default_factory=list)
+    failures: list[Failure] = field(default_factory=list)
+    files: dict[str, str] = field(default_factory=dict)
+    shadowed: int = 0
+    no_code: str = ""
+
+
+def case_of(label: str, row: Row, table: ControllerTable) -> Document:
+    """One table's figures, keys as in the summary of a tune."""
+    rms = row.simulated["rms_m_s"]
+    return {
+        "id": table.id,
+        "label": label,
+        "category": table.cut.category,
+        "mass_t": table.cut.mass_t,
+        "target_speed_m_s": table.target_speed_m_s,
+        "missed_limits": list(row.missed),
+        "predicted": asdict(table.predicted),
+        "simulated": {**row.simulated, "predicted_rms_m_s": table.predicted.rms_m_s},
+        "honesty": table.predicted.rms_m_s / rms if rms else None,
+    }
+
+
+def book_summary(figures: BookFigures, created: str) -> Document:
+    """The document of one book. `accepted` is null: without a bound for each case a sweep cannot judge any."""
+    config = figures.condition.config
+    return {
+        "format": "retarder-summary",
+        "version": 1,
+        "made_by": "sweep",
+        "created": created,
+        "generator": {"name": "retarder-synth", "version": version("retarder-synth"), "config_sha256": config.sha256},
+        "title": config.title,
+        "condition": figures.condition.name or None,
+        "config": json.loads(config.canonical_json()),
+        "warnings": list(config.warnings),
+        "parameters_assumed": [value.key for value in config.parameters if value.assumed],
+        "criterion": config.criterion.sentence,
+        "accepted": None,
+        "verdict": verdict(figures),
+        "cases": figures.cases,
+        "interpolation": interpolation(figures.gaps),
+        "failed": [asdict(failure) for failure in figures.failures],
+        "shadowed_tables": figures.shadowed,
+        "no_controller_code": figures.no_code or None,
+        "files": figures.files,
+    }
+
+
+def verdict(figures: BookFigures) -> str:
+    """What can be said of the book in one sentence."""
+    missed = sum(bool(case["missed_limits"]) for case in figures.cases)
+    failed = f"; {len(figures.failures)} of the classes failed and are not in it" if figures.failures else ""
+    return (
+        f"a sweep judges no table, for it does not know which cases are feasible; {missed} of {len(figures.cases)} "
+        f"tables miss a limit of [acceptance]{failed}"
+    )
+
+
+def interpolation(gaps: list[tuple[str, Gap]]) -> Document | None:
+    """What lines between two tables lose at the middle; None where it was not measured."""
+    if not gaps:
+        return None
+    left = [gap for _, gap in gaps if not gap.refined]
+    return {
+        "gaps": [
+            {"label": label, **asdict(gap), "middle_m_s": gap.middle_m_s, "loss_m_s": gap.loss_m_s}
+            for label, gap in gaps
+        ],
+        "highest_loss_m_s": max(gap.loss_m_s for gap in left),
+    }
+
+
+def sweep_summary(books: list[BookFigures], created: str) -> Document:
+    """The document of the whole sweep."""
+    return {
+        "format": "retarder-sweep-summary",
+        "version": 1,
+        "created": created,
+        "generator": {"name": "retarder-synth", "version": version("retarder-synth")},
+        "title": books[0].condition.config.title,
+        "tables": sum(len(book.cases) for book in books),
+        "failed": [asdict(failure) for book in books for failure in book.failures],
+        "conditions": [condition_of(book) for book in books],
+    }
+
+
+def condition_of(book: BookFigures) -> Document:
+    """The figures of one condition."""
+    rms = [case["simulated"]["rms_m_s"] for case in book.cases]
+    measured = interpolation(book.gaps)
+    return {
+        "name": book.condition.name or None,
+        "config_sha256": book.condition.config.sha256,
+        "classes": len(book.condition.config.cuts),
+        "tables": len(book.cases),
+        "failed": len(book.failures),
+        "median_rms_m_s": median(rms) if rms else None,
+        "highest_rms_m_s": max(rms, default=None),
+        "missing_a_limit": sum(bool(case["missed_limits"]) for case in book.cases),
+        "highest_interpolation_loss_m_s": measured["highest_loss_m_s"] if measured else None,
+        "shadowed_tables": book.shadowed,
+        "no_controller_code": book.no_code or None,
+        "files": {f"{book.condition.name}/{name}".lstrip("/"): sha for name, sha in book.files.items()},
+    }

@@ -1,0 +1,131 @@
+"""The work of one unit: all targets of one cut class under one condition, from the problem to validated tables."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+
+from synth.acceptance import missed_limits, overspeed_share
+from synth.backward_induction import Solution, solve_all
+from synth.closed_loop import TableController, close_loop
+from synth.exit_statistics import exit_statistics
+from synth.grid import finer_for_check
+from synth.kernels.closed_loop import Draws
+from synth.problem import Plant
+from synth.random_passes import random_passes
+from synth.resolved_config import ResolvedConfig, resolve
+from synth.settings import Settings
+from synth.sweep.plan import TARGETS_AT_ONCE, Refinement, UnitOrder
+from synth.sweep.refinement import Bench, Gap, refined
+from synth.sweep.unit_result import Row, UnitResult
+from synth.tabulate import prediction_of, tabulate
+from synth.transitions import Transitions, check_transitions, persistent_transitions
+from synth.tune_case import predict, required
+from synth.tuned_lines import fitted
+from tuning_tables import ControllerTable, Generator, Predicted, Validated, from_json, to_json
+from tuning_tables.active_table import between
+
+UNKNOWN = Predicted(0.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Workshop:
+    """What all targets of a unit share: grids, landings, passes and what the tables are stamped with."""
+
+    order: UnitOrder
+    config: ResolvedConfig
+    plant: Plant
+    design: Transitions
+    check: Transitions
+    draws: Draws
+    generator: Generator
+
+
+def tune_unit(order: UnitOrder) -> UnitResult:
+    """Tune a unit; raises `PlantError`, `InvalidTable` and others where the case cannot be tuned."""
+    shop = workshop(order)
+    gaps: tuple[Gap, ...] = ()
+    if order.refinement is None:
+        tables = tables_for(shop, shop.config.targets_m_s)
+    else:
+        tables, gaps = refined_tables(shop, order.refinement)
+    return UnitResult(order.key, order.condition, order.label, tuple(validated(shop, table) for table in tables), gaps)
+
+
+def workshop(order: UnitOrder) -> Workshop:
+    """Everything that does not depend on the target."""
+    config = resolve(Settings.model_validate(order.tree), order.name)
+    ((_, plant),) = config.plants()
+    return Workshop(
+        order=order,
+        config=config,
+        plant=plant,
+        design=persistent_transitions(plant, config.resolution),
+        check=check_transitions(plant, finer_for_check(config.resolution)),
+        draws=close_loop(plant, plant.top_stage + 1).draws(
+            random_passes(config.validation.seed, 0, config.validation.passes)
+        ),
+        generator=Generator("retarder-synth", version("retarder-synth"), order.config_sha256),
+    )
+
+
+def refined_tables(shop: Workshop, wanted: Refinement) -> tuple[list[ControllerTable], tuple[Gap, ...]]:
+    """The fewest tables that bisection finds for the loss that is wanted."""
+    bench = Bench(
+        tune=lambda targets: tables_for(shop, targets),
+        own_rms_m_s=lambda table: table.predicted.rms_m_s,
+        between_rms_m_s=lambda slower, faster, target: between_rms_m_s(shop.check, slower, faster, target),
+    )
+    return refined(shop.config.targets_m_s, bench, wanted)
+
+
+def tables_for(shop: Workshop, targets_m_s: Sequence[float]) -> list[ControllerTable]:
+    """Predicted tables for some targets, in their order; a few are solved together, and then given up."""
+    tables = []
+    for first in range(0, len(targets_m_s), TARGETS_AT_ONCE):
+        aims = [(target, shop.config.criterion) for target in targets_m_s[first : first + TARGETS_AT_ONCE]]
+        tables += [predicted_table(shop, solution) for solution in solve_all(shop.design, aims)]
+    return tables
+
+
+def predicted_table(shop: Workshop, solution: Solution) -> ControllerTable:
+    """The table of one solution: fitted, polished, rounded, and exactly predicted."""
+    target, config = solution.target_speed_m_s, shop.config
+    fit = fitted(solution, config.fit.degree)
+    lines, _ = required(shop.design, shop.check, fit, target, config.criterion)
+    label = f"{shop.order.condition}-{shop.order.label}" if shop.order.condition else shop.order.label
+    name = f"{label}-to-{target:g}-m-s"
+    table = tabulate(shop.plant, lines, target, UNKNOWN, shop.generator, name, shop.order.created)
+    return replace(table, predicted=prediction_of(predict(shop.check, table), target))
+
+
+def between_rms_m_s(check: Transitions, slower: ControllerTable, faster: ControllerTable, target_m_s: float) -> float:
+    """Exactly predicted rms of the lines that a controller takes between two tables."""
+    lines = between(slower, faster, np.float32(target_m_s))
+    stages: list[Any] = []
+    for stage, pair, present in zip(slower.stages, lines.coefficients, lines.has_line, strict=True):
+        lower, upper = (tuple(map(float, line)) if here else None for line, here in zip(pair, present, strict=True))
+        stages.append(replace(stage, lower=lower, upper=upper))
+    table = replace(slower, target_speed_m_s=target_m_s, stages=tuple(stages))
+    return predict(check, table).rms_m_s(target_m_s)
+
+
+def validated(shop: Workshop, table: ControllerTable) -> Row:
+    """The table as a controller reads it, simulated on the common passes."""
+    read, target, limits = from_json(to_json(table)), table.target_speed_m_s, shop.config.acceptance
+    controller = TableController(read)
+    sample = close_loop(shop.plant, controller.stages).run(controller, shop.draws)
+    found = exit_statistics(sample, target)
+    honest = table.predicted.rms_m_s / found.rms_m_s if found.rms_m_s else 0.0
+    # In single precision, as a tune keeps them: both count the same passes.
+    speeds = sample.exit_speed_m_s.astype(np.float32)
+    over = overspeed_share(speeds, target, limits.overspeed_margin_m_s)
+    return Row(
+        table=read.with_validated(Validated(found.passes, found.rms_m_s, found.rms_ci95_m_s)),
+        simulated=asdict(found),
+        missed=missed_limits(found, over, honest, limits),
+    )

@@ -1,0 +1,107 @@
+"""What a worker is asked and what it answers; nothing here imports the solver before it is needed."""
+
+from __future__ import annotations
+
+import os
+import resource
+import sys
+import time
+import traceback
+from collections.abc import Callable, Generator, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from synth.sweep.plan import UnitOrder
+from synth.sweep.software import software_sha256
+from synth.sweep.unit_result import UnitResult
+
+
+@dataclass(frozen=True)
+class Answer:
+    """`result`, or None and the `reason` in one sentence; `seconds` it took, `peak_bytes` of the worker, its name."""
+
+    key: str
+    result: UnitResult | None
+    reason: str = ""
+    seconds: float = 0.0
+    peak_bytes: int = 0
+    worker: str = ""
+
+
+Work = Callable[[UnitOrder], Answer]
+Begun = Callable[[UnitOrder], None]
+
+
+class Engine(Protocol):
+    """Computes orders somewhere; answers come as they are ready, one for every order, whatever happens to workers."""
+
+    def answers(self, orders: Sequence[UnitOrder], begun: Begun) -> Generator[Answer]:
+        """`begun` is told of an order when it is given to a worker."""
+        ...
+
+
+def answer(order: UnitOrder) -> Answer:
+    """Compute a unit; whatever is raised becomes the reason of a failure."""
+    started = time.monotonic()
+    try:
+        result, reason = computed(order), ""
+    except Exception as fault:
+        result, reason = None, sentence_of(fault)
+    return Answer(order.key, result, reason, time.monotonic() - started, peak_bytes(), worker_name())
+
+
+def computed(order: UnitOrder) -> UnitResult:
+    """The result of `order`, computed in this process by this very software; raises what its steps raise."""
+    if software_sha256() != order.software:
+        raise ValueError(
+            f"the worker {worker_name()} has another version of retarder-synth or of its libraries, or another "
+            "processor, than the run that asked; its tables might differ"
+        )
+    from synth.kernel_cache import guarded, use_kernel_cache
+
+    use_kernel_cache()
+    from synth.sweep.tune_unit import tune_unit
+
+    return guarded(tune_unit, order)
+
+
+def sentence_of(fault: Exception) -> str:
+    """What was raised, in one line, with the place where it is none of our own words."""
+    from plant_models import PlantError
+    from tuning_tables import TableError
+
+    text = " ".join(str(fault).split()) or "no words"
+    if isinstance(fault, PlantError | TableError) or type(fault) is ValueError:
+        return text
+    frames = traceback.extract_tb(fault.__traceback__)
+    place = f" (in {os.path.basename(frames[-1].filename)}, line {frames[-1].lineno})" if frames else ""
+    return f"{type(fault).__name__}: {text}{place}"
+
+
+def peak_bytes() -> int:
+    """Highest memory that this process has held, that of the one it was started by left out where Linux tells."""
+    try:
+        with open("/proc/self/status", encoding="ascii", errors="replace") as lines:
+            return next(1024 * int(line.split()[1]) for line in lines if line.startswith("VmHWM"))
+    except (OSError, StopIteration):
+        pass
+    unit = 1 if sys.platform == "darwin" else 1024
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
+
+
+def worker_name() -> str:
+    """This process on this machine."""
+    return f"{os.uname().nodename}:{os.getpid()}"
+
+
+@dataclass(frozen=True)
+class InThisProcess:
+    """One order after the other, here: what the other engines are checked against."""
+
+    work: Work = answer
+
+    def answers(self, orders: Sequence[UnitOrder], begun: Begun) -> Generator[Answer]:
+        """In the order given."""
+        for order in orders:
+            begun(order)
+            yield self.work(order)

@@ -1,0 +1,145 @@
+"""A sweep of three cut classes and two targets on a coarse grid: a unit takes half a second."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from synth.cli import main
+from synth.sweep.bind import Outcome
+from synth.sweep.run import run_sweep, task_of
+from synth.sweep.sweep_directory import held
+from synth.sweep.sweep_file import load_sweep
+from synth.sweep.work import Engine, InThisProcess
+
+EPOCH = "1700000000"
+PLANT = """\
+[retarder]
+name = "rnz-2m-park"
+[entry]
+high_m_s = 4.0
+[grid]
+path_step_m = 1.0
+speed_step_m_s = 0.05
+friction_scenarios = 3
+[fit]
+degree = 2
+"""
+SWEEP = """\
+[sweep]
+exit_speeds_m_s = { from = 1.5, to = 2.0, step = 0.5 }
+passes = 200
+tables = true
+[[sweep.cut]]
+car = "gondola-4"
+mass_per_car_t = { from = 22, to = 30, step = 4 }
+"""
+COMMAND = [sys.executable, "-c", "import sys; from synth.cli import main; raise SystemExit(main(sys.argv[1:]))"]
+
+
+class Silence:
+    """A watcher that keeps what it is told."""
+
+    def __init__(self) -> None:
+        self.notes: list[str] = []
+        self.ended: list[str] = []
+
+    def note(self, sentence: str) -> None:
+        self.notes.append(sentence)
+
+    def done(self, unit: Any, sentence: str) -> None:
+        self.ended.append(sentence)
+
+
+def run(config: Path, directory: Path, engine: Engine, watcher: Silence | None = None) -> Outcome:
+    """A run of the sweep in `config` by `engine`."""
+    with held(directory) as found:
+        return run_sweep(task_of(load_sweep(config), found), found, engine, watcher or Silence())
+
+
+def contents(directory: Path) -> dict[str, bytes]:
+    """Every file by name but the ledger, which tells times."""
+    files = {path.relative_to(directory).as_posix(): path for path in directory.rglob("*") if path.is_file()}
+    return {name: path.read_bytes() for name, path in files.items() if name != "sweep/ledger.jsonl"}
+
+
+def events(directory: Path, kind: str) -> list[dict[str, Any]]:
+    """The sound lines of a kind in the ledger, read without the code that is tested."""
+    try:
+        lines = (directory / "sweep" / "ledger.jsonl").read_text(encoding="utf-8").split("\n")
+    except FileNotFoundError:
+        return []
+    found = [json.loads(line) for line in lines if line.endswith("}")]
+    return [event for event in found if event["event"] == kind]
+
+
+def begin(*arguments: object) -> subprocess.Popen[str]:
+    """The command line in a process of its own."""
+    environment = {**os.environ, "SOURCE_DATE_EPOCH": EPOCH}
+    return subprocess.Popen(
+        [*COMMAND, *map(str, arguments)], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+    )
+
+
+def wait_until(true: Callable[[], object], process: subprocess.Popen[str], longest_s: float = 90.0) -> None:
+    """Until `true()`; fails if the process ends before."""
+    deadline = time.monotonic() + longest_s
+    while not true():
+        assert process.poll() is None, process.communicate()[1]
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+
+
+def kill_and_reap(process: subprocess.Popen[str]) -> None:
+    """SIGKILL: nothing of the process can tidy up."""
+    process.send_signal(signal.SIGKILL)
+    process.communicate()
+
+
+@pytest.fixture(autouse=True)
+def dated(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All runs at the same time."""
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", EPOCH)
+
+
+@pytest.fixture(scope="session")
+def config(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The file of the sweep."""
+    path = tmp_path_factory.mktemp("sweep") / "sweep.toml"
+    path.write_text(PLANT + SWEEP, encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="session")
+def serial(config: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The directory of the sweep, computed in this process, one unit after the other; not to be changed."""
+    directory = tmp_path_factory.mktemp("serial") / "out"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SOURCE_DATE_EPOCH", EPOCH)
+        outcome = run(config, directory, InThisProcess())
+    assert outcome.failures == ()
+    return directory
+
+
+Ran = tuple[int, str, str]
+
+
+@pytest.fixture
+def command(capfd: pytest.CaptureFixture[str]) -> Callable[..., Ran]:
+    """Run the command line in this process: (exit code, stdout, stderr)."""
+
+    def call(*arguments: object) -> Ran:
+        capfd.readouterr()
+        code = main([str(argument) for argument in arguments])
+        return (code, *capfd.readouterr())
+
+    return call

@@ -1,0 +1,42 @@
+"""Workers that go wrong with one class, to be imported by processes that are started anew."""
+
+from __future__ import annotations
+
+import os
+import signal
+from dataclasses import replace
+from pathlib import Path
+
+from synth.sweep.plan import UnitOrder
+from synth.sweep.work import Answer, answer
+
+POISONED = "gondola-4-26t"
+
+
+def refusing(order: UnitOrder) -> Answer:
+    """A class whose configuration cannot be resolved where it is computed, and two that can."""
+    if order.label != POISONED:
+        return answer(order)
+    tree = {**order.tree, "friction": {"common_cv": -1.0}}
+    return answer(replace(order, tree=tree))
+
+
+def dying(order: UnitOrder) -> Answer:
+    """A class that takes its process with it."""
+    if order.label == POISONED:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return answer(order)
+
+
+def dying_once(order: UnitOrder) -> Answer:
+    """The same, the first time only."""
+    mark = Path(os.environ["DIED_ONCE"])
+    if order.label == POISONED and not mark.exists():
+        mark.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return answer(order)
+
+
+def strange(order: UnitOrder) -> Answer:
+    """A worker whose program is another."""
+    return answer(replace(order, software="0" * 64))

@@ -1,0 +1,90 @@
+"""Whoever computes a sweep, its bytes are the same; and its tables are those of a tune."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from synth.sweep.local_workers import LocalWorkers
+from synth.sweep.work import InThisProcess
+from synth.tabulate import lines_of
+from tests.sweep.conftest import PLANT, Ran, Silence, contents, run
+from tuning_tables import read_book
+
+TUNED = """\
+[validation]
+passes = 200
+[targets]
+exit_speeds_m_s = [1.5, 2.0]
+[output]
+plots = false
+report = false
+[[cut]]
+car = "gondola-4"
+mass_t = 22
+[[cut]]
+car = "gondola-4"
+mass_t = 26
+[[cut]]
+car = "gondola-4"
+mass_t = 30
+"""
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_worker_processes_give_the_bytes_of_this_process(
+    config: Path, serial: Path, tmp_path: Path, workers: int
+) -> None:
+    assert run(config, tmp_path / "out", LocalWorkers(workers)).failures == ()
+    assert contents(tmp_path / "out") == contents(serial)
+
+
+def test_tables_are_those_of_a_tune(command: Callable[..., Ran], serial: Path, tmp_path: Path) -> None:
+    # Another program around the same steps. It solves each target beside other ones, and the kernels' vectors then add
+    # in another order: not the bytes are the same, but the lines, to what that rounding makes of a polish.
+    (tmp_path / "tune.toml").write_text(PLANT + TUNED, encoding="utf-8")
+    code, _, said = command("tune", tmp_path / "tune.toml", "-o", tmp_path / "out", "--workers", "2")
+    assert code in (0, 1), said
+    tuned, swept = (read_book(directory / "book.h5") for directory in (tmp_path / "out", serial))
+    assert len(tuned) == 6
+    for one, other in zip(swept, tuned, strict=True):
+        assert replace(one, stages=other.stages, predicted=other.predicted, validated=other.validated) == other
+        path = np.linspace(0.0, one.retarder.exit_m, 50)
+        ours, theirs = lines_of(one, path), lines_of(other, path)
+        np.testing.assert_allclose(ours.lower_m_s, theirs.lower_m_s, atol=1e-4)
+        np.testing.assert_allclose(ours.upper_m_s, theirs.upper_m_s, atol=1e-4)
+        assert one.predicted.rms_m_s == pytest.approx(other.predicted.rms_m_s, rel=1e-4)
+        assert one.validated is not None
+        assert other.validated is not None
+        assert one.validated.rms_m_s == pytest.approx(other.validated.rms_m_s, rel=1e-2)
+
+
+def test_the_other_commands_take_what_a_sweep_leaves(command: Callable[..., Ran], serial: Path) -> None:
+    code, said, _ = command("inspect", serial)
+    assert code == 0
+    assert "files that it lists are there unchanged" in said
+    code, said, warned = command("validate", serial / "book.h5", "--config", serial / "config.toml", "--passes", "200")
+    assert code in (0, 1)
+    assert said
+    assert "another configuration" not in warned
+    code, said, _ = command("verify", serial, "--passes", "100")
+    assert code in (0, 1), said
+
+
+def test_a_grown_grid_keeps_what_is_there(config: Path, serial: Path, tmp_path: Path) -> None:
+    larger, smaller = tmp_path / "larger.toml", tmp_path / "smaller.toml"
+    larger.write_text(config.read_text(), encoding="utf-8")
+    smaller.write_text(config.read_text().replace("to = 30", "to = 26"), encoding="utf-8")
+    out, watcher = tmp_path / "out", Silence()
+    assert run(smaller, out, InThisProcess()).failures == ()
+    run(larger, out, InThisProcess(), watcher)
+    assert len(watcher.ended) == 1
+    kept, new = contents(out), contents(serial)
+    # Tables are stamped with the configuration of the last run, whichever run computed them; results are not.
+    assert {name: kept[name] for name in new if not name.startswith("sweep/units")} == {
+        name: content for name, content in new.items() if not name.startswith("sweep/units")
+    }
