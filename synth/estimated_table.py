@@ -47,7 +47,8 @@ class EstimatedTable:
     """Lines for the estimated speed, the estimator, and the error of its speed where decisions are taken.
 
     `trim_m_s`: what was added to all lower and to all upper lines; `rms_before_m_s`, `rms_after_m_s`: simulated on the
-    tuning passes without and with it; `rounds`: designs until the error had settled.
+    tuning passes without and with it; `rounds`: designs until the error had settled. `designed`: whether the lines are
+    those designed for the estimate; else those for the measured speed did better with it, too.
     """
 
     lines: PolynomialLines
@@ -57,11 +58,14 @@ class EstimatedTable:
     rms_before_m_s: float
     rms_after_m_s: float
     rounds: int
+    designed: bool
 
 
-def estimator_design(plant: Plant, resolution: Resolution) -> Transitions:
-    """The grid to design lines for estimated speeds on, for all targets and errors of a plant."""
-    step = min(resolution.speed_step_m_s, STEP_SHARE * guessed_error_m_s(plant))
+def estimator_design(plant: Plant, resolution: Resolution, lowest_target_m_s: float) -> Transitions:
+    """The grid to design lines for estimated speeds on, for all errors and targets of a plant."""
+    # The step is that at the reference speed; below it cells are wider.
+    wider = max(1.0, resolution.reference_speed_m_s / lowest_target_m_s)
+    step = min(resolution.speed_step_m_s, STEP_SHARE * guessed_error_m_s(plant) / wider)
     return persistent_transitions(plant, replace(resolution, speed_step_m_s=step))
 
 
@@ -70,10 +74,13 @@ def guessed_error_m_s(plant: Plant) -> float:
     return FIRST_SHARE * measured_speed_std(plant.sensor.noise_m_s, plant.sensor.resolution_m_s)
 
 
-def estimated_table(problem: Problem, design: Transitions, degree: int, tuning: RandomPasses) -> EstimatedTable:
+def estimated_table(
+    problem: Problem, design: Transitions, measured: PolynomialLines, tuning: RandomPasses
+) -> EstimatedTable:
     """Design the lines of one case for its estimator, on the `estimator_design` of its plant.
 
-    `tuning` are passes to find the error and the trim on.
+    `measured`: lines for the measured speed, of the degree wanted; kept where design goes wrong. `tuning` are passes to
+    find the error and the trim on.
     """
     plant, estimator = problem.plant, estimator_of(problem.plant)
     loop = close_loop(plant, plant.top_stage + 1)
@@ -81,14 +88,22 @@ def estimated_table(problem: Problem, design: Transitions, degree: int, tuning: 
     rounds, settled = 0, False
     while not settled and rounds < ROUNDS:
         rounds += 1
-        lines = designed_lines(problem, design, degree, error)
+        lines = designed_lines(problem, design, measured.degree, error)
         controller = controller_of(lines, estimator)
         found = speed_error_m_s(loop, controller, tuning.part(0, min(ERROR_PASSES, len(tuning))))
         settled = abs(found - error) <= SETTLED * error
         error = found
     draws = loop.draws(tuning)
-    shifts, before, after = trimmed(lambda a, b: rms_of(loop, draws, shifted(lines, a, b), estimator, problem))
-    return EstimatedTable(shifted(lines, *shifts), estimator, error, shifts, before, after, rounds)
+
+    def trim(lines: PolynomialLines) -> tuple[tuple[float, float], float, float]:
+        return trimmed(lambda a, b: rms_of(loop, draws, shifted(lines, a, b), estimator, problem))
+
+    shifts, before, after = trim(lines)
+    designed = after <= rms_of(loop, draws, measured, estimator, problem)
+    if not designed:
+        lines = measured
+        shifts, before, after = trim(lines)
+    return EstimatedTable(shifted(lines, *shifts), estimator, error, shifts, before, after, rounds, designed)
 
 
 def designed_lines(problem: Problem, design: Transitions, degree: int, error_m_s: float) -> PolynomialLines:

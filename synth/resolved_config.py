@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from annotated_types import Ge, Le
@@ -16,6 +16,7 @@ from plant_models.library.near_miss import near_miss
 from plant_models.library.sourced_value import SET_BY_USER
 from synth.cut_class import CutClass, category_warnings, resolve_cut
 from synth.grid import Resolution
+from synth.grid_warnings import grid_warnings
 from synth.input_error import InputError
 from synth.problem import Criterion, EntrySpeed, Plant, Problem
 from synth.settings import (
@@ -161,6 +162,8 @@ def resolve(settings: Settings, file: str) -> ResolvedConfig:
             warnings=tuple(range_warnings(parameters)) + tuple(category_warnings(cuts)),
         )
         config.problems()
+        coarse = tuple(grid_warnings(config.resolution, retarder.sensor, targets))
+        config = replace(config, warnings=config.warnings + coarse)
         if config.regulator.estimator and config.criterion.requirement is not None:
             raise InputError(
                 f"{file}: regulator.estimator is true, but criterion.p_overspeed and criterion.worst_friction_* can be "

@@ -119,6 +119,7 @@ def estimate_of(made: EstimatedTable) -> Document:
         "error_m_s": made.error_m_s,
         "trim_m_s": made.trim_m_s,
         "rounds": made.rounds,
+        "designed": made.designed,
         "tuning_rms_before_trim_m_s": made.rms_before_m_s,
         "tuning_rms_m_s": made.rms_after_m_s,
     }

@@ -154,7 +154,7 @@ def estimator_order(config: ResolvedConfig, plant: Plant) -> EstimatorOrder:
     loop = close_loop(plant, plant.top_stage + 1)
     prediction = weighted_passes(seed + 2, PREDICTION_PASSES)
     return EstimatorOrder(
-        design=estimator_design(plant, config.resolution),
+        design=estimator_design(plant, config.resolution, min(config.targets_m_s)),
         tuning=random_passes(seed + 1, TUNING_PASSES, TUNING_PASSES + TRIM_PASSES),
         prediction=loop.draws(prediction.passes),
         weight=prediction.weight,

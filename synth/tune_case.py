@@ -91,7 +91,7 @@ def tune_case(order: CaseOrder) -> CaseResult:
     if order.estimator is None:
         table, predicted = predicted_table(order, lines)
     else:
-        made = estimated_table(problem, order.estimator.design, order.degree, order.estimator.tuning)
+        made = estimated_table(problem, order.estimator.design, lines, order.estimator.tuning)
         table, predicted = predicted_by_passes(order, made, order.estimator)
     table = order.store(table)
     sample = simulated(order, TableController(table))

@@ -10,6 +10,10 @@ from synth.transitions import Transitions
 
 POLISH_ITERATIONS = 25
 
+FAR_SHARE, MOST_ROUNDS = 0.25, 4
+"""A polish ends when a step gains little of the cost that it began with. If it has brought the cost down to less than
+this share, that was too early: it is begun anew from its end, so often at most in all."""
+
 
 def tuned_lines(design: Transitions, target_speed_m_s: float, criterion: Criterion, degree: int) -> PolynomialLines:
     """Lines of `degree` for one target speed on `design`."""
@@ -31,5 +35,10 @@ def fitted(solution: Solution, degree: int) -> Fit:
 
 def polished(design: Transitions, fit: Fit, target_speed_m_s: float, criterion: Criterion) -> PolynomialLines:
     """The fitted lines after the polish."""
-    evaluate = evaluator(design, target_speed_m_s, criterion)
-    return polish(fit.lines, fit.curvature, design.grid.path_m, evaluate, POLISH_ITERATIONS).lines
+    evaluate, nodes = evaluator(design, target_speed_m_s, criterion), design.grid.path_m
+    found = polish(fit.lines, fit.curvature, nodes, evaluate, POLISH_ITERATIONS)
+    for _ in range(MOST_ROUNDS - 1):
+        if found.cost_after >= FAR_SHARE * found.cost_before:
+            break
+        found = polish(found.lines, fit.curvature, nodes, evaluate, POLISH_ITERATIONS)
+    return found.lines

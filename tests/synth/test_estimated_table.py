@@ -17,6 +17,8 @@ from synth.polynomial_fit import PolynomialLines
 from synth.problem import Criterion, Plant, Problem
 from synth.random_passes import RandomPasses, random_passes
 from synth.switching_lines import SwitchingLines
+from synth.transitions import persistent_transitions
+from synth.tuned_lines import tuned_lines
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +83,9 @@ def test_it_is_designed_for_its_own_error_and_better_than_no_estimator(
     plant = plant_of(36.0)
     problem = Problem(plant, 3.0, Criterion())
     coarse = Resolution(path_step_m=1.0, speed_step_m_s=0.05)
-    made = estimated_table(problem, estimator_design(plant, coarse), 3, passes)
+    measured = tuned_lines(persistent_transitions(plant, coarse), 3.0, problem.criterion, 3)
+    made = estimated_table(problem, estimator_design(plant, coarse, 3.0), measured, passes)
+    assert made.designed
     assert made.rms_after_m_s <= made.rms_before_m_s
     assert made.rounds <= 3
     lines = made.lines.at(np.linspace(0.0, plant.exit_m, 301))
