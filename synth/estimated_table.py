@@ -49,6 +49,7 @@ class EstimatedTable:
     `trim_m_s`: what was added to all lower and to all upper lines; `rms_before_m_s`, `rms_after_m_s`: simulated on the
     tuning passes without and with it; `rounds`: designs until the error had settled. `designed`: whether the lines are
     those designed for the estimate; else those for the measured speed did better with it, too.
+    `plain_rms_m_s`: of the latter without estimator, on the same passes.
     """
 
     lines: PolynomialLines
@@ -59,6 +60,12 @@ class EstimatedTable:
     rms_after_m_s: float
     rounds: int
     designed: bool
+    plain_rms_m_s: float
+
+    @property
+    def gains(self) -> bool:
+        """Whether the estimator did better than none on the tuning passes; else it should be left out."""
+        return self.rms_after_m_s < self.plain_rms_m_s
 
 
 def estimator_design(plant: Plant, resolution: Resolution, lowest_target_m_s: float) -> Transitions:
@@ -99,11 +106,12 @@ def estimated_table(
         return trimmed(lambda a, b: rms_of(loop, draws, shifted(lines, a, b), estimator, problem))
 
     shifts, before, after = trim(lines)
+    plain = rms_of(loop, draws, measured, None, problem)
     designed = after <= rms_of(loop, draws, measured, estimator, problem)
     if not designed:
         lines = measured
         shifts, before, after = trim(lines)
-    return EstimatedTable(shifted(lines, *shifts), estimator, error, shifts, before, after, rounds, designed)
+    return EstimatedTable(shifted(lines, *shifts), estimator, error, shifts, before, after, rounds, designed, plain)
 
 
 def designed_lines(problem: Problem, design: Transitions, degree: int, error_m_s: float) -> PolynomialLines:
@@ -113,8 +121,8 @@ def designed_lines(problem: Problem, design: Transitions, degree: int, error_m_s
     return tuned_lines(seen, problem.target_speed_m_s, problem.criterion, degree)
 
 
-def controller_of(lines: PolynomialLines, estimator: Estimator) -> LineController:
-    """A regulator that compares the estimated speed with `lines`."""
+def controller_of(lines: PolynomialLines, estimator: Estimator | None) -> LineController:
+    """A regulator that compares the estimated speed with `lines`; without an estimator, the measured one."""
     return LineController(lines.at(np.linspace(0.0, lines.exit_m, 301)), estimator=estimator)
 
 
@@ -127,7 +135,9 @@ def shifted(lines: PolynomialLines, lower_m_s: float, upper_m_s: float) -> Polyn
     return opened(replace(lines, coefficients=coefficients))
 
 
-def rms_of(loop: ClosedLoop, draws: Draws, lines: PolynomialLines, estimator: Estimator, problem: Problem) -> float:
+def rms_of(
+    loop: ClosedLoop, draws: Draws, lines: PolynomialLines, estimator: Estimator | None, problem: Problem
+) -> float:
     """Simulated rms error at the exit, m/s."""
     exits = loop.run(controller_of(lines, estimator), draws).exit_speed_m_s
     return float(np.sqrt(np.mean((exits - problem.target_speed_m_s) ** 2)))

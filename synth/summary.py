@@ -120,6 +120,8 @@ def estimate_of(made: EstimatedTable) -> Document:
         "trim_m_s": made.trim_m_s,
         "rounds": made.rounds,
         "designed": made.designed,
+        "used": made.gains,
+        "tuning_rms_without_m_s": made.plain_rms_m_s,
         "tuning_rms_before_trim_m_s": made.rms_before_m_s,
         "tuning_rms_m_s": made.rms_after_m_s,
     }

@@ -88,11 +88,12 @@ def tune_case(order: CaseOrder) -> CaseResult:
     fit = fit_lines(solution, occupancy.samples, order.degree)
     lines, finding = required(design, order.check, fit, target, problem.criterion)
     made = None
-    if order.estimator is None:
-        table, predicted = predicted_table(order, lines)
-    else:
+    if order.estimator is not None:
         made = estimated_table(problem, order.estimator.design, lines, order.estimator.tuning)
+    if order.estimator is not None and made is not None and made.gains:
         table, predicted = predicted_by_passes(order, made, order.estimator)
+    else:
+        table, predicted = predicted_table(order, lines)
     table = order.store(table)
     sample = simulated(order, TableController(table))
     statistics = exit_statistics(sample, target)

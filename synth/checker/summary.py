@@ -51,11 +51,16 @@ class Summary:
             return DEFAULT_HONESTY
         return Honesty(low, high)
 
-    @property
-    def estimating(self) -> bool:
-        """Whether the regulator is to compare an estimated speed; configurations from before that have no such key."""
+    def estimating(self, table: Table) -> bool:
+        """Whether `table` is to have an estimator: it is asked for, and the tune did not find it useless.
+
+        Configurations from before that have no such key.
+        """
         regulator = self.config.get("regulator")
-        return isinstance(regulator, dict) and regulator.get("estimator") is True
+        if not (isinstance(regulator, dict) and regulator.get("estimator") is True):
+            return False
+        estimate = self.cases.get(table.id, {}).get("estimate")
+        return not (isinstance(estimate, dict) and estimate.get("used") is False)
 
     def plant(self, table: Table) -> Plant:
         """The plant that `table` is for; `UnusableConfigError` if the configuration has none that fits it."""

@@ -90,7 +90,7 @@ def judge(table: Table, summary: Summary | None, passes: int, seed: int, found: 
         findings += [Finding(Kind.DISAGREES, table.id, sentence) for sentence in summary.case_faults(table)]
         try:
             plant = summary.plant(table)
-            others = estimator_faults(table.estimator, plant, summary.estimating)
+            others = estimator_faults(table.estimator, plant, summary.estimating(table))
             findings += [Finding(Kind.DISAGREES, table.id, sentence) for sentence in others]
             figures = figures_of(simulate(plant, table, passes, seed), table.target_m_s)
             claims += simulated_faults(table, plant, figures, honesty)

@@ -30,7 +30,9 @@ def exit_density(cases: Sequence[CaseResult]) -> Figure:
         draw_case(panels[0, column], panels[1, column], case)
     panels[0, 0].set_ylabel("density, 1/(m/s)", fontsize=9)
     panels[1, 0].set_ylabel("the same, logarithmic", fontsize=9)
-    predicted = "predicted" if cases[0].estimate is None else "predicted from other simulated passes"
+    predicted = (
+        "predicted" if all(case.table.estimator is None for case in cases) else "predicted from other simulated passes"
+    )
     handles = [
         Patch(facecolor=SKY, label="simulated passes"),
         Line2D(

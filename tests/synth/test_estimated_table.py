@@ -86,6 +86,7 @@ def test_it_is_designed_for_its_own_error_and_better_than_no_estimator(
     measured = tuned_lines(persistent_transitions(plant, coarse), 3.0, problem.criterion, 3)
     made = estimated_table(problem, estimator_design(plant, coarse, 3.0), measured, passes)
     assert made.designed
+    assert made.gains
     assert made.rms_after_m_s <= made.rms_before_m_s
     assert made.rounds <= 3
     lines = made.lines.at(np.linspace(0.0, plant.exit_m, 301))

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from synth.cli import main
+from synth.estimated_table import EstimatedTable
 from tests.system.conftest import CLASS, EPOCH, Command
 from tuning_tables import read_book, read_json
 
@@ -61,6 +62,20 @@ def test_validate_runs_the_estimator_of_the_file(command: Command, tuned: Tuned,
     found = json.loads(run.out)[0]["simulated"]
     low, high = case["simulated"]["rms_ci95_m_s"]
     assert 0.8 * low < found["rms_m_s"] < 1.25 * high
+
+
+def test_where_it_gains_nothing_it_is_left_out(
+    command: Command, tuned: Tuned, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(EstimatedTable, "gains", property(lambda made: False))
+    assert command("tune", tuned[0], "-o", tmp_path / "out", "--workers", "1").code in (0, 1)
+    (case,) = json.loads((tmp_path / "out" / "summary.json").read_text())["cases"]
+    written = json.loads((tmp_path / "out" / case["table"]).read_text())
+    assert (written["version"], case["estimate"]["used"]) == (1, False)
+    assert "passes" not in written["predicted"]
+    assert case["simulated"]["rms_m_s"] == pytest.approx(case["comparison"]["without estimator"]["rms_m_s"], rel=0.02)
+    verified = command("verify", tmp_path / "out", "--passes", "200")
+    assert verified.code == 0, verified.out
 
 
 def test_what_cannot_be_had_together_is_said(command: Command, tmp_path: Path) -> None:
