@@ -122,7 +122,9 @@ def test_gradient_is_the_slope_of_the_cost(design: Transitions, start: Polynomia
     along = (found.by_lower * direction[0][:, :-1]).sum((1, 2)) + (found.by_upper * direction[1][:, :-1]).sum((1, 2))
     size = np.abs(found.by_lower).sum((1, 2)) + np.abs(found.by_upper).sum((1, 2))
     assert np.abs(along).max() > 1e-4
-    assert np.all(np.abs(along - (costs(h) - costs(-h)) / (2 * h)) < 1e-5 * size + 1e-9)
+    # Commands that are next to impossible are cut off, so the cost has steps of some 1e-10 where one comes or goes.
+    steps = 1.5e-10 / (2 * h)
+    assert np.all(np.abs(along - (costs(h) - costs(-h)) / (2 * h)) < 1e-5 * size + 1e-9 + steps)
 
 
 def test_an_asymmetric_table_is_best_by_its_own_cost_and_slower(design: Transitions, start: PolynomialLines) -> None:
