@@ -1,0 +1,84 @@
+"""The unlocked simulator: the locked one where nobody commands in a transient, and the rule it runs."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from synth.closed_loop import LineController
+from synth.problem import Plant
+from synth.random_passes import random_passes
+from synth.switching_lines import SwitchingLines
+from synth.unlocked.drive_modes import drive_modes
+from synth.unlocked.laws import CompactController, SurfaceController, at_rest_only
+from synth.unlocked.loop import unlocked_loop
+
+
+def falling_lines(plant: Plant, nodes: int) -> SwitchingLines:
+    """Lines that fall to 3 m/s and make much ado."""
+    s = np.linspace(0.0, plant.exit_m, nodes)
+    middle = 3.0 + 1.2 * (1.0 - s / plant.exit_m) ** 2 + 0.03 * np.sin(s) + 0.1 * np.arange(3)[:, None]
+    lower, upper = middle - 0.03, middle + 0.03
+    lower[0], upper[-1] = -np.inf, np.inf
+    return SwitchingLines(s, lower, upper)
+
+
+def test_without_commands_in_transients_it_is_the_locked_simulator(plant: Plant) -> None:
+    loop, lines = unlocked_loop(plant), falling_lines(plant, 101)
+    draws = loop.draws(random_passes(11, 0, 2000))
+    locked = loop.locked.run(LineController(lines), draws)
+    unlocked = loop.run(SurfaceController(at_rest_only(lines, drive_modes(plant, 20.0, 5))), draws)
+    assert locked.switchings.mean() > 4.0
+    assert (unlocked.switchings == locked.switchings).all()
+    assert unlocked.exit_speed_m_s == pytest.approx(locked.exit_speed_m_s, abs=1e-9)
+    assert unlocked.transit_time_s == pytest.approx(locked.transit_time_s, abs=1e-9)
+
+
+def test_the_compact_rule_commands_what_its_polynomial_says(plant: Plant) -> None:
+    rng = np.random.default_rng(4)
+    coefficients = 0.05 * rng.standard_normal((3, 2, 3, 4))
+    coefficients[:, 0, 0, 0], coefficients[:, 1, 0, 0] = 3.1, 3.2
+    coefficients[:, :, 0, 1] = -0.5
+    has_line = np.array([[False, True], [True, True], [True, False]])
+    controller = CompactController(plant.exit_m, coefficients, has_line)
+    loop, stages = unlocked_loop(plant), plant.position.stage_pressures_kpa
+    commands = in_transient = 0
+    for i in range(20):
+        trace = loop.follow(controller, loop.draws(random_passes(12, i, 1)))
+        at = np.flatnonzero(~np.isnan(trace.measured_m_s))
+        stage = 0
+        for j, event in enumerate(at):
+            # The pressure follows from the overpressure just before the sample only where the pads touch and the
+            # pressure stands still; elsewhere the commands of this test are not checked.
+            known = event > 1 and trace.overpressure_kpa[event] == trace.overpressure_kpa[event - 1] > 0.0
+            s, v = trace.path_m[event], trace.measured_m_s[event]
+            u, x = 2.0 * s / plant.exit_m - 1.0, 0.01 * (50.0 + trace.overpressure_kpa[event] - stages[stage])
+            lower, upper = (
+                sum(coefficients[stage, side, b, a] * x**b * u**a for b in range(3) for a in range(4))
+                for side in (0, 1)
+            )
+            step = -1 if has_line[stage, 0] and v < lower else int(has_line[stage, 1] and v > upper)
+            if known:
+                assert trace.stage[event] - stage == step
+                commands += step != 0
+            in_transient += j > 0 and trace.stage[event] != stage and event - at[j - 1] > 1
+            stage = int(trace.stage[event])
+    assert commands > 10
+    assert in_transient > 10  # commands while the pressure was moving
+
+
+def test_two_stages_can_be_climbed_in_two_samples(plant: Plant) -> None:
+    always_up = np.zeros((3, 2, 3, 1))
+    always_up[:, 1, 0, 0] = 0.5
+    has_line = np.array([[False, True], [False, True], [False, False]])
+    trace = unlocked_loop(plant).follow(
+        CompactController(plant.exit_m, always_up, has_line), unlocked_loop(plant).draws(random_passes(1, 0, 1))
+    )
+    times = trace.time_s[1:][np.diff(trace.stage) == 1]
+    assert np.diff(times) == pytest.approx([0.1])
+    pressure = 50.0 + trace.overpressure_kpa
+    still_s = 0.02 + 0.1 + 0.2  # computing, valve and touch delay from the first command, and no second delay
+    filled = trace.time_s[np.argmax(pressure > 284.9)] - times[0]
+    assert filled == pytest.approx(still_s + 0.3 * math.log((700.0 - 15.0) / (700.0 - 285.0)), abs=0.021)
