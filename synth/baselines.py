@@ -14,10 +14,8 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.closed_loop import ClosedLoop, LineController, close_loop
-from synth.kernels.closed_loop import Draws
-from synth.problem import Plant
-from synth.random_passes import RandomPasses
+from synth.closed_loop import ClosedLoop, LineController
+from synth.common_passes import CommonPasses
 from synth.switching_lines import SwitchingLines
 
 LINE_NODES = 129
@@ -165,23 +163,23 @@ FAMILIES = (
 )
 
 
-def tune_baselines(plant: Plant, target_m_s: float, passes: RandomPasses) -> tuple[TunedBaseline, ...]:
+def tune_baselines(passes: CommonPasses, target_m_s: float) -> tuple[TunedBaseline, ...]:
     """The four baselines, tuned for least rms exit error on `passes` (500 to 1000 are enough)."""
-    loop = close_loop(plant, plant.top_stage + 1)
-    draws = loop.draws(passes)
-    least, few = (loop.draws(passes.part(0, min(n, len(passes)))) for n in (FIRST_LOOK_PASSES, COARSE_PASSES))
-    return tuple(tune(family, loop, target_m_s, least, few, draws) for family in FAMILIES)
+    return tuple(tune(family, passes, target_m_s) for family in FAMILIES)
 
 
-def tune(family: Family, loop: ClosedLoop, target_m_s: float, least: Draws, few: Draws, draws: Draws) -> TunedBaseline:
+def tune(family: Family, passes: CommonPasses, target_m_s: float) -> TunedBaseline:
     """The best member of `family`; deterministic.
 
-    A coarse grid on the `least` passes, its best part on `few`, then a simplex search on `draws`.
+    A coarse grid on the first few `passes`, its best part on some more, then a simplex search on all.
     """
     from scipy.optimize import minimize  # start-up: scipy only where it is needed
 
-    def rms(stage: int, values: tuple[float, ...], draws: Draws) -> float:
-        exits = loop.run(family.build(loop, target_m_s, stage, *values), draws).exit_speed_m_s
+    loop = passes.loop(passes.plant.top_stage + 1)
+    least, few = passes.first(FIRST_LOOK_PASSES), passes.first(COARSE_PASSES)
+
+    def rms(stage: int, values: tuple[float, ...], passes: CommonPasses) -> float:
+        exits = passes.run(family.build(loop, target_m_s, stage, *values)).exit_speed_m_s
         return float(np.sqrt(np.mean((exits - target_m_s) ** 2)))
 
     top = loop.stages - 1
@@ -192,7 +190,7 @@ def tune(family: Family, loop: ClosedLoop, target_m_s: float, least: Draws, few:
     steps = [0.5 * (grid[1] - grid[0]) for grid in family.grids]
 
     def cost(x: NDArray[np.float64]) -> float:
-        return rms(stage, tuple(x), draws)
+        return rms(stage, tuple(x), passes)
 
     found = minimize(
         cost,

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from synth.backward_induction import solve_all
 from synth.case_result import CaseResult, DegreeStudy
-from synth.closed_loop import close_loop
+from synth.common_passes import CommonPasses, common_passes
 from synth.estimated_table import estimator_design
 from synth.friction_bound import friction_known_bounds
 from synth.grid import finer_for_check, require_memory
@@ -109,8 +109,9 @@ def class_tasks(
     solutions, plain = both[: len(targets)], both[len(targets) :]
     published = solve_all(as_published(design, PUBLISHED_LEVELS), priced, nodes_kept=VALUES_KEPT)
     bounds = friction_known_bounds(design, targets, criterion.squared(), passes, config.acceptance.rms_m_s)
-    draws = close_loop(plant, plant.top_stage + 1).draws(passes)
-    estimator = estimator_order(config, plant) if config.regulator.estimator else None
+    compared = common_passes(plant, passes)
+    rehearsal = compared.of_others(tuning)
+    estimator = estimator_order(config, compared) if config.regulator.estimator else None
 
     def case(i: int) -> CaseResult:
         order = CaseOrder(
@@ -123,9 +124,8 @@ def class_tasks(
             feasibility=bounds[i][1],
             check=check,
             degree=config.fit.degree,
-            passes=passes,
-            draws=draws,
-            tuning=tuning,
+            passes=compared,
+            tuning=rehearsal,
             generator=generator,
             created=created,
             store=lambda table: write_and_read_back(table, tables),
@@ -148,15 +148,14 @@ def class_tasks(
     return tasks + [partial(case, i) for i in range(len(targets))]
 
 
-def estimator_order(config: ResolvedConfig, plant: Plant) -> EstimatorOrder:
-    """Grid and passes to design for the estimator of `plant`; the passes are nobody else's."""
+def estimator_order(config: ResolvedConfig, compared: CommonPasses) -> EstimatorOrder:
+    """Grid and passes to design for the estimator of a plant; the passes are not those `compared`, nor anybody's."""
     seed = config.validation.seed
-    loop = close_loop(plant, plant.top_stage + 1)
     prediction = weighted_passes(seed + 2, PREDICTION_PASSES)
     return EstimatorOrder(
-        design=estimator_design(plant, config.resolution, min(config.targets_m_s)),
+        design=estimator_design(compared.plant, config.resolution, min(config.targets_m_s)),
         tuning=random_passes(seed + 1, TUNING_PASSES, TUNING_PASSES + TRIM_PASSES),
-        prediction=loop.draws(prediction.passes),
+        prediction=compared.of_others(prediction.passes),
         weight=prediction.weight,
     )
 

@@ -12,12 +12,11 @@ from synth.backward_induction import Solution
 from synth.baselines import tune_baselines
 from synth.case_result import WITHOUT_ESTIMATOR, CaseResult, DegreeStudy, Feasibility, Indifference, Measured
 from synth.chance_constraint import keep_overspeed_limit
-from synth.closed_loop import Controller, LineController, TableController, close_loop, trace
+from synth.closed_loop import Controller, LineController, TableController
+from synth.common_passes import CommonPasses
 from synth.estimated_table import EstimatedTable, estimated_table
 from synth.exit_density import ExitDensity
 from synth.exit_statistics import exit_statistics
-from synth.kernels.closed_loop import Draws
-from synth.passes import ExitSample
 from synth.policy_evaluation import commands, exit_density, occupancy_of
 from synth.policy_map import policy_map
 from synth.polynomial_fit import Fit, PolynomialLines, fit_lines
@@ -44,7 +43,7 @@ class EstimatorOrder:
 
     design: Transitions
     tuning: RandomPasses
-    prediction: Draws
+    prediction: CommonPasses
     weight: NDArray[np.float64]
 
 
@@ -53,8 +52,8 @@ class CaseOrder:
     """What to do for one case, and with what; `store` writes a table and reads it back from its file.
 
     `solution` on the design grid, `plain` the same without the switching tolerance, `published` in the formulation
-    as published; `check` the finer grid to predict on; `tuning` are the passes that baselines are tuned on,
-    `draws` what the common passes mean for the plant; `estimator`: what is needed to design for one, None without.
+    as published; `check` the finer grid to predict on; `passes` that every controller is compared on, `tuning` others
+    that baselines are tuned on; `estimator`: what is needed to design for one, None without.
     """
 
     label: str
@@ -66,9 +65,8 @@ class CaseOrder:
     feasibility: Feasibility
     check: Transitions
     degree: int
-    passes: RandomPasses
-    draws: Draws
-    tuning: RandomPasses
+    passes: CommonPasses
+    tuning: CommonPasses
     generator: Generator
     created: str
     store: Callable[[ControllerTable], ControllerTable]
@@ -95,7 +93,7 @@ def tune_case(order: CaseOrder) -> CaseResult:
     else:
         table, predicted = predicted_table(order, lines)
     table = order.store(table)
-    sample = simulated(order, TableController(table))
+    sample = order.passes.run(TableController(table))
     statistics = exit_statistics(sample, target)
     validated = Validated(statistics.passes, statistics.rms_m_s, statistics.rms_ci95_m_s)
     table = order.store(table.with_validated(validated))
@@ -116,15 +114,12 @@ def tune_case(order: CaseOrder) -> CaseResult:
             run(order, "full lines", LineController(solution.lines)),
             run(order, "as published", LineController(published.lines)),
             order.known,
-            *(run(order, b.name, b.controller) for b in tune_baselines(problem.plant, target, order.tuning)),
+            *(run(order, b.name, b.controller) for b in tune_baselines(order.tuning, target)),
             *(() if made is None else (run(order, WITHOUT_ESTIMATOR, LineController(lines.at(nodes))),)),
         ),
         indifference=indifference(order, by_lines),
         feasibility=order.feasibility,
-        traces=tuple(
-            trace(problem.plant, TableController(table), order.passes, i, cut_factor=factor)
-            for i, factor in enumerate(TRACE_FACTORS)
-        ),
+        traces=tuple(order.passes.trace(TableController(table), i, factor) for i, factor in enumerate(TRACE_FACTORS)),
         trace_factors=TRACE_FACTORS,
         criterion=problem.criterion,
         finding=finding,
@@ -163,7 +158,7 @@ def predicted_by_passes(
     plant, target = order.problem.plant, order.problem.target_speed_m_s
     origin = (order.generator, order.table_id, order.created)
     table = tabulate(plant, made.lines, target, unknown, *origin, made.estimator)
-    sample = close_loop(plant, plant.position.top_stage + 1).run(TableController(table), estimator.prediction)
+    sample = estimator.prediction.run(TableController(table))
     density = density_of(sample, estimator.weight, estimator.design.grid.speed_m_s)
     return replace(table, predicted=simulated_prediction(sample, estimator.weight, target)), density
 
@@ -178,12 +173,7 @@ def predict(check: Transitions, table: ControllerTable) -> ExitDensity:
 
 def run(order: CaseOrder, name: str, controller: Controller) -> Measured:
     """Closed loop of `controller` on the common passes, as figures."""
-    return Measured(name, exit_statistics(simulated(order, controller), order.problem.target_speed_m_s))
-
-
-def simulated(order: CaseOrder, controller: Controller) -> ExitSample:
-    """Closed loop of `controller` on the common passes."""
-    return close_loop(order.problem.plant, controller.stages).run(controller, order.draws)
+    return Measured(name, exit_statistics(order.passes.run(controller), order.problem.target_speed_m_s))
 
 
 def rms_of_lines(transitions: Transitions, lines: SwitchingLines, target_speed_m_s: float) -> float:

@@ -11,10 +11,10 @@ import numpy as np
 
 from synth.acceptance import missed_limits, overspeed_share
 from synth.backward_induction import Solution, solve_all
-from synth.closed_loop import TableController, close_loop
+from synth.closed_loop import TableController
+from synth.common_passes import CommonPasses, common_passes
 from synth.exit_statistics import exit_statistics
 from synth.grid import finer_for_check
-from synth.kernels.closed_loop import Draws
 from synth.problem import Plant
 from synth.random_passes import random_passes
 from synth.resolved_config import ResolvedConfig, resolve
@@ -41,7 +41,7 @@ class Workshop:
     plant: Plant
     design: Transitions
     check: Transitions
-    draws: Draws
+    passes: CommonPasses
     generator: Generator
 
 
@@ -66,9 +66,7 @@ def workshop(order: UnitOrder) -> Workshop:
         plant=plant,
         design=persistent_transitions(plant, config.resolution),
         check=check_transitions(plant, finer_for_check(config.resolution)),
-        draws=close_loop(plant, plant.top_stage + 1).draws(
-            random_passes(config.validation.seed, 0, config.validation.passes)
-        ),
+        passes=common_passes(plant, random_passes(config.validation.seed, 0, config.validation.passes)),
         generator=Generator("retarder-synth", version("retarder-synth"), order.config_sha256),
     )
 
@@ -117,8 +115,7 @@ def between_rms_m_s(check: Transitions, slower: ControllerTable, faster: Control
 def validated(shop: Workshop, table: ControllerTable) -> Row:
     """The table as a controller reads it, simulated on the common passes."""
     read, target, limits = from_json(to_json(table)), table.target_speed_m_s, shop.config.acceptance
-    controller = TableController(read)
-    sample = close_loop(shop.plant, controller.stages).run(controller, shop.draws)
+    sample = shop.passes.run(TableController(read))
     found = exit_statistics(sample, target)
     honest = table.predicted.rms_m_s / found.rms_m_s if found.rms_m_s else 0.0
     # In single precision, as a tune keeps them: both count the same passes.

@@ -7,6 +7,7 @@ import pytest
 
 from synth.baselines import FAMILIES, TunedBaseline, energy_rule, threshold_with_lead, tune_baselines, two_thresholds
 from synth.closed_loop import close_loop, simulate
+from synth.common_passes import common_passes
 from synth.exit_statistics import exit_statistics
 from synth.kernels.closed_loop import LEFT, advance
 from synth.problem import Plant
@@ -22,7 +23,7 @@ def passes() -> RandomPasses:
 
 @pytest.fixture(scope="module")
 def tuned(plant_52t: Plant, passes: RandomPasses) -> dict[str, TunedBaseline]:
-    return {baseline.name: baseline for baseline in tune_baselines(plant_52t, TARGET_M_S, passes)}
+    return {baseline.name: baseline for baseline in tune_baselines(common_passes(plant_52t, passes), TARGET_M_S)}
 
 
 @pytest.mark.parametrize("stage", [0, 1, 2, 3])
@@ -55,7 +56,7 @@ def test_tuning_is_deterministic_and_reports_what_it_reached(
     plant_52t: Plant, passes: RandomPasses, tuned: dict[str, TunedBaseline]
 ) -> None:
     assert list(tuned) == [family.name for family in FAMILIES]
-    again = {baseline.name: baseline for baseline in tune_baselines(plant_52t, TARGET_M_S, passes)}
+    again = {baseline.name: baseline for baseline in tune_baselines(common_passes(plant_52t, passes), TARGET_M_S)}
     for name, baseline in tuned.items():
         figures = exit_statistics(simulate(plant_52t, baseline.controller, passes), TARGET_M_S)
         assert figures.rms_m_s == baseline.rms_m_s
