@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.estimated_table import EstimatedTable
 from synth.exit_density import ExitDensity
 from synth.exit_statistics import ExitStatistics
 from synth.passes import PassTrace
@@ -15,6 +15,9 @@ from synth.problem import SQUARED_ERROR_CRITERION, Criterion, Plant
 from synth.requirement_found import Finding
 from synth.switching_lines import SwitchingLines
 from tuning_tables import ControllerTable
+
+if TYPE_CHECKING:  # who draws or reports a case needs no kernels
+    from synth.estimated_table import EstimatedTable
 
 WITHOUT_ESTIMATOR = "without estimator"
 """Name of the polished lines for the measured speed, where the table has an estimator."""

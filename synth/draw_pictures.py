@@ -90,7 +90,10 @@ class Studio:
 
     def _pipe(self) -> Connection:
         if not hasattr(self._mine, "pipe"):
-            context = multiprocessing.get_context("spawn")  # a fork would copy numba's threads and BLAS's
+            # A fork of this process would copy numba's threads and BLAS's; the server's has none, and has loaded
+            # matplotlib once for all.
+            context = multiprocessing.get_context("forkserver")
+            context.set_forkserver_preload(["synth.plots.picture_book"])
             self._mine.pipe, theirs = context.Pipe()
             context.Process(target=draw_jobs, args=(theirs,), daemon=True).start()
             theirs.close()
@@ -112,8 +115,6 @@ def draw_jobs(pipe: Connection) -> None:
     with contextlib.suppress(OSError):
         os.nice(NICENESS)
     gc.disable()  # figures are trees of small objects, and this process ends before their cycles would matter
-    from synth.plots import picture_book  # noqa: F401  # matplotlib loads while the first case is computed
-
     while True:
         try:
             job = pipe.recv()

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from synth.exit_density import ExitDensity
-from synth.polynomial_fit import PolynomialLines
 from synth.problem import Plant
 from synth.switching_lines import SwitchingLines
 from tuning_tables import (
@@ -19,6 +20,9 @@ from tuning_tables import (
     ValidRange,
     round_coefficients,
 )
+
+if TYPE_CHECKING:  # who asks a table for its lines needs no kernels
+    from synth.polynomial_fit import PolynomialLines
 
 OVERSPEED_M_S = 0.3
 """Over-speed counted in `predicted`: exit faster than the target by more than this (model §3)."""

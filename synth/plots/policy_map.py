@@ -20,8 +20,8 @@ from synth.plots.case_names import cut_name, target_name
 from synth.plots.house_style import BLUE, GREY, INK, VERMILLION, dress, mark_zones, new_figure, place, speed_window_m_s
 
 DOWN, HOLD, UP, HATCH = "#cfe4f3", "#fafafa", "#fae0cf", "#b5b5b5"
-PIXELS = (240, 200)
-"""Size of a panel's map, path by speed."""
+STRIPE_PERIOD, STRIPE_WIDTH = 9, 2
+"""Of the hatching, in pixels along the path."""
 
 PASSES_SHOWN = 3
 
@@ -67,8 +67,9 @@ def draw_stage(axes: Axes, case: CaseResult, stage: int) -> None:
     """One panel: map, solver's lines (dots), exported lines (bold), passes while they were in this stage."""
     low, high = speed_window_m_s(case)
     exit_m = case.plant.exit_m
-    image = command_image(case.policy_map, stage, exit_m, (low, high))
-    axes.imshow(image, extent=(0.0, exit_m, low, high), origin="lower", aspect="auto", interpolation="nearest")
+    pixels = round(axes.bbox.width), round(axes.bbox.height)
+    image = command_image(case.policy_map, stage, exit_m, (low, high), pixels)
+    axes.imshow(image, extent=(0.0, exit_m, low, high), origin="lower", aspect="auto", interpolation="none")
     raw, exported = case.solver_lines, case.table_lines
     sides = ((raw.lower_m_s, exported.lower_m_s, BLUE, "--"), (raw.upper_m_s, exported.upper_m_s, VERMILLION, "-"))
     for dots, line, colour, style in sides:
@@ -86,16 +87,20 @@ def finite(line: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.where(np.isfinite(line), line, np.nan)
 
 
-def command_image(policy: PolicyMap, stage: int, exit_m: float, speeds_m_s: tuple[float, float]) -> NDArray[np.uint8]:
-    """The map of one stage as colours (speed, path, 4) on an even mesh."""
-    path = (np.arange(PIXELS[0]) + 0.5) / PIXELS[0] * exit_m
-    speed = speeds_m_s[0] + (np.arange(PIXELS[1]) + 0.5) / PIXELS[1] * (speeds_m_s[1] - speeds_m_s[0])
+def command_image(
+    policy: PolicyMap, stage: int, exit_m: float, speeds_m_s: tuple[float, float], pixels: tuple[int, int]
+) -> NDArray[np.uint8]:
+    """The map of one stage as colours (speed, path, 4) on an even mesh of `pixels`, path by speed; slowest first."""
+    width, height = pixels
+    path = (np.arange(width) + 0.5) / width * exit_m
+    speed = speeds_m_s[0] + (np.arange(height) + 0.5) / height * (speeds_m_s[1] - speeds_m_s[0])
     node = np.clip(np.searchsorted(policy.path_m, path, side="right") - 1, 0, policy.path_m.size - 1)
-    cell = nearest(policy.speed_m_s, speed)
-    *commands, hatch = np.round(255.0 * to_rgba_array([DOWN, HOLD, UP, HATCH])).astype(np.uint8)
-    image: NDArray[np.uint8] = np.array(commands)[policy.command[stage][node][:, cell].T + 1]
-    stripe = (np.arange(PIXELS[1])[:, None] + np.arange(PIXELS[0])) % 7 < 2
-    image[stripe & policy.indifferent[stage][node][:, cell].T] = hatch
+    here = np.ix_(node, nearest(policy.speed_m_s, speed))
+    shown = policy.command[stage][here].T + 1
+    stripe = (np.arange(width) - np.arange(height)[:, None]) % STRIPE_PERIOD < STRIPE_WIDTH
+    shown[stripe & policy.indifferent[stage][here].T] = 3
+    colours = np.round(255.0 * to_rgba_array([DOWN, HOLD, UP, HATCH])).astype(np.uint8)
+    image: NDArray[np.uint8] = colours[shown]
     return image
 
 
