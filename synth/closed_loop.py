@@ -15,6 +15,7 @@ from synth.controllers import Controller, LineController, TableController, fixed
 from synth.drive_pieces import drive_pieces
 from synth.kernels import closed_loop as kernel
 from synth.kernels import closed_loop_lanes as lanes
+from synth.kernels import lane_places as places
 from synth.kernels import regulator
 from synth.passes import ExitSample, PassTrace
 from synth.problem import Plant
@@ -49,7 +50,7 @@ class ClosedLoop:
     path: kernel.Path
     drive: kernel.Drive
     sensor: regulator.Sensor
-    pieces: lanes.Pieces
+    pieces: places.Pieces
 
     @property
     def stages(self) -> int:
@@ -94,9 +95,11 @@ class ClosedLoop:
     def run(self, controller: Controller, draws: kernel.Draws) -> ExitSample:
         """All passes of `draws` under `controller`."""
         law = self._law(controller)
-        if law.estimator_work.shape[1] > 0 or law.lead_s != 0.0:  # looks at the sensor at every sample: nothing to gain
+        if law.estimator_work.shape[1] > 0:
             return self._alone(law, draws, np.empty((0, kernel.EVENT_FIELDS)))[0]
         exits = empty_exits(len(draws.cut_factor))
+        there = np.where(law.has_line[:, :, None], law.coefficients, np.float32(np.nan))
+        law = law._replace(coefficients=fixed(there, np.float32))
         lanes.run_lanes(self.path, self.pieces, self.sensor, law, draws, exits, lane_memory())
         return sample_of(exits)
 
@@ -129,13 +132,25 @@ def empty_exits(passes: int) -> kernel.Exits:
     )
 
 
-def lane_memory() -> lanes.Work:
+def lane_memory() -> places.Work:
     """Memory for one call of the kernel that runs passes side by side."""
-    return lanes.Work(
-        np.zeros(lanes.FLOATS * lanes.LANES),
-        np.zeros(lanes.INTS * lanes.LANES, dtype=np.int64),
-        np.zeros(lanes.LANES + 1, dtype=np.int64),
+    n = places.PLACES
+    return places.Work(
+        floats=aligned(places.FLOATS * n).view(np.float64),
+        ints=aligned(places.INTS * n),
+        waiting=aligned(n),
+        ended=aligned(n),
+        told=aligned(n),
+        heard=aligned(n).view(np.float64),
     )
+
+
+def aligned(count: int) -> NDArray[np.int64]:
+    """`count` zeros that begin where a line of the cache does: a pack is one line, else it would touch two."""
+    line = 8
+    room = np.zeros(count + line, dtype=np.int64)
+    first = -(room.ctypes.data // 8) % line
+    return room[first : first + count]
 
 
 def sample_of(exits: kernel.Exits) -> ExitSample:

@@ -9,214 +9,176 @@ does not depend on its neighbours.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from synth.kernels import packs
 from synth.kernels.borrowing import borrowing, borrowing_inline
 from synth.kernels.closed_loop import LONGEST_PASS_S, Draws, Exits, Path
-from synth.kernels.regulator import Rule, Sensor, measure, speaks, stage_by_lines, table_decision
+from synth.kernels.lane_places import (
+    BEFORE,
+    CELL,
+    DRAG,
+    FIRST_S,
+    FLOATS,
+    INTS,
+    LANES,
+    LEFT_S,
+    NUMBER,
+    PASS,
+    PIECE,
+    PLACES,
+    ROW,
+    SAMPLE,
+    SLOPE,
+    STAGE,
+    SWITCHINGS,
+    Floats,
+    Ints,
+    Pieces,
+    S,
+    V,
+    Work,
+)
+from synth.kernels.lane_regulator import listen, regulate
+from synth.kernels.regulator import Rule, Sensor
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Orders = NDArray[np.int32]
+LINE_BYTES = 64
+"""What the memory delivers at once."""
 
-LANES = 64
-"""Passes side by side: enough to hide what one waits for."""
-
-FLOATS, INTS = 10, 8
-# Where a lane keeps what, in flat arrays: constant distances let the compiler see that lanes do not overlap.
-S, V, LEFT_S, ACCELERATION, EDGE_M, DRAG, KPA, FIRST_S, OUTCOME, MEASURED = range(0, FLOATS * LANES, LANES)
-CELL, ROW, PIECE, SAMPLE, NEXT, STAGE, SWITCHINGS, PASS = range(0, INTS * LANES, LANES)
-
-STALLS, ENDS, CROSSES = 0, 1, 2
-"""Outcomes of a turn: the cut stops, the piece is over, or the cell is."""
-
-MOTION_FIELDS, ORDER_FIELDS = 2, 3
-AHEAD, REST, OFFSET = range(ORDER_FIELDS)
-
-
-class Pieces(NamedTuple):
-    """Pieces of constant overpressure, one after the other: what the drive plays (P of them, tables flat, by piece).
-
-    Piece 0 is before the first sample; a resting mode is one piece of a sampling period that is followed by itself, a
-    chain several that end in a resting mode. `motion` (P · 2): overpressure and duration, that of piece 0 noted as 0;
-    `start_s` (P,) since the sample that it begins in. `order` (P · 3): what to add for the piece that follows; 1 + mode
-    at rest, 0 within a chain; samples since the chain began.
-    `command` and `samples` (modes, K + 1): first piece and length of the chain to a stage.
-    """
-
-    motion: Floats
-    start_s: Floats
-    order: Orders
-    command: Ints
-    samples: Ints
-
-
-class Work(NamedTuple):
-    """Memory of the lanes: `floats` (FLOATS · LANES,), `ints` (INTS · LANES,), `waiting` (LANES + 1,)."""
-
-    floats: Floats
-    ints: Ints
-    waiting: Ints
+SAMPLES_FETCHED = 128
+"""Noise of a pass that is worth asking for in advance; most passes need less."""
 
 
 @borrowing_inline
-def accelerate(
-    x: Floats, n: Ints, active: int, edges_m: Floats, gravity_m_s2: Floats, brake_m_s2_per_kpa: Floats
-) -> None:
-    """Acceleration and end of the cell that each lane is in; the brake's row begins at ROW."""
-    for lane in range(active):
-        cell = n[CELL + lane]
-        brake = brake_m_s2_per_kpa[np.uint64(n[ROW + lane] + cell)]
-        x[ACCELERATION + lane] = (gravity_m_s2[np.uint64(cell)] - x[DRAG + lane]) - brake * x[KPA + lane]
-        x[EDGE_M + lane] = edges_m[np.uint64(cell + 1)]
+def move(work: Work, active: int, path: Path, brakes: Floats, pieces: Pieces, looked_at: int, longest: int) -> Any:
+    """Move each lane by one turn of `closed_loop.advance`, and on to the next cell or piece; one that stalls stays.
 
-
-@borrowing_inline
-def move(x: Floats, active: int) -> None:
-    """Move each lane by one turn of `closed_loop.advance`; one that stalls is left as it is.
-
-    Without a branch, so that it runs in vector registers.
+    Returns how many lanes wait for the regulator (at pieces below `looked_at`), those in `waiting`, and how many passes
+    are over, at the exit, by a stall or by taking too long, those in `ended`.
     """
-    for lane in range(active):
-        s, v, left, a = x[S + lane], x[V + lane], x[LEFT_S + lane], x[ACCELERATION + lane]
-        gap = x[EDGE_M + lane] - s
+    x, n = work.floats, work.ints
+    cells, waiting, ended = path.gravity_m_s2.shape[0], 0, 0
+    for lane in range(0, active, packs.EIGHT):
+        s, v, left = packs.load8(x, S + lane), packs.load8(x, V + lane), packs.load8(x, LEFT_S + lane)
+        cell, piece = packs.load8(n, CELL + lane), packs.load8(n, PIECE + lane)
+        brake = packs.gather(brakes, packs.load8(n, ROW + lane) + cell)
+        free = packs.gather(path.gravity_m_s2, cell) - packs.load8(x, DRAG + lane)
+        edge = packs.gather(path.edges_m, cell + 1)
+        a = free - brake * packs.gather(pieces.kpa, piece)
+        gap = edge - s
         v_end = v + a * left
-        path = 0.5 * (v + v_end) * left
-        ends = (v_end > 0.0) & (path < gap)
+        way = 0.5 * (v + v_end) * left
+        ends = (v_end > 0.0) & (way < gap)
         square = v * v + 2.0 * a * gap
-        crosses = (not ends) & (square > 0.0)
-        v_edge = math.sqrt(square if square > 0.0 else 0.0)
-        later = left - 2.0 * gap / (v + v_edge)
-        later = later if later > 0.0 else 0.0
-        x[S + lane] = (s + path) if ends else (x[EDGE_M + lane] if crosses else s)
-        x[V + lane] = v_end if ends else (v_edge if crosses else v)
-        x[LEFT_S + lane] = 0.0 if ends else (later if crosses else left)
-        x[OUTCOME + lane] = ENDS if ends else (CROSSES if crosses else STALLS)
+        crosses = packs.opposite(ends) & (square > 0.0)
+        v_edge = packs.root(packs.greatest(square, 0.0))
+        later = packs.greatest(0.0, left - 2.0 * gap / (v + v_edge))
+        packs.store(x, S + lane, packs.choose(ends, s + way, packs.choose(crosses, edge, s)))
+        packs.store(x, V + lane, packs.choose(ends, v_end, packs.choose(crosses, v_edge, v)))
+        cell = packs.choose(crosses, cell + 1, cell)
+        packs.store(n, CELL + lane, cell)
+        piece = packs.choose(ends, packs.gather(pieces.after, piece), piece)
+        packs.store(n, PIECE + lane, piece)
+        lasts = packs.gather(pieces.duration_s, piece)
+        packs.store(x, LEFT_S + lane, packs.choose(ends, lasts, packs.choose(crosses, later, left)))
+        sample = packs.load8(n, SAMPLE + lane)
+        sample = packs.choose(ends & (piece < pieces.sampled), sample + 1, sample)
+        packs.store(n, SAMPLE + lane, sample)
+        stalls = packs.opposite(ends) & (square <= 0.0)
+        over = (cell == cells) | stalls | (ends & (piece < pieces.resting) & (sample >= longest))
+        looks = ends & (piece < looked_at) & packs.opposite(over)
+        number = packs.load8(n, NUMBER + lane)
+        waiting += packs.keep(work.waiting, waiting, looks, number)
+        if packs.holds_anywhere(over):
+            ended += packs.keep(work.ended, ended, over, number)
+    packs.store(work.waiting, waiting, packs.load8(n, NUMBER + LANES))  # fill up the last pack
+    return waiting, ended
 
 
 @borrowing_inline
-def follow_on(x: Floats, n: Ints, active: int, cells: int, motion: Floats, order: Orders, waiting: Ints) -> int:
-    """Next cell or next piece of each lane; returns how many lanes wait, those in `waiting`, to be looked at.
-
-    A lane waits at a sample at rest, at the exit and where it stalls. By arithmetic, for the
-    processor could not foretell the branches.
-    """
-    count = 0
-    for lane in range(active):
-        outcome = int(x[OUTCOME + lane])
-        ended, cell, piece = outcome & ENDS, n[CELL + lane] + (outcome >> 1), n[PIECE + lane]
-        piece += ended * order[np.uint64(piece * ORDER_FIELDS + AHEAD)]
-        n[CELL + lane], n[PIECE + lane] = cell, piece
-        x[KPA + lane] = motion[np.uint64(piece * MOTION_FIELDS)]
-        x[LEFT_S + lane] += motion[np.uint64(ended * piece * MOTION_FIELDS + 1)]  # of piece 0 unless ended
-        decides = ended * order[np.uint64(piece * ORDER_FIELDS + REST)] != 0
-        waiting[np.uint64(count)] = lane
-        count += int(decides) | int(outcome == STALLS) | int(cell == cells)
-    return count
-
-
-@borrowing_inline
-def observe(x: Floats, n: Ints, waiting: Ints, count: int, sensor: Sensor, noise_z: NDArray[np.float32]) -> None:
-    """Number of the sample and measured speed of each lane that waits; harmless where a pass has ended.
-
-    Apart from the decision, so that one lane's division need not wait for another's branch.
-    """
-    for k in range(count):
-        lane = waiting[np.uint64(k)]
-        rests = int(x[OUTCOME + lane] == ENDS)
-        n[SAMPLE + lane] += rests * (n[NEXT + lane] - n[SAMPLE + lane])
-        n[NEXT + lane] += rests
-        sample = max(n[SAMPLE + lane], 0)
-        if sample >= noise_z.shape[1]:
-            sample %= noise_z.shape[1]
-        z = noise_z[np.uint64(n[PASS + lane]), np.uint64(sample)]
-        x[MEASURED + lane] = measure(x[V + lane], z, sensor)
-
-
-@borrowing_inline
-def regulate(x: Floats, n: Ints, lane: int, pieces: Pieces, law: Rule) -> None:
-    """What the regulator does with a measured speed at rest (as in `closed_loop.run_pass`)."""
-    s, measured, stage = x[S + lane], x[MEASURED + lane], n[STAGE + lane]
-    wanted, top = stage, pieces.command.shape[1] - 1
-    if law.coefficients.shape[0] > 0:
-        # The rule itself is only asked where it has a command to give: its branches are dear.
-        if speaks(law.coefficients, law.has_line, law.valid, stage, s, measured):
-            decision = table_decision(law.coefficients, law.has_line, law.valid, stage, s, measured)
-            wanted = min(max(stage + decision, 0), top)
-    else:
-        wanted = stage_by_lines(law.lower, law.upper, law.spacing_m, law.multi_step, stage, top, s, measured)
-    if wanted != stage:
-        rest = pieces.order[np.uint64(n[PIECE + lane] * ORDER_FIELDS + REST)]
-        mode, to = np.uint64(rest - 1), np.uint64(wanted)
-        first = pieces.command[mode, to]
-        n[NEXT + lane] = n[SAMPLE + lane] + pieces.samples[mode, to]
-        n[STAGE + lane], n[PIECE + lane] = wanted, first
-        n[SWITCHINGS + lane] += 1
-        x[KPA + lane] = pieces.motion[first * MOTION_FIELDS]
-        x[LEFT_S + lane] = pieces.motion[first * MOTION_FIELDS + 1]
-
-
-@borrowing_inline
-def begin(x: Floats, n: Ints, lane: int, i: int, path: Path, pieces: Pieces, draws: Draws) -> None:
+def begin(x: Floats, n: Ints, lane: int, i: int, path: Path, draws: Draws) -> None:
     """Pass `i` enters, released, on `lane`; its sample −1 lasts until the first."""
     x[S + lane], x[V + lane] = 0.0, draws.entry_m_s[i]
     x[LEFT_S + lane], x[FIRST_S + lane] = draws.first_sample_s[i], draws.first_sample_s[i]
     x[DRAG + lane] = path.drag_m_s2_per_n_kn * draws.resistance_n_kn[i]
-    x[KPA + lane] = pieces.motion[0]
+    x[SLOPE + lane], x[BEFORE + lane] = 0.0, math.nan
     n[CELL + lane], n[ROW + lane], n[PASS + lane] = 0, i * path.gravity_m_s2.shape[0], i
-    n[PIECE + lane], n[SAMPLE + lane], n[NEXT + lane], n[STAGE + lane], n[SWITCHINGS + lane] = 0, -1, 0, 0, 0
+    n[PIECE + lane], n[SAMPLE + lane], n[STAGE + lane], n[SWITCHINGS + lane] = 0, -1, 0, 0
 
 
 @borrowing_inline
-def record(x: Floats, n: Ints, lane: int, cells: int, period_s: float, pieces: Pieces, exits: Exits) -> None:
+def fetch_ahead(i: int, path: Path, draws: Draws) -> None:
+    """Ask the memory for the rows of pass `i`, which is to begin soon: gathers do not tell it what comes next."""
+    for cell in range(0, path.gravity_m_s2.shape[0], LINE_BYTES // 8):
+        packs.fetch(draws.brake_m_s2_per_kpa, i * path.gravity_m_s2.shape[0] + cell)
+    for sample in range(0, SAMPLES_FETCHED, LINE_BYTES // 4):
+        packs.fetch(draws.noise_z, i * draws.noise_z.shape[1] + sample)
+
+
+@borrowing_inline
+def record(
+    work: Work, lane: int, longest: int, path: Path, pieces: Pieces, sensor: Sensor, draws: Draws, exits: Exits
+) -> None:
     """Write down how the pass on `lane` has ended: at the exit, by a stall, or by taking too long."""
-    i, piece, left = n[PASS + lane], n[PIECE + lane], x[LEFT_S + lane]
+    x, n = work.floats, work.ints
+    i, cell, piece, sample = n[PASS + lane], n[CELL + lane], n[PIECE + lane], n[SAMPLE + lane]
     started, lasts = 0.0, x[FIRST_S + lane]
     if piece > 0:
-        sample = n[SAMPLE + lane] + pieces.order[piece * ORDER_FIELDS + OFFSET]
-        started = x[FIRST_S + lane] + sample * period_s + pieces.start_s[piece]
-        lasts = pieces.motion[piece * MOTION_FIELDS + 1]
-    leaves = n[CELL + lane] == cells
-    used = lasts - left
-    if x[OUTCOME + lane] == STALLS:
-        used = lasts - left - x[V + lane] / x[ACCELERATION + lane]
+        started = x[FIRST_S + lane] + sample * sensor.period_s + pieces.start_s[piece]
+        lasts = pieces.duration_s[piece]
+    used = lasts - x[LEFT_S + lane]
+    leaves = cell == path.gravity_m_s2.shape[0]
+    if not leaves and not (piece < pieces.resting and sample >= longest):
+        free = path.gravity_m_s2[cell] - x[DRAG + lane]
+        used -= x[V + lane] / (free - draws.brake_m_s2_per_kpa[i, cell] * pieces.kpa[piece])
     exits.speed_m_s[i] = x[V + lane] if leaves else 0.0
     exits.time_s[i] = started + used
     exits.stalled[i] = not leaves
     exits.switchings[i] = n[SWITCHINGS + lane]
 
 
+@borrowing_inline
+def clear(work: Work) -> None:
+    """No pass anywhere."""
+    work.floats[:], work.ints[:] = 0.0, 0
+    for place in range(PLACES):
+        work.floats[V + place], work.ints[NUMBER + place] = math.nan, min(place, LANES)
+
+
+@borrowing_inline
+def leave(x: Floats, n: Ints, lane: int, last: int) -> None:
+    """Lane `lane` takes over the pass of lane `last`, which falls idle."""
+    for field in range(FLOATS):
+        x[field * PLACES + lane] = x[field * PLACES + last]
+    for field in range(INTS - 1):  # the number is the lane's own
+        n[field * PLACES + lane] = n[field * PLACES + last]
+    x[V + last], n[CELL + last] = math.nan, 0
+
+
 @borrowing
 def run_lanes(path: Path, pieces: Pieces, sensor: Sensor, law: Rule, draws: Draws, exits: Exits, work: Work) -> None:
-    """Simulate all passes of `draws` into `exits`; the law must be without estimator and lead."""
-    x, n, waiting = work
-    edges_m, gravity, brake = path.edges_m, path.gravity_m_s2, draws.brake_m_s2_per_kpa.reshape(-1)
-    cells, passes = gravity.shape[0], draws.cut_factor.shape[0]
+    """Simulate all passes of `draws` into `exits`; the law must be without estimator, and NaN where it has no line."""
+    x, n = work.floats, work.ints
+    brakes, passes = draws.brake_m_s2_per_kpa.reshape(-1), draws.cut_factor.shape[0]
     active, longest = min(LANES, passes), int(LONGEST_PASS_S / sensor.period_s)
+    looked_at = pieces.sampled if law.lead_s != 0.0 else pieces.resting
+    clear(work)
     for lane in range(active):
-        begin(x, n, lane, lane, path, pieces, draws)
+        begin(x, n, lane, lane, path, draws)
     following = active
     while active > 0:
-        accelerate(x, n, active, edges_m, gravity, brake)
-        move(x, active)
-        count = follow_on(x, n, active, cells, pieces.motion, pieces.order, waiting)
-        observe(x, n, waiting, count, sensor, draws.noise_z)
+        waiting, ended = move(work, active, path, brakes, pieces, looked_at, longest)
+        told = listen(work, waiting, pieces, sensor, law, draws.noise_z)
+        for k in range(told):
+            regulate(x, n, work.told[k], work.heard[k], pieces, law)
         # From the last lane down: it may be moved into one that falls idle.
-        for k in range(count - 1, -1, -1):
-            lane = waiting[np.uint64(k)]
-            if x[OUTCOME + lane] == ENDS and n[SAMPLE + lane] < longest:
-                regulate(x, n, lane, pieces, law)
-                continue
-            record(x, n, lane, cells, sensor.period_s, pieces, exits)
+        for k in range(ended - 1, -1, -1):
+            lane = work.ended[k]
+            record(work, lane, longest, path, pieces, sensor, draws, exits)
             if following < passes:
-                begin(x, n, lane, following, path, pieces, draws)
+                begin(x, n, lane, following, path, draws)
+                fetch_ahead(following + 2, path, draws)
                 following += 1
             else:
                 active -= 1
-                for field in range(FLOATS):
-                    x[field * LANES + lane] = x[field * LANES + active]
-                for field in range(INTS):
-                    n[field * LANES + lane] = n[field * LANES + active]
+                leave(x, n, lane, active)

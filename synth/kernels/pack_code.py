@@ -15,6 +15,14 @@ intrinsic: Any = extending.intrinsic
 """numba's own type for it counts the typing context among the arguments of a call."""
 
 
+MACHINE_TYPES = {
+    types.boolean: ir.IntType(1),
+    types.int64: ir.IntType(64),
+    types.float32: ir.FloatType(),
+    types.float64: ir.DoubleType(),
+}
+
+
 class Pack(types.Type):
     """`lanes` numbers of a scalar numba type side by side."""
 
@@ -33,9 +41,12 @@ class PackModel(models.PrimitiveModel):
 
 def machine_type(element):
     """LLVM's type of a lane."""
-    if element == types.boolean:
-        return ir.IntType(1)
-    return ir.DoubleType() if element == types.float64 else ir.IntType(64)
+    return MACHINE_TYPES[element]
+
+
+def suffix(element, lanes):
+    """LLVM's name of a vector at the end of a function's name."""
+    return f"v{lanes}{'f' if isinstance(element, types.Float) else 'i'}{element.bitwidth}"
 
 
 def lanes_of(context, builder, value, given, wanted):
@@ -63,11 +74,6 @@ def common_pack(a, b):
     return None
 
 
-def addresses(context, builder, array_type, array, at):
-    """Pointer to element `at` of a contiguous array, in flat order."""
-    return builder.gep(context.make_array(array_type)(context, builder, array).data, [at])
-
-
 ARITHMETIC = {
     operator.add: ("fadd", "add"),
     operator.sub: ("fsub", "sub"),
@@ -90,7 +96,7 @@ def register_arithmetic(symbol, names):
     def lower(context, builder, sig, args):
         pack = sig.return_type
         a, b = (lanes_of(context, builder, x, t, pack) for x, t in zip(args, sig.args, strict=True))
-        return getattr(builder, names[0 if pack.element == types.float64 else 1])(a, b)
+        return getattr(builder, names[0 if isinstance(pack.element, types.Float) else 1])(a, b)
 
     register_lowering(symbol, lower)
 
@@ -108,7 +114,7 @@ def register_comparison(symbol, sign):
     def lower(context, builder, sig, args):
         pack = common_pack(*sig.args)
         a, b = (lanes_of(context, builder, x, t, pack) for x, t in zip(args, sig.args, strict=True))
-        compare = builder.fcmp_ordered if pack.element == types.float64 else builder.icmp_signed
+        compare = builder.fcmp_ordered if isinstance(pack.element, types.Float) else builder.icmp_signed
         return compare(sign, a, b)
 
     register_lowering(symbol, lower)
@@ -126,95 +132,6 @@ for each, comparison in COMPARISON.items():
     register_comparison(each, comparison)
 for each in (operator.and_, operator.or_):
     register_arithmetic(each, (None, each.__name__))
-
-
-def loading(lanes):
-    """The intrinsic that loads `lanes` neighbours."""
-
-    @intrinsic
-    def load(typing, array, at):
-        def code(context, builder, sig, args):
-            vector = ir.VectorType(machine_type(sig.args[0].dtype), lanes)
-            pointer = addresses(context, builder, sig.args[0], *args)
-            return builder.load(builder.bitcast(pointer, vector.as_pointer()), align=8)
-
-        return Pack(array.dtype, lanes)(array, types.intp), code
-
-    return load
-
-
-@intrinsic
-def item(typing, array, at):
-    """Read one element."""
-
-    def code(context, builder, sig, args):
-        return builder.load(addresses(context, builder, sig.args[0], *args))
-
-    return array.dtype(array, types.intp), code
-
-
-@intrinsic
-def add_to(typing, array, at, number):
-    """Add to one element."""
-
-    def code(context, builder, sig, args):
-        place = addresses(context, builder, sig.args[0], *args[:2])
-        builder.store(builder.fadd(builder.load(place), args[2]), place)
-        return context.get_dummy_value()
-
-    return types.void(array, types.intp, types.float64), code
-
-
-@intrinsic
-def store(typing, array, at, pack):
-    """Write a pack."""
-
-    def code(context, builder, sig, args):
-        pointer = addresses(context, builder, sig.args[0], *args[:2])
-        builder.store(args[2], builder.bitcast(pointer, args[2].type.as_pointer()), align=8)
-        return context.get_dummy_value()
-
-    return types.void(array, types.intp, pack), code
-
-
-@intrinsic
-def gather(typing, array, where):
-    """Read a pack from scattered places."""
-
-    def code(context, builder, sig, args):
-        data = context.make_array(sig.args[0])(context, builder, args[0]).data
-        whole_numbers = args[1].type
-        every = lanes_of(context, builder, builder.ptrtoint(data, ir.IntType(64)), types.int64, where)
-        eight = ir.Constant(whole_numbers, [8] * where.lanes)
-        places = builder.inttoptr(
-            builder.add(every, builder.mul(args[1], eight)), ir.VectorType(data.type, where.lanes)
-        )
-        found = ir.VectorType(machine_type(array.dtype), where.lanes)
-        mask = ir.VectorType(ir.IntType(1), where.lanes)
-        kind = ir.FunctionType(found, [places.type, ir.IntType(32), mask, found])
-        name = f"llvm.masked.gather.v{where.lanes}f64.v{where.lanes}p0"
-        function = cgutils.get_or_insert_function(builder.module, kind, name)
-        arguments = [places, ir.IntType(32)(8), ir.Constant(mask, [1] * where.lanes), ir.Constant(found, ir.Undefined)]
-        return builder.call(function, arguments)
-
-    return Pack(array.dtype, where.lanes)(array, where), code
-
-
-@intrinsic
-def transposed_store(typing, array, at, a, b, c, d):
-    """Write four packs of eight so that those of a lane stand side by side."""
-
-    def code(context, builder, sig, args):
-        def joined(x, y, order):
-            return builder.shuffle_vector(x, y, ir.Constant(ir.VectorType(ir.IntType(32), len(order)), order))
-
-        low, high = (joined(x, y, list(range(16))) for x, y in (args[2:4], args[4:6]))
-        both = joined(low, high, [8 * k + i for i in range(8) for k in range(4)])
-        pointer = addresses(context, builder, sig.args[0], *args[:2])
-        builder.store(both, builder.bitcast(pointer, both.type.as_pointer()), align=8)
-        return context.get_dummy_value()
-
-    return types.void(array, types.intp, a, b, c, d), code
 
 
 @intrinsic
@@ -268,6 +185,31 @@ def conversion(instruction, element):
     return convert
 
 
+def by_llvm(name):
+    """The intrinsic that applies a function of LLVM to every lane."""
+
+    @intrinsic
+    def apply(typing, pack):
+        def code(context, builder, sig, args):
+            kind = ir.FunctionType(args[0].type, [args[0].type])
+            called = f"llvm.{name}.{suffix(pack.element, pack.lanes)}"
+            return builder.call(cgutils.get_or_insert_function(builder.module, kind, called), args)
+
+        return pack(pack), code
+
+    return apply
+
+
+@intrinsic
+def opposite(typing, mask):
+    """The lanes where a mask does not hold."""
+
+    def code(context, builder, sig, args):
+        return builder.not_(args[0])
+
+    return mask(mask), code
+
+
 @intrinsic
 def total(typing, pack):
     """Sum of a pack of four."""
@@ -279,5 +221,6 @@ def total(typing, pack):
     return pack.element(pack), code
 
 
-load16, load8, load4 = loading(16), loading(8), loading(4)
 whole, fraction = conversion("fptosi", types.int64), conversion("sitofp", types.float64)
+narrow, wide = conversion("fptrunc", types.float32), conversion("fpext", types.float64)
+root, nearest = by_llvm("sqrt"), by_llvm("rint")

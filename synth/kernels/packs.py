@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 from numba.extending import overload
 
-from synth.kernels import pack_code
+from synth.kernels import pack_code, pack_memory
 
 SIXTEEN, EIGHT, FOUR = 16, 8, 4
 """Lanes of a pack: two packs of energies at once, energies, and targets or the points of a cubic stencil."""
@@ -28,6 +28,10 @@ def item(array, at):
 def add_to(array, at, number):
     """Add a number to the element of a contiguous array at flat index `at`."""
     array.reshape(-1)[at] += number
+
+
+def fetch(array, at):
+    """Ask the memory for the element at flat index `at`, which will be needed soon; may be beyond the end."""
 
 
 def eight(number):
@@ -60,6 +64,18 @@ def gather(array, where):
     return array.reshape(-1)[where]
 
 
+def scatter(array, where, mask, pack):
+    """Write the lanes in which the mask holds to the flat indices of a pack of whole numbers, no two the same."""
+    array.reshape(-1)[where[mask]] = pack[mask]
+
+
+def keep(array, at, mask, pack):
+    """Write the lanes in which the mask holds side by side, from flat index `at` on; returns how many they are."""
+    kept = pack[mask]
+    array.reshape(-1)[at : at + len(kept)] = kept
+    return len(kept)
+
+
 def transposed_store(array, at, a, b, c, d):
     """Write four packs of eight as eight groups of four: lane i goes to `at` + 4 i … `at` + 4 i + 3."""
     array.reshape(-1)[at : at + 4 * EIGHT] = np.stack([a, b, c, d], axis=1).ravel()
@@ -85,6 +101,11 @@ def magnitude(pack):
     return np.abs(pack)
 
 
+def opposite(mask):
+    """The lanes in which the mask does not hold."""
+    return ~mask
+
+
 def holds_anywhere(mask):
     """Whether the mask holds in any lane."""
     return bool(np.any(mask))
@@ -100,21 +121,42 @@ def fraction(pack):
     return np.asarray(pack).astype(np.float64)
 
 
+def narrow(pack):
+    """As float32 numbers."""
+    return np.asarray(pack).astype(np.float32)
+
+
+def wide(pack):
+    """float32 numbers as float64."""
+    return np.asarray(pack).astype(np.float64)
+
+
+def root(pack):
+    """Square roots."""
+    return np.sqrt(pack)
+
+
+def nearest(pack):
+    """Rounded to whole numbers, halves to the even one."""
+    return np.rint(pack)
+
+
 def total(pack):
     """Sum of a pack of four, as (0 + 1) + (2 + 3)."""
     return (pack[0] + pack[1]) + (pack[2] + pack[3])
 
 
-overload(item)(lambda array, at: lambda array, at: pack_code.item(array, at))
-overload(add_to)(lambda array, at, number: lambda array, at, number: pack_code.add_to(array, at, number))
+overload(item)(lambda array, at: lambda array, at: pack_memory.item(array, at))
+overload(add_to)(lambda array, at, number: lambda array, at, number: pack_memory.add_to(array, at, number))
+overload(fetch)(lambda array, at: lambda array, at: pack_memory.fetch(array, at))
 overload(eight)(lambda number: lambda number: pack_code.eight(number))
-overload(load16)(lambda array, at: lambda array, at: pack_code.load16(array, at))
-overload(load8)(lambda array, at: lambda array, at: pack_code.load8(array, at))
-overload(load4)(lambda array, at: lambda array, at: pack_code.load4(array, at))
-overload(store)(lambda array, at, pack: lambda array, at, pack: pack_code.store(array, at, pack))
-overload(gather)(lambda array, where: lambda array, where: pack_code.gather(array, where))
+overload(load16)(lambda array, at: lambda array, at: pack_memory.load16(array, at))
+overload(load8)(lambda array, at: lambda array, at: pack_memory.load8(array, at))
+overload(load4)(lambda array, at: lambda array, at: pack_memory.load4(array, at))
+overload(store)(lambda array, at, pack: lambda array, at, pack: pack_memory.store(array, at, pack))
+overload(gather)(lambda array, where: lambda array, where: pack_memory.gather(array, where))
 overload(transposed_store)(
-    lambda array, at, a, b, c, d: lambda array, at, a, b, c, d: pack_code.transposed_store(array, at, a, b, c, d)
+    lambda array, at, a, b, c, d: lambda array, at, a, b, c, d: pack_memory.transposed_store(array, at, a, b, c, d)
 )
 overload(choose)(lambda mask, yes, no: lambda mask, yes, no: pack_code.choose(mask, yes, no))
 overload(least)(lambda a, b: lambda a, b: pack_code.choose(b < a, b, a))
@@ -123,4 +165,13 @@ overload(magnitude)(lambda pack: lambda pack: pack_code.choose(pack < 0.0, pack 
 overload(holds_anywhere)(lambda mask: lambda mask: pack_code.holds_anywhere(mask))
 overload(whole)(lambda pack: lambda pack: pack_code.whole(pack))
 overload(fraction)(lambda pack: lambda pack: pack_code.fraction(pack))
+overload(scatter)(
+    lambda array, where, mask, pack: lambda array, where, mask, pack: pack_memory.scatter(array, where, mask, pack)
+)
+overload(keep)(lambda array, at, mask, pack: lambda array, at, mask, pack: pack_memory.keep(array, at, mask, pack))
+overload(opposite)(lambda mask: lambda mask: pack_code.opposite(mask))
+overload(narrow)(lambda pack: lambda pack: pack_code.narrow(pack))
+overload(wide)(lambda pack: lambda pack: pack_code.wide(pack))
+overload(root)(lambda pack: lambda pack: pack_code.root(pack))
+overload(nearest)(lambda pack: lambda pack: pack_code.nearest(pack))
 overload(total)(lambda pack: lambda pack: pack_code.total(pack))

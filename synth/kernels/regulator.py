@@ -63,27 +63,6 @@ def measure(v: float, z: float, sensor: Sensor) -> float:
 
 
 @borrowing_inline
-def speaks(
-    coefficients: NDArray[np.float32], has_line: NDArray[np.bool_], valid: NDArray[np.float32],
-    stage: int, s_m: float, v_m_s: float,
-) -> bool:  # fmt: skip
-    """Whether the table has a command at this reading, by the arithmetic of `rule.decide` but without its branches.
-
-    For readings within the numbers of float32, which is all that the loop has; NaN: no command.
-    """
-    s, v, row = np.float32(s_m), np.float32(v_m_s), np.uint64(stage)
-    s = valid[0] if s < valid[0] else s
-    s = valid[1] if s > valid[1] else s
-    highest = coefficients.shape[2] - 1
-    lower, upper = coefficients[row, 0, highest], coefficients[row, 1, highest]
-    for power in range(highest - 1, -1, -1):
-        lower = lower * s + coefficients[row, 0, np.uint64(power)]
-        upper = upper * s + coefficients[row, 1, np.uint64(power)]
-    told: bool = (has_line[row, 0] & (v < lower)) | (has_line[row, 1] & (v > upper))
-    return told
-
-
-@borrowing_inline
 def line_decision(lower: Floats, upper: Floats, spacing_m: float, stage: int, s: float, v: float) -> int:
     """−1, 0 or +1 stage by the switching lines; beside an infinite node there is no command.
 

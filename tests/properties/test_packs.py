@@ -23,7 +23,7 @@ from synth.transitions import Transitions, persistent_transitions
 CRITERION = Criterion(1.0, 1e-5)
 
 
-def everything(numbers, places, out):  # type: ignore[no-untyped-def]  # numba infers the types
+def everything(numbers, singles, places, apart, kept, out):  # type: ignore[no-untyped-def]  # numba infers the types
     """Every function and operator of `packs` once; the results in `out`."""
     a, b = packs.load8(numbers, 3), packs.load8(numbers, 17)
     where = packs.load8(places, 1)
@@ -38,6 +38,13 @@ def everything(numbers, places, out):  # type: ignore[no-untyped-def]  # numba i
     out[80] = packs.total(packs.load4(numbers, 9))
     out[81] = packs.item(numbers, 11)
     packs.add_to(out, 81, 0.5)
+    packs.fetch(numbers, 60)  # beyond the end: nothing is read
+    single = packs.gather(singles, where) * packs.narrow(a)
+    packs.store(out, 84, packs.wide(single) + packs.nearest(b * 3.0))
+    packs.store(out, 92, packs.root(packs.magnitude(a)))
+    packs.store(out, 100, packs.fraction(packs.gather(places, packs.least(where, 11))))
+    packs.scatter(out, packs.load8(apart, 0) + 108, packs.opposite(low), b)
+    out[124] = packs.keep(out, 125, low, a * 3.0) + packs.keep(kept, 1, low, where)
     out[82] = 1.0 if packs.holds_anywhere(low) else 0.0
     out[83] = 1.0 if packs.holds_anywhere((a > 9.0) | (where == 99)) else 0.0
 
@@ -46,11 +53,16 @@ def everything(numbers, places, out):  # type: ignore[no-untyped-def]  # numba i
 def test_compiled_packs_are_the_plain_ones_to_the_bit(seed: int) -> None:
     rng = np.random.default_rng(seed)
     numbers, places = rng.uniform(-2.0, 2.0, 40), rng.integers(0, 40, 12)
-    compiled, plain = np.zeros(84), np.zeros(84)
-    njit(everything)(numbers, places, compiled)
-    everything(numbers, places, plain)
+    singles, apart = rng.uniform(-2.0, 2.0, 40).astype(np.float32), rng.permutation(16)
+    compiled, plain, kept, plainly = np.zeros(133), np.zeros(133), np.zeros(9, np.int64), np.zeros(9, np.int64)
+    njit(everything)(numbers, singles, places, apart, kept, compiled)
+    everything(numbers, singles, places, apart, plainly, plain)
     np.testing.assert_array_equal(compiled, plain)
-    assert np.count_nonzero(plain) > 80  # all but a few were written
+    np.testing.assert_array_equal(kept, plainly)
+    chosen = int(plain[124]) // 2
+    assert 0 < chosen < 8
+    assert np.count_nonzero(plain[108:124]) == 8 - chosen
+    assert np.count_nonzero(plain[:108]) > 103  # all but a few were written
     assert (plain[82], plain[83]) == (1.0, 0.0)
 
 
