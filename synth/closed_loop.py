@@ -99,8 +99,6 @@ class ClosedLoop:
         if law.estimator_work.shape[1] > 0:
             return self._alone(law, draws, np.empty((0, kernel.EVENT_FIELDS)))[0]
         exits = empty_exits(len(draws.cut_factor))
-        there = np.where(law.has_line[:, :, None], law.coefficients, np.float32(np.nan))
-        law = law._replace(coefficients=fixed(there, np.float32))
         lanes.run_lanes(self.path, self.pieces, self.sensor, law, draws, exits, lane_memory())
         return sample_of(exits)
 

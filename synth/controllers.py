@@ -35,8 +35,9 @@ class TableController:
         """The rule as the kernel takes it."""
         none = fixed(np.empty((0, 0)), np.float64)
         table = self.table
+        there = np.where(table.has_line[:, :, None], table.coefficients, np.float32(np.nan))
         arrays = (
-            fixed(table.coefficients, np.float32),
+            fixed(there, np.float32),
             fixed(table.has_line, np.bool_),
             fixed(table.valid_range, np.float32),
         )

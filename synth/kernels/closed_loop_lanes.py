@@ -157,7 +157,7 @@ def leave(x: Floats, n: Ints, lane: int, last: int) -> None:
 
 @borrowing
 def run_lanes(path: Path, pieces: Pieces, sensor: Sensor, law: Rule, draws: Draws, exits: Exits, work: Work) -> None:
-    """Simulate all passes of `draws` into `exits`; the law must be without estimator, and NaN where it has no line."""
+    """Simulate all passes of `draws` into `exits`; the law must be without estimator."""
     x, n = work.floats, work.ints
     brakes, passes = draws.brake_m_s2_per_kpa.reshape(-1), draws.cut_factor.shape[0]
     active, longest = min(LANES, passes), int(LONGEST_PASS_S / sensor.period_s)

@@ -12,6 +12,7 @@ from synth.kernels import packs
 from synth.kernels.borrowing import borrowing_inline
 from synth.kernels.lane_places import (
     BEFORE,
+    LANES,
     LEFT_S,
     PASS,
     PIECE,
@@ -74,7 +75,7 @@ def slope(x, lane, speed, period_s, filter_s):
     gain = period_s / (period_s + filter_s)
     new = packs.choose(known, past + gain * (change / period_s - past), past)
     packs.scatter(x, lane + SLOPE, known, new)
-    packs.scatter(x, lane + BEFORE, lane >= 0, speed)
+    packs.scatter(x, lane + BEFORE, lane < LANES, speed)
     return new
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from llvmlite import ir
 from numba.core import cgutils, types
 
-from synth.kernels.pack_code import Pack, intrinsic, lanes_of, machine_type, suffix
+from synth.kernels.pack_code import Pack, intrinsic, machine_type, suffix
 
 
 def addresses(context, builder, array_type, array, at):
@@ -81,11 +81,10 @@ def spread(context, builder, array_type, array, where, lanes):
     """Pointers to the elements of a contiguous array at a pack of flat indices, the machine type of what lies there."""
     data = context.make_array(array_type)(context, builder, array).data
     element = machine_type(array_type.dtype)
-    whole_numbers = ir.VectorType(ir.IntType(64), lanes)
-    every = lanes_of(context, builder, builder.ptrtoint(data, ir.IntType(64)), types.int64, Pack(types.int64, lanes))
-    size = ir.Constant(whole_numbers, [array_type.dtype.bitwidth // 8] * lanes)
-    places = builder.add(every, builder.mul(where, size))
-    return builder.inttoptr(places, ir.VectorType(data.type, lanes)), element
+    places = builder.gep(data, [where], source_etype=element)
+    # llvmlite knows no vector of indices here. By other means the machine would work out every address by itself.
+    places.type = ir.VectorType(data.type, lanes)
+    return places, element
 
 
 def masked(builder, name, result, *arguments):

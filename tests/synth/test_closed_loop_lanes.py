@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+import os
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +14,7 @@ import pytest
 from plant_models import RollingResistance, TrackProfile
 from synth.baselines import energy_rule, threshold_with_lead
 from synth.closed_loop import ClosedLoop, Controller, LineController, TableController, close_loop
+from synth.config_file import load_config
 from synth.kernels import closed_loop as kernel
 from synth.kernels.closed_loop_lanes import LANES
 from synth.passes import ExitSample
@@ -44,9 +48,10 @@ def assert_same(loop: ClosedLoop, controller: Controller, draws: kernel.Draws) -
     return by_lanes
 
 
-def constant_lines(plant: Plant, lower: list[float], upper: list[float]) -> LineController:
+def constant_lines(plant: Plant, lower: list[float], upper: list[float], lead_s: float) -> LineController:
     nodes = np.linspace(0.0, plant.exit_m, 2)
-    return LineController(SwitchingLines(nodes, np.outer(lower, [1.0, 1.0]), np.outer(upper, [1.0, 1.0])))
+    lines = SwitchingLines(nodes, np.outer(lower, [1.0, 1.0]), np.outer(upper, [1.0, 1.0]))
+    return LineController(lines, lead_s=lead_s)
 
 
 @pytest.mark.parametrize(("lead_s", "multi_step"), [(0.0, False), (0.0, True), (0.3, True)])
@@ -111,25 +116,57 @@ def test_missing_readings_and_a_sensor_without_steps(plant_52t: Plant, passes: R
         assert_same(loop, energy_rule(loop, 3.0, 4, 0.8, 0.15, lead_s, 0.15), draws)
 
 
-def test_stalls_and_passes_longer_than_their_noise(plant_22t: Plant, passes: RandomPasses) -> None:
+@pytest.mark.parametrize("lead_s", [0.0, 0.2])
+def test_stalls_and_passes_longer_than_their_noise(plant_22t: Plant, passes: RandomPasses, lead_s: float) -> None:
     level = replace(plant_22t, profile=TrackProfile.uniform(1.5), resistance=RollingResistance(1.4, 0.2))
     loop = close_loop(level, 3)
     draws = loop.draws(passes)
-    stopped = assert_same(loop, constant_lines(level, [-math.inf] * 3, [0.0, 0.0, math.inf]), draws)
+    stopped = assert_same(loop, constant_lines(level, [-math.inf] * 3, [0.0, 0.0, math.inf], lead_s), draws)
     assert stopped.stalled.all()
     slow = draws._replace(entry_m_s=np.linspace(0.5, 3.0, len(passes)))
-    sample = assert_same(loop, constant_lines(level, [-math.inf, 0.6, 0.6], [0.8, 0.8, math.inf]), slow)
+    sample = assert_same(loop, constant_lines(level, [-math.inf, 0.6, 0.6], [0.8, 0.8, math.inf], lead_s), slow)
     assert 0 < sample.stalled.sum() < len(passes)
     assert sample.transit_time_s.max() > 0.1 * passes.noise_z.shape[1]
 
 
-def test_a_creeping_cut_is_given_up(plant_22t: Plant, passes: RandomPasses) -> None:
+@pytest.mark.parametrize("lead_s", [0.0, 0.2])
+def test_a_creeping_cut_is_given_up(plant_22t: Plant, passes: RandomPasses, lead_s: float) -> None:
     crawl = replace(plant_22t, profile=TrackProfile.uniform(1.4), resistance=RollingResistance(1.4, 0.0))
     loop = close_loop(crawl, 3)
     draws = loop.draws(passes)
     draws = draws._replace(entry_m_s=np.full(len(passes), 0.1))
-    sample = assert_same(loop, constant_lines(crawl, [-math.inf] * 3, [math.inf] * 3), draws)
+    sample = assert_same(loop, constant_lines(crawl, [-math.inf] * 3, [math.inf] * 3, lead_s), draws)
     assert sample.stalled.all()
     assert not sample.exit_speed_m_s.any()
     longest = kernel.LONGEST_PASS_S
     assert np.all((sample.transit_time_s >= longest) & (sample.transit_time_s < longest + 0.11))
+
+
+def exits_of_a_few_passes() -> str:
+    """Bytes of what twelve passes of the default book do under three laws."""
+    _, plant = load_config(None).plants()[-1]  # all five stages
+    loop, rng, n = close_loop(plant, plant.top_stage + 1), np.random.default_rng(5), 12
+    uniform = {name: rng.random(n) for name in ("entry_u", "phase_u", "resistance_u")}
+    normal = {name: rng.standard_normal((n, 512), dtype=np.float32) for name in ("path_z", "noise_z")}
+    draws = loop.draws(RandomPasses(cut_z=rng.standard_normal(n), **uniform, **normal))
+    table = TableController(wavy_table(plant, 3.0))
+    laws = (table, threshold_with_lead(loop, 3.0, 3, 0.1, 0.0), energy_rule(loop, 3.0, 4, 0.8, 0.15, 0.3, 0.15))
+    return "".join(array.tobytes().hex() for law in laws for array in vars(loop.run(law, draws)).values())
+
+
+WITHOUT_COMPILER = """
+import importlib.util, sys
+spec = importlib.util.spec_from_file_location("loaded", sys.argv[1])
+loaded = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(loaded)
+print(loaded.exits_of_a_few_passes())
+"""
+
+
+def test_the_kernels_mean_the_same_without_the_compiler() -> None:
+    plain = subprocess.run(
+        [sys.executable, "-c", WITHOUT_COMPILER, __file__],
+        env={**os.environ, "NUMBA_DISABLE_JIT": "1"}, capture_output=True, text=True, timeout=120, check=False,
+    )  # fmt: skip
+    assert plain.returncode == 0, plain.stderr
+    assert plain.stdout.strip() == exits_of_a_few_passes()
