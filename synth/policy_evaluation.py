@@ -79,14 +79,14 @@ def forward_pass(
     t: Transitions, policy: Commands, samples: NDArray[np.float64]
 ) -> tuple[ExitDensity, NDArray[np.int64]]:
     """Forward recursion over all scenarios; `samples` (I, N, H, L, E) is filled unless its nodes are 0."""
-    points = len(t.grid.speed_m_s)
+    weights, points = t.scenarios.weight, len(t.grid.speed_m_s)
+    band = np.empty((len(weights), len(t.drive_m_s2), 2), dtype=np.int64)
+    exits_of, totals_of = forward_all(t, policy, slice(None), samples, band)
     exits, totals = np.zeros(points), np.zeros(4)
-    band = np.empty((len(t.scenarios.weight), len(t.drive_m_s2), 2), dtype=np.int64)
-    for i, weight in enumerate(t.scenarios.weight):
-        one, sums = forward_one(t, policy, i, samples[i], band[i])
+    for i, weight in enumerate(weights):
         samples[i] *= weight
-        exits += weight * one
-        totals += weight * sums
+        exits += weight * exits_of[i]
+        totals += weight * totals_of[i]
     stalled = max(float(totals[0]), 0.0)  # cubic weights leave −1e-8 or so
     total = ExitDensity(t.grid.speed_m_s, exits, stalled, float(totals[1]), float(totals[2] + totals[3]))
     return total, band
@@ -104,9 +104,18 @@ def forward_one(
     t: Transitions, policy: Commands, i: int, density: NDArray[np.float64], band: NDArray[np.int64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Forward recursion in scenario `i`: exit probabilities (E,) and the kernel's totals (4,)."""
-    exits, totals = np.empty(len(t.grid.speed_m_s)), np.empty(4)
+    exits, totals = forward_all(t, policy, slice(i, i + 1), density[None], band[None])
+    return exits[0], totals[0]
+
+
+def forward_all(
+    t: Transitions, policy: Commands, scenarios: slice, density: NDArray[np.float64], band: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Forward recursion in several scenarios: exit probabilities (I, E) and the kernel's totals (I, 4)."""
+    factor = t.scenarios.factor[scenarios]
+    exits, totals = np.empty((len(factor), len(t.grid.speed_m_s))), np.empty((len(factor), 4))
     arguments = (
-        policy.down, policy.up, t.entry, *shared_arguments(t), t.scenarios.factor[i], t.scenarios.extra_m_s2[i],
+        policy.down, policy.up, t.entry, *shared_arguments(t), factor, t.scenarios.extra_m_s2[scenarios],
         t.grid.path_step_m, t.grid.energy_step_m2_s2, t.plant.sensor.sample_period_s, density, band, exits, totals,
     )  # fmt: skip
     forward(*arguments)

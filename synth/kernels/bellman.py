@@ -15,7 +15,7 @@ from numba import njit
 from synth.kernels.borrowing import borrowing
 from synth.kernels.commands import normal_cdf
 from synth.kernels.flow import mix_values, pull, shifts
-from synth.kernels.landing_plan import landing_scratch, quanta_crossed
+from synth.kernels.landing_plan import find_runs, landing_scratch, landing_tables
 from synth.kernels.next_sample import quanta_to_next_sample
 from synth.kernels.packs import FOUR, load4, store
 from synth.kernels.thresholds import lower_threshold, upper_threshold
@@ -54,7 +54,10 @@ def sweep(
     chance = np.empty((2, row))
     undecided = np.empty(points, np.bool_)
     scratch = np.empty(row)
-    crossed, place, weight = landing_scratch(ends.shape[4])
+    crossed, runs, place, weight = landing_scratch(ends.shape[4], size)
+    met, slope = landing_tables(
+        factor, extra, factors, probability, mean, std, levels, pressure, drive, brake, path_step
+    )
     recent[:, nodes % ring] = terminal
     mixed[:, nodes % ring] = terminal
     ahead[:, 1:] = terminal
@@ -77,15 +80,15 @@ def sweep(
                     c = upper_chain[h] if side == 1 else lower_chain[h]
                     if c < 0:
                         continue
-                    quanta_crossed(
-                        n, c, 0, points, factor[i], ends, factors, path_step, probability.shape[1] - 1, crossed
+                    found = find_runs(
+                        n, c, 0, points, factor[i], ends, factors, path_step, probability.shape[1] - 1, crossed, runs
                     )
                     for q in range(size):
                         changed = changes[side, i, h, q]
                         in_every_cell(change_cost, changed)
                         add_transient_values(
-                            n, nodes, c, q, crossed, factor[i], chain_mode[c], ends, factors, probability, mean,
-                            std, drive, brake, pressure, levels, extra[i], path_step, energy_step,
+                            n, nodes, c, q, runs, found, chain_mode[c], ends, met[i], slope[i],
+                            extra[i], path_step, energy_step,
                             recent[i], mixed[i], stalled, place, weight, changed,
                         )  # fmt: skip
                         add_gains(holds[i, h, q], changed, weights[i, h, q], width, gains[side, stage[h]])

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from synth.kernels.borrowing import borrowing, borrowing_inline
-from synth.kernels.packs import EIGHT, eight, holds_anywhere, load8, magnitude, store
+from synth.kernels.packs import EIGHT, eight, first_lane, last_lane, load8, magnitude, store
 
 LINEAR_CELLS = 2
 """Cells above a stall with linear interpolation: there the value falls so steeply that a cubic would promise costs
@@ -184,15 +184,19 @@ def spread_by_stencil(row, low, high, base, weights, out):
 
 @borrowing
 def extent(row, first, last, least_mass):
-    """Smallest range of indices within [first, last) that holds all entries of `row` of at least `least_mass`."""
-    while first + EIGHT <= last and not holds_anywhere(magnitude(load8(row, first)) >= least_mass):
-        first += EIGHT
-    while first < last and abs(row[first]) < least_mass:
-        first += 1
-    while first + EIGHT <= last and not holds_anywhere(magnitude(load8(row, last - EIGHT)) >= least_mass):
-        last -= EIGHT
-    while last > first and abs(row[last - 1]) < least_mass:
-        last -= 1
+    """Smallest range of indices within [first, last) that holds all entries of `row` of at least `least_mass`.
+
+    Eight further entries of `row` may be read.
+    """
+    found = EIGHT
+    while first < last and found == EIGHT:
+        found = first_lane(magnitude(load8(row, first)) >= least_mass)
+        first += found
+    first, found = min(first, last), -1
+    while first < last and found < 0:
+        count = min(last - first, EIGHT)
+        found = last_lane(magnitude(load8(row, last - count)) >= least_mass, count)
+        last -= count - 1 - found
     return first, last
 
 

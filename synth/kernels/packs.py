@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 from numba.extending import overload
 
-from synth.kernels import pack_code, pack_memory
+from synth.kernels import mask_code, pack_code, pack_memory
 
 SIXTEEN, EIGHT, FOUR = 16, 8, 4
 """Lanes of a pack: two packs of energies at once, energies, and targets or the points of a cubic stencil."""
@@ -146,6 +146,16 @@ def total(pack):
     return (pack[0] + pack[1]) + (pack[2] + pack[3])
 
 
+def first_lane(mask):
+    """The first lane of eight in which the mask holds, 8 if there is none."""
+    return int(np.argmax(np.append(mask, True)))
+
+
+def last_lane(mask, count):
+    """The last of the first `count` lanes of eight in which the mask holds, −1 if there is none."""
+    return int(np.max(np.flatnonzero(mask[:count]), initial=-1))
+
+
 overload(item)(lambda array, at: lambda array, at: pack_memory.item(array, at))
 overload(add_to)(lambda array, at, number: lambda array, at, number: pack_memory.add_to(array, at, number))
 overload(fetch)(lambda array, at: lambda array, at: pack_memory.fetch(array, at))
@@ -175,3 +185,5 @@ overload(wide)(lambda pack: lambda pack: pack_code.wide(pack))
 overload(root)(lambda pack: lambda pack: pack_code.root(pack))
 overload(nearest)(lambda pack: lambda pack: pack_code.nearest(pack))
 overload(total)(lambda pack: lambda pack: pack_code.total(pack))
+overload(first_lane)(lambda mask: lambda mask: mask_code.first_lane(mask))
+overload(last_lane)(lambda mask, count: lambda mask, count: mask_code.last_lane(mask, count))

@@ -12,7 +12,7 @@ from numba import njit
 
 from synth.kernels.borrowing import borrowing
 from synth.kernels.flow import NO_MASS, add_row, clear, extent, push, shifts, widen
-from synth.kernels.landing_plan import landing_scratch
+from synth.kernels.landing_plan import landing_scratch, landing_tables
 from synth.kernels.next_sample import quanta_to_next_sample
 from synth.kernels.packs import EIGHT, choose, fraction, holds_anywhere, least, load8, magnitude, store, whole
 from synth.kernels.transient import spread_changes
@@ -30,53 +30,62 @@ def forward(
     ends, factors, probability, mean, std, levels, transition, stationary,
     drive, brake, factor, extra, path_step, energy_step, period, density, band, exits, totals,
 ):  # fmt: skip
-    """Density of sampled states, and the distribution at the exit.
+    """Density of sampled states, and the distribution at the exit, in the scenarios `factor`, `extra` (I,).
 
     `down`, `up` (N, K + 1, E) command probabilities; `entry` (M + 1, E): probability of entering with speed j
     and having the first sample at node r; the rest as in `flow` and `transient`. Outputs: `density`
-    (N, H, L, E) expected number of samples at each node and state, or length 0; `band` (N, 2) range of
-    energies that are met at a node; `exits` (E,) exit probability by energy; `totals` (4,): stalled mass,
+    (I, N, H, L, E) expected number of samples at each node and state, or (I, 0, 0, 0, 0); `band` (I, N, 2) range of
+    energies that are met at a node; `exits` (I, E) exit probability by energy; `totals` (I, 4): stalled mass,
     escaped mass, changes down, changes up.
     """
     modes, size, points, row = pressure.shape[0], levels.shape[0], speed.shape[0], ends.shape[4]
     reach, ring = entry.shape[0], probability.shape[1] + 3
-    heading = np.zeros((reach, modes, size, row))
-    for r in range(reach):
-        for q in range(size):
-            heading[r, 0, q, :points] = entry[r] * stationary[q]
-    follow(
-        heading, np.zeros((ring, modes, size, row)), np.zeros((ring, modes, size, row)), np.zeros(row), np.zeros(row),
-        np.ones(row), np.zeros((2, row)), np.empty((modes, size)), landing_scratch(row),
-        np.zeros((reach, modes, size, 2), np.int64), np.zeros((modes, size, 2), np.int64), np.full(modes, -1),
-        down, up, speed, stage, pressure, lower_chain, upper_chain, chain_mode,
-        ends, factors, probability, mean, std, levels, transition,
-        drive, brake, factor, extra, path_step, energy_step, period, density, band, exits, totals,
-    )  # fmt: skip
+    heading = np.empty((reach, modes, size, row))
+    arriving, mixing = np.zeros((ring, modes, size, row)), np.zeros((ring, modes, size, row))
+    memory = np.zeros(row), np.zeros(row), np.ones(row), np.zeros((2, row)), np.empty((modes, size))
+    spans, arrived = np.empty((reach, modes, size, 2), np.int64), np.zeros((modes, size, 2), np.int64)
+    landed = np.empty((ring, modes, 2), np.int64)
+    scratch = landing_scratch(row, size)
+    met, slope = landing_tables(
+        factor, extra, factors, probability, mean, std, levels, pressure, drive, brake, path_step
+    )
+    for i in range(factor.shape[0]):
+        heading[:], spans[:], landed[:] = 0.0, 0, 0
+        for r in range(reach):
+            for q in range(size):
+                heading[r, 0, q, :points] = entry[r] * stationary[q]
+                spans[r, 0, q, 1] = points
+        follow(
+            heading, arriving, mixing, memory, scratch, spans, arrived, landed,
+            down, up, speed, stage, pressure, lower_chain, upper_chain, chain_mode,
+            ends, factors, met[i], slope[i], levels, transition,
+            drive, brake, factor[i], extra[i], path_step, energy_step, period, density[i], band[i], totals[i],
+        )  # fmt: skip
+        collect(arriving[drive.shape[0] % ring], mixing[drive.shape[0] % ring], heading, exits[i])
 
 
 @borrowing
 def follow(
-    heading, arriving, mixing, moved, mass, quanta, chance, shift, scratch, spans, arrived, until,
+    heading, arriving, mixing, memory, scratch, spans, arrived, landed,
     down, up, speed, stage, pressure, lower_chain, upper_chain, chain_mode,
-    ends, factors, probability, mean, std, levels, transition,
-    drive, brake, factor, extra, path_step, energy_step, period, density, band, exits, totals,
+    ends, factors, met, slope, levels, transition,
+    drive, brake, factor, extra, path_step, energy_step, period, density, band, totals,
 ):  # fmt: skip
-    """`forward` with its memory: masses on their way (`heading`) and after transients (`arriving`, `mixing`: rings).
+    """One scenario: masses on their way (`heading`) and after transients (`arriving`, `mixing`: rings).
 
     Most states are empty, and it is known which: `spans` (M + 1, H, L, 2) ranges of energies out of which `heading` is
-    zero, `arrived` (H, L, 2) the same of arrivals at this node, `until` (H,) last node at which any may arrive.
+    zero, `landed` (ring, H, 2) the same of the rings, `arrived` (H, L, 2) of what matters of the arrivals at this node.
+    The rings are zero before, and after but for the exit node.
     """
+    moved, mass, quanta, chance, shift = memory
     nodes, reach, ring = drive.shape[0], heading.shape[0], arriving.shape[0]
     modes, size, points = pressure.shape[0], levels.shape[0], speed.shape[0]
     totals[:] = 0.0
     first, last = 0, points
-    for r in range(reach):
-        for q in range(size):
-            widen(spans[r, 0, q], 0, points)
     for n in range(nodes):
         here, mixed = arriving[n % ring], mixing[n % ring]
-        find_arrivals(here, mixed, transition, points, n, until, arrived)
-        first, last = occupied(heading, spans, arrived)
+        find_arrivals(here, mixed, transition, landed[n % ring], arrived)
+        first, last = occupied(heading, spans, arrived, points)
         band[n, 0], band[n, 1] = first, last
         shifts(n, factor, levels, drive, brake, pressure, extra, path_step, energy_step, shift)
         lowest = max(first, 1)
@@ -101,19 +110,15 @@ def follow(
                     low, high = extent(share, begin, end, NEGLIGIBLE_MASS)
                     if c < 0 or low >= high:
                         continue
+                    changes = totals[2 + side]
                     for j in range(low, high):
-                        totals[2 + side] += share[j]
+                        changes += share[j]
+                    totals[2 + side] = changes
                     totals[0] += spread_changes(
-                        share, n, nodes, c, q, low, high, factor, chain_mode[c], ends, factors, probability, mean, std,
-                        drive, brake, pressure, levels, extra, path_step, energy_step, points, arriving, mixing,
-                        scratch,
+                        share, n, nodes, c, q, low, high, factor, chain_mode[c], ends, factors, met, slope,
+                        extra, path_step, energy_step, points, arriving, mixing, landed, scratch,
                     )  # fmt: skip
-                    until[chain_mode[c]] = n + probability.shape[1]
-        for h in range(modes):
-            if until[h] >= n:
-                for q in range(size):
-                    clear(here[h, q], 0, points)
-                    clear(mixed[h, q], 0, points)
+        clear_landed(here, mixed, landed[n % ring])
         for r in range(1, reach):
             clear_spans(heading[r - 1], spans[r - 1])
             fallen, escaped = push(
@@ -122,30 +127,38 @@ def follow(
             totals[0] += fallen
             totals[1] += escaped
         clear_spans(heading[reach - 1], spans[reach - 1])
-    collect(arriving[nodes % ring], mixing[nodes % ring], heading, exits)
 
 
 @borrowing
-def find_arrivals(here, mixed, transition, points, n, until, arrived):
+def find_arrivals(here, mixed, transition, landed, arrived):
     """Mass that was deposited before the noise level changed joins `here` (H, L, E') after the change.
 
-    `arrived` (H, L, 2) becomes the ranges of energies out of which nothing that matters has arrived.
+    `landed` (H, 2): ranges of energies out of which both are zero; `arrived` (H, L, 2) becomes the ranges out of which
+    nothing that matters has arrived.
     """
     modes, levels, row = here.shape
     for h in range(modes):
+        low, high = landed[h, 0], landed[h, 1]
         for q in range(levels):
-            if until[h] >= n:
-                begin, end = extent(mixed[h, q], 0, points, NO_MASS)
-                for m in range(levels):
-                    add_row(mixed[h, q], transition[q, m], begin, end, here, (h * levels + m) * row)
+            begin, end = extent(mixed[h, q], low, high, NO_MASS)
+            for m in range(levels):
+                add_row(mixed[h, q], transition[q, m], begin, end, here, (h * levels + m) * row)
         for q in range(levels):
-            arrived[h, q, 0], arrived[h, q, 1] = 0, 0
-            if until[h] >= n:
-                arrived[h, q, 0], arrived[h, q, 1] = extent(here[h, q], 0, points, MATTERS)
+            arrived[h, q, 0], arrived[h, q, 1] = extent(here[h, q], low, high, MATTERS)
 
 
 @borrowing
-def occupied(heading, spans, arrived):
+def clear_landed(here, mixed, landed):
+    """Set a node's rows (H, L, E') to zero where `landed` (H, 2) says and mixing filled packs; then it says nowhere."""
+    for h in range(here.shape[0]):
+        for q in range(here.shape[1]):
+            clear(here[h, q], landed[h, 0], landed[h, 1] + EIGHT)
+            clear(mixed[h, q], landed[h, 0], landed[h, 1])
+        landed[h, 0], landed[h, 1] = 0, 0
+
+
+@borrowing
+def occupied(heading, spans, arrived, points):
     """The range of energies at which mass that matters stands, has arrived or is on its way."""
     low, high = heading.shape[3], 0
     for h in range(arrived.shape[0]):
@@ -153,7 +166,7 @@ def occupied(heading, spans, arrived):
             if arrived[h, q, 0] < arrived[h, q, 1]:
                 low, high = min(low, arrived[h, q, 0]), max(high, arrived[h, q, 1])
             for r in range(heading.shape[0]):
-                begin, end = extent(heading[r, h, q], spans[r, h, q, 0], spans[r, h, q, 1], MATTERS)
+                begin, end = extent(heading[r, h, q], spans[r, h, q, 0], min(spans[r, h, q, 1], points), MATTERS)
                 if begin < end:
                     low, high = min(low, begin), max(high, end)
     return min(low, high), high
@@ -222,7 +235,7 @@ def clear_spans(rows, spans):
 
 @borrowing
 def collect(arriving, mixing, heading, exits):
-    """Sum all mass at the exit over modes and levels into `exits` (E,)."""
+    """Sum all mass at the exit over modes and levels into `exits` (E,), and leave the rings empty."""
     exits[:] = 0.0
     for h in range(arriving.shape[0]):
         for q in range(arriving.shape[1]):
@@ -230,3 +243,5 @@ def collect(arriving, mixing, heading, exits):
                 exits[j] += arriving[h, q, j] + mixing[h, q, j]
                 for r in range(heading.shape[0]):
                     exits[j] += heading[r, h, q, j]
+    arriving[:] = 0.0
+    mixing[:] = 0.0

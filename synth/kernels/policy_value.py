@@ -10,7 +10,7 @@ from numba import njit
 
 from synth.kernels.borrowing import borrowing
 from synth.kernels.flow import mix_values, pull, shifts
-from synth.kernels.landing_plan import landing_scratch
+from synth.kernels.landing_plan import landing_scratch, landing_tables
 from synth.kernels.next_sample import quanta_to_next_sample
 from synth.kernels.policy_density import NEGLIGIBLE_MASS
 from synth.kernels.transient import change_values
@@ -39,11 +39,15 @@ def backward(
     ahead[:, :, :, :points] = terminal
     values[last % ring, :, :, :points] = terminal
     mixed[last % ring, :, :, :points] = terminal
+    met, slope = landing_tables(
+        np.array([factor]), np.array([extra]), factors, probability, mean, std, levels, pressure, drive, brake,
+        path_step,
+    )  # fmt: skip
     follow_back(
         ahead, values, mixed, np.zeros(row), np.full(1, stalled), np.empty(row), np.zeros((2, row)),
-        np.empty((modes, size)), landing_scratch(row),
+        np.empty((modes, size)), landing_scratch(row, size),
         down, up, down_slope, up_slope, stalled, change_cost, speed, stage, pressure,
-        lower_chain, upper_chain, chain_mode, ends, factors, probability, mean, std,
+        lower_chain, upper_chain, chain_mode, ends, factors, met[0], slope[0],
         levels, transition, drive, brake, factor, extra, path_step, energy_step, period,
         density, band, lower_gradient, upper_gradient,
     )  # fmt: skip
@@ -60,7 +64,7 @@ def backward(
 def follow_back(
     ahead, values, mixed, scratch, stop, quanta, changed, shift, landing,
     down, up, down_slope, up_slope, stalled, change_cost, speed, stage, pressure,
-    lower_chain, upper_chain, chain_mode, ends, factors, probability, mean, std,
+    lower_chain, upper_chain, chain_mode, ends, factors, met, slope,
     levels, transition, drive, brake, factor, extra, path_step, energy_step, period,
     density, band, lower_gradient, upper_gradient,
 ):  # fmt: skip
@@ -90,8 +94,8 @@ def follow_back(
                     if c < 0 or begin >= end:
                         continue
                     change_values(
-                        n, nodes, c, q, begin, end, factor, chain_mode[c], ends, factors, probability, mean,
-                        std, drive, brake, pressure, levels, extra, path_step, energy_step, points,
+                        n, nodes, c, q, begin, end, factor, chain_mode[c], ends, factors, met, slope,
+                        extra, path_step, energy_step, points,
                         values, mixed, stalled, landing, changed[side],
                     )  # fmt: skip
                 for j in range(first, last):

@@ -5,74 +5,132 @@ the same plan (`landing_plan`), so that they are transposes of one another.
 
 Values and masses live in rings over the path: node n is at index n mod ring length, the exit node N too. Rows hold
 E' ≥ E energies. Further arguments, the same for both: `n`, `c`, `q` node, transient, noise level; begin ≤ j < end the
-energies; `factor` ξ_cut; `mode` reached; `pressure` (H,) over-pressure of modes; `levels` (L,); `scratch` from
-`landing_plan.landing_scratch`; the rest as in `landing_plan`.
+energies; `factor` ξ_cut; `mode` reached; `met`, `slope` of the scenario from `landing_plan.landing_tables`; `scratch`
+from `landing_plan.landing_scratch`; the rest as in `landing_plan`.
 """
 
 from __future__ import annotations
 
 from synth.kernels.borrowing import borrowing, borrowing_inline
-from synth.kernels.landing_plan import plan_landings, quanta_crossed
-from synth.kernels.packs import add_to, item, load4, total
+from synth.kernels.flow import widen
+from synth.kernels.landing_plan import find_runs, landing_of_pack, law_met
+from synth.kernels.packs import EIGHT, add_to, choose, eight, gather, greatest, item, least, load8, store, whole
 
 
 @borrowing
 def spread_changes(
-    share, n, last, c, q, begin, end, factor, mode, ends, factors, probability, mean, std,
-    drive, brake, pressure, levels, extra, path_step, energy_step, points, arriving, mixing, scratch,
+    share, n, last, c, q, begin, end, factor, mode, ends, factors, met, slope,
+    extra, path_step, energy_step, points, arriving, mixing, landed, scratch,
 ):  # fmt: skip
-    """Spread the masses `share` (E',) over `arriving` and `mixing` (ring, H, L, E'); returns the mass that stalls."""
-    crossed, place, weight = scratch
+    """Spread the masses `share` (E',) over `arriving` and `mixing` (ring, H, L, E'); returns the mass that stalls.
+
+    `landed` (ring, H, 2): ranges of energies out of which both are zero, widened.
+    """
+    crossed, runs, place, weight = scratch
     ring, modes, size, row = arriving.shape
-    quanta_crossed(n, c, begin, end, factor, ends, factors, path_step, probability.shape[1] - 1, crossed)
+    at, stride = (n * ends.shape[1] + c) * ends.shape[2] * 2 * row, modes * size * row
+    quanta, cells, start = 1.0 / path_step, 1.0 / energy_step, n % ring
+    count = find_runs(n, c, begin, end, factor, ends, factors, path_step, met.shape[1] - 1, crossed, runs)
     stalled = 0.0
-    for m in range(size):
-        held = factor * (1.0 + levels[m]) * pressure[mode]
-        for side in range(2):
-            plan_landings(
-                n, last, c, q, m, side, begin, end, crossed, held, factor, ends, factors, probability, mean, std,
-                drive, brake, extra, path_step, energy_step, points, ring, modes * size * row,
-                (mode * size + m) * row, place, weight,
-            )  # fmt: skip
-            for j in range(begin, end):
-                mass = share[j]
-                if place[0, j] < 0:
-                    stalled += weight[0, j, 0] * mass
-                elif mass != 0.0:
-                    add_four(arriving, place[0, j], weight, 4 * j, mass)
-                    add_four(mixing, place[1, j], weight, 4 * (row + j), mass)
+    bottom, top = eight(points), eight(0.0)
+    soonest, latest = whole(eight(last)), whole(top)
+    for side in range(2):
+        for k in range(count):
+            stop, over = runs[k + 1, 0], runs[k, 1]
+            for j in range(runs[k, 0], stop, EIGHT):
+                mass = load8(share, j)
+                for m in range(size):
+                    law = law_met(met, c, max(over, 0), q, m, side)
+                    at_a, at_b, a, b, by, lowest, highest = landing_of_pack(
+                        ends, at + j, row, law, over < 0, slope[mode, m, n:], last - n, extra, quanta, cells, points,
+                        stride, start * stride + (mode * size + m) * row, ring - start, ring * stride,
+                    )  # fmt: skip
+                    store_groups(at_a, at_b, a, b, mass, m, place, weight)
+                    bottom, top = least(bottom, lowest), greatest(top, highest)
+                    soonest, latest = least(soonest, by), greatest(latest, by)
+                for lane in range(min(stop - j, EIGHT)):  # levels inside: additions to different rows can overlap
+                    for m in range(size):
+                        if item(place, 2 * m * EIGHT + lane) < 0:
+                            stalled += item(weight, 8 * m * EIGHT + lane)
+                            continue
+                        add_groups(place, weight, m, lane, arriving, mixing)
+    store(place, 0, soonest)
+    store(place, EIGHT, latest)
+    store(weight, 0, bottom)
+    store(weight, EIGHT, top)
+    widen_landed(place, weight, n, last, points, landed[:, mode])
     return stalled
 
 
 @borrowing_inline
-def add_four(masses, at, weight, first, mass):
-    """Add `mass` to four neighbours at flat index `at` of `masses`, by the four weights from flat index `first` on."""
+def store_groups(at_a, at_b, a, b, mass, m, place, weight):
+    """Write the places of both groups and their weights times `mass` for level `m`."""
+    store(place, 2 * m * EIGHT, at_a)
+    store(place, (2 * m + 1) * EIGHT, at_b)
+    for i in range(4):
+        store(weight, (8 * m + i) * EIGHT, a[i] * mass)
+        store(weight, (8 * m + 4 + i) * EIGHT, b[i] * mass)
+
+
+@borrowing_inline
+def add_groups(place, weight, m, lane, arriving, mixing):
+    """Add what `store_groups` wrote for one energy to the masses."""
+    add_four(arriving, item(place, 2 * m * EIGHT + lane), weight, 8 * m * EIGHT + lane)
+    add_four(mixing, item(place, (2 * m + 1) * EIGHT + lane), weight, (8 * m + 4) * EIGHT + lane)
+
+
+@borrowing_inline
+def add_four(masses, at, weight, first):
+    """Add four numbers, every eighth of `weight` from flat index `first` on, to neighbours in `masses` from `at` on."""
     for k in range(4):
-        add_to(masses, at + k, item(weight, first + k) * mass)
+        add_to(masses, at + k, item(weight, first + EIGHT * k))
+
+
+@borrowing
+def widen_landed(quanta, cells, n, last, points, landed):
+    """Widen `landed` (ring, 2) by landings from node `n`.
+
+    `quanta` (2, 8) least and largest numbers of quanta crossed, `cells` (2, 8) of positions, of which any may be met.
+    """
+    low, high, soonest, latest = points - 3, 1, last, 0
+    for lane in range(EIGHT):
+        low, high = min(low, int(item(cells, lane))), max(high, int(item(cells, EIGHT + lane)))
+        soonest, latest = min(soonest, item(quanta, lane)), max(latest, item(quanta, EIGHT + lane))
+    for k in range(n + soonest, n + latest + 2):
+        widen(landed[k % landed.shape[0]], max(low, 1) - 1, min(high, points - 3) + 3)
 
 
 @borrowing
 def change_values(
-    n, last, c, q, begin, end, factor, mode, ends, factors, probability, mean, std,
-    drive, brake, pressure, levels, extra, path_step, energy_step, points, values, mixed, stalled, scratch, out,
+    n, last, c, q, begin, end, factor, mode, ends, factors, met, slope,
+    extra, path_step, energy_step, points, values, mixed, stalled, scratch, out,
 ):  # fmt: skip
     """`out`[begin:end] (E',) = expected value after transient `c`; `values`, `mixed` (ring, H, L, E')."""
-    crossed, place, weight = scratch
+    crossed, runs, place, weight = scratch
     ring, modes, size, row = values.shape
-    quanta_crossed(n, c, begin, end, factor, ends, factors, path_step, probability.shape[1] - 1, crossed)
+    at, stride = (n * ends.shape[1] + c) * ends.shape[2] * 2 * row, modes * size * row
+    quanta, cells, start = 1.0 / path_step, 1.0 / energy_step, n % ring
+    count = find_runs(n, c, begin, end, factor, ends, factors, path_step, met.shape[1] - 1, crossed, runs)
     out[begin:end] = 0.0
     for m in range(size):
-        held = factor * (1.0 + levels[m]) * pressure[mode]
+        gained, first = slope[mode, m, n:], start * stride + (mode * size + m) * row
         for side in range(2):
-            plan_landings(
-                n, last, c, q, m, side, begin, end, crossed, held, factor, ends, factors, probability, mean, std,
-                drive, brake, extra, path_step, energy_step, points, ring, modes * size * row,
-                (mode * size + m) * row, place, weight,
-            )  # fmt: skip
-            for j in range(begin, end):
-                if place[0, j] < 0:
-                    out[j] += weight[0, j, 0] * stalled
-                    continue
-                found = load4(values, place[0, j]) * load4(weight, 4 * j)
-                found = found + load4(mixed, place[1, j]) * load4(weight, 4 * (row + j))
-                out[j] += total(found)
+            for k in range(count):
+                stop, over = runs[k + 1, 0], runs[k, 1]
+                law = law_met(met, c, max(over, 0), q, m, side)
+                for j in range(runs[k, 0], stop, EIGHT):
+                    at_a, at_b, a, b, _, _, _ = landing_of_pack(
+                        ends, at + j, row, law, over < 0, gained, last - n, extra, quanta, cells, points,
+                        stride, first, ring - start, ring * stride,
+                    )  # fmt: skip
+                    store(place, 0, at_a)
+                    stopped = at_a < 0
+                    at_a = greatest(at_a, 0)
+                    f0 = gather(values, at_a) * a[0] + gather(mixed, at_b) * b[0]
+                    f1 = gather(values, at_a + 1) * a[1] + gather(mixed, at_b + 1) * b[1]
+                    f2 = gather(values, at_a + 2) * a[2] + gather(mixed, at_b + 2) * b[2]
+                    f3 = gather(values, at_a + 3) * a[3] + gather(mixed, at_b + 3) * b[3]
+                    found = choose(stopped, a[0] * stalled, (f0 + f1) + (f2 + f3))
+                    store(weight, 0, found)
+                    for lane in range(min(stop - j, EIGHT)):
+                        out[j + lane] += item(weight, lane)

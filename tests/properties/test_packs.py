@@ -47,6 +47,9 @@ def everything(numbers, singles, places, apart, kept, out):  # type: ignore[no-u
     out[124] = packs.keep(out, 125, low, a * 3.0) + packs.keep(kept, 1, low, where)
     out[82] = 1.0 if packs.holds_anywhere(low) else 0.0
     out[83] = 1.0 if packs.holds_anywhere((a > 9.0) | (where == 99)) else 0.0
+    for count in range(9):
+        mask = packs.fraction(where) * (count - 4.0) > 0.0
+        out[133 + 2 * count], out[134 + 2 * count] = packs.first_lane(mask), packs.last_lane(low, count)
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -54,7 +57,7 @@ def test_compiled_packs_are_the_plain_ones_to_the_bit(seed: int) -> None:
     rng = np.random.default_rng(seed)
     numbers, places = rng.uniform(-2.0, 2.0, 40), rng.integers(0, 40, 12)
     singles, apart = rng.uniform(-2.0, 2.0, 40).astype(np.float32), rng.permutation(16)
-    compiled, plain, kept, plainly = np.zeros(133), np.zeros(133), np.zeros(9, np.int64), np.zeros(9, np.int64)
+    compiled, plain, kept, plainly = np.zeros(151), np.zeros(151), np.zeros(9, np.int64), np.zeros(9, np.int64)
     njit(everything)(numbers, singles, places, apart, kept, compiled)
     everything(numbers, singles, places, apart, plainly, plain)
     np.testing.assert_array_equal(compiled, plain)
