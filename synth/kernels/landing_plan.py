@@ -74,10 +74,10 @@ def landing_tables(factor, extra, factors, probability, mean, std, levels, press
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def landing_scratch(points, levels):
-    """`crossed`, `runs` of `find_runs` for `points` E' energies; `place` (L, 2, 8), `weight` (L, 2, 4, 8) of a pack."""
+    """`crossed`, `runs` of `find_runs` for `points` E' energies; `place`, `weight` of `store_plan` for 2·L plans."""
     return (
         np.empty(points, np.int64), np.empty((points + 1, 2), np.int64),
-        np.empty((levels, 2, EIGHT), np.int64), np.empty((levels, 2, 4, EIGHT)),
+        np.empty((2 * levels, 2, EIGHT), np.int64), np.empty((2 * levels, 2, 4, EIGHT)),
     )  # fmt: skip
 
 
@@ -181,6 +181,27 @@ def landing_of_pack(
     a = a0 * share_a, a1 * share_a, a2 * share_a, a3 * share_a
     b = b0 * share_b, b1 * share_b, b2 * share_b, b3 * share_b
     return row_a + (i - 1), row_b + (k - 1), a, b, crossed, lowest, highest
+
+
+@borrowing_inline
+def store_plan(at_a, at_b, a, b, plan, place, weight):
+    """Write the places and weights of a pack as number `plan` of `place` (·, 2, 8) and `weight` (·, 2, 4, 8)."""
+    store(place, 2 * plan * EIGHT, at_a)
+    store(place, (2 * plan + 1) * EIGHT, at_b)
+    for i in range(4):
+        store(weight, (8 * plan + i) * EIGHT, a[i])
+        store(weight, (8 * plan + 4 + i) * EIGHT, b[i])
+
+
+@borrowing_inline
+def planned(plan, lane, place, weight):
+    """What `store_plan` wrote for one energy: (place a, place b, flat index of the first weight a, and of b).
+
+    The four weights of a group are `EIGHT` apart.
+    """
+    at = 2 * plan * EIGHT + lane
+    first = 8 * plan * EIGHT + lane
+    return item(place, at), item(place, at + EIGHT), first, first + 4 * EIGHT
 
 
 @borrowing_inline

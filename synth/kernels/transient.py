@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from synth.kernels.borrowing import borrowing, borrowing_inline
 from synth.kernels.flow import widen
-from synth.kernels.landing_plan import find_runs, landing_of_pack, law_met
+from synth.kernels.landing_plan import find_runs, landing_of_pack, law_met, planned, store_plan
 from synth.kernels.packs import EIGHT, add_to, choose, eight, gather, greatest, item, least, load8, store, whole
 
 
@@ -45,38 +45,25 @@ def spread_changes(
                         ends, at + j, row, law, over < 0, slope[mode, m, n:], last - n, extra, quanta, cells, points,
                         stride, start * stride + (mode * size + m) * row, ring - start, ring * stride,
                     )  # fmt: skip
-                    store_groups(at_a, at_b, a, b, mass, m, place, weight)
+                    a = a[0] * mass, a[1] * mass, a[2] * mass, a[3] * mass
+                    b = b[0] * mass, b[1] * mass, b[2] * mass, b[3] * mass
+                    store_plan(at_a, at_b, a, b, m, place, weight)
                     bottom, top = least(bottom, lowest), greatest(top, highest)
                     soonest, latest = least(soonest, by), greatest(latest, by)
                 for lane in range(min(stop - j, EIGHT)):  # levels inside: additions to different rows can overlap
                     for m in range(size):
-                        if item(place, 2 * m * EIGHT + lane) < 0:
-                            stalled += item(weight, 8 * m * EIGHT + lane)
+                        to_a, to_b, first_a, first_b = planned(m, lane, place, weight)
+                        if to_a < 0:
+                            stalled += item(weight, first_a)
                             continue
-                        add_groups(place, weight, m, lane, arriving, mixing)
+                        add_four(arriving, to_a, weight, first_a)
+                        add_four(mixing, to_b, weight, first_b)
     store(place, 0, soonest)
     store(place, EIGHT, latest)
     store(weight, 0, bottom)
     store(weight, EIGHT, top)
     widen_landed(place, weight, n, last, points, landed[:, mode])
     return stalled
-
-
-@borrowing_inline
-def store_groups(at_a, at_b, a, b, mass, m, place, weight):
-    """Write the places of both groups and their weights times `mass` for level `m`."""
-    store(place, 2 * m * EIGHT, at_a)
-    store(place, (2 * m + 1) * EIGHT, at_b)
-    for i in range(4):
-        store(weight, (8 * m + i) * EIGHT, a[i] * mass)
-        store(weight, (8 * m + 4 + i) * EIGHT, b[i] * mass)
-
-
-@borrowing_inline
-def add_groups(place, weight, m, lane, arriving, mixing):
-    """Add what `store_groups` wrote for one energy to the masses."""
-    add_four(arriving, item(place, 2 * m * EIGHT + lane), weight, 8 * m * EIGHT + lane)
-    add_four(mixing, item(place, (2 * m + 1) * EIGHT + lane), weight, (8 * m + 4) * EIGHT + lane)
 
 
 @borrowing_inline
@@ -105,32 +92,31 @@ def change_values(
     n, last, c, q, begin, end, factor, mode, ends, factors, met, slope,
     extra, path_step, energy_step, points, values, mixed, stalled, scratch, out,
 ):  # fmt: skip
-    """`out`[begin:end] (E',) = expected value after transient `c`; `values`, `mixed` (ring, H, L, E')."""
-    crossed, runs, place, weight = scratch
+    """`out`[begin:end] (E',) = expected value after transient `c`; `values`, `mixed` (ring, H, L, E').
+
+    What follows in `out` within a pack is overwritten too.
+    """
+    crossed, runs, _, _ = scratch
     ring, modes, size, row = values.shape
     at, stride = (n * ends.shape[1] + c) * ends.shape[2] * 2 * row, modes * size * row
     quanta, cells, start = 1.0 / path_step, 1.0 / energy_step, n % ring
     count = find_runs(n, c, begin, end, factor, ends, factors, path_step, met.shape[1] - 1, crossed, runs)
-    out[begin:end] = 0.0
-    for m in range(size):
-        gained, first = slope[mode, m, n:], start * stride + (mode * size + m) * row
-        for side in range(2):
-            for k in range(count):
-                stop, over = runs[k + 1, 0], runs[k, 1]
-                law = law_met(met, c, max(over, 0), q, m, side)
-                for j in range(runs[k, 0], stop, EIGHT):
+    for k in range(count):
+        over = runs[k, 1]
+        for j in range(runs[k, 0], runs[k + 1, 0], EIGHT):
+            total = eight(0.0)
+            for m in range(size):
+                for side in range(2):
+                    law = law_met(met, c, max(over, 0), q, m, side)
                     at_a, at_b, a, b, _, _, _ = landing_of_pack(
-                        ends, at + j, row, law, over < 0, gained, last - n, extra, quanta, cells, points,
-                        stride, first, ring - start, ring * stride,
+                        ends, at + j, row, law, over < 0, slope[mode, m, n:], last - n, extra, quanta, cells, points,
+                        stride, start * stride + (mode * size + m) * row, ring - start, ring * stride,
                     )  # fmt: skip
-                    store(place, 0, at_a)
                     stopped = at_a < 0
                     at_a = greatest(at_a, 0)
                     f0 = gather(values, at_a) * a[0] + gather(mixed, at_b) * b[0]
                     f1 = gather(values, at_a + 1) * a[1] + gather(mixed, at_b + 1) * b[1]
                     f2 = gather(values, at_a + 2) * a[2] + gather(mixed, at_b + 2) * b[2]
                     f3 = gather(values, at_a + 3) * a[3] + gather(mixed, at_b + 3) * b[3]
-                    found = choose(stopped, a[0] * stalled, (f0 + f1) + (f2 + f3))
-                    store(weight, 0, found)
-                    for lane in range(min(stop - j, EIGHT)):
-                        out[j + lane] += item(weight, lane)
+                    total = total + choose(stopped, a[0] * stalled, (f0 + f1) + (f2 + f3))
+            store(out, j, total)  # beyond the run: overwritten by the next, or out of range
