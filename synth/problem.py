@@ -17,8 +17,8 @@ from plant_models import (
     mean_braked_axles,
 )
 from plant_models.errors import require, require_between
-from synth.requirement import FrictionRange, Requirement
-from synth.terminal_cost import SquaredError, TerminalCost
+from synth.criterion.requirement import FrictionRange, Requirement
+from synth.criterion.terminal_cost import SquaredError, TerminalCost
 
 
 @dataclass(frozen=True)

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 def export_command(source: Path, form: str, output: Path, as_json: bool) -> int:
     """Write the tables in `source` as `form` into the directory `output`, and print the names of the files."""
-    from synth.output_directory import make_directory
-    from synth.table_file import read_tables
-    from synth.table_forms import FORMS
+    from synth.output.output_directory import make_directory
+    from synth.tables.table_file import read_tables
+    from synth.tables.table_forms import FORMS
     from tuning_tables import InvalidTable, write_atomically
 
     if form not in FORMS:

@@ -8,8 +8,8 @@ import json
 def init_command(retarder: str | None, show_list: bool, as_json: bool) -> int:
     """Print the commented configuration of `retarder` (the default one for None), or the list of retarders."""
     from plant_models.library import load_retarder, retarder_names
-    from synth.config_template import default_config_toml
-    from synth.settings import DEFAULT_RETARDER
+    from synth.configuration.config_template import default_config_toml
+    from synth.configuration.settings import DEFAULT_RETARDER
 
     if show_list:
         titles = {name: load_retarder(name).title for name in retarder_names()}

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from synth.table_file import TableFile, read_tables, summary_beside
+from synth.tables.table_file import TableFile, read_tables, summary_beside
 from tuning_tables import DamagedTable
 from tuning_tables.document import to_document
 from tuning_tables.estimator import Estimator

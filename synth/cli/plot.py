@@ -14,24 +14,24 @@ PASSES = 5000
 def plot_command(source: Path, output: Path, config_path: Path | None, as_json: bool) -> int:
     """Draw the tables in `source` into `output`; passes only for tables that a class of the configuration fits."""
     from synth.cli.interrupt import interruptible
-    from synth.config_file import BUILT_IN, load_config
+    from synth.configuration.config_file import BUILT_IN, load_config
     from synth.input_error import InputError
     from synth.kernel_cache import guarded, use_kernel_cache
-    from synth.output_directory import make_directory
-    from synth.table_file import file_stem, read_tables
+    from synth.output.output_directory import make_directory
+    from synth.tables.table_file import file_stem, read_tables
 
     config = load_config(config_path)
     tables = [table for file in read_tables(source, directory_allowed=True) for table in file.tables]
     make_directory(output)
     use_kernel_cache()
+    from synth.output.validate_table import plant_for
     from synth.plots.figure_file import save_figure
     from synth.plots.table_picture import Passes, table_lines, table_passes, table_surfaces
-    from synth.validate_table import plant_for
     from tuning_tables import ControllerTable
 
     def passes_of(table: ControllerTable) -> Passes:
-        from synth.closed_loop import TableController, simulate, trace
-        from synth.random_passes import random_passes
+        from synth.simulation.closed_loop import TableController, simulate, trace
+        from synth.simulation.random_passes import random_passes
 
         plant = plant_for(table, config, str(config_path or BUILT_IN))[1]
         passes, law = random_passes(config.validation.seed, 0, PASSES), TableController(table)

@@ -9,14 +9,14 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from synth.cli import LIMITS_MISSED, OK, say
+from synth.configuration.resolved_config import ResolvedConfig
 from synth.input_error import InputError
-from synth.resolved_config import ResolvedConfig
 
 
 def tune_command(path: Path | None, output: Path, workers: int | None, as_json: bool) -> int:
     """Tune the configuration in `path` into the directory `output`; the exit code."""
-    from synth.config_file import load_config
-    from synth.output_directory import output_directory
+    from synth.configuration.config_file import load_config
+    from synth.output.output_directory import output_directory
 
     config = load_config(path)
     workers = workers or min(len(config.cuts), len(os.sched_getaffinity(0)))
@@ -40,14 +40,14 @@ def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, worker
     with interruptible(directory), Progress(cases) as progress, ExitStack() as stack:
         if next(cache.rglob("*.nbi"), None) is None:
             progress.note("compiling the kernels for this machine, once; this takes about a minute")
-        from synth.draw_pictures import Studio
+        from synth.output.draw_pictures import Studio
 
         wanted = config.output.plots or config.output.report
         studio = stack.enter_context(Studio(workers if wanted else 1))
-        from synth.acceptance import judge
-        from synth.outputs import write_outputs
+        from synth.output.acceptance import judge
+        from synth.output.outputs import write_outputs
         from synth.report.figures import counted
-        from synth.tune import no_notice, tune
+        from synth.tuning.tune import no_notice, tune
         from tuning_tables import InvalidTable
 
         case_done = studio.case_done if wanted else no_notice
@@ -74,7 +74,7 @@ def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, worker
 def require_room(config: ResolvedConfig, path: Path | None, workers: int) -> None:
     """`InputError` if the grid would not fit into memory."""
     from plant_models import PlantError
-    from synth.grid import require_memory
+    from synth.markov_chain.grid import require_memory
 
     for label, plant in config.plants():
         try:

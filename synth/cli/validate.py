@@ -10,20 +10,20 @@ from typing import TYPE_CHECKING, Any
 from synth.cli import LIMITS_MISSED, OK, say
 
 if TYPE_CHECKING:
-    from synth.validate_table import Revalidation
+    from synth.output.validate_table import Revalidation
 
 
 def validate_command(path: Path, config_path: Path | None, passes: int | None, seed: int | None, as_json: bool) -> int:
     """Simulate the tables in `path`; 1 if one that is not known to be infeasible misses a limit."""
     from synth.cli.interrupt import interruptible
-    from synth.config_file import BUILT_IN, load_config
+    from synth.configuration.config_file import BUILT_IN, load_config
     from synth.kernel_cache import guarded, use_kernel_cache
-    from synth.table_file import is_infeasible, read_tables, summary_beside
+    from synth.tables.table_file import is_infeasible, read_tables, summary_beside
 
     config, (file,) = load_config(config_path), read_tables(path)
     source, summary = str(config_path or BUILT_IN), summary_beside(path)
     use_kernel_cache()
-    from synth.validate_table import plant_for, revalidate
+    from synth.output.validate_table import plant_for, revalidate
 
     for table in file.tables:
         plant_for(table, config, source)  # refused before anything is simulated
@@ -38,7 +38,7 @@ def validate_command(path: Path, config_path: Path | None, passes: int | None, s
     if not all(each.same_config for each in found):
         say(f"warning: {path} was made from another configuration than {source}; the plant may differ")
     if as_json:
-        from synth.summary import plain
+        from synth.output.summary import plain
 
         print(json.dumps(plain([document(each) for each in found]), indent=1, ensure_ascii=False))
     else:

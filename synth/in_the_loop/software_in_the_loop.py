@@ -18,12 +18,12 @@ from typing import Any, Final
 import numpy as np
 from numba import njit
 
-from synth.closed_loop import ClosedLoop, TableController, close_loop
 from synth.in_the_loop.controller_process import Controller
 from synth.kernels import closed_loop as kernel
-from synth.passes import ExitSample
 from synth.problem import Plant
-from synth.random_passes import RandomPasses
+from synth.simulation.closed_loop import ClosedLoop, TableController, close_loop
+from synth.simulation.passes import ExitSample
+from synth.simulation.random_passes import RandomPasses
 from tuning_tables import ControllerTable
 
 OBSERVE: Final = -1

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from synth.case_result import CaseResult, Measured
+from synth.comparison.measured import Measured
+from synth.tuning.case_result import CaseResult
 
 
 @dataclass(frozen=True)

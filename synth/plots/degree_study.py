@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from synth.case_result import DegreeStudy
 from synth.plots.house_style import BLUE, INK, ORANGE, dress, legend_below, logarithmic_y, new_figure, place
+from synth.tuning.case_result import DegreeStudy
 
 MOST_COLUMNS = 5
 

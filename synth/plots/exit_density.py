@@ -11,10 +11,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from synth.case_result import CaseResult
-from synth.exit_statistics import OVERSPEED_M_S
 from synth.plots.case_names import contest, cut_name
 from synth.plots.house_style import GREY, INK, SKY, VERMILLION, dress, legend_below, logarithmic_y, new_figure, place
+from synth.simulation.exit_statistics import OVERSPEED_M_S
+from synth.tuning.case_result import CaseResult
 
 ONE_PASS = 0.4
 """Bottom of the logarithmic panel: this share of the density that one simulated pass in a cell stands for."""

@@ -10,7 +10,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from synth.case_result import CaseResult
 from synth.plots.case_names import by_class
 from synth.plots.house_style import (
     INK,
@@ -24,6 +23,7 @@ from synth.plots.house_style import (
     new_figure,
     place,
 )
+from synth.tuning.case_result import CaseResult
 
 
 def feasibility(cases: Sequence[CaseResult]) -> Figure:

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 
 from matplotlib.figure import Figure
 
-from synth.case_result import CaseResult, DegreeStudy
 from synth.plots.case_names import by_class, case_name, file_stem
 from synth.plots.degree_study import degree_study
 from synth.plots.exit_density import exit_density
@@ -18,6 +17,7 @@ from synth.plots.rms_by_controller import rms_by_controller
 from synth.plots.sample_passes import sample_passes
 from synth.plots.surfaces import surfaces
 from synth.plots.switchings import switchings
+from synth.tuning.case_result import CaseResult, DegreeStudy
 
 
 def all_pictures(cases: Sequence[CaseResult], studies: Sequence[DegreeStudy], limit_m_s: float) -> Iterator[Picture]:

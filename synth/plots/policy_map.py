@@ -14,10 +14,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from synth.case_result import CaseResult, PolicyMap
-from synth.passes import PassTrace
 from synth.plots.case_names import cut_name, target_name
 from synth.plots.house_style import BLUE, GREY, INK, VERMILLION, dress, mark_zones, new_figure, place, speed_window_m_s
+from synth.simulation.passes import PassTrace
+from synth.tuning.case_result import CaseResult, PolicyMap
 
 DOWN, HOLD, UP, HATCH = "#cfe4f3", "#fafafa", "#fae0cf", "#b5b5b5"
 STRIPE_PERIOD, STRIPE_WIDTH = 9, 2

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from synth.case_result import CaseResult, Measured
+from synth.comparison.measured import Measured
 from synth.plots.case_names import by_class, contest, why_infeasible
 from synth.plots.house_style import (
     BLACK,
@@ -29,6 +29,7 @@ from synth.plots.house_style import (
     new_figure,
     place,
 )
+from synth.tuning.case_result import CaseResult
 
 
 @dataclass(frozen=True)

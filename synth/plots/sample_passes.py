@@ -6,8 +6,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from synth.case_result import CaseResult
-from synth.passes import PassTrace
 from synth.plots.case_names import cut_name, target_name
 from synth.plots.house_style import (
     GREY,
@@ -20,6 +18,8 @@ from synth.plots.house_style import (
     new_figure,
     place,
 )
+from synth.simulation.passes import PassTrace
+from synth.tuning.case_result import CaseResult
 
 
 def sample_passes(case: CaseResult) -> Figure:

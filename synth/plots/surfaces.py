@@ -9,11 +9,11 @@ from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]  # ships
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection  # type: ignore[import-untyped]  # the same
 from numpy.typing import NDArray
 
-from synth.case_result import CaseResult
+from synth.dynamic_programme.switching_lines import SwitchingLines
+from synth.fitting.tabulate import lines_of
 from synth.plots.case_names import cut_name, target_name
 from synth.plots.house_style import BLUE, INK, VERMILLION, legend_below, new_figure, speed_window_m_s
-from synth.switching_lines import SwitchingLines
-from synth.tabulate import lines_of
+from synth.tuning.case_result import CaseResult
 
 PATH_POINTS = 25
 POINTS_PER_STAGE = 3

@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from synth.case_result import CaseResult
 from synth.plots.case_names import case_name
 from synth.plots.house_style import BLUE, GREY, ORANGE, dress, legend_below, logarithmic_x, new_figure, place
+from synth.tuning.case_result import CaseResult
 
 
 def switchings(cases: Sequence[CaseResult]) -> Figure:

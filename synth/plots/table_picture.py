@@ -11,8 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from synth.exit_statistics import exit_statistics
-from synth.passes import ExitSample, PassTrace
+from synth.fitting.tabulate import lines_of
 from synth.plots.house_style import (
     BLUE,
     GREY,
@@ -29,7 +28,8 @@ from synth.plots.house_style import (
 from synth.plots.policy_map import DOWN, HOLD, UP, finite, label_panels, parts_in_stage, stage_panels
 from synth.plots.sample_passes import outcome
 from synth.plots.surfaces import PATH_POINTS, surface_figure
-from synth.tabulate import lines_of
+from synth.simulation.exit_statistics import exit_statistics
+from synth.simulation.passes import ExitSample, PassTrace
 from tuning_tables import ControllerTable
 
 LINE_POINTS = 201

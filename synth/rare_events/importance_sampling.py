@@ -9,13 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.closed_loop import CHUNK_PASSES
-from synth.exit_statistics import NORMAL_95, rms_interval
-from synth.random_passes import random_passes
 from synth.rare_events.gaussian_mixture import GaussianMixture
 from synth.rare_events.pass_coordinates import DIMENSIONS, PassCoordinates
 from synth.rare_events.pass_score import PassScore
 from synth.rare_events.tail_probability import TailProbability, sampled_tail
+from synth.simulation.closed_loop import CHUNK_PASSES
+from synth.simulation.exit_statistics import NORMAL_95, rms_interval
+from synth.simulation.random_passes import random_passes
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.closed_loop import ClosedLoop
-from synth.random_passes import RandomPasses
+from synth.simulation.closed_loop import ClosedLoop
+from synth.simulation.random_passes import RandomPasses
 
 DIMENSIONS = 4
 """ξ_cut, work of η, entry speed, w."""

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.closed_loop import ClosedLoop, Controller
-from synth.random_passes import RandomPasses
+from synth.simulation.closed_loop import ClosedLoop, Controller
+from synth.simulation.random_passes import RandomPasses
 
 PassScore = Callable[[RandomPasses], NDArray[np.float64]]
 """Random passes → score (n,); the rare event is a score above a limit. Must be safe to call from threads."""

@@ -16,10 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.random_passes import NOISE_SAMPLES, RandomPasses
 from synth.rare_events.pass_coordinates import BELOW_ONE
 from synth.rare_events.pass_score import PassScore
 from synth.rare_events.tail_probability import TailProbability, sampled_tail
+from synth.simulation.random_passes import NOISE_SAMPLES, RandomPasses
 
 STEPS = (0.1, 0.3, 0.6, 1.0)
 """Sizes of a move, drawn anew for every particle and move; 1 forgets where it was."""

@@ -15,14 +15,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.grid import Resolution, finer_for_check
-from synth.policy_evaluation import Commands, commands, forward_one
+from synth.dynamic_programme.policy_evaluation import Commands, commands, forward_one
+from synth.dynamic_programme.switching_lines import SwitchingLines
+from synth.fitting.tabulate import lines_of
+from synth.markov_chain.grid import Resolution, finer_for_check
+from synth.markov_chain.transitions import Scenarios, Transitions, check_transitions, resistance_scenarios
 from synth.problem import Plant
 from synth.rare_events.adaptive_simpson import adaptive_simpson
 from synth.rare_events.tail_probability import TailProbability
-from synth.switching_lines import SwitchingLines
-from synth.tabulate import lines_of
-from synth.transitions import Scenarios, Transitions, check_transitions, resistance_scenarios
 from tuning_tables import ControllerTable
 
 FARTHEST_Z = 6.0

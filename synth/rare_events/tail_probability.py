@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from synth.exit_statistics import clopper_pearson
+from synth.simulation.exit_statistics import clopper_pearson
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from plant_models.library import SourcedValue
-from synth.case_result import CaseResult, DegreeStudy
 from synth.plots.picture import Picture
+from synth.tuning.case_result import CaseResult, DegreeStudy
 
 
 @dataclass(frozen=True)

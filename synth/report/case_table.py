@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from synth.case_result import CaseResult
 from synth.plots.case_names import contest, honesty, why_infeasible
 from synth.report.book_report import BookReport
 from synth.report.figures import ABSENT, interval, percent, quotient, speed
 from synth.report.markup import Cell, Markup, head_row, table
+from synth.tuning.case_result import CaseResult
 
 HONEST = (0.9, 1.1)
 """Predicted / simulated rms inside this is called honest."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 
-from synth.case_result import CaseResult
-from synth.limit_cycle import Hunting, hunting_report, pressure_hunting
+from synth.comparison.limit_cycle import Hunting, hunting_report, pressure_hunting
 from synth.plots.case_names import case_name
 from synth.report.book_report import BookReport
 from synth.report.figures import ABSENT
 from synth.report.markup import Cell, Markup, element, head_row, joined, table
+from synth.tuning.case_result import CaseResult
 
 HUNTING = (
     "Limit cycles predicted for the exported lines without noise: the regulator of the position steps between two "

@@ -6,12 +6,12 @@ import math
 from collections.abc import Sequence
 from statistics import median
 
-from synth.case_result import CaseResult
 from synth.plots.case_names import Contest, case_name, contest, honesty
 from synth.report.book_report import BookReport
 from synth.report.case_table import HONEST
 from synth.report.figures import counted, span
 from synth.report.markup import Markup, element
+from synth.tuning.case_result import CaseResult
 
 FAR_OFF = 1.5
 """From this factor on, between promised and simulated rms, a prediction is called far off."""

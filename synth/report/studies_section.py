@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from statistics import median
 
-from synth.case_result import CaseResult, DegreeStudy
 from synth.report.book_report import BookReport
 from synth.report.figures import ABSENT, span, speed
 from synth.report.markup import Cell, Markup, element, head_row, joined, table
+from synth.tuning.case_result import CaseResult, DegreeStudy
 
 
 def studies_section(book: BookReport) -> Markup:

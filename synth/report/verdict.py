@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from synth.case_result import CaseResult
 from synth.plots.case_names import case_name, contest, why_infeasible
 from synth.report.book_report import BookReport
 from synth.report.figures import counted, interval, speed
 from synth.report.markup import Markup, element
+from synth.tuning.case_result import CaseResult
 
 
 def verdict(book: BookReport) -> Markup:

@@ -9,9 +9,9 @@ from typing import Final
 
 from plant_models import PressingForce
 from plant_models.library import SourcedValue, load_car, weight_categories
-from synth.cut_class import CutClass
+from synth.configuration.cut_class import CutClass
+from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem import Plant
-from synth.resolved_config import ResolvedConfig
 from synth.robustness.plant_values import GRADE, RELATIVE, SLOPE_BY_AXLES, SLOPES, STAGE_PRESSURES, TOUCH_PRESSURE
 
 FULL_RANGE: Final = 0.5

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from synth.configuration.resolved_config import ResolvedConfig
+from synth.fitting.tabulate import tabulate
+from synth.fitting.tuned_lines import tuned_lines
+from synth.markov_chain.transitions import persistent_transitions
 from synth.problem import Plant
-from synth.resolved_config import ResolvedConfig
-from synth.tabulate import tabulate
-from synth.transitions import persistent_transitions
-from synth.tuned_lines import tuned_lines
 from tuning_tables import ControllerTable, Generator, Predicted
 
 

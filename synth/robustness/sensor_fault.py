@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.problem import Plant
-from synth.random_passes import RandomPasses
+from synth.simulation.random_passes import RandomPasses
 
 Floats = NDArray[np.float64]
 

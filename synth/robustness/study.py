@@ -11,11 +11,11 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.exit_statistics import clopper_pearson
 from synth.problem import Plant
 from synth.robustness.parameter import Parameter
 from synth.robustness.perturbation import Ends, Perturbation, all_off, one_off
 from synth.robustness.trial import Outcome, Trial
+from synth.simulation.exit_statistics import clopper_pearson
 
 Item = TypeVar("Item")
 Found = TypeVar("Found")

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from synth.closed_loop import TableController, simulate
-from synth.exit_statistics import NORMAL_95, ExitStatistics, clopper_pearson, exit_statistics
-from synth.passes import ExitSample
 from synth.problem import Plant
-from synth.random_passes import RandomPasses
 from synth.robustness.perturbation import Perturbation
+from synth.simulation.closed_loop import TableController, simulate
+from synth.simulation.exit_statistics import NORMAL_95, ExitStatistics, clopper_pearson, exit_statistics
+from synth.simulation.passes import ExitSample
+from synth.simulation.random_passes import RandomPasses
 from tuning_tables import ControllerTable
 
 

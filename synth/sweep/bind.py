@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 
-from synth.output_directory import SUMMARY, make_directory, remove_stale
+from synth.output.output_directory import SUMMARY, make_directory, remove_stale
 from synth.sweep.book_summary import BookFigures, Failure, book_summary, case_of, sweep_summary
 from synth.sweep.plan import Plan, Unit
 from synth.sweep.sweep_directory import SweepDirectory

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from synth.input_error import InputError
-from synth.output_directory import LEFTOVER, make_directory
+from synth.output.output_directory import LEFTOVER, make_directory
 from synth.sweep.ledger import Ledger, read_ledger
 from synth.sweep.unit_result import UnitResult, from_bytes, to_bytes
 from tuning_tables import DamagedTable, write_atomically

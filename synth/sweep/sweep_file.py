@@ -13,10 +13,10 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from plant_models.library.near_miss import near_miss
-from synth.config_file import ALLOWED, first_fault, key_path, read_text, shown
+from synth.configuration.config_file import ALLOWED, first_fault, key_path, read_text, shown
+from synth.configuration.resolved_config import ResolvedConfig, resolve, setting_limits
+from synth.configuration.settings import DEFAULT_CUTS, CutSettings, Settings
 from synth.input_error import InputError
-from synth.resolved_config import ResolvedConfig, resolve, setting_limits
-from synth.settings import DEFAULT_CUTS, CutSettings, Settings
 from synth.sweep.sweep_settings import CONDITION_SECTIONS, SweepSettings, SweptCuts
 
 AS_CONFIGURED = ""

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, PlainValidator
 
-from synth.settings import Section
+from synth.configuration.settings import Section
 
 MOST_VALUES = 1000
 """Values of one range."""

@@ -9,23 +9,23 @@ from typing import Any
 
 import numpy as np
 
-from synth.acceptance import missed_limits, overspeed_share
-from synth.backward_induction import Solution, solve_all
-from synth.closed_loop import TableController
-from synth.common_passes import CommonPasses, common_passes
-from synth.exit_statistics import exit_statistics
-from synth.grid import finer_for_check
+from synth.configuration.resolved_config import ResolvedConfig, resolve
+from synth.configuration.settings import Settings
+from synth.dynamic_programme.backward_induction import Solution, solve_all
+from synth.fitting.tabulate import prediction_of, tabulate
+from synth.fitting.tuned_lines import fitted
+from synth.markov_chain.grid import finer_for_check
+from synth.markov_chain.transitions import Transitions, check_transitions, persistent_transitions
+from synth.output.acceptance import missed_limits, overspeed_share
 from synth.problem import Plant
-from synth.random_passes import random_passes
-from synth.resolved_config import ResolvedConfig, resolve
-from synth.settings import Settings
+from synth.simulation.closed_loop import TableController
+from synth.simulation.common_passes import CommonPasses, common_passes
+from synth.simulation.exit_statistics import exit_statistics
+from synth.simulation.random_passes import random_passes
 from synth.sweep.plan import TARGETS_AT_ONCE, Refinement, UnitOrder
 from synth.sweep.refinement import Bench, Gap, refined
 from synth.sweep.unit_result import Row, UnitResult
-from synth.tabulate import prediction_of, tabulate
-from synth.transitions import Transitions, check_transitions, persistent_transitions
-from synth.tune_case import predict, required
-from synth.tuned_lines import fitted
+from synth.tuning.tune_case import predict, required
 from tuning_tables import ControllerTable, Generator, Predicted, Validated, from_json, to_json
 from tuning_tables.active_table import between
 

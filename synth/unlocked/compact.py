@@ -12,12 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.closed_loop import ClosedLoop, LineController
+from synth.fitting.polynomial_fit import PolynomialLines, basis
 from synth.kernels.closed_loop import Draws
-from synth.passes import ExitSample
-from synth.polynomial_fit import PolynomialLines, basis
 from synth.problem import Criterion
-from synth.random_passes import RandomPasses
+from synth.simulation.closed_loop import ClosedLoop, LineController
+from synth.simulation.passes import ExitSample
+from synth.simulation.random_passes import RandomPasses
 from synth.unlocked.evolution import Vector, evolve
 from synth.unlocked.laws import PRESSURE_POWERS, CompactController, SurfaceController
 from synth.unlocked.loop import UnlockedLoop

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from plant_models.errors import require
 from plant_models.valve_drive import ValveDrive, valve_drive
-from synth.actuator import resting_modes
 from synth.kernels.unlocked_pressure import play_period
+from synth.markov_chain.actuator import resting_modes
 from synth.problem import Plant
 from synth.unlocked.pressure_grid import STENCIL, PressureGrid, pressure_grid
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.controllers import fixed
+from synth.dynamic_programme.switching_lines import SwitchingLines
 from synth.kernels.unlocked_loop import SurfaceLaw
-from synth.switching_lines import SwitchingLines
+from synth.simulation.controllers import fixed
 from synth.unlocked.drive_modes import DriveModes
 from synth.unlocked.surfaces import SwitchingSurfaces
 

@@ -1,4 +1,4 @@
-"""Closed-loop Monte Carlo where a command may be given at every sample; pass i is pass i of `synth.closed_loop`."""
+"""Closed-loop Monte Carlo where a command may be given at every sample; pass i is that of `simulation.closed_loop`."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.valve_drive import valve_drive
-from synth.actuator import resting_modes
-from synth.closed_loop import ClosedLoop, close_loop
-from synth.controllers import fixed
 from synth.kernels import closed_loop as kernel
 from synth.kernels.unlocked_loop import SampledDrive, run_unlocked_passes
-from synth.passes import ExitSample, PassTrace
+from synth.markov_chain.actuator import resting_modes
 from synth.problem import Plant
-from synth.random_passes import RandomPasses
+from synth.simulation.closed_loop import ClosedLoop, close_loop
+from synth.simulation.controllers import fixed
+from synth.simulation.passes import ExitSample, PassTrace
+from synth.simulation.random_passes import RandomPasses
 from synth.unlocked.laws import UnlockedController
 
 

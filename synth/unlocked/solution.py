@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import path_coefficients
-from synth.backward_induction import TIE_M2_S2, measured_speed_std, true_speed_weights
-from synth.grid import Grid, Resolution, make_grid
+from synth.dynamic_programme.backward_induction import TIE_M2_S2, measured_speed_std, true_speed_weights
 from synth.kernels.unlocked_bellman import unlocked_sweep
-from synth.path_noise import PathChain, correlated_chain
+from synth.markov_chain.grid import Grid, Resolution, make_grid
+from synth.markov_chain.path_noise import PathChain, correlated_chain
+from synth.markov_chain.transitions import FINE_CELLS_PER_QUANTUM, Scenarios, entry_distribution, persistent_scenarios
 from synth.problem import Criterion, Plant
-from synth.transitions import FINE_CELLS_PER_QUANTUM, Scenarios, entry_distribution, persistent_scenarios
 from synth.unlocked.drive_modes import DriveModes, drive_modes
 from synth.unlocked.surfaces import SwitchingSurfaces
 

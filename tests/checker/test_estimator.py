@@ -16,8 +16,8 @@ from synth.checker.estimator import estimator_of as read_estimator
 from synth.checker.estimator_sense import estimator_faults, work_of
 from synth.checker.float32 import bits
 from synth.checker.plant import Plant, plant_of
-from synth.config_file import parse_config
-from synth.estimator_design import estimator_of
+from synth.configuration.config_file import parse_config
+from synth.estimation.estimator_design import estimator_of
 from tests.checker.planted_fault import Document
 from tuning_tables.estimator import Estimator, begin, observe
 

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from plant_models import Friction
-from synth.backward_induction import solve
-from synth.grid import Resolution
-from synth.policy_evaluation import commands, exit_density
+from synth.dynamic_programme.backward_induction import solve
+from synth.dynamic_programme.policy_evaluation import commands, exit_density
+from synth.dynamic_programme.switching_lines import SwitchingLines
+from synth.markov_chain.grid import Resolution
+from synth.markov_chain.transitions import Transitions, as_published, persistent_transitions
 from synth.problem import Criterion, EntrySpeed, Plant
-from synth.switching_lines import SwitchingLines
-from synth.transitions import Transitions, as_published, persistent_transitions
 
 STEPS_M = (1.0, 0.5, 0.25)
 

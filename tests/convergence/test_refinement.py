@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.backward_induction import solve
-from synth.grid import Resolution
-from synth.policy_evaluation import commands, exit_density, occupancy_of
-from synth.polynomial_fit import stage_occupancy
+from synth.dynamic_programme.backward_induction import solve
+from synth.dynamic_programme.policy_evaluation import commands, exit_density, occupancy_of
+from synth.dynamic_programme.switching_lines import SwitchingLines
+from synth.fitting.polynomial_fit import stage_occupancy
+from synth.markov_chain.grid import Resolution
+from synth.markov_chain.transitions import Transitions, persistent_transitions
 from synth.problem import Criterion, Plant
-from synth.switching_lines import SwitchingLines
-from synth.transitions import Transitions, persistent_transitions
 
 TARGET_M_S = 3.0
 

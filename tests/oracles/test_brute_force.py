@@ -17,10 +17,10 @@ import pytest
 from numpy.typing import NDArray
 
 from plant_models import DopplerSensor, Friction, RollingResistance
-from synth.backward_induction import measured_speed_std, solve, true_speed_weights
-from synth.grid import Resolution
+from synth.dynamic_programme.backward_induction import measured_speed_std, solve, true_speed_weights
+from synth.markov_chain.grid import Resolution
+from synth.markov_chain.transitions import Transitions, persistent_transitions
 from synth.problem import Criterion, Plant
-from synth.transitions import Transitions, persistent_transitions
 
 Row = list[float]
 

@@ -16,11 +16,11 @@ import pytest
 from numpy.typing import NDArray
 
 from plant_models import DopplerSensor, Pneumatics, PressingForce, PressureHistory
-from synth.backward_induction import solve
-from synth.grid import Resolution
+from synth.criterion.terminal_cost import AsymmetricSquare
+from synth.dynamic_programme.backward_induction import solve
+from synth.markov_chain.grid import Resolution
+from synth.markov_chain.transitions import persistent_transitions
 from synth.problem import Criterion, EntrySpeed, Plant
-from synth.terminal_cost import AsymmetricSquare
-from synth.transitions import persistent_transitions
 
 SUBSTEP_S = 2e-3
 SQUARED = Criterion(1.0, 0.0)

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from plant_models import Friction, PressingForce, RollingResistance, TrackProfile
-from synth.exit_density import ExitDensity
-from synth.grid import Resolution
-from synth.policy_evaluation import commands, exit_density
+from synth.criterion.exit_density import ExitDensity
+from synth.dynamic_programme.policy_evaluation import commands, exit_density
+from synth.dynamic_programme.switching_lines import SwitchingLines
+from synth.markov_chain.grid import Resolution
+from synth.markov_chain.transitions import Transitions, check_transitions, persistent_transitions
 from synth.problem import EntrySpeed, Plant
-from synth.switching_lines import SwitchingLines
-from synth.transitions import Transitions, check_transitions, persistent_transitions
 
 NEVER = math.inf
 

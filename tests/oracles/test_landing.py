@@ -12,9 +12,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from plant_models import PressingForce
-from synth.grid import Resolution
+from synth.markov_chain.grid import Resolution
+from synth.markov_chain.transitions import Transitions, persistent_transitions
 from synth.problem import Plant
-from synth.transitions import Transitions, persistent_transitions
 
 STALLED = -1.0
 

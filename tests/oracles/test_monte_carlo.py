@@ -11,13 +11,13 @@ import pytest
 from numpy.typing import NDArray
 
 from plant_models import DopplerSensor, Friction, PressingForce
-from synth.closed_loop import LineController, simulate
-from synth.grid import Resolution
-from synth.policy_evaluation import commands, exit_density
+from synth.dynamic_programme.policy_evaluation import commands, exit_density
+from synth.dynamic_programme.switching_lines import SwitchingLines
+from synth.markov_chain.grid import Resolution
+from synth.markov_chain.transitions import persistent_transitions
 from synth.problem import EntrySpeed, Plant
-from synth.random_passes import random_passes
-from synth.switching_lines import SwitchingLines
-from synth.transitions import persistent_transitions
+from synth.simulation.closed_loop import LineController, simulate
+from synth.simulation.random_passes import random_passes
 
 PASSES = 4000
 

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from scipy.stats import norm
 
 from plant_models import DopplerSensor, Friction
-from synth.backward_induction import measured_speed_std, solve, true_speed_weights
-from synth.grid import Resolution
+from synth.dynamic_programme.backward_induction import measured_speed_std, solve, true_speed_weights
+from synth.markov_chain.grid import Resolution
+from synth.markov_chain.transitions import Transitions, as_published, persistent_transitions
 from synth.problem import Criterion, Plant
-from synth.transitions import Transitions, as_published, persistent_transitions
 
 Array = NDArray[np.float64]
 

@@ -18,11 +18,11 @@ import numpy as np
 import pytest
 
 from plant_models import DopplerSensor, Friction, Pneumatics, PressingForce
-from synth.backward_induction import solve
-from synth.grid import Resolution
-from synth.policy_evaluation import commands, expected_cost
+from synth.dynamic_programme.backward_induction import solve
+from synth.dynamic_programme.policy_evaluation import commands, expected_cost
+from synth.markov_chain.grid import Resolution
+from synth.markov_chain.transitions import Transitions, as_published, persistent_transitions
 from synth.problem import Criterion, EntrySpeed, Plant
-from synth.transitions import Transitions, as_published, persistent_transitions
 
 QUANTUM = Resolution(0.5, 0.02, transient_substeps=2, friction_nodes=1, path_levels=1)
 

@@ -10,10 +10,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from synth.policy_evaluation import commands, cost_and_gradient, exit_density, expected_cost
+from synth.dynamic_programme.policy_evaluation import commands, cost_and_gradient, exit_density, expected_cost
+from synth.dynamic_programme.switching_lines import SwitchingLines
+from synth.markov_chain.transitions import Transitions
 from synth.problem import Criterion
-from synth.switching_lines import SwitchingLines
-from synth.transitions import Transitions
 
 SEEDS = st.integers(0, 2**32 - 1)
 

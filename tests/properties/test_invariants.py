@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from plant_models import DopplerSensor, Friction, RollingResistance
-from synth.backward_induction import Solution, solve
-from synth.grid import Resolution
-from synth.policy_evaluation import commands, exit_density, expected_cost
+from synth.dynamic_programme.backward_induction import Solution, solve
+from synth.dynamic_programme.policy_evaluation import commands, exit_density, expected_cost
+from synth.markov_chain.grid import Resolution
+from synth.markov_chain.transitions import Transitions, persistent_transitions, with_known_friction
 from synth.problem import Criterion, Plant
-from synth.transitions import Transitions, persistent_transitions, with_known_friction
 
 TARGET_M_S = 2.5
 

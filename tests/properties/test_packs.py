@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 from numba import njit
 
-from synth.backward_induction import solve, solve_all
-from synth.grid import Resolution
+from synth.dynamic_programme.backward_induction import solve, solve_all
+from synth.dynamic_programme.policy_evaluation import commands, cost_and_gradient, exit_density
 from synth.kernels import packs
-from synth.policy_evaluation import commands, cost_and_gradient, exit_density
+from synth.markov_chain.grid import Resolution
+from synth.markov_chain.transitions import Transitions, persistent_transitions
 from synth.problem import Criterion, Plant
-from synth.transitions import Transitions, persistent_transitions
 
 CRITERION = Criterion(1.0, 1e-5)
 

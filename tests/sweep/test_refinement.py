@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from synth.closed_loop import TableController, close_loop
-from synth.random_passes import random_passes
+from synth.simulation.closed_loop import TableController, close_loop
+from synth.simulation.random_passes import random_passes
 from synth.sweep.plan import Refinement, plan_of
 from synth.sweep.refinement import Bench, Gap, refined
 from synth.sweep.sweep_file import parse_sweep

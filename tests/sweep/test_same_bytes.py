@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from synth.fitting.tabulate import lines_of
 from synth.sweep.local_workers import LocalWorkers
 from synth.sweep.work import InThisProcess
-from synth.tabulate import lines_of
 from tests.sweep.conftest import PLANT, Ran, Silence, contents, run
 from tuning_tables import read_book
 

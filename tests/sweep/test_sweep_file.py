@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from synth.config_file import parse_config
+from synth.configuration.config_file import parse_config
 from synth.sweep.plan import plan_of
 from synth.sweep.sweep_file import parse_sweep
 from synth.sweep.toml_text import toml_text

@@ -17,12 +17,13 @@ from plant_models import (
     RollingResistance,
     TrackProfile,
 )
-from synth.case_result import CaseResult, DegreeStudy, Feasibility, Indifference, Measured, PolicyMap
-from synth.exit_density import ExitDensity
-from synth.exit_statistics import exit_statistics
-from synth.passes import ExitSample, PassTrace
+from synth.comparison.measured import Feasibility, Measured
+from synth.criterion.exit_density import ExitDensity
+from synth.dynamic_programme.switching_lines import SwitchingLines
 from synth.problem import EntrySpeed, Plant
-from synth.switching_lines import SwitchingLines
+from synth.simulation.exit_statistics import exit_statistics
+from synth.simulation.passes import ExitSample, PassTrace
+from synth.tuning.case_result import CaseResult, DegreeStudy, Indifference, PolicyMap
 from tuning_tables import (
     ControllerTable,
     CutId,

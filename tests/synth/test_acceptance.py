@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from synth.acceptance import judge, missed_limits, overspeed_share
-from synth.case_result import CaseResult
-from synth.exit_statistics import ExitStatistics
-from synth.settings import AcceptanceSettings
+from synth.configuration.settings import AcceptanceSettings
+from synth.output.acceptance import judge, missed_limits, overspeed_share
+from synth.simulation.exit_statistics import ExitStatistics
+from synth.tuning.case_result import CaseResult
 from tests.synth.case_factory import make_case
 
 LIMITS = AcceptanceSettings()

@@ -5,13 +5,20 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from synth.baselines import FAMILIES, TunedBaseline, energy_rule, threshold_with_lead, tune_baselines, two_thresholds
-from synth.closed_loop import close_loop, simulate
-from synth.common_passes import common_passes
-from synth.exit_statistics import exit_statistics
+from synth.comparison.baselines import (
+    FAMILIES,
+    TunedBaseline,
+    energy_rule,
+    threshold_with_lead,
+    tune_baselines,
+    two_thresholds,
+)
 from synth.kernels.closed_loop import LEFT, advance
 from synth.problem import Plant
-from synth.random_passes import RandomPasses, random_passes
+from synth.simulation.closed_loop import close_loop, simulate
+from synth.simulation.common_passes import common_passes
+from synth.simulation.exit_statistics import exit_statistics
+from synth.simulation.random_passes import RandomPasses, random_passes
 
 TARGET_M_S = 3.0
 

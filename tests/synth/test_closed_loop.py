@@ -13,9 +13,12 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from plant_models import Cut, Friction, PressureHistory, RollingResistance
-from synth.actuator import stage_locked_actuator
-from synth.baselines import energy_rule
-from synth.closed_loop import (
+from synth.comparison.baselines import energy_rule
+from synth.dynamic_programme.switching_lines import SwitchingLines
+from synth.kernels.closed_loop import LEFT, MOVING, STALLED, Draws, advance
+from synth.markov_chain.actuator import stage_locked_actuator
+from synth.problem import Plant
+from synth.simulation.closed_loop import (
     ClosedLoop,
     LineController,
     TableController,
@@ -25,11 +28,8 @@ from synth.closed_loop import (
     simulate_many,
     trace,
 )
-from synth.kernels.closed_loop import LEFT, MOVING, STALLED, Draws, advance
-from synth.passes import PassTrace
-from synth.problem import Plant
-from synth.random_passes import PATH_CELLS, RandomPasses, random_passes
-from synth.switching_lines import SwitchingLines
+from synth.simulation.passes import PassTrace
+from synth.simulation.random_passes import PATH_CELLS, RandomPasses, random_passes
 from tuning_tables.figures import Predicted, ValidRange
 from tuning_tables.json_file import read_json, write_json
 from tuning_tables.provenance import CutId, Generator, RetarderId

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from synth.closed_loop import LineController, simulate, trace
-from synth.common_passes import CommonPasses, common_passes
+from synth.dynamic_programme.switching_lines import SwitchingLines
 from synth.problem import Plant
-from synth.random_passes import random_passes
-from synth.switching_lines import SwitchingLines
+from synth.simulation.closed_loop import LineController, simulate, trace
+from synth.simulation.common_passes import CommonPasses, common_passes
+from synth.simulation.random_passes import random_passes
 
 
 @pytest.fixture

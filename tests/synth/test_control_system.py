@@ -9,13 +9,20 @@ import numpy as np
 import pytest
 
 from plant_models import DopplerSensor, Friction, RollingResistance
-from synth.baselines import energy_rule, threshold_with_lead
-from synth.closed_loop import Controller, LineController, TableController, close_loop, trace
-from synth.control_system import SOLVER, drive_system, motion_system, nominal_loop, nominal_response, regulator_system
-from synth.passes import PassTrace
+from synth.comparison.baselines import energy_rule, threshold_with_lead
+from synth.comparison.control_system import (
+    SOLVER,
+    drive_system,
+    motion_system,
+    nominal_loop,
+    nominal_response,
+    regulator_system,
+)
+from synth.dynamic_programme.switching_lines import SwitchingLines
 from synth.problem import Plant
-from synth.random_passes import random_passes
-from synth.switching_lines import SwitchingLines
+from synth.simulation.closed_loop import Controller, LineController, TableController, close_loop, trace
+from synth.simulation.passes import PassTrace
+from synth.simulation.random_passes import random_passes
 from tuning_tables import ControllerTable, CutId, Generator, Predicted, RetarderId, Stage, ValidRange
 
 control = pytest.importorskip("control")

@@ -10,16 +10,13 @@ import numpy as np
 import pytest
 
 from plant_models import PlantError, PressingForce, RetarderPosition, RollingResistance
-from synth.backward_induction import solve
-from synth.chance_constraint import keep_overspeed_limit, predicted_density
-from synth.closed_loop import LineController, simulate
-from synth.config_file import parse_config
-from synth.config_template import default_config_toml
-from synth.exit_statistics import clopper_pearson, exit_statistics
-from synth.finer_speed import finer_in_speed, known_factors
-from synth.grid import Resolution, finer_for_check
-from synth.input_error import InputError
-from synth.policy_evaluation import (
+from synth.configuration.config_file import parse_config
+from synth.configuration.config_template import default_config_toml
+from synth.criterion.requirement import FrictionRange, OverspeedLimit
+from synth.criterion.requirement_found import OverspeedLimitFound
+from synth.criterion.terminal_cost import AsymmetricSquare, PenalisedOverspeed, SquaredError, TerminalCost
+from synth.dynamic_programme.backward_induction import solve
+from synth.dynamic_programme.policy_evaluation import (
     commands,
     evaluator,
     exit_density,
@@ -28,17 +25,20 @@ from synth.policy_evaluation import (
     scenario_costs,
     scenario_density,
 )
-from synth.polynomial_fit import Fit, PolynomialLines, basis, fit_lines, whitening
+from synth.dynamic_programme.switching_lines import SwitchingLines
+from synth.fitting.chance_constraint import keep_overspeed_limit, predicted_density
+from synth.fitting.finer_speed import finer_in_speed, known_factors
+from synth.fitting.polynomial_fit import Fit, PolynomialLines, basis, fit_lines, whitening
+from synth.fitting.tuned_lines import polished
+from synth.fitting.worst_case import FACTORS, guard_worst_case
+from synth.input_error import InputError
+from synth.markov_chain.grid import Resolution, finer_for_check
+from synth.markov_chain.transitions import Transitions, check_transitions, persistent_transitions
 from synth.problem import Criterion, EntrySpeed, Plant, Problem
-from synth.random_passes import random_passes
-from synth.requirement import FrictionRange, OverspeedLimit
-from synth.requirement_found import OverspeedLimitFound
-from synth.switching_lines import SwitchingLines
-from synth.terminal_cost import AsymmetricSquare, PenalisedOverspeed, SquaredError, TerminalCost
-from synth.transitions import Transitions, check_transitions, persistent_transitions
-from synth.tune_case import required
-from synth.tuned_lines import polished
-from synth.worst_case import FACTORS, guard_worst_case
+from synth.simulation.closed_loop import LineController, simulate
+from synth.simulation.exit_statistics import clopper_pearson, exit_statistics
+from synth.simulation.random_passes import random_passes
+from synth.tuning.tune_case import required
 
 COARSE = Resolution(path_step_m=0.5, speed_step_m_s=0.05, friction_nodes=3)
 TARGET_M_S = 3.0

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 
 from plant_models import Friction
-from synth.closed_loop import LineController, close_loop, simulate, trace
-from synth.estimated_table import controller_of, estimated_table, estimator_design, shifted, trimmed
-from synth.estimator_design import as_estimated, estimator_of, speed_error_m_s
-from synth.grid import Resolution
-from synth.polynomial_fit import PolynomialLines
+from synth.dynamic_programme.switching_lines import SwitchingLines
+from synth.estimation.estimated_table import controller_of, estimated_table, estimator_design, shifted, trimmed
+from synth.estimation.estimator_design import as_estimated, estimator_of, speed_error_m_s
+from synth.fitting.polynomial_fit import PolynomialLines
+from synth.fitting.tuned_lines import tuned_lines
+from synth.markov_chain.grid import Resolution
+from synth.markov_chain.transitions import persistent_transitions
 from synth.problem import Criterion, Plant, Problem
-from synth.random_passes import RandomPasses, random_passes
-from synth.switching_lines import SwitchingLines
-from synth.transitions import persistent_transitions
-from synth.tuned_lines import tuned_lines
+from synth.simulation.closed_loop import LineController, close_loop, simulate, trace
+from synth.simulation.random_passes import RandomPasses, random_passes
 
 
 @pytest.fixture(scope="module")

@@ -9,8 +9,8 @@ import pytest
 from numpy.typing import NDArray
 from scipy import stats
 
-from synth.exit_statistics import clopper_pearson, exit_statistics, pooled_statistics
-from synth.passes import ExitSample
+from synth.simulation.exit_statistics import clopper_pearson, exit_statistics, pooled_statistics
+from synth.simulation.passes import ExitSample
 
 
 def sample_of(speed: NDArray[np.float64]) -> ExitSample:

@@ -23,7 +23,7 @@ SOURCES = (
 
 @pytest.fixture
 def checkout(tmp_path: Path) -> Path:
-    for name in (*SOURCES, "synth/settings.py", "tuning_tables/table.py"):
+    for name in (*SOURCES, "synth/configuration/settings.py", "tuning_tables/table.py"):
         path = tmp_path / "checkout" / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(f"# {name}\nx = 1\n")
@@ -59,7 +59,7 @@ def test_renamed_and_new_sources_change_the_fingerprint(checkout: Path) -> None:
 
 def test_files_without_kernels_leave_the_fingerprint_alone(checkout: Path) -> None:
     before = kernel_fingerprint(checkout)
-    (checkout / "synth/settings.py").write_text("x = 2\n")
+    (checkout / "synth/configuration/settings.py").write_text("x = 2\n")
     (checkout / "tuning_tables/table.py").write_text("x = 2\n")
     assert kernel_fingerprint(checkout) == before
 

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 from plant_models import Cut, DopplerSensor, Friction, PlantError, Pneumatics, RollingResistance, TrackProfile
-from synth.closed_loop import LineController, trace
-from synth.control_system import describing_function_analysis
-from synth.limit_cycle import (
+from synth.comparison.control_system import describing_function_analysis
+from synth.comparison.limit_cycle import (
     StagePair,
     first_harmonic,
     harmonic_pressure_cycle,
@@ -22,9 +21,10 @@ from synth.limit_cycle import (
     pressure_limit_cycle,
     relay_cycle,
 )
+from synth.dynamic_programme.switching_lines import SwitchingLines
 from synth.problem import EntrySpeed, Plant
-from synth.random_passes import random_passes
-from synth.switching_lines import SwitchingLines
+from synth.simulation.closed_loop import LineController, trace
+from synth.simulation.random_passes import random_passes
 
 TOUCH_KPA = 50.0
 

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from synth.draw_pictures import Studio, draw_job
 from synth.input_error import InputError
-from synth.output_directory import output_directory, remove_stale
-from synth.summary import plain
-from synth.table_file import file_stem, is_infeasible
+from synth.output.draw_pictures import Studio, draw_job
+from synth.output.output_directory import output_directory, remove_stale
+from synth.output.summary import plain
+from synth.tables.table_file import file_stem, is_infeasible
 from tests.synth.case_factory import make_case, make_study
 from tuning_tables import write_csv, write_json
 

@@ -14,7 +14,6 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from synth.case_result import CaseResult
 from synth.plots.case_names import by_class, contest, file_stem, honesty, why_infeasible
 from synth.plots.degree_study import degree_study
 from synth.plots.exit_density import cell_edges_m_s, exit_density
@@ -27,6 +26,7 @@ from synth.plots.rms_by_controller import rms_by_controller
 from synth.plots.sample_passes import outcome, sample_passes
 from synth.plots.surfaces import surfaces
 from synth.plots.switchings import switchings
+from synth.tuning.case_result import CaseResult
 from tests.synth.case_factory import make_case, make_study
 
 ROOT = Path(__file__).parents[2]

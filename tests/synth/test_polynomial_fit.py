@@ -7,10 +7,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from synth.backward_induction import solve
-from synth.grid import Resolution
-from synth.policy_evaluation import commands, cost_and_gradient, occupancy_of
-from synth.polynomial_fit import (
+from synth.dynamic_programme.backward_induction import solve
+from synth.dynamic_programme.policy_evaluation import commands, cost_and_gradient, occupancy_of
+from synth.dynamic_programme.switching_lines import SwitchingLines
+from synth.fitting.polynomial_fit import (
     MINIMUM_GAP_M_S,
     Fit,
     PolynomialLines,
@@ -20,9 +20,9 @@ from synth.polynomial_fit import (
     polish,
     whitening,
 )
+from synth.markov_chain.grid import Resolution
+from synth.markov_chain.transitions import Transitions, persistent_transitions
 from synth.problem import Criterion, Plant
-from synth.switching_lines import SwitchingLines
-from synth.transitions import Transitions, persistent_transitions
 
 COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=3)
 TARGET_M_S = 3.0

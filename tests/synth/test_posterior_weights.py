@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from plant_models import Friction
-from synth.backward_induction import hidden_prior, solve, solve_all
-from synth.closed_loop import LineController, trace
-from synth.grid import Resolution
-from synth.policy_evaluation import commands, occupancy_of
-from synth.posterior_weights import CONVERGED, posterior_weights, solve_by_posterior
+from synth.dynamic_programme.backward_induction import hidden_prior, solve, solve_all
+from synth.dynamic_programme.policy_evaluation import commands, occupancy_of
+from synth.dynamic_programme.posterior_weights import CONVERGED, posterior_weights, solve_by_posterior
+from synth.markov_chain.grid import Resolution
+from synth.markov_chain.transitions import Transitions, persistent_transitions
 from synth.problem import Criterion, Plant
-from synth.random_passes import random_passes
-from synth.transitions import Transitions, persistent_transitions
+from synth.simulation.closed_loop import LineController, trace
+from synth.simulation.random_passes import random_passes
 
 CRITERION = Criterion(switching_tolerance_m2_s2=0.0)
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from synth.kernels.normal_numbers import normal_pairs
-from synth.random_passes import NOISE_SAMPLES, PATH_CELLS, RandomPasses, random_passes
+from synth.simulation.random_passes import NOISE_SAMPLES, PATH_CELLS, RandomPasses, random_passes
 
 
 @pytest.fixture(scope="module")

@@ -21,9 +21,7 @@ from plant_models import (
     RollingResistance,
     TrackProfile,
 )
-from synth.closed_loop import TableController, close_loop, simulate_many
-from synth.exit_statistics import exit_statistics
-from synth.grid import Resolution
+from synth.markov_chain.grid import Resolution
 from synth.problem import EntrySpeed, Plant
 from synth.rare_events.adaptive_simpson import adaptive_simpson
 from synth.rare_events.cross_entropy import Pilot, learn, mixture_of
@@ -33,6 +31,8 @@ from synth.rare_events.pass_score import exit_error
 from synth.rare_events.subset_simulation import SubsetPlan, subset_tails
 from synth.rare_events.tail_density import TailGrid, normal_cdf, predicted_tails, tail_integral
 from synth.rare_events.tail_probability import crude_tail
+from synth.simulation.closed_loop import TableController, close_loop, simulate_many
+from synth.simulation.exit_statistics import exit_statistics
 from tuning_tables import (
     ControllerTable,
     CutId,

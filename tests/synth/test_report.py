@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from plant_models.library import SourcedValue
-from synth.limit_cycle import hunting_report
+from synth.comparison.limit_cycle import hunting_report
 from synth.plots.picture import Drawing, Picture
 from synth.report import BookReport, report_page, write_report
 from synth.report.checks_section import checks_section

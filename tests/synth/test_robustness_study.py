@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from synth.config_file import load_config
-from synth.grid import finer_for_check
-from synth.passes import ExitSample
-from synth.random_passes import random_passes
+from synth.configuration.config_file import load_config
+from synth.markov_chain.grid import finer_for_check
+from synth.markov_chain.transitions import check_transitions
 from synth.robustness.condition import aged_valves, friction
 from synth.robustness.parameter import Parameter
 from synth.robustness.perturbation import Perturbation, ends_by
@@ -16,8 +15,9 @@ from synth.robustness.retuned_table import retuned
 from synth.robustness.sensor_fault import Bias
 from synth.robustness.study import Sweep, one_at_a_time, sweep, together
 from synth.robustness.trial import Trial, rms_ratio, trial_of
-from synth.transitions import check_transitions
-from synth.tune_case import predict
+from synth.simulation.passes import ExitSample
+from synth.simulation.random_passes import random_passes
+from synth.tuning.tune_case import predict
 from tests.synth.case_factory import make_plant, make_sample, make_table
 
 

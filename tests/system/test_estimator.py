@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from synth.cli import main
-from synth.estimated_table import EstimatedTable
+from synth.estimation.estimated_table import EstimatedTable
 from tests.system.conftest import CLASS, EPOCH, Command
 from tuning_tables import read_book, read_json
 

@@ -15,7 +15,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from synth.output_directory import LEFTOVER, PICTURES
+from synth.output.output_directory import LEFTOVER, PICTURES
 from tuning_tables import read_book, read_json
 
 TUNE = [sys.executable, "-c", "import sys; from synth.cli import main; raise SystemExit(main(sys.argv[1:]))", "tune"]
@@ -114,7 +114,7 @@ def test_ctrl_c_ends_at_once_with_one_line(one_class: Path, tmp_path: Path) -> N
 
 
 DRAW_FOR_EVER = """
-from synth.draw_pictures import Studio
+from synth.output.draw_pictures import Studio
 from tests.synth.case_factory import make_case
 if __name__ == "__main__":
     with Studio(2) as studio:

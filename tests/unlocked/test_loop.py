@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from synth.closed_loop import LineController
+from synth.dynamic_programme.switching_lines import SwitchingLines
 from synth.problem import Plant
-from synth.random_passes import random_passes
-from synth.switching_lines import SwitchingLines
+from synth.simulation.closed_loop import LineController
+from synth.simulation.random_passes import random_passes
 from synth.unlocked.drive_modes import drive_modes
 from synth.unlocked.laws import CompactController, SurfaceController, at_rest_only
 from synth.unlocked.loop import unlocked_loop

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from plant_models import Pneumatics
-from synth.backward_induction import solve
-from synth.grid import Resolution
-from synth.policy_evaluation import commands, exit_density
+from synth.dynamic_programme.backward_induction import solve
+from synth.dynamic_programme.policy_evaluation import commands, exit_density
+from synth.markov_chain.grid import Resolution
+from synth.markov_chain.transitions import persistent_transitions
 from synth.problem import Criterion, Plant
-from synth.random_passes import random_passes
-from synth.transitions import persistent_transitions
+from synth.simulation.random_passes import random_passes
 from synth.unlocked.compact import Compact, Form, cost_of, fit_surfaces
 from synth.unlocked.laws import SurfaceController, at_rest_only
 from synth.unlocked.loop import unlocked_loop

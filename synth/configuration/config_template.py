@@ -1,0 +1,95 @@
+"""A commented configuration to start from: every default written out with its unit, range and origin."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from itertools import groupby
+
+from plant_models.library import SourcedValue, Value, car_names, retarder_names
+from synth.configuration.cut_class import CutClass
+from synth.configuration.resolved_config import ResolvedConfig, resolve, setting_limits, setting_unit
+from synth.configuration.settings import (
+    DEFAULT_RETARDER,
+    NUMERICAL_SECTIONS,
+    OutputSettings,
+    RegulatorSettings,
+    RetarderSettings,
+    Settings,
+)
+
+HEAD = """\
+# Configuration of retarder-synth. Every line shows its default and may be left out.
+# A comment says: unit; sensible range (limits, for settings of the tool); origin.
+# ASSUMED: no citable source stands behind the number; replace it by that of your retarder."""
+
+
+def default_config_toml(retarder_name: str = DEFAULT_RETARDER) -> str:
+    """The defaults for a retarder of the library as TOML; it reads back to the same configuration.
+
+    `InputError` if the library has no such retarder.
+    """
+    config = resolve(Settings(retarder=RetarderSettings(name=retarder_name)), "retarder-synth init")
+    return "\n".join(lines(config)) + "\n"
+
+
+def lines(config: ResolvedConfig) -> Iterator[str]:
+    """The lines of the file."""
+    yield HEAD
+    yield from (f"# Note: {note}" for note in config.retarder.notes)
+    yield f"title = {quoted(config.title)}"
+    yield from ("", "[retarder]", f"# one of the library: {', '.join(retarder_names())}")
+    yield f"name = {quoted(config.retarder.name)}"
+    for section, values in groupby(config.retarder.provenance, key=lambda value: value.key.rpartition(".")[0]):
+        if section != "retarder":
+            yield from ("", f"[{section}]")
+        for value in values:
+            yield from (f"# {origin(value)}", f"{value.key.rpartition('.')[2]} = {toml_value(value.value)}")
+            if value.key == "track.grade_permille":
+                yield "# or pieces, each (start in m, permille): grade_permille = [[0.0, 8.0], [12.0, 5.0]]"
+    for name in NUMERICAL_SECTIONS:
+        yield from ("", f"[{name}]")
+        section_model = Settings.model_fields[name].default
+        for key, field in type(section_model).model_fields.items():
+            limits = setting_limits(field)
+            span = f"{limits[0]:g} to {limits[1]:g}" if limits else "any"
+            yield from (f"# {setting_unit(field)}; {span}; setting: {field.description}", f"{key} = {field.default!r}")
+    for name, switches in (("regulator", RegulatorSettings), ("output", OutputSettings)):
+        yield from ("", f"[{name}]")
+        for key, field in switches.model_fields.items():
+            yield from (f"# {field.description}", f"{key} = {json.dumps(field.default)}")
+    for cut_class in config.cuts:
+        yield from cut_lines(cut_class)
+
+
+def cut_lines(cut_class: CutClass) -> Iterator[str]:
+    """The [[cut]] table of a class; what follows from its mass stands as a comment."""
+    by_name = {value.key.partition(".")[2]: value for value in cut_class.provenance}
+    mean, std = by_name["rolling_resistance.mean_n_per_kn"], by_name["rolling_resistance.std_n_per_kn"]
+    yield from ("", "[[cut]]", f"# one of the library: {', '.join(car_names())}")
+    yield f"car = {quoted(cut_class.car)}"
+    yield from ("# 1; 1 to 60; number of such cars coupled", f"cars = {cut_class.cars}")
+    yield from (f"# {origin(by_name['mass_t'])}; of the whole cut", f"mass_t = {cut_class.cut.mass_t!r}")
+    yield "# From the mass per axle follow (remove the leading # to change one):"
+    yield f"# category = {quoted(cut_class.cut.category)}  # or L, LS, S, ST, T"
+    yield f"# allowed_stage = {cut_class.cut.allowed_stage}  # {origin(by_name['allowed_stage'])}"
+    yield f"# rolling_resistance.mean_n_per_kn = {mean.value!r}  # {origin(mean)}"
+    yield f"# rolling_resistance.std_n_per_kn = {std.value!r}  # {origin(std)}"
+
+
+def origin(value: SourcedValue) -> str:
+    """Unit; sensible range; source and confidence."""
+    span = f"{value.range[0]:g} to {value.range[1]:g}" if value.range else "any"
+    confidence = f" (confidence {value.confidence})" if value.confidence else ""
+    source = f"ASSUMED, {value.source.removeprefix('assumed: ')}" if value.assumed else value.source
+    return f"{value.unit}; {span}; {source}{confidence}"
+
+
+def toml_value(value: Value) -> str:
+    """A number or (nested) list as TOML."""
+    return repr(value) if isinstance(value, float) else f"[{', '.join(toml_value(item) for item in value)}]"
+
+
+def quoted(text: str) -> str:
+    """A TOML string."""
+    return json.dumps(text, ensure_ascii=False)

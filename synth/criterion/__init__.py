@@ -1,0 +1,1 @@
+"""What the lines shall be good at; plain values."""

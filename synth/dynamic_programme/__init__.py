@@ -1,0 +1,1 @@
+"""The stochastic dynamic programme: solved backward, its policies evaluated exactly."""

@@ -1,0 +1,1 @@
+"""Tables for the estimated speed: design, trim, prediction."""

@@ -1,0 +1,1 @@
+"""The verdict on tables, and what a tune leaves in its directory."""

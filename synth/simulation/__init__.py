@@ -1,0 +1,1 @@
+"""Closed-loop passes of a cut, and figures of their exits."""

@@ -1,0 +1,252 @@
+"""Closed-loop Monte Carlo: passes of a plant under a table or switching lines (the proof that a table works)."""
+
+from __future__ import annotations
+
+import math
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, fields
+from itertools import accumulate, pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models import path_breaks_m, path_coefficients
+from synth.kernels import closed_loop as kernel
+from synth.kernels import closed_loop_lanes as lanes
+from synth.kernels import lane_places as places
+from synth.kernels import regulator
+from synth.markov_chain.actuator import stage_locked_actuator
+from synth.problem import Plant
+from synth.simulation.controllers import Controller, LineController, TableController, fixed
+from synth.simulation.drive_pieces import drive_pieces
+from synth.simulation.passes import ExitSample, PassTrace
+from synth.simulation.random_passes import PATH_CELLS, RandomPasses, random_passes
+
+__all__ = [
+    "ClosedLoop",
+    "Controller",
+    "LineController",
+    "TableController",
+    "close_loop",
+    "simulate",
+    "simulate_many",
+    "trace",
+]
+
+CELL_M = 0.5
+"""Longest path cell, at most a quarter of the correlation length; η is constant in a cell."""
+
+SUBSTEP_S = 0.02
+"""Longest part of a transient that is played as its mean (see the convergence test): within 0.1 mm/s at the exit."""
+
+CHUNK_PASSES = 2000
+"""Passes whose random numbers are in memory at a time, for each thread (4 MB)."""
+
+
+@dataclass(frozen=True)
+class ClosedLoop:
+    """A plant made ready for the kernel: path cells, actuator, sensor. Build it with `close_loop`."""
+
+    plant: Plant
+    path: kernel.Path
+    drive: kernel.Drive
+    sensor: regulator.Sensor
+    pieces: places.Pieces
+
+    @property
+    def stages(self) -> int:
+        """Number of stages K + 1."""
+        return int(self.drive.command.shape[1])
+
+    @property
+    def stage_overpressures_kpa(self) -> NDArray[np.float64]:
+        """max(0, P_k − P0) of the stages, shape (K + 1,)."""
+        position = self.plant.position
+        nominal = np.asarray(position.stage_pressures_kpa[: self.stages])
+        return np.maximum(0.0, nominal - position.force.touch_pressure_kpa)
+
+    def draws(self, passes: RandomPasses, cut_factor: float | None = None) -> kernel.Draws:
+        """What `passes` mean for this plant; `cut_factor` fixes ξ_cut (the friction is known)."""
+        plant = self.plant
+        factor = plant.friction.cut_factor(passes.cut_z, plant.friction_cv)
+        if cut_factor is not None:
+            factor = np.full(len(passes), cut_factor, dtype=np.float64)
+        factor, path_z = fixed(factor, np.float64), fixed(passes.path_z, np.float32)
+        rows = np.empty((len(passes), len(self.path.gravity_m_s2)))
+        kernel.brake_rows(self.path, factor, path_z, rows)
+        return kernel.Draws(
+            factor,
+            fixed(self.resistance_n_kn(passes.resistance_u), np.float64),
+            fixed(plant.entry.speed_m_s(passes.entry_u), np.float64),
+            fixed(passes.phase_u * plant.sensor.sample_period_s, np.float64),
+            path_z,
+            fixed(passes.noise_z, np.float32),
+            fixed(rows, np.float64),
+        )
+
+    def resistance_n_kn(self, u: NDArray[np.float64]) -> NDArray[np.float64]:
+        """w0 for uniform `u`: the quantiles of its gamma law."""
+        law = self.plant.resistance
+        if law.std_n_per_kn == 0.0:
+            return np.full(u.shape, law.mean_n_per_kn)
+        from scipy.special import gammaincinv  # start-up: scipy only where it is needed
+
+        return np.asarray(gammaincinv(law.shape, u) * law.scale_n_per_kn, dtype=np.float64)
+
+    def run(self, controller: Controller, draws: kernel.Draws) -> ExitSample:
+        """All passes of `draws` under `controller`."""
+        law = self._law(controller)
+        if law.estimator_work.shape[1] > 0:
+            return self._alone(law, draws, np.empty((0, kernel.EVENT_FIELDS)))[0]
+        exits = empty_exits(len(draws.cut_factor))
+        lanes.run_lanes(self.path, self.pieces, self.sensor, law, draws, exits, lane_memory())
+        return sample_of(exits)
+
+    def follow(self, controller: Controller, draws: kernel.Draws) -> PassTrace:
+        """The only pass of `draws` under `controller`, event by event."""
+        samples = math.ceil(kernel.LONGEST_PASS_S / self.sensor.period_s + 2) + int(self.drive.chain_samples.max())
+        events = np.empty((samples * self.drive.substeps + 2, kernel.EVENT_FIELDS))
+        sample, events = self._alone(self._law(controller), draws, events)
+        time, path, speed, overpressure, stage, measured = np.ascontiguousarray(events.T)
+        return PassTrace(time, path, speed, overpressure, stage.astype(np.int64), measured, bool(sample.stalled[0]))
+
+    def _law(self, controller: Controller) -> regulator.Rule:
+        if controller.stages != self.stages:
+            raise ValueError(f"closed loop: the controller has {controller.stages} stages, the loop {self.stages}")
+        return controller.law()
+
+    def _alone(
+        self, law: regulator.Rule, draws: kernel.Draws, events: NDArray[np.float64]
+    ) -> tuple[ExitSample, NDArray[np.float64]]:
+        """One pass after the other, with the events of the last."""
+        exits = empty_exits(len(draws.cut_factor))
+        count = kernel.run_passes(self.path, self.drive, self.sensor, law, draws, exits, events)
+        return sample_of(exits), events[:count]
+
+
+def empty_exits(passes: int) -> kernel.Exits:
+    """Memory for the results of `passes` passes."""
+    return kernel.Exits(
+        np.empty(passes), np.empty(passes), np.empty(passes, dtype=np.bool_), np.empty(passes, dtype=np.int32)
+    )
+
+
+def lane_memory() -> places.Work:
+    """Memory for one call of the kernel that runs passes side by side: one block that begins a page.
+
+    A pack is then one line of the cache, not two, and no load waits for a store that only looks like its own: the
+    processor compares no more than the place within a page, and where numpy happens to put arrays cost up to half.
+    """
+    page, n = 4096 // 8, places.PLACES
+    sizes = (places.FLOATS * n, places.INTS * n, n, n, n, n)
+    room = np.zeros(page + sum(sizes), dtype=np.int64)
+    ends = accumulate(sizes, initial=-(room.ctypes.data // 8) % page)
+    floats, ints, waiting, ended, told, heard = (room[start:end] for start, end in pairwise(ends))
+    return places.Work(floats.view(np.float64), ints, waiting, ended, told, heard.view(np.float64))
+
+
+def sample_of(exits: kernel.Exits) -> ExitSample:
+    """What the kernel has filled in, for reading."""
+    return ExitSample(exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s)
+
+
+def close_loop(plant: Plant, stages: int, substeps: int | None = None) -> ClosedLoop:
+    """`plant` with a regulator of `stages` stages: as many as its controller has, allowed or not."""
+    if not 2 <= stages <= plant.position.top_stage + 1:
+        raise ValueError(f"closed loop: {stages} stages; {plant.position.name} has {plant.position.top_stage + 1}")
+    if substeps is None:
+        substeps = math.ceil(plant.sensor.sample_period_s / SUBSTEP_S)
+    actuator = stage_locked_actuator(plant.position, plant.sensor, stages - 1, substeps)
+    drive = kernel.Drive(
+        fixed(actuator.mode_overpressure_kpa, np.float64),
+        fixed(actuator.command, np.int64),
+        fixed(actuator.chain_mode, np.int64),
+        fixed(actuator.chain_samples, np.int64),
+        # Rounded, so that the kernel sees that a pressure at rest is one and the same.
+        fixed(np.round(actuator.chain_overpressure_kpa, 9), np.float64),
+        actuator.substeps,
+    )
+    sensor = plant.sensor
+    period = sensor.sample_period_s
+    return ClosedLoop(
+        plant=plant,
+        path=path_cells(plant),
+        drive=drive,
+        sensor=regulator.Sensor(period, sensor.noise_m_s, sensor.resolution_m_s),
+        pieces=drive_pieces(drive, period),
+    )
+
+
+def path_cells(plant: Plant) -> kernel.Path:
+    """Cells with constant coefficients and constant η."""
+    edges = cell_edges_m(plant)
+    coefficients = path_coefficients(plant.position, plant.cut, plant.profile, edges)
+    length = np.diff(edges)
+    memory = np.append(0.0, plant.friction.path_correlation(0.5 * (length[1:] + length[:-1])))  # none before the first
+    return kernel.Path(
+        fixed(edges, np.float64),
+        fixed(coefficients.gravity_m_s2, np.float64),
+        fixed(coefficients.brake_m_s2_per_kpa, np.float64),
+        fixed(plant.friction.path_cell_std(length), np.float64),
+        fixed(memory, np.float64),
+        fixed(np.sqrt(1.0 - memory**2), np.float64),
+        coefficients.resistance_m_s2_per_n_kn,
+    )
+
+
+def cell_edges_m(plant: Plant) -> NDArray[np.float64]:
+    """Edges of at most 512 cells of at most 0.5 m, none of them with a change of N(s) or grade inside.
+
+    Long cuts get longer cells; if their axles alone make too many breaks, cells take the mean over a break.
+    """
+    breaks = path_breaks_m(plant.position, plant.cut, plant.profile)
+    if breaks.size > PATH_CELLS // 2:
+        return np.linspace(0.0, plant.exit_m, PATH_CELLS + 1)
+    cell_m = min(CELL_M, plant.friction.correlation_length_m / 4.0)
+    count = min(math.ceil(plant.exit_m / cell_m), PATH_CELLS - breaks.size)
+    uniform = np.linspace(0.0, plant.exit_m, count + 1)
+    # A sliver between a break and a node of the mesh would only cost time and digits.
+    far = np.abs(uniform[:, None] - breaks).min(axis=1) > 1e-3
+    return np.sort(np.concatenate([uniform[far], breaks]))
+
+
+def simulate(plant: Plant, controller: Controller, passes: RandomPasses, cut_factor: float | None = None) -> ExitSample:
+    """`passes` of `plant` under `controller`; `cut_factor` fixes ξ_cut instead of drawing it."""
+    loop = close_loop(plant, controller.stages)
+    return loop.run(controller, loop.draws(passes, cut_factor))
+
+
+def simulate_many(
+    plant: Plant,
+    controller: Controller,
+    seed: int,
+    count: int,
+    first_pass: int = 0,
+    threads: int = 1,
+    cut_factor: float | None = None,
+) -> ExitSample:
+    """Passes `first_pass` … `first_pass + count − 1` of `seed`, in bounded memory.
+
+    The result does not depend on `threads` nor on how the passes are split.
+    """
+    loop = close_loop(plant, controller.stages)
+    cells, end = len(loop.path.gravity_m_s2), first_pass + count
+    # Chunks end at multiples of their size, so that no block of random numbers is drawn twice.
+    inner = range((first_pass // CHUNK_PASSES + 1) * CHUNK_PASSES, end, CHUNK_PASSES)
+    starts, ends = [first_pass, *inner], [*inner, end]
+
+    def chunk(start: int, stop: int) -> ExitSample:
+        return loop.run(controller, loop.draws(random_passes(seed, start, stop - start, cells), cut_factor))
+
+    with ThreadPoolExecutor(max_workers=threads) as pool:
+        samples = list(pool.map(chunk, starts, ends))
+    names = [field.name for field in fields(ExitSample)]
+    return ExitSample(**{name: np.concatenate([getattr(sample, name) for sample in samples]) for name in names})
+
+
+def trace(
+    plant: Plant, controller: Controller, passes: RandomPasses, index: int, cut_factor: float | None = None
+) -> PassTrace:
+    """Pass `index` of `passes` event by event: the same pass as in `simulate`."""
+    loop = close_loop(plant, controller.stages)
+    return loop.follow(controller, loop.draws(passes.part(index, index + 1), cut_factor))

@@ -1,0 +1,54 @@
+"""Simulated passes that many controllers of one plant are put through: common random numbers, made ready once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache, partial
+
+from synth.kernels.closed_loop import Draws
+from synth.problem import Plant
+from synth.simulation.closed_loop import ClosedLoop, close_loop
+from synth.simulation.controllers import Controller
+from synth.simulation.passes import ExitSample, PassTrace
+from synth.simulation.random_passes import RandomPasses
+
+
+@dataclass(frozen=True)
+class CommonPasses:
+    """`passes` and what they mean for `plant`; `loop(stages)` is the plant with a regulator of so many stages.
+
+    Build it with `common_passes`: a loop is then made once for each number of stages.
+    """
+
+    plant: Plant
+    passes: RandomPasses
+    draws: Draws
+    loop: Callable[[int], ClosedLoop]
+
+    def __len__(self) -> int:
+        return len(self.passes)
+
+    def run(self, controller: Controller) -> ExitSample:
+        """All passes under `controller`."""
+        return self.loop(controller.stages).run(controller, self.draws)
+
+    def trace(self, controller: Controller, index: int, cut_factor: float) -> PassTrace:
+        """Pass `index` event by event, but with the friction factor `cut_factor`."""
+        loop = self.loop(controller.stages)
+        return loop.follow(controller, loop.draws(self.passes.part(index, index + 1), cut_factor))
+
+    def first(self, count: int) -> CommonPasses:
+        """The first `count` of these passes, or all if there are fewer."""
+        few = Draws._make(array[:count] for array in self.draws)
+        return CommonPasses(self.plant, self.passes.part(0, min(count, len(self))), few, self.loop)
+
+    def of_others(self, passes: RandomPasses) -> CommonPasses:
+        """Other passes of the same plant."""
+        return CommonPasses(self.plant, passes, self.loop(self.plant.top_stage + 1).draws(passes), self.loop)
+
+
+def common_passes(plant: Plant, passes: RandomPasses) -> CommonPasses:
+    """Make `passes` ready for `plant`."""
+    loop = cache(partial(close_loop, plant))
+    return CommonPasses(plant, passes, loop(plant.top_stage + 1).draws(passes), loop)

@@ -1,0 +1,99 @@
+"""Regulators as the closed loop runs them: an exported table, or switching lines."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.dynamic_programme.switching_lines import SwitchingLines
+from synth.kernels import regulator
+from tuning_tables.active_table import ActiveTable
+from tuning_tables.estimator import Estimator
+from tuning_tables.table import ControllerTable
+
+Scalar = TypeVar("Scalar", bound=np.generic)
+
+
+@dataclass(frozen=True)
+class TableController:
+    """A regulator that runs an exported table, or lines chosen from a book, with the tables' own rule.
+
+    If the table has an estimator, the rule is asked with the estimated speed.
+    """
+
+    table: ControllerTable | ActiveTable
+
+    @property
+    def stages(self) -> int:
+        """Number of stages K + 1."""
+        return int(self.table.coefficients.shape[0])
+
+    def law(self) -> regulator.Rule:
+        """The rule as the kernel takes it."""
+        none = fixed(np.empty((0, 0)), np.float64)
+        table = self.table
+        there = np.where(table.has_line[:, :, None], table.coefficients, np.float32(np.nan))
+        arrays = (
+            fixed(there, np.float32),
+            fixed(table.has_line, np.bool_),
+            fixed(table.valid_range, np.float32),
+        )
+        return regulator.Rule(*arrays, none, none, 1.0, False, 0.0, 0.0, *estimator_arrays(table.estimator))
+
+
+@dataclass(frozen=True)
+class LineController:
+    """A regulator that compares speed with switching lines.
+
+    `multi_step`: the comparison is repeated at the stage reached before the command is sent, so that one
+    command may jump over stages. `lead_s` τ: compared is measured speed + τ·slope, the slope of the
+    measured speed being filtered to first order over `slope_filter_s`. With an `estimator` the estimated
+    speed is compared instead of the measured one.
+    """
+
+    lines: SwitchingLines
+    multi_step: bool = False
+    lead_s: float = 0.0
+    slope_filter_s: float = 0.3
+    estimator: Estimator | None = None
+
+    @property
+    def stages(self) -> int:
+        """Number of stages K + 1."""
+        return self.lines.stages
+
+    def law(self) -> regulator.Rule:
+        """The rule as the kernel takes it."""
+        lines = self.lines
+        return regulator.Rule(
+            fixed(np.empty((0, 0, 0)), np.float32),
+            fixed(np.empty((0, 0)), np.bool_),
+            fixed(np.empty(0), np.float32),
+            fixed(lines.lower_m_s, np.float64),
+            fixed(lines.upper_m_s, np.float64),
+            float(lines.nodes_m[-1]) / (lines.nodes_m.size - 1),
+            self.multi_step,
+            self.lead_s,
+            self.slope_filter_s,
+            *estimator_arrays(self.estimator),
+        )
+
+
+Controller = TableController | LineController
+
+
+def estimator_arrays(estimator: Estimator | None) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Parameters and work of the estimator as the kernel takes them; no work for none."""
+    if estimator is None:
+        return fixed(np.zeros(0), np.float32), fixed(np.zeros((3, 0)), np.float32)
+    return fixed(estimator.parameters, np.float32), fixed(estimator.work, np.float32)
+
+
+def fixed(array: NDArray[Any], dtype: type[Scalar]) -> NDArray[Scalar]:
+    """Contiguous read-only view or copy: the kernel is compiled for exactly such arrays, once."""
+    view: NDArray[Scalar] = np.ascontiguousarray(array, dtype=dtype).view()
+    view.setflags(write=False)
+    return view

@@ -1,0 +1,43 @@
+"""What the drive plays, as one row of pieces of constant overpressure (for the kernel that runs passes in lanes)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from synth.kernels.closed_loop import Drive
+from synth.kernels.lane_places import Pieces
+from synth.simulation.controllers import fixed
+
+
+def drive_pieces(drive: Drive, period_s: float) -> Pieces:
+    """Resting modes and chains of `drive` as pieces; within a sample, parts of equal pressure are one piece."""
+    modes, substeps = len(drive.mode_overpressure_kpa), drive.substeps
+    resting, part = 1 + modes, period_s / substeps
+    # Piece 0 lasts until the first sample, which each pass has elsewhere; then the resting modes.
+    kpa, parts = [drive.mode_overpressure_kpa[:1], drive.mode_overpressure_kpa], [np.zeros(resting)]
+    places, after = [np.zeros(resting, dtype=np.int64)], [np.append(1, np.arange(1, resting))]
+    first, count = [], resting
+    for chain, mode in enumerate(drive.chain_mode):
+        played = drive.chain_overpressure_kpa[chain, : drive.chain_samples[chain] * substeps]
+        begins = np.flatnonzero((np.arange(played.size) % substeps == 0) | np.append(True, np.diff(played) != 0.0))
+        first.append(count)
+        count += begins.size
+        kpa.append(played[begins])
+        parts.append(np.diff(np.append(begins, played.size)))
+        places.append(begins)
+        after.append(np.append(np.arange(first[-1] + 1, count), 1 + mode))
+    place, duration = np.concatenate(places), np.concatenate(parts) * part
+    duration[1:resting] = period_s
+    # Those that begin a sample come first, so that one comparison tells them.
+    order = np.argsort(place % substeps != 0, kind="stable")
+    number = np.argsort(order)
+    none = drive.command < 0
+    return Pieces(
+        kpa=fixed(np.concatenate(kpa)[order], np.float64),
+        duration_s=fixed(duration[order], np.float64),
+        start_s=fixed((place % substeps * part)[order], np.float64),
+        after=fixed(number[np.concatenate(after)[order]], np.int64),
+        command=fixed(np.where(none, 0, number[np.asarray(first)[drive.command]]), np.int64),
+        resting=resting,
+        sampled=int(np.sum(place % substeps == 0)),
+    )

@@ -1,0 +1,1 @@
+"""Tables that are there already: found, read, exported."""

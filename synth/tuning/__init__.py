@@ -1,0 +1,1 @@
+"""From a configuration to a book of validated tables."""

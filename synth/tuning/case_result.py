@@ -1,0 +1,99 @@
+"""What a tune finds out about one case (cut class × target speed), and about the whole book."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.comparison.measured import Feasibility, Measured
+from synth.criterion.exit_density import ExitDensity
+from synth.criterion.requirement_found import Finding
+from synth.dynamic_programme.switching_lines import SwitchingLines
+from synth.problem import SQUARED_ERROR_CRITERION, Criterion, Plant
+from synth.simulation.passes import PassTrace
+from tuning_tables import ControllerTable
+
+if TYPE_CHECKING:  # who draws or reports a case needs no kernels
+    from synth.estimation.estimated_table import EstimatedTable
+
+WITHOUT_ESTIMATOR = "without estimator"
+"""Name of the polished lines for the measured speed, where the table has an estimator."""
+
+
+@dataclass(frozen=True)
+class PolicyMap:
+    """Best command and indifferent region on the solver's grid, by stage.
+
+    `path_m` (N,), `speed_m_s` (E,); `command` (K + 1, N, E) int8: −1 down, 0 hold, +1 up; `indifferent`
+    (K + 1, N, E): several commands cost the same within the tolerance (R5).
+    """
+
+    path_m: NDArray[np.float64]
+    speed_m_s: NDArray[np.float64]
+    command: NDArray[np.int8]
+    indifferent: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Indifference:
+    """What using the indifferent region (R5) saves: the solver's lines with and without the tolerance."""
+
+    tolerance_m2_s2: float
+    switchings_without: float
+    switchings_with: float
+    rms_without_m_s: float
+    rms_with_m_s: float
+
+
+@dataclass(frozen=True)
+class DegreeStudy:
+    """Exit error against the degree of the polynomials (R4); arrays by `degrees`, rms in m/s.
+
+    `fitted_rms_m_s` weighted least squares only, `polished_rms_m_s` after the polish (both predicted);
+    `lines_rms_m_s` the unsmoothed lines.
+    """
+
+    label: str
+    degrees: tuple[int, ...]
+    fitted_rms_m_s: NDArray[np.float64]
+    polished_rms_m_s: NDArray[np.float64]
+    lines_rms_m_s: float
+
+
+@dataclass(frozen=True)
+class CaseResult:
+    """One cut class and target: table, prediction, closed loop, comparison.
+
+    `table`, `table_lines` the exported polynomial lines (sampled densely), `solver_lines` the raw matrices;
+    `predicted` exact density of the exported table; `exit_speeds_m_s` simulated, stalls as 0; `comparison` by
+    controller: first our table, then full lines, as published, friction known, baselines; `traces` a few passes of
+    the table (low, nominal and high friction) with `trace_factors` their ξ_cut; `criterion` in force and, where it
+    requires something, `finding`: what that took. With an estimator, `estimate`: how its lines were designed; then
+    `predicted` is simulated, and the comparison ends with lines for the measured speed, `WITHOUT_ESTIMATOR`.
+    """
+
+    label: str
+    plant: Plant
+    target_speed_m_s: float
+    table: ControllerTable
+    table_lines: SwitchingLines
+    solver_lines: SwitchingLines
+    policy_map: PolicyMap
+    predicted: ExitDensity
+    published_predicted_rms_m_s: float
+    exit_speeds_m_s: NDArray[np.float32]
+    comparison: tuple[Measured, ...]
+    indifference: Indifference
+    feasibility: Feasibility
+    traces: tuple[PassTrace, ...]
+    trace_factors: tuple[float, ...]
+    criterion: Criterion = SQUARED_ERROR_CRITERION
+    finding: Finding | None = None
+    estimate: EstimatedTable | None = None
+
+    def by_name(self, name: str) -> Measured:
+        """The controller called `name` in the comparison."""
+        return next(entry for entry in self.comparison if entry.name == name)

@@ -1,0 +1,174 @@
+"""The main job: a whole table book from a resolved configuration."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from functools import partial
+from importlib.metadata import version
+from pathlib import Path
+
+from synth.comparison.friction_bound import friction_known_bounds
+from synth.configuration.resolved_config import ResolvedConfig
+from synth.dynamic_programme.backward_induction import solve_all
+from synth.estimation.estimated_table import estimator_design
+from synth.estimation.simulated_prediction import weighted_passes
+from synth.markov_chain.grid import finer_for_check, require_memory
+from synth.markov_chain.transitions import as_published, check_transitions, persistent_transitions
+from synth.problem import Plant, Problem
+from synth.simulation.common_passes import CommonPasses, common_passes
+from synth.simulation.random_passes import RandomPasses, random_passes
+from synth.tuning.case_result import CaseResult, DegreeStudy
+from synth.tuning.tune_case import CaseOrder, EstimatorOrder, degree_study, tune_case
+from synth.tuning.work_queue import run_nested
+from tuning_tables import ControllerTable, Generator, read_json, write_json
+
+DEGREES = (1, 2, 3, 4, 5, 6)
+TUNING_PASSES = 600
+PUBLISHED_LEVELS = 3
+
+VALUES_KEPT = 1
+"""Path nodes at which a case needs the values of its solution: the entrance."""
+
+TRIM_PASSES = 3000
+PREDICTION_PASSES = 10_000
+"""Only for tables with an estimator, which have no exact prediction."""
+
+MOST_COMPARED_PASSES = 50_000
+"""Passes kept in memory for the comparison of controllers; more are for `validate`."""
+
+Progress = Callable[[str], None]
+CaseDone = Callable[[CaseResult], None]
+
+
+def no_notice(case: CaseResult) -> None:
+    """Nobody wants to know of a finished case."""
+
+
+@dataclass(frozen=True)
+class Book:
+    """Result of a tune: all cases and the degree studies, classes in the order of the configuration."""
+
+    config: ResolvedConfig
+    created: str
+    cases: tuple[CaseResult, ...]
+    degree_studies: tuple[DegreeStudy, ...]
+
+
+def tune(
+    config: ResolvedConfig, tables: Path, progress: Progress, workers: int = 2, case_done: CaseDone = no_notice
+) -> Book:
+    """Tune every cut class and target of `config`; the tables are written into the directory `tables`.
+
+    Work runs on `workers` threads (the kernels release the interpreter); the result does not depend on how
+    many. `progress` is told a sentence whenever a case is done, `case_done` given its result.
+    """
+    plants = config.plants()
+    for label, plant in plants:
+        require_memory(label, plant, config.resolution, workers)
+    created = creation_time()
+    passes = random_passes(config.validation.seed, 0, min(config.validation.passes, MOST_COMPARED_PASSES))
+    tuning = random_passes(config.validation.seed + 1, 0, TUNING_PASSES)
+    generator = Generator("retarder-synth", version("retarder-synth"), config.sha256)
+    heaviest_first = sorted(range(len(plants)), key=lambda i: -plants[i][1].top_stage * plants[i][1].cut.mass_t)
+
+    def start(index: int) -> Callable[[], list[Callable[[], CaseResult | DegreeStudy]]]:
+        label, plant = plants[index]
+        studied = index == heaviest_first[-1]
+        return lambda: class_tasks(
+            config, label, plant, studied, passes, tuning, generator, created, tables, progress, case_done
+        )  # fmt: skip
+
+    found = run_nested([start(index) for index in heaviest_first], workers)
+    by_class = dict(zip(heaviest_first, found, strict=True))
+    results = [result for index in range(len(plants)) for result in by_class[index]]
+    return Book(
+        config,
+        created,
+        tuple(result for result in results if isinstance(result, CaseResult)),
+        tuple(result for result in results if isinstance(result, DegreeStudy)),
+    )
+
+
+def class_tasks(
+    config: ResolvedConfig, label: str, plant: Plant, studied: bool, passes: RandomPasses, tuning: RandomPasses,
+    generator: Generator, created: str, tables: Path, progress: Progress, case_done: CaseDone,
+) -> list[Callable[[], CaseResult | DegreeStudy]]:  # fmt: skip
+    """Solve all targets of one cut class together; returns what is left to do for each, as tasks.
+
+    With `studied` the degree study of the first target comes first, because it takes longest.
+    """
+    targets, criterion = config.targets_m_s, config.criterion
+    design = persistent_transitions(plant, config.resolution)
+    check = check_transitions(plant, finer_for_check(config.resolution))
+    priced = [(target, criterion) for target in targets]
+    free = [(target, replace(criterion, switching_tolerance_m2_s2=0.0)) for target in targets]
+    both = solve_all(design, priced + free, nodes_kept=VALUES_KEPT)
+    solutions, plain = both[: len(targets)], both[len(targets) :]
+    published = solve_all(as_published(design, PUBLISHED_LEVELS), priced, nodes_kept=VALUES_KEPT)
+    bounds = friction_known_bounds(design, targets, criterion.squared(), passes, config.acceptance.rms_m_s)
+    compared = common_passes(plant, passes)
+    rehearsal = compared.of_others(tuning)
+    estimator = estimator_order(config, compared) if config.regulator.estimator else None
+
+    def case(i: int) -> CaseResult:
+        order = CaseOrder(
+            label=label,
+            problem=Problem(plant, targets[i], criterion),
+            solution=solutions[i],
+            plain=plain[i],
+            published=published[i],
+            known=bounds[i][0],
+            feasibility=bounds[i][1],
+            check=check,
+            degree=config.fit.degree,
+            passes=compared,
+            tuning=rehearsal,
+            generator=generator,
+            created=created,
+            store=lambda table: write_and_read_back(table, tables),
+            estimator=estimator,
+        )
+        result = tune_case(order)
+        case_done(result)
+        figures = result.comparison[0].statistics
+        progress(f"{label} to {targets[i]:g} m/s: rms {figures.rms_m_s:.3f} m/s in {figures.passes} simulated passes")
+        if result.finding is not None:
+            progress(f"{label} to {targets[i]:g} m/s: {result.finding.sentence}")
+        return result
+
+    def study() -> DegreeStudy:
+        result = degree_study(solutions[0], label, DEGREES)
+        progress(f"{label} to {targets[0]:g} m/s: degree study done")
+        return result
+
+    tasks: list[Callable[[], CaseResult | DegreeStudy]] = [study] if studied else []
+    return tasks + [partial(case, i) for i in range(len(targets))]
+
+
+def estimator_order(config: ResolvedConfig, compared: CommonPasses) -> EstimatorOrder:
+    """Grid and passes to design for the estimator of a plant; the passes are not those `compared`, nor anybody's."""
+    seed = config.validation.seed
+    prediction = weighted_passes(seed + 2, PREDICTION_PASSES)
+    return EstimatorOrder(
+        design=estimator_design(compared.plant, config.resolution, min(config.targets_m_s)),
+        tuning=random_passes(seed + 1, TUNING_PASSES, TUNING_PASSES + TRIM_PASSES),
+        prediction=compared.of_others(prediction.passes),
+        weight=prediction.weight,
+    )
+
+
+def write_and_read_back(table: ControllerTable, directory: Path) -> ControllerTable:
+    """The table as a controller will load it."""
+    path = directory / f"{table.id}.json"
+    write_json(table, path)
+    return read_json(path)
+
+
+def creation_time() -> str:
+    """Now in UTC, or the time of SOURCE_DATE_EPOCH (which makes a run's files reproducible to the byte)."""
+    epoch = os.environ.get("SOURCE_DATE_EPOCH")
+    moment = datetime.fromtimestamp(int(epoch), UTC) if epoch else datetime.now(UTC)
+    return moment.strftime("%Y-%m-%dT%H:%M:%SZ")

@@ -1,0 +1,209 @@
+"""One case from problem to validated table: solve, fit, polish, export, predict, simulate, compare."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.comparison.baselines import tune_baselines
+from synth.comparison.measured import Feasibility, Measured
+from synth.criterion.exit_density import ExitDensity
+from synth.criterion.requirement import FrictionRange, OverspeedLimit
+from synth.criterion.requirement_found import Finding
+from synth.dynamic_programme.backward_induction import Solution
+from synth.dynamic_programme.policy_evaluation import commands, exit_density, occupancy_of
+from synth.dynamic_programme.switching_lines import SwitchingLines
+from synth.estimation.estimated_table import EstimatedTable, estimated_table
+from synth.estimation.simulated_prediction import density_of, simulated_prediction
+from synth.fitting.chance_constraint import keep_overspeed_limit
+from synth.fitting.polynomial_fit import Fit, PolynomialLines, fit_lines
+from synth.fitting.tabulate import lines_of, prediction_of, tabulate
+from synth.fitting.tuned_lines import polished
+from synth.fitting.worst_case import guard_worst_case
+from synth.markov_chain.transitions import Transitions
+from synth.problem import Criterion, Problem
+from synth.simulation.closed_loop import Controller, LineController, TableController
+from synth.simulation.common_passes import CommonPasses
+from synth.simulation.exit_statistics import exit_statistics
+from synth.simulation.random_passes import RandomPasses
+from synth.tuning.case_result import WITHOUT_ESTIMATOR, CaseResult, DegreeStudy, Indifference
+from synth.tuning.policy_map import policy_map
+from tuning_tables import ControllerTable, Generator, Predicted, Validated
+
+TRACE_FACTORS = (0.8, 1.0, 1.2)
+INDIFFERENCE_SHOWN_M2_S2 = 1e-4
+"""Costs that differ by less than (1 cm/s)² are drawn as equal."""
+
+
+@dataclass(frozen=True)
+class EstimatorOrder:
+    """A grid for estimated speeds, passes to find error and trim on, and others, as weighted draws, to predict from."""
+
+    design: Transitions
+    tuning: RandomPasses
+    prediction: CommonPasses
+    weight: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class CaseOrder:
+    """What to do for one case, and with what; `store` writes a table and reads it back from its file.
+
+    `solution` on the design grid, `plain` the same without the switching tolerance, `published` in the formulation
+    as published; `check` the finer grid to predict on; `passes` that every controller is compared on, `tuning` others
+    that baselines are tuned on; `estimator`: what is needed to design for one, None without.
+    """
+
+    label: str
+    problem: Problem
+    solution: Solution
+    plain: Solution
+    published: Solution
+    known: Measured
+    feasibility: Feasibility
+    check: Transitions
+    degree: int
+    passes: CommonPasses
+    tuning: CommonPasses
+    generator: Generator
+    created: str
+    store: Callable[[ControllerTable], ControllerTable]
+    estimator: EstimatorOrder | None = None
+
+    @property
+    def table_id(self) -> str:
+        """Name of the case's table, also as a file name."""
+        return f"{self.label}-to-{self.problem.target_speed_m_s:g}-m-s".replace(" ", "-")
+
+
+def tune_case(order: CaseOrder) -> CaseResult:
+    """Tune one case; the table is validated as read back from its file."""
+    problem, solution, target = order.problem, order.solution, order.problem.target_speed_m_s
+    design, published = solution.transitions, order.published
+    by_lines, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
+    fit = fit_lines(solution, occupancy.samples, order.degree)
+    lines, finding = required(design, order.check, fit, target, problem.criterion)
+    made = None
+    if order.estimator is not None:
+        made = estimated_table(problem, order.estimator.design, lines, order.estimator.tuning)
+    if order.estimator is not None and made is not None and made.gains:
+        table, predicted = predicted_by_passes(order, made, order.estimator)
+    else:
+        table, predicted = predicted_table(order, lines)
+    table = order.store(table)
+    sample = order.passes.run(TableController(table))
+    statistics = exit_statistics(sample, target)
+    validated = Validated(statistics.passes, statistics.rms_m_s, statistics.rms_ci95_m_s)
+    table = order.store(table.with_validated(validated))
+    nodes = np.linspace(0.0, problem.plant.exit_m, 301)
+    return CaseResult(
+        label=order.label,
+        plant=problem.plant,
+        target_speed_m_s=target,
+        table=table,
+        table_lines=lines_of(table, nodes),
+        solver_lines=solution.lines,
+        policy_map=policy_map(solution, INDIFFERENCE_SHOWN_M2_S2),
+        predicted=predicted,
+        published_predicted_rms_m_s=rms_of_lines(published.transitions, published.lines, target),
+        exit_speeds_m_s=sample.exit_speed_m_s.astype(np.float32),
+        comparison=(
+            Measured("table", statistics, table.predicted.rms_m_s),
+            run(order, "full lines", LineController(solution.lines)),
+            run(order, "as published", LineController(published.lines)),
+            order.known,
+            *(run(order, b.name, b.controller) for b in tune_baselines(order.tuning, target)),
+            *(() if made is None else (run(order, WITHOUT_ESTIMATOR, LineController(lines.at(nodes))),)),
+        ),
+        indifference=indifference(order, by_lines),
+        feasibility=order.feasibility,
+        traces=tuple(order.passes.trace(TableController(table), i, factor) for i, factor in enumerate(TRACE_FACTORS)),
+        trace_factors=TRACE_FACTORS,
+        criterion=problem.criterion,
+        finding=finding,
+        estimate=made,
+    )
+
+
+def required(
+    design: Transitions, check: Transitions, fit: Fit, target_speed_m_s: float, criterion: Criterion
+) -> tuple[PolynomialLines, Finding | None]:
+    """The polished lines that keep what the criterion requires, and what that took."""
+    lines = polished(design, fit, target_speed_m_s, criterion)
+    match criterion.requirement:
+        case OverspeedLimit() as limit:
+            return keep_overspeed_limit(design, check, lines, fit, target_speed_m_s, criterion, limit)
+        case FrictionRange() as friction:
+            return guard_worst_case(design, check, lines, fit, target_speed_m_s, criterion, friction)
+        case None:
+            return lines, None
+
+
+def predicted_table(order: CaseOrder, lines: PolynomialLines) -> tuple[ControllerTable, ExitDensity]:
+    """The rounded table with the exact prediction of itself, sensor quantisation included."""
+    unknown = Predicted(0.0, 0.0, 0.0, 0.0)
+    plant, target = order.problem.plant, order.problem.target_speed_m_s
+    table = tabulate(plant, lines, target, unknown, order.generator, order.table_id, order.created)
+    predicted = predict(order.check, table)
+    return replace(table, predicted=prediction_of(predicted, target)), predicted
+
+
+def predicted_by_passes(
+    order: CaseOrder, made: EstimatedTable, estimator: EstimatorOrder
+) -> tuple[ControllerTable, ExitDensity]:
+    """The rounded table for the estimated speed, with what passes that nothing else uses say of it."""
+    unknown = Predicted(0.0, 0.0, 0.0, 0.0)
+    plant, target = order.problem.plant, order.problem.target_speed_m_s
+    origin = (order.generator, order.table_id, order.created)
+    table = tabulate(plant, made.lines, target, unknown, *origin, made.estimator)
+    sample = estimator.prediction.run(TableController(table))
+    density = density_of(sample, estimator.weight, estimator.design.grid.speed_m_s)
+    return replace(table, predicted=simulated_prediction(sample, estimator.weight, target)), density
+
+
+def predict(check: Transitions, table: ControllerTable) -> ExitDensity:
+    """Exit-speed density of an exported table on `check`."""
+    lines = lines_of(table, check.grid.path_m)
+    stages = check.actuator.stages
+    used = SwitchingLines(lines.nodes_m, lines.lower_m_s[:stages], lines.upper_m_s[:stages])
+    return exit_density(check, commands(check, used, staircase=True))
+
+
+def run(order: CaseOrder, name: str, controller: Controller) -> Measured:
+    """Closed loop of `controller` on the common passes, as figures."""
+    return Measured(name, exit_statistics(order.passes.run(controller), order.problem.target_speed_m_s))
+
+
+def rms_of_lines(transitions: Transitions, lines: SwitchingLines, target_speed_m_s: float) -> float:
+    """What a formulation itself predicts for its own lines."""
+    return exit_density(transitions, commands(transitions, lines, staircase=True)).rms_m_s(target_speed_m_s)
+
+
+def indifference(order: CaseOrder, with_it: ExitDensity) -> Indifference:
+    """Predicted switchings and rms of the solver's lines with the tolerance, and of lines solved without it."""
+    design, target = order.solution.transitions, order.problem.target_speed_m_s
+    without = exit_density(design, commands(design, order.plain.lines, staircase=False))
+    return Indifference(
+        tolerance_m2_s2=order.problem.criterion.switching_tolerance_m2_s2,
+        switchings_without=without.switchings,
+        switchings_with=with_it.switchings,
+        rms_without_m_s=without.rms_m_s(target),
+        rms_with_m_s=with_it.rms_m_s(target),
+    )
+
+
+def degree_study(solution: Solution, label: str, degrees: tuple[int, ...]) -> DegreeStudy:
+    """Predicted rms against the degree of the polynomials, fitted and polished (R4)."""
+    design, target, criterion = solution.transitions, solution.target_speed_m_s, solution.criterion
+    density, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
+    fitted, after = np.empty(len(degrees)), np.empty(len(degrees))
+    for i, degree in enumerate(degrees):
+        fit = fit_lines(solution, occupancy.samples, degree)
+        best = polished(design, fit, target, criterion)
+        for found, lines in ((fitted, fit.lines), (after, best)):
+            at_nodes = lines.at(design.grid.path_m)
+            found[i] = exit_density(design, commands(design, at_nodes, staircase=False)).rms_m_s(target)
+    return DegreeStudy(f"{label}, {target:g} m/s", degrees, fitted, after, density.rms_m_s(target))
