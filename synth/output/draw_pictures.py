@@ -14,6 +14,7 @@ import signal
 import threading
 from collections.abc import Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from types import TracebackType
 
@@ -90,6 +91,9 @@ class Studio:
 
     def _pipe(self) -> Connection:
         if not hasattr(self._mine, "pipe"):
+            # What is started here inherits it, from its first moment on: Ctrl-C is for the tune.
+            resource_tracker.ensure_running()  # its start would undo it
+            signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
             # A fork of this process would copy numba's threads and BLAS's; the server's has none, and has loaded
             # matplotlib once for all.
             context = multiprocessing.get_context("forkserver")

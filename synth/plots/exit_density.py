@@ -47,7 +47,7 @@ def exit_density(cases: Sequence[CaseResult]) -> Figure:
         Line2D([], [], color=INK, linewidth=1.2, label="target"),
         Line2D([], [], color=GREY, linewidth=1.2, linestyle="--", label=f"target ± {OVERSPEED_M_S:g} m/s"),
     ]
-    legend_below(figure, handles, columns=len(handles))
+    legend_below(figure, handles, columns=min(len(handles), 2 * columns))  # a single panel is narrow
     return figure
 
 

@@ -113,6 +113,22 @@ def test_ctrl_c_ends_at_once_with_one_line(one_class: Path, tmp_path: Path) -> N
     assert list(tmp_path.rglob("*.part")) == []
 
 
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="children are found in /proc")
+def test_ctrl_c_at_a_terminal_is_told_in_one_line(tmp_path: Path) -> None:
+    """A terminal sends it to the process that is about to load matplotlib, too."""
+    command = [*TUNE, "-o", str(tmp_path / "out")]
+    tune = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    while not any(b"forkserver" in command_of(pid) for pid in children_of(tune.pid)):
+        assert tune.poll() is None
+        time.sleep(0.01)
+    time.sleep(0.1)
+    os.killpg(tune.pid, signal.SIGINT)
+    said = tune.communicate(timeout=60)[1]
+    assert tune.returncode == 130
+    assert "Traceback" not in said
+    assert "interrupted" in said.splitlines()[-1]
+
+
 DRAW_FOR_EVER = """
 from synth.output.draw_pictures import Studio
 from tests.synth.case_factory import make_case
