@@ -112,12 +112,12 @@ def energy_rule(
     path = loop.path
     nodes = line_nodes_m(loop)
     resistance = path.drag_m_s2_per_n_kn * loop.plant.resistance.mean_n_per_kn
-    speeds = np.empty((top_stage + 1, LINE_NODES))
-    for stage, kpa in enumerate(loop.stage_overpressures_kpa[: top_stage + 1]):
-        slowing = friction * path.brake_m_s2_per_kpa * kpa + resistance - path.gravity_m_s2
-        done = np.concatenate([[0.0], np.cumsum(slowing * np.diff(path.edges_m))])
-        left = done[-1] - np.interp(nodes, path.edges_m, done)
-        speeds[stage] = np.sqrt(np.maximum((target_m_s + offset_m_s) ** 2 + 2.0 * left, 0.0))
+    pressures = loop.stage_overpressures_kpa[: top_stage + 1, None]
+    slowing = friction * path.brake_m_s2_per_kpa * pressures + resistance - path.gravity_m_s2
+    done = np.zeros((top_stage + 1, len(path.edges_m)))
+    np.cumsum(slowing * np.diff(path.edges_m), axis=1, out=done[:, 1:])
+    left = done[:, -1:] - np.stack([np.interp(nodes, path.edges_m, row) for row in done])
+    speeds = np.sqrt(np.maximum((target_m_s + offset_m_s) ** 2 + 2.0 * left, 0.0))
     lower = np.full((loop.stages, LINE_NODES), -np.inf)
     upper = np.full((loop.stages, LINE_NODES), np.inf)
     lower[1 : top_stage + 1] = speeds[:-1] - hysteresis_m_s
