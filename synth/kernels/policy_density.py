@@ -1,4 +1,4 @@
-"""Forward density of a fixed policy in one scenario (Chapman–Kolmogorov equation).
+"""Forward density of a fixed policy, scenario by scenario (Chapman–Kolmogorov equation).
 
 The chain is embedded at the samples of the regulator. At a sample the cut stands at a path node with the
 stage at rest; it is told to go down, to hold (then the next sample is v·T_c further, spread over the two
@@ -46,10 +46,20 @@ def forward(
     spans, arrived = np.empty((reach, modes, size, 2), np.int64), np.zeros((modes, size, 2), np.int64)
     landed = np.empty((ring, modes, 2), np.int64)
     scratch = landing_scratch(row, size)
-    met, slope = landing_tables(
-        factor, extra, factors, probability, mean, std, levels, pressure, drive, brake, path_step
-    )
     for i in range(factor.shape[0]):
+        met, slope = landing_tables(
+            factor[i : i + 1],
+            extra[i : i + 1],
+            factors,
+            probability,
+            mean,
+            std,
+            levels,
+            pressure,
+            drive,
+            brake,
+            path_step,
+        )
         heading[:], spans[:], landed[:] = 0.0, 0, 0
         for r in range(reach):
             for q in range(size):
@@ -58,7 +68,7 @@ def forward(
         follow(
             heading, arriving, mixing, memory, scratch, spans, arrived, landed,
             down, up, speed, stage, pressure, lower_chain, upper_chain, chain_mode,
-            ends, factors, met[i], slope[i], levels, transition,
+            ends, factors, met[0], slope[0], levels, transition,
             drive, brake, factor[i], extra[i], path_step, energy_step, period, density[i], band[i], totals[i],
         )  # fmt: skip
         collect(arriving[drive.shape[0] % ring], mixing[drive.shape[0] % ring], heading, exits[i])

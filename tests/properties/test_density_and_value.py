@@ -10,7 +10,14 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from synth.dynamic_programme.policy_evaluation import commands, cost_and_gradient, exit_density, expected_cost
+from synth.dynamic_programme.policy_evaluation import (
+    commands,
+    cost_and_gradient,
+    exit_density,
+    expected_cost,
+    forward_all,
+    forward_one,
+)
 from synth.dynamic_programme.switching_lines import SwitchingLines
 from synth.markov_chain.transitions import Transitions
 from synth.problem import Criterion
@@ -67,6 +74,21 @@ def test_no_mass_is_lost(small: Callable[[], Transitions], seed: int) -> None:
     assert density.probability.sum() + density.stalled == pytest.approx(1.0, abs=1e-9)
     assert density.escaped < 1e-3
     assert density.stalled > -1e-6
+
+
+@FEW
+@given(seed=SEEDS)
+def test_a_scenario_leaves_nothing_to_the_next(small: Callable[[], Transitions], seed: int) -> None:
+    """Followed after others, in the same memory, a scenario has the exits and totals that it has alone, to the bit."""
+    t = small()
+    policy = commands(t, random_lines(t, seed), staircase=False)
+    scenarios, nothing = len(t.scenarios.weight), np.empty((0, 0, 0, 0))
+    band = np.empty((scenarios, len(t.drive_m_s2), 2), dtype=np.int64)
+    together = forward_all(t, policy, slice(None), np.empty((scenarios, 0, 0, 0, 0)), band)
+    for i in range(scenarios):
+        alone = forward_one(t, policy, i, nothing, band[i])
+        np.testing.assert_array_equal(together[0][i], alone[0])
+        np.testing.assert_array_equal(together[1][i], alone[1])
 
 
 @FEW
