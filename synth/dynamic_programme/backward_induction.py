@@ -60,7 +60,7 @@ def solve_all(
 ) -> tuple[Solution, ...]:
     """Backward induction for several (target speed, criterion) in one sweep: they share all motion.
 
-    An extra one costs about an eighth of the first. `weights` (1 or N, I, H, L, 1 or E): of what is hidden, by path
+    An extra one costs about a sixth of the first. `weights` (1 or N, I, H, L, 1 or E): of what is hidden, by path
     node and speed, instead of the prior. `nodes_kept`: at how many path nodes, from the entrance on, the solutions hold
     values, by default at all; they are most of the memory of a solution.
     """
