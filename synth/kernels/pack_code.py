@@ -210,17 +210,6 @@ def opposite(typing, mask):
     return mask(mask), code
 
 
-@intrinsic
-def total(typing, pack):
-    """Sum of a pack of four."""
-
-    def code(context, builder, sig, args):
-        lane = [builder.extract_element(args[0], ir.Constant(ir.IntType(32), i)) for i in range(pack.lanes)]
-        return builder.fadd(builder.fadd(lane[0], lane[1]), builder.fadd(lane[2], lane[3]))
-
-    return pack.element(pack), code
-
-
 whole, fraction = conversion("fptosi", types.int64), conversion("sitofp", types.float64)
 narrow, wide = conversion("fptrunc", types.float32), conversion("fpext", types.float64)
 root, nearest = by_llvm("sqrt"), by_llvm("rint")

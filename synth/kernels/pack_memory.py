@@ -135,21 +135,4 @@ def keep(typing, array, at, mask, pack):
     return types.int64(array, types.intp, mask, pack), code
 
 
-@intrinsic
-def transposed_store(typing, array, at, a, b, c, d):
-    """Write four packs of eight so that those of a lane stand side by side."""
-
-    def code(context, builder, sig, args):
-        def joined(x, y, order):
-            return builder.shuffle_vector(x, y, ir.Constant(ir.VectorType(ir.IntType(32), len(order)), order))
-
-        low, high = (joined(x, y, list(range(16))) for x, y in (args[2:4], args[4:6]))
-        both = joined(low, high, [8 * k + i for i in range(8) for k in range(4)])
-        pointer = addresses(context, builder, sig.args[0], *args[:2])
-        builder.store(both, builder.bitcast(pointer, both.type.as_pointer()), align=8)
-        return context.get_dummy_value()
-
-    return types.void(array, types.intp, a, b, c, d), code
-
-
 load16, load8, load4 = loading(16), loading(8), loading(4)

@@ -76,11 +76,6 @@ def keep(array, at, mask, pack):
     return len(kept)
 
 
-def transposed_store(array, at, a, b, c, d):
-    """Write four packs of eight as eight groups of four: lane i goes to `at` + 4 i … `at` + 4 i + 3."""
-    array.reshape(-1)[at : at + 4 * EIGHT] = np.stack([a, b, c, d], axis=1).ravel()
-
-
 def choose(mask, yes, no):
     """`yes` in the lanes where the mask holds, else `no`."""
     return np.where(mask, yes, no)
@@ -141,11 +136,6 @@ def nearest(pack):
     return np.rint(pack)
 
 
-def total(pack):
-    """Sum of a pack of four, as (0 + 1) + (2 + 3)."""
-    return (pack[0] + pack[1]) + (pack[2] + pack[3])
-
-
 def first_lane(mask):
     """The first lane of eight in which the mask holds, 8 if there is none."""
     return int(np.argmax(np.append(mask, True)))
@@ -165,9 +155,6 @@ overload(load8)(lambda array, at: lambda array, at: pack_memory.load8(array, at)
 overload(load4)(lambda array, at: lambda array, at: pack_memory.load4(array, at))
 overload(store)(lambda array, at, pack: lambda array, at, pack: pack_memory.store(array, at, pack))
 overload(gather)(lambda array, where: lambda array, where: pack_memory.gather(array, where))
-overload(transposed_store)(
-    lambda array, at, a, b, c, d: lambda array, at, a, b, c, d: pack_memory.transposed_store(array, at, a, b, c, d)
-)
 overload(choose)(lambda mask, yes, no: lambda mask, yes, no: pack_code.choose(mask, yes, no))
 overload(least)(lambda a, b: lambda a, b: pack_code.choose(b < a, b, a))
 overload(greatest)(lambda a, b: lambda a, b: pack_code.choose(b > a, b, a))
@@ -184,6 +171,5 @@ overload(narrow)(lambda pack: lambda pack: pack_code.narrow(pack))
 overload(wide)(lambda pack: lambda pack: pack_code.wide(pack))
 overload(root)(lambda pack: lambda pack: pack_code.root(pack))
 overload(nearest)(lambda pack: lambda pack: pack_code.nearest(pack))
-overload(total)(lambda pack: lambda pack: pack_code.total(pack))
 overload(first_lane)(lambda mask: lambda mask: mask_code.first_lane(mask))
 overload(last_lane)(lambda mask, count: lambda mask, count: mask_code.last_lane(mask, count))
