@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from synth.cli import LIMITS_MISSED, OK, say
+from synth.cli.processors import available
 from synth.input_error import InputError
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ def engine_for(task: Task, workers: int | None, scheduler: str | None) -> Engine
         return cluster
     from synth.sweep.local_workers import LocalWorkers
 
-    asked = workers or len(os.sched_getaffinity(0))
+    asked = workers or available()
     fit = fitting_workers(task, asked)
     if fit < min(asked, len(task.missing)):
         say(f"warning: memory allows for {fit} of {asked} workers")

@@ -9,6 +9,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from synth.cli import LIMITS_MISSED, OK, say
+from synth.cli.processors import available
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.input_error import InputError
 
@@ -19,7 +20,7 @@ def tune_command(path: Path | None, output: Path, workers: int | None, as_json: 
     from synth.output.output_directory import output_directory
 
     config = load_config(path)
-    workers = workers or min(len(config.cuts), len(os.sched_getaffinity(0)))
+    workers = workers or min(len(config.cuts), available())
     require_room(config, path, workers)
     require_date()
     with output_directory(output) as directory:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from synth.cli import LIMITS_MISSED, OK, say
+from synth.cli.processors import available
 
 if TYPE_CHECKING:
     from synth.output.validate_table import Revalidation
@@ -29,7 +29,7 @@ def validate_command(path: Path, config_path: Path | None, passes: int | None, s
         plant_for(table, config, source)  # refused before anything is simulated
     passes = passes or config.validation.passes
     seed = config.validation.seed if seed is None else seed
-    threads = len(os.sched_getaffinity(0))
+    threads = available()
     with interruptible():
         found = [
             guarded(revalidate, table, config, source, passes, seed, threads, is_infeasible(table, summary))
