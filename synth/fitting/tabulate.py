@@ -29,6 +29,9 @@ OVERSPEED_M_S = 0.3
 
 LOWEST_VALID_SPEED_M_S = 0.3
 
+UNPREDICTED = Predicted(0.0, 0.0, 0.0, 0.0)
+"""Stands in a table that is about to be predicted: only a rounded table can be."""
+
 
 def tabulate(
     plant: Plant, lines: PolynomialLines, target_speed_m_s: float, predicted: Predicted, generator: Generator,

@@ -5,12 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from synth.problem import Plant
 from synth.robustness.perturbation import Perturbation
 from synth.simulation.closed_loop import TableController, simulate
-from synth.simulation.exit_statistics import NORMAL_95, ExitStatistics, clopper_pearson, exit_statistics
+from synth.simulation.exit_statistics import NORMAL_95, ExitStatistics, clopper_pearson, exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from tuning_tables import ControllerTable
@@ -80,13 +78,3 @@ class Trial:
 def trial_of(label: str, table: ControllerTable, plant: Plant, passes: RandomPasses) -> Trial:
     """The trial of `table`, tuned for `plant`."""
     return Trial(label, table, plant, passes, simulate(plant, TableController(table), passes))
-
-
-def rms_ratio(sample: ExitSample, other: ExitSample, target_m_s: float) -> tuple[float, tuple[float, float]]:
-    """rms of `sample` / rms of `other`, same passes, and its 95 % interval (delta method on the logarithm, paired)."""
-    a, b = ((x.exit_speed_m_s - target_m_s) ** 2 for x in (sample, other))
-    if a.mean() == 0.0 or b.mean() == 0.0:
-        raise ValueError("rms ratio: a sample without any error has no ratio")
-    ratio = math.sqrt(a.mean() / b.mean())
-    of_log = 0.5 * float(np.std(a / a.mean() - b / b.mean(), ddof=1)) / math.sqrt(len(a))
-    return ratio, (ratio * math.exp(-NORMAL_95 * of_log), ratio * math.exp(NORMAL_95 * of_log))

@@ -107,8 +107,7 @@ class ClosedLoop:
         samples = math.ceil(kernel.LONGEST_PASS_S / self.sensor.period_s + 2) + int(self.drive.chain_samples.max())
         events = np.empty((samples * self.drive.substeps + 2, kernel.EVENT_FIELDS))
         sample, events = self._alone(self._law(controller), draws, events)
-        time, path, speed, overpressure, stage, measured = np.ascontiguousarray(events.T)
-        return PassTrace(time, path, speed, overpressure, stage.astype(np.int64), measured, bool(sample.stalled[0]))
+        return trace_of(events, bool(sample.stalled[0]))
 
     def _law(self, controller: Controller) -> regulator.Rule:
         if controller.stages != self.stages:
@@ -148,6 +147,12 @@ def lane_memory() -> places.Work:
 def sample_of(exits: kernel.Exits) -> ExitSample:
     """What the kernel has filled in, for reading."""
     return ExitSample(exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s)
+
+
+def trace_of(events: NDArray[np.float64], stalled: bool) -> PassTrace:
+    """The events that a kernel has noted of one pass, (events, `EVENT_FIELDS`), for reading."""
+    time, path, speed, overpressure, stage, measured = np.ascontiguousarray(events.T)
+    return PassTrace(time, path, speed, overpressure, stage.astype(np.int64), measured, stalled)
 
 
 def close_loop(plant: Plant, stages: int, substeps: int | None = None) -> ClosedLoop:

@@ -105,6 +105,16 @@ def rms_interval(mean_square: float, standard_error: float) -> tuple[float, floa
     return rms / spread, rms * spread
 
 
+def rms_ratio(sample: ExitSample, other: ExitSample, target_m_s: float) -> tuple[float, tuple[float, float]]:
+    """rms of `sample` / rms of `other`, same passes, and its 95 % interval (delta method on the logarithm, paired)."""
+    a, b = ((x.exit_speed_m_s - target_m_s) ** 2 for x in (sample, other))
+    if a.mean() == 0.0 or b.mean() == 0.0:
+        raise ValueError("rms ratio: a sample without any error has no ratio")
+    ratio = math.sqrt(a.mean() / b.mean())
+    of_log = 0.5 * float(np.std(a / a.mean() - b / b.mean(), ddof=1)) / math.sqrt(len(a))
+    return ratio, (ratio * math.exp(-NORMAL_95 * of_log), ratio * math.exp(NORMAL_95 * of_log))
+
+
 def clopper_pearson(hits: int, n: int, confidence: float = 0.95) -> tuple[float, float]:
     """Exact interval of a probability after `hits` in `n` independent trials (Clopper and Pearson 1934)."""
     from scipy.special import betaincinv  # start-up: scipy only where it is needed

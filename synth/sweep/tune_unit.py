@@ -12,7 +12,7 @@ import numpy as np
 from synth.configuration.resolved_config import ResolvedConfig, resolve
 from synth.configuration.settings import Settings
 from synth.dynamic_programme.backward_induction import Solution, solve_all
-from synth.fitting.tabulate import prediction_of, tabulate
+from synth.fitting.tabulate import UNPREDICTED, tabulate
 from synth.fitting.tuned_lines import fitted
 from synth.markov_chain.grid import finer_for_check
 from synth.markov_chain.transitions import Transitions, check_transitions, persistent_transitions
@@ -25,11 +25,9 @@ from synth.simulation.random_passes import random_passes
 from synth.sweep.plan import TARGETS_AT_ONCE, Refinement, UnitOrder
 from synth.sweep.refinement import Bench, Gap, refined
 from synth.sweep.unit_result import Row, UnitResult
-from synth.tuning.tune_case import predict, required
-from tuning_tables import ControllerTable, Generator, Predicted, Validated, from_json, to_json
+from synth.tuning.tune_case import predict, required, with_prediction
+from tuning_tables import ControllerTable, Generator, Validated, from_json, to_json
 from tuning_tables.active_table import between
-
-UNKNOWN = Predicted(0.0, 0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -97,8 +95,8 @@ def predicted_table(shop: Workshop, solution: Solution) -> ControllerTable:
     lines, _ = required(shop.design, shop.check, fit, target, config.criterion)
     label = f"{shop.order.condition}-{shop.order.label}" if shop.order.condition else shop.order.label
     name = f"{label}-to-{target:g}-m-s"
-    table = tabulate(shop.plant, lines, target, UNKNOWN, shop.generator, name, shop.order.created)
-    return replace(table, predicted=prediction_of(predict(shop.check, table), target))
+    table = tabulate(shop.plant, lines, target, UNPREDICTED, shop.generator, name, shop.order.created)
+    return with_prediction(shop.check, table)[0]
 
 
 def between_rms_m_s(check: Transitions, slower: ControllerTable, faster: ControllerTable, target_m_s: float) -> float:

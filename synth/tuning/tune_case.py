@@ -20,7 +20,7 @@ from synth.estimation.estimated_table import EstimatedTable, estimated_table
 from synth.estimation.simulated_prediction import density_of, simulated_prediction
 from synth.fitting.chance_constraint import keep_overspeed_limit
 from synth.fitting.polynomial_fit import Fit, PolynomialLines, fit_lines
-from synth.fitting.tabulate import lines_of, prediction_of, tabulate
+from synth.fitting.tabulate import UNPREDICTED, lines_of, prediction_of, tabulate
 from synth.fitting.tuned_lines import polished
 from synth.fitting.worst_case import guard_worst_case
 from synth.markov_chain.transitions import Transitions
@@ -31,7 +31,7 @@ from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.random_passes import RandomPasses
 from synth.tuning.case_result import WITHOUT_ESTIMATOR, CaseResult, DegreeStudy, Indifference
 from synth.tuning.policy_map import policy_map
-from tuning_tables import ControllerTable, Generator, Predicted, Validated
+from tuning_tables import ControllerTable, Generator, Validated
 
 TRACE_FACTORS = (0.8, 1.0, 1.2)
 INDIFFERENCE_SHOWN_M2_S2 = 1e-4
@@ -76,7 +76,7 @@ class CaseOrder:
     @property
     def table_id(self) -> str:
         """Name of the case's table, also as a file name."""
-        return f"{self.label}-to-{self.problem.target_speed_m_s:g}-m-s".replace(" ", "-")
+        return f"{self.label}-to-{self.problem.target_speed_m_s:g}-m-s"
 
 
 def tune_case(order: CaseOrder) -> CaseResult:
@@ -144,24 +144,27 @@ def required(
 
 def predicted_table(order: CaseOrder, lines: PolynomialLines) -> tuple[ControllerTable, ExitDensity]:
     """The rounded table with the exact prediction of itself, sensor quantisation included."""
-    unknown = Predicted(0.0, 0.0, 0.0, 0.0)
     plant, target = order.problem.plant, order.problem.target_speed_m_s
-    table = tabulate(plant, lines, target, unknown, order.generator, order.table_id, order.created)
-    predicted = predict(order.check, table)
-    return replace(table, predicted=prediction_of(predicted, target)), predicted
+    origin = (order.generator, order.table_id, order.created)
+    return with_prediction(order.check, tabulate(plant, lines, target, UNPREDICTED, *origin))
 
 
 def predicted_by_passes(
     order: CaseOrder, made: EstimatedTable, estimator: EstimatorOrder
 ) -> tuple[ControllerTable, ExitDensity]:
     """The rounded table for the estimated speed, with what passes that nothing else uses say of it."""
-    unknown = Predicted(0.0, 0.0, 0.0, 0.0)
     plant, target = order.problem.plant, order.problem.target_speed_m_s
     origin = (order.generator, order.table_id, order.created)
-    table = tabulate(plant, made.lines, target, unknown, *origin, made.estimator)
+    table = tabulate(plant, made.lines, target, UNPREDICTED, *origin, made.estimator)
     sample = estimator.prediction.run(TableController(table))
     density = density_of(sample, estimator.weight, estimator.design.grid.speed_m_s)
     return replace(table, predicted=simulated_prediction(sample, estimator.weight, target)), density
+
+
+def with_prediction(check: Transitions, table: ControllerTable) -> tuple[ControllerTable, ExitDensity]:
+    """`table` with the figures of its exit-speed density on `check`, and the density."""
+    density = predict(check, table)
+    return replace(table, predicted=prediction_of(density, table.target_speed_m_s)), density
 
 
 def predict(check: Transitions, table: ControllerTable) -> ExitDensity:

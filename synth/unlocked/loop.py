@@ -13,7 +13,7 @@ from synth.kernels import closed_loop as kernel
 from synth.kernels.unlocked_loop import SampledDrive, run_unlocked_passes
 from synth.markov_chain.actuator import resting_modes
 from synth.problem import Plant
-from synth.simulation.closed_loop import ClosedLoop, close_loop
+from synth.simulation.closed_loop import ClosedLoop, close_loop, empty_exits, sample_of, trace_of
 from synth.simulation.controllers import fixed
 from synth.simulation.passes import ExitSample, PassTrace
 from synth.simulation.random_passes import RandomPasses
@@ -39,19 +39,16 @@ class UnlockedLoop:
         """The only pass of `draws` under `controller`, event by event."""
         longest = math.ceil(kernel.LONGEST_PASS_S / self.locked.sensor.period_s + 2) * self.drive.parts + 2
         sample, events = self._record(controller, draws, np.empty((longest, kernel.EVENT_FIELDS)))
-        time, path, speed, overpressure, stage, measured = np.ascontiguousarray(events.T)
-        return PassTrace(time, path, speed, overpressure, stage.astype(np.int64), measured, bool(sample.stalled[0]))
+        return trace_of(events, bool(sample.stalled[0]))
 
     def _record(
         self, controller: UnlockedController, draws: kernel.Draws, events: NDArray[np.float64]
     ) -> tuple[ExitSample, NDArray[np.float64]]:
         if controller.stages != len(self.drive.stage_kpa):
             raise ValueError(f"unlocked loop: {controller.stages} stages, the loop has {len(self.drive.stage_kpa)}")
-        n = len(draws.cut_factor)
-        exits = kernel.Exits(np.empty(n), np.empty(n), np.empty(n, dtype=np.bool_), np.empty(n, dtype=np.int32))
-        loop = self.locked
+        exits, loop = empty_exits(len(draws.cut_factor)), self.locked
         count = run_unlocked_passes(loop.path, self.drive, loop.sensor, controller.law(), draws, exits, events)
-        return ExitSample(exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s), events[:count]
+        return sample_of(exits), events[:count]
 
 
 def unlocked_loop(plant: Plant) -> UnlockedLoop:

@@ -14,7 +14,8 @@ from synth.robustness.perturbation import Perturbation, ends_by
 from synth.robustness.retuned_table import retuned
 from synth.robustness.sensor_fault import Bias
 from synth.robustness.study import Sweep, one_at_a_time, sweep, together
-from synth.robustness.trial import Trial, rms_ratio, trial_of
+from synth.robustness.trial import Trial, trial_of
+from synth.simulation.exit_statistics import rms_ratio
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import random_passes
 from synth.tuning.tune_case import predict
