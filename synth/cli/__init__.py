@@ -20,8 +20,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # a terminal that knows no Cyrillic letters shall not stop us
-    # numpy is asked for small matrices by many threads of ours: threads of its own would only be in the way.
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    # See `synth.one_blas_thread`; before BLAS is loaded it starts no threads at all.
+    os.environ["OPENBLAS_NUM_THREADS"] = "1"
     try:
         code = told(lambda: run(sys.argv[1:] if arguments is None else list(arguments)))
         sys.stdout.flush()

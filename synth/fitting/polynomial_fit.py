@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from plant_models.errors import require
 from synth.dynamic_programme.backward_induction import Solution
 from synth.dynamic_programme.switching_lines import SwitchingLines
+from synth.one_blas_thread import one_blas_thread
 
 MINIMUM_GAP_M_S = 0.04
 """Smallest distance V_hi − V_lo of a fitted pair of lines."""
@@ -72,6 +73,7 @@ class Fit:
     curvature: NDArray[np.float64]
 
 
+@one_blas_thread()
 def fit_lines(solution: Solution, occupancy: NDArray[np.float64], degree: int) -> Fit:
     """Weighted least squares; the weight of a node is the curvature of the cost in the line's position there.
 
@@ -147,6 +149,7 @@ class Polish:
     status: str
 
 
+@one_blas_thread()
 def polish(
     start: PolynomialLines,
     curvature: NDArray[np.float64],
@@ -198,14 +201,8 @@ def polish(
 
     options: Any = {"maxiter": max_iterations, "ftol": tolerance}
     constraints: Any = [gap_constraint(start, free, scale)]
-    result = minimize(
-        objective,
-        np.zeros(len(free[0]) * width),
-        jac=True,
-        method="SLSQP",
-        constraints=constraints,
-        options=options,
-    )
+    y0 = np.zeros(len(free[0]) * width)
+    result = minimize(objective, y0, jac=True, method="SLSQP", constraints=constraints, options=options)
     cost, lines = best[0]
     return Polish(opened(lines), before, cost, calls, str(result.message))
 

@@ -17,6 +17,7 @@ from synth.estimation.estimated_table import estimator_design
 from synth.estimation.simulated_prediction import weighted_passes
 from synth.markov_chain.grid import finer_for_check, require_memory
 from synth.markov_chain.transitions import as_published, check_transitions, persistent_transitions
+from synth.one_blas_thread import one_blas_thread
 from synth.problem import Plant, Problem
 from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.random_passes import RandomPasses, random_passes
@@ -57,6 +58,7 @@ class Book:
     degree_studies: tuple[DegreeStudy, ...]
 
 
+@one_blas_thread()
 def tune(
     config: ResolvedConfig, tables: Path, progress: Progress, workers: int = 2, case_done: CaseDone = no_notice
 ) -> Book:

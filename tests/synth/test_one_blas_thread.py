@@ -1,0 +1,79 @@
+"""The last bit of a table does not depend on how many threads BLAS has."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import numpy as np
+import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
+
+from synth.one_blas_thread import one_blas_thread
+
+POLISHED = """
+import importlib.util, sys
+from synth.kernel_cache import use_kernel_cache
+use_kernel_cache()
+from synth.fitting.tuned_lines import tuned_lines
+from synth.markov_chain.transitions import persistent_transitions
+from synth.problem import Criterion
+spec = importlib.util.spec_from_file_location("plants", sys.argv[1])
+plants = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(plants)
+design = persistent_transitions(plants.random_plant(), plants.COARSE)
+for target_m_s in (1.5, 2.0, 2.5, 3.0):
+    print(tuned_lines(design, target_m_s, Criterion(1.0, 1e-5), 3).coefficients.tobytes().hex())
+"""
+
+
+def threads() -> set[int]:
+    """What the BLAS libraries of this process would use now."""
+    return {library["num_threads"] for library in threadpool_info() if library["user_api"] == "blas"}
+
+
+def test_every_library_has_one_until_the_first_has_left() -> None:
+    np.linalg.inv(np.eye(2))  # whatever BLAS numpy has is there
+    with threadpool_limits(2, user_api="blas"):
+        assert 1 not in threads()
+        seen = []
+
+        def enter_and_leave() -> None:
+            with one_blas_thread():
+                seen.append(threads())
+
+        with one_blas_thread():
+            assert threads() == {1}
+            enter_and_leave()
+            others = [threading.Thread(target=enter_and_leave) for _ in range(4)]
+            for other in others:
+                other.start()
+            for other in others:
+                other.join()
+            assert threads() == {1}
+        assert seen == [{1}] * 5
+        assert 1 not in threads()
+
+
+def test_what_was_is_restored_after_a_fault() -> None:
+    before = threads()
+    with pytest.raises(ZeroDivisionError), one_blas_thread():
+        raise ZeroDivisionError
+    assert threads() == before
+
+
+def test_polished_lines_are_the_same_to_the_bit_whatever_blas_is_told() -> None:
+    def polished(count: str) -> str:
+        plants = Path(__file__).parents[1] / "properties" / "conftest.py"
+        return subprocess.run(
+            [sys.executable, "-c", POLISHED, str(plants)],
+            env={**os.environ, "OPENBLAS_NUM_THREADS": count}, check=True, capture_output=True, text=True,
+        ).stdout  # fmt: skip
+
+    one = polished("1")
+    assert len(one) > 1000
+    assert polished("2") == one
+    assert polished("4") == one
