@@ -8,16 +8,19 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from synth.dynamic_programme.switching_lines import SwitchingLines
 from synth.kernels.bellman import sweep
-from synth.kernels.packs import FOUR
+from synth.kernels.packs import EIGHT
 from synth.markov_chain.transitions import Transitions
 from synth.problem import Criterion
 
 TIE_M2_S2 = 1e-9
-"""Gains smaller than this are rounding: hold wins."""
+"""Averaged gains smaller than this are none: hold wins."""
+
+ROUNDINGS = 16
+"""Gains are none, too, that so many roundings of the cost itself could make."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +29,7 @@ class Solution:
 
     `lines`: the common policy; `gain_down`, `gain_up` (N, K + 1, E): mean-square cost saved by a change of stage
     at a measured speed (what the lines bound, and what R5's indifferent region is read from); `values`
-    (I, N + 1, H, L, E), or of fewer nodes: estimated cost to go by scenario.
+    (I, N + 1, H, L, E), or of fewer nodes: estimated cost to go by scenario, in the type that was asked for.
     """
 
     transitions: Transitions
@@ -35,7 +38,7 @@ class Solution:
     lines: SwitchingLines
     gain_down: NDArray[np.float64]
     gain_up: NDArray[np.float64]
-    values: NDArray[np.float64]
+    values: NDArray[np.floating[Any]]
 
     @property
     def status(self) -> str:
@@ -47,9 +50,14 @@ class Solution:
         )
 
 
-def solve(transitions: Transitions, target_speed_m_s: float, criterion: Criterion) -> Solution:
-    """Backward induction for one target speed."""
-    return solve_all(transitions, [(target_speed_m_s, criterion)])[0]
+def solve(
+    transitions: Transitions,
+    target_speed_m_s: float,
+    criterion: Criterion,
+    value_type: type[np.floating[Any]] = np.float32,
+) -> Solution:
+    """Backward induction for one target speed; `value_type` as of `solve_all`."""
+    return solve_all(transitions, [(target_speed_m_s, criterion)], value_type=value_type)[0]
 
 
 def solve_all(
@@ -57,29 +65,32 @@ def solve_all(
     aims: Sequence[tuple[float, Criterion]],
     weights: NDArray[np.float64] | None = None,
     nodes_kept: int | None = None,
+    value_type: type[np.floating[Any]] = np.float32,
 ) -> tuple[Solution, ...]:
     """Backward induction for several (target speed, criterion) in one sweep: they share all motion.
 
-    An extra one costs about a sixth of the first. `weights` (1 or N, I, H, L, 1 or E): of what is hidden, by path
-    node and speed, instead of the prior. `nodes_kept`: at how many path nodes, from the entrance on, the solutions hold
-    values, by default at all; they are most of the memory of a solution.
+    Up to eight cost little more than one, and none depends on which others there are. `weights` (1 or N, I, H, L, 1
+    or E): of what is hidden, by path node and speed, instead of the prior. `nodes_kept`: at how many path nodes, from
+    the entrance on, the solutions hold values, by default at all; they are most of the memory of a solution.
+    `value_type`: of the numbers that values are computed and kept in. float32 takes half the time and memory of
+    float64 for many targets; what it costs: `docs/method.md`.
     """
     t = transitions
     exit_costs, stall_costs = zip(*(c.exit_costs(t.grid.speed_m_s, target) for target, c in aims), strict=True)
-    change_costs = np.array([criterion.switching_tolerance_m2_s2 for _, criterion in aims])
+    by_energy, change_costs = np.stack(exit_costs, axis=1), [c.switching_tolerance_m2_s2 for _, c in aims]
     nodes, stages, points, width = len(t.drive_m_s2), t.actuator.stages, len(t.grid.speed_m_s), len(aims)
     kept = nodes + 1 if nodes_kept is None else nodes_kept
     states = (len(t.actuator.mode_stage), len(t.chain.levels), points)
-    values = np.empty((len(t.scenarios.factor), kept, *states, width))
+    values = np.empty((len(t.scenarios.factor), kept, *states, width), value_type)
     lower, upper = np.empty((nodes, stages, width)), np.empty((nodes, stages, width))
     gain_down, gain_up = (np.empty((nodes, stages, width, points)) for _ in range(2))
     noise = measured_speed_std(t.plant.sensor.noise_m_s, t.plant.sensor.resolution_m_s)
+    smear_start, smear = true_speed_weights(t.grid.speed_m_s, noise)
     hidden = hidden_prior(t)[None, ..., None] if weights is None else weights
     arguments = (
-        in_packs_of_targets(np.stack(exit_costs, axis=1)).ravel(), in_packs_of_targets(np.array(stall_costs)),
-        in_packs_of_targets(change_costs), TIE_M2_S2,
-        noise, *true_speed_weights(t.grid.speed_m_s, noise),
-        hidden, *sweep_arguments(t), t.scenarios.factor, t.scenarios.extra_m_s2,
+        *(in_packs_of_targets(costs).astype(value_type).ravel() for costs in (by_energy, stall_costs, change_costs)),
+        TIE_M2_S2, ROUNDINGS * float(np.finfo(value_type).eps), noise, smear_start, smear.astype(value_type),
+        hidden.astype(value_type), *sweep_arguments(t), t.scenarios.factor, t.scenarios.extra_m_s2,
         t.grid.path_step_m, t.grid.energy_step_m2_s2, t.plant.sensor.sample_period_s, len(t.entry),
         values, lower, upper, gain_down, gain_up,
     )  # fmt: skip
@@ -98,10 +109,11 @@ def solve_all(
     )
 
 
-def in_packs_of_targets(by_target: NDArray[np.float64]) -> NDArray[np.float64]:
+def in_packs_of_targets(by_target: ArrayLike) -> NDArray[np.float64]:
     """Zeros added for targets that nobody asked for, until the last axis fills whole packs of the kernel."""
-    missing = -by_target.shape[-1] % FOUR
-    return np.pad(by_target, [(0, 0)] * (by_target.ndim - 1) + [(0, missing)])
+    numbers = np.asarray(by_target, dtype=np.float64)
+    missing = -numbers.shape[-1] % EIGHT
+    return np.pad(numbers, [(0, 0)] * (numbers.ndim - 1) + [(0, missing)])
 
 
 def sweep_arguments(t: Transitions) -> Any:

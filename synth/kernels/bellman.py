@@ -17,14 +17,14 @@ from synth.kernels.commands import normal_cdf
 from synth.kernels.flow import mix_values, pull, shifts
 from synth.kernels.landing_plan import find_runs, landing_scratch, landing_tables
 from synth.kernels.next_sample import quanta_to_next_sample
-from synth.kernels.packs import FOUR, load4, store
+from synth.kernels.packs import EIGHT, choose, load8, magnitude, store
 from synth.kernels.thresholds import lower_threshold, upper_threshold
 from synth.kernels.transient_sweep import add_transient_values
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def sweep(
-    terminal, stalled, change_cost, tolerance, noise, smear_start, smear, prior,
+    terminal, stalled, change_cost, tolerance, rounding, noise, smear_start, smear, prior,
     speed, stage, pressure, lower_chain, upper_chain, chain_mode,
     ends, factors, probability, mean, std, levels, transition,
     drive, brake, factor, extra, path_step, energy_step, period, reach,
@@ -33,7 +33,8 @@ def sweep(
     """One backward sweep over all path quanta.
 
     `terminal` (E·T',) cost by exit energy and target, `stalled` (T',) cost of a stall, `change_cost` (T',) of a
-    command, where T' ≥ T are whole packs of four; `tolerance` below which a gain is rounding. I scenarios: `factor`,
+    command, where T' ≥ T are whole packs of eight; values are computed in the type of `terminal`. `tolerance`: an
+    averaged gain of less is none; `rounding`: so is one of less than this part of the cost. I scenarios: `factor`,
     `extra` (I,); `prior` (1 or N, I, H, L, 1 or E) weights of what is hidden; `smear_start` (E,), `smear` (E, W):
     probability of true speeds given a measured one. Outputs: `values` (I, N + 1, H, L, E, T), or of the first nodes
     only, `lower`, `upper` (N, K + 1, T), `gain_down`, `gain_up` (N, K + 1, T, E): averaged cost saved by the change,
@@ -42,19 +43,19 @@ def sweep(
     count, nodes, width = factor.shape[0], drive.shape[0], stalled.shape[0]
     modes, size, points = pressure.shape[0], levels.shape[0], speed.shape[0]
     ring = probability.shape[1] + 3
-    row = points * width
-    recent = np.zeros((count, ring, modes, size, row))
-    mixed = np.zeros((count, ring, modes, size, row))
-    ahead = np.empty((count, reach, modes, size, row))
-    holds = np.empty((count, modes, size, row))
-    changes = np.zeros((2, count, modes, size, row))
+    row, kind = points * width, terminal.dtype
+    recent = np.zeros((count, ring, modes, size, row), kind)
+    mixed = np.zeros((count, ring, modes, size, row), kind)
+    ahead = np.empty((count, reach, modes, size, row), kind)
+    holds = np.empty((count, modes, size, row), kind)
+    changes = np.zeros((2, count, modes, size, row), kind)
     quanta = np.empty((count, modes, size, points))
     shift = np.empty((count, modes, size))
-    gains = np.empty((2, lower.shape[1], row))
-    chance = np.empty((2, row))
+    gains = np.empty((2, lower.shape[1], row), kind)
+    chance = np.empty((2, row), kind)
     undecided = np.empty(points, np.bool_)
-    scratch = np.empty(row)
-    crossed, runs, place, weight = landing_scratch(ends.shape[4], size)
+    scratch = np.empty(row, kind)
+    crossed, runs, place, weight = landing_scratch(ends.shape[4], size, kind)
     met, slope = landing_tables(
         factor, extra, factors, probability, mean, std, levels, pressure, drive, brake, path_step
     )
@@ -91,7 +92,7 @@ def sweep(
                             extra[i], path_step, energy_step,
                             recent[i], mixed[i], stalled, place, weight, changed,
                         )  # fmt: skip
-                        add_gains(holds[i, h, q], changed, weights[i, h, q], width, gains[side, stage[h]])
+                        add_gains(holds[i, h, q], changed, weights[i, h, q], rounding, width, gains[side, stage[h]])
         for k in range(lower.shape[1]):
             for side, each in ((0, gain_down), (1, gain_up)):
                 spread(gains[side, k], smear_start, smear, width, scratch)
@@ -128,11 +129,11 @@ def hold_values(ahead, state, quanta, width, out):
         step = min(int(quanta[j]), last)
         near = max(step, 1) * stride + state * row
         x = min(quanta[j] - step, 1.0)
-        for at in range(j * width, (j + 1) * width, FOUR):
+        for at in range(j * width, (j + 1) * width, EIGHT):
             if step == 0:
-                store(out, at, load4(ahead, near + at))
+                store(out, at, load8(ahead, near + at))
             else:
-                store(out, at, load4(ahead, near + at) * (1.0 - x) + load4(ahead, near + stride + at) * x)
+                store(out, at, load8(ahead, near + at) * (1.0 - x) + load8(ahead, near + stride + at) * x)
 
 
 @borrowing
@@ -140,27 +141,33 @@ def in_every_cell(numbers, out):
     """`out` (E·T,) = `numbers` (T,) at every energy."""
     width = numbers.shape[0]
     for at in range(0, out.shape[0], width):
-        for t in range(0, width, FOUR):
-            store(out, at + t, load4(numbers, t))
+        for t in range(0, width, EIGHT):
+            store(out, at + t, load8(numbers, t))
 
 
 @borrowing
-def add_gains(hold, changed, prior, width, gain):
-    """Add the cost saved by a change, weighted by `prior` (1 or E,), to `gain` (E·T,)."""
+def add_gains(hold, changed, prior, rounding, width, gain):
+    """Add the cost saved by a change, weighted by `prior` (1 or E,), to `gain` (E·T,).
+
+    What is less than the part `rounding` of the cost itself may be saved by rounding alone, and is not added.
+    """
     for j in range(1, gain.shape[0] // width):
         weight = prior[j] if prior.shape[0] > 1 else prior[0]
-        for at in range(j * width, (j + 1) * width, FOUR):
-            store(gain, at, load4(gain, at) + (load4(hold, at) - load4(changed, at)) * weight)
+        for at in range(j * width, (j + 1) * width, EIGHT):
+            cost = load8(hold, at)
+            saved = cost - load8(changed, at)
+            saved = choose(magnitude(saved) > cost * rounding, saved, saved * 0.0)
+            store(gain, at, load8(gain, at) + saved * weight)
 
 
 @borrowing
 def spread(gain, start, weights, width, out):
     """`out` (E·T,) = `gain` averaged over the true speeds behind every measured speed."""
     for j in range(start.shape[0]):
-        for t in range(0, width, FOUR):
-            found = load4(gain, start[j] * width + t) * weights[j, 0]
+        for t in range(0, width, EIGHT):
+            found = load8(gain, start[j] * width + t) * weights[j, 0]
             for m in range(1, weights.shape[1]):
-                found = found + load4(gain, (start[j] + m) * width + t) * weights[j, m]
+                found = found + load8(gain, (start[j] + m) * width + t) * weights[j, m]
             store(out, j * width + t, found)
 
 
@@ -196,21 +203,24 @@ def sampled_values(chance, down, up, value_next, value_hold, quanta, undecided, 
     command is to hold.
     """
     width, row = stalled.shape[0], out.shape[0]
-    for t in range(0, width, FOUR):
-        store(out, t, load4(stalled, t))
+    for t in range(0, width, EIGHT):
+        store(out, t, load8(stalled, t))
     for j in range(1, quanta.shape[0]):
         f = quanta[j]
-        for at in range(j * width, (j + 1) * width, FOUR):
+        for at in range(j * width, (j + 1) * width, EIGHT):
             if not undecided[j]:
-                store(out, at, load4(value_hold, at))
+                store(out, at, load8(value_hold, at))
                 continue
-            lowers, raises = load4(chance, at), load4(chance, row + at)
-            changed = lowers * load4(down, at) + raises * load4(up, at)
-            hold = 1.0 - lowers - raises
+            lowers, raises = load8(chance, at), load8(chance, row + at)
+            changed = lowers * load8(down, at) + raises * load8(up, at)
+            change, held = lowers + raises, load8(value_hold, at)
+            hold = 1.0 - change
             if f < 1.0:
-                store(out, at, (hold * f * load4(value_next, at) + changed) / (1.0 - hold * (1.0 - f)))
+                sampled = (hold * f * load8(value_next, at) + changed) / (1.0 - hold * (1.0 - f))
             else:
-                store(out, at, hold * load4(value_hold, at) + changed)
+                sampled = hold * held + changed
+            # A target that is decided has the value of holding to the bit, whatever its neighbours have.
+            store(out, at, choose(change > 0.0, sampled, held))
 
 
 @borrowing

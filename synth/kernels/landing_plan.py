@@ -73,11 +73,14 @@ def landing_tables(factor, extra, factors, probability, mean, std, levels, press
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def landing_scratch(points, levels):
-    """`crossed`, `runs` of `find_runs` for `points` E' energies; `place`, `weight` of `store_plan` for 2·L plans."""
+def landing_scratch(points, levels, kind):
+    """`crossed`, `runs` of `find_runs` for `points` E' energies; `place`, `weight` of `store_plan` for 2·L plans.
+
+    `kind`: of the weights, that of the numbers to be weighted.
+    """
     return (
         np.empty(points, np.int64), np.empty((points + 1, 2), np.int64),
-        np.empty((2 * levels, 2, EIGHT), np.int64), np.empty((2 * levels, 2, 4, EIGHT)),
+        np.empty((2 * levels, 2, EIGHT), np.int64), np.empty((2 * levels, 2, 4, EIGHT), kind),
     )  # fmt: skip
 
 

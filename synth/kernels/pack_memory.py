@@ -21,7 +21,7 @@ def loading(lanes):
         def code(context, builder, sig, args):
             vector = ir.VectorType(machine_type(sig.args[0].dtype), lanes)
             pointer = addresses(context, builder, sig.args[0], *args)
-            return builder.load(builder.bitcast(pointer, vector.as_pointer()), align=8)
+            return builder.load(builder.bitcast(pointer, vector.as_pointer()), align=array.dtype.bitwidth // 8)
 
         return Pack(array.dtype, lanes)(array, types.intp), code
 
@@ -67,11 +67,14 @@ def fetch(typing, array, at):
 
 @intrinsic
 def store(typing, array, at, pack):
-    """Write a pack."""
+    """Write a pack, in the type of the array."""
 
     def code(context, builder, sig, args):
         pointer = addresses(context, builder, sig.args[0], *args[:2])
-        builder.store(args[2], builder.bitcast(pointer, args[2].type.as_pointer()), align=8)
+        lanes = args[2]
+        if (pack.element, array.dtype) == (types.float64, types.float32):
+            lanes = builder.fptrunc(lanes, ir.VectorType(ir.FloatType(), pack.lanes))
+        builder.store(lanes, builder.bitcast(pointer, lanes.type.as_pointer()), align=array.dtype.bitwidth // 8)
         return context.get_dummy_value()
 
     return types.void(array, types.intp, pack), code
@@ -135,4 +138,4 @@ def keep(typing, array, at, mask, pack):
     return types.int64(array, types.intp, mask, pack), code
 
 
-load16, load8, load4 = loading(16), loading(8), loading(4)
+load16, load8 = loading(16), loading(8)

@@ -16,8 +16,8 @@ from numba.extending import overload
 
 from synth.kernels import mask_code, pack_code, pack_memory
 
-SIXTEEN, EIGHT, FOUR = 16, 8, 4
-"""Lanes of a pack: two packs of energies at once, energies, and targets or the points of a cubic stencil."""
+SIXTEEN, EIGHT = 16, 8
+"""Lanes of a pack: two packs of energies at once; energies or targets."""
 
 
 def item(array, at):
@@ -49,13 +49,8 @@ def load8(array, at):
     return array.reshape(-1)[at : at + EIGHT].copy()
 
 
-def load4(array, at):
-    """Four neighbours of a contiguous array from flat index `at` on."""
-    return array.reshape(-1)[at : at + FOUR].copy()
-
-
 def store(array, at, pack):
-    """Write a pack into a contiguous array from flat index `at` on."""
+    """Write a pack into a contiguous array from flat index `at` on, rounded to the array's type of number."""
     array.reshape(-1)[at : at + len(pack)] = pack
 
 
@@ -152,7 +147,6 @@ overload(fetch)(lambda array, at: lambda array, at: pack_memory.fetch(array, at)
 overload(eight)(lambda number: lambda number: pack_code.eight(number))
 overload(load16)(lambda array, at: lambda array, at: pack_memory.load16(array, at))
 overload(load8)(lambda array, at: lambda array, at: pack_memory.load8(array, at))
-overload(load4)(lambda array, at: lambda array, at: pack_memory.load4(array, at))
 overload(store)(lambda array, at, pack: lambda array, at, pack: pack_memory.store(array, at, pack))
 overload(gather)(lambda array, where: lambda array, where: pack_memory.gather(array, where))
 overload(choose)(lambda mask, yes, no: lambda mask, yes, no: pack_code.choose(mask, yes, no))

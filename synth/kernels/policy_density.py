@@ -45,7 +45,7 @@ def forward(
     memory = np.zeros(row), np.zeros(row), np.ones(row), np.zeros((2, row)), np.empty((modes, size))
     spans, arrived = np.empty((reach, modes, size, 2), np.int64), np.zeros((modes, size, 2), np.int64)
     landed = np.empty((ring, modes, 2), np.int64)
-    scratch = landing_scratch(row, size)
+    scratch = landing_scratch(row, size, speed.dtype)
     for i in range(factor.shape[0]):
         met, slope = landing_tables(
             factor[i : i + 1],

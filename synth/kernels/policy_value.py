@@ -45,7 +45,7 @@ def backward(
     )  # fmt: skip
     follow_back(
         ahead, values, mixed, np.zeros(row), np.full(1, stalled), np.empty(row), np.zeros((2, row)),
-        np.empty((modes, size)), landing_scratch(row, size),
+        np.empty((modes, size)), landing_scratch(row, size, speed.dtype),
         down, up, down_slope, up_slope, stalled, change_cost, speed, stage, pressure,
         lower_chain, upper_chain, chain_mode, ends, factors, met[0], slope[0],
         levels, transition, drive, brake, factor, extra, path_step, energy_step, period,

@@ -1,14 +1,14 @@
 """The value of one change of stage from all energies and for all targets.
 
 Where a cut lands does not depend on the target speed; only the value there does. So landings are planned once
-(`landing_plan`) and the targets, side by side in memory in packs of four, are interpolated with the same weights.
+(`landing_plan`) and the targets, side by side in memory in packs of eight, are interpolated with the same weights.
 """
 
 from __future__ import annotations
 
 from synth.kernels.borrowing import borrowing, borrowing_inline
 from synth.kernels.landing_plan import landing_of_pack, law_met, planned, store_plan
-from synth.kernels.packs import EIGHT, FOUR, item, load4, store
+from synth.kernels.packs import EIGHT, item, load8, store
 
 
 @borrowing
@@ -19,7 +19,7 @@ def add_transient_values(
     """Add to `out` (E·T,) the expected value after transient `c` from node `n` and noise level `q`.
 
     `values` (ring, H, L, E·T) at a sample and `mixed` before the noise level changes; `stalled` (T,), T whole packs of
-    four; `runs`, `count` from `find_runs`; `place`, `weight` are scratch; the rest as in `landing_plan`.
+    eight; `runs`, `count` from `find_runs`; `place`, `weight` are scratch; the rest as in `landing_plan`.
     """
     ring, modes, size = values.shape[0], values.shape[1], values.shape[2]
     width, row = stalled.shape[0], ends.shape[4]
@@ -44,21 +44,21 @@ def add_transient_values(
 @borrowing_inline
 def add_planned(place, weight, lane, plans, width, stalled, values, mixed, out, to):
     """Add the planned values of one energy to `out` (E·T,) from flat index `to` on."""
-    for t in range(0, width, FOUR):
-        total = load4(out, to + t)
+    for t in range(0, width, EIGHT):
+        total = load8(out, to + t)
         for one in range(plans):
             a, b, of_a, of_b = planned(one, lane, place, weight)
             a0, a1, a2, a3 = four_weights(weight, of_a)
             if a < 0:
-                total = total + load4(stalled, t) * a0
+                total = total + load8(stalled, t) * a0
                 continue
             b0, b1, b2, b3 = four_weights(weight, of_b)
             at = a + t
-            v = load4(values, at) * a0 + load4(values, at + width) * a1
-            v = v + (load4(values, at + 2 * width) * a2 + load4(values, at + 3 * width) * a3)
+            v = load8(values, at) * a0 + load8(values, at + width) * a1
+            v = v + (load8(values, at + 2 * width) * a2 + load8(values, at + 3 * width) * a3)
             at = b + t
-            w = load4(mixed, at) * b0 + load4(mixed, at + width) * b1
-            w = w + (load4(mixed, at + 2 * width) * b2 + load4(mixed, at + 3 * width) * b3)
+            w = load8(mixed, at) * b0 + load8(mixed, at + width) * b1
+            w = w + (load8(mixed, at + 2 * width) * b2 + load8(mixed, at + 3 * width) * b3)
             total = total + (v + w)
         store(out, to + t, total)
 

@@ -115,9 +115,8 @@ def unit_memory_bytes(plant: Plant, config: ResolvedConfig) -> int:
     resolution = config.resolution
     grid = make_grid(plant, resolution)
     nodes, points, stages = len(grid.path_m), len(grid.speed_m_s), plant.top_stage + 1
-    states = resolution.friction_nodes * resolution.resistance_nodes * 2 * plant.top_stage * resolution.path_levels
     width = min(len(config.targets_m_s), TARGETS_AT_ONCE)
-    solved = 8 * width * nodes * points * (states + 4 * stages)
+    solved = 8 * width * nodes * points * 4 * stages
     return PROCESS_BYTES + memory_estimate_bytes(plant, resolution) + solved
 
 

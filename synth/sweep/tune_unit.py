@@ -16,6 +16,7 @@ from synth.fitting.tabulate import UNPREDICTED, tabulate
 from synth.fitting.tuned_lines import fitted
 from synth.markov_chain.grid import finer_for_check
 from synth.markov_chain.transitions import Transitions, check_transitions, persistent_transitions
+from synth.one_blas_thread import one_blas_thread
 from synth.output.acceptance import missed_limits, overspeed_share
 from synth.problem import Plant
 from synth.simulation.closed_loop import TableController
@@ -43,6 +44,7 @@ class Workshop:
     generator: Generator
 
 
+@one_blas_thread()
 def tune_unit(order: UnitOrder) -> UnitResult:
     """Tune a unit; raises `PlantError`, `InvalidTable` and others where the case cannot be tuned."""
     shop = workshop(order)
@@ -84,7 +86,7 @@ def tables_for(shop: Workshop, targets_m_s: Sequence[float]) -> list[ControllerT
     tables = []
     for first in range(0, len(targets_m_s), TARGETS_AT_ONCE):
         aims = [(target, shop.config.criterion) for target in targets_m_s[first : first + TARGETS_AT_ONCE]]
-        tables += [predicted_table(shop, solution) for solution in solve_all(shop.design, aims)]
+        tables += [predicted_table(shop, solution) for solution in solve_all(shop.design, aims, nodes_kept=1)]
     return tables
 
 

@@ -306,7 +306,7 @@ def test_solve_agrees_with_plain_loops(
     resolution = TINY if w_std == 0.0 else replace(TINY, resistance_nodes=2)
     t = persistent_transitions(noisy(plant_with, stages_kpa, period_s, w_std), resolution)
     criterion = Criterion(switching_tolerance_m2_s2=price)
-    found = solve(t, target_m_s, criterion)
+    found = solve(t, target_m_s, criterion, np.float64)
     expected = BruteForce(t, target_m_s, criterion)
     values = array_of(expected)
     assert np.isfinite(values).all()

@@ -213,7 +213,7 @@ def test_solve_agrees_with_numpy(plant_with: Callable[..., Plant], target_m_s: f
     """The same lines and values to 1e-9: only the order of additions differs."""
     t = as_published(persistent_transitions(noisy(plant_with), SMALL))
     criterion = Criterion(switching_tolerance_m2_s2=tolerance)
-    found, expected = solve(t, target_m_s, criterion), Published(t, target_m_s, criterion)
+    found, expected = solve(t, target_m_s, criterion, np.float64), Published(t, target_m_s, criterion)
     np.testing.assert_allclose(found.lines.lower_m_s[:, :-1].T, expected.lower, rtol=0, atol=1e-8)
     np.testing.assert_allclose(found.lines.upper_m_s[:, :-1].T, expected.upper, rtol=0, atol=1e-8)
     np.testing.assert_allclose(found.values[0], expected.V, rtol=0, atol=1e-9)

@@ -23,7 +23,7 @@ from synth.problem import Criterion, Plant
 CRITERION = Criterion(1.0, 1e-5)
 
 
-def everything(numbers, singles, places, apart, kept, out):  # type: ignore[no-untyped-def]  # numba infers the types
+def everything(numbers, singles, places, apart, kept, kept_singles, out):  # type: ignore[no-untyped-def]  # numba infers the types
     """Every function and operator of `packs` once; the results in `out`."""
     a, b = packs.load8(numbers, 3), packs.load8(numbers, 17)
     where = packs.load8(places, 1)
@@ -38,7 +38,8 @@ def everything(numbers, singles, places, apart, kept, out):  # type: ignore[no-u
     packs.store(out, 48, a * b)
     packs.store(out, 56, -0.5 * a)
     packs.store(out, 64, packs.load16(numbers, 5) * packs.load16(numbers, 6))
-    packs.store(out, 77, packs.load4(numbers, 9))
+    packs.store(kept_singles, 1, a)
+    packs.store(kept_singles, 9, packs.load8(singles, 3) * 0.3)
     out[81] = packs.item(numbers, 11)
     packs.add_to(out, 81, 0.5)
     packs.fetch(numbers, 60)  # beyond the end: nothing is read
@@ -61,27 +62,30 @@ def test_compiled_packs_are_the_plain_ones_to_the_bit(seed: int) -> None:
     numbers, places = rng.uniform(-2.0, 2.0, 40), rng.integers(0, 40, 12)
     singles, apart = rng.uniform(-2.0, 2.0, 40).astype(np.float32), rng.permutation(16)
     compiled, plain, kept, plainly = np.zeros(151), np.zeros(151), np.zeros(9, np.int64), np.zeros(9, np.int64)
-    njit(everything)(numbers, singles, places, apart, kept, compiled)
-    everything(numbers, singles, places, apart, plainly, plain)
+    rounded, plainly_rounded = np.zeros(18, np.float32), np.zeros(18, np.float32)
+    njit(everything)(numbers, singles, places, apart, kept, rounded, compiled)
+    everything(numbers, singles, places, apart, plainly, plainly_rounded, plain)
     np.testing.assert_array_equal(compiled, plain)
     np.testing.assert_array_equal(kept, plainly)
+    np.testing.assert_array_equal(rounded, plainly_rounded)
+    np.testing.assert_array_equal(rounded[1:9], numbers[3:11].astype(np.float32))
     chosen = int(plain[124]) // 2
     assert 0 < chosen < 8
     assert np.count_nonzero(plain[108:124]) == 8 - chosen
-    assert np.count_nonzero(plain[:108]) > 103  # all but a few were written
+    assert np.count_nonzero(plain[:108]) > 99  # all but a few were written
     assert (plain[82], plain[83]) == (1.0, 0.0)
 
 
-@pytest.mark.parametrize("count", [1, 3, 4, 5])
+@pytest.mark.parametrize("count", [1, 3, 8, 9])
 def test_targets_side_by_side_are_solved_as_alone(small: Callable[[], Transitions], count: int) -> None:
-    """Padding to whole packs and neighbours in a pack change lines and values by rounding at most."""
+    """Padding to whole packs and neighbours in a pack change no bit of lines and values."""
     targets = np.linspace(1.5, 3.5, count)
     together = solve_all(small(), [(float(target), CRITERION) for target in targets])
     for target, one in zip(targets, together, strict=True):
         alone = solve(small(), float(target), CRITERION)
-        np.testing.assert_allclose(one.lines.lower_m_s, alone.lines.lower_m_s, rtol=0, atol=1e-9)
-        np.testing.assert_allclose(one.lines.upper_m_s, alone.lines.upper_m_s, rtol=0, atol=1e-9)
-        np.testing.assert_allclose(one.values, alone.values, rtol=0, atol=1e-12)
+        np.testing.assert_array_equal(one.lines.lower_m_s, alone.lines.lower_m_s)
+        np.testing.assert_array_equal(one.lines.upper_m_s, alone.lines.upper_m_s)
+        np.testing.assert_array_equal(one.values, alone.values)
 
 
 def test_what_is_kept_of_the_values_does_not_matter(small: Callable[[], Transitions]) -> None:
@@ -98,7 +102,8 @@ TINY = Resolution(path_step_m=2.0, speed_step_m_s=0.4, transient_substeps=2, fri
 def figures(plant: Plant) -> list[float]:
     """Sums over a solution of a tiny grid, its density, and the gradient of its cost."""
     t = persistent_transitions(plant, TINY)
-    solution = solve(t, 2.5, CRITERION)
+    # Without the compiler numpy decides where float32 meets float64; in one type there is nothing to decide.
+    (solution,) = solve_all(t, [(2.5, CRITERION)], value_type=np.float64)
     policy = commands(t, solution.lines, staircase=False)
     density = exit_density(t, policy)
     cost, by_lower, by_upper = cost_and_gradient(t, policy, 2.5, CRITERION)

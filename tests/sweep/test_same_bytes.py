@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from synth.fitting.tabulate import lines_of
 from synth.sweep.local_workers import LocalWorkers
 from synth.sweep.work import InThisProcess
 from tests.sweep.conftest import PLANT, Ran, Silence, contents, run
@@ -44,23 +41,13 @@ def test_worker_processes_give_the_bytes_of_this_process(
 
 
 def test_tables_are_those_of_a_tune(command: Callable[..., Ran], serial: Path, tmp_path: Path) -> None:
-    # Another program around the same steps. It solves each target beside other ones, and the kernels' vectors then add
-    # in another order: not the bytes are the same, but the lines, to what that rounding makes of a polish.
+    # Another program around the same steps, which solves each target beside other ones.
     (tmp_path / "tune.toml").write_text(PLANT + TUNED, encoding="utf-8")
     code, _, said = command("tune", tmp_path / "tune.toml", "-o", tmp_path / "out", "--workers", "2")
     assert code in (0, 1), said
     tuned, swept = (read_book(directory / "book.h5") for directory in (tmp_path / "out", serial))
     assert len(tuned) == 6
-    for one, other in zip(swept, tuned, strict=True):
-        assert replace(one, stages=other.stages, predicted=other.predicted, validated=other.validated) == other
-        path = np.linspace(0.0, one.retarder.exit_m, 50)
-        ours, theirs = lines_of(one, path), lines_of(other, path)
-        np.testing.assert_allclose(ours.lower_m_s, theirs.lower_m_s, atol=1e-4)
-        np.testing.assert_allclose(ours.upper_m_s, theirs.upper_m_s, atol=1e-4)
-        assert one.predicted.rms_m_s == pytest.approx(other.predicted.rms_m_s, rel=1e-4)
-        assert one.validated is not None
-        assert other.validated is not None
-        assert one.validated.rms_m_s == pytest.approx(other.validated.rms_m_s, rel=1e-2)
+    assert all(one == other for one, other in zip(swept, tuned, strict=True))
 
 
 def test_the_other_commands_take_what_a_sweep_leaves(command: Callable[..., Ran], serial: Path) -> None:
