@@ -160,7 +160,8 @@ def polish(
 ) -> Polish:
     """Minimise `evaluate` over all coefficients, keeping V_hi − V_lo ≥ `MINIMUM_GAP_M_S` on the path.
 
-    It ends when a step changes the cost by less than `tolerance` of the first cost.
+    It ends when a step changes the cost by less than `tolerance` of the first cost. The lines cost no more than those
+    to start from, and not less than nothing, which only an error of the grid can make of them.
 
     Raises `PlantError` if the cost to start from is not positive: the grid is too coarse.
 
@@ -204,7 +205,12 @@ def polish(
     y0 = np.zeros(len(free[0]) * width)
     result = minimize(objective, y0, jac=True, method="SLSQP", constraints=constraints, options=options)
     cost, lines = best[0]
-    return Polish(opened(lines), before, cost, calls, str(result.message))
+    found = opened(lines)
+    if found is not lines:
+        cost = evaluate(found.at(nodes_m))[0]
+        if not 0.0 < cost < before:
+            cost, found = before, start
+    return Polish(found, before, cost, calls, str(result.message))
 
 
 def whitening(curvature: NDArray[np.float64], matrix: NDArray[np.float64], cost: float) -> NDArray[np.float64]:
@@ -247,10 +253,15 @@ def gap_of(lines: PolynomialLines) -> float:
 
 
 def opened(lines: PolynomialLines) -> PolynomialLines:
-    """The lines with every pair moved apart, symmetrically, until its gap is at least the minimum."""
+    """The lines with every pair moved apart, symmetrically, until its gap is at least the minimum.
+
+    The same object where nothing need be moved.
+    """
     coefficients = lines.coefficients.copy()
     at = lines.at(np.linspace(0.0, lines.exit_m, 201))
     short = MINIMUM_GAP_M_S - (at.upper_m_s - at.lower_m_s).min(axis=1)
+    if not (short > 0.0).any():
+        return lines
     for k in np.nonzero(short > 0.0)[0]:
         coefficients[k, 0, 0] -= 0.5 * short[k]
         coefficients[k, 1, 0] += 0.5 * short[k]

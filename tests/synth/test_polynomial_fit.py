@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from synth.dynamic_programme.backward_induction import solve
 from synth.dynamic_programme.policy_evaluation import commands, cost_and_gradient, occupancy_of
 from synth.dynamic_programme.switching_lines import SwitchingLines
+from synth.fitting import polynomial_fit
 from synth.fitting.polynomial_fit import (
     MINIMUM_GAP_M_S,
     Fit,
@@ -96,6 +98,25 @@ def test_polish_lowers_the_exact_cost_and_keeps_the_gap(design: Transitions, fit
     assert evaluate(result.lines.at(design.grid.path_m))[0] == pytest.approx(result.cost_after, rel=1e-3)
     assert gap_of(result.lines) >= MINIMUM_GAP_M_S - 1e-12
     assert result.evaluations <= 40
+
+
+@pytest.mark.parametrize("error", [-1.0, 1e3])
+def test_a_polish_that_opening_spoils_leaves_the_lines_as_they_were(
+    design: Transitions, fit: Fit, monkeypatch: pytest.MonkeyPatch, error: float
+) -> None:
+    """On a grid too coarse, lines a hair's breadth from good ones may cost less than nothing."""
+    nodes, exact = design.grid.path_m, evaluate_on(design)
+    moved = replace(fit.lines, coefficients=fit.lines.coefficients + 0.1)
+    at_moved = moved.at(nodes).upper_m_s
+
+    def evaluate(lines: SwitchingLines) -> tuple[float, np.ndarray, np.ndarray]:
+        cost, *gradient = exact(lines)
+        return (error if np.array_equal(lines.upper_m_s, at_moved) else cost, *gradient)
+
+    monkeypatch.setattr(polynomial_fit, "opened", lambda lines: moved)
+    result = polish(fit.lines, fit.curvature, nodes, evaluate, 25)
+    assert result.lines is fit.lines
+    assert result.cost_after == result.cost_before > 0.0
 
 
 def test_polish_ends_where_the_projected_gradient_is_small(design: Transitions, fit: Fit) -> None:
