@@ -63,9 +63,8 @@ def run_command(path: Path, output: Path, workers: int | None, scheduler: str | 
             watcher.note(f"all files written after {time.monotonic() - watcher.started:.1f} s")
     told(directory, outcome.summary, as_json)
     for failure in outcome.failures[:1]:
-        more = f" (and {len(outcome.failures) - 1} other units)" if len(outcome.failures) > 1 else ""
-        name = f"{failure.condition}/{failure.label}".lstrip("/")
-        say(f"{name} failed{more}: {failure.reason}; see 'retarder-synth sweep failed {output}'")
+        more = f" (and {len(outcome.failures) - 1} more)" if len(outcome.failures) > 1 else ""
+        say(f"{failure.name} failed{more}: {failure.reason}; see 'retarder-synth sweep failed {output}'")
     return LIMITS_MISSED if outcome.failures else OK
 
 
@@ -146,6 +145,8 @@ def told(directory: SweepDirectory, summary: dict[str, Any], as_json: bool) -> N
             f"{each['median_rms_m_s']:.3f}, highest {each['highest_rms_m_s']:.3f} m/s; {each['missing_a_limit']} "
             "miss a limit of [acceptance]"
         )
+        if each["refused_targets"]:
+            print(f"  targets without a table: {each['refused_targets']}; see 'retarder-synth sweep failed'")
         if each["highest_interpolation_loss_m_s"] is not None:
             print(f"  lines between two tables lose at most {1e3 * each['highest_interpolation_loss_m_s']:.2f} mm/s")
         if each["shadowed_tables"]:
@@ -169,7 +170,10 @@ def status_command(path: Path, as_json: bool) -> int:
         print(json.dumps({**asdict(status), "path": str(path)}, indent=1, ensure_ascii=False))
         return OK
     state = "running" if status.running else "complete" if status.complete else "not running, not complete"
-    print(f"{path}: {status.title}: {state}; {status.done} of {status.units} units done, {status.failed} failed")
+    refused = f", targets without a table: {status.refused_targets}" if status.refused_targets else ""
+    print(
+        f"{path}: {status.title}: {state}; {status.done} of {status.units} units done, {status.failed} failed{refused}"
+    )
     if status.rate_units_per_min is not None and status.remaining_s is not None:
         print(f"  {status.rate_units_per_min:.1f} units a minute, about {status.remaining_s:.0f} s left")
     if status.in_flight:
@@ -180,7 +184,7 @@ def status_command(path: Path, as_json: bool) -> int:
 
 
 def failed_command(path: Path, as_json: bool) -> int:
-    """Print the units that have failed, with the reason."""
+    """Print the units that have failed and the targets without a table, with the reason."""
     import json
     from dataclasses import asdict
 

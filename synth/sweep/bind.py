@@ -28,7 +28,7 @@ __all__ = ["Failure", "Outcome", "bind"]
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run has come to: the summary as written, the units without a result."""
+    """What a run has come to: the summary as written; units without a result and targets without a table."""
 
     summary: dict[str, object]
     failures: tuple[Failure, ...]
@@ -55,11 +55,15 @@ def bind(
                 case_of(result.label, row, table) for row, table in zip(result.rows, stamped, strict=True)
             ]
             figures.gaps += [(result.label, gap) for gap in result.gaps]
+            figures.failures += [
+                Failure(result.key, result.condition, result.label, each.reason, each.target_m_s)
+                for each in result.refused
+            ]
             tables += stamped
         books.append(bind_one(file, condition, created, folder, tables, figures, say))
     summary = sweep_summary(books, created)
     write_atomically(directory.summary, canonical_json(summary) + b"\n")
-    return Outcome(summary, tuple(failed[unit.order.key] for unit in plan.units if unit.order.key in failed))
+    return Outcome(summary, tuple(failure for book in books for failure in book.failures))
 
 
 def found(unit: Unit, directory: SweepDirectory, failed: dict[str, Failure]) -> UnitResult | None:

@@ -18,12 +18,19 @@ Document = dict[str, Any]
 
 @dataclass(frozen=True)
 class Failure:
-    """A unit without a result, and why, in one sentence."""
+    """A unit without a result, or one target of it without a table, and why, in one sentence."""
 
     key: str
     condition: str
     label: str
     reason: str
+    target_m_s: float | None = None
+
+    @property
+    def name(self) -> str:
+        """What has failed, as a person would call it."""
+        target = "" if self.target_m_s is None else f" to {self.target_m_s:g} m/s"
+        return f"{self.condition}/{self.label}".lstrip("/") + target
 
 
 @dataclass
@@ -37,6 +44,16 @@ class BookFigures:
     files: dict[str, str] = field(default_factory=dict)
     shadowed: int = 0
     no_code: str = ""
+
+    @property
+    def failed_classes(self) -> int:
+        """Classes without any table."""
+        return sum(failure.target_m_s is None for failure in self.failures)
+
+    @property
+    def refused_targets(self) -> int:
+        """Targets without a table, of the other classes."""
+        return len(self.failures) - self.failed_classes
 
 
 def case_of(label: str, row: Row, table: ControllerTable) -> Document:
@@ -84,7 +101,9 @@ def book_summary(figures: BookFigures, created: str) -> Document:
 def verdict(figures: BookFigures) -> str:
     """What can be said of the book in one sentence."""
     missed = sum(bool(case["missed_limits"]) for case in figures.cases)
-    failed = f"; {len(figures.failures)} of the classes failed and are not in it" if figures.failures else ""
+    failed = f"; {figures.failed_classes} of the classes failed and are not in it" if figures.failed_classes else ""
+    if figures.refused_targets:
+        failed += f"; targets without a table: {figures.refused_targets}"
     return (
         f"a sweep judges no table, for it does not know which cases are feasible; {missed} of {len(figures.cases)} "
         f"tables miss a limit of [acceptance]{failed}"
@@ -128,7 +147,8 @@ def condition_of(book: BookFigures) -> Document:
         "config_sha256": book.condition.config.sha256,
         "classes": len(book.condition.config.cuts),
         "tables": len(book.cases),
-        "failed": len(book.failures),
+        "failed": book.failed_classes,
+        "refused_targets": book.refused_targets,
         "median_rms_m_s": median(rms) if rms else None,
         "highest_rms_m_s": max(rms, default=None),
         "missing_a_limit": sum(bool(case["missed_limits"]) for case in book.cases),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from importlib.metadata import version
 from typing import Protocol
@@ -110,7 +110,8 @@ def run_sweep(task: Task, directory: SweepDirectory, engine: Engine, watcher: Wa
             watcher.note(f"the result in {directory.unit_file(key)} is damaged and is computed again")
         failures = computed(task, directory, engine, watcher, ledger)
         outcome = bind(task.file, task.plan, task.created, directory, failures, watcher.note)
-        ledger.write(ENDED, {"units": len(task.plan.units), "failed": len(outcome.failures)})
+        failed = sum(failure.target_m_s is None for failure in outcome.failures)
+        ledger.write(ENDED, {"units": len(task.plan.units), "failed": failed})
     return outcome
 
 
@@ -135,12 +136,13 @@ def computed(
                 continue
             directory.store(answer.result)
             rows = answer.result.rows
-            ledger.write(DONE, {**facts, "tables": len(rows), "peak_bytes": answer.peak_bytes})
+            refused = [asdict(each) for each in answer.result.refused]
+            ledger.write(DONE, {**facts, "tables": len(rows), "refused": refused, "peak_bytes": answer.peak_bytes})
             worst = max(rows, key=lambda row: row.table.predicted.rms_m_s).table
             watcher.done(
                 unit,
                 f"{unit.order.name}: {len(rows)} tables, highest rms {worst.predicted.rms_m_s:.3f} m/s to "
-                f"{worst.target_speed_m_s:g} m/s",
+                f"{worst.target_speed_m_s:g} m/s{f'; targets without a table: {len(refused)}' if refused else ''}",
             )
     return failures
 

@@ -23,6 +23,7 @@ class Status:
     units: int
     done: int
     failed: int
+    refused_targets: int
     in_flight: tuple[str, ...]
     rate_units_per_min: float | None
     remaining_s: float | None
@@ -31,7 +32,7 @@ class Status:
 
 @dataclass(frozen=True)
 class FailedUnit:
-    """A unit of the last plan that has no result, and why it failed last."""
+    """A unit of the last plan that has no result, or a target of one that has no table, and why."""
 
     name: str
     reason: str
@@ -56,7 +57,8 @@ def status_of(path: Path) -> Status:
         complete=directory.summary.exists() and not running,
         units=len(names),
         done=len(done),
-        failed=len(failed_units(path)),
+        failed=len(without_result(directory, ledger, plan)),
+        refused_targets=len(without_table(directory, ledger, plan)),
         in_flight=tuple(names[key] for key in names if running and key in begun - ended),
         rate_units_per_min=rate,
         remaining_s=left,
@@ -73,14 +75,30 @@ def pace(recent: list[Event], plan: Event, ended: int) -> tuple[float | None, fl
 
 
 def failed_units(path: Path) -> tuple[FailedUnit, ...]:
-    """The units of the last plan that have failed and have no result, in its order."""
+    """The units of the last plan that have failed and have no result, then targets that have no table."""
     directory = SweepDirectory(path)
     ledger, plan = ledger_and_plan(directory)
+    return without_result(directory, ledger, plan) + without_table(directory, ledger, plan)
+
+
+def without_result(directory: SweepDirectory, ledger: Ledger, plan: Event) -> tuple[FailedUnit, ...]:
+    """Units of `plan` that have failed, in its order."""
     last: dict[Any, Event] = {event["unit"]: event for event in ledger.of(FAILED)}
     return tuple(
         FailedUnit(str(name), str(last[key]["reason"]), str(key))
         for key, name in plan["units"]
         if key in last and not directory.unit_file(key).exists()
+    )
+
+
+def without_table(directory: SweepDirectory, ledger: Ledger, plan: Event) -> tuple[FailedUnit, ...]:
+    """Targets of the other units for which there is no table, in the order of `plan`."""
+    last: dict[Any, Event] = {event["unit"]: event for event in ledger.of(DONE)}
+    return tuple(
+        FailedUnit(f"{name} to {each['target_m_s']:g} m/s", str(each["reason"]), str(key))
+        for key, name in plan["units"]
+        if key in last and directory.unit_file(key).exists()
+        for each in last[key].get("refused", ())
     )
 
 

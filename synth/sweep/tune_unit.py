@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from plant_models import PlantError
 from synth.configuration.resolved_config import ResolvedConfig, resolve
 from synth.configuration.settings import Settings
 from synth.dynamic_programme.backward_induction import Solution, solve_all
@@ -25,9 +26,9 @@ from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.random_passes import random_passes
 from synth.sweep.plan import TARGETS_AT_ONCE, Refinement, UnitOrder
 from synth.sweep.refinement import Bench, Gap, refined
-from synth.sweep.unit_result import Row, UnitResult
+from synth.sweep.unit_result import Refused, Row, UnitResult
 from synth.tuning.tune_case import predict, required, with_prediction
-from tuning_tables import ControllerTable, Generator, Validated, from_json, to_json
+from tuning_tables import ControllerTable, Generator, InvalidTable, Validated, from_json, to_json
 from tuning_tables.active_table import between
 
 
@@ -46,14 +47,20 @@ class Workshop:
 
 @one_blas_thread()
 def tune_unit(order: UnitOrder) -> UnitResult:
-    """Tune a unit; raises `PlantError`, `InvalidTable` and others where the case cannot be tuned."""
+    """Tune a unit. A target that no table can be made for is refused and loses none but itself.
+
+    Raises `PlantError`, `InvalidTable` and others where nothing can be tuned, or where targets are to be refined and
+    one of them is refused: its gaps could not be measured.
+    """
     shop = workshop(order)
     gaps: tuple[Gap, ...] = ()
+    refused: list[Refused] = []
     if order.refinement is None:
-        tables = tables_for(shop, shop.config.targets_m_s)
+        tables = tables_for(shop, shop.config.targets_m_s, refused)
     else:
         tables, gaps = refined_tables(shop, order.refinement)
-    return UnitResult(order.key, order.condition, order.label, tuple(validated(shop, table) for table in tables), gaps)
+    rows = tuple(validated(shop, table) for table in tables)
+    return UnitResult(order.key, order.condition, order.label, rows, gaps, tuple(refused))
 
 
 def workshop(order: UnitOrder) -> Workshop:
@@ -81,12 +88,26 @@ def refined_tables(shop: Workshop, wanted: Refinement) -> tuple[list[ControllerT
     return refined(shop.config.targets_m_s, bench, wanted)
 
 
-def tables_for(shop: Workshop, targets_m_s: Sequence[float]) -> list[ControllerTable]:
-    """Predicted tables for some targets, in their order; a few are solved together, and then given up."""
-    tables = []
+def tables_for(
+    shop: Workshop, targets_m_s: Sequence[float], refused: list[Refused] | None = None
+) -> list[ControllerTable]:
+    """Predicted tables for some targets, in their order; a few are solved together, and then given up.
+
+    Targets for which there is no table are added to `refused`; without such a list, or without any table, their fault
+    is raised.
+    """
+    tables: list[ControllerTable] = []
     for first in range(0, len(targets_m_s), TARGETS_AT_ONCE):
         aims = [(target, shop.config.criterion) for target in targets_m_s[first : first + TARGETS_AT_ONCE]]
-        tables += [predicted_table(shop, solution) for solution in solve_all(shop.design, aims, nodes_kept=1)]
+        for solution in solve_all(shop.design, aims, nodes_kept=1):
+            try:
+                tables.append(predicted_table(shop, solution))
+            except (PlantError, InvalidTable) as fault:
+                if refused is None:
+                    raise
+                refused.append(Refused(solution.target_speed_m_s, " ".join(str(fault).split())))
+                if len(refused) == len(targets_m_s):
+                    raise
     return tables
 
 

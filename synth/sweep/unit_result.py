@@ -12,7 +12,7 @@ from tuning_tables.canonical import canonical_json
 from tuning_tables.document import from_document, to_document
 from tuning_tables.seal import seal_of, unsealed
 
-FORMAT, VERSION = "retarder-sweep-unit", 1
+FORMAT, VERSION = "retarder-sweep-unit", 2
 
 
 @dataclass(frozen=True)
@@ -25,14 +25,26 @@ class Row:
 
 
 @dataclass(frozen=True)
+class Refused:
+    """A target that no table can be made for, and why, in one sentence."""
+
+    target_m_s: float
+    reason: str
+
+
+@dataclass(frozen=True)
 class UnitResult:
-    """Rows by target in the order of the configuration, or rising where targets were refined; gaps measured."""
+    """Rows by target in the order of the configuration, or rising where targets were refined; gaps measured.
+
+    Every target has a row or is refused.
+    """
 
     key: str
     condition: str
     label: str
     rows: tuple[Row, ...]
     gaps: tuple[Gap, ...]
+    refused: tuple[Refused, ...] = ()
 
 
 def to_bytes(result: UnitResult) -> bytes:
@@ -47,6 +59,7 @@ def to_bytes(result: UnitResult) -> bytes:
             {"table": to_document(row.table), "simulated": row.simulated, "missed": row.missed} for row in result.rows
         ],
         "gaps": [asdict(gap) for gap in result.gaps],
+        "refused": [asdict(each) for each in result.refused],
     }
     body = canonical_json(document)
     return body + seal_of(body)
@@ -64,6 +77,7 @@ def from_bytes(content: bytes, source: str) -> UnitResult:
                     label=found["label"],
                     rows=tuple(row_from(row, source) for row in found["rows"]),
                     gaps=tuple(Gap(**gap) for gap in found["gaps"]),
+                    refused=tuple(Refused(**each) for each in found["refused"]),
                 )
     except TableError:
         raise
