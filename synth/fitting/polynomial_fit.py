@@ -257,11 +257,11 @@ def opened(lines: PolynomialLines) -> PolynomialLines:
 
     The same object where nothing need be moved.
     """
-    coefficients = lines.coefficients.copy()
     at = lines.at(np.linspace(0.0, lines.exit_m, 201))
     short = MINIMUM_GAP_M_S - (at.upper_m_s - at.lower_m_s).min(axis=1)
     if not (short > 0.0).any():
         return lines
+    coefficients = lines.coefficients.copy()
     for k in np.nonzero(short > 0.0)[0]:
         coefficients[k, 0, 0] -= 0.5 * short[k]
         coefficients[k, 1, 0] += 0.5 * short[k]

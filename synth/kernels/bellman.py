@@ -156,8 +156,8 @@ def add_gains(hold, changed, prior, rounding, width, gain):
         for at in range(j * width, (j + 1) * width, EIGHT):
             cost = load8(hold, at)
             saved = cost - load8(changed, at)
-            saved = choose(magnitude(saved) > cost * rounding, saved, saved * 0.0)
-            store(gain, at, load8(gain, at) + saved * weight)
+            counted = choose(magnitude(saved) > cost * rounding, saved, 0.0)
+            store(gain, at, load8(gain, at) + counted * weight)
 
 
 @borrowing

@@ -49,18 +49,20 @@ class Workshop:
 def tune_unit(order: UnitOrder) -> UnitResult:
     """Tune a unit. A target that no table can be made for is refused and loses none but itself.
 
-    Raises `PlantError`, `InvalidTable` and others where nothing can be tuned, or where targets are to be refined and
-    one of them is refused: its gaps could not be measured.
+    Raises `PlantError` and others where nothing can be tuned, or where targets are to be refined and one of them is
+    refused: its gaps could not be measured.
     """
     shop = workshop(order)
+    refused: tuple[Refused, ...] = ()
     gaps: tuple[Gap, ...] = ()
-    refused: list[Refused] = []
     if order.refinement is None:
-        tables = tables_for(shop, shop.config.targets_m_s, refused)
+        tables, refused = tried(shop, shop.config.targets_m_s)
+        if not tables:
+            raise PlantError(refused[0].reason)
     else:
         tables, gaps = refined_tables(shop, order.refinement)
     rows = tuple(validated(shop, table) for table in tables)
-    return UnitResult(order.key, order.condition, order.label, rows, gaps, tuple(refused))
+    return UnitResult(order.key, order.condition, order.label, rows, gaps, refused)
 
 
 def workshop(order: UnitOrder) -> Workshop:
@@ -88,27 +90,28 @@ def refined_tables(shop: Workshop, wanted: Refinement) -> tuple[list[ControllerT
     return refined(shop.config.targets_m_s, bench, wanted)
 
 
-def tables_for(
-    shop: Workshop, targets_m_s: Sequence[float], refused: list[Refused] | None = None
-) -> list[ControllerTable]:
-    """Predicted tables for some targets, in their order; a few are solved together, and then given up.
+def tables_for(shop: Workshop, targets_m_s: Sequence[float]) -> list[ControllerTable]:
+    """Predicted tables for some targets, in their order; `PlantError` where one of them is refused."""
+    tables, refused = tried(shop, targets_m_s)
+    if refused:
+        raise PlantError(refused[0].reason)
+    return tables
 
-    Targets for which there is no table are added to `refused`; without such a list, or without any table, their fault
-    is raised.
+
+def tried(shop: Workshop, targets_m_s: Sequence[float]) -> tuple[list[ControllerTable], tuple[Refused, ...]]:
+    """Predicted tables for some targets, and those for which there is none, both in the order of the targets.
+
+    A few are solved together, and then given up.
     """
-    tables: list[ControllerTable] = []
+    tables, refused = [], []
     for first in range(0, len(targets_m_s), TARGETS_AT_ONCE):
         aims = [(target, shop.config.criterion) for target in targets_m_s[first : first + TARGETS_AT_ONCE]]
         for solution in solve_all(shop.design, aims, nodes_kept=1):
             try:
                 tables.append(predicted_table(shop, solution))
             except (PlantError, InvalidTable) as fault:
-                if refused is None:
-                    raise
                 refused.append(Refused(solution.target_speed_m_s, " ".join(str(fault).split())))
-                if len(refused) == len(targets_m_s):
-                    raise
-    return tables
+    return tables, tuple(refused)
 
 
 def predicted_table(shop: Workshop, solution: Solution) -> ControllerTable:
