@@ -59,3 +59,20 @@ def test_installed_command_and_closed_pipe() -> None:
     )
     assert done.stdout.startswith("# Configuration of retarder-synth")
     assert done.stderr == ""
+
+
+def test_installed_command_ends_at_once_but_says_all() -> None:
+    """It leaves without taking itself apart: every byte is out by then, and the exit code is that of `main`."""
+    command = str(Path(sys.executable).with_name("retarder-synth"))
+
+    def ran(*arguments: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([command, *arguments], capture_output=True, text=True, timeout=60, check=False)
+
+    written = ran("init")
+    assert written.returncode == 0
+    assert written.stdout == python("from synth.cli import main; raise SystemExit(main(['init']))").stdout
+    assert len(written.stdout) > 4096
+    refused = ran("inspect", "nowhere.json")
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert refused.stderr.startswith("retarder-synth: nowhere.json: there is no such file")
+    assert refused.stderr.endswith("\n")
