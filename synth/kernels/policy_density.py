@@ -48,18 +48,9 @@ def forward(
     scratch = landing_scratch(row, size, speed.dtype)
     for i in range(factor.shape[0]):
         met, slope = landing_tables(
-            factor[i : i + 1],
-            extra[i : i + 1],
-            factors,
-            probability,
-            mean,
-            std,
-            levels,
-            pressure,
-            drive,
-            brake,
-            path_step,
-        )
+            factor[i : i + 1], extra[i : i + 1], factors, probability, mean, std,
+            levels, pressure, drive, brake, path_step,
+        )  # fmt: skip
         heading[:], spans[:], landed[:] = 0.0, 0, 0
         for r in range(reach):
             for q in range(size):

@@ -98,7 +98,7 @@ def without_table(directory: SweepDirectory, ledger: Ledger, plan: Event) -> tup
         FailedUnit(f"{name} to {each['target_m_s']:g} m/s", str(each["reason"]), str(key))
         for key, name in plan["units"]
         if key in last and directory.unit_file(key).exists()
-        for each in last[key].get("refused", ())
+        for each in last[key].get("refused", ())  # an earlier version did not write it
     )
 
 

@@ -3,23 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from synth.dynamic_programme.backward_induction import Solution, solve_all
 from synth.dynamic_programme.policy_evaluation import commands, cost_and_gradient
-from synth.markov_chain.transitions import Transitions
-from synth.problem import Criterion
+from synth.markov_chain.grid import Resolution
+from synth.markov_chain.transitions import persistent_transitions
+from synth.problem import Criterion, Plant
 
 TARGETS = (1.0, 2.5, 4.0)
 
 
 @pytest.fixture(scope="module", params=[0.0, 1e-5], ids=["free", "priced"])
-def pairs(request: pytest.FixtureRequest, small: Callable[[], Transitions]) -> list[tuple[Solution, Solution]]:
-    """Solutions in float32 and in float64."""
+def pairs(
+    request: pytest.FixtureRequest, plant_with: Callable[..., Plant], coarse: Resolution
+) -> list[tuple[Solution, Solution]]:
+    """Solutions in float32 and in float64; the last path quantum is too short for any change of stage."""
+    design = persistent_transitions(plant_with(), replace(coarse, path_step_m=0.25))
     aims = [(target, Criterion(1.0, request.param)) for target in TARGETS]
-    return list(zip(*(solve_all(small(), aims, value_type=kind) for kind in (np.float32, np.float64)), strict=True))
+    return list(zip(*(solve_all(design, aims, value_type=kind) for kind in (np.float32, np.float64)), strict=True))
 
 
 def test_values_are_those_of_float64_but_for_some_roundings(pairs: list[tuple[Solution, Solution]]) -> None:
@@ -30,19 +35,21 @@ def test_values_are_those_of_float64_but_for_some_roundings(pairs: list[tuple[So
 
 
 def test_lines_are_those_of_float64(pairs: list[tuple[Solution, Solution]]) -> None:
-    """To 0.1 mm/s; a line is missing in one of the two at most where nothing can be gained any more."""
+    """There are none more: rounding alone sends no command where nothing can be gained.
+
+    They agree to 0.1 mm/s, but for the last quantum, where hardly anything can be gained on either side of a line.
+    """
     for single, double in pairs:
         sides = (
-            (single.lines.lower_m_s, double.lines.lower_m_s, double.gain_down),
-            (single.lines.upper_m_s, double.lines.upper_m_s, double.gain_up),
+            (single.lines.lower_m_s, double.lines.lower_m_s),
+            (single.lines.upper_m_s, double.lines.upper_m_s),
         )
-        for one, other, gain in sides:
-            both = np.isfinite(one) & np.isfinite(other)
-            assert both.sum() > 20
-            assert np.abs(one[both] - other[both]).max() < 1e-4
-            alone = (np.isfinite(one) != np.isfinite(other))[:, :-1]
-            for stage, node in np.argwhere(alone):
-                assert gain[node, stage].max() < 4e-6 * double.values.max()
+        for one, other in sides:
+            there = np.isfinite(other)
+            assert there.sum() > 20
+            np.testing.assert_array_equal(np.isfinite(one), there)
+            matters = there & (np.arange(one.shape[1]) < one.shape[1] - 2)
+            assert np.abs(one[matters] - other[matters]).max() < 1e-4
 
 
 def test_the_policy_costs_what_that_of_float64_does(pairs: list[tuple[Solution, Solution]]) -> None:
