@@ -110,7 +110,8 @@ def bind_one(
         from synth.sweep.heat_map import heat_map
 
         make_directory(folder / "plots")
-        files += save_figure(heat_map(figures.cases, condition), folder / "plots", PICTURE)
+        refused = {(each.label, each.target_m_s) for each in figures.failures if each.target_m_s is not None}
+        files += save_figure(heat_map(figures.cases, refused, condition), folder / "plots", PICTURE)
     for name in remove_stale(folder, {file.relative_to(folder).as_posix() for file in files}):
         say(f"{folder / name} was there before; it is no readable table of this tool and was left alone")
     figures.files |= dict(hashes(folder, files))

@@ -13,7 +13,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from synth.plots.house_style import INK, dress, mark_plainly, new_figure, place
+from synth.plots.house_style import GREY, INK, dress, mark_plainly, new_figure, place
 from synth.sweep.sweep_file import Condition
 
 COLOURS = "viridis"
@@ -21,8 +21,11 @@ MOST_LABELS = 24
 HALF_CELL = 0.5
 
 
-def heat_map(cases: list[dict[str, Any]], condition: Condition) -> Figure:
-    """One cell a table, wide to half the way to its neighbours; a dot where it misses a limit of [acceptance]."""
+def heat_map(cases: list[dict[str, Any]], refused: set[tuple[str, float]], condition: Condition) -> Figure:
+    """One cell a table, wide to half the way to its neighbours; a dot where it misses a limit of [acceptance].
+
+    `refused`: class and target in m/s of tables that there are not; their cells are hatched.
+    """
     labels = list(dict.fromkeys(case["label"] for case in cases))
     height = min(12.0, max(2.0, 0.24 * len(labels)))
     subject = condition.name or condition.config.title
@@ -32,26 +35,35 @@ def heat_map(cases: list[dict[str, Any]], condition: Condition) -> Figure:
     rms = [1e3 * case["simulated"]["rms_m_s"] for case in cases]
     low, high = min(rms), max(rms)
     norm = LogNorm(low * 0.999, max(high, 1.05 * low))
-    targets = [case["target_speed_m_s"] for case in cases]
-    cells, values, dots = [], [], []
+    found = {(case["label"], case["target_speed_m_s"]): case for case in cases}
+    places = sorted({*found, *(place for place in refused if place[0] in labels)})
+    cells, values, dots, empty = [], [], [], []
     for row, label in enumerate(labels):
-        mine = sorted((case for case in cases if case["label"] == label), key=lambda case: case["target_speed_m_s"])
-        edges = cell_edges([case["target_speed_m_s"] for case in mine], targets)
-        for case, (left, right) in zip(mine, pairwise(edges), strict=True):
-            cells.append(Rectangle((left, row - HALF_CELL), right - left, 1.0))
+        mine = [target for name, target in places if name == label]
+        for target, (left, right) in zip(
+            mine, pairwise(cell_edges(mine, [target for _, target in places])), strict=True
+        ):
+            cell = Rectangle((left, row - HALF_CELL), right - left, 1.0)
+            case = found.get((label, target))
+            if case is None:
+                empty.append(cell)
+                continue
+            cells.append(cell)
             values.append(1e3 * case["simulated"]["rms_m_s"])
             if case["missed_limits"]:
-                dots.append((case["target_speed_m_s"], row))
+                dots.append((target, row))
     painted = PatchCollection(cells, cmap=COLOURS, norm=norm, edgecolor="white", linewidth=0.4)
     painted.set_array(values)
     missed = "; dot: a limit of [acceptance] is missed" if dots else ""
-    dress(axes, f"simulated rms{missed}", "commanded exit speed, m/s")
+    hatched = "; hatched: no table" if empty else ""
+    dress(axes, f"simulated rms{missed}{hatched}", "commanded exit speed, m/s")
     axes.add_collection(painted)
+    axes.add_collection(PatchCollection(empty, facecolor="white", edgecolor=GREY, hatch="////", linewidth=0.4))
     if dots:
         axes.scatter(
             [x for x, _ in dots], [y for _, y in dots], s=9, c="white", edgecolors=INK, linewidths=0.6, zorder=3
         )
-    frame(axes, labels, cells)
+    frame(axes, labels, cells + empty)
     bar_of(figure, axes, painted, norm)
     return figure
 

@@ -8,7 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from synth.sweep.heat_map import heat_map
 from synth.sweep.local_workers import LocalWorkers
+from synth.sweep.sweep_file import load_sweep
 from synth.sweep.work import InThisProcess, Work
 from tests.sweep import poison
 from tests.sweep.conftest import Ran, Silence, contents, events, run
@@ -84,6 +86,11 @@ def test_a_target_without_a_table_loses_none_but_itself(command: Callable[..., R
         ("gondola-4-22t", 2.0),
         ("gondola-4-85t", 4.0),
     ]
+    refused = {(each["label"], each["target_m_s"]) for each in summary["failed"]}
+    axes = heat_map(summary["cases"], refused, load_sweep(tmp_path / "some.toml").conditions[0]).axes[0]
+    tables, empty = axes.collections[:2]
+    assert (len(tables.get_paths()), len(empty.get_paths())) == (6, 2)
+    assert axes.get_title(loc="left").endswith("hatched: no table")
     assert swept("some", "[2.0, 3.0, 3.5, 4.0]")[0] == 1  # it is known, and not computed again
     assert len(events(tmp_path / "some", "started")) == 2
 
