@@ -41,13 +41,15 @@ class Cut:
 
     `axle_offsets_m`: distances of all axles behind the first (first entry 0, increasing), metres;
     `mass_t`: mass of the whole cut, Q; `allowed_stage`: the highest braking stage that the weight
-    category may be given (light wheels slide or are squeezed out under the high ones).
+    category may be given (light wheels slide or are squeezed out under the high ones);
+    `category_number`: what stands for the category in controllers, None where it has no number.
     """
 
     category: str
     mass_t: float
     axle_offsets_m: tuple[float, ...]
     allowed_stage: int
+    category_number: int | None = None
 
     def __post_init__(self) -> None:
         require_between("cut: mass_t", self.mass_t, 1.0, 20_000.0)
@@ -75,7 +77,9 @@ class Cut:
         return self.mass_t / self.axles
 
 
-def couple(cars: tuple[Car, ...], mass_t: float, category: str, allowed_stage: int) -> Cut:
+def couple(
+    cars: tuple[Car, ...], mass_t: float, category: str, allowed_stage: int, category_number: int | None = None
+) -> Cut:
     """The cut made of `cars` coupled in this order, together weighing `mass_t` tonnes."""
     require(len(cars) > 0, "cut: cars is empty; a cut has at least one car")
     offsets: list[float] = []
@@ -84,7 +88,7 @@ def couple(cars: tuple[Car, ...], mass_t: float, category: str, allowed_stage: i
         overhang = (car.length_m - car.axle_offsets_m[-1]) / 2.0
         offsets += [front_coupler + overhang + x for x in car.axle_offsets_m]
         front_coupler += car.length_m
-    return Cut(category, mass_t, tuple(round(x - offsets[0], 6) for x in offsets), allowed_stage)
+    return Cut(category, mass_t, tuple(round(x - offsets[0], 6) for x in offsets), allowed_stage, category_number)
 
 
 def require_offsets(name: str, offsets_m: tuple[float, ...]) -> None:

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
+from tuning_tables.category_number import category_numbers
 from tuning_tables.errors import InvalidTable
 from tuning_tables.estimator import Estimator
 from tuning_tables.figures import Predicted, Validated, ValidRange
@@ -89,6 +90,11 @@ COLUMNS: Final[tuple[Column, ...]] = (
 )  # fmt: skip
 
 
+NUMBER: Final = Column("category_number", ("table",), "<i4", "1", "number of the class in controllers, 0: not stated",
+                       lambda t: t.cut.category_number or 0)  # fmt: skip
+"""Only in books of which a table states the number of its category, of either version."""
+
+
 def of_estimator(name: str, absent: Any) -> Callable[[ControllerTable], Any]:
     """The content of a column: an attribute of the table's estimator, `absent` without one."""
     return lambda table: absent if table.estimator is None else getattr(table.estimator, name)
@@ -125,6 +131,10 @@ class Layout:
     columns: tuple[Column, ...]
     axes: Mapping[str, str]
 
+    def numbered(self) -> Layout:
+        """This layout with the numbers of the categories."""
+        return replace(self, columns=(*self.columns, NUMBER))
+
     def length(self, axis: str, arrays: Columns) -> int:
         """The length of `axis` in the arrays of a book of this layout."""
         column = next(column for column in self.columns if axis in column.axes)
@@ -138,20 +148,22 @@ LAYOUTS: Final[Mapping[int, Layout]] = {layout.version: layout for layout in (PL
 
 def layout_of(tables: Sequence[ControllerTable]) -> Layout:
     """The oldest layout that can hold the tables."""
-    return WITH_ESTIMATORS if any(table.estimator is not None for table in tables) else PLAIN
+    layout = WITH_ESTIMATORS if any(table.estimator is not None for table in tables) else PLAIN
+    return layout.numbered() if any(table.cut.category_number is not None for table in tables) else layout
 
 
 def columns_of(tables: Sequence[ControllerTable]) -> dict[str, npt.NDArray[Any]]:
     """The arrays of a book, by name.
 
-    Raises `InvalidTable` for no tables at all, for an id given twice, and where a number is -0.0, which the JSON form
-    of the same table cannot hold.
+    Raises `InvalidTable` for no tables at all, for an id given twice, where numbers and names of categories do not
+    belong together one by one, and where a number is -0.0, which the JSON form of the same table cannot hold.
     """
     if not tables:
         raise InvalidTable("the book has no tables, but it must have at least one.")
     (name, times), *_ = Counter(table.id for table in tables).most_common(1)
     if times > 1:
         raise InvalidTable(f"{times} tables of the book have the id {name!r}, but ids must differ within a book.")
+    category_numbers(tables)
     return {column.name: _stacked(column, tables) for column in layout_of(tables).columns}
 
 
@@ -189,7 +201,12 @@ def _table(row: Mapping[str, Any]) -> ControllerTable:
             float(row["exit_m"]),
             float(row["dead_band_kpa"]),
         ),
-        cut=CutId(_text(row["category"]), float(row["mass_t"]), _present(row["axle_offsets_m"])),
+        cut=CutId(
+            _text(row["category"]),
+            float(row["mass_t"]),
+            _present(row["axle_offsets_m"]),
+            int(row.get("category_number", 0)) or None,
+        ),
         target_speed_m_s=float(row["target_speed_m_s"]),
         degree=int(row["degree"]),
         stages=_stages(row),

@@ -7,18 +7,20 @@ compiler reads exactly; the checksum of each table proves that it did.
 from __future__ import annotations
 
 import zlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib.resources import files
 
 import numpy as np
 
 from tuning_tables.c_estimator import estimator_blanks, estimator_text, track_blanks, tracks_csv
 from tuning_tables.c_literals import hex_float
-from tuning_tables.category_names import category_macros, comment_text
+from tuning_tables.category_names import category_names, comment_text
+from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.golden_choices import GoldenChoice, golden_choices
-from tuning_tables.golden_tracks import golden_tracks
+from tuning_tables.golden_tracks import GoldenTrack, golden_tracks
 from tuning_tables.golden_vectors import GoldenVectors, golden_vectors
-from tuning_tables.table_block import HAS_LOWER, HAS_UPPER, BlockSize, TableBlock, block_of, block_size
+from tuning_tables.self_test_size import FULL, SelfTestSize
+from tuning_tables.table_block import HAS_LOWER, HAS_UPPER, LAYOUT, BlockSize, TableBlock, block_of, block_size
 from tuning_tables.table_book import TableBook
 
 TEMPLATES = ("retarder_table.h", "retarder_table.c", "retarder_self_test.h", "retarder_self_test.c")
@@ -26,14 +28,26 @@ VECTORS_FILE = "golden_vectors.csv"
 TRACKS_FILE = "golden_tracks.csv"
 
 
-def c_files(book: TableBook) -> Mapping[str, bytes]:
-    """The files of the export by name: four of C99, ASCII, and the golden vectors as CSV for other languages.
+def c_files(book: TableBook, prefix: ExportPrefix = RETARDER, self_test: SelfTestSize = FULL) -> Mapping[str, bytes]:
+    """The files of the export by name: four of C99, ASCII, and all golden vectors as CSV for other languages.
 
-    If a table has an estimator, the golden tracks are there as CSV too. Equal books give equal bytes.
+    If a table has an estimator, the golden tracks are there as CSV too. Equal books give equal bytes. Raises
+    `InvalidTable` for a category without number.
     """
+    tracks = golden_tracks(book)
+    blanks = c_blanks(book, [self_test.vectors(table) for table in book.tables], tracks)
+    sources = {prefix.renamed(name): prefix.renamed(filled(name, blanks)).encode("ascii") for name in TEMPLATES}
+    data = {prefix.data_file(VECTORS_FILE): vectors_csv(book, [golden_vectors(table) for table in book.tables])}
+    if block_size(book).breaks:
+        data[prefix.data_file(TRACKS_FILE)] = tracks_csv(book, tracks)
+    return {**sources, **data}
+
+
+def c_blanks(book: TableBook, vectors: Sequence[GoldenVectors], tracks: Sequence[GoldenTrack]) -> Mapping[str, str]:
+    """What the templates ask for, by the names of their blanks."""
     size, choices = block_size(book), golden_choices(book)
-    vectors, tracks = [golden_vectors(table) for table in book.tables], golden_tracks(book)
-    blanks = {
+    return {
+        "LAYOUT": f"{LAYOUT}",
         "EXPORT": f"0x{export_tag(book):08x}u",
         "ORIGIN": "\n".join(f" * {line}" for line in origin_lines(book)),
         "CATEGORIES": "\n".join(category_lines(book)),
@@ -49,11 +63,6 @@ def c_files(book: TableBook) -> Mapping[str, bytes]:
         **track_blanks(book, tracks),
         **estimator_blanks(),
     }
-    sources = {name: filled(name, blanks).encode("ascii") for name in TEMPLATES}
-    tables = {VECTORS_FILE: vectors_csv(book, vectors)}
-    if size.breaks:
-        tables[TRACKS_FILE] = tracks_csv(book, tracks)
-    return {**sources, **tables}
 
 
 def filled(name: str, blanks: Mapping[str, str]) -> str:
@@ -65,8 +74,8 @@ def filled(name: str, blanks: Mapping[str, str]) -> str:
 
 
 def export_tag(book: TableBook) -> int:
-    """A number that differs for exports whose files must not be mixed: CRC-32 over categories and all blocks."""
-    content = "\n".join(book.categories).encode("utf-8")
+    """A number that differs for exports whose files must not be mixed: CRC-32 over layout, categories, all blocks."""
+    content = "\n".join([f"layout {LAYOUT}", *book.category_numbers]).encode("utf-8")
     size = block_size(book)
     for number in range(len(book.tables)):
         content += block_of(book, number, size=size).words.astype("<u4").tobytes()
@@ -89,10 +98,9 @@ def origin_lines(book: TableBook) -> list[str]:
 
 def category_lines(book: TableBook) -> list[str]:
     """One #define for each weight category."""
-    names = category_macros(book.categories)
     return [
-        f"#define RETARDER_CATEGORY_{name} {number}u /* {comment_text(category)} */"
-        for number, (name, category) in enumerate(zip(names, book.categories, strict=True), start=1)
+        f"#define RETARDER_CATEGORY_{each.macro} {each.number}u /* {comment_text(each.category)} */"
+        for each in category_names(book)
     ]
 
 
@@ -147,7 +155,8 @@ def vector_lines(number: int, vectors: GoldenVectors) -> list[str]:
 def choice_line(choice: GoldenChoice) -> str:
     """A golden choice as initialiser."""
     bits = int(np.float32(choice.commanded_m_s).view(np.uint32))
-    return f"    {{{choice.category}u, {choice.axles}u, 0x{bits:08x}u, {int(choice.status)}, 0x{choice.crc32:08x}u}}"
+    command = f"{choice.layout}u, {choice.category}u, {choice.axles}u, 0x{bits:08x}u"
+    return f"    {{{command}, {int(choice.status)}, 0x{choice.crc32:08x}u}}"
 
 
 def vectors_csv(book: TableBook, vectors: list[GoldenVectors]) -> bytes:

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Final
 
-LONGEST_MACRO: Final = 16
-"""Characters kept of a name; with a prefix such as RETARDER_CATEGORY_ it stays within limits of 32 and more."""
+from tuning_tables.category_number import KNOWN_NUMBERS
+from tuning_tables.table_book import TableBook
+
+LONGEST_MACRO: Final = 8
+"""Characters kept of a name; with a prefix, CATEGORY and a number it stays within limits of 32 and more."""
 
 _LATIN: Final = str.maketrans(
     {
@@ -19,26 +23,49 @@ _LATIN: Final = str.maketrans(
 )  # fmt: skip
 
 
-def category_macros(categories: Sequence[str]) -> tuple[str, ...]:
-    """The part of a constant's name that stands for each category: all different, "ЛС" giving "LS".
+@dataclass(frozen=True)
+class CategoryName:
+    """A weight category as controller code calls it: "RETARDER_CATEGORY_" and `macro`, and its number."""
+
+    macro: str
+    category: str
+    number: int
+
+
+def category_names(book: TableBook) -> tuple[CategoryName, ...]:
+    """The categories of the yard, in the book or not, and the book's own, by number.
+
+    So a name stands for one number in every export, and what was written for one compiles with the next.
+    """
+    numbers = {**KNOWN_NUMBERS, **{category: book.number_of(category) for category in book.category_numbers}}
+    named = zip(category_macros(numbers), numbers.items(), strict=True)
+    return tuple(sorted((CategoryName(name, *each) for name, each in named), key=lambda each: each.number))
+
+
+def category_macros(numbers: Mapping[str, int]) -> tuple[str, ...]:
+    """The part of a constant's name that stands for each category of `numbers`: all different, "ЛС" giving "LS".
 
     Each is [A-Z0-9]+ in words joined by single "_", as Structured Text wants it. Cyrillic letters are transliterated,
     white space and hyphens become "_", all else is left out. Where nothing is left, or two categories come out alike,
-    each of them has its number (from 1, the one that controllers use) appended.
+    each of them has its number appended; but the categories of the yard, whose names are always the same.
     """
-    plain = [_plain(category) for category in categories]
+    plain = [_plain(category) for category in numbers]
     return tuple(
-        name if name and plain.count(name) == 1 and not _looks_numbered(name, plain) else f"{name}_{number}".lstrip("_")
-        for number, name in enumerate(plain, start=1)
+        name
+        if category in KNOWN_NUMBERS or (name and plain.count(name) == 1 and not _looks_numbered(name, plain))
+        else f"{name}_{number}".lstrip("_")
+        for name, (category, number) in zip(plain, numbers.items(), strict=True)
     )
 
 
 def comment_text(text: str) -> str:
     """`text` for a comment in C or Structured Text: other characters than [A-Za-z0-9 ._+,()-] as <U+041B>.
 
-    What is left can neither end a comment nor begin one, break a line or continue it.
+    What is left can neither end a comment nor begin one, break a line or continue it; and none of it looks like a name
+    of the code, because the "_" of RETARDER_ is shown so, too.
     """
-    return re.sub(r"[^A-Za-z0-9 ._+,()-]", lambda found: f"<U+{ord(found[0]):04X}>", text)
+    special = r"[^A-Za-z0-9 ._+,()-]|(?<=RETARDER)_|(?<=retarder)_"
+    return re.sub(special, lambda found: f"<U+{ord(found[0]):04X}>", text)
 
 
 def _plain(category: str) -> str:

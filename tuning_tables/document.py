@@ -72,6 +72,7 @@ def to_document(table: ControllerTable) -> dict[str, object]:
         },
         "cut": {
             "category": table.cut.category,
+            **({} if table.cut.category_number is None else {"category_number": table.cut.category_number}),
             "mass_t": float(table.cut.mass_t),
             "axle_offsets_m": _floats(table.cut.axle_offsets_m),
         },
@@ -107,7 +108,7 @@ def from_document(document: object, source: str) -> ControllerTable:
             created=top.text("created"),
             generator=_generator(top.section("generator", ("name", "version", "config_sha256"))),
             retarder=_retarder(top.section("retarder", ("name", "zones_m", "exit_m", "dead_band_kpa"))),
-            cut=_cut(top.section("cut", ("category", "mass_t", "axle_offsets_m"))),
+            cut=_cut(top.section("cut", ("category", "mass_t", "axle_offsets_m"), ("category_number",))),
             target_speed_m_s=top.number("target_speed_m_s"),
             degree=polynomial.count("degree"),
             stages=tuple(map(_stage, top.sections("stages", ("k", "pressure_kpa", "lower", "upper")))),
@@ -202,7 +203,12 @@ def _retarder(section: Section) -> RetarderId:
 
 
 def _cut(section: Section) -> CutId:
-    return CutId(section.text("category"), section.number("mass_t"), section.numbers("axle_offsets_m"))
+    return CutId(
+        section.text("category"),
+        section.number("mass_t"),
+        section.numbers("axle_offsets_m"),
+        section.count("category_number") if "category_number" in section else None,
+    )
 
 
 def _stage(section: Section) -> Stage:

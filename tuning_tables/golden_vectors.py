@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -17,6 +18,9 @@ LARGEST: Final = float(np.finfo(np.float32).max)
 SMALLEST: Final = float(np.finfo(np.float32).smallest_subnormal)
 STAGE_LIMITS: Final = (-32768, 32767)
 """Of a 16-bit INT, which every controller has."""
+
+FEW: Final = 20
+"""Readings a line, at most, of a self-test for a small controller."""
 
 ASIDE_M_S: Final = np.float32(0.01)
 """Distance from a line that no rounding bridges."""
@@ -44,7 +48,29 @@ def golden_vectors(table: ControllerTable) -> GoldenVectors:
 
     The same table gives the same vectors, in the same order, each once.
     """
-    readings = [*_line_readings(table), *_incredible_readings(table)]
+    return _answered(table, [*_line_readings(table, _paths(table), STEPS_AND_ASIDE), *_incredible_readings(table)])
+
+
+def few_golden_vectors(table: ControllerTable) -> GoldenVectors:
+    """At most `FEW` readings a line, but 2 without any: on it and next to it, at five places of the path.
+
+    The places are one before and one behind the range, and three within it. At every stage with a line also a speed
+    that is negative and one that is far too high; and stages that do not exist. All of it has portable literals where
+    the lines' speeds have.
+    """
+    low, high = table.valid_range[0], table.valid_range[1]
+    inner = [low + (high - low) * np.float32(part) for part in (0.25, 0.5, 0.8125)]
+    paths = np.array([low - np.float32(1000.0), *inner, high + np.float32(1000.0)], dtype=np.float32)
+    slow, fast = np.float32(-1.0), np.float32(100.0)
+    lined = np.flatnonzero(table.has_line.any(axis=1)).tolist()
+    readings = [reading for reading in _line_readings(table, paths, STEPS) if reading[0] in lined]
+    readings += [(k, inner[0], v) for k in lined for v in (slow, fast)]
+    readings += [(k, inner[0], fast) for k in (-1, len(table.stages))]
+    return _answered(table, readings)
+
+
+def _answered(table: ControllerTable, readings: Sequence[tuple[int, np.float32, np.float32]]) -> GoldenVectors:
+    """The readings, each once, in their order, with their answers."""
     stage = np.array([reading[0] for reading in readings], dtype=np.int32)
     s_m = np.array([reading[1] for reading in readings], dtype=np.float32)
     v_m_s = np.array([reading[2] for reading in readings], dtype=np.float32)
@@ -63,17 +89,18 @@ def line_speeds(coefficients: Floats, s_m: Floats) -> Floats:
     return speed
 
 
-def _line_readings(table: ControllerTable) -> list[tuple[int, np.float32, np.float32]]:
-    """Readings around every line, or around the target speed at a stage that has none."""
-    paths = _paths(table)
+def _line_readings(
+    table: ControllerTable, paths: Floats, places: Sequence[Callable[[Floats], Floats]]
+) -> list[tuple[int, np.float32, np.float32]]:
+    """Readings at `paths` and `places` around every line, or around the target speed at a stage that has none."""
     clamped = np.clip(paths, table.valid_range[0], table.valid_range[1])
     target = np.full(paths.shape, table.target_speed_m_s, dtype=np.float32)
     readings = []
     for k in range(len(table.stages)):
         lines = [line_speeds(table.coefficients[k, i], clamped) for i in (0, 1) if table.has_line[k, i]]
         for line in lines or [target]:
-            for speeds in (line, _next(line, -np.inf), _next(line, np.inf), line - ASIDE_M_S, line + ASIDE_M_S):
-                readings += [(k, s, v) for s, v in zip(paths, speeds, strict=True)]
+            for place in places:
+                readings += [(k, s, v) for s, v in zip(paths, place(line), strict=True)]
     return readings
 
 
@@ -104,3 +131,9 @@ def _incredible_readings(table: ControllerTable) -> list[tuple[int, np.float32, 
 def _next(value: npt.NDArray[np.float32] | np.float32, towards: float) -> npt.NDArray[np.float32]:
     """The neighbouring float32 number."""
     return np.asarray(np.nextafter(value, np.float32(towards)), dtype=np.float32)
+
+
+STEPS: Final = (lambda line: line, lambda line: _next(line, -np.inf), lambda line: _next(line, np.inf))
+"""Speeds on a line, and one float32 step beside it."""
+
+STEPS_AND_ASIDE: Final = (*STEPS, lambda line: line - ASIDE_M_S, lambda line: line + ASIDE_M_S)

@@ -22,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.atomic_file import replacing
-from tuning_tables.book_columns import LAYOUTS, Column, Columns, Layout, columns_of, layout_of, tables_of
+from tuning_tables.book_columns import LAYOUTS, NUMBER, Column, Columns, Layout, columns_of, layout_of, tables_of
 from tuning_tables.errors import DamagedTable, InvalidTable, NewerVersion, OlderVersion, TableError, UnknownFormat
 from tuning_tables.excerpt import excerpt
 from tuning_tables.payload import payload_sha256
@@ -157,6 +157,7 @@ def _checked_arrays(file: h5py.File, most_bytes: int, source: str) -> dict[str, 
         raise DamagedTable(f"{source}: complete is {attributes['complete']!r}, but must be 1; export the book again.")
     require_match(attributes["config_sha256"], "config_sha256", SHA256_HEX, "of 64 lower-case hex digits")
     require_text(attributes["tool_version"], "tool_version")
+    layout = layout.numbered() if NUMBER.name in file else layout
     expected = {column.name for column in layout.columns} | set(layout.axes)
     if set(file) != expected:
         found = excerpt(str(sorted(set(file) ^ expected)), LONGEST_REASON)
@@ -191,7 +192,8 @@ def _require_lengths(column: Column, arrays: Columns, layout: Layout, source: st
 def _require_as_written(found: Columns, written: Columns, source: str) -> None:
     """Padding, lengths of text and missing lines are as `columns_of` makes them; values then are, too."""
     if found.keys() != written.keys():
-        raise DamagedTable(f"{source}: no table has an estimator, but the book has arrays for it; export it again.")
+        surplus = ", ".join(sorted(found.keys() - written.keys()))
+        raise DamagedTable(f"{source}: it holds {surplus}, but no table has anything there; export it again.")
     for name, array in written.items():
         if found[name].dtype.str != array.dtype.str or found[name].tobytes() != array.tobytes():
             raise DamagedTable(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tuning_tables.category_number import KNOWN_NUMBERS, require_category_number
 from tuning_tables.errors import InvalidTable
 from tuning_tables.requirement import (
     SHA256_HEX,
@@ -67,14 +68,20 @@ class RetarderId:
 
 @dataclass(frozen=True)
 class CutId:
-    """The class of cuts the table is for: category, mass in t (> 0), axle offsets in m behind the first axle (0.0)."""
+    """The class of cuts the table is for: category, mass in t (> 0), axle offsets in m behind the first axle (0.0).
+
+    `category_number`: as the table states it; None in tables from before there were numbers.
+    """
 
     category: str
     mass_t: float
     axle_offsets_m: tuple[float, ...]
+    category_number: int | None = None
 
     def __post_init__(self) -> None:
         require_text(self.category, "cut.category")
+        if self.category_number is not None:
+            require_category_number(self.category, self.category_number)
         require_positive(self.mass_t, "cut.mass_t")
         require_rising(self.axle_offsets_m, "cut.axle_offsets_m")
         if self.axle_offsets_m[0] != 0.0:
@@ -82,3 +89,8 @@ class CutId:
                 f"cut.axle_offsets_m begins with {self.axle_offsets_m[0]!r}, "
                 "but it must begin with 0.0: offsets are measured from the first axle."
             )
+
+    @property
+    def number(self) -> int | None:
+        """What stands for the category in controllers: as stated, else that of a category of the yard, else None."""
+        return KNOWN_NUMBERS.get(self.category) if self.category_number is None else self.category_number

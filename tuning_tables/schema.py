@@ -11,6 +11,7 @@ import os
 from typing import Final
 
 from tuning_tables.atomic_file import write_atomically
+from tuning_tables.category_number import KNOWN_NUMBERS, LARGEST_OWN, LEAST_OWN
 from tuning_tables.document import ESTIMATOR_VERSION, FORMAT, VARIABLE, VERSION
 from tuning_tables.estimator import FARTHEST_M, LARGEST_OVERPRESSURE_KPA, LARGEST_WORK, MOST_BREAKS
 from tuning_tables.requirement import SHA256_HEX, UTC_INSTANT
@@ -27,6 +28,8 @@ def table_schema() -> dict[str, object]:
     predicted = _object(rms_m_s=_number(0), bias_m_s=_number(), p_overspeed=_number(0, 1), switchings=_number(0))
     predicted["properties"]["p_stall"] = _number(0, 1)
     predicted["properties"]["passes"] = _whole(1)
+    cut = _object(category=_text(), mass_t=_above_zero(), axle_offsets_m=_array(_number(0), 1))
+    cut["properties"]["category_number"] = _whole(1, LARGEST_OWN)
     top = _object(
         format={"const": FORMAT},
         version={"enum": [VERSION, ESTIMATOR_VERSION]},
@@ -34,7 +37,7 @@ def table_schema() -> dict[str, object]:
         created={"type": "string", "pattern": UTC_INSTANT},
         generator=_object(name=_text(), version=_text(), config_sha256={"type": "string", "pattern": SHA256_HEX}),
         retarder=_object(name=_text(), zones_m=_array(_pair(_number()), 1), exit_m=_number(), dead_band_kpa=_number(0)),
-        cut=_object(category=_text(), mass_t=_above_zero(), axle_offsets_m=_array(_number(0), 1)),
+        cut={**cut, "oneOf": _numbered_cuts()},
         target_speed_m_s=_above_zero(),
         polynomial=_object(variable={"const": VARIABLE}, degree=_whole(0, HIGHEST_DEGREE)),
         stages=_array(stage, 2, MOST_STAGES),
@@ -49,6 +52,16 @@ def table_schema() -> dict[str, object]:
     estimated = {"properties": {"version": {"const": ESTIMATOR_VERSION}}, "required": ["estimator"]}
     title = f"{FORMAT} {VERSION} and {ESTIMATOR_VERSION}"
     return {"$schema": DIALECT, "title": title, **top, "oneOf": [plain, estimated]}
+
+
+def _numbered_cuts() -> list[object]:
+    """No number is given, or that of the category of the yard, or one of a user's own category."""
+    own = {"category": {"not": {"enum": list(KNOWN_NUMBERS)}}, "category_number": _whole(LEAST_OWN, LARGEST_OWN)}
+    known = [
+        {"category": {"const": name}, "category_number": {"const": number}} for name, number in KNOWN_NUMBERS.items()
+    ]
+    stated = [{"properties": each, "required": ["category_number"]} for each in (own, *known)]
+    return [{"properties": {"category_number": False}}, *stated]
 
 
 def _estimator() -> dict[str, dict[str, object]]:

@@ -16,7 +16,8 @@ HEAD: Final = Template(
    Generated: do not edit, export again. This text may be used, changed and passed on without any condition.
 
 $ORIGIN
-   categories
+   layout     $LAYOUT (in layout 1 the numbers of the categories followed the order of the tables)
+   categories, whose numbers are the same in every export of this layout:
 $CATEGORIES
 
    Blocks
@@ -25,6 +26,7 @@ $CATEGORIES
    RETARDER_OBSERVE at every sample: the speed to decide with, estimated if the table has an estimator, else as measured
    RETARDER_DECIDE  at every sample at which no change of stage is under way: what to do with the stage
    RETARDER_LOAD    a table by its number in the book, unchanged
+   RETARDER_CATEGORIES  names for the numbers of the weight categories; it need not be called
 
    The rule
    1. A path or speed that is not finite, a negative speed, or a stage that the table has not: hold.
@@ -131,7 +133,8 @@ FUNCTION_BLOCK RETARDER_SELECT
    same stages, degree, lines, path range and estimator. Otherwise the table of the next target below the command: the
    cut never leaves faster than commanded. Below all targets, or no number: no table. *)
 VAR_INPUT
-    Category : INT; (* number as in the head of this file *)
+    Layout : INT; (* of whoever numbers the categories: write $LAYOUT, the layout of this file, as a number *)
+    Category : INT; (* number as in the head of this file, or a name of RETARDER_CATEGORIES *)
     Axles : INT;
     Commanded_m_s : REAL; (* exit speed wanted *)
 END_VAR
@@ -139,7 +142,8 @@ VAR_IN_OUT
     Table : RETARDER_TABLE; (* filled; without a table its Stages become 0, and RETARDER_DECIDE holds *)
 END_VAR
 VAR_OUTPUT
-    Status : INT; (* 0 tuned, 1 between two tables, 2 slower; -1 no such class, -2 no table slow enough: no table *)
+    Status : INT; (* 0 tuned, 1 between two tables, 2 slower; no table: -1 no such class, -2 none slow enough,
+                     -3 the caller is of another layout, whose numbers may mean other categories *)
 END_VAR
 VAR
     Loader : RETARDER_LOAD;
@@ -191,6 +195,10 @@ FOR Number := 0 TO $LAST_TABLE DO
         END_IF;
     END_IF;
 END_FOR;
+IF Layout <> $LAYOUT THEN
+    Status := -3;
+    SlowerNo := -1;
+END_IF;
 IF (SlowerNo >= 0) AND (Commanded_m_s > 0.0) AND (Commanded_m_s <= 3.4028235E+38) THEN
     Loader(TableNo := SlowerNo, Table := Table);
     IF SlowerTarget >= Commanded_m_s THEN
@@ -223,6 +231,18 @@ IF (SlowerNo >= 0) AND (Commanded_m_s > 0.0) AND (Commanded_m_s <= 3.4028235E+38
         END_IF;
     END_IF;
 END_IF;
+END_FUNCTION_BLOCK
+"""
+
+CATEGORIES: Final = """\
+FUNCTION_BLOCK RETARDER_CATEGORIES
+(* Names for the numbers of the weight categories, the same in every export of layout $LAYOUT. One instance does, and
+   it need not be called. *)
+VAR_OUTPUT
+$DECLARED
+END_VAR
+
+$ASSIGNED
 END_FUNCTION_BLOCK
 """
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from string import Template
-from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +17,8 @@ import numpy.typing as npt
 from tuning_tables.category_names import comment_text
 from tuning_tables.distinct_estimators import distinct_estimators
 from tuning_tables.golden_choices import GoldenChoice, golden_choices
-from tuning_tables.golden_vectors import golden_vectors
+from tuning_tables.golden_vectors import GoldenVectors
+from tuning_tables.self_test_size import SelfTestSize
 from tuning_tables.st_literals import LONGEST_ARRAY, int_array, is_portable, real, real_array
 from tuning_tables.st_tables import coefficients_of, constants
 from tuning_tables.st_test_blocks import (
@@ -36,27 +36,23 @@ from tuning_tables.st_test_order import run_all
 from tuning_tables.table_block import block_of, block_size
 from tuning_tables.table_book import Choice, Status, TableBook
 
-MOST_LINE_CHECKS: Final = 16
-"""Choices between two tables of which every coefficient is checked; of all choices status and target are."""
 
-
-def self_test_blocks(book: TableBook) -> Iterator[str]:
+def self_test_blocks(book: TableBook, self_test: SelfTestSize) -> Iterator[str]:
     """The blocks of retarder_self_test.st, in an order in which none is used before it is declared."""
     found = distinct_estimators(book)
-    for number in range(len(book.tables)):
-        yield _table_test(book, number, found.of_table[number])
-    yield _choice_test(book)
+    for number, table in enumerate(book.tables):
+        yield _table_test(book, number, found.of_table[number], self_test.vectors(table))
+    yield _choice_test(book, self_test.line_checks)
     for place, number in enumerate(found.first_tables):
         yield estimator_test(book, place, number)
     yield run_all(book)
 
 
-def _table_test(book: TableBook, number: int, estimator: int) -> str:
-    """RETARDER_TEST_n: the constants of the table once more, the number of its estimator, and its golden vectors."""
+def _table_test(book: TableBook, number: int, estimator: int, vectors: GoldenVectors) -> str:
+    """RETARDER_TEST_n: the constants of the table once more, the number of its estimator, and golden vectors."""
     size = block_size(book)
     block = block_of(book, number, size=size)
     expected = [block.table.target_speed_m_s, *block.table.valid_range[:2], *coefficients_of(block, size)]
-    vectors = golden_vectors(book.tables[number])
     kept = np.flatnonzero(is_portable(vectors.s_m) & is_portable(vectors.v_m_s))
     blanks = {"NUMBER": number, "NAME": comment_text(book.tables[number].id), "LAST": len(expected) - 4}
     declarations, statements = [real_array("Expected", expected)], [Template(TABLE_CONSTANTS).substitute(blanks)]
@@ -76,13 +72,14 @@ def _table_test(book: TableBook, number: int, estimator: int) -> str:
     return "".join([head, constants(declarations), RESET, *statements, FOOT])
 
 
-def _choice_test(book: TableBook) -> str:
+def _choice_test(book: TableBook, line_checks: int) -> str:
     """RETARDER_TEST_CHOICES: golden choices by status and target, some of them by every coefficient."""
     choices = [choice for choice in golden_choices(book) if is_portable(np.array([choice.commanded_m_s]))[0]]
     declarations, statements = [], []
     for part, chosen in _parts(np.arange(len(choices))):
         rows = [choices[index] for index in chosen]
         declarations += [
+            int_array(f"Layout_{part}", [row.layout for row in rows]),
             int_array(f"Category_{part}", [row.category for row in rows]),
             int_array(f"Axles_{part}", [row.axles for row in rows]),
             real_array(f"Commanded_{part}", [row.commanded_m_s for row in rows]),
@@ -91,7 +88,7 @@ def _choice_test(book: TableBook) -> str:
         ]
         statements.append(Template(CHOICE_LOOP).substitute(PART=part, LAST=len(rows) - 1, FIRST=chosen[0]))
     size = block_size(book)
-    between = [row for row in choices if row.status == Status.BETWEEN][::3][:MOST_LINE_CHECKS]
+    between = [row for row in choices if row.status == Status.BETWEEN][::3][:line_checks]
     for number, row in enumerate(between):
         choice = _choose(book, row)
         expected = coefficients_of(block_of(book, choice.numbers[0], choice.table, size), size)
@@ -99,6 +96,7 @@ def _choice_test(book: TableBook) -> str:
         statements.append(
             Template(CHOICE_LINES).substitute(
                 NUMBER=number,
+                LAYOUT=row.layout,
                 CATEGORY=row.category,
                 AXLES=row.axles,
                 COMMANDED=real(row.commanded_m_s),
@@ -111,7 +109,8 @@ def _choice_test(book: TableBook) -> str:
 
 
 def _choose(book: TableBook, row: GoldenChoice) -> Choice:
-    return book.choose(book.categories[row.category - 1], row.axles, float(row.commanded_m_s))
+    category = next(name for name, number in book.category_numbers.items() if number == row.category)
+    return book.choose(category, row.axles, float(row.commanded_m_s))
 
 
 def _target(book: TableBook, row: GoldenChoice) -> np.float32:

@@ -6,18 +6,22 @@ docs/structured-text.md.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from string import Template
 from typing import Final
 
 from tuning_tables.c_source import origin_lines
-from tuning_tables.category_names import category_macros, comment_text
+from tuning_tables.category_names import category_names, comment_text
 from tuning_tables.errors import InvalidTable
-from tuning_tables.st_blocks import DECIDE, HEAD, TABLE_TYPE
+from tuning_tables.export_prefix import RETARDER, ExportPrefix
+from tuning_tables.self_test_size import FULL, SelfTestSize
+from tuning_tables.st_blocks import CATEGORIES, DECIDE, HEAD, TABLE_TYPE
 from tuning_tables.st_estimator import observe_blocks
 from tuning_tables.st_observe import ESTIMATE_TYPE
 from tuning_tables.st_self_test import self_test_blocks
 from tuning_tables.st_tables import blanks_of, load_block, select_block
+from tuning_tables.table_block import LAYOUT
 from tuning_tables.table_book import TableBook
 
 MOST_TABLES: Final = 500
@@ -36,37 +40,75 @@ SELF_TEST_HEAD: Final = """\
    if memory is short. *)
 """
 
+UNIT: Final = re.compile(r"^(?:FUNCTION_BLOCK (\w+)$|    (\w+) : STRUCT\b)", re.MULTILINE)
+"""How a unit begins: a block or a type, with its name."""
 
-def st_files(book: TableBook) -> Mapping[str, bytes]:
+
+def st_files(book: TableBook, prefix: ExportPrefix = RETARDER, self_test: SelfTestSize = FULL) -> Mapping[str, bytes]:
     """The files of the export by name, ASCII with LF: the tables with their blocks, and the self-test.
 
-    Equal books give equal bytes. Raises `InvalidTable` for more than `MOST_TABLES` tables.
+    Equal books give equal bytes. Raises `InvalidTable` for more than `MOST_TABLES` tables, and for a category without
+    number.
     """
+    files = {
+        TABLE_FILE: "\n".join([head(book), *table_units(book)]),
+        SELF_TEST_FILE: "\n".join([SELF_TEST_HEAD, *self_test_blocks(book, self_test)]),
+    }
+    return {prefix.renamed(name): prefix.renamed(text).encode("ascii") for name, text in files.items()}
+
+
+def st_unit_files(
+    book: TableBook, prefix: ExportPrefix = RETARDER, self_test: SelfTestSize = FULL
+) -> Mapping[str, bytes]:
+    """The same units, a file each; by their names in the order in which they need each other. Raises as `st_files`."""
+    texts = [prefix.renamed(text) for text in (*table_units(book), *self_test_blocks(book, self_test))]
+    texts[0] = "\n".join([prefix.renamed(head(book)), texts[0]])
+    names = ["".join(*UNIT.findall(text)) for text in texts]
+    return {
+        f"{place:04d}_{name}.st": text.encode("ascii")
+        for place, (name, text) in enumerate(zip(names, texts, strict=True), start=1)
+    }
+
+
+def head(book: TableBook) -> str:
+    """The comment at the beginning."""
+    origin = "\n".join(f"   {line}" for line in origin_lines(book))
+    return HEAD.substitute(ORIGIN=origin, CATEGORIES="\n".join(category_lines(book)), LAYOUT=LAYOUT)
+
+
+def table_units(book: TableBook) -> list[str]:
+    """Types and blocks of the tables, each a text of its own, none before one that it needs."""
     _require_exportable(book)
     blanks = blanks_of(book)
-    origin = "\n".join(f"   {line}" for line in origin_lines(book))
-    blocks = [
-        HEAD.substitute(ORIGIN=origin, CATEGORIES="\n".join(category_lines(book))),
+    return [
         Template(Template(TABLE_TYPE).safe_substitute(blanks)).substitute(blanks),
         ESTIMATE_TYPE,
+        categories_block(book),
         load_block(book),
         select_block(book),
         *observe_blocks(blanks),
         Template(DECIDE).substitute(blanks),
     ]
-    return {
-        TABLE_FILE: "\n".join(blocks).encode("ascii"),
-        SELF_TEST_FILE: "\n".join([SELF_TEST_HEAD, *self_test_blocks(book)]).encode("ascii"),
-    }
 
 
 def category_lines(book: TableBook) -> list[str]:
     """The number of every weight category, for the head comment."""
-    names = category_macros(book.categories)
     return [
-        f"   {number:9d}  {name}, in the book {comment_text(category)}".rstrip()
-        for number, (name, category) in enumerate(zip(names, book.categories, strict=True), start=1)
+        f"   {each.number:9d}  {each.macro}, in tables {comment_text(each.category)}".rstrip()
+        for each in category_names(book)
     ]
+
+
+def categories_block(book: TableBook) -> str:
+    """RETARDER_CATEGORIES: an output for every category, with its number from the start on."""
+    names = category_names(book)
+    return Template(CATEGORIES).substitute(
+        LAYOUT=LAYOUT,
+        DECLARED="\n".join(
+            f"    Category_{each.macro} : INT := {each.number}; (* {comment_text(each.category)} *)" for each in names
+        ),
+        ASSIGNED="\n".join(f"Category_{each.macro} := {each.number};" for each in names),
+    )
 
 
 def _require_exportable(book: TableBook) -> None:

@@ -12,7 +12,7 @@ from tuning_tables.category_names import comment_text
 from tuning_tables.st_blocks import LOAD_BODY, LOAD_DECLARATIONS, SELECT_BODY, SELECT_DECLARATIONS
 from tuning_tables.st_estimator import estimator_blanks, estimator_constants
 from tuning_tables.st_literals import bool_array, int_array, real_array
-from tuning_tables.table_block import HAS_LOWER, HAS_UPPER, BlockSize, TableBlock, block_of, block_size
+from tuning_tables.table_block import HAS_LOWER, HAS_UPPER, LAYOUT, BlockSize, TableBlock, block_of, block_size
 from tuning_tables.table_book import TableBook
 
 
@@ -23,6 +23,7 @@ def blanks_of(book: TableBook) -> Mapping[str, str]:
         "STAGES": size.stages,
         "POWERS": size.powers,
         "STRIDE": 2 * size.powers,
+        "LAYOUT": LAYOUT,
         "LAST_TABLE": len(book.tables) - 1,
         "LAST_STAGE": size.stages - 1,
         "LAST_COEFFICIENT": 2 * size.stages * size.powers - 1,

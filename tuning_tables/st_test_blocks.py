@@ -78,8 +78,8 @@ END_VAR
 
 CHOICE_LOOP: Final = """\
 FOR Index := 0 TO $LAST DO
-    Selector(Category := Category_$PART[Index], Axles := Axles_$PART[Index], Commanded_m_s := Commanded_$PART[Index],
-        Table := Table);
+    Selector(Layout := Layout_$PART[Index], Category := Category_$PART[Index], Axles := Axles_$PART[Index],
+        Commanded_m_s := Commanded_$PART[Index], Table := Table);
     Target := 0.0;
     IF Selector.Status >= 0 THEN
         Target := Table.Target_m_s;
@@ -94,7 +94,7 @@ END_FOR;
 """
 
 CHOICE_LINES: Final = """\
-Selector(Category := $CATEGORY, Axles := $AXLES, Commanded_m_s := $COMMANDED, Table := Table);
+Selector(Layout := $LAYOUT, Category := $CATEGORY, Axles := $AXLES, Commanded_m_s := $COMMANDED, Table := Table);
 Agrees := Selector.Status = 1;
 FOR Index := 0 TO $LAST DO
     IF Table.Coefficient[Index] <> Expected_$NUMBER[Index] THEN

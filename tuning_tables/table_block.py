@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import zlib
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +20,9 @@ import numpy.typing as npt
 from tuning_tables.active_table import ActiveTable, active
 from tuning_tables.estimator import Estimator
 from tuning_tables.table_book import TableBook
+
+LAYOUT: Final = 2
+"""Of controller code. In layout 1 the numbers of the categories followed the order of the tables."""
 
 HAS_LOWER, HAS_UPPER = 1, 2
 
@@ -79,11 +83,11 @@ def block_of(
 ) -> TableBlock:
     """The block of table `number` of the book, or of lines `table` made from it and its faster neighbour.
 
-    `size`: that of the book, where the caller knows it; else it is found anew.
+    `size`: that of the book, where the caller knows it; else it is found anew. Raises as `book.number_of`.
     """
     source = book.tables[number]
     table = table or active(source)
-    category = book.categories.index(source.cut.category) + 1
+    category = book.number_of(source.cut.category)
     axles, mass_t = len(source.cut.axle_offsets_m), np.float32(source.cut.mass_t)
     size = size or block_size(book)
     stages, _, powers = table.coefficients.shape

@@ -33,6 +33,7 @@ from typing import Final
 import numpy as np
 
 from tuning_tables.active_table import ActiveTable, active, between, interpolable
+from tuning_tables.category_number import LARGEST_OWN, LEAST_OWN, category_numbers
 from tuning_tables.errors import InvalidTable
 from tuning_tables.line_order import UNIT_ROUNDOFF, rounding_bound, smallest_gap
 from tuning_tables.requirement import require_kind, require_tuple
@@ -45,13 +46,17 @@ LARGEST_FLOAT32: Final = float(np.finfo(np.float32).max)
 
 
 class Status(IntEnum):
-    """How a choice ended; below 0 there is no table."""
+    """How a choice ended; below 0 there is no table.
+
+    `OTHER_LAYOUT` is an answer of controller code alone, to a caller that numbers categories otherwise.
+    """
 
     TUNED = 0
     BETWEEN = 1
     SLOWER = 2
     NO_CLASS = -1
     NO_TARGET = -2
+    OTHER_LAYOUT = -3
 
 
 @dataclass(frozen=True)
@@ -70,7 +75,8 @@ class Choice:
 class TableBook:
     """The tables of one position, numbered in their order from 0; ids differ, the retarder position is the same in all.
 
-    Raises `InvalidTable`, also where float32 might let the lines between two neighbouring tables touch.
+    A category has one number and a number one category. Raises `InvalidTable`, also where float32 might let the lines
+    between two neighbouring tables touch.
     """
 
     tables: tuple[ControllerTable, ...]
@@ -93,13 +99,26 @@ class TableBook:
             for key, value in (("cut.mass_t", table.cut.mass_t), ("target_speed_m_s", table.target_speed_m_s)):
                 if not LEAST_FLOAT32 <= value <= LARGEST_FLOAT32:
                     raise InvalidTable(f"{key} of {table.id} is {value!r}, which float32 cannot hold.")
+        category_numbers(self.tables)
         for slower, faster in self.neighbours():
             require_order_between(slower, faster)
 
     @cached_property
-    def categories(self) -> tuple[str, ...]:
-        """The weight categories in order of first appearance; C and Structured Text number them from 1."""
-        return tuple(dict.fromkeys(table.cut.category for table in self.tables))
+    def category_numbers(self) -> Mapping[str, int | None]:
+        """The number of every weight category, None for one without, in order of first appearance."""
+        return category_numbers(self.tables)
+
+    def number_of(self, category: str) -> int:
+        """What stands for a category of the book in C and Structured Text; `InvalidTable` for one without number."""
+        number = self.category_numbers[category]
+        if number is None:
+            table = next(table for table in self.tables if table.cut.category == category)
+            raise InvalidTable(
+                f"{table.id} is for the category {category}, which has no number, but controller code chooses by "
+                f"number: give the table a cut.category_number in [{LEAST_OWN}, {LARGEST_OWN}] (CutId of "
+                "tuning_tables), then export it."
+            )
+        return number
 
     def shadowed(self) -> tuple[ControllerTable, ...]:
         """The tables that no choice can use: another of the same category and axles is heavier, or comes first."""

@@ -22,6 +22,9 @@ CATEGORY_SCHEMA = {
 }
 """Every key of a category."""
 
+HIGHEST_NUMBER = 255
+"""A number of a category fits into a byte."""
+
 LOOK_ALIKES = str.maketrans("CT", "СТ")
 """Latin letters that a keyboard puts in place of the Cyrillic ones."""
 
@@ -30,10 +33,12 @@ LOOK_ALIKES = str.maketrans("CT", "СТ")
 class WeightCategory:
     """A category of 4-axle cars heavier than `mass_above_t`, up to the limit of the next category.
 
-    `name` is the Cyrillic name of the sources, `latin` its transcription.
+    `name` is the Cyrillic name of the sources, `latin` its transcription; `number` stands for it in tables and
+    controllers and is fixed for good, wherever the category stands in a file.
     """
 
     name: str
+    number: int
     latin: str
     mass_above_t: float
     resistance: RollingResistance
@@ -73,6 +78,13 @@ def categories_from_toml(text: str) -> tuple[WeightCategory, ...]:
         place = f"{FILE}: {latin}"
         require(isinstance(tree, dict), f"{place} is {tree!r}; it must be a table")
         name = take_string(tree, "name", place)
+        its_number = tree.pop("number", None)
+        require(
+            type(its_number) is int and 1 <= its_number <= HIGHEST_NUMBER,
+            f"{place}: number is {its_number!r}; it must be a whole number from 1 to {HIGHEST_NUMBER}",
+        )
+        same = [c.latin for c in categories if c.number == its_number or c.name == name]
+        require(not same, f"{place}: its name {name} or number {its_number} is that of {', '.join(same)}, too")
         table = sourced_table(tree, CATEGORY_SCHEMA, place)
         try:
             resistance = RollingResistance(
@@ -87,6 +99,6 @@ def categories_from_toml(text: str) -> tuple[WeightCategory, ...]:
             limit == 0.0 if lowest is None else limit > lowest,
             f"{place}: mass_above_t is {limit:g}; the limits must start at 0 and increase",
         )
-        categories.append(WeightCategory(name, latin, limit, resistance, int(stage), table.values))
+        categories.append(WeightCategory(name, its_number, latin, limit, resistance, int(stage), table.values))
     require(len(categories) > 0, f"{FILE}: it holds no category")
     return tuple(categories)

@@ -29,6 +29,8 @@ NAMES: Final = frozenset(
     }
 )
 """The datasets of docs/table-format.md."""
+NUMBER: Final = "category_number"
+"""In books whose tables state it, of either version; 0: not stated."""
 ESTIMATOR_NAMES: Final = frozenset(
     {"predicted_passes", "estimator_breaks", *(f"estimator_{name}" for name in (*ESTIMATOR_NUMBERS, *ESTIMATOR_ROWS))}
 )
@@ -80,6 +82,7 @@ def checked_columns(book: Any) -> dict[str, list[Any]]:
     if not isinstance(version, int) or version not in SCHEMAS:
         raise DamagedError(f"its schema_version is {shown(version)}; this checker knows the versions 1 and 2 only")
     names, axes = SCHEMAS[version]
+    names |= {NUMBER} & set(book)
     if set(book) != names | axes:
         raise DamagedError(f"the datasets {sorted(set(book) ^ (names | axes))} are missing or unknown")
     stored = attributes.pop("payload_sha256")
@@ -99,6 +102,8 @@ def checked_columns(book: Any) -> dict[str, list[Any]]:
     payload = canonical_form({"attributes": attributes, "datasets": described})
     if stored != hashlib.sha256(payload.encode("utf-8")).hexdigest():
         raise DamagedError("its payload_sha256 does not fit its content")
+    if NUMBER in values and not values[NUMBER].any():
+        raise DamagedError(f"it holds {NUMBER}, but none of its tables states one")
     if version == 2 and not values["estimator_breaks"].any():
         raise DamagedError("its schema_version is 2, but none of its tables has an estimator")
     return {name: array.tolist() for name, array in values.items()}
@@ -147,6 +152,7 @@ def document_of(row: Row) -> dict[str, Any]:
         },
         "cut": {
             "category": text(row["category"]),
+            **({NUMBER: row[NUMBER]} if row.get(NUMBER) else {}),
             "mass_t": row["mass_t"],
             "axle_offsets_m": [x for x in row["axle_offsets_m"] if not math.isnan(x)],
         },

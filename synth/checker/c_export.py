@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from synth.checker.canonical import crc32
+from synth.checker.category_number import YARD
 from synth.checker.estimator import Estimator
 from synth.checker.finding import DamagedError
 from synth.checker.float32 import FLOAT, WORD, bits, is_float32
@@ -20,6 +21,7 @@ TOKEN: Final = re.compile(
 ARRAY: Final = re.compile(r"const retarder_table retarder_tables\[\w*\]\s*=\s*(\{.*?\})\s*;", re.DOTALL)
 COUNT: Final = re.compile(r"const unsigned retarder_table_count\s*=\s*(\d{1,6})u\s*;")
 CATEGORY: Final = re.compile(r"#define RETARDER_CATEGORY_(\w+) (\d{1,6})u /\* (.*?) \*/")
+LAYOUT: Final = r"#define RETARDER_LAYOUT (\d{1,6})u"
 SIZE: Final = "#define RETARDER_{} (\\d{{1,6}})u"
 
 Words = tuple[int, ...]
@@ -76,8 +78,7 @@ def differences(blocks: Sequence[Words], tables: Sequence[Table], header: str) -
         yield "", "its header does not tell RETARDER_STAGES and RETARDER_POWERS"
         return
     size = int(stages[1]), int(powers[1]), most_breaks(tables)
-    categories = list(dict.fromkeys(table.category for table in tables))
-    yield from (("", sentence) for sentence in category_differences(categories, header))
+    yield from (("", sentence) for sentence in category_differences(tables, header))
     breaks = re.search(SIZE.format("BREAKS"), header)  # not in exports from before there were estimators
     if int(breaks[1] if breaks else 0) != size[2]:
         yield "", f"its header has room for {breaks[1] if breaks else 'no'} breaks, but the tables have {size[2]}"
@@ -85,15 +86,17 @@ def differences(blocks: Sequence[Words], tables: Sequence[Table], header: str) -
         body = b"".join(WORD.pack(word) for word in block[:-1])
         if block[-1] != crc32(body):
             yield table.id, f"the crc32 of table {number} is {block[-1]:08x}, but its words give {crc32(body):08x}"
-        wanted = words_of(table, categories.index(table.category) + 1, size)
+        wanted = words_of(table, size)
         if block[:-1] != wanted:
             yield table.id, word_difference(number, block[:-1], wanted)
 
 
-def category_differences(categories: Sequence[str], header: str) -> Iterator[str]:
-    """What is wrong with the constants of the weight categories."""
+def category_differences(tables: Sequence[Table], header: str) -> Iterator[str]:
+    """What is wrong with the constants of the weight categories: those of the yard are always there."""
     found = [(number, comment) for _, number, comment in CATEGORY.findall(header)]
-    wanted = [(str(number), ascii_comment(name)) for number, name in enumerate(categories, start=1)]
+    numbers = YARD | {table.category: table.category_number or 0 for table in tables}
+    by_number = sorted(numbers.items(), key=lambda each: each[1])
+    wanted = [(str(number), ascii_comment(name)) for name, number in by_number]
     if found != wanted:
         yield f"its header defines the categories {found}, but the tables have {wanted}"
     if len({name for name, _, _ in CATEGORY.findall(header)}) < len(found):
@@ -102,7 +105,8 @@ def category_differences(categories: Sequence[str], header: str) -> Iterator[str
 
 def ascii_comment(text: str) -> str:
     """A name as the export writes it into comments."""
-    return "".join(x if x.isascii() and (x.isalnum() or x in " ._+,()-") else f"<U+{ord(x):04X}>" for x in text)
+    plain = "".join(x if x.isascii() and (x.isalnum() or x in " ._+,()-") else f"<U+{ord(x):04X}>" for x in text)
+    return plain.replace("RETARDER_", "RETARDER<U+005F>").replace("retarder_", "retarder<U+005F>")
 
 
 def most_breaks(tables: Sequence[Table]) -> int:
@@ -110,11 +114,11 @@ def most_breaks(tables: Sequence[Table]) -> int:
     return max(len(table.estimator.s_m) if table.estimator else 0 for table in tables)
 
 
-def words_of(table: Table, category: int, size: tuple[int, int, int]) -> Words:
+def words_of(table: Table, size: tuple[int, int, int]) -> Words:
     """The words that a table should have, its checksum left out; missing lines, stages, powers and breaks are 0."""
     stages, powers, breaks = size
     lines = [(lower is not None) + 2 * (upper is not None) for lower, upper in table.lines]
-    words = [category, len(table.axle_offsets_m), len(table.lines), table.degree + 1]
+    words = [table.category_number or 0, len(table.axle_offsets_m), len(table.lines), table.degree + 1]
     words += lines + [0] * (stages - len(lines))
     words += [bits(x) for x in (table.mass_t, table.target_m_s, *table.path_m)]
     for k in range(stages):

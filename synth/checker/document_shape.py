@@ -45,7 +45,7 @@ SHAPE: Final[Mapping[str, Any]] = {
     "created": TEXT,
     "generator": {"name": TEXT, "version": TEXT, "config_sha256": TEXT},
     "retarder": {"name": TEXT, "zones_m": [Pair()], "exit_m": NUMBER, "dead_band_kpa": NUMBER},
-    "cut": {"category": TEXT, "mass_t": NUMBER, "axle_offsets_m": NUMBERS},
+    "cut": {"category": TEXT, "category_number": Optional(COUNT), "mass_t": NUMBER, "axle_offsets_m": NUMBERS},
     "target_speed_m_s": NUMBER,
     "polynomial": {"variable": TEXT, "degree": COUNT},
     "stages": [{"k": COUNT, "pressure_kpa": NUMBER, "lower": OrNull(NUMBERS), "upper": OrNull(NUMBERS)}],

@@ -5,13 +5,16 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Final
 
 from synth.checker import c_export, csv_export, golden_export, st_export, track_export
+from synth.checker.category_number import without_number
+from synth.checker.code_file import CodeFile, OtherLayoutError, c_files, require_layout, st_files
 from synth.checker.finding import DamagedError, Finding, Kind
 from synth.checker.source import Source, named
-from synth.checker.source_file import content_of, text_of
+from synth.checker.source_file import content_of
 from synth.checker.table_reading import Table
 
 FOLDERS: Final = ("", "c", "st")
@@ -34,49 +37,53 @@ def check_exports(source: Source, folder: Path) -> ExportReport:
     files: list[str] = []
     findings: list[Finding] = []
 
-    def check(file: Path, compare: Callable[[Path], Differences]) -> None:
+    def check(file: Path, compare: Callable[[], Differences]) -> None:
         files.append(named(file, folder))
         try:
-            for about, sentence in compare(file):
+            for about, sentence in compare():
                 where = f"{files[-1]}: {sentence}"
                 findings.append(Finding(Kind.DISAGREES, about or files[-1], where if about else sentence))
         except DamagedError as fault:
             findings.append(Finding(Kind.DAMAGED, files[-1], str(fault)))
+        except OtherLayoutError as fault:
+            findings.append(Finding(Kind.LAYOUT, files[-1], str(fault)))
 
     for place in FOLDERS:
-        check_file(folder / place / "retarder_table.c", lambda file: c_differences(file, source), check)
-        check_file(folder / place / "golden_vectors.csv", lambda file: golden_differences(file, source), check)
-        check_file(folder / place / "golden_tracks.csv", lambda file: track_differences(file, source), check)
-        check_file(folder / place / "retarder_table.st", lambda file: st_differences(file, source), check)
+        for code in c_files(folder / place):
+            check(code.path, partial(c_differences, code, source))
+        for file in sorted((folder / place).glob("*golden_vectors.csv")):
+            check(file, partial(golden_differences, file, source))
+        for file in sorted((folder / place).glob("*golden_tracks.csv")):
+            check(file, partial(track_differences, file, source))
+        for code in st_files(folder / place):
+            check(code.path, partial(st_differences, code, source))
     tables = {table.id: table for table in source.tables}
     csv_files = sorted((folder / "tables").glob("*.csv"))
     seen: set[str] = set()
     for file in csv_files:
-        check(file, lambda file: csv_differences(file, tables, seen))
+        check(file, partial(csv_differences, file, tables, seen))
     if csv_files:
         missing = sorted(tables.keys() - seen)
         findings += [Finding(Kind.DISAGREES, name, "other tables have a CSV file, it has none") for name in missing]
     return ExportReport(tuple(files), tuple(findings))
 
 
-def check_file(
-    file: Path, compare: Callable[[Path], Differences], check: Callable[[Path, Callable[[Path], Differences]], None]
-) -> None:
-    """Check a file that may be missing."""
-    if file.exists():
-        check(file, compare)
+def c_differences(code: CodeFile, source: Source) -> Differences:
+    """The C export in a file, and the header beside it; `OtherLayoutError` for one that is not compared."""
+    text, header = code.text(), code.text(code.path.with_suffix(".h"))
+    blocks = c_export.read_blocks(text)
+    require_layout(header, c_export.LAYOUT)
+    yield from without_number(source.tables)
+    yield from c_export.differences(blocks, in_order(source, text), header)
 
 
-def c_differences(file: Path, source: Source) -> Differences:
-    """The C export in `file`, and the header beside it."""
-    text, header = text_of(file), text_of(file.with_suffix(".h"))
-    return c_export.differences(c_export.read_blocks(text), in_order(source, text), header)
-
-
-def st_differences(file: Path, source: Source) -> Differences:
-    """The Structured Text in `file`."""
-    text = text_of(file)
-    return st_export.differences(st_export.read_arrays(text), in_order(source, text))
+def st_differences(code: CodeFile, source: Source) -> Differences:
+    """The Structured Text of an export; `OtherLayoutError` for one that is not compared."""
+    text = code.units()
+    arrays = st_export.read_arrays(text)
+    require_layout(text, st_export.LAYOUT)
+    yield from without_number(source.tables)
+    yield from st_export.differences(arrays, in_order(source, text))
 
 
 def golden_differences(file: Path, source: Source) -> Differences:

@@ -9,6 +9,7 @@ from typing import Any
 
 from synth.checker.book_reading import SIGNATURE, read_documents
 from synth.checker.canonical import canonical_form
+from synth.checker.category_number import contradictions
 from synth.checker.document_shape import require_document
 from synth.checker.finding import DamagedError, Finding, Kind, NothingToVerifyError, shown
 from synth.checker.source_file import content_of
@@ -77,6 +78,7 @@ def read_directory(path: Path) -> Source:
             findings += differences(single, bound) if files else []
     order = [single.get(table.id, table) for table in bound]
     order += [table for table in single.values() if table.id not in {each.id for each in bound}]
+    findings += [Finding(Kind.DISAGREES, name, sentence) for name, sentence in contradictions(order)]
     names = [named(file, path) for file in files] + (["book.h5"] if book_file.exists() else [])
     return Source(path, path, tuple(order), bool(bound), tuple(names), tuple(findings))
 
@@ -95,6 +97,8 @@ def tables_of_book(content: bytes) -> tuple[Table, ...]:
     ids = [table.id for table in tables]
     if not ids or len(set(ids)) < len(ids):
         raise DamagedError(f"it holds the tables {shown(ids)}, but must hold at least one, and each id once")
+    for name, sentence in contradictions(tables):
+        raise DamagedError(f"{name}: {sentence}")
     return tuple(tables)
 
 

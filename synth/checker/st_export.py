@@ -12,6 +12,7 @@ from synth.checker.table_reading import Table
 
 ARRAY: Final = re.compile(r"\b(\w+) : ARRAY\[0\.\.(\d{1,6})\] OF (REAL|INT|BOOL) := \[([^\]]*)\];")
 COMMENT: Final = re.compile(r"\(\*.*?\*\)", re.DOTALL)
+LAYOUT: Final = r"\bIF Layout <> (\d{1,6}) THEN"
 OWN_ARRAYS: Final = ("Lower", "Upper", "Coefficient")
 ESTIMATOR_COLUMNS: Final = ("BreaksOf", "SpeedVarianceOf", "FactorVarianceOf", "PathVarianceOf")
 ESTIMATOR_ROWS: Final = ("BreakPath", "Drive", "Brake")
@@ -49,14 +50,13 @@ def differences(arrays: Arrays, tables: Sequence[Table]) -> Iterator[tuple[str, 
     if numbered != set(range(len(tables))):
         yield "", f"it holds {len(numbered)} tables, but there are {len(tables)}"
         return
-    categories = list(dict.fromkeys(table.category for table in tables))
     columns: dict[str, list[Any]] = {
         "StagesOf": [len(table.lines) for table in tables],
         "PowersOf": [table.degree + 1 for table in tables],
         "TargetOf": [rounded(table.target_m_s) for table in tables],
         "PathMinOf": [rounded(table.path_m[0]) for table in tables],
         "PathMaxOf": [rounded(table.path_m[1]) for table in tables],
-        "CategoryOf": [categories.index(table.category) + 1 for table in tables],
+        "CategoryOf": [table.category_number for table in tables],
         "AxlesOf": [len(table.axle_offsets_m) for table in tables],
         "MassOf": [rounded(table.mass_t) for table in tables],
     }

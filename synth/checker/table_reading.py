@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from synth.checker.canonical import canonical_form, crc32, parse_json, without_checksum
+from synth.checker.category_number import number_of
 from synth.checker.document_shape import refuse_unless, require_document
 from synth.checker.estimator import Estimator, estimator_of
 from synth.checker.finding import DamagedError, shown
@@ -20,7 +21,7 @@ class Table:
 
     `lines`: (lower, upper) of stage 0, 1, …, ascending powers of s in metres. `p_stall` and the three validated
     figures are None where the table does not state them, `predicted_passes` where the prediction was not simulated,
-    `estimator` in version 1.
+    `estimator` in version 1, `category_number` where nothing tells it.
     """
 
     id: str
@@ -30,6 +31,7 @@ class Table:
     exit_m: float
     dead_band_kpa: float
     category: str
+    category_number: int | None
     mass_t: float
     axle_offsets_m: tuple[float, ...]
     target_m_s: float
@@ -90,6 +92,7 @@ def table_of(document: Mapping[str, Any]) -> Table:
         exit_m=float(retarder["exit_m"]),
         dead_band_kpa=float(retarder["dead_band_kpa"]),
         category=cut["category"],
+        category_number=number_of(cut),
         mass_t=float(cut["mass_t"]),
         axle_offsets_m=numbers(cut["axle_offsets_m"]),
         target_m_s=float(document["target_speed_m_s"]),

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from synth.tables.table_file import TableFile, read_tables, summary_beside
+from synth.tables.exported_code import exported_code
+from synth.tables.table_file import TableFile, holds_tables, read_tables, summary_beside
 from tuning_tables import DamagedTable
 from tuning_tables.document import to_document
 from tuning_tables.estimator import Estimator
@@ -19,11 +20,13 @@ SHOWN_POINTS = 5
 
 
 def inspect_command(source: Path, as_json: bool) -> int:
-    """Print the contents of the tables in `source`; `TableError` for a damaged one."""
-    files = read_tables(source, directory_allowed=True)
+    """Print the contents of the tables in `source`, and what controller code is there; `TableError` for damage."""
+    code = exported_code(source)
+    files = () if code and not holds_tables(source) else read_tables(source, directory_allowed=True)
     summary = checked_summary(source) if source.is_dir() else None
     if as_json:
         found: dict[str, Any] = {"path": str(source), "files": [file_document(file) for file in files]}
+        found |= {"code": [each.document() for each in code]} if code else {}
         if summary is not None:
             found["summary"] = summary
         print(json.dumps(found, indent=1, ensure_ascii=False))
@@ -32,6 +35,8 @@ def inspect_command(source: Path, as_json: bool) -> int:
         print(f"{file.path}: {contents(file)}")
         for table in file.tables:
             print(*table_words(table), sep="\n")
+    for each in code:
+        print(f"{each.path}: {each.sentence}")
     if summary is not None:
         print(f"{source / 'summary.json'}: {summary['sentence']}")
     return 0
@@ -46,7 +51,10 @@ def contents(file: TableFile) -> str:
 
 def file_document(file: TableFile) -> dict[str, Any]:
     """A file for programs."""
-    tables = [{**to_document(table), "lines_at": lines_at(table)} for table in file.tables]
+    tables = [
+        {**to_document(table), "category_number": table.cut.number, "lines_at": lines_at(table)}
+        for table in file.tables
+    ]
     return {"path": str(file.path), "kind": file.kind, "checksum": "right", "tables": tables}
 
 
@@ -59,11 +67,12 @@ def table_words(table: ControllerTable) -> list[str]:
         low, high = table.validated.rms_ci95_m_s
         rms = table.validated.rms_m_s
         validated = f"simulated rms {rms:.4f} m/s [{low:.4f}, {high:.4f}] in {table.validated.passes} passes"
+    number = "without a number" if cut.number is None else f"number {cut.number}"
     origin = "exact" if predicted.passes is None else f"from {predicted.passes} simulated passes"
     words = [
         f"  {table.id}: leave with {table.target_speed_m_s:g} m/s",
         f"    retarder   {retarder.name}; zones {zones}; the pass ends at {retarder.exit_m:g} m",
-        f"    cut        category {cut.category}, {cut.mass_t:g} t on {len(cut.axle_offsets_m)} axles",
+        f"    cut        category {cut.category} ({number}), {cut.mass_t:g} t on {len(cut.axle_offsets_m)} axles",
         f"    made       {table.created} by {table.generator.name} {table.generator.version}, "
         f"configuration {table.generator.config_sha256[:16]}…",
         f"    promised   rms {predicted.rms_m_s:.4f} m/s, bias {predicted.bias_m_s:+.4f} m/s, over-speed "

@@ -86,7 +86,7 @@ def resolve_cut(settings: CutSettings, index: int, retarder: RetarderEntry, file
             table.number("rolling_resistance.mean_n_per_kn"), table.number("rolling_resistance.std_n_per_kn")
         )
         stage = int(table.number("allowed_stage"))
-        cut = couple((entry.car,) * settings.cars, settings.mass_t, category.name, stage)
+        cut = couple((entry.car,) * settings.cars, settings.mass_t, category.name, stage, category.number)
     except PlantError as error:
         sentence = str(error).replace("rolling resistance: ", f"{key}.rolling_resistance.").replace("cut: ", f"{key}.")
         sentence = sentence.replace("weight category ", f"{key}.category is ").replace(" is not in", ", not in")

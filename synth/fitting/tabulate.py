@@ -63,7 +63,7 @@ def tabulate(
         retarder=RetarderId(
             position.name, position.zones_m, float(plant.exit_m), float(position.pneumatics.dead_band_kpa)
         ),
-        cut=CutId(plant.cut.category, float(plant.cut.mass_t), plant.cut.axle_offsets_m),
+        cut=CutId(plant.cut.category, float(plant.cut.mass_t), plant.cut.axle_offsets_m, plant.cut.category_number),
         target_speed_m_s=float(target_speed_m_s),
         degree=lines.degree,
         stages=tuple(stages),

@@ -12,8 +12,8 @@ from synth.in_the_loop.hard_readings import hard_commands, hard_readings
 from synth.in_the_loop.hard_samples import hard_samples
 from synth.in_the_loop.observed import observed, same_nan
 from tuning_tables import decide_many
-from tuning_tables.table_block import block_of, block_size
-from tuning_tables.table_book import TableBook
+from tuning_tables.table_block import LAYOUT, block_of, block_size
+from tuning_tables.table_book import Status, TableBook
 
 
 @dataclass(frozen=True)
@@ -99,9 +99,12 @@ def choices_of(book: TableBook, commands: NDArray[np.void]) -> tuple[NDArray[np.
     size = block_size(book)
     chosen = np.zeros((len(commands), size.words), np.uint32)
     statuses = np.empty(len(commands), np.int32)
-    for place, (category, axles, speed) in enumerate(commands.tolist()):
-        name = book.categories[category - 1] if 1 <= category <= len(book.categories) else "no category"
-        choice = book.choose(name, axles, speed)
+    names = {number: name for name, number in book.category_numbers.items()}
+    for place, (layout, category, axles, speed) in enumerate(commands.tolist()):
+        if layout != LAYOUT:
+            statuses[place] = Status.OTHER_LAYOUT
+            continue
+        choice = book.choose(names.get(category, "no category"), axles, speed)
         statuses[place] = choice.status
         if choice.table is not None:
             chosen[place] = block_of(book, choice.numbers[0], choice.table, size).words

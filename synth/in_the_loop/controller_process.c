@@ -6,7 +6,7 @@
  *                   1: it begins, 2: it is the 7 words, whatever they are
  *   serve N         for {int32 what, float s_m, float v_m_s, float overpressure_kpa}, at once: what OBSERVE, or BEGIN
  *                   and observe: float estimated speed of table N; else its int32 decision, `what` being the stage
- *   select          for {uint32 category, uint32 axles, float speed}: int32 status, the table (zeros if none)
+ *   select          for {uint32 layout, uint32 category, uint32 axles, float speed}: int32 status, the table (zeros if none)
  *   intact          for a table: int32, whether its checksum is right
  *   dump            all tables
  *   self-test       nothing; the exit code is the fault
@@ -116,6 +116,7 @@ static int serve(unsigned number)
 static int choose(void)
 {
     struct {
+        uint32_t layout;
         uint32_t category;
         uint32_t axles;
         float speed_m_s;
@@ -123,7 +124,7 @@ static int choose(void)
     while (fread(&command, sizeof command, 1, stdin) == 1) {
         retarder_table chosen;
         memset(&chosen, 0, sizeof chosen);
-        answer(retarder_select(command.category, command.axles, command.speed_m_s, &chosen));
+        answer(retarder_select(command.layout, command.category, command.axles, command.speed_m_s, &chosen));
         if (fwrite(&chosen, sizeof chosen, 1, stdout) != 1) {
             return 9;
         }

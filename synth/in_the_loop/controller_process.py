@@ -31,7 +31,7 @@ SAMPLE = np.dtype(
 """`start`: ON, BEGIN or GIVEN: the estimate goes on, begins, or is `given`, whatever that is."""
 
 ON, BEGIN, GIVEN = 0, 1, 2
-COMMAND = np.dtype([("category", "u4"), ("axles", "u4"), ("speed_m_s", "f4")])
+COMMAND = np.dtype([("layout", "u4"), ("category", "u4"), ("axles", "u4"), ("speed_m_s", "f4")])
 
 
 class BuildError(RuntimeError):

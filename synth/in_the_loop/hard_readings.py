@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from synth.in_the_loop.controller_process import COMMAND, READING
 from tuning_tables.golden_choices import golden_choices
 from tuning_tables.golden_vectors import golden_vectors, line_speeds
+from tuning_tables.table_block import LAYOUT
 from tuning_tables.table_book import TableBook
 
 
@@ -85,12 +86,14 @@ def hard_commands(book: TableBook, count: int, seed: int) -> NDArray[np.void]:
     """Commands for a choice, dtype COMMAND: the golden ones, and random ones with a third of them senseless."""
     rng = np.random.default_rng(seed)
     found = np.empty(count, COMMAND)
-    found["category"] = rng.integers(0, len(book.categories) + 2, count)
+    numbers = [book.number_of(category) for category in book.category_numbers]
+    found["layout"] = np.where(rng.random(count) < 0.02, rng.integers(0, 2**32, count, dtype=np.uint32), LAYOUT)
+    found["category"] = rng.choice([*numbers, 0, max(numbers) + 1], count)
     found["axles"] = rng.choice([4, 6, 8], count)
     targets = np.array([table.target_speed_m_s for table in book.tables], dtype=np.float32)
     speed = rng.uniform(1.0, 5.0, count).astype(np.float32)
     speed = np.where(rng.random(count) < 0.2, rng.choice(targets, count), speed)
     wild = rng.integers(0, 2**32, count, dtype=np.uint32).view(np.float32)
     found["speed_m_s"] = np.where(rng.random(count) < 0.3, wild, speed)
-    golden = np.array([(c.category, c.axles, c.commanded_m_s) for c in golden_choices(book)], COMMAND)
+    golden = np.array([(c.layout, c.category, c.axles, c.commanded_m_s) for c in golden_choices(book)], COMMAND)
     return np.concatenate([golden, found])

@@ -32,12 +32,23 @@ def read_tables(path: Path, directory_allowed: bool = False) -> tuple[TableFile,
     if path.is_dir():
         if not directory_allowed:
             raise InputError(f"{path}: this is a directory; give a table (.json) or a book (.h5)")
-        folder = path / "tables" if (path / "tables").is_dir() else path
-        files = sorted(f for f in folder.glob("*.json") if f.name != "summary.json") or sorted(path.glob("*.h5"))
+        files = table_files(path)
         if not files:
             raise InputError(f"{path}: there are neither tables (.json) nor books (.h5) in it; give what a tune left")
         return tuple(read_table_file(file) for file in files)
     return (read_table_file(path),)
+
+
+def table_files(directory: Path) -> list[Path]:
+    """The JSON tables of a directory, those in tables/ if it has that, else its books."""
+    folder = directory / "tables" if (directory / "tables").is_dir() else directory
+    tables = sorted(file for file in folder.glob("*.json") if file.name != "summary.json")
+    return tables or sorted(directory.glob("*.h5"))
+
+
+def holds_tables(path: Path) -> bool:
+    """Whether a directory has anything to be read as tables."""
+    return path.is_dir() and bool(table_files(path))
 
 
 def read_table_file(path: Path) -> TableFile:

@@ -141,7 +141,7 @@ def test_words_in_c_are_those_of_the_exporter(estimated_once: Path, tuned_once: 
         size = book.most_stages, book.highest_degree + 1, most_breaks(own)
         for number, table in enumerate(own):
             words = block_of(book, number).words.tolist()
-            assert [*words_of(table, 1, size)] == words[:-1]
+            assert [*words_of(table, size)] == words[:-1]
 
 
 def change_text(file: Path, pattern: str, replacement: str) -> None:

@@ -89,6 +89,31 @@ def test_weight_category_goes_by_axle_load(mass_t: float, axles: int, name: str)
     assert weight_category(mass_t, axles).name == name
 
 
+def test_weight_categories_keep_their_numbers_wherever_they_stand() -> None:
+    assert {c.name: c.number for c in weight_categories()} == {"Л": 1, "ЛС": 2, "С": 3, "СТ": 4, "Т": 5}
+    first, *others = CATEGORIES.split("\n[")
+    heaviest = f"{first}\n[{others[-1]}".replace(
+        "value = 72.0, range = [72.0, 72.0]", "value = 0.0, range = [0.0, 0.0]"
+    )
+    assert [(c.name, c.number) for c in categories_from_toml(heaviest)] == [("Т", 5)]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("number = 3\n", "", "S: number is None; it must be a whole number from 1 to 255"),
+        ("number = 3\n", "number = 256\n", "S: number is 256"),
+        ("number = 3\n", "number = true\n", "S: number is True"),
+        ("number = 3\n", "number = 1\n", "S: its name С or number 1 is that of L, too"),
+        ('name = "С"', 'name = "Л"', "S: its name Л or number 3 is that of L, too"),
+    ],
+)
+def test_a_category_without_a_number_of_its_own_is_refused(old: str, new: str, message: str) -> None:
+    assert CATEGORIES.count(old) == 1
+    with pytest.raises(PlantError, match=f"weight_categories.toml: {message}"):
+        categories_from_toml(CATEGORIES.replace(old, new))
+
+
 def test_weight_categories_are_those_of_the_facts() -> None:
     assert [c.name for c in weight_categories()] == ["Л", "ЛС", "С", "СТ", "Т"]
     assert [c.allowed_stage for c in weight_categories()] == [2, 3, 4, 4, 4]

@@ -15,6 +15,7 @@ from tuning_tables import (
     ValidRange,
     round_coefficients,
 )
+from tuning_tables.category_number import KNOWN_NUMBERS
 from tuning_tables.line_order import require_order
 from tuning_tables.table import HIGHEST_DEGREE, MOST_STAGES
 
@@ -88,6 +89,17 @@ def estimators(draw):
 
 
 @st.composite
+def cuts(draw):
+    """A category with no number, with its own, or one of the yard; each name and number stands for the other alone."""
+    sizes = draw(above_zero()), (0.0, *draw(rising(above_zero(), max_size=4)))
+    number = draw(st.integers(16, 255))
+    known = st.sampled_from(sorted(KNOWN_NUMBERS)).map(lambda name: (name, KNOWN_NUMBERS[name]))
+    other = texts.filter(lambda name: name not in KNOWN_NUMBERS and not name.startswith("own "))
+    name, stated = draw(other.map(lambda name: (name, None)) | known | st.just((f"own {number}", number)))
+    return CutId(name, *sizes, stated)
+
+
+@st.composite
 def tables(draw, names=texts, generators=None):
     """A table whose id is one of `names`; its path range is a few hundred metres at most."""
     degree = draw(st.integers(0, HIGHEST_DEGREE))
@@ -101,7 +113,7 @@ def tables(draw, names=texts, generators=None):
         created=draw(instants),
         generator=draw(generators or st.builds(Generator, texts, texts, digests)),
         retarder=draw(retarders()),
-        cut=CutId(draw(texts), draw(above_zero()), (0.0, *draw(rising(above_zero(), max_size=4)))),
+        cut=draw(cuts()),
         target_speed_m_s=draw(above_zero()),
         degree=degree,
         stages=draw(stage_lists(degree, s_m)),

@@ -40,11 +40,14 @@ def small_book() -> TableBook:
 
 def shaped_book(stages: int, degree: int) -> TableBook:
     """One table of the given size."""
-    return TableBook((table_of("one", "T", 85.0, FOUR_AXLES, 3.0, stages, degree),))
+    return TableBook((table_of("one", "Т", 85.0, FOUR_AXLES, 3.0, stages, degree),))
 
 
 def oddly_named_book() -> TableBook:
     """Names that would end a comment, fill a blank, or leave ASCII, if they could."""
     names = ("*) IF (*", "@TABLES@", "$LAST_TABLE", "// {pragma} 'text'", "№ 7 «ЛС»", "END_FUNCTION_BLOCK", " (* ")
-    tables = [replace(table_of(name, name, 23.0, FOUR_AXLES, 2.0), id=name) for name in names]
+    tables = []
+    for number, name in enumerate(names, start=16):
+        table = table_of(name, name, 23.0, FOUR_AXLES, 2.0)
+        tables.append(replace(table, cut=replace(table.cut, category_number=number)))
     return TableBook(tuple(tables))

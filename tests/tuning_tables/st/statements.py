@@ -165,7 +165,7 @@ class StatementCompiler:
         return run
 
     def invocation(self, node) -> Callable:
-        """instance(Input := expression, InOut := variable);"""
+        """instance(Input := expression, InOut := variable); an input that is not given keeps its value, 0 at first."""
         call = next(child for child in node.children if child.type == "call_expression")
         kind, find = resolve(call.child_by_field_name("function"), self.scope)
         if not isinstance(kind, Record) or not kind.is_block:
@@ -176,9 +176,9 @@ class StatementCompiler:
             for child in call.child_by_field_name("arguments").named_children
             if child.type == "named_argument"
         }
-        if set(given) != set(block.inputs) | set(block.references):
+        if not set(block.references) <= set(given) <= set(block.inputs) | set(block.references):
             raise Fault(f"{kind.name} wants {[*block.inputs, *block.references]}, not {[*given]}")
-        inputs = {name: self.expression(given[name], block.inputs[name].kind) for name in block.inputs}
+        inputs = {name: self.expression(given[name], block.inputs[name].kind) for name in block.inputs if name in given}
         references = {name: resolve(given[name], self.scope) for name in block.references}
         if any(block.references[name] != found for name, (found, _) in references.items()):
             raise Fault(f"{call.text!r} hands over a variable of another type")

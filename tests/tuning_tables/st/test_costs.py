@@ -116,10 +116,13 @@ def test_operations_of_a_choice(program, default_book):
     def choice(book, speed):
         each = Program(st_files(book)[TABLE_FILE])
         table = each.new("RETARDER_TABLE")
-        return executed(each, "RETARDER_SELECT", Category=1, Axles=4, Commanded_m_s=speed, Table=table)
+        return executed(each, "RETARDER_SELECT", Layout=2, Category=1, Axles=4, Commanded_m_s=speed, Table=table)
 
     tables = default_book.tables
-    others = [replace(table, id=f"other {table.id}", cut=replace(table.cut, category="X")) for table in tables]
+    others = [
+        replace(table, id=f"other {table.id}", cut=replace(table.cut, category="X", category_number=16))
+        for table in tables
+    ]
     twice = TableBook((*tables, *others))
     between, more = choice(default_book, 2.5), choice(twice, 2.5)
     assert stated("`RETARDER_SELECT`, between") == list(between)

@@ -147,7 +147,7 @@ def test_lines_between_tables_of_two_estimators_are_not_taken(estimating_book):
         program = Program(st_files(book)[TABLE_FILE])
         for speed in (2.5, 3.0, 3.5, 3.9):
             selector, table = program.new("RETARDER_SELECT"), program.new("RETARDER_TABLE")
-            program.call("RETARDER_SELECT", selector, Category=book.categories.index("Л") + 1, Axles=4,
+            program.call("RETARDER_SELECT", selector, Layout=2, Category=1, Axles=4,
                          Commanded_m_s=np.float32(speed), Table=table)  # fmt: skip
             choice = book.choose("Л", 4, speed)
             assert selector["STATUS"].value == choice.status

@@ -24,6 +24,7 @@ def select(book, commands, real=np.float32, text=None):
     program.call(
         "RETARDER_SELECT",
         selector,
+        Layout=np.minimum(commands["layout"], 32767).astype(np.int64),
         Category=commands["category"].astype(np.int64),
         Axles=commands["axles"].astype(np.int64),
         Commanded_m_s=commands["speed_m_s"],
@@ -73,7 +74,7 @@ def test_the_chosen_lines_between_two_tables_decide_as_python(default_book):
         selector, table, decider = (
             program.new(name) for name in ("RETARDER_SELECT", "RETARDER_TABLE", "RETARDER_DECIDE")
         )
-        program.call("RETARDER_SELECT", selector, Category=2, Axles=4, Commanded_m_s=speed, Table=table)
+        program.call("RETARDER_SELECT", selector, Layout=2, Category=3, Axles=4, Commanded_m_s=speed, Table=table)
         chosen = default_book.choose("С", 4, float(speed)).table
         stage, s = rng.integers(0, 5, 20_000), rng.uniform(-1.0, 39.0, 20_000).astype(np.float32)
         v = rng.uniform(0.0, 9.0, 20_000).astype(np.float32)

@@ -132,7 +132,12 @@ def test_equal_books_give_equal_bytes(book, small_book):
 def test_too_many_tables_are_refused(small_book):
     table = small_book.tables[0]
     tables = [
-        replace(table, id=f"{n}", cut=replace(table.cut, category=f"{n % 7}"), target_speed_m_s=2.0 + n)
+        replace(
+            table,
+            id=f"{n}",
+            cut=replace(table.cut, category=f"{n % 7}", category_number=16 + n % 7),
+            target_speed_m_s=2.0 + n,
+        )
         for n in range(MOST_TABLES + 1)
     ]
     with pytest.raises(InvalidTable, match=f"has {MOST_TABLES + 1} tables, but .* at most {MOST_TABLES}"):

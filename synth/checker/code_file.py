@@ -1,0 +1,79 @@
+"""Controller code as files: found whatever its prefix, read as if it had none, its layout recognised."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from synth.checker.source_file import content_of, text_of
+
+LAYOUT: Final = 2
+"""The layout that this checker knows, in which the numbers of the categories are fixed."""
+HEAD: Final = b"Controller tables of a car retarder"
+OLD_ADVICE: Final = "layout 1, in which the numbers of the categories follow the order of the tables; export again"
+UNIT_FILE: Final = re.compile(r"\d{4}_(\w+)_LOAD\.st")
+"""Of an export with a file each unit, the one with most of the tables."""
+
+
+class OtherLayoutError(Exception):
+    """The code is whole, but of a layout that is not compared; the message is one sentence without the file's name."""
+
+
+@dataclass(frozen=True)
+class CodeFile:
+    """An export of controller code at `path`, with the text in which names begin with RETARDER and retarder."""
+
+    path: Path
+    prefix: str
+
+    def text(self, path: Path | None = None) -> str:
+        """The text of the file, or of another one of the same export."""
+        text = text_of(path or self.path)
+        return re.sub(
+            rf"\b({re.escape(self.prefix.upper())}|{re.escape(self.prefix.lower())})_",
+            lambda found: "RETARDER_" if found[1].isupper() else "retarder_",
+            text,
+        )
+
+    def units(self) -> str:
+        """The text of all units of the tables in Structured Text: one file, or several in the order of their names."""
+        if not UNIT_FILE.fullmatch(self.path.name):
+            return self.text()
+        names = "TABLE|CATEGORIES|LOAD|SELECT"
+        parts = re.compile(rf"\d{{4}}_{self.prefix}_({names})\.st")
+        return "\n".join(self.text(file) for file in sorted(self.path.parent.iterdir()) if parts.fullmatch(file.name))
+
+
+def c_files(folder: Path) -> Iterator[CodeFile]:
+    """The C99 exports in `folder`."""
+    return whole_files(folder, "_table.c")
+
+
+def st_files(folder: Path) -> Iterator[CodeFile]:
+    """The exports in Structured Text in `folder`."""
+    yield from whole_files(folder, "_table.st")
+    for file in sorted(folder.glob("*_LOAD.st")):
+        found = UNIT_FILE.fullmatch(file.name)
+        if found:
+            yield CodeFile(file, found[1])
+
+
+def whole_files(folder: Path, ending: str) -> Iterator[CodeFile]:
+    """The files whose names end so: of no other prefix than RETARDER unless they begin as an export does."""
+    for file in sorted(folder.glob(f"*{ending}")):
+        prefix = file.name.removesuffix(ending)
+        if prefix == "retarder" or HEAD in content_of(file)[: 2 * len(HEAD)]:
+            yield CodeFile(file, prefix)
+
+
+def require_layout(text: str, pattern: str) -> None:
+    """Raise `OtherLayoutError` unless the layout of `text`, told by the group of `pattern`, is the one known here."""
+    found = re.search(pattern, text)
+    layout = int(found[1]) if found else 1
+    if layout > LAYOUT:
+        raise OtherLayoutError(f"layout {layout}, but this checker knows layout {LAYOUT}; update it")
+    if layout < LAYOUT:
+        raise OtherLayoutError(OLD_ADVICE)

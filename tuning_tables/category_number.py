@@ -1,0 +1,62 @@
+"""Numbers of weight categories: fixed for good, so that a controller and its host may hold them as literals.
+
+1 to 5 are the five categories of the yard, whatever book they are in; a user's own have 16 to 255. No number follows
+from the order of a file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Final
+
+from tuning_tables.errors import InvalidTable
+
+if TYPE_CHECKING:
+    from tuning_tables.table import ControllerTable
+
+KNOWN_NUMBERS: Final[Mapping[str, int]] = MappingProxyType({"Л": 1, "ЛС": 2, "С": 3, "СТ": 4, "Т": 5})
+"""The categories of the yard by their names in tables."""
+
+LEAST_OWN, LARGEST_OWN = 16, 255
+"""Of a user's own category; 6 to 15 are kept free, and 0 stands for none."""
+
+
+def require_category_number(category: str, number: object) -> None:
+    """`number` may stand for `category`; raises `InvalidTable`."""
+    if category in KNOWN_NUMBERS:
+        allowed = KNOWN_NUMBERS[category] == number and not isinstance(number, bool)
+        wanted = f"{KNOWN_NUMBERS[category]}, its number in every table"
+    else:
+        whole = isinstance(number, int) and not isinstance(number, bool)
+        allowed = whole and LEAST_OWN <= number <= LARGEST_OWN  # type: ignore[operator]
+        wanted = f"a whole number in [{LEAST_OWN}, {LARGEST_OWN}], as it is a category of your own"
+    if not allowed:
+        raise InvalidTable(
+            f"cut.category_number of the category {category} is {number!r:.60}, but it must be {wanted}."
+        )
+
+
+def category_numbers(tables: Sequence[ControllerTable]) -> Mapping[str, int | None]:
+    """The number of every category, None for one without, in order of first appearance.
+
+    Raises `InvalidTable` where a category has two numbers, or a number two categories.
+    """
+    of_name: dict[str, tuple[str, int | None]] = {}
+    of_number: dict[int, tuple[str, str]] = {}
+    for table in tables:
+        name, number = table.cut.category, table.cut.number
+        first, known = of_name.setdefault(name, (table.id, number))
+        if known != number:
+            raise InvalidTable(
+                f"the category {name} has the number {known} in {first}, but {number} in {table.id}; in one book it "
+                "must have one: give both tables the same cut.category_number."
+            )
+        if number is not None:
+            first, other = of_number.setdefault(number, (table.id, name))
+            if other != name:
+                raise InvalidTable(
+                    f"the number {number} stands for the category {other} in {first}, but for {name} in {table.id}; "
+                    "in one book it must stand for one: give one of them another cut.category_number."
+                )
+    return MappingProxyType({name: number for name, (_, number) in of_name.items()})

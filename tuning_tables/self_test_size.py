@@ -1,0 +1,26 @@
+"""How much the self-test of controller code asks: all that may show a fault, or what a small controller holds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+from tuning_tables.golden_vectors import GoldenVectors, few_golden_vectors, golden_vectors
+from tuning_tables.table import ControllerTable
+
+
+@dataclass(frozen=True)
+class SelfTestSize:
+    """`vectors`: the readings of a table that are decided, and their answers.
+
+    `line_checks`: of the choices between two tables, how many the Structured Text compares by every coefficient; it
+    has no checksum that could do so. Choices and tracks of estimators are the same in every size.
+    """
+
+    vectors: Callable[[ControllerTable], GoldenVectors]
+    line_checks: int
+
+
+FULL: Final = SelfTestSize(golden_vectors, 16)
+SMALL: Final = SelfTestSize(few_golden_vectors, 2)
