@@ -178,15 +178,22 @@ def export(
     source: Source,
     form: Annotated[str, typer.Option("--format", metavar="json|c|st|csv", help="Form of the tables.")],
     output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Where they go.")] = Path(),
+    prefix: Annotated[
+        str | None, typer.Option(metavar="NAME", help="First word of all names in code, instead of RETARDER.")
+    ] = None,
+    self_test: Annotated[
+        str | None, typer.Option(metavar="full|small", help="What the self-test of code asks; full unless given.")
+    ] = None,
+    split: Annotated[bool, typer.Option("--split", help="Structured Text with a file each unit.")] = False,
     as_json: Json = False,
 ) -> int:
     """Write tables in another form.
 
     JSON and CSV: a file each. C99 and Structured Text: all tables together, with the rule and a self-test.
     """
-    from synth.cli.export import export_command
+    from synth.cli.export import AskedCode, export_command
 
-    return export_command(source, form, output, as_json)
+    return export_command(source, form, output, AskedCode(prefix, self_test, split), as_json)
 
 
 @app.command()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,18 +14,29 @@ if TYPE_CHECKING:
     from tuning_tables import ControllerTable
 
 
-def export_command(source: Path, form: str, output: Path, as_json: bool) -> int:
+@dataclass(frozen=True)
+class AskedCode:
+    """The options of controller code as the user gave them, None for what was not given."""
+
+    prefix: str | None
+    self_test: str | None
+    split: bool
+
+
+def export_command(source: Path, form: str, output: Path, asked: AskedCode, as_json: bool) -> int:
     """Write the tables in `source` as `form` into the directory `output`, and print the names of the files."""
     from synth.output.output_directory import make_directory
+    from synth.tables.code_options import code_options
     from synth.tables.table_file import read_tables
     from synth.tables.table_forms import FORMS
     from tuning_tables import InvalidTable, write_atomically
 
     if form not in FORMS:
         raise InputError(f"--format {form}: there is no such form; give {', '.join(FORMS)}")
+    options = code_options(form, asked.prefix, asked.self_test, asked.split)
     (file,) = read_tables(source)
     try:
-        files = FORMS[form](file.tables)
+        files = FORMS[form](file.tables, options)
     except (InputError, InvalidTable) as fault:  # each table is right, but together they make no export
         raise InputError(f"{source}: {fault}") from None
     if form in ("c", "st"):

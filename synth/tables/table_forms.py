@@ -5,37 +5,39 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from synth.input_error import InputError
+from synth.tables.code_options import PLAIN, CodeOptions
 from synth.tables.table_file import file_stem
 from tuning_tables import ControllerTable, to_csv, to_json
 
 Files = Mapping[str, bytes]
-Form = Callable[[Sequence[ControllerTable]], Files]
+Form = Callable[[Sequence[ControllerTable], CodeOptions], Files]
 
 
-def json_form(tables: Sequence[ControllerTable]) -> Files:
+def json_form(tables: Sequence[ControllerTable], _options: CodeOptions = PLAIN) -> Files:
     """One JSON file a table."""
     return one_each(tables, to_json, ".json")
 
 
-def csv_form(tables: Sequence[ControllerTable]) -> Files:
+def csv_form(tables: Sequence[ControllerTable], _options: CodeOptions = PLAIN) -> Files:
     """One CSV file a table."""
     return one_each(tables, to_csv, ".csv")
 
 
-def c_form(tables: Sequence[ControllerTable]) -> Files:
+def c_form(tables: Sequence[ControllerTable], options: CodeOptions = PLAIN) -> Files:
     """C99 source of all tables together, self-test and golden vectors; `InvalidTable` if they make no book."""
     from tuning_tables.c_source import c_files
     from tuning_tables.table_book import TableBook
 
-    return c_files(TableBook(tuple(tables)))
+    return c_files(TableBook(tuple(tables)), options.prefix, options.self_test)
 
 
-def st_form(tables: Sequence[ControllerTable]) -> Files:
+def st_form(tables: Sequence[ControllerTable], options: CodeOptions = PLAIN) -> Files:
     """Structured Text of all tables together and its self-test; `InvalidTable` if they make no book."""
-    from tuning_tables.st_source import st_files
+    from tuning_tables.st_source import st_files, st_unit_files
     from tuning_tables.table_book import TableBook
 
-    return st_files(TableBook(tuple(tables)))
+    write = st_unit_files if options.split else st_files
+    return write(TableBook(tuple(tables)), options.prefix, options.self_test)
 
 
 FORMS: Mapping[str, Form] = {"json": json_form, "csv": csv_form, "c": c_form, "st": st_form}
