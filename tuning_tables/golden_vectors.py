@@ -54,17 +54,16 @@ def golden_vectors(table: ControllerTable) -> GoldenVectors:
 def few_golden_vectors(table: ControllerTable) -> GoldenVectors:
     """At most `FEW` readings a line, but 2 without any: on it and next to it, at five places of the path.
 
-    The places are one before and one behind the range, and three within it. At every stage with a line also a speed
-    that is negative and one that is far too high; and stages that do not exist. All of it has portable literals where
-    the lines' speeds have.
+    The places are the farthest numbers before and behind the range, and three within it. At every stage with a line
+    also a negative speed, none, and the largest; and stages that do not exist.
     """
     low, high = table.valid_range[0], table.valid_range[1]
     inner = [low + (high - low) * np.float32(part) for part in (0.25, 0.5, 0.8125)]
-    paths = np.array([low - np.float32(1000.0), *inner, high + np.float32(1000.0)], dtype=np.float32)
-    slow, fast = np.float32(-1.0), np.float32(100.0)
+    paths = np.array([-LARGEST, *inner, LARGEST], dtype=np.float32)
+    slow, none, fast = np.float32([-1.0, 0.0, LARGEST])
     lined = np.flatnonzero(table.has_line.any(axis=1)).tolist()
     readings = [reading for reading in _line_readings(table, paths, STEPS) if reading[0] in lined]
-    readings += [(k, inner[0], v) for k in lined for v in (slow, fast)]
+    readings += [(k, inner[0], v) for k in lined for v in (slow, none, fast)]
     readings += [(k, inner[0], fast) for k in (-1, len(table.stages))]
     return _answered(table, readings)
 

@@ -64,6 +64,18 @@ def estimating_book() -> TableBook:
     return TableBook(tuple(replace(table, estimator=given.get(table.id)) for table in sample_book().tables))
 
 
+def park_book() -> TableBook:
+    """Another position: three stages, straight lines, other classes; one class has an estimator."""
+    made = []
+    for category, mass_t, targets in (("СТ", 66.0, (1.5, 2.5)), ("Л", 22.0, (1.2, 2.0, 2.8))):
+        for target in targets:
+            table = table_of(f"park {category} to {target}", category, mass_t, FOUR_AXLES, target, 3, 1)
+            estimator = estimator_of(7, 30.0) if category == "Л" else None
+            retarder = RetarderId("РНЗ-2М", ((0.0, 6.0), (8.0, 14.0)), 25.0, 10.0)
+            made.append(replace(table, retarder=retarder, estimator=estimator))
+    return TableBook(tuple(made))
+
+
 def estimator_of(breaks: int, end_m: float, begin_m: float = 0.0, noise_m_s: float = 0.05) -> Estimator:
     """A retarder that brakes hard in the second and third quarter of the path, on a slope.
 

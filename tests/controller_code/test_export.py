@@ -22,6 +22,8 @@ from synth.in_the_loop.controller_process import (
 from tests.controller_code.conftest import Tool
 from tuning_tables import InvalidTable, decide_for, from_json, read_book, to_json, write_book
 from tuning_tables.c_source import c_files, hex_float
+from tuning_tables.export_prefix import RETARDER
+from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 from tuning_tables.table_block import block_of, block_size
 from tuning_tables.table_book import TableBook
 
@@ -126,11 +128,14 @@ def test_every_changed_byte_of_a_block_is_found(book: TableBook, tmp_path: Path,
         ("faster == 0 || !is_interpolable(slower, faster)", "faster == 0", "fault 4 at"),
     ],
 )  # fmt: skip
+@pytest.mark.parametrize("self_test", [FULL, SMALL], ids=["full", "small"])
 def test_the_self_test_finds_a_wrong_controller(
-    before: str, after: str, fault: str, book: TableBook, tmp_path: Path, tool: Tool
+    before: str, after: str, fault: str, self_test: SelfTestSize, book: TableBook, tmp_path: Path, tool: Tool
 ) -> None:
     tool("gcc")
     write_sources(book, tmp_path)
+    for name, content in c_files(book, RETARDER, self_test).items():
+        (tmp_path / name).write_bytes(content)
     source = (tmp_path / "retarder_table.c").read_text("ascii")
     assert before in source
     (tmp_path / "retarder_table.c").write_text(source.replace(before, after, 1), "ascii")

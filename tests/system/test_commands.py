@@ -196,6 +196,55 @@ def test_export_of_controller_code_is_what_tune_leaves(command: Command, tuned: 
     assert {path.name for path in (tmp_path / "st").iterdir()} == {"retarder_table.st", "retarder_self_test.st"}
 
 
+def test_export_takes_a_prefix_a_small_self_test_and_splits(command: Command, tuned: Path, tmp_path: Path) -> None:
+    book = tuned / "book.h5"
+    ran = command("export", book, "--format", "c", "--prefix", "Bunch", "--self-test", "small", "-o", tuned / "c")
+    assert ran.code == 0
+    names = {name.replace("retarder", "bunch").replace("golden", "bunch_golden") for name in C_FILES}
+    assert {Path(line).name for line in ran.out.splitlines()} == names
+    small, full = ((tuned / "c" / f"{prefix}_self_test.c").stat().st_size for prefix in ("bunch", "retarder"))
+    assert small < 0.5 * full
+    for folder, prefix in (("st", "PARK"), ("st", "BUNCH")):
+        ran = command("export", book, "--format", "st", "--prefix", prefix, "--split", "-o", tuned / folder)
+        assert ran.code == 0
+        assert Path(ran.out.splitlines()[0]).name == f"0001_{prefix}_TABLE.st"
+    # The checker reads them all, whatever their names.
+    ran = command("verify", tuned, "--json")
+    assert {"c/bunch_table.c", "c/bunch_golden_vectors.csv", "c/retarder_table.c"} <= set(json.loads(ran.out)["files"])
+    assert {"st/0004_PARK_LOAD.st", "st/0004_BUNCH_LOAD.st"} <= set(json.loads(ran.out)["files"])
+    assert json.loads(ran.out)["findings"] == []
+    for name, old, new in (
+        ("st/0005_PARK_SELECT.st", "OF INT := [1", "OF INT := [2"),
+        ("c/bunch_table.h", "CATEGORY_LS 2u", "CATEGORY_LS 1u"),
+    ):
+        content = (tuned / name).read_text("ascii")
+        (tuned / name).write_text(content.replace(old, new, 1), "ascii")
+        assert content != (tuned / name).read_text("ascii")
+    ran = command("verify", tuned)
+    assert ran.code == 3
+    assert "st/0004_PARK_LOAD.st: disagrees: CategoryOf[0] is 2, but the table says 1" in ran.out
+    assert "c/bunch_table.c: disagrees: its header defines the categories" in ran.out
+
+
+@pytest.mark.parametrize(
+    ("form", "options", "sentence"),
+    [
+        ("c", ("--prefix", "1st"), "--prefix 1st: the prefix is '1st', but it must have at most 10 Latin letters"),
+        ("c", ("--self-test", "tiny"), "--self-test tiny: there is no such self-test; give full, small"),
+        ("c", ("--split",), "--split is for --format st, not for c; leave it out"),
+        ("json", ("--prefix", "A"), "--prefix is for --format c and st, not for json; leave it out"),
+        ("csv", ("--self-test", "small"), "--self-test is for --format c and st, not for csv; leave it out"),
+    ],
+)
+def test_export_refuses_options_that_have_no_use(
+    command: Command, tuned: Path, tmp_path: Path, form: str, options: tuple[str, ...], sentence: str
+) -> None:
+    ran = command("export", tuned / "book.h5", "--format", form, *options, "-o", tmp_path / "none")
+    assert ran.code == 2
+    assert sentence in ran.err
+    assert not (tmp_path / "none").exists()
+
+
 def test_export_says_which_tables_a_controller_never_chooses(command: Command, tuned: Path, tmp_path: Path) -> None:
     first, _ = read_book(tuned / "book.h5")
     lighter = replace(first, id="lighter", cut=replace(first.cut, mass_t=first.cut.mass_t - 1.0))

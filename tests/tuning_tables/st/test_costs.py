@@ -12,8 +12,10 @@ import pytest
 from tests.controller_code.sample_book import estimator_of
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Array, Record, Scalar
+from tuning_tables.export_prefix import RETARDER
 from tuning_tables.golden_tracks import golden_tracks
-from tuning_tables.st_source import SELF_TEST_FILE, TABLE_FILE, st_files
+from tuning_tables.self_test_size import FULL, SMALL
+from tuning_tables.st_source import TABLE_FILE, st_files
 from tuning_tables.table_book import TableBook
 
 PAGE = Path(__file__).parents[3] / "docs" / "structured-text.md"
@@ -134,23 +136,26 @@ def test_operations_of_a_choice(program, default_book):
 
 
 def test_operations_of_the_self_test(default_book):
-    program = Program(b"".join(st_files(default_book).values()))
-    instance, worst = program.new("RETARDER_SELF_TEST"), (0, 0)
-    while not instance["DONE"].value:
-        program.done.clear()
-        program.call("RETARDER_SELF_TEST", instance, Restart=False)
-        worst = max(worst, counted(program.done))
-    assert stated("`RETARDER_SELF_TEST`") == list(worst)
+    for label, self_test in (("`RETARDER_SELF_TEST`, 6", FULL), ("`RETARDER_SELF_TEST`, small", SMALL)):
+        program = Program(b"".join(st_files(default_book, RETARDER, self_test).values()))
+        instance, worst = program.new("RETARDER_SELF_TEST"), (0, 0)
+        while not instance["DONE"].value:
+            program.done.clear()
+            program.call("RETARDER_SELF_TEST", instance, Restart=False)
+            worst = max(worst, counted(program.done))
+        assert stated(label) == list(worst)
 
 
 def test_bytes(default_book):
     files = st_files(default_book)
-    program = Program(files[TABLE_FILE] + files[SELF_TEST_FILE])
+    program = Program(files[TABLE_FILE])
     few = Program(st_files(TableBook(default_book.tables[:5]))[TABLE_FILE])
     constants = sum(
         size(program.types[name]) - size(few.types[name]) for name in ("RETARDER_LOAD", "RETARDER_SELECT")
     ) - (size(program.types["RETARDER_LOAD"]) - size(few.types["RETARDER_LOAD"]))  # SELECT holds an instance of LOAD
     assert stated("one `RETARDER_TABLE` without") == [size(program.types["RETARDER_TABLE"])]
     assert stated("constants of one table") == [constants]
-    tests = [size(program.types[f"RETARDER_TEST_{number}"]) for number in range(len(default_book.tables))]
-    assert stated("self-test of one table") == [min(tests), max(tests)]
+    for label, self_test in (("self-test of one table", FULL), ("the same, small", SMALL)):
+        program = Program(b"".join(st_files(default_book, RETARDER, self_test).values()))
+        tests = [size(program.types[f"RETARDER_TEST_{number}"]) for number in range(len(default_book.tables))]
+        assert stated(label) == [min(tests), max(tests), size(program.types["RETARDER_SELF_TEST"])]

@@ -17,12 +17,12 @@ from tuning_tables.table_book import Status, TableBook
 COMMANDS = 8_000
 
 
-def select(book, commands, real=np.float32, text=None):
+def select(book, commands, real=np.float32, text=None, prefix="RETARDER"):
     """Statuses of the commands, and the tables chosen, as a dictionary of arrays with a row a command."""
     program = Program(text or st_files(book)[TABLE_FILE], real)
-    selector, table = program.new("RETARDER_SELECT"), program.new("RETARDER_TABLE")
+    selector, table = program.new(f"{prefix}_SELECT"), program.new(f"{prefix}_TABLE")
     program.call(
-        "RETARDER_SELECT",
+        f"{prefix}_SELECT",
         selector,
         Layout=np.minimum(commands["layout"], 32767).astype(np.int64),
         Category=commands["category"].astype(np.int64),
@@ -42,7 +42,7 @@ def require_equal(book, questions, statuses, table):
     assert np.count_nonzero(statuses != questions.statuses) == 0
     size, chosen = block_size(book), statuses >= 0
     words = questions.chosen[chosen]
-    lines, numbers = words[:, 4 : 4 + size.stages], words[:, 4 + size.stages : -1].view(np.float32)
+    lines, numbers = words[:, 4 : 4 + size.stages], words[:, 4 + size.stages : size.coefficients.stop].view(np.float32)
     assert np.array_equal(table["STAGES"][chosen], words[:, 2])
     assert np.array_equal(table["POWERS"][chosen], words[:, 3])
     assert np.array_equal(table["HASLOWER"][chosen], (lines & HAS_LOWER) > 0)

@@ -11,7 +11,9 @@ from tests.tuning_tables.st.conftest import shaped_book
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Fault
 from tuning_tables.distinct_estimators import distinct_estimators
-from tuning_tables.golden_vectors import golden_vectors
+from tuning_tables.export_prefix import RETARDER
+from tuning_tables.golden_vectors import FEW, few_golden_vectors, golden_vectors
+from tuning_tables.self_test_size import FULL, SMALL
 from tuning_tables.st_source import SELF_TEST_FILE, TABLE_FILE, st_files
 from tuning_tables.table_book import TableBook
 
@@ -71,6 +73,34 @@ def test_the_vectors_left_out_are_those_without_a_portable_literal(default_book)
     assert not re.search(r"(?i)\bnan\b|\binf\b|E-(39|4\d)", re.sub(r"\(\*.*?\*\)", "", text, flags=re.DOTALL))
 
 
+def test_a_small_self_test_has_few_readings_a_line_and_finds_nothing_wrong(book, default_book, estimating_book):
+    for each in (book, default_book, estimating_book, shaped_book(2, 0), shaped_book(32, 9)):
+        for table in each.tables:
+            vectors = few_golden_vectors(table)
+            assert len(vectors) <= FEW * np.count_nonzero(table.has_line)
+            assert {-1, 0, 1} >= set(vectors.answer.tolist()) >= {0}
+        assert run_all(st_files(each, RETARDER, SMALL), calls_of(each))["FAILED"] == 0
+
+
+def constants_in(text):
+    """Spans of all numbers in constant arrays."""
+    number = re.compile(r"-?\d+\.\d+(?:E[+-]\d+)?|-?\d+|TRUE|FALSE")
+    for array in re.finditer(r"^    \w+ : ARRAY\[.*?:= \[(.*?)\];", text, re.MULTILINE | re.DOTALL):
+        yield from (found.span() for found in number.finditer(text, *array.span(1)))
+
+
+def test_a_small_self_test_finds_every_changed_constant(small_book):
+    files, calls = st_files(small_book, RETARDER, SMALL), calls_of(small_book)
+    spans = list(constants_in(files[TABLE_FILE].decode("ascii")))
+    assert len(spans) == 54
+    for begin, end in spans:
+
+        def change(tables, test, begin=begin, end=end):
+            return tables[:begin] + another(tables[begin:end]) + tables[end:], test
+
+        assert run_all(files, calls, change)["FAILED"] > 0
+
+
 def next_number(text, after, place):
     """Span of the number at `place` in the array declared by `after`."""
     start = text.index(after) + len(after)
@@ -109,7 +139,8 @@ def another(literal):
         ("RETARDER_SELECT\nTargetOf", 1, 2),
     ],
 )
-def test_one_changed_constant_is_found(small_book, array, place, block):
+@pytest.mark.parametrize("self_test", [FULL, SMALL], ids=["full", "small"])
+def test_one_changed_constant_is_found(small_book, array, place, block, self_test):
     def change(tables, test):
         head, _, name = array.rpartition("\n")
         offset = tables.index(f"FUNCTION_BLOCK {head}") if head else 0
@@ -117,7 +148,7 @@ def test_one_changed_constant_is_found(small_book, array, place, block):
         assert another(tables[begin:end]) != tables[begin:end]
         return tables[:begin] + another(tables[begin:end]) + tables[end:], test
 
-    outputs = run_all(st_files(small_book), calls_of(small_book), change)
+    outputs = run_all(st_files(small_book, RETARDER, self_test), calls_of(small_book), change)
     assert outputs["DONE"]
     assert outputs["FAILED"] >= 1
     assert outputs["FIRSTFAILED"] <= block
@@ -138,12 +169,13 @@ def test_one_changed_constant_is_found(small_book, array, place, block):
         ("Status := 0;", "Status := 2;"),
     ],
 )
-def test_one_changed_statement_is_found(small_book, right, wrong):
+@pytest.mark.parametrize("self_test", [FULL, SMALL], ids=["full", "small"])
+def test_one_changed_statement_is_found(small_book, right, wrong, self_test):
     def change(tables, test):
         assert right in tables
         return tables.replace(right, wrong), test
 
-    assert run_all(st_files(small_book), calls_of(small_book), change)["FAILED"] > 0
+    assert run_all(st_files(small_book, RETARDER, self_test), calls_of(small_book), change)["FAILED"] > 0
 
 
 def test_a_fused_multiplication_and_addition_is_found(default_book):

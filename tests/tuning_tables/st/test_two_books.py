@@ -1,0 +1,105 @@
+"""Two positions in one project of Structured Text: one text, both books in it, each answering as alone."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from synth.in_the_loop.agreement import ask
+from tests.controller_code.sample_book import estimating_book, park_book
+from tests.tuning_tables.st.evaluator import Program
+from tests.tuning_tables.st.syntax import faults, parse
+from tests.tuning_tables.st.test_select import require_equal, select
+from tests.tuning_tables.st.test_self_test import calls_of
+from tuning_tables.export_prefix import ExportPrefix
+from tuning_tables.golden_tracks import golden_tracks
+from tuning_tables.golden_vectors import golden_vectors
+from tuning_tables.self_test_size import FULL, SMALL
+from tuning_tables.st_literals import is_portable
+from tuning_tables.st_source import st_files, st_unit_files
+
+POSITIONS = {"BUNCH": estimating_book(), "PARK": park_book()}
+
+
+def project(self_test, export=st_files):
+    """The files of both, one after the other."""
+    return b"\n".join(
+        text for name, book in POSITIONS.items() for text in export(book, ExportPrefix(name), self_test).values()
+    )
+
+
+def units_in(text):
+    """The names of all blocks and types."""
+    return [b"".join(found) for found in re.findall(rb"^FUNCTION_BLOCK (\w+)$|^ +(\w+) : STRUCT$", text, re.MULTILINE)]
+
+
+@pytest.fixture(scope="module")
+def text():
+    return project(SMALL)
+
+
+def test_it_is_one_text_without_a_name_twice(text):
+    assert faults(parse(text)) == []
+    names = units_in(text)
+    assert len(names) == len(set(names)) > 40
+    assert {name.partition(b"_")[0] for name in names} == {b"BUNCH", b"PARK"}
+    assert b"RETARDER_" not in text
+
+
+@pytest.mark.parametrize("self_test", [FULL, SMALL], ids=["full", "small"])
+def test_both_self_tests_find_nothing(self_test):
+    program = Program(project(self_test))
+    for name, book in POSITIONS.items():
+        instance = program.new(f"{name}_SELF_TEST")
+        for _ in range(calls_of(book)):
+            program.call(f"{name}_SELF_TEST", instance, Restart=False)
+        assert (instance["DONE"].value, instance["FAILED"].value) == (True, 0)
+
+
+def test_both_choose_as_alone(text):
+    for name, book in POSITIONS.items():
+        questions = ask(book, 60_000, 3_000, 20261122)
+        require_equal(book, questions, *select(book, questions.commands, text=text, prefix=name))
+
+
+def test_both_answer_their_golden_vectors_and_tracks(text):
+    program = Program(text)
+    for name, book in POSITIONS.items():
+        table, observer, estimate = (program.new(f"{name}_{kind}") for kind in ("TABLE", "OBSERVE", "ESTIMATE"))
+        for number, source in enumerate(book.tables):
+            program.call(f"{name}_LOAD", program.new(f"{name}_LOAD"), TableNo=number, Table=table)
+            vectors, decider = golden_vectors(source), program.new(f"{name}_DECIDE")
+            program.call(
+                f"{name}_DECIDE", decider, Stage=vectors.stage, Path_m=vectors.s_m, Speed_m_s=vectors.v_m_s, Table=table
+            )
+            assert np.array_equal(decider["COMMAND"].value, vectors.answer)
+        for track in golden_tracks(book):
+            program.call(f"{name}_LOAD", program.new(f"{name}_LOAD"), TableNo=track.number, Table=table)
+            program.call(f"{name}_BEGIN", program.new(f"{name}_BEGIN"), Estimate=estimate)
+            for s, v, kpa, right in zip(*track.samples, strict=True):
+                program.call(
+                    f"{name}_OBSERVE", observer, Path_m=s, Speed_m_s=v, Overpressure_kpa=kpa, Table=table,
+                    Estimate=estimate,
+                )  # fmt: skip
+                assert not is_portable(np.array([right]))[0] or observer["OBSERVED_M_S"].value == right
+
+
+def test_split_files_in_the_order_of_their_names_are_the_same_program():
+    for name, book in POSITIONS.items():
+        whole, units = (export(book, ExportPrefix(name)) for export in (st_files, st_unit_files))
+        assert list(units) == sorted(units)
+        assert len(units) > 15
+        for file, unit in units.items():
+            assert [file[5:-3].encode()] == units_in(unit)
+            assert faults(parse(unit)) == []
+        comments = rb"\(\* Self-test of .*?\*\)\n\n"
+        joined = b"\n".join(whole.values())
+        assert re.sub(comments, b"", joined, count=1, flags=re.DOTALL) == b"\n".join(units.values())
+    Program(project(FULL, st_unit_files))
+
+
+def test_the_longest_names_stay_within_32_characters():
+    for text in st_files(POSITIONS["BUNCH"], ExportPrefix("ABCDEFGHIJ")).values():
+        assert max(map(len, re.findall(rb"\bABCDEFGHIJ_\w+", text))) <= 32
