@@ -87,6 +87,23 @@ def test_files_of_two_exports_are_not_compiled_together(book: TableBook, tmp_pat
         compile_with([tool("gcc"), *CONTRACT, "-c", str(tmp_path / "retarder_table.c"), "-o", str(tmp_path / "o")])
 
 
+@pytest.mark.parametrize("standard", ["c++98", "c++11", "c++14", "c++17"])
+def test_cxx_takes_the_headers_and_since_17_the_code(
+    standard: str, book: TableBook, tmp_path: Path, tool: Tool
+) -> None:
+    write_sources(book, tmp_path)
+    caller = '#include "retarder_self_test.h"\nint main() { return retarder_self_test(0); }\n'
+    (tmp_path / "caller.cpp").write_text(caller)
+    compiler = [tool("clang"), "-x", "c++", f"-std={standard}", "-pedantic-errors", "-c", "-o", str(tmp_path / "o")]
+    compile_with([*compiler, str(tmp_path / "caller.cpp")])
+    if standard == "c++17":
+        for name in SOURCES:
+            compile_with([*compiler, "-ffp-contract=off", str(tmp_path / name)])
+    else:
+        with pytest.raises(BuildError, match="hexadecimal floating"):
+            compile_with([*compiler, str(tmp_path / "retarder_table.c")])
+
+
 def test_every_changed_byte_of_a_block_is_found(book: TableBook, tmp_path: Path, tool: Tool) -> None:
     tool("gcc")
     controller = build_controller(book, tmp_path)
