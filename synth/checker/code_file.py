@@ -13,6 +13,9 @@ from synth.checker.source_file import content_of, text_of
 LAYOUT: Final = 2
 """The layout that this checker knows, in which the numbers of the categories are fixed."""
 HEAD: Final = b"Controller tables of a car retarder"
+C_COMMENT: Final = r"/\*.*?\*/"
+COMMENT: Final = {".st": r"\(\*.*?\*\)"}
+"""By the ending of a file, where it is not as in C."""
 OLD_ADVICE: Final = "layout 1, in which the numbers of the categories follow the order of the tables; export again"
 UNIT_FILE: Final = re.compile(r"\d{4}_(\w+)_LOAD\.st")
 """Of an export with a file each unit, the one with most of the tables."""
@@ -30,12 +33,14 @@ class CodeFile:
     prefix: str
 
     def text(self, path: Path | None = None) -> str:
-        """The text of the file, or of another one of the same export."""
-        text = text_of(path or self.path)
+        """The text of the file, or of another one of the same export; comments, with ids of tables, as they are."""
+        file = path or self.path
+        upper, lower = re.escape(self.prefix.upper()), re.escape(self.prefix.lower())
         return re.sub(
-            rf"\b({re.escape(self.prefix.upper())}|{re.escape(self.prefix.lower())})_",
-            lambda found: "RETARDER_" if found[1].isupper() else "retarder_",
-            text,
+            rf"{COMMENT.get(file.suffix, C_COMMENT)}|\b(?:(?P<upper>{upper})|(?P<lower>{lower}))_",
+            lambda found: "RETARDER_" if found["upper"] else "retarder_" if found["lower"] else found[0],
+            text_of(file),
+            flags=re.DOTALL,
         )
 
     def units(self) -> str:

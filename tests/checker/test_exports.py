@@ -6,6 +6,7 @@ import hashlib
 import json
 import re
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import h5py
@@ -13,6 +14,12 @@ import pytest
 
 from synth.checker.finding import Kind
 from tests.checker.planted_fault import Document, alone, found, look, rewrite
+from tests.controller_code.sample_book import FOUR_AXLES, table_of
+from tuning_tables import to_json
+from tuning_tables.c_source import c_files
+from tuning_tables.export_prefix import ExportPrefix
+from tuning_tables.st_source import st_files, st_unit_files
+from tuning_tables.table_book import TableBook
 
 
 def swap_coefficients(document: Document) -> None:
@@ -63,6 +70,19 @@ def test_one_changed_digit_in_controller_code_is_found(
     change_text(tuned / name, pattern, replacement)
     kind = Kind.DAMAGED if "else than" in words or "count is" in words else Kind.DISAGREES
     assert found(look(tuned), kind, words)
+
+
+def test_ids_that_look_like_names_of_the_code_are_compared_as_they_are(tmp_path: Path) -> None:
+    made = [table_of(name, "BUNCH_X", 66.0, FOUR_AXLES, 2.0) for name in ("b", "BUNCH_SELECT", "retarder_load a")]
+    tables = [replace(table, cut=replace(table.cut, category_number=16)) for table in made]
+    for form, prefix in ((c_files, "BUNCH"), (st_files, "BUNCH"), (st_unit_files, "bunch_2"), (c_files, "RETARDER")):
+        for name, content in form(TableBook(tuple(tables)), ExportPrefix(prefix)).items():
+            (tmp_path / name).write_bytes(content)
+    for table in tables:
+        (tmp_path / f"{table.id}.json").write_bytes(to_json(table))
+    verdict = look(tmp_path)
+    assert verdict.findings == ()
+    assert {"bunch_table.c", "bunch_table.st", "0004_BUNCH_2_LOAD.st", "retarder_table.c"} <= set(verdict.files)
 
 
 def test_one_changed_digit_in_csv_is_found(tuned: Path) -> None:

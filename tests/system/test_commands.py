@@ -37,6 +37,8 @@ def test_tune_leaves_what_the_contract_says(tuned_once: tuple[Path, int]) -> Non
     assert set(summary["files"]) == files - {"summary.json"}
     for name, digest in summary["files"].items():
         assert hashlib.sha256((directory / name).read_bytes()).hexdigest() == digest
+    assert {t.cut.category: t.cut.category_number for t in read_book(directory / "book.h5")} == {"Л": 1, "ЛС": 2}
+    assert read_json(directory / "tables" / f"{ID}.json").cut.category_number == 1
 
 
 def test_the_summary_tells_the_figures_of_the_tables(tuned_once: tuple[Path, int], two_classes: Path) -> None:
