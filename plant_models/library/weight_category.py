@@ -22,8 +22,8 @@ CATEGORY_SCHEMA = {
 }
 """Every key of a category."""
 
-HIGHEST_NUMBER = 255
-"""A number of a category fits into a byte."""
+YARD_NUMBERS, OWN_NUMBERS = range(1, 6), range(16, 256)
+"""Of the five categories of the yard, and of a user's own."""
 
 LOOK_ALIKES = str.maketrans("CT", "СТ")
 """Latin letters that a keyboard puts in place of the Cyrillic ones."""
@@ -80,8 +80,9 @@ def categories_from_toml(text: str) -> tuple[WeightCategory, ...]:
         name = take_string(tree, "name", place)
         its_number = tree.pop("number", None)
         require(
-            type(its_number) is int and 1 <= its_number <= HIGHEST_NUMBER,
-            f"{place}: number is {its_number!r}; it must be a whole number from 1 to {HIGHEST_NUMBER}",
+            type(its_number) is int and its_number in (*YARD_NUMBERS, *OWN_NUMBERS),
+            f"{place}: number is {its_number!r}; it must be a whole number from 1 to 5 for a category of the yard, "
+            "from 16 to 255 for another one",
         )
         same = [c.latin for c in categories if c.number == its_number or c.name == name]
         require(not same, f"{place}: its name {name} or number {its_number} is that of {', '.join(same)}, too")

@@ -101,7 +101,8 @@ def test_weight_categories_keep_their_numbers_wherever_they_stand() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("number = 3\n", "", "S: number is None; it must be a whole number from 1 to 255"),
+        ("number = 3\n", "", "S: number is None; it must be a whole number from 1 to 5 for a category"),
+        ("number = 3\n", "number = 6\n", "S: number is 6"),
         ("number = 3\n", "number = 256\n", "S: number is 256"),
         ("number = 3\n", "number = true\n", "S: number is True"),
         ("number = 3\n", "number = 1\n", "S: its name С or number 1 is that of L, too"),
