@@ -65,6 +65,7 @@ class Draws(NamedTuple):
     """What chance gives to n passes: ξ_cut, w0, entry speed, first sample (n,); z of path and sensor (n, ·).
 
     `brake_m_s2_per_kpa` (n, C) follows from ξ_cut and path_z (`brake_rows`): worked out once for all controllers.
+    `weight` (n,): how many cuts each pass stands for; no kernel reads it.
     """
 
     cut_factor: Floats
@@ -74,6 +75,7 @@ class Draws(NamedTuple):
     path_z: NDArray[np.float32]
     noise_z: NDArray[np.float32]
     brake_m_s2_per_kpa: Floats
+    weight: Floats
 
 
 class Exits(NamedTuple):

@@ -56,7 +56,8 @@ def draw_case(near: Axes, tails: Axes, case: CaseResult) -> None:
     target, moving = case.target_speed_m_s, case.exit_speeds_m_s[case.exit_speeds_m_s > 0.0]
     speed, edges = case.predicted.speed_m_s[1:], cell_edges_m_s(case.predicted.speed_m_s)
     predicted = case.predicted.probability[1:] / np.diff(edges)
-    simulated = np.histogram(moving, edges)[0] / np.diff(edges) / max(case.exit_speeds_m_s.size, 1)
+    weight = case.exit_weight[case.exit_speeds_m_s > 0.0] / case.exit_weight.sum()
+    simulated = np.histogram(moving, edges, weights=weight)[0] / np.diff(edges)
     dress(near, panel_title(case))
     dress(tails, x="exit speed, m/s")
     floor = ONE_PASS / (case.exit_speeds_m_s.size * float(np.diff(edges)[speed > 0.5 * target].max()))
@@ -89,8 +90,8 @@ def panel_title(case: CaseResult) -> str:
         f"predicted rms {table.predicted_rms_m_s:.3f} m/s",
         f"simulated rms {table.statistics.rms_m_s:.3f} [{low:.3f}, {high:.3f}] m/s",
     ]
-    if table.statistics.stalls:
-        lines[0] += f" · {table.statistics.stalls} of {table.statistics.passes} passes stopped"
+    if table.statistics.stalled:
+        lines[0] += f" · {table.statistics.stalled:.2%} of the passes stopped"
     return "\n".join(lines)
 
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from statistics import median
 
-from synth.plots.case_names import Contest, case_name, contest, honesty
+from synth.plots.case_names import Contest, case_name, contest
 from synth.report.book_report import BookReport
 from synth.report.case_table import HONEST
 from synth.report.figures import counted, span
@@ -25,7 +25,7 @@ def honesty_section(book: BookReport) -> Markup:
 
 def own_prediction(cases: Sequence[CaseResult]) -> str:
     """What became of the prediction of the exported tables."""
-    ratios = [honesty(contest(case).table) for case in cases]
+    ratios = [contest(case).table.honesty for case in cases]
     inside = sum(HONEST[0] <= ratio <= HONEST[1] for ratio in ratios)
     if cases[0].estimate is not None:
         gains = [ratio_to_without(contest(case)) for case in cases]
@@ -46,16 +46,13 @@ def own_prediction(cases: Sequence[CaseResult]) -> str:
 
 def ratio_to_without(found: Contest) -> float:
     """rms of the table / rms of the lines without estimator; NaN where there are none."""
-    without = found.without_estimator
-    if without is None or not without.statistics.rms_m_s:
-        return math.nan
-    return found.table.statistics.rms_m_s / without.statistics.rms_m_s
+    return math.nan if found.without_estimator is None else found.without_estimator.table_ratio
 
 
 def published_prediction(cases: Sequence[CaseResult]) -> str:
     """What became of the prediction that the formulation as published makes of itself."""
     found = [contest(case) for case in cases]
-    ratios = [honesty(each.published) for each in found]
+    ratios = [each.published.honesty for each in found]
     lead = (
         "The formulation as published takes the friction of every path quantum as independent, so that it averages out "
         f"within a pass. The rms that it promised: {span([c.published.predicted_rms_m_s for c in found], '.3f')} m/s; "

@@ -13,6 +13,7 @@ from synth.criterion.exit_density import ExitDensity
 from synth.criterion.requirement_found import Finding
 from synth.dynamic_programme.switching_lines import SwitchingLines
 from synth.problem import SQUARED_ERROR_CRITERION, Criterion, Plant
+from synth.simulation.exit_statistics import BrakePower
 from synth.simulation.passes import PassTrace
 from tuning_tables import ControllerTable
 
@@ -68,11 +69,12 @@ class CaseResult:
     """One cut class and target: table, prediction, closed loop, comparison.
 
     `table`, `table_lines` the exported polynomial lines (sampled densely), `solver_lines` the raw matrices;
-    `predicted` exact density of the exported table; `exit_speeds_m_s` simulated, stalls as 0; `comparison` by
-    controller: first our table, then full lines, as published, friction known, baselines; `traces` a few passes of
-    the table (low, nominal and high friction) with `trace_factors` their ξ_cut; `criterion` in force and, where it
-    requires something, `finding`: what that took. With an estimator, `estimate`: how its lines were designed; then
-    `predicted` is simulated, and the comparison ends with lines for the measured speed, `WITHOUT_ESTIMATOR`.
+    `predicted` exact density of the exported table; `exit_speeds_m_s` simulated, stalls as 0, and `exit_weight`: how
+    many cuts each pass stands for; `brake_power`: what of their error is for want of it; `comparison` by controller:
+    first our table, then full lines, as published, friction known, baselines; `traces` a few passes of the table (low,
+    nominal and high friction) with `trace_factors` their ξ_cut; `criterion` in force and, where it requires something,
+    `finding`: what that took. With an estimator, `estimate`: how its lines were designed; then `predicted` is
+    simulated, and the comparison ends with lines for the measured speed, `WITHOUT_ESTIMATOR`.
     """
 
     label: str
@@ -85,6 +87,8 @@ class CaseResult:
     predicted: ExitDensity
     published_predicted_rms_m_s: float
     exit_speeds_m_s: NDArray[np.float32]
+    exit_weight: NDArray[np.float64]
+    brake_power: BrakePower
     comparison: tuple[Measured, ...]
     indifference: Indifference
     feasibility: Feasibility

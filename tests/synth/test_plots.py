@@ -14,7 +14,7 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from synth.plots.case_names import by_class, contest, file_stem, honesty, why_infeasible
+from synth.plots.case_names import by_class, contest, file_stem, why_infeasible
 from synth.plots.degree_study import degree_study
 from synth.plots.exit_density import cell_edges_m_s, exit_density
 from synth.plots.feasibility import feasibility
@@ -89,6 +89,7 @@ def test_hard_cases_are_drawn_too(cases: list[CaseResult]) -> None:
         "nothing leaves": replace(
             cases[0],
             exit_speeds_m_s=np.zeros(100, np.float32),
+            exit_weight=np.ones(100),
             predicted=replace(cases[0].predicted, probability=np.zeros(400), stalled=1.0),
         ),
     }
@@ -144,7 +145,7 @@ def test_roles_and_names(cases: list[CaseResult]) -> None:
     found = contest(cases[0])
     assert found.best_baseline is not None
     assert found.best_baseline.name == "energy rule"
-    assert honesty(found.published) == pytest.approx(
+    assert found.published.honesty == pytest.approx(
         cases[0].published_predicted_rms_m_s / found.published.statistics.rms_m_s
     )
     assert [len(group) for group in by_class(cases)] == [2, 2]

@@ -153,7 +153,7 @@ def test_the_published_formulation_is_judged_by_the_numbers(page: Page, book: Bo
 def test_the_studies_are_told_in_numbers(page: Page) -> None:
     assert "saves 2.50 switchings a pass" in page.text
     assert "multiplies the rms by 1.010" in page.text
-    assert "0.042 (0.060)" in page.text
+    assert "0.0420 (0.0600)" in page.text
 
 
 def test_pictures_of_a_section_stand_together(page: Page) -> None:
