@@ -42,7 +42,7 @@ def few() -> tuple[Parameter, ...]:
 def test_nominal_passes_have_the_ratio_one(trial: Trial) -> None:
     outcome = trial.outcome(Perturbation("nominal"))
     assert (outcome.ratio, outcome.ratio_ci95) == (1.0, (1.0, 1.0))
-    assert outcome.bias_ci95_m_s[0] < outcome.statistics.bias_m_s < outcome.bias_ci95_m_s[1]
+    assert outcome.statistics.bias_ci95_m_s[0] < outcome.statistics.bias_m_s < outcome.statistics.bias_ci95_m_s[1]
 
 
 def test_the_ratio_is_paired() -> None:
