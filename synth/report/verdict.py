@@ -43,10 +43,10 @@ def worst_case(book: BookReport) -> str:
 def in_cuts(case: CaseResult) -> str:
     """The same in cuts, as a yard counts them."""
     found, power = contest(case).table.statistics, case.brake_power
+    out = in_ten_thousand(power.out_of_brake, power.out_of_brake_ci95)
     return (
         f"95 of 100 of its cuts leave within ±{speed(found.p95_m_s)} m/s of the target, 99 within "
-        f"±{speed(found.p99_m_s)}; out of brake power are {in_ten_thousand(power.out_of_brake, power.out_of_brake_ci95)} "
-        "in 10 000."
+        f"±{speed(found.p99_m_s)}; out of brake power are {out} in 10 000."
     )
 
 
