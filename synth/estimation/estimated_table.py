@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.dynamic_programme.backward_induction import measured_speed_std
+from plant_models.speed_sensor import measured_speed_std
 from synth.estimation.estimator_design import as_estimated, estimator_of, speed_error_m_s
 from synth.fitting.polynomial_fit import PolynomialLines, opened
 from synth.fitting.tuned_lines import tuned_lines
