@@ -70,9 +70,9 @@ class Estimator:
         return 2.0 * self.path_std**2 * self.correlation_length_m
 
     @property
-    def computed_with(self) -> tuple[Row, Row, Row, Row]:
-        """All that estimates depend on, as binary32 numbers: the three variances, s, D and W."""
-        variances = (self.noise, self.spread, self.along)
+    def held(self) -> tuple[Row, Row, Row, Row]:
+        """All that a controller holds, as binary32 numbers: the three variances and P0, s, D and W."""
+        variances = (self.noise, self.spread, self.along, self.touch_pressure_kpa)
         s, drive, brake, numbers = (
             tuple(map(rounded, row)) for row in (self.s_m, self.drive_m2_s2, self.brake_m2_s2_per_kpa, variances)
         )
@@ -108,7 +108,7 @@ class Observer:
     """The estimator at work on one cut after the other; every attribute that is a number is a binary32 one."""
 
     def __init__(self, of: Estimator) -> None:
-        (self._noise, self._spread, self._path), self._places, self._drive, self._brake = of.computed_with
+        (self._noise, self._spread, self._path, _), self._places, self._drive, self._brake = of.held
         self.begin()
 
     def begin(self) -> None:

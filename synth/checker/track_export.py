@@ -40,12 +40,12 @@ def differences(content: bytes, tables: Sequence[Table], numbered: bool) -> Iter
             continue
         table = tables[numbers[name]]
         if table.estimator is not None:
-            tracked.add(table.estimator.computed_with)
+            tracked.add(table.estimator.held)
         at = first_fault(table.estimator, samples)
         if at is not None:
             yield table.id, f"the estimate at sample {at} of track {shown(track)} is another by its estimator"
     for table in tables:
-        if table.estimator is not None and table.estimator.computed_with not in tracked:
+        if table.estimator is not None and table.estimator.held not in tracked:
             yield table.id, "its estimator has no golden track"
 
 

@@ -173,5 +173,6 @@ def test_lines_are_taken_between_tables_of_one_estimator_only(estimated_table: C
     choice = TableBook((estimated_table, faster)).choose(*asked)
     assert choice.status is Status.BETWEEN
     assert choice.table.estimator == estimated_table.estimator
-    for unlike in (other, plain):
+    touching = replace(faster, estimator=replace(estimated_table.estimator, touch_pressure_kpa=75.0))
+    for unlike in (other, plain, touching):
         assert TableBook((estimated_table, unlike)).choose(*asked).status is Status.SLOWER
