@@ -62,6 +62,10 @@ def print_book(summary: Figures, directory: Path) -> None:
     for case in summary["cases"]:
         if not case["feasible"]:
             console.print(f"infeasible: {infeasible(case)}", highlight=False)
+    for case in summary["cases"]:
+        if case["estimate"] and case["estimate"]["left_out"]:
+            told = f"{case['label']} to {case['target_speed_m_s']:g} m/s: {case['estimate']['left_out']}"
+            console.print(told, soft_wrap=True, highlight=False)
     accepted = summary["accepted"]
     word = Text("accepted" if accepted else "NOT ACCEPTED", style="bold green" if accepted else "bold red")
     console.print(word + Text(f": {summary['verdict']}", style="default"), soft_wrap=True)

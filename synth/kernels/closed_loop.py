@@ -133,7 +133,7 @@ def run_pass(
 ) -> Any:  # fmt: skip
     """One pass from the entrance, released, to the exit; returns (v, time, status, switchings, events).
 
-    A pressure, stage or speed in `events` holds from its time on; the last event is the end of the pass. `known` (7,)
+    A pressure, stage or speed in `events` holds from its time on; the last event is the end of the pass. `known` (8,)
     is memory for the estimator.
     """
     coefficients, has_line, valid, lower, upper, spacing_m, multi_step, lead_s, filter_s, parameters, work = law
@@ -223,7 +223,7 @@ def brake_rows(path: Path, cut_factor: Floats, path_z: NDArray[np.float32], rows
 def run_passes(path: Path, drive: Drive, sensor: Sensor, law: Rule, draws: Draws, exits: Exits, events: Floats) -> int:
     """Simulate all passes of `draws` into `exits`; returns the number of events of the last pass."""
     gravity, brakes = path.gravity_m_s2, draws.brake_m_s2_per_kpa
-    free, known = np.empty(gravity.shape[0]), np.empty(7, np.float32)
+    free, known = np.empty(gravity.shape[0]), np.empty(8, np.float32)
     count = 0
     for i in range(draws.cut_factor.shape[0]):
         drag = path.drag_m_s2_per_n_kn * draws.resistance_n_kn[i]

@@ -105,7 +105,7 @@ def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
         "as_published_honesty": found.published.honesty,
         "requirement": None if case.finding is None else requirement_of(case.finding),
         "indifference": asdict(case.indifference),
-        "estimate": None if case.estimate is None else estimate_of(case.estimate),
+        "estimate": None if case.estimate is None else {**estimate_of(case.estimate), "left_out": case.left_out},
         "escaped_probability": case.predicted.escaped,
         "hunting": {
             "pressure": [{"stage": stage, **asdict(cycle)} for stage, cycle in pressure_hunting(case.plant)],

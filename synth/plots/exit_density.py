@@ -30,9 +30,6 @@ def exit_density(cases: Sequence[CaseResult]) -> Figure:
         draw_case(panels[0, column], panels[1, column], case)
     panels[0, 0].set_ylabel("density, 1/(m/s)", fontsize=9)
     panels[1, 0].set_ylabel("the same, logarithmic", fontsize=9)
-    predicted = (
-        "predicted" if all(case.table.estimator is None for case in cases) else "predicted from other simulated passes"
-    )
     handles = [
         Patch(facecolor=SKY, label="simulated passes"),
         Line2D(
@@ -42,13 +39,22 @@ def exit_density(cases: Sequence[CaseResult]) -> Figure:
             marker="o",
             markersize=3,
             linewidth=1.4,
-            label=predicted,
+            label=prediction_origin(cases),
         ),
         Line2D([], [], color=INK, linewidth=1.2, label="target"),
         Line2D([], [], color=GREY, linewidth=1.2, linestyle="--", label=f"target ± {OVERSPEED_M_S:g} m/s"),
     ]
     legend_below(figure, handles, columns=min(len(handles), 2 * columns))  # a single panel is narrow
     return figure
+
+
+def prediction_origin(cases: Sequence[CaseResult]) -> str:
+    """What the predicted densities come from, in a legend or a caption."""
+    estimated = [case.table.estimator is not None for case in cases]
+    if all(estimated):
+        return "predicted from other simulated passes"
+    exact = "predicted by the forward equation"
+    return f"{exact}; with an estimator from other simulated passes" if any(estimated) else exact
 
 
 def draw_case(near: Axes, tails: Axes, case: CaseResult) -> None:

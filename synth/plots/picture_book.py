@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from synth.plots.case_names import by_class, case_name, file_stem
 from synth.plots.degree_study import degree_study
-from synth.plots.exit_density import exit_density
+from synth.plots.exit_density import exit_density, prediction_origin
 from synth.plots.feasibility import feasibility
 from synth.plots.figure_file import draw
 from synth.plots.picture import Picture
@@ -73,8 +73,8 @@ def class_pictures(cases: Sequence[CaseResult]) -> Iterator[Picture]:
         file_stem("exit-density", label),
         "Predicted and simulated exit speed",
         f"Exit speed of {label}",
-        f"{label}: density predicted by the forward equation of the exported table, over the histogram of simulated "
-        "passes; above near the target, below on a logarithmic scale with the tails.",
+        f"{label}: density of the exported table ({prediction_origin(cases)}) over the histogram of simulated passes; "
+        "above near the target, below on a logarithmic scale with the tails.",
     )
     yield picture(
         surfaces(middle),

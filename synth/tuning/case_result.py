@@ -73,8 +73,9 @@ class CaseResult:
     many cuts each pass stands for; `brake_power`: what of their error is for want of it; `comparison` by controller:
     first our table, then full lines, as published, friction known, baselines; `traces` a few passes of the table (low,
     nominal and high friction) with `trace_factors` their ξ_cut; `criterion` in force and, where it requires something,
-    `finding`: what that took. With an estimator, `estimate`: how its lines were designed; then `predicted` is
-    simulated, and the comparison ends with lines for the measured speed, `WITHOUT_ESTIMATOR`.
+    `finding`: what that took. Where an estimator is asked for, `estimate`: how its lines were designed; then the
+    comparison ends with lines for the measured speed, `WITHOUT_ESTIMATOR`, and `predicted` is simulated if the table
+    has the estimator (else it is `left_out`).
     """
 
     label: str
@@ -97,6 +98,17 @@ class CaseResult:
     criterion: Criterion = SQUARED_ERROR_CRITERION
     finding: Finding | None = None
     estimate: EstimatedTable | None = None
+
+    @property
+    def left_out(self) -> str:
+        """Why the table has no estimator though one was asked for, as a sentence's end; empty otherwise."""
+        made = self.estimate
+        if made is None or self.table.estimator is not None:
+            return ""
+        return (
+            f"no estimator: it gained nothing on the tuning passes (rms {made.rms_after_m_s:.4f} m/s with it, "
+            f"{made.plain_rms_m_s:.4f} without), so the table is of version 1"
+        )
 
     def by_name(self, name: str) -> Measured:
         """The controller called `name` in the comparison."""

@@ -132,7 +132,8 @@ def class_tasks(
         result = tune_case(order)
         case_done(result)
         figures = result.comparison[0].statistics
-        progress(f"{label} to {targets[i]:g} m/s: rms {figures.rms_m_s:.3f} m/s in {figures.passes} simulated passes")
+        told = f"{label} to {targets[i]:g} m/s: rms {figures.rms_m_s:.3f} m/s in {figures.passes} simulated passes"
+        progress(f"{told}; {result.left_out}" if result.left_out else told)
         if result.finding is not None:
             progress(f"{label} to {targets[i]:g} m/s: {result.finding.sentence}")
         return result
