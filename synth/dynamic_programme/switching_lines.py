@@ -33,3 +33,11 @@ class SwitchingLines:
     def stages(self) -> int:
         """Number of stages K + 1."""
         return int(self.lower_m_s.shape[0])
+
+    def at(self, nodes_m: NDArray[np.float64]) -> SwitchingLines:
+        """The same lines at other path nodes."""
+        lower, upper = (
+            np.array([np.interp(nodes_m, self.nodes_m, line) for line in side])
+            for side in (self.lower_m_s, self.upper_m_s)
+        )
+        return SwitchingLines(np.array(nodes_m), lower, upper)

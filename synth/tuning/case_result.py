@@ -53,8 +53,9 @@ class Indifference:
 class DegreeStudy:
     """Exit error against the degree of the polynomials (R4); arrays by `degrees`, rms in m/s.
 
-    `fitted_rms_m_s` weighted least squares only, `polished_rms_m_s` after the polish (both predicted);
-    `lines_rms_m_s` the unsmoothed lines.
+    Predicted on the grid of the tables' own predictions: `fitted_rms_m_s` of tables of lines fitted by weighted least
+    squares, `polished_rms_m_s` after the polish (NaN where no table could be rounded), `lines_rms_m_s` of the
+    solver's lines.
     """
 
     label: str
