@@ -1,4 +1,4 @@
-"""Switching lines V_lo,k(s) and V_hi,k(s) as matrices over path nodes and stages (S2: switching matrices)."""
+"""Switching lines V_lo,k(s) and V_hi,k(s) over path nodes and stages (the switching matrices of zhukovitsky-2002)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Exit error against the degree of the polynomial lines (R4)."""
+"""Exit error against the degree of the polynomial lines."""
 
 from __future__ import annotations
 

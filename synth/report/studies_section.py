@@ -1,4 +1,4 @@
-"""Two findings beside the tables: which degree suffices (R4), and what the indifferent region saves (R5)."""
+"""Two findings beside the tables: which degree suffices, and what the indifferent region saves (R5)."""
 
 from __future__ import annotations
 

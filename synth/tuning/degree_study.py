@@ -1,4 +1,4 @@
-"""Which degree the lines need (R4): tables of every degree, rounded and predicted as the exported one is."""
+"""Which degree the lines need: tables of every degree, rounded and predicted as the exported one is."""
 
 from __future__ import annotations
 
