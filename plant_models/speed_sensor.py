@@ -1,4 +1,4 @@
-"""Doppler (radar) speed sensor: sampled in time, noisy, quantised (R9)."""
+"""Doppler (radar) speed sensor: sampled in time, noisy, quantised."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ estimator carries the speed v and the friction factor ξ of the cut, with their 
     correct   v, ξ by the measured speed, weighted by the covariance
 
 D(s) and W(s) are given as broken lines. The path's own friction noise (standard deviation σ_η, correlation length ℓ)
-enters as white noise of the same work, variance 2 σ_η² ℓ / Δs (model, finding 3).
+enters as white noise of the same work, variance 2 σ_η² ℓ / Δs.
 
 All arithmetic is float32, one rounding an operation, in the order written; docs/table-format.md states it. A reading
 that cannot be true, such as a radar drop-out, corrects nothing: the estimate goes on by the model alone, and the state

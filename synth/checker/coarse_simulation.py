@@ -108,7 +108,7 @@ def friction_row(plant: Plant, ground: Ground, normal: float, random: Random) ->
     x = ground.noise_cell_m / plant.correlation_m
     memory = math.exp(-x)
     fresh = math.sqrt(1.0 - memory * memory)
-    std = plant.path_std * math.sqrt(math.tanh(x / 2.0) / (x / 2.0))  # keeps the variance of the work (model §2, 3)
+    std = plant.path_std * math.sqrt(math.tanh(x / 2.0) / (x / 2.0))  # keeps the variance of the work
     factor = max(plant.friction_floor, 1.0 + ground.friction_cv * normal)
     eta, row = random.gauss(0.0, 1.0), []
     for _ in range(ground.noise_cells):

@@ -31,7 +31,7 @@ def friction_known_bounds(
     passes: RandomPasses,
     limit_m_s: float,
 ) -> tuple[tuple[Measured, Feasibility], ...]:
-    """For every target: solved and simulated for each of several known ξ_cut, with full switching lines (model §3).
+    """For every target: solved and simulated for each of several known ξ_cut, with full switching lines.
 
     All else is equal: sensor, sampling, valves, path noise, resistance; the switching price is dropped. The
     position is feasible for a target if the interval of this reference reaches `limit_m_s`. It is no strict lower

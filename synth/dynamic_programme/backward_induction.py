@@ -1,4 +1,4 @@
-"""Solve a problem: backward induction over path quanta to switching lines (R2)."""
+"""Solve a problem: backward induction over path quanta to switching lines."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Kernel of the closed-loop simulation: cut, valves, sensor and switching rule, pass after pass (model §1).
+"""Kernel of the closed-loop simulation: cut, valves, sensor and switching rule, pass after pass.
 
 Motion is exact: within a path cell and a piece of constant overpressure the acceleration is constant, so
 positions and times of cell edges are closed forms. The only approximation is that a transient is played as

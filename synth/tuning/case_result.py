@@ -29,7 +29,7 @@ class PolicyMap:
     """Best command and indifferent region on the solver's grid, by stage.
 
     `path_m` (N,), `speed_m_s` (E,); `command` (K + 1, N, E) int8: −1 down, 0 hold, +1 up; `indifferent`
-    (K + 1, N, E): several commands cost the same within the tolerance (R5).
+    (K + 1, N, E): several commands cost the same within the tolerance.
     """
 
     path_m: NDArray[np.float64]
@@ -40,7 +40,7 @@ class PolicyMap:
 
 @dataclass(frozen=True)
 class Indifference:
-    """What using the indifferent region (R5) saves: the solver's lines with and without the tolerance."""
+    """What using the indifferent region saves: the solver's lines with and without the tolerance."""
 
     tolerance_m2_s2: float
     switchings_without: float
@@ -51,10 +51,11 @@ class Indifference:
 
 @dataclass(frozen=True)
 class DegreeStudy:
-    """Exit error against the degree of the polynomials (R4); arrays by `degrees`, rms in m/s.
+    """Exit error against the degree of the polynomials; arrays by `degrees`, rms in m/s.
 
-    `fitted_rms_m_s` weighted least squares only, `polished_rms_m_s` after the polish (both predicted);
-    `lines_rms_m_s` the unsmoothed lines.
+    Predicted on the grid of the tables' own predictions: `fitted_rms_m_s` of tables of lines fitted by weighted least
+    squares, `polished_rms_m_s` after the polish (NaN where no table could be rounded), `lines_rms_m_s` of the
+    solver's lines.
     """
 
     label: str

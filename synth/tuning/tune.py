@@ -23,7 +23,8 @@ from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.stratified_passes import stratified_passes
 from synth.tuning.case_result import CaseResult, DegreeStudy
-from synth.tuning.tune_case import CaseOrder, EstimatorOrder, degree_study, tune_case
+from synth.tuning.degree_study import degree_study, tables_by_degree
+from synth.tuning.tune_case import CaseOrder, EstimatorOrder, tune_case
 from synth.tuning.work_queue import run_nested
 from tuning_tables import ControllerTable, Generator, read_json, write_json
 
@@ -139,7 +140,8 @@ def class_tasks(
         return result
 
     def study() -> DegreeStudy:
-        result = degree_study(solutions[0], label, DEGREES)
+        tables = tuple(tables_by_degree(solutions[0], DEGREES, generator, created))
+        result = degree_study(solutions[0], check, label, tables)
         progress(f"{label} to {targets[0]:g} m/s: degree study done")
         return result
 

@@ -29,7 +29,7 @@ from synth.simulation.common_passes import CommonPasses
 from synth.simulation.exit_statistics import ExitStatistics, brake_power, exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
-from synth.tuning.case_result import WITHOUT_ESTIMATOR, CaseResult, DegreeStudy, Indifference
+from synth.tuning.case_result import WITHOUT_ESTIMATOR, CaseResult, Indifference
 from synth.tuning.policy_map import policy_map
 from tuning_tables import ControllerTable, Generator, Validated
 
@@ -208,17 +208,3 @@ def indifference(order: CaseOrder, with_it: ExitDensity) -> Indifference:
         rms_without_m_s=without.rms_m_s(target),
         rms_with_m_s=with_it.rms_m_s(target),
     )
-
-
-def degree_study(solution: Solution, label: str, degrees: tuple[int, ...]) -> DegreeStudy:
-    """Predicted rms against the degree of the polynomials, fitted and polished (R4)."""
-    design, target, criterion = solution.transitions, solution.target_speed_m_s, solution.criterion
-    density, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
-    fitted, after = np.empty(len(degrees)), np.empty(len(degrees))
-    for i, degree in enumerate(degrees):
-        fit = fit_lines(solution, occupancy.samples, degree)
-        best = polished(design, fit, target, criterion)
-        for found, lines in ((fitted, fit.lines), (after, best)):
-            at_nodes = lines.at(design.grid.path_m)
-            found[i] = exit_density(design, commands(design, at_nodes, staircase=False)).rms_m_s(target)
-    return DegreeStudy(f"{label}, {target:g} m/s", degrees, fitted, after, density.rms_m_s(target))

@@ -1,4 +1,4 @@
-"""The formulation as published (S2: independent noise in every quantum) once more, in plain numpy arrays.
+"""The formulation as published (zhukovitsky-2002: independent noise in every quantum) once more, in plain numpy arrays.
 
 With independent noise everything between the first and last quantum of a transient is summed in closed form, so no
 Markov chain is needed here. Taken from the package: grid, cell means, landing tables, true-speed weights.

@@ -86,8 +86,10 @@ def book() -> BookReport:
         ),
         degree_studies=(make_study(),),
         parameters=(
-            SourcedValue("friction.common_cv", 0.15, "1", (0.1, 0.25), "assumed: pilot study", "L"),
-            SourcedValue("retarder.zones_m", ((0.0, 12.475), (14.475, 26.95)), "m", (0.0, 40.0), "S2 & S4", "H"),
+            SourcedValue("friction.common_cv", 0.15, "1", (0.1, 0.25), "engineering judgement: usual", "L"),
+            SourcedValue(
+                "retarder.zones_m", ((0.0, 12.475), (14.475, 26.95)), "m", (0.0, 40.0), "<7> & [hump-norm]", "H"
+            ),
             SourcedValue("entry.high_m_s", 9.0, "m/s", (4.5, 7.0), "configuration", ""),
         ),
         accepted=False,
@@ -126,6 +128,18 @@ def test_links_lead_to_sections_of_the_page(page: Page) -> None:
     assert len(set(page.identifiers)) == len(page.identifiers)
     assert {target.removeprefix("#") for target in page.targets} <= set(page.identifiers)
     assert page.targets
+
+
+def test_cited_sources_are_told_in_full_and_a_point_is_called_fixed(page: Page, book: BookReport) -> None:
+    text = page.text
+    place = text.index("[hump-norm] Railway administration of the USSR")
+    assert text.index("<7> & [hump-norm]") < place < text.index("Limits of use", place)
+    assert "geum.ru" in text
+    assert "[hump-grades] " not in text
+    fixed = SourcedValue("cut 'a'.length_m", 13.92, "m", (13.92, 13.92), "engineering judgement", "H")
+    assert "13.92 to 13.92" not in (said := Page(report_page(replace(book, parameters=(fixed,)))).text)
+    assert "fixed" in said
+    assert "Sources" not in said
 
 
 def test_the_verdict_comes_first_and_names_the_infeasible_case(page: Page, book: BookReport) -> None:
