@@ -77,8 +77,8 @@ def class_pictures(cases: Sequence[CaseResult]) -> Iterator[Picture]:
         f"Exit speed of {label}",
         f"{label}: density of the exported table ({prediction_origin(cases)}), over the simulated passes in bins of "
         f"{NARROW_M_S:g} m/s, beyond ±{OVERSPEED_M_S:g} m/s of {WIDE_M_S:g} m/s; above near the target, below on a "
-        "logarithmic scale with the tails. The step of the grid widens the predicted peak, most at low targets. Hatched: "
-        "the prediction is smaller than the error of its grid there, and is not drawn.",
+        "logarithmic scale with the tails. The step of the grid widens the predicted peak, most at low targets. "
+        "Hatched: the prediction is smaller than the error of its grid there, and is not drawn.",
     )
     yield picture(
         surfaces(middle),
