@@ -11,7 +11,7 @@ GRAVITY_M_S2 = 9.81
 """Acceleration of gravity g."""
 
 ROTATING_MASS_PER_AXLE_T = 0.42
-"""Equivalent mass of one rotating wheel set, J/r² (domain facts §2.5)."""
+"""Equivalent mass of one rotating wheel set, J/r²; the usual figure for the design of humps, engineering judgement."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class Cut:
 
     @property
     def reduced_gravity_m_s2(self) -> float:
-        """g' = g / (1 + 0.42 n / Q) (model §1)."""
+        """g' = g / (1 + 0.42 n / Q)."""
         return GRAVITY_M_S2 * self.mass_t / self.inertia_t
 
     @property

@@ -1,4 +1,4 @@
-"""Friction factor ξ of a cut: persistent per cut, and correlated along the path (model §1)."""
+"""Friction factor ξ of a cut: persistent per cut, and correlated along the path."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Friction:
 
         Chosen so that the work of η over many cells has the variance of the continuous process:
         σ²·(2ℓ/ΔS)·tanh(ΔS/2ℓ); it tends to σ for short cells and to the white equivalent
-        σ·sqrt(2ℓ/ΔS) for long ones (model §2, finding 3).
+        σ·sqrt(2ℓ/ΔS) for long ones.
         """
         x = np.asarray(cell_m, dtype=np.float64) / (2.0 * self.correlation_length_m)
         return self.path_std * np.sqrt(np.tanh(x) / x)

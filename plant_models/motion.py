@@ -1,6 +1,6 @@
 """Motion of a cut through a retarder position, reduced to coefficients per path cell.
 
-With e = v²/2 the equation of motion (model §1) reads, per metre of path,
+With e = v²/2 the equation of motion reads, per metre of path,
 de/ds = g'(i(s) − w)·1e-3 − ξ(s)·β(s)·p, where p = max(0, P − P0) and
 β(s) = Σ over braked axles of K·c(N)/(Q + 0.42 n). Everything the solver and the simulator need of
 a cut and a position is i and β, exactly averaged over path cells.

@@ -1,4 +1,4 @@
-"""Pneumatic drive: relay pressure regulator, valve delays, first-order filling and exhausting (S4).
+"""Pneumatic drive: relay pressure regulator, valve delays, first-order filling and exhausting (zhukovitsky-2012).
 
 The pressure after a command is known in advance, because the regulator is deterministic: it is worked
 out here once, as pieces of exponentials, for the solver and the simulator alike.
@@ -20,7 +20,7 @@ MAX_SWITCHINGS = 40
 
 @dataclass(frozen=True)
 class Pneumatics:
-    """Constants of the drive; pressures kPa gauge, times s (symbols of S4 in brackets)."""
+    """Constants of the drive; pressures kPa gauge, times s (symbols of zhukovitsky-2012 in brackets)."""
 
     supply_pressure_kpa: float
     """[P_max]"""

@@ -26,7 +26,7 @@ class ForceLaw(Protocol):
 
 @dataclass(frozen=True)
 class PressingForce:
-    """Pressing retarder: the force is set by the drive and does not depend on the car (S4).
+    """Pressing retarder: the force is set by the drive and does not depend on the car (zhukovitsky-2012).
 
     `slope_factor_by_axles[j]` is c(j + 1); beyond its end the last entry holds.
     """

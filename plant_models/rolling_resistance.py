@@ -1,4 +1,4 @@
-"""Specific rolling resistance of a cut: one gamma-distributed draw per cut (domain facts §2.1)."""
+"""Specific rolling resistance of a cut: one gamma-distributed draw per cut (hump-norm)."""
 
 from __future__ import annotations
 

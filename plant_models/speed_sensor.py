@@ -1,7 +1,8 @@
-"""Doppler (radar) speed sensor: sampled in time, noisy, quantised (R9)."""
+"""Doppler (radar) speed sensor: sampled in time, noisy, quantised."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from plant_models.errors import require_between
@@ -25,3 +26,8 @@ class DopplerSensor:
         require_between("sensor: resolution_m_s", self.resolution_m_s, 0.0, 1.0)
         require_between("sensor: sample_period_s", self.sample_period_s, 0.005, 2.0)
         require_between("sensor: computing_delay_s", self.computing_delay_s, 0.0, 2.0)
+
+
+def measured_speed_std(noise_m_s: float, resolution_m_s: float) -> float:
+    """Std of the measured speed, m/s: noise and the equivalent of quantisation, resolution/√12; 1e-4 at least."""
+    return max(math.hypot(noise_m_s, resolution_m_s / math.sqrt(12.0)), 1e-4)

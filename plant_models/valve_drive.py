@@ -1,11 +1,11 @@
 """The pneumatic drive commanded at any moment: from any pressure, with a valve open, shut or about to open.
 
 `Pneumatics.respond` tells the pressure after a command given at rest. Here a command may also come during a
-transient. The valves are those of S4, and one thing is assumed beyond it: a valve's delay starts with the command that
-asks for this direction of flow. So a command that asks for the same direction (one stage further) changes only where
-the flow ends: an open valve stays open, a valve that is about to open opens when it would have. A command that asks for
-the other direction shuts the open valve at once and pays the whole delay of the other one; between the two the
-pressure stands still.
+transient. The valves are those of zhukovitsky-2012, and one thing is assumed beyond it: a valve's delay starts with the
+command that asks for this direction of flow. So a command that asks for the same direction (one stage further)
+changes only where the flow ends: an open valve stays open, a valve that is about to open opens when it would have. A
+command that asks for the other direction shuts the open valve at once and pays the whole delay of the other one;
+between the two the pressure stands still.
 
 The functions are plain arithmetic on numbers, so that a kernel can compile them as they are.
 """

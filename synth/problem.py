@@ -93,7 +93,7 @@ class Criterion:
     """Cost of one pass: `terminal` of its exit speed, plus `stall_cost_m2_s2` for a stall in the position.
 
     `switching_tolerance_m2_s2`: a change of stage must gain more than this, else hold wins: commands whose
-    costs differ by less count as equal, and of these the one with the fewest switchings is taken (R5).
+    costs differ by less count as equal, and of these the one with the fewest switchings is taken.
     `requirement`: what the exported lines must keep besides; only with the squared error.
     """
 

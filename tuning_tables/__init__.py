@@ -14,7 +14,7 @@ from tuning_tables.errors import (
     TableError,
     UnknownFormat,
 )
-from tuning_tables.estimator import Estimator, begin
+from tuning_tables.estimator import Estimator, begin, unseen_samples
 from tuning_tables.figures import Predicted, Validated, ValidRange
 from tuning_tables.hdf5_file import read_book, write_book
 from tuning_tables.json_file import from_json, read_json, to_json, write_json
@@ -61,6 +61,7 @@ __all__ = [
     "table_schema",
     "to_csv",
     "to_json",
+    "unseen_samples",
     "write_atomically",
     "write_book",
     "write_csv",

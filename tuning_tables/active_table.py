@@ -55,10 +55,17 @@ def interpolable(slower: ControllerTable, faster: ControllerTable) -> bool:
 
 
 def same_estimator(one: Estimator | None, other: Estimator | None) -> bool:
-    """Whether both compute the same from the same readings: all their float32 numbers are equal."""
+    """Whether all numbers that a controller holds of them are equal, as float32, the touch pressure among them.
+
+    So both compute the same from the same pressure gauge. Of σ_η and ℓ a controller holds 2 σ_η² ℓ only.
+    """
     if one is None or other is None:
         return one is other
-    return np.array_equal(one.parameters, other.parameters) and np.array_equal(one.work, other.work)
+    return (
+        np.array_equal(one.parameters, other.parameters)
+        and np.array_equal(one.work, other.work)
+        and np.float32(one.touch_pressure_kpa) == np.float32(other.touch_pressure_kpa)
+    )
 
 
 def between(slower: ControllerTable, faster: ControllerTable, target_speed_m_s: np.float32) -> ActiveTable:

@@ -82,14 +82,15 @@ def track_blanks(book: TableBook, tracks: Sequence[GoldenTrack]) -> Mapping[str,
 def tracks_csv(book: TableBook, tracks: Sequence[GoldenTrack]) -> bytes:
     """All golden tracks, CR LF: track, table number and id, readings and estimate as bits and as numbers.
 
-    Path in m, speeds in m/s, overpressure in kPa. A track begins with a cut of which nothing is known.
+    Path in m, speeds in m/s, overpressure in kPa; last the number of samples since the last credible speed. A track
+    begins with a cut of which nothing is known.
     """
     columns = ("s", "v", "overpressure", "estimate")
-    units = ("s_m", "v_m_s", "overpressure_kpa", "estimate_m_s")
+    units = ("s_m", "v_m_s", "overpressure_kpa", "estimate_m_s", "unseen_samples")
     rows = [",".join(("track", "table", "id", *(f"{name}_bits" for name in columns), *units))]
     for number, track in enumerate(tracks):
         name = '"' + book.tables[track.number].id.replace('"', '""') + '"'
-        bits = zip(*(values.view(np.uint32).tolist() for values in track.samples), strict=True)
+        bits = zip(*(values.view(np.uint32).tolist() for values in track.samples[: len(columns)]), strict=True)
         for words, values in zip(bits, zip(*track.samples, strict=True), strict=True):
             fields = [*(f"{word:08x}" for word in words), *(f"{value:.9g}" for value in values)]
             rows.append(f"{number},{track.number},{name},{','.join(fields)}")

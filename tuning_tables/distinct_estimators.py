@@ -18,7 +18,7 @@ NONE: Final = -1
 class DistinctEstimators:
     """The estimators of a book, each once, in order of first appearance; `of_table[n]` is its number, `NONE` for none.
 
-    Two tables have one number exactly where `active_table.same_estimator` holds; touch pressures may still differ.
+    Two tables have one number exactly where `active_table.same_estimator` holds.
     """
 
     estimators: tuple[Estimator, ...]
@@ -50,6 +50,7 @@ def distinct_estimators(book: TableBook) -> DistinctEstimators:
 
 
 def _numbers(estimator: Estimator) -> bytes:
-    """All that it computes with; 0.0 for -0.0, which compare alike."""
-    numbers = np.concatenate([estimator.parameters, estimator.work.ravel()])
+    """All that a controller holds of it; 0.0 for -0.0, which compare alike."""
+    touch_kpa = np.array([estimator.touch_pressure_kpa], dtype=np.float32)
+    numbers = np.concatenate([estimator.parameters, touch_kpa, estimator.work.ravel()])
     return (numbers + np.float32(0.0)).tobytes()

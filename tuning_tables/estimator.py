@@ -9,10 +9,11 @@ estimator carries the speed v and the friction factor ξ of the cut, with their 
     correct   v, ξ by the measured speed, weighted by the covariance
 
 D(s) and W(s) are given as broken lines. The path's own friction noise (standard deviation σ_η, correlation length ℓ)
-enters as white noise of the same work, variance 2 σ_η² ℓ / Δs (model, finding 3).
+enters as white noise of the same work, variance 2 σ_η² ℓ / Δs.
 
-All arithmetic is float32, one rounding an operation, in the order written. A reading that cannot be true, such as a
-radar drop-out, corrects nothing: the estimate goes on by the model alone.
+All arithmetic is float32, one rounding an operation, in the order written; docs/table-format.md states it. A reading
+that cannot be true, such as a radar drop-out, corrects nothing: the estimate goes on by the model alone, and the state
+counts for how many samples it has done so.
 """
 
 from __future__ import annotations
@@ -29,8 +30,12 @@ from tuning_tables.requirement import require_between, require_tuple
 
 Floats = npt.NDArray[np.float32]
 
-STATE_SIZE: Final = 7
-"""Samples seen, path of the last, speed, friction factor, variance of speed, covariance, variance of the factor."""
+STATE_SIZE: Final = 8
+"""Begun (0 or 1), path of the last sample, speed, friction factor, variance of speed, covariance, variance of the
+factor, samples since the last credible speed."""
+
+UNSEEN: Final = 7
+"""Place of the last of them in the state."""
 
 LEAST_SPEED_M_S: Final = 0.2
 LEAST_STEP_M: Final = 0.001
@@ -111,8 +116,23 @@ class Estimator:
 
 
 def begin() -> Floats:
-    """The state before the first sample of a cut, float32 (7,)."""
+    """The state before the first sample of a cut, float32 (8,)."""
     return np.zeros(STATE_SIZE, dtype=np.float32)
+
+
+def unseen_samples(state: Floats) -> int:
+    """For how many samples there was no credible speed: 0 after a credible one; before the first, since `begin`.
+
+    The model alone has stood in for the sensor that long. It stays at 2**24, beyond which float32 does not count.
+    """
+    return int(state[UNSEEN])
+
+
+def hand_on(state: Floats, v_m_s: float) -> float:
+    """`v_m_s` as it is, for a table without estimator; `state` counts samples without a credible speed all the same."""
+    credible = 0.0 <= v_m_s <= LARGEST_SPEED_M_S
+    state[UNSEEN] = np.float32(0.0) if credible else state[UNSEEN] + np.float32(1.0)
+    return v_m_s
 
 
 def observe(parameters: Floats, work: Floats, state: Floats, s_m: float, v_m_s: float, overpressure_kpa: float) -> Any:
@@ -121,12 +141,13 @@ def observe(parameters: Floats, work: Floats, state: Floats, s_m: float, v_m_s: 
     To be called at every sample, also while a change of stage is under way, with the path, the measured speed, and the
     mean of max(0, P - P0) since the sample before. What cannot be true changes little: a speed above 40 m/s, negative
     or not finite corrects nothing, such an overpressure counts as 0, a path that goes back, or on by more than 20 m, as
-    no movement. `state` is changed in place. `numba.njit(observe)` compiles this text and gives the same numbers.
+    no movement. `state`, float32 (8,), is changed in place. `numba.njit(observe)` compiles this text, same numbers.
     """
     nought, one, two = parameters[7], parameters[8], parameters[9]
     last = work.shape[1] - 1
     # Written so that NaN fails each of them, and before the conversion, so that no number overflows in it.
     credible = 0.0 <= v_m_s <= float(parameters[10])
+    state[7] = nought if credible else state[7] + one
     v = np.float32(v_m_s) if credible else nought
     p = np.float32(overpressure_kpa) if 0.0 <= overpressure_kpa <= float(parameters[11]) else nought
     begun = state[0] != nought

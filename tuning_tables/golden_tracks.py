@@ -20,6 +20,7 @@ from tuning_tables.estimator import (
     LARGEST_STEP_M,
     Estimator,
     begin,
+    unseen_samples,
 )
 from tuning_tables.rule import speed_for
 from tuning_tables.table import ControllerTable
@@ -44,7 +45,7 @@ STAGE_KPA: Final = (0.0, 0.0, 180.0, 390.0, 390.0, 240.0, 90.0, 0.0)
 class GoldenTrack:
     """n samples of one cut from its first on, for table `number`, and the estimates: all float32 (n,), m, m/s, kPa.
 
-    `number` is that of the first table with this estimator.
+    `unseen`: samples since the last credible speed. `number` is that of the first table with this estimator.
     """
 
     number: int
@@ -52,15 +53,16 @@ class GoldenTrack:
     v_m_s: Floats
     overpressure_kpa: Floats
     estimate_m_s: Floats
+    unseen: Floats
 
     def __post_init__(self) -> None:
         for array in self.samples:
             array.setflags(write=False)
 
     @property
-    def samples(self) -> tuple[Floats, Floats, Floats, Floats]:
-        """Path, speed, overpressure, estimate."""
-        return self.s_m, self.v_m_s, self.overpressure_kpa, self.estimate_m_s
+    def samples(self) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+        """Path, speed, overpressure, estimate, samples since the last credible speed."""
+        return self.s_m, self.v_m_s, self.overpressure_kpa, self.estimate_m_s, self.unseen
 
     def __len__(self) -> int:
         return len(self.s_m)
@@ -74,7 +76,7 @@ def golden_tracks(book: TableBook) -> tuple[GoldenTrack, ...]:
 
 def table_tracks(number: int, table: ControllerTable) -> tuple[GoldenTrack, ...]:
     """The tracks of `table`, number `number` in its book."""
-    tracks = [_unchanged()] if table.estimator is None else _tracks(table.estimator)
+    tracks = _unchanged() if table.estimator is None else _tracks(table.estimator)
     return tuple(_estimated(number, table, readings) for readings in tracks)
 
 
@@ -83,13 +85,19 @@ def _estimated(number: int, table: ControllerTable, readings: Iterable[Reading])
     state = begin()
     # Numbers that fit into the format may be absurd; what they give is infinite then, and no reason to warn.
     with np.errstate(all="ignore"):
-        estimates = [speed_for(table, state, *map(float, reading)) for reading in zip(s, v, p, strict=True)]
-    return GoldenTrack(number, s.copy(), v.copy(), p.copy(), np.array(estimates, dtype=np.float32))
+        answers = [
+            (speed_for(table, state, *map(float, reading)), unseen_samples(state))
+            for reading in zip(s, v, p, strict=True)
+        ]
+    estimates, unseen = np.array(answers, dtype=np.float32).T
+    return GoldenTrack(number, s.copy(), v.copy(), p.copy(), estimates.copy(), unseen.copy())
 
 
-def _unchanged() -> list[Reading]:
-    """Speeds that come back with every bit; NaN is left out, which has many."""
-    return [(1.0, v, 0.0) for v in (3.5, 0.0, -0.0, -1.0, SMALLEST, LARGEST, np.inf, -np.inf)]
+def _unchanged() -> Iterator[list[Reading]]:
+    """Speeds that come back with every bit, those that have a portable literal apart; NaN is left out, of many bits."""
+    _, fastest, too_fast = _beside(np.float32(LARGEST_SPEED_M_S))
+    yield [(1.0, v, 0.0) for v in (MISSING_M_S, MISSING_M_S, 3.5, too_fast, MISSING_M_S, fastest, too_fast, 0.0)]
+    yield [(1.0, v, 0.0) for v in (-0.0, -1.0, SMALLEST, LARGEST, np.inf, -np.inf)]
 
 
 def _tracks(estimator: Estimator) -> Iterator[list[Reading]]:

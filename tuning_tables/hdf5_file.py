@@ -97,7 +97,7 @@ def read_book(path: str | os.PathLike[str]) -> tuple[ControllerTable, ...]:
         raise UnknownFormat(f"{source}: not an HDF5 file; give a table book.")
     body = unsealed(content, source)
     try:
-        # From memory: what was found unbroken is what is read.
+        # From these bytes, not from the file: what was found unbroken is what is read.
         with h5py.File(io.BytesIO(body), "r") as file:
             arrays = _checked_arrays(file, len(body), source)
         tables = tables_of(arrays)

@@ -24,7 +24,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.active_table import ActiveTable
-from tuning_tables.estimator import observe
+from tuning_tables.estimator import hand_on, observe
 from tuning_tables.table import ControllerTable
 
 LOWER: Final = -1
@@ -92,10 +92,11 @@ def speed_for(
     """The speed to ask `decide_for` with, m/s: that of the table's estimator, or the measured one if it has none.
 
     To be called once at every sample, also during a change of stage; `state` is the cut's own (`estimator.begin`), the
-    overpressure the mean of max(0, P - P0) since the sample before. See `estimator.observe`.
+    overpressure the mean of max(0, P - P0) since the sample before. See `estimator.observe`; with either kind of table
+    `estimator.unseen_samples` says for how long no credible speed was seen.
     """
     if table.estimator is None:
-        return v_m_s
+        return hand_on(state, v_m_s)
     return float(observe(table.estimator.parameters, table.estimator.work, state, s_m, v_m_s, overpressure_kpa))
 
 

@@ -68,7 +68,7 @@ def observe_blocks(blanks: Mapping[str, str]) -> list[str]:
     """RETARDER_BEGIN and RETARDER_OBSERVE, and what they need; `blanks` of the book."""
     interface = Template(OBSERVE_INTERFACE).substitute(blanks)
     if blanks["BREAKS"] == "0":
-        return [BEGIN, interface + HAND_ON]
+        return [BEGIN, interface + Template(HAND_ON).substitute(blanks)]
     return [BEGIN, Template(WORK).substitute(blanks), interface + Template(OBSERVE).substitute(blanks)]
 
 

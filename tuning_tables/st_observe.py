@@ -18,6 +18,7 @@ TYPE
         SpeedVariance : REAL;
         Covariance : REAL;
         FactorVariance : REAL;
+        Unseen : REAL; (* samples since the last speed that can be true *)
     END_STRUCT;
 END_TYPE
 """
@@ -46,6 +47,7 @@ Estimate.Factor := 0.0;
 Estimate.SpeedVariance := 0.0;
 Estimate.Covariance := 0.0;
 Estimate.FactorVariance := 0.0;
+Estimate.Unseen := 0.0;
 END_FUNCTION_BLOCK
 """
 
@@ -117,12 +119,21 @@ VAR_IN_OUT
 END_VAR
 VAR_OUTPUT
     Observed_m_s : REAL; (* to ask RETARDER_DECIDE with; -1.0, at which it holds, before a speed was measured *)
+    Unseen : REAL; (* for how many samples no speed that can be true was handed over, with an estimator or without: 0
+        after one that was; before the first, since RETARDER_BEGIN; stays at 16777216. The estimate goes on by the model
+        alone, without limit: the supervision compares Unseen with a limit of its own, and acts. *)
 END_VAR
 """
 
 HAND_ON: Final = """
 (* No table of this book has an estimator: their lines are for the measured speed. *)
 Observed_m_s := Speed_m_s;
+Unseen := Estimate.Unseen + 1.0;
+(* No comparison with a NaN is true. *)
+IF (Speed_m_s >= 0.0) AND (Speed_m_s <= $LARGEST_SPEED_REAL) THEN
+    Unseen := 0.0;
+END_IF;
+Estimate.Unseen := Unseen;
 END_FUNCTION_BLOCK
 """
 
@@ -166,10 +177,12 @@ END_VAR
 
 (* No comparison with a NaN is true. *)
 Credible := (Speed_m_s >= 0.0) AND (Speed_m_s <= LargestSpeed_m_s);
+Unseen := Estimate.Unseen + 1.0;
 IF Table.Breaks = 0 THEN
     Observed_m_s := Speed_m_s;
 ELSIF (Table.Breaks < 2) OR (Table.Breaks > $BREAKS) THEN
     Observed_m_s := -1.0;
+    Credible := FALSE;
 ELSIF NOT Estimate.Begun THEN
     Observed_m_s := -1.0;
     IF Credible THEN
@@ -278,5 +291,9 @@ ELSE
     END_IF;
     Observed_m_s := Estimate.Speed_m_s;
 END_IF;
+IF Credible THEN
+    Unseen := 0.0;
+END_IF;
+Estimate.Unseen := Unseen;
 END_FUNCTION_BLOCK
 """

@@ -160,7 +160,7 @@ FOR Index := 0 TO $LAST DO
     END_IF;
     Observer(Path_m := Path[Index], Speed_m_s := Speed[Index], Overpressure_kpa := Pressure[Index], Table := Table,
         Estimate := Estimate);
-    IF Observer.Observed_m_s <> Observed[Index] THEN
+    IF (Observer.Observed_m_s <> Observed[Index]) OR (Observer.Unseen <> Unseen[Index]) THEN
         IF Failed = 0 THEN
             FirstFailed := Index + $FIRST;
         END_IF;

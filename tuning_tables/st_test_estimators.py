@@ -32,7 +32,7 @@ def estimator_check(book: TableBook, number: int, estimator: int) -> str:
 def estimator_test(book: TableBook, place: int, number: int) -> str:
     """RETARDER_TEST_ESTIMATOR_place: the estimator of table `number`, or that there is none."""
     table, size = book.tables[number], block_size(book)
-    begins, samples = _portable_samples(table_tracks(number, table), table.estimator is not None)
+    begins, samples = _portable_samples(table_tracks(number, table))
     declarations, statements, count = [], [], 0
     if table.estimator is not None:
         expected = _expected(table.estimator, size)
@@ -40,7 +40,7 @@ def estimator_test(book: TableBook, place: int, number: int) -> str:
         statements.append(_constants_check(table.estimator, size))
         count = len(expected)
     declarations.append(bool_array("Begins", begins))
-    for name, values in zip(("Path", "Speed", "Pressure", "Observed"), samples, strict=True):
+    for name, values in zip(("Path", "Speed", "Pressure", "Observed", "Unseen"), samples, strict=True):
         declarations.append(real_array(name, values))
     statements.append(Template(TRACK_LOOP).substitute(LAST=len(begins) - 1, FIRST=count))
     name = "no estimator" if table.estimator is None else f"the estimator of {comment_text(table.id)}"
@@ -60,15 +60,8 @@ def _constants_check(estimator: Estimator, size: BlockSize) -> str:
     )
 
 
-def _portable_samples(tracks: tuple[GoldenTrack, ...], remembered: bool) -> tuple[list[bool], tuple[Floats, ...]]:
-    """Whether each sample begins a cut, and path, speed, overpressure, estimate.
-
-    Kept are tracks of which all numbers are portable; where nothing is `remembered`, all samples that are.
-    """
-    kept = []
-    for track in tracks:
-        portable = np.all([is_portable(values) for values in track.samples], axis=0)
-        if portable.all() or not remembered:
-            kept.append(tuple(values[portable] for values in track.samples))
+def _portable_samples(tracks: tuple[GoldenTrack, ...]) -> tuple[list[bool], tuple[Floats, ...]]:
+    """Of the tracks of which all numbers are portable: whether each sample begins a cut, and `GoldenTrack.samples`."""
+    kept = [track.samples for track in tracks if all(is_portable(values).all() for values in track.samples)]
     begins = [index == 0 for samples in kept for index in range(len(samples[0]))]
     return begins, tuple(np.concatenate(columns) for columns in zip(*kept, strict=True))

@@ -1,6 +1,6 @@
 """Strict reading of one library file: TOML whose every number is an inline table with its origin.
 
-    brake_delay_s = { value = 0.10, range = [0.05, 0.20], source = "domain facts §0, assumed", confidence = "L" }
+    brake_delay_s = { value = 0.10, range = [0.05, 0.20], source = "engineering judgement", confidence = "L" }
 
 A *form* turns the raw TOML value into a `Value` or returns None if it is of the wrong type.
 """

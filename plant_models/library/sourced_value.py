@@ -11,7 +11,10 @@ Value = float | tuple[float, ...] | tuple[tuple[float, float], ...]
 """A number, a list of numbers, or a list of pairs."""
 
 CONFIDENCES = ("H", "M-H", "M", "L-M", "L")
-"""High, medium, low (domain facts, head)."""
+"""High, medium, low; docs/sources.md says what they stand for."""
+
+JUDGEMENT = "engineering judgement"
+"""How the source of a value begins that nobody can be cited for."""
 
 SET_BY_USER = "configuration"
 """Source of a value that the user's configuration replaced."""
@@ -34,8 +37,21 @@ class SourcedValue:
 
     @property
     def assumed(self) -> bool:
-        """True if nothing citable stands behind the number: memory, an assumption, or low confidence."""
-        return self.source.startswith(("memory", "assumed")) or self.confidence in ("L", "L-M")
+        """True if nothing citable stands behind the number: engineering judgement, or low confidence."""
+        return self.source.startswith(JUDGEMENT) or self.confidence in ("L", "L-M")
+
+    @property
+    def fixed(self) -> bool:
+        """The sensible range holds no more than the value itself."""
+        numbers = flat_numbers(self.value)
+        return self.range == (min(numbers), max(numbers))
+
+    @property
+    def span(self) -> str:
+        """The sensible range in words, '' if there is none."""
+        if self.range is None:
+            return ""
+        return "fixed" if self.fixed else f"{self.range[0]:g} to {self.range[1]:g}"
 
     @property
     def in_range(self) -> bool:

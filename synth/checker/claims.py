@@ -1,11 +1,11 @@
 """The figures of quality in a table against a coarse simulation, and against one another.
 
-An rms is made by rare passes: the few cuts with too little friction can hold most of the mean square, and 300 passes
-may meet none of them, or one too many. So the two directions are tested differently. That a table is *worse* than it
-says is looked for in ordinary passes too: squares count up to a cap, of which several are tried. The mean of capped
-squares is at most the mean square, so a true claim is not doubted more often, and being bounded it is normal. That a
-table is *better* than it says may only be luck: the standard error is then the larger of the sample's and the one that
-follows from the stated 95 % interval (without one, the largest that any law of the error allows).
+An rms is made by rare passes: the few cuts with too little friction can hold most of the mean square. Half of the
+coarse passes have low friction for that reason, and count by their weight. Still the two directions are tested
+differently. That a table is *worse* than it says is looked for in ordinary passes too: squares count up to a cap, of
+which several are tried. The mean of capped squares is at most the mean square, so a true claim is not doubted more
+often, and being bounded it is normal. That a table is *better* than it says may only be luck, and then the spread of
+the sample is too small as well: its relative standard error is applied to the mean square that is claimed.
 
 A prediction that was itself simulated (tables of version 2) is a mean over so many passes, and has the sampling error
 of that: wherever it is compared, with the validated figures or with the coarse ones, both errors count.
@@ -18,15 +18,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from synth.checker.plant import Plant
 from synth.checker.statistics import (
     QUANTILE,
     ExitFigures,
     joint_count,
-    mean_and_std,
     score_interval,
     too_few,
     too_many,
+    weighted_mean_and_std,
 )
 from synth.checker.table_reading import Table
 
@@ -93,13 +92,12 @@ def chance_interval(
     return rms_m_s * (ci95_m_s[0] / rms_m_s) ** wider, rms_m_s * (ci95_m_s[1] / rms_m_s) ** wider
 
 
-def simulated_faults(table: Table, plant: Plant, found: ExitFigures, honesty: Honesty) -> Iterator[str]:
+def simulated_faults(table: Table, found: ExitFigures, honesty: Honesty) -> Iterator[str]:
     """Claims that the coarse simulation does not confirm."""
-    spread = claimed_square_std(table, plant)
     if table.validated_rms_m_s is not None:
-        yield from rms_fault("validated", table.validated_rms_m_s, (1.0, 1.0), spread, found, None)
+        yield from rms_fault("validated", table.validated_rms_m_s, (1.0, 1.0), found, None)
     limits = (1.0 / honesty.high, 1.0 / honesty.low)
-    yield from rms_fault("predicted", table.predicted_rms_m_s, limits, spread, found, table.predicted_passes)
+    yield from rms_fault("predicted", table.predicted_rms_m_s, limits, found, table.predicted_passes)
     root_n = math.sqrt(joint_count(found.passes, table.predicted_passes))
     error_std = max(found.error_std, table.predicted_rms_m_s)
     allowed = BIAS_ALLOWANCE * table.predicted_rms_m_s + BIAS_ALLOWANCE_M_S + QUANTILE * error_std / root_n
@@ -111,13 +109,13 @@ def simulated_faults(table: Table, plant: Plant, found: ExitFigures, honesty: Ho
             f"{table.switchings:.2f} switchings a pass are predicted, but the coarse simulation gives "
             f"{found.switchings:.2f}"
         )
-    yield from probability_fault("over-speed", table.p_overspeed, table.predicted_passes, found.over, found.passes)
+    yield from probability_fault("over-speed", table.p_overspeed, table.predicted_passes, found.over, found.plain)
     if table.p_stall is not None:
-        yield from probability_fault("stalls", table.p_stall, table.predicted_passes, found.stalls, found.passes)
+        yield from probability_fault("stalls", table.p_stall, table.predicted_passes, found.stalls, found.plain)
 
 
 def rms_fault(
-    name: str, rms_m_s: float, limits: tuple[float, float], square_std: float, found: ExitFigures, stated: int | None
+    name: str, rms_m_s: float, limits: tuple[float, float], found: ExitFigures, stated: int | None
 ) -> Iterator[str]:
     """Whether the mean square confirms an rms of at least and at most `limits` times `rms_m_s`.
 
@@ -126,27 +124,19 @@ def rms_fault(
     least = max(0.0, rms_m_s * limits[0] * (1.0 - RMS_ALLOWANCE) - RMS_ALLOWANCE_M_S) ** 2
     most = (rms_m_s * limits[1] * (1.0 + RMS_ALLOWANCE) + RMS_ALLOWANCE_M_S) ** 2
     root_n = math.sqrt(joint_count(found.passes, stated))
-    capped = [mean_and_std([min(square, cap * most) for square in found.squares]) for cap in CAPS]
+    capped = [
+        weighted_mean_and_std([min(square, cap * most) for square in found.squares], found.weights) for cap in CAPS
+    ]
     worse = any(mean - most > QUANTILE * std / root_n for mean, std in capped)
-    better = least - found.mean_square > QUANTILE * max(found.square_std, square_std) / root_n
+    claimed_std = found.square_std * least / found.mean_square if found.mean_square else 0.0
+    better = least - found.mean_square > QUANTILE * max(found.square_std, claimed_std) / root_n
     if worse or better:
+        low, high = found.rms_ci95_m_s
         yield (
-            f"the {name} rms is {rms_m_s:.4f} m/s, but the coarse simulation gives {found.rms_m_s:.4f} m/s in "
-            f"{found.passes} passes, {'more' if worse else 'less'} than chance and coarseness explain"
+            f"the {name} rms is {rms_m_s:.4f} m/s, but the coarse simulation gives {found.rms_m_s:.4f} "
+            f"[{low:.4f}, {high:.4f}] m/s in {found.passes} passes, {'more' if worse else 'less'} than chance and "
+            "coarseness explain"
         )
-
-
-def claimed_square_std(table: Table, plant: Plant) -> float:
-    """Standard deviation of the squared error that the table's own interval implies.
-
-    The interval is rms·exp(±1.96·std/(2·ms·sqrt(passes))). Without one: sqrt(ms·largest square), the most that a
-    variable between 0 and the largest square with this mean can have (Bhatia and Davis 2000).
-    """
-    if table.validated_ci95_m_s is not None and table.validated_rms_m_s and table.validated_ci95_m_s[0] > 0.0:
-        low, high = table.validated_ci95_m_s
-        return math.log(high / low) / NORMAL_95 * math.sqrt(table.passes or 1) * table.validated_rms_m_s**2
-    largest = max(table.target_m_s, plant.entry_m_s[1] - table.target_m_s) ** 2
-    return table.predicted_rms_m_s * math.sqrt(largest)
 
 
 def probability_fault(name: str, claimed: float, stated: int | None, hits: int, passes: int) -> Iterator[str]:
@@ -155,4 +145,4 @@ def probability_fault(name: str, claimed: float, stated: int | None, hits: int, 
     most = high * PROBABILITY_ALLOWANCE + PROBABILITY_ALLOWANCE_ABSOLUTE
     least = low / PROBABILITY_ALLOWANCE - PROBABILITY_ALLOWANCE_ABSOLUTE
     if too_many(hits, passes, most) or (least > 0.0 and too_few(hits, passes, least)):
-        yield f"the predicted probability of {name} is {claimed:.4g}, but {hits} of {passes} coarse passes had it"
+        yield f"the predicted probability of {name} is {claimed:.4g}, but {hits} of {passes} plain coarse passes had it"

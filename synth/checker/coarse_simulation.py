@@ -5,6 +5,9 @@ of the step, pressure by the valves as they stand. The regulator of the pressure
 with its delays, and not from histories known in advance; friction is a random walk over short stretches of path; the
 lines are evaluated in double precision; an estimator of the table runs in float32 and hears at every sample the mean
 overpressure since the last. All this differs from the simulator that made the claims.
+
+Cuts of low friction are rare and make most of a mean square. So half of the passes have the friction of cuts as it
+comes, the others low friction (`low_friction`), and each pass counts by its weight.
 """
 
 from __future__ import annotations
@@ -16,6 +19,7 @@ from typing import Final
 
 from synth.checker.brake_drive import BrakeDrive
 from synth.checker.estimator import Observer
+from synth.checker.low_friction import friction_numbers
 from synth.checker.plant import GRAVITY_M_S2, Plant
 from synth.checker.table_reading import Line, Table
 
@@ -43,11 +47,16 @@ class Ground:
 
 @dataclass(frozen=True)
 class Passes:
-    """How the passes ended: exit speeds (0 after a stall), stalls, changes of stage."""
+    """How the passes ended: exit speeds (0 after a stall), stalls, changes of stage.
+
+    `weight`: how many cuts a pass stands for; `as_it_comes`: its friction was drawn from the law of cuts.
+    """
 
     exit_m_s: tuple[float, ...]
     stalled: tuple[bool, ...]
     switchings: tuple[int, ...]
+    weight: tuple[float, ...]
+    as_it_comes: tuple[bool, ...]
 
 
 def simulate(plant: Plant, table: Table, count: int, seed: int) -> Passes:
@@ -55,9 +64,11 @@ def simulate(plant: Plant, table: Table, count: int, seed: int) -> Passes:
     ground, random = ground_of(plant), Random(f"{seed} {table.id}")
     rest_kpa = released_kpa(plant)
     observer = Observer(table.estimator) if table.estimator else None
-    found = [one_pass(plant, ground, table, observer, rest_kpa, random) for _ in range(count)]
+    friction = friction_numbers(count, random)
+    found = [one_pass(plant, ground, table, observer, rest_kpa, each.normal, random) for each in friction]
     speeds, stalled, switchings = zip(*found, strict=True)
-    return Passes(speeds, stalled, switchings)
+    weights = tuple(each.weight for each in friction)
+    return Passes(speeds, stalled, switchings, weights, tuple(each.as_it_comes for each in friction))
 
 
 def ground_of(plant: Plant) -> Ground:
@@ -92,13 +103,13 @@ def released_kpa(plant: Plant) -> float:
     return drive.pressure_kpa
 
 
-def friction_row(plant: Plant, ground: Ground, random: Random) -> list[float]:
-    """The friction factor ξ in each noise cell of one pass."""
+def friction_row(plant: Plant, ground: Ground, normal: float, random: Random) -> list[float]:
+    """The friction factor ξ in each noise cell of one pass; `normal`: standard normal number of the cut's own."""
     x = ground.noise_cell_m / plant.correlation_m
     memory = math.exp(-x)
     fresh = math.sqrt(1.0 - memory * memory)
-    std = plant.path_std * math.sqrt(math.tanh(x / 2.0) / (x / 2.0))  # keeps the variance of the work (model §2, 3)
-    factor = max(plant.friction_floor, 1.0 + ground.friction_cv * random.gauss(0.0, 1.0))
+    std = plant.path_std * math.sqrt(math.tanh(x / 2.0) / (x / 2.0))  # keeps the variance of the work
+    factor = max(plant.friction_floor, 1.0 + ground.friction_cv * normal)
     eta, row = random.gauss(0.0, 1.0), []
     for _ in range(ground.noise_cells):
         row.append(factor * max(0.0, 1.0 + std * eta))
@@ -107,12 +118,13 @@ def friction_row(plant: Plant, ground: Ground, random: Random) -> list[float]:
 
 
 def one_pass(
-    plant: Plant, ground: Ground, table: Table, observer: Observer | None, rest_kpa: float, random: Random
-) -> tuple[float, bool, int]:
-    """(exit speed, stalled, changes of stage) of one pass."""
+    plant: Plant, ground: Ground, table: Table, observer: Observer | None, rest_kpa: float, normal: float,
+    random: Random,
+) -> tuple[float, bool, int]:  # fmt: skip
+    """(exit speed, stalled, changes of stage) of one pass; `normal`: of the cut's friction."""
     if observer is not None:
         observer.begin()
-    friction = friction_row(plant, ground, random)
+    friction = friction_row(plant, ground, normal, random)
     mean, std = plant.resistance_n_kn
     w = random.gammavariate((mean / std) ** 2, std * std / mean) if std > 0.0 else mean
     drag = w * ground.drag_m_s2_per_n_kn

@@ -1,8 +1,8 @@
 """The estimator of a table of version 2: its data, and what a controller computes with them, in float32.
 
-Every sum, product and quotient is rounded to binary32 by storing and loading it. No document states the order of the
-operations to the last bit but the source of the controller itself, so that order is taken from there; the arithmetic,
-the search for the break and the handling of readings are this program's own.
+Every sum, product and quotient is rounded to binary32 by storing and loading it. The order of the operations is that of
+docs/table-format.md, "The recursion"; the arithmetic, the search for the break and the handling of readings are this
+program's own.
 """
 
 from __future__ import annotations
@@ -70,9 +70,9 @@ class Estimator:
         return 2.0 * self.path_std**2 * self.correlation_length_m
 
     @property
-    def computed_with(self) -> tuple[Row, Row, Row, Row]:
-        """All that estimates depend on, as binary32 numbers: the three variances, s, D and W."""
-        variances = (self.noise, self.spread, self.along)
+    def held(self) -> tuple[Row, Row, Row, Row]:
+        """All that a controller holds, as binary32 numbers: the three variances and P0, s, D and W."""
+        variances = (self.noise, self.spread, self.along, self.touch_pressure_kpa)
         s, drive, brake, numbers = (
             tuple(map(rounded, row)) for row in (self.s_m, self.drive_m2_s2, self.brake_m2_s2_per_kpa, variances)
         )
@@ -97,6 +97,16 @@ def estimator_of(section: Mapping[str, Any]) -> Estimator:
     return Estimator(noise, spread, path, length, touch, places, drive, brake)
 
 
+def is_credible(v_m_s: float) -> bool:
+    """Whether a measured speed is believed; NaN is not."""
+    return 0.0 <= v_m_s <= FASTEST_M_S
+
+
+def next_unseen(unseen: float, v_m_s: float) -> float:
+    """Samples since the last speed that was believed, after one more; binary32, so it stays at 2**24."""
+    return 0.0 if is_credible(v_m_s) else rounded(unseen + 1.0)
+
+
 def quotient(a: float, b: float) -> float:
     """a / b as IEEE 754 has it, also for b = 0, which only absurd work can bring about."""
     if b != 0.0:
@@ -108,7 +118,7 @@ class Observer:
     """The estimator at work on one cut after the other; every attribute that is a number is a binary32 one."""
 
     def __init__(self, of: Estimator) -> None:
-        (self._noise, self._spread, self._path), self._places, self._drive, self._brake = of.computed_with
+        (self._noise, self._spread, self._path, _), self._places, self._drive, self._brake = of.held
         self.begin()
 
     def begin(self) -> None:
@@ -116,13 +126,15 @@ class Observer:
         self.begun = False
         self.s = self.v = self.factor = 0.0
         self.speed_variance = self.covariance = self.factor_variance = 0.0
+        self.unseen = 0.0
 
     def observe(self, s_m: float, v_m_s: float, overpressure_kpa: float) -> float:
         """The estimated speed after this sample, −1 as long as none was measured.
 
         `overpressure_kpa` is the mean of max(0, P − P0) since the sample before.
         """
-        measured = rounded(v_m_s) if 0.0 <= v_m_s <= FASTEST_M_S else None
+        measured = rounded(v_m_s) if is_credible(v_m_s) else None
+        self.unseen = next_unseen(self.unseen, v_m_s)
         if not self.begun:
             return self._first(s_m, measured)
         kpa = rounded(overpressure_kpa) if 0.0 <= overpressure_kpa <= HIGHEST_KPA else 0.0

@@ -13,7 +13,7 @@ from synth.checker.finding import shown
 
 GRAVITY_M_S2: Final = 9.81
 WHEELSET_T: Final = 0.42
-"""Equivalent mass of a rotating wheel set (model §1)."""
+"""Equivalent mass of a rotating wheel set."""
 
 
 class UnusableConfigError(Exception):
@@ -22,7 +22,7 @@ class UnusableConfigError(Exception):
 
 @dataclass(frozen=True)
 class Drive:
-    """Pneumatics of the position (model §1); pressures kPa gauge, times s."""
+    """Pneumatics of the position; pressures kPa gauge, times s."""
 
     supply_kpa: float
     exhaust_kpa: float

@@ -75,15 +75,15 @@ def differences(arrays: Arrays, tables: Sequence[Table]) -> Iterator[tuple[str, 
 
 def estimator_differences(arrays: Arrays, tables: Sequence[Table]) -> Iterator[tuple[str, str]]:
     """What is wrong with the estimators, which stand there once each, however many tables share one."""
-    each = list(dict.fromkeys(table.estimator.computed_with for table in tables if table.estimator))
+    each = list(dict.fromkeys(table.estimator.held for table in tables if table.estimator))
     numbered = [name for name in arrays if name.rpartition("_")[0] in ESTIMATOR_ROWS]
     if len(numbered) != len(ESTIMATOR_ROWS) * len(each):
         yield "", f"it holds {len(numbered)} rows of work, but the tables have {len(each)} estimators of three each"
     if not each:
         return
-    of = [each.index(table.estimator.computed_with) if table.estimator else -1 for table in tables]
+    of = [each.index(table.estimator.held) if table.estimator else -1 for table in tables]
     touch = [rounded(table.estimator.touch_pressure_kpa) if table.estimator else 0.0 for table in tables]
-    columns = zip(*((float(len(row)), *numbers) for numbers, row, _, _ in each), strict=True)
+    columns = zip(*((float(len(row)), *numbers[:3]) for numbers, row, _, _ in each), strict=True)
     wanted: dict[str, list[Any]] = {"EstimatorOf": of, "TouchOf": touch}
     wanted |= zip(ESTIMATOR_COLUMNS, map(list, columns), strict=True)
     most = max(len(row) for _, row, _, _ in each)

@@ -10,15 +10,15 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import Final
 
-from synth.checker.estimator import Estimator, Observer
+from synth.checker.estimator import Estimator, Observer, next_unseen
 from synth.checker.finding import DamagedError, shown
 from synth.checker.float32 import bits, from_bits
 from synth.checker.table_reading import Table
 
 WORDS: Final = ("s_bits", "v_bits", "overpressure_bits", "estimate_bits")
-HEAD: Final = ["track", "table", "id", *WORDS, "s_m", "v_m_s", "overpressure_kpa", "estimate_m_s"]
+HEAD: Final = ["track", "table", "id", *WORDS, "s_m", "v_m_s", "overpressure_kpa", "estimate_m_s", "unseen_samples"]
 
-Sample = tuple[int, int, int, int]
+Sample = tuple[int, int, int, int, float]
 
 
 def differences(content: bytes, tables: Sequence[Table], numbered: bool) -> Iterator[tuple[str, str]]:
@@ -40,31 +40,35 @@ def differences(content: bytes, tables: Sequence[Table], numbered: bool) -> Iter
             continue
         table = tables[numbers[name]]
         if table.estimator is not None:
-            tracked.add(table.estimator.computed_with)
+            tracked.add(table.estimator.held)
         at = first_fault(table.estimator, samples)
         if at is not None:
             yield table.id, f"the estimate at sample {at} of track {shown(track)} is another by its estimator"
     for table in tables:
-        if table.estimator is not None and table.estimator.computed_with not in tracked:
+        if table.estimator is not None and table.estimator.held not in tracked:
             yield table.id, "its estimator has no golden track"
 
 
 def sample_of(row: Sequence[str]) -> Sample:
-    """The words of one row."""
+    """The words of one row, and the samples since the last speed that was believed."""
     try:
         words = [int(cell, 16) for cell in row[3:7]]
         for word in words:
             from_bits(word)
+        unseen = float(row[-1])
     except (ValueError, struct.error) as fault:
         raise DamagedError(f"{shown(row)} is no sample: {fault}") from None
-    return words[0], words[1], words[2], words[3]
+    return words[0], words[1], words[2], words[3], unseen
 
 
 def first_fault(estimator: Estimator | None, samples: Sequence[Sample]) -> int | None:
-    """The first sample with another estimate; without estimator that is the measured speed, bit for bit."""
-    observer = Observer(estimator) if estimator is not None else None
-    for at, (s, v, kpa, estimate) in enumerate(samples):
+    """The first sample with another estimate or count; without estimator the measured speed is due, bit for bit."""
+    observer, unseen = Observer(estimator) if estimator is not None else None, 0.0
+    for at, (s, v, kpa, estimate, counted) in enumerate(samples):
         right = v if observer is None else bits(observer.observe(from_bits(s), from_bits(v), from_bits(kpa)))
+        unseen = next_unseen(unseen, from_bits(v)) if observer is None else observer.unseen
+        if counted != unseen:
+            return at
         both = math.isnan(from_bits(right)) and math.isnan(from_bits(estimate))  # of absurd work; there are many NaN
         if right != estimate and not both:
             return at

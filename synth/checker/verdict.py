@@ -93,7 +93,7 @@ def judge(table: Table, summary: Summary | None, passes: int, seed: int, found: 
             others = estimator_faults(table.estimator, plant, summary.estimating(table))
             findings += [Finding(Kind.DISAGREES, table.id, sentence) for sentence in others]
             figures = figures_of(simulate(plant, table, passes, seed), table.target_m_s)
-            claims += simulated_faults(table, plant, figures, honesty)
+            claims += simulated_faults(table, figures, honesty)
         except UnusableConfigError as fault:
             findings.append(Finding(Kind.DISAGREES, table.id, str(fault)))
             skipped = "the plant is not known"

@@ -109,7 +109,7 @@ def validate(
     source: Source,
     config: Config = None,
     passes: Annotated[
-        int | None, typer.Option(min=100, max=100_000_000, help="Passes of each table; as configured unless given.")
+        int | None, typer.Option(min=1000, max=100_000_000, help="Passes of each table; as configured unless given.")
     ] = None,
     seed: Annotated[
         int | None, typer.Option(min=0, max=2**63 - 1, help="Of the random numbers; as configured unless given.")

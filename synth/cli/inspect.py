@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -31,10 +32,11 @@ def inspect_command(source: Path, as_json: bool) -> int:
             found["summary"] = summary
         print(json.dumps(found, indent=1, ensure_ascii=False))
         return 0
+    mixed = is_mixed([table for file in files for table in file.tables])
     for file in files:
         print(f"{file.path}: {contents(file)}")
         for table in file.tables:
-            print(*table_words(table), sep="\n")
+            print(*table_words(table, mixed), sep="\n")
     for each in code:
         print(f"{each.path}: {each.sentence}")
     if summary is not None:
@@ -45,8 +47,19 @@ def inspect_command(source: Path, as_json: bool) -> int:
 def contents(file: TableFile) -> str:
     """What is in a file, and that its sum is right."""
     if file.kind == "book":
-        return f"a book of {len(file.tables)} tables; its seal and SHA-256 are right"
+        estimating = sum(table.estimator is not None for table in file.tables)
+        kinds = (
+            f", {estimating} with an estimator and {len(file.tables) - estimating} without"
+            if is_mixed(file.tables)
+            else ""
+        )
+        return f"a book of {len(file.tables)} tables{kinds}; its seal and SHA-256 are right"
     return "a controller table; its CRC-32 is right"
+
+
+def is_mixed(tables: Sequence[ControllerTable]) -> bool:
+    """Whether some of `tables` have an estimator and some have none."""
+    return len({table.estimator is None for table in tables}) > 1
 
 
 def file_document(file: TableFile) -> dict[str, Any]:
@@ -58,8 +71,8 @@ def file_document(file: TableFile) -> dict[str, Any]:
     return {"path": str(file.path), "kind": file.kind, "checksum": "right", "tables": tables}
 
 
-def table_words(table: ControllerTable) -> list[str]:
-    """A table in words, a line a fact."""
+def table_words(table: ControllerTable, says_none: bool) -> list[str]:
+    """A table in words, a line a fact; `says_none`: one about a missing estimator too."""
     retarder, cut, predicted = table.retarder, table.cut, table.predicted
     zones = ", ".join(f"{begin:g} to {end:g} m" for begin, end in retarder.zones_m)
     validated = "it was not simulated"
@@ -82,6 +95,8 @@ def table_words(table: ControllerTable) -> list[str]:
     ]
     if table.estimator is not None:
         words.insert(-1, f"    estimator  {estimator_words(table.estimator)}")
+    elif says_none:
+        words.insert(-1, "    estimator  none: the lines are for the measured speed")
     path = shown_path(table)
     words.append(f"      {'s, m':<22}" + "".join(f"{s:>9.2f}" for s in path))
     for line in lines_at(table):

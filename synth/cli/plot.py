@@ -31,10 +31,10 @@ def plot_command(source: Path, output: Path, config_path: Path | None, as_json: 
 
     def passes_of(table: ControllerTable) -> Passes:
         from synth.simulation.closed_loop import TableController, simulate, trace
-        from synth.simulation.random_passes import random_passes
+        from synth.simulation.stratified_passes import stratified_passes
 
         plant = plant_for(table, config, str(config_path or BUILT_IN))[1]
-        passes, law = random_passes(config.validation.seed, 0, PASSES), TableController(table)
+        passes, law = stratified_passes(config.validation.seed, 0, PASSES), TableController(table)
         traces = tuple(trace(plant, law, passes, i, cut_factor=factor) for i, factor in enumerate(FACTORS))
         return Passes(simulate(plant, law, passes), traces, FACTORS)
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def validate_command(path: Path, config_path: Path | None, passes: int | None, seed: int | None, as_json: bool) -> int:
-    """Simulate the tables in `path`; 1 if one that is not known to be infeasible misses a limit."""
+    """Simulate the tables in `path`; 1 if one that is not known to be infeasible is not shown to keep every limit."""
     from synth.cli.interrupt import interruptible
     from synth.configuration.config_file import BUILT_IN, load_config
     from synth.kernel_cache import guarded, use_kernel_cache
@@ -23,18 +23,17 @@ def validate_command(path: Path, config_path: Path | None, passes: int | None, s
     config, (file,) = load_config(config_path), read_tables(path)
     source, summary = str(config_path or BUILT_IN), summary_beside(path)
     use_kernel_cache()
-    from synth.output.validate_table import plant_for, revalidate
+    from synth.output.validate_table import Rehearsal, plant_for, revalidate_all
 
     for table in file.tables:
         plant_for(table, config, source)  # refused before anything is simulated
     passes = passes or config.validation.passes
     seed = config.validation.seed if seed is None else seed
-    threads = available()
+    rehearsal = Rehearsal(config, source, passes, seed, available())
     with interruptible():
-        found = [
-            guarded(revalidate, table, config, source, passes, seed, threads, is_infeasible(table, summary))
-            for table in file.tables
-        ]
+        found = guarded(
+            revalidate_all, file.tables, rehearsal, [is_infeasible(table, summary) for table in file.tables]
+        )
     if not all(each.same_config for each in found):
         say(f"warning: {path} was made from another configuration than {source}; the plant may differ")
     if as_json:
@@ -43,7 +42,7 @@ def validate_command(path: Path, config_path: Path | None, passes: int | None, s
         print(json.dumps(plain([document(each) for each in found]), indent=1, ensure_ascii=False))
     else:
         print_found(found, seed)
-    return LIMITS_MISSED if any(each.missed and not each.infeasible for each in found) else OK
+    return OK if all(each.judgement.word == "accepted" or each.infeasible for each in found) else LIMITS_MISSED
 
 
 def document(each: Revalidation) -> dict[str, Any]:
@@ -56,14 +55,18 @@ def document(each: Revalidation) -> dict[str, Any]:
         "label": each.label,
         "target_speed_m_s": each.table.target_speed_m_s,
         "simulated": asdict(each.statistics),
-        "overspeed_beyond_margin": each.overspeed,
+        "brake_power": asdict(each.brake_power),
+        "overspeed_beyond_margin": each.overspeed[0],
+        "overspeed_beyond_margin_ci95": each.overspeed[1],
         "stated": {
             "predicted_rms_m_s": each.table.predicted.rms_m_s,
             "validated": asdict(stated) if stated else None,
         },
-        "honesty": each.honesty,
+        "honesty": each.honesty[0],
+        "honesty_ci95": each.honesty[1],
         "confirmed": each.confirmed,
-        "missed_limits": each.missed,
+        "missed_limits": each.judgement.missed,
+        "undecided_limits": each.judgement.undecided,
         "known_infeasible": each.infeasible,
         "same_config": each.same_config,
     }
@@ -74,37 +77,38 @@ def print_found(found: list[Revalidation], seed: int) -> None:
     from rich import box
     from rich.table import Table
 
-    from synth.cli.book_table import ratio, share, speed, stdout_console
+    from synth.cli.book_table import LEGEND, plus_minus, speed, stdout_console, ten_thousand
 
     shown = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for name in ("table", "rms [95 %], m/s", "bias, m/s", "p99, m/s", "over-speed", "stalls", "switchings",
-                 "the file states", "predicted", "honesty", "verdict"):  # fmt: skip
-        shown.add_column(name, justify="left" if name in ("table", "verdict") else "right")
+    for name in ("table", "rms [95 %]\nm/s", "95 of 100\nwithin ± m/s", "99 of 100\nwithin ± m/s",
+                 "out of brake\nin 10 000",
+                 "switch-\nings", "the file\nstates, m/s", "predicted\nm/s", "predicted /\nsimulated",
+                 "verdict"):  # fmt: skip
+        shown.add_column(name, justify="left" if name in ("table", "verdict") else "right", no_wrap=True)
     for each in found:
-        s, stated = each.statistics, each.table.validated
-        claim = f"[{speed(stated.rms_ci95_m_s[0])}, {speed(stated.rms_ci95_m_s[1])}]" if stated else "–"
+        s, stated, power = each.statistics, each.table.validated, each.brake_power
         shown.add_row(
             each.table.id,
-            f"{speed(s.rms_m_s)} [{speed(s.rms_ci95_m_s[0])}, {speed(s.rms_ci95_m_s[1])}]",
-            f"{s.bias_m_s:+.3f}",
-            speed(s.p99_m_s),
-            share(each.overspeed),
-            share(s.stalls / s.passes),
+            plus_minus(s.rms_m_s, s.rms_ci95_m_s, 4),
+            plus_minus(s.p95_m_s, s.p95_ci95_m_s, 4),
+            plus_minus(s.p99_m_s, s.p99_ci95_m_s, 4),
+            ten_thousand(power.out_of_brake, power.out_of_brake_ci95),
             f"{s.switchings:.1f}",
-            claim,
+            plus_minus(stated.rms_m_s, stated.rms_ci95_m_s, 4) if stated else "–",
             speed(each.table.predicted.rms_m_s),
-            ratio(each.honesty),
+            plus_minus(*each.honesty),
             verdict(each),
         )
     console = stdout_console()
     console.print(shown, markup=False)
-    console.print(f"{found[0].statistics.passes} passes of each table, seed {seed}")
+    console.print(f"{found[0].statistics.passes} stratified passes of each table, seed {seed}")
+    console.print(LEGEND, soft_wrap=True)
     for each in found:
         if each.confirmed is False:
             console.print(f"{each.table.id}: these passes do not confirm the interval that the file states")
-        if each.missed:
+        if each.judgement.phrases:
             outside = "; summary.json calls this case infeasible, so it does not count" if each.infeasible else ""
-            console.print(f"{each.table.id}: {', '.join(each.missed)}{outside}", soft_wrap=True)
+            console.print(f"{each.table.id}: {', '.join(each.judgement.phrases)}{outside}", soft_wrap=True)
 
 
 def verdict(each: Revalidation) -> str:
@@ -112,4 +116,5 @@ def verdict(each: Revalidation) -> str:
     if each.infeasible:
         return "infeasible"
     confirmed = {True: ", as stated", False: ", not as stated", None: ""}[each.confirmed]
-    return ("limits missed" if each.missed else "limits kept") + confirmed
+    word = {"accepted": "limits kept", "missed": "limits missed", "not decidable": "not decidable"}[each.judgement.word]
+    return word + confirmed

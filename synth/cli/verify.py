@@ -57,9 +57,11 @@ def table_document(each: TableVerdict) -> dict[str, Any]:
         "simulated": figures
         and {
             "rms_m_s": figures.rms_m_s,
+            "rms_ci95_m_s": figures.rms_ci95_m_s,
             "bias_m_s": figures.bias_m_s,
-            "overspeed": figures.over / figures.passes,
-            "stalls": figures.stalls,
+            "passes_as_they_come": figures.plain,
+            "overspeed_of_these": figures.over,
+            "stalls_of_these": figures.stalls,
             "switchings": figures.switchings,
         },
     }
@@ -73,8 +75,10 @@ def words(verdict: Verdict) -> list[str]:
         count = len(each.findings)
         state = f"{count} finding{'s' if count > 1 else ''}" if count else "ok"
         if figures is not None:
+            low, high = figures.rms_ci95_m_s
             checked = (
-                f"rms {figures.rms_m_s:.3f} m/s in {figures.passes} passes, {table.predicted_rms_m_s:.3f} predicted"
+                f"rms {figures.rms_m_s:.3f} [{low:.3f}, {high:.3f}] m/s in {figures.passes} passes, "
+                f"{table.predicted_rms_m_s:.3f} predicted"
             )
         else:
             checked = f"not simulated: {each.skipped}"

@@ -1,4 +1,4 @@
-"""The laws that a table has to beat, each tuned as a competent engineer would (domain facts §6, items 1–4).
+"""The laws that a table has to beat, each tuned as a competent engineer would.
 
 All four are switching lines with `multi_step`: one command may jump over stages, as these laws do. They
 are tuned on the rms exit error of simulated passes: a coarse grid, then a simplex search from its best point.

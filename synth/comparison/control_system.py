@@ -81,7 +81,7 @@ class NominalResponse:
 
 
 def motion_system(plant: Plant) -> NonlinearIOSystem:
-    """Motion of the cut (model §1): input p (kPa gauge), states and outputs s (m), v (m/s).
+    """Motion of the cut: input p (kPa gauge), states and outputs s (m), v (m/s).
 
     Parameters of the system: `friction` ξ (1) and `resistance_n_kn` w (the class's mean). A cut at rest stays
     where it is; outside [0, S_exit] the nearest path cell goes on.
@@ -112,7 +112,7 @@ def motion_system(plant: Plant) -> NonlinearIOSystem:
 
 
 def drive_system(plant: Plant) -> NonlinearIOSystem:
-    """Pneumatic drive (S4): input valve in [−1, 1], state and output p (kPa gauge).
+    """Pneumatic drive (zhukovitsky-2012): input valve in [−1, 1], state and output p (kPa gauge).
 
     Valve +1: dp/dt = (P_max − p)/T_fill; −1: dp/dt = (P_min − p)/T_exh; 0: p holds; in proportion between.
     Valve delays are not in it: they belong to the instants at which the input changes.

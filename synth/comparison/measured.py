@@ -2,21 +2,75 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from synth.simulation.exit_statistics import ExitStatistics
+from synth.simulation.replicates import Interval
+
+UNKNOWN: Interval = (math.nan, math.nan)
 
 
 @dataclass(frozen=True)
 class Measured:
-    """One controller's closed-loop result; `predicted_rms_m_s` where a prediction exists, else NaN."""
+    """One controller's closed-loop result; `predicted_rms_m_s` where a prediction exists, else NaN.
+
+    `predicted_passes`: simulated passes behind the prediction, None for an exact one. `table_ratio`: rms of the
+    exported table / rms of this controller, with its 95 % interval; NaN where it was not asked for.
+    """
 
     name: str
     statistics: ExitStatistics
-    predicted_rms_m_s: float = float("nan")
+    predicted_rms_m_s: float = math.nan
+    predicted_passes: int | None = None
+    table_ratio: float = math.nan
+    table_ratio_ci95: Interval = UNKNOWN
+
+    @property
+    def honesty(self) -> float:
+        """Predicted rms / simulated rms; NaN where nothing was predicted."""
+        return self._honest[0]
+
+    @property
+    def honesty_ci95(self) -> Interval:
+        """The 95 % interval of `honesty`."""
+        return self._honest[1]
+
+    @property
+    def _honest(self) -> tuple[float, Interval]:
+        return honesty_of(self.predicted_rms_m_s, self.predicted_passes, self.statistics)
+
+
+def honesty_of(predicted_rms_m_s: float, predicted_passes: int | None, found: ExitStatistics) -> tuple[float, Interval]:
+    """Predicted / simulated rms, and its 95 % interval; NaN where no pass had an error.
+
+    A prediction that was itself simulated is as uncertain as so many passes of the same design make it.
+    """
+    if not found.rms_ci95_m_s[0] > 0.0:
+        return math.nan, UNKNOWN
+    of_log = log_half_width(found)
+    if predicted_passes is not None:
+        of_log *= math.sqrt(1.0 + found.passes / predicted_passes)
+    honest = predicted_rms_m_s / found.rms_m_s
+    return honest, (honest * math.exp(-of_log), honest * math.exp(of_log))
+
+
+def independent_ratio(one: ExitStatistics, other: ExitStatistics) -> tuple[float, Interval]:
+    """rms of `one` / rms of `other`, which do not share passes one by one, and its 95 % interval."""
+    if not (one.rms_ci95_m_s[0] > 0.0 and other.rms_ci95_m_s[0] > 0.0):
+        return math.nan, UNKNOWN
+    of_log = math.hypot(log_half_width(one), log_half_width(other))
+    ratio = one.rms_m_s / other.rms_m_s
+    return ratio, (ratio * math.exp(-of_log), ratio * math.exp(of_log))
+
+
+def log_half_width(found: ExitStatistics) -> float:
+    """Half the 95 % interval of log(rms)."""
+    low, high = found.rms_ci95_m_s
+    return 0.5 * math.log(high / low)
 
 
 @dataclass(frozen=True)
@@ -24,8 +78,9 @@ class Feasibility:
     """Entry speeds that the position can serve when the friction is known.
 
     `entry_m_s` (n,) from the target to the position's highest entry speed, and `bound_rms_m_s` (n,): friction-known
-    rms by entry speed; `served_m_s`: (low, high) where it meets `limit_m_s`, None if nowhere; `feasible`: the
-    simulated bound over the configured entry range meets the limit.
+    rms by entry speed; `served_m_s`: (low, high) where it meets `limit_m_s`, None if nowhere; `feasible`: the 95 %
+    interval of the simulated bound over the configured entry range reaches down to the limit, so that the passes do
+    not exclude that the bound meets it.
     """
 
     entry_m_s: NDArray[np.float64]

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import groupby
 
-from plant_models.library import SourcedValue, Value, car_names, retarder_names
+from plant_models.library import SourcedValue, Value, car_names, retarder_names, sources_cited_in
 from synth.configuration.cut_class import CutClass
 from synth.configuration.resolved_config import ResolvedConfig, resolve, setting_limits, setting_unit
 from synth.configuration.settings import (
@@ -20,7 +20,7 @@ from synth.configuration.settings import (
 
 HEAD = """\
 # Configuration of retarder-synth. Every line shows its default and may be left out.
-# A comment says: unit; sensible range (limits, for settings of the tool); origin.
+# A comment says: unit; sensible range (limits, for settings of the tool); origin. Sources stand at the end.
 # ASSUMED: no citable source stands behind the number; replace it by that of your retarder."""
 
 
@@ -30,7 +30,8 @@ def default_config_toml(retarder_name: str = DEFAULT_RETARDER) -> str:
     `InputError` if the library has no such retarder.
     """
     config = resolve(Settings(retarder=RetarderSettings(name=retarder_name)), "retarder-synth init")
-    return "\n".join(lines(config)) + "\n"
+    text = tuple(lines(config))
+    return "\n".join((*text, *source_lines(text))) + "\n"
 
 
 def lines(config: ResolvedConfig) -> Iterator[str]:
@@ -62,6 +63,12 @@ def lines(config: ResolvedConfig) -> Iterator[str]:
         yield from cut_lines(cut_class)
 
 
+def source_lines(text: Iterable[str]) -> Iterator[str]:
+    """What is cited in `text`, as comments."""
+    yield from ("", "# Sources, by the names in [brackets]:")
+    yield from (f"# [{source.name}] {source.reference}" for source in sources_cited_in(text))
+
+
 def cut_lines(cut_class: CutClass) -> Iterator[str]:
     """The [[cut]] table of a class; what follows from its mass stands as a comment."""
     by_name = {value.key.partition(".")[2]: value for value in cut_class.provenance}
@@ -79,10 +86,9 @@ def cut_lines(cut_class: CutClass) -> Iterator[str]:
 
 def origin(value: SourcedValue) -> str:
     """Unit; sensible range; source and confidence."""
-    span = f"{value.range[0]:g} to {value.range[1]:g}" if value.range else "any"
     confidence = f" (confidence {value.confidence})" if value.confidence else ""
-    source = f"ASSUMED, {value.source.removeprefix('assumed: ')}" if value.assumed else value.source
-    return f"{value.unit}; {span}; {source}{confidence}"
+    source = f"ASSUMED, {value.source}" if value.assumed else value.source
+    return f"{value.unit}; {value.span or 'any'}; {source}{confidence}"
 
 
 def toml_value(value: Value) -> str:

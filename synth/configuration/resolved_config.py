@@ -28,6 +28,7 @@ from synth.configuration.settings import (
     ValidationSettings,
 )
 from synth.input_error import InputError
+from synth.markov_chain.estimator_grid import estimator_resolution
 from synth.markov_chain.grid import Resolution
 from synth.markov_chain.grid_warnings import grid_warnings
 from synth.problem import Criterion, EntrySpeed, Plant, Problem
@@ -169,6 +170,8 @@ def resolve(settings: Settings, file: str) -> ResolvedConfig:
                 f"{file}: regulator.estimator is true, but criterion.p_overspeed and criterion.worst_friction_* can be "
                 "kept only without an estimator; leave one of the two out"
             )
+        if config.regulator.estimator:
+            estimator_resolution(config.resolution, retarder.sensor, min(targets))
     except PlantError as error:
         raise InputError(f"{file}: {with_key_path(str(error))}") from None
     return config

@@ -1,8 +1,7 @@
-"""Solve a problem: backward induction over path quanta to switching lines (R2)."""
+"""Solve a problem: backward induction over path quanta to switching lines."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from plant_models.speed_sensor import measured_speed_std
 from synth.dynamic_programme.switching_lines import SwitchingLines
 from synth.kernels.bellman import sweep
 from synth.kernels.packs import EIGHT
@@ -134,11 +134,6 @@ def hidden_prior(t: Transitions) -> NDArray[np.float64]:
     per_mode = 1.0 / np.bincount(stage)[stage]
     prior: NDArray[np.float64] = np.einsum("i,h,l->ihl", t.scenarios.weight, per_mode, t.chain.stationary)
     return prior
-
-
-def measured_speed_std(noise_m_s: float, resolution_m_s: float) -> float:
-    """Std of the measured speed: noise and the equivalent of quantisation, resolution/√12."""
-    return max(math.hypot(noise_m_s, resolution_m_s / math.sqrt(12.0)), 1e-4)
 
 
 def true_speed_weights(

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.speed_sensor import measured_speed_std
 from synth.criterion.exit_density import ExitDensity
-from synth.dynamic_programme.backward_induction import measured_speed_std
 from synth.dynamic_programme.switching_lines import SwitchingLines
 from synth.kernels.commands import command_probabilities
 from synth.kernels.policy_density import forward

@@ -1,4 +1,4 @@
-"""The common policy weighted by what is hidden as it really is at every place, stage and speed (model §2, finding 2).
+"""The common policy weighted by what is hidden as it really is at every place, stage and speed.
 
 The sweep weighs friction factor, resistance, path noise and resting pressure by their prior. Where a cut is seen at a
 given path, stage and speed says more: a fast cut near the exit is one that brakes badly. The posterior follows from the

@@ -1,4 +1,4 @@
-"""Switching lines V_lo,k(s) and V_hi,k(s) as matrices over path nodes and stages (S2: switching matrices)."""
+"""Switching lines V_lo,k(s) and V_hi,k(s) over path nodes and stages (the switching matrices of zhukovitsky-2002)."""
 
 from __future__ import annotations
 
@@ -33,3 +33,11 @@ class SwitchingLines:
     def stages(self) -> int:
         """Number of stages K + 1."""
         return int(self.lower_m_s.shape[0])
+
+    def at(self, nodes_m: NDArray[np.float64]) -> SwitchingLines:
+        """The same lines at other path nodes."""
+        lower, upper = (
+            np.array([np.interp(nodes_m, self.nodes_m, line) for line in side])
+            for side in (self.lower_m_s, self.upper_m_s)
+        )
+        return SwitchingLines(np.array(nodes_m), lower, upper)

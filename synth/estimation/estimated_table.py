@@ -15,11 +15,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.dynamic_programme.backward_induction import measured_speed_std
 from synth.estimation.estimator_design import as_estimated, estimator_of, speed_error_m_s
 from synth.fitting.polynomial_fit import PolynomialLines, opened
 from synth.fitting.tuned_lines import tuned_lines
 from synth.kernels.closed_loop import Draws
+from synth.markov_chain.estimator_grid import estimator_resolution, guessed_error_m_s
 from synth.markov_chain.grid import Resolution
 from synth.markov_chain.transitions import Transitions, persistent_transitions
 from synth.problem import Plant, Problem
@@ -27,15 +27,9 @@ from synth.simulation.closed_loop import ClosedLoop, LineController, close_loop
 from synth.simulation.random_passes import RandomPasses
 from tuning_tables.estimator import Estimator
 
-FIRST_SHARE = 0.45
-"""Guess of the estimate's error, as a share of the measured speed's."""
-
 ROUNDS = 3
 SETTLED = 0.05
 """Designs are repeated until the error found in the closed loop differs by less than this share, at most so often."""
-
-STEP_SHARE = 0.65
-"""Largest speed step of the grid, in standard deviations of the guessed error: coarser ones are exploited."""
 
 ERROR_PASSES = 100
 TRIM_EVALUATIONS = 25
@@ -70,15 +64,7 @@ class EstimatedTable:
 
 def estimator_design(plant: Plant, resolution: Resolution, lowest_target_m_s: float) -> Transitions:
     """The grid to design lines for estimated speeds on, for all errors and targets of a plant."""
-    # The step is that at the reference speed; below it cells are wider.
-    wider = max(1.0, resolution.reference_speed_m_s / lowest_target_m_s)
-    step = min(resolution.speed_step_m_s, STEP_SHARE * guessed_error_m_s(plant) / wider)
-    return persistent_transitions(plant, replace(resolution, speed_step_m_s=step))
-
-
-def guessed_error_m_s(plant: Plant) -> float:
-    """Of the estimated speed, before any pass was simulated."""
-    return FIRST_SHARE * measured_speed_std(plant.sensor.noise_m_s, plant.sensor.resolution_m_s)
+    return persistent_transitions(plant, estimator_resolution(resolution, plant.sensor, lowest_target_m_s))
 
 
 def estimated_table(
@@ -91,7 +77,7 @@ def estimated_table(
     """
     plant, estimator = problem.plant, estimator_of(problem.plant)
     loop = close_loop(plant, plant.top_stage + 1)
-    error = guessed_error_m_s(plant)
+    error = guessed_error_m_s(plant.sensor)
     rounds, settled = 0, False
     while not settled and rounds < ROUNDS:
         rounds += 1

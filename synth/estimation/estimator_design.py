@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from plant_models import path_breaks_m, path_coefficients
-from synth.dynamic_programme.backward_induction import measured_speed_std
+from plant_models.speed_sensor import measured_speed_std
 from synth.kernels.closed_loop import Draws
 from synth.problem import Plant
 from synth.simulation.closed_loop import ClosedLoop

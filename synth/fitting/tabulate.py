@@ -25,7 +25,7 @@ if TYPE_CHECKING:  # who asks a table for its lines needs no kernels
     from synth.fitting.polynomial_fit import PolynomialLines
 
 OVERSPEED_M_S = 0.3
-"""Over-speed counted in `predicted`: exit faster than the target by more than this (model §3)."""
+"""Over-speed counted in `predicted`: exit faster than the target by more than this."""
 
 LOWEST_VALID_SPEED_M_S = 0.3
 

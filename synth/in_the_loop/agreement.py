@@ -30,7 +30,7 @@ class Questions:
 
 @dataclass(frozen=True)
 class Tracks:
-    """Samples, dtype SAMPLE, (n,), and the bits of speed and estimate after each by the Python estimator, (n, 8)."""
+    """Samples, dtype SAMPLE, (n,), and the bits of speed and estimate after each by the Python estimator, (n, 9)."""
 
     samples: NDArray[np.void]
     estimates: NDArray[np.uint32]

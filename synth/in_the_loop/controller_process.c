@@ -1,9 +1,9 @@
 /* An exported table book as a process that answers through its standard input and output; words in the machine's order.
  *
  *   decide          for {uint32 table, int32 stage, float s_m, float v_m_s}: int32 answer; all of a stream
- *   observe         for {uint32 table, uint32 start, float s_m, float v_m_s, float overpressure_kpa, 7 words}: the
- *                   estimated speed and the 7 words of the estimate; all of a stream. start 0: the estimate goes on,
- *                   1: it begins, 2: it is the 7 words, whatever they are
+ *   observe         for {uint32 table, uint32 start, float s_m, float v_m_s, float overpressure_kpa, 8 words}: the
+ *                   estimated speed and the 8 words of the estimate; all of a stream. start 0: the estimate goes on,
+ *                   1: it begins, 2: it is the 8 words, whatever they are
  *   serve N         for {int32 what, float s_m, float v_m_s, float overpressure_kpa}, at once: what OBSERVE, or BEGIN
  *                   and observe: float estimated speed of table N; else its int32 decision, `what` being the stage
  *   select          for {uint32 layout, uint32 category, uint32 axles, float speed}: int32 status, the table (zeros if none)
@@ -41,7 +41,7 @@ typedef struct sample {
     retarder_estimate given;
 } sample;
 
-typedef char estimate_has_seven_words[(sizeof(retarder_estimate) == 28u) ? 1 : -1];
+typedef char estimate_has_eight_words[(sizeof(retarder_estimate) == 32u) ? 1 : -1];
 
 static void answer(int value)
 {

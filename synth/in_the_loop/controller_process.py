@@ -23,7 +23,7 @@ EXPORTED = ("retarder_table.c", "retarder_self_test.c")
 TIMEOUT_S = 300.0
 
 READING = np.dtype([("table", "u4"), ("stage", "i4"), ("s_m", "f4"), ("v_m_s", "f4")])
-ESTIMATE_WORDS = 7
+ESTIMATE_WORDS = 8
 SAMPLE = np.dtype(
     [("table", "u4"), ("start", "u4"), ("s_m", "f4"), ("v_m_s", "f4"), ("overpressure_kpa", "f4"),
      ("given", "u4", ESTIMATE_WORDS)]
@@ -54,7 +54,7 @@ class Controller:
         return np.frombuffer(self._answer(("decide",), readings), f"{self.order}i4").astype(np.int8)
 
     def observe(self, samples: NDArray[np.void]) -> NDArray[np.uint32]:
-        """For `samples`, dtype SAMPLE, (n,): the bits of the estimated speed and of the estimate after it, (n, 8)."""
+        """For `samples`, dtype SAMPLE, (n,): the bits of the estimated speed and of the estimate after it, (n, 9)."""
         words = np.frombuffer(self._answer(("observe",), samples), f"{self.order}u4")
         return words.reshape(len(samples), 1 + ESTIMATE_WORDS).astype(np.uint32)
 

@@ -105,9 +105,9 @@ def _stepped(values: NDArray[np.float32], rng: np.random.Generator) -> NDArray[n
 
 
 def _any_words(rng: np.random.Generator, count: int) -> NDArray[np.uint32]:
-    """(count, 7) words: half any bits at all, half numbers as they stand in an estimate, each word for itself."""
+    """(count, 8) words: half any bits at all, half numbers as they stand in an estimate, each word for itself."""
     wild = rng.integers(0, 2**32, (count, ESTIMATE_WORDS), dtype=np.uint32)
-    low, high = np.array([[0.0, -5.0, 0.0, 0.0, 0.0, -0.01, 0.0], [1.0, 45.0, 9.0, 2.0, 0.1, 0.01, 0.03]])
+    low, high = np.array([[0.0, -5.0, 0.0, 0.0, 0.0, -0.01, 0.0, 0.0], [1.0, 45.0, 9.0, 2.0, 0.1, 0.01, 0.03, 2e7]])
     usual = rng.uniform(low, high, wild.shape).astype(np.float32).view(np.uint32)
     return np.where(rng.random(wild.shape) < 0.5, wild, usual).astype(np.uint32)
 

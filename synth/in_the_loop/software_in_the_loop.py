@@ -69,7 +69,7 @@ def run_passes(loop: ClosedLoop, law: TableController, draws: kernel.Draws, run:
     n = len(draws.cut_factor)
     exits = kernel.Exits(np.empty(n), np.empty(n), np.empty(n, dtype=np.bool_), np.empty(n, dtype=np.int32))
     run(loop.path, loop.drive, loop.sensor, law.law(), draws, exits, np.empty((0, kernel.EVENT_FIELDS)))
-    return ExitSample(exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s)
+    return ExitSample(exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s, draws.weight)
 
 
 class PipeLine:

@@ -1,4 +1,4 @@
-"""Kernel of the closed-loop simulation: cut, valves, sensor and switching rule, pass after pass (model §1).
+"""Kernel of the closed-loop simulation: cut, valves, sensor and switching rule, pass after pass.
 
 Motion is exact: within a path cell and a piece of constant overpressure the acceleration is constant, so
 positions and times of cell edges are closed forms. The only approximation is that a transient is played as
@@ -65,6 +65,7 @@ class Draws(NamedTuple):
     """What chance gives to n passes: ξ_cut, w0, entry speed, first sample (n,); z of path and sensor (n, ·).
 
     `brake_m_s2_per_kpa` (n, C) follows from ξ_cut and path_z (`brake_rows`): worked out once for all controllers.
+    `weight` (n,): how many cuts each pass stands for; no kernel reads it.
     """
 
     cut_factor: Floats
@@ -74,6 +75,7 @@ class Draws(NamedTuple):
     path_z: NDArray[np.float32]
     noise_z: NDArray[np.float32]
     brake_m_s2_per_kpa: Floats
+    weight: Floats
 
 
 class Exits(NamedTuple):
@@ -131,7 +133,7 @@ def run_pass(
 ) -> Any:  # fmt: skip
     """One pass from the entrance, released, to the exit; returns (v, time, status, switchings, events).
 
-    A pressure, stage or speed in `events` holds from its time on; the last event is the end of the pass. `known` (7,)
+    A pressure, stage or speed in `events` holds from its time on; the last event is the end of the pass. `known` (8,)
     is memory for the estimator.
     """
     coefficients, has_line, valid, lower, upper, spacing_m, multi_step, lead_s, filter_s, parameters, work = law
@@ -221,7 +223,7 @@ def brake_rows(path: Path, cut_factor: Floats, path_z: NDArray[np.float32], rows
 def run_passes(path: Path, drive: Drive, sensor: Sensor, law: Rule, draws: Draws, exits: Exits, events: Floats) -> int:
     """Simulate all passes of `draws` into `exits`; returns the number of events of the last pass."""
     gravity, brakes = path.gravity_m_s2, draws.brake_m_s2_per_kpa
-    free, known = np.empty(gravity.shape[0]), np.empty(7, np.float32)
+    free, known = np.empty(gravity.shape[0]), np.empty(8, np.float32)
     count = 0
     for i in range(draws.cut_factor.shape[0]):
         drag = path.drag_m_s2_per_n_kn * draws.resistance_n_kn[i]

@@ -1,4 +1,4 @@
-"""How packs come from memory and go there: the instructions of those functions of `packs` that take an array."""
+"""How packs are loaded and stored: the instructions of those functions of `packs` that take an array."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """The stage-locked actuator: resting modes, commands and the pressure histories between them.
 
-A command is taken at a sample; no other is taken until its transient has ended (S2: choice only at the
+A command is taken at a sample; no other is taken until its transient has ended (zhukovitsky-2002: choice only at the
 discrete pressures P_k). So a change of stage lasts a whole number of sampling periods, and what the
 brake does meanwhile is known when the command is given. Because the regulator stops at the edge of its
 dead band, a stage rests at P_k − ε when it is reached from below and at P_k + ε from above: the resting

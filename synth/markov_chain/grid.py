@@ -20,6 +20,9 @@ CHECK_FRICTION_NODES = 13
 """Equally spaced nodes of ξ_cut from −4 to 4 standard deviations, for the prediction of a finished table."""
 
 
+LEAST_SPEED_STEP_M_S = 1e-3
+
+
 @dataclass(frozen=True)
 class Resolution:
     """How fine the state space is cut.
@@ -40,7 +43,7 @@ class Resolution:
 
     def __post_init__(self) -> None:
         require_between("grid: path_step_m", self.path_step_m, 0.01, 5.0)
-        require_between("grid: speed_step_m_s", self.speed_step_m_s, 1e-3, 0.5)
+        require_between("grid: speed_step_m_s", self.speed_step_m_s, LEAST_SPEED_STEP_M_S, 0.5)
         require_between("grid: reference_speed_m_s", self.reference_speed_m_s, 0.3, 20.0)
         for name in ("transient_substeps", "friction_nodes", "path_levels", "resistance_nodes"):
             value = getattr(self, name)

@@ -48,7 +48,7 @@ def correlated_chain(friction: Friction, quantum_m: float, levels: int) -> PathC
 
 
 def independent_chain(std: float, levels: int) -> PathChain:
-    """Independent normal noise of std `std` in every quantum: the formulation as published (S2)."""
+    """Independent normal noise of std `std` in every quantum: the formulation as published (zhukovitsky-2002)."""
     x, weights = np.polynomial.hermite_e.hermegauss(levels)
     weights = weights / weights.sum()
     return PathChain(np.maximum(std * x, -1.0), np.tile(weights, (levels, 1)), weights)

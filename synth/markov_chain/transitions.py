@@ -109,7 +109,7 @@ def with_known_friction(transitions: Transitions, factor: float) -> Transitions:
 
 
 def as_published(transitions: Transitions, levels: int = 5) -> Transitions:
-    """The same plant, grid and landings in the formulation of S2: friction noise independent in every quantum.
+    """The same plant, grid and landings as published (zhukovitsky-2002): friction noise independent in every quantum.
 
     The whole spread of friction, persistent or not, is drawn anew in every quantum and not scaled to its length.
     Sampling, delays and measurement noise are those of the plant, so that only the friction is told apart.

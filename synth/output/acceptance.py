@@ -5,25 +5,24 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from synth.configuration.settings import AcceptanceSettings
-from synth.plots.case_names import case_name, contest, honesty, why_infeasible
+from synth.output.judgement import Judgement, interval_text, judgement
+from synth.plots.case_names import case_name, contest, why_infeasible
 from synth.report.figures import counted
-from synth.simulation.exit_statistics import ExitStatistics
+from synth.simulation.replicates import share_of
 from synth.tuning.case_result import CaseResult
 
 
 @dataclass(frozen=True)
 class CaseVerdict:
-    """One case: `missed` names every limit that its table does not keep, whether it is feasible or not.
+    """One case: `judgement` of its table, whether it is feasible or not.
 
     `obstacle`: what makes the case infeasible, '' for a feasible one.
     """
 
     name: str
     obstacle: str
-    missed: tuple[str, ...]
+    judgement: Judgement
 
     @property
     def feasible(self) -> bool:
@@ -32,10 +31,8 @@ class CaseVerdict:
 
     @property
     def word(self) -> str:
-        """'accepted', 'missed' or 'infeasible'."""
-        if not self.feasible:
-            return "infeasible"
-        return "missed" if self.missed else "accepted"
+        """'accepted', 'missed', 'not decidable' or 'infeasible'."""
+        return self.judgement.word if self.feasible else "infeasible"
 
 
 @dataclass(frozen=True)
@@ -54,57 +51,39 @@ def judge(cases: Sequence[CaseResult], limits: AcceptanceSettings) -> Verdict:
     """The verdict on the simulated passes of `cases`."""
     judged = tuple(judge_case(case, limits) for case in cases)
     feasible = [(case, verdict) for case, verdict in zip(cases, judged, strict=True) if verdict.feasible]
-    bad = [verdict for _, verdict in feasible if verdict.missed]
+    bad = [verdict for _, verdict in feasible if verdict.judgement.missed]
+    open_ones = [verdict for _, verdict in feasible if verdict.judgement.word == "not decidable"]
     if not feasible:
         sentence = "no case is feasible, so there is nothing to accept"
     elif bad:
-        found = "; ".join(f"{verdict.name}: {', '.join(verdict.missed)}" for verdict in bad)
-        sentence = f"a limit is missed in {len(bad)} of {counted(len(feasible), 'feasible case')} ({found})"
+        sentence = f"a limit is missed in {len(bad)} of {counted(len(feasible), 'feasible case')} ({told(bad)})"
+    elif open_ones:
+        sentence = (
+            f"no limit is missed, but the passes are too few to decide {len(open_ones)} of "
+            f"{counted(len(feasible), 'feasible case')} ({told(open_ones)}); raise validation.passes"
+        )
     else:
         worst = max((case for case, _ in feasible), key=lambda case: contest(case).table.statistics.rms_m_s)
-        rms = contest(worst).table.statistics.rms_m_s
+        found = contest(worst).table.statistics
         sentence = (
-            f"the limits are kept in {counted(len(feasible), 'feasible case')}; the worst rms is {rms:.3f} m/s "
-            f"({case_name(worst)}) where {limits.rms_m_s:g} m/s are allowed"
+            f"the limits are kept in {counted(len(feasible), 'feasible case')}; the worst rms is {found.rms_m_s:.4f} "
+            f"{interval_text(found.rms_ci95_m_s)} m/s ({case_name(worst)}) where {limits.rms_m_s:g} m/s are allowed"
         )
     outside = [f"{verdict.name} ({verdict.obstacle})" for verdict in judged if not verdict.feasible]
     if outside:
         sentence += f"; infeasible and outside this verdict: {', '.join(outside)}"
-    return Verdict(bool(feasible) and not bad, sentence, judged)
+    return Verdict(bool(feasible) and not bad and not open_ones, sentence, judged)
+
+
+def told(verdicts: Sequence[CaseVerdict]) -> str:
+    """Cases with what is missed or undecided in them."""
+    return "; ".join(f"{verdict.name}: {', '.join(verdict.judgement.phrases)}" for verdict in verdicts)
 
 
 def judge_case(case: CaseResult, limits: AcceptanceSettings) -> CaseVerdict:
-    """What one case misses, from the passes that its table was simulated on."""
-    table = contest(case).table
-    share = overspeed_share(case.exit_speeds_m_s, case.target_speed_m_s, limits.overspeed_margin_m_s)
+    """The verdict on one case, from the passes that its table was simulated on."""
+    error = case.exit_speeds_m_s.astype(float) - case.target_speed_m_s
+    over = share_of(error > limits.overspeed_margin_m_s, case.exit_weight)
     obstacle = "" if case.feasibility.feasible else why_infeasible(case)
-    return CaseVerdict(case_name(case), obstacle, missed_limits(table.statistics, share, honesty(table), limits))
-
-
-def missed_limits(
-    found: ExitStatistics, overspeed: float, honest: float, limits: AcceptanceSettings
-) -> tuple[str, ...]:
-    """A phrase for every limit that a simulated table does not keep.
-
-    `overspeed`: share of passes faster than target + margin; `honest`: predicted / simulated rms, where NaN misses.
-    Honesty is missed only when its whole 95 % interval, that of the simulated rms, lies outside the limits: one
-    rare pass among a few thousand must not condemn a prediction.
-    """
-    stalled = found.stalls / found.passes
-    missed = []
-    if not found.rms_m_s <= limits.rms_m_s:
-        missed.append(f"rms {found.rms_m_s:.4f} m/s, allowed {limits.rms_m_s:g}")
-    if not overspeed <= limits.p_overspeed:
-        missed.append(f"over-speed in {overspeed:.3%} of the passes, allowed {limits.p_overspeed:.3%}")
-    if not stalled <= limits.p_stall:
-        missed.append(f"stop in the position in {stalled:.3%} of the passes, allowed {limits.p_stall:.3%}")
-    low, high = (honest * found.rms_m_s / end if end else honest for end in reversed(found.rms_ci95_m_s))
-    if not (low <= limits.honesty_high and high >= limits.honesty_low):
-        span = f"{limits.honesty_low:g} to {limits.honesty_high:g}"
-        missed.append(f"predicted / simulated rms {honest:.3f} [{low:.3f}, {high:.3f}], allowed {span}")
-    return tuple(missed)
-
-
-def overspeed_share(exit_speeds_m_s: np.ndarray, target_m_s: float, margin_m_s: float) -> float:
-    """Share of the passes that leave faster than target + margin."""
-    return float(np.mean(exit_speeds_m_s.astype(np.float64) - target_m_s > margin_m_s))
+    found = contest(case).table.statistics
+    return CaseVerdict(case_name(case), obstacle, judgement(found, over, case.table.predicted, limits))

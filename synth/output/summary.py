@@ -20,7 +20,7 @@ from synth.comparison.measured import Measured
 from synth.criterion.requirement_found import Finding
 from synth.estimation.estimated_table import EstimatedTable
 from synth.output.acceptance import CaseVerdict, Verdict
-from synth.plots.case_names import contest, honesty
+from synth.plots.case_names import contest
 from synth.tuning.case_result import CaseResult, DegreeStudy
 from synth.tuning.tune import Book
 from tuning_tables.canonical import LARGEST_EXACT_INTEGER
@@ -61,7 +61,7 @@ def overall(cases: tuple[CaseResult, ...]) -> Document:
     found = [contest(case) for case in cases if case.feasibility.feasible]
     figures: Document = {"cases": len(cases), "feasible": len(found)}
     if found:
-        honest, published = [honesty(c.table) for c in found], [honesty(c.published) for c in found]
+        honest, published = [c.table.honesty for c in found], [c.published.honesty for c in found]
         figures |= {
             "highest_rms_m_s": max(c.table.statistics.rms_m_s for c in found),
             "median_regret": median(c.regret for c in found),
@@ -85,22 +85,27 @@ def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
         "top_stage": case.plant.top_stage,
         "target_speed_m_s": case.target_speed_m_s,
         "verdict": verdict.word,
-        "missed_limits": verdict.missed,
+        "missed_limits": verdict.judgement.missed,
+        "undecided_limits": verdict.judgement.undecided,
         "feasible": verdict.feasible,
         "why_infeasible": verdict.obstacle or None,
         "entry_m_s": (entry.low_m_s, entry.high_m_s),
         "served_entry_m_s": served,
         "predicted": asdict(case.table.predicted),
         "simulated": measured_of(found.table),
-        "honesty": honesty(found.table),
+        "brake_power": asdict(case.brake_power),
+        "honesty": found.table.honesty,
+        "honesty_ci95": found.table.honesty_ci95,
         "table_loss": found.table_loss,
+        "table_loss_ci95": found.lines.table_ratio_ci95,
         "regret": found.regret,
+        "regret_ci95": found.known_friction.table_ratio_ci95,
         "best_baseline": found.best_baseline.name if found.best_baseline else None,
         "comparison": {entry.name: measured_of(entry) for entry in found.entries},
-        "as_published_honesty": honesty(found.published),
+        "as_published_honesty": found.published.honesty,
         "requirement": None if case.finding is None else requirement_of(case.finding),
         "indifference": asdict(case.indifference),
-        "estimate": None if case.estimate is None else estimate_of(case.estimate),
+        "estimate": None if case.estimate is None else {**estimate_of(case.estimate), "left_out": case.left_out},
         "escaped_probability": case.predicted.escaped,
         "hunting": {
             "pressure": [{"stage": stage, **asdict(cycle)} for stage, cycle in pressure_hunting(case.plant)],
@@ -110,8 +115,13 @@ def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
 
 
 def measured_of(entry: Measured) -> Document:
-    """The statistics of one controller, with what it promised."""
-    return {**asdict(entry.statistics), "predicted_rms_m_s": entry.predicted_rms_m_s}
+    """The statistics of one controller, with what it promised, and the ratio of the table to it."""
+    return {
+        **asdict(entry.statistics),
+        "predicted_rms_m_s": entry.predicted_rms_m_s,
+        "table_ratio": entry.table_ratio,
+        "table_ratio_ci95": entry.table_ratio_ci95,
+    }
 
 
 def estimate_of(made: EstimatedTable) -> Document:

@@ -5,13 +5,24 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 
+from synth.comparison.measured import honesty_of
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.input_error import InputError
-from synth.output.acceptance import missed_limits, overspeed_share
+from synth.output.judgement import Judgement, judgement
 from synth.problem import Plant
 from synth.simulation.closed_loop import TableController, simulate_many
-from synth.simulation.exit_statistics import ExitStatistics, exit_statistics
+from synth.simulation.controllers import Controller, full_brake
+from synth.simulation.exit_statistics import (
+    BrakePower,
+    ExitStatistics,
+    brake_power,
+    exit_statistics,
+    overspeed_of,
+)
+from synth.simulation.passes import ExitSample
+from synth.simulation.replicates import Interval
 from tuning_tables import ControllerTable
 
 LENGTH_TOLERANCE = 1e-6
@@ -22,41 +33,75 @@ LENGTH_TOLERANCE = 1e-6
 class Revalidation:
     """What the passes of `plant` under `table` gave, beside what the file says of itself.
 
-    `overspeed`: share of passes above target + margin of the limits; `honesty`: the file's predicted rms / simulated
-    rms; `confirmed`: the 95 % intervals of the file and of these passes overlap, None where the file has none;
-    `missed`: the limits that the table does not keep; `infeasible`: the summary beside the file calls the case
-    so; `same_config`: the table was made from this very configuration.
+    `overspeed`: share of passes above target + margin of the limits, with its interval; `honesty`: the file's predicted
+    rms / simulated rms, with its interval; `confirmed`: the 95 % intervals of the file and of these passes overlap,
+    None where the file has none; `judgement`: what the passes say of the limits; `infeasible`: the summary beside the
+    file calls the case so; `same_config`: the table was made from this very configuration.
     """
 
     table: ControllerTable
     label: str
     statistics: ExitStatistics
-    overspeed: float
-    honesty: float
+    brake_power: BrakePower
+    overspeed: tuple[float, Interval]
+    honesty: tuple[float, Interval]
     confirmed: bool | None
-    missed: tuple[str, ...]
+    judgement: Judgement
     infeasible: bool
     same_config: bool
 
 
-def revalidate(
-    table: ControllerTable, config: ResolvedConfig, source: str, passes: int, seed: int, threads: int, infeasible: bool
+@dataclass(frozen=True)
+class Rehearsal:
+    """What every table of a source is simulated with: the plants of `config`, and `passes` passes of `seed`."""
+
+    config: ResolvedConfig
+    source: str
+    passes: int
+    seed: int
+    threads: int
+
+    def run(self, plant: Plant, controller: Controller) -> ExitSample:
+        """The passes of `plant` under `controller`."""
+        return simulate_many(plant, controller, self.seed, self.passes, threads=self.threads)
+
+
+def revalidate_all(
+    tables: Sequence[ControllerTable], rehearsal: Rehearsal, infeasible: Sequence[bool]
+) -> list[Revalidation]:
+    """Simulate each table on the cut class that it is for; `InputError` if there is none for one of them."""
+    plants = dict(rehearsal.config.plants())
+
+    @cache
+    def at_full_brake(label: str) -> ExitSample:
+        plant = plants[label]
+        return rehearsal.run(plant, full_brake(plant.top_stage + 1, plant.exit_m))
+
+    found = []
+    for table, known in zip(tables, infeasible, strict=True):
+        label, plant = plant_for(table, rehearsal.config, rehearsal.source)
+        sample = rehearsal.run(plant, TableController(table))
+        power = brake_power(sample, at_full_brake(label), table.target_speed_m_s)
+        found.append(revalidation(table, label, sample, power, known, rehearsal.config))
+    return found
+
+
+def revalidation(
+    table: ControllerTable, label: str, sample: ExitSample, power: BrakePower, infeasible: bool, config: ResolvedConfig
 ) -> Revalidation:
-    """Simulate `passes` passes of the cut class of `config` that `table` is for; `InputError` if none is."""
-    label, plant = plant_for(table, config, source)
-    sample = simulate_many(plant, TableController(table), seed, passes, threads=threads)
+    """What `sample` says of `table`, beside what the table says of itself."""
     target, limits = table.target_speed_m_s, config.acceptance
     found = exit_statistics(sample, target)
-    honest = table.predicted.rms_m_s / found.rms_m_s if found.rms_m_s else math.nan
-    over = overspeed_share(sample.exit_speed_m_s, target, limits.overspeed_margin_m_s)
+    over = overspeed_of(sample, target, limits.overspeed_margin_m_s)
     return Revalidation(
         table=table,
         label=label,
         statistics=found,
+        brake_power=power,
         overspeed=over,
-        honesty=honest,
+        honesty=honesty_of(table.predicted.rms_m_s, table.predicted.passes, found),
         confirmed=confirmed(table, found),
-        missed=missed_limits(found, over, honest, limits),
+        judgement=judgement(found, over, table.predicted, limits),
         infeasible=infeasible,
         same_config=table.generator.config_sha256 == config.sha256,
     )

@@ -34,34 +34,23 @@ class Contest:
     @property
     def regret(self) -> float:
         """rms of the table / rms of the friction-known bound."""
-        return ratio(self.table.statistics.rms_m_s, self.known_friction.statistics.rms_m_s)
+        return self.known_friction.table_ratio
 
     @property
     def table_loss(self) -> float:
         """rms of the table / rms of the full switching lines."""
-        return ratio(self.table.statistics.rms_m_s, self.lines.statistics.rms_m_s)
+        return self.lines.table_ratio
 
 
 def contest(case: CaseResult) -> Contest:
     """The comparison of `case` by role, taken from the order of `CaseResult.comparison`.
 
-    The predictions of the table and of the formulation as published are those that the case itself states.
+    The prediction of the formulation as published is the one that the case itself states.
     """
     table, lines, published, known, *baselines = case.comparison
-    table = replace(table, predicted_rms_m_s=case.table.predicted.rms_m_s)
     published = replace(published, predicted_rms_m_s=case.published_predicted_rms_m_s)
     without = baselines.pop() if case.estimate is not None else None
     return Contest(table, lines, published, known, tuple(baselines), without)
-
-
-def honesty(entry: Measured) -> float:
-    """Predicted rms / simulated rms; NaN where nothing was predicted."""
-    return ratio(entry.predicted_rms_m_s, entry.statistics.rms_m_s)
-
-
-def ratio(above: float, below: float) -> float:
-    """Quotient, NaN for a zero divisor."""
-    return above / below if below else float("nan")
 
 
 def target_name(case: CaseResult) -> str:

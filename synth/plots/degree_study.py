@@ -1,4 +1,4 @@
-"""Exit error against the degree of the polynomial lines (R4)."""
+"""Exit error against the degree of the polynomial lines."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MOST_COLUMNS = 5
 
 
 def degree_study(studies: Sequence[DegreeStudy]) -> Figure:
-    """One panel a study: predicted rms in m/s (logarithmic, one scale for all) over the degree."""
+    """One panel a study: rms in m/s over degree, predicted as for an exported table; logarithmic, one scale for all."""
     columns = min(len(studies), MOST_COLUMNS)
     rows = math.ceil(len(studies) / columns)
     figure = new_figure(max(8.0, 2.7 * columns + 0.7), 2.7 * rows + 1.6, "Exit-speed error by degree of the lines")
@@ -33,7 +33,7 @@ def degree_study(studies: Sequence[DegreeStudy]) -> Figure:
     handles = [
         Line2D([], [], color=ORANGE, marker="s", linestyle="--", label="fitted by weighted least squares"),
         Line2D([], [], color=BLUE, marker="o", label="polished on the evaluated policy"),
-        Line2D([], [], color=INK, linestyle=":", label="solver's lines, unsmoothed"),
+        Line2D([], [], color=INK, linestyle=":", label="solver's lines, not smoothed"),
     ]
     legend_below(figure, handles, columns=len(handles))
     return figure

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -11,73 +12,126 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
+from synth.criterion.exit_density import ExitDensity
 from synth.plots.case_names import contest, cut_name
-from synth.plots.house_style import GREY, INK, SKY, VERMILLION, dress, legend_below, logarithmic_y, new_figure, place
+from synth.plots.house_style import (
+    GREY,
+    INK,
+    PALE_GREY,
+    SKY,
+    VERMILLION,
+    dress,
+    legend_below,
+    logarithmic_y,
+    new_figure,
+    place,
+)
 from synth.simulation.exit_statistics import OVERSPEED_M_S
 from synth.tuning.case_result import CaseResult
 
 ONE_PASS = 0.4
-"""Bottom of the logarithmic panel: this share of the density that one simulated pass in a cell stands for."""
+"""Bottom of the logarithmic panel: this share of the density that the pass of least weight makes in a wide bin."""
+
+NARROW_M_S, WIDE_M_S = 0.01, 0.1
+"""Widths of the bins of simulated passes within `OVERSPEED_M_S` of the target, and beyond."""
+
+REACH = 3
+"""Grid points to both sides that one cubic interpolation can disturb."""
+
+PIECES = 8
+"""Points that are drawn from one grid point to the next."""
 
 
 def exit_density(cases: Sequence[CaseResult]) -> Figure:
     """One column a case: density in 1/(m/s) over exit speed in m/s, near the target, and its tails logarithmically."""
     columns = len(cases)
     figure = new_figure(3.9 * columns + 0.7, 6.4, "Exit speed, predicted and simulated", cut_name(cases[0]))
-    place(figure, left=0.65, right=0.2, bottom=0.95, top=1.25, w=0.17, h=0.22)
+    in_legend = min(5, 2 * columns)  # beside each other: a single panel is narrow
+    place(figure, left=0.65, right=0.2, bottom=0.75 + 0.2 * math.ceil(5 / in_legend), top=1.25, w=0.17, h=0.22)
     panels = figure.subplots(2, columns, squeeze=False)
     for column, case in enumerate(cases):
         draw_case(panels[0, column], panels[1, column], case)
     panels[0, 0].set_ylabel("density, 1/(m/s)", fontsize=9)
     panels[1, 0].set_ylabel("the same, logarithmic", fontsize=9)
-    predicted = (
-        "predicted" if all(case.table.estimator is None for case in cases) else "predicted from other simulated passes"
-    )
     handles = [
         Patch(facecolor=SKY, label="simulated passes"),
-        Line2D(
-            [],
-            [],
-            color=VERMILLION,
-            marker="o",
-            markersize=3,
-            linewidth=1.4,
-            label=predicted,
-        ),
+        Line2D([], [], color=VERMILLION, linewidth=1.4, label=prediction_origin(cases)),
+        Patch(facecolor=PALE_GREY, edgecolor=GREY, hatch="////", linewidth=0, label="below the grid's error"),
         Line2D([], [], color=INK, linewidth=1.2, label="target"),
         Line2D([], [], color=GREY, linewidth=1.2, linestyle="--", label=f"target ± {OVERSPEED_M_S:g} m/s"),
     ]
-    legend_below(figure, handles, columns=min(len(handles), 2 * columns))  # a single panel is narrow
+    legend_below(figure, handles, columns=in_legend)
     return figure
+
+
+def prediction_origin(cases: Sequence[CaseResult]) -> str:
+    """What the predicted densities come from, in a legend or a caption."""
+    estimated = [case.table.estimator is not None for case in cases]
+    if all(estimated):
+        return "predicted from other simulated passes"
+    exact = "predicted by the forward equation"
+    return f"{exact}; with an estimator from other simulated passes" if any(estimated) else exact
 
 
 def draw_case(near: Axes, tails: Axes, case: CaseResult) -> None:
     """Both panels of one case."""
-    target, moving = case.target_speed_m_s, case.exit_speeds_m_s[case.exit_speeds_m_s > 0.0]
-    speed, edges = case.predicted.speed_m_s[1:], cell_edges_m_s(case.predicted.speed_m_s)
-    predicted = case.predicted.probability[1:] / np.diff(edges)
-    simulated = np.histogram(moving, edges)[0] / np.diff(edges) / max(case.exit_speeds_m_s.size, 1)
+    target, speeds, share = case.target_speed_m_s, case.exit_speeds_m_s, case.exit_weight / case.exit_weight.sum()
+    speed, predicted, error = predicted_density(case.predicted)
+    edges = bin_edges_m_s(target, float(max(speeds.max(initial=0.0), speed[-1])))
+    moving = speeds > 0.0
+    simulated = np.histogram(speeds[moving], edges, weights=share[moving])[0] / np.diff(edges)
     dress(near, panel_title(case))
     dress(tails, x="exit speed, m/s")
-    floor = ONE_PASS / (case.exit_speeds_m_s.size * float(np.diff(edges)[speed > 0.5 * target].max()))
-    seen = np.flatnonzero(np.maximum(predicted, simulated) > floor)
-    if not seen.size:
+    floor = ONE_PASS * float(share.min()) / WIDE_M_S
+    resolved = predicted > np.maximum(error, floor)
+    shown = np.concatenate((speed[resolved], edges[1:][simulated > 0.0], edges[:-1][simulated > 0.0]))
+    if not shown.size:
         near.text(0.5, 0.5, "no pass leaves the position", transform=near.transAxes, ha="center", fontsize=9)
         return
-    shown = slice(int(seen[0]), int(seen[-1]) + 1)
-    visible = np.where(predicted > floor, predicted, np.nan)
-    for axes, line in ((near, predicted), (tails, visible)):
-        axes.stairs(simulated[shown], edges[shown.start : shown.stop + 1], fill=True, color=SKY, linewidth=0)
-        axes.plot(speed[shown], line[shown], "-o", color=VERMILLION, markersize=2.4, linewidth=1.3)
+    for axes in (near, tails):
+        axes.stairs(simulated, edges, fill=True, color=SKY, linewidth=0)
+        axes.fill_between(speed, 0.0, np.maximum(error, 1e-3 * floor), where=(error > floor) & ~resolved,
+                          facecolor=PALE_GREY, edgecolor=GREY, hatch="////", linewidth=0, zorder=0.6)  # fmt: skip
+        axes.plot(speed, np.where(resolved, predicted, np.nan), color=VERMILLION, linewidth=1.3)
         axes.axvline(target, color=INK, linewidth=1.0)
         for mark in (target - OVERSPEED_M_S, target + OVERSPEED_M_S):
             axes.axvline(mark, color=GREY, linewidth=1.0, linestyle="--")
-    highest = max(float(predicted.max()), float(simulated.max()))
-    close = float(np.clip(1.5 * contest(case).table.statistics.p99_m_s, 0.1, 1.2 * OVERSPEED_M_S))
-    near.set(xlim=(target - close, target + close), ylim=(0.0, 1.08 * highest))
-    far = 1.2 * OVERSPEED_M_S
-    tails.set_xlim(min(target - far, float(edges[shown.start])), max(target + far, float(edges[shown.stop])))
+    highest, far = max(float(predicted.max()), float(simulated.max())), 1.2 * OVERSPEED_M_S
+    near.set(xlim=(target - far, target + far), ylim=(0.0, 1.08 * highest))
+    tails.set_xlim(min(target - far, float(shown.min())), max(target + far, float(shown.max())))
     logarithmic_y(tails, (1.25 * floor, 2.0 * highest))
+
+
+def predicted_density(exits: ExitDensity) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Speeds, density there in 1/(m/s), and the error below which the grid tells nothing of the density.
+
+    The grid carries the distribution by weights of a cubic interpolation, `PIECES` points are drawn between two of
+    its points by the same interpolation. Where a density has become negative it is wrong by that much at least: the
+    largest such error within `REACH` points is taken for the error there.
+    """
+    energy = 0.5 * exits.speed_m_s**2
+    step, weight = float(energy[1] - energy[0]), exits.probability.copy()
+    weight[0] = 0.0  # stands for cuts next to a stall
+    at = np.arange(PIECES, PIECES * (energy.size - 2)) / PIECES
+    first, x = np.floor(at).astype(int), at % 1.0
+    a, b, c, d = x + 1.0, x, x - 1.0, x - 2.0
+    cubic = (-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0)
+    between = np.sum([share * weight[first - 1 + k] for k, share in enumerate(cubic)], axis=0)
+    least = np.minimum(weight[first], weight[first + 1])
+    between = np.where(least > 0.0, np.maximum(between, least), between)  # a steep flank makes no dip of its own
+    wrong = np.pad(np.maximum(-between, 0.0), REACH * PIECES)
+    error = np.lib.stride_tricks.sliding_window_view(wrong, 2 * REACH * PIECES + 1).max(axis=1)
+    speed = np.sqrt(2.0 * at * step)
+    return speed, between * speed / step, error * speed / step
+
+
+def bin_edges_m_s(target_m_s: float, highest_m_s: float) -> NDArray[np.float64]:
+    """Edges of the bins from 0 to beyond `highest_m_s`; the target is one of them."""
+    half = round(OVERSPEED_M_S / NARROW_M_S)
+    narrow = NARROW_M_S * np.arange(-half, half + 1)
+    wide = np.arange(OVERSPEED_M_S + WIDE_M_S, max(target_m_s, highest_m_s - target_m_s) + 1.5 * WIDE_M_S, WIDE_M_S)
+    edges = target_m_s + np.concatenate((-wide[::-1], narrow, wide))
+    return np.append(0.0, edges[edges > 1e-9])
 
 
 def panel_title(case: CaseResult) -> str:
@@ -89,14 +143,6 @@ def panel_title(case: CaseResult) -> str:
         f"predicted rms {table.predicted_rms_m_s:.3f} m/s",
         f"simulated rms {table.statistics.rms_m_s:.3f} [{low:.3f}, {high:.3f}] m/s",
     ]
-    if table.statistics.stalls:
-        lines[0] += f" · {table.statistics.stalls} of {table.statistics.passes} passes stopped"
+    if table.statistics.stalled:
+        lines[0] += f" · {table.statistics.stalled:.2%} of the passes stopped"
     return "\n".join(lines)
-
-
-def cell_edges_m_s(speed_m_s: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Edges of the energy cells above the lowest one, as speeds; `speed_m_s` (E,) is even in v²/2."""
-    energy = 0.5 * speed_m_s**2
-    half = 0.5 * (energy[1] - energy[0])
-    edges: NDArray[np.float64] = np.sqrt(2.0 * (np.append(energy[1:] - half, energy[-1] + half)))
-    return edges

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from synth.plots.case_names import by_class, case_name, file_stem
 from synth.plots.degree_study import degree_study
-from synth.plots.exit_density import exit_density
+from synth.plots.exit_density import NARROW_M_S, WIDE_M_S, exit_density, prediction_origin
 from synth.plots.feasibility import feasibility
 from synth.plots.figure_file import draw
 from synth.plots.picture import Picture
@@ -17,6 +17,7 @@ from synth.plots.rms_by_controller import rms_by_controller
 from synth.plots.sample_passes import sample_passes
 from synth.plots.surfaces import surfaces
 from synth.plots.switchings import switchings
+from synth.simulation.exit_statistics import OVERSPEED_M_S
 from synth.tuning.case_result import CaseResult, DegreeStudy
 
 
@@ -60,8 +61,9 @@ def book_pictures(cases: Sequence[CaseResult], studies: Sequence[DegreeStudy], l
             "degree-study",
             "Degree of the lines",
             "Exit-speed error by degree",
-            "Predicted rms of polynomial lines of degree r: fitted to the solver's lines, and polished on the exactly "
-            "evaluated policy.",
+            "Rms that the forward equation predicts of rounded tables with lines of degree r, on the grid on which the "
+            "exported tables are predicted: fitted to the solver's lines, and polished. Dotted: the solver's lines "
+            "themselves on that grid.",
         )
 
 
@@ -73,8 +75,10 @@ def class_pictures(cases: Sequence[CaseResult]) -> Iterator[Picture]:
         file_stem("exit-density", label),
         "Predicted and simulated exit speed",
         f"Exit speed of {label}",
-        f"{label}: density predicted by the forward equation of the exported table, over the histogram of simulated "
-        "passes; above near the target, below on a logarithmic scale with the tails.",
+        f"{label}: density of the exported table ({prediction_origin(cases)}), over the simulated passes in bins of "
+        f"{NARROW_M_S:g} m/s, beyond ±{OVERSPEED_M_S:g} m/s of {WIDE_M_S:g} m/s; above near the target, below on a "
+        "logarithmic scale with the tails. The step of the grid widens the predicted peak, most at low targets. "
+        "Hatched: the prediction is smaller than the error of its grid there, and is not drawn.",
     )
     yield picture(
         surfaces(middle),

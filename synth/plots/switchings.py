@@ -1,4 +1,4 @@
-"""What the region of indifferent control saves in valve switchings, and what it costs in accuracy (R5)."""
+"""What the region of indifferent control saves in valve switchings, and what it costs in accuracy."""
 
 from __future__ import annotations
 

@@ -123,13 +123,14 @@ def draw_exits(axes: Axes, table: ControllerTable, sample: ExitSample) -> None:
     low, high = found.rms_ci95_m_s
     moving = sample.exit_speed_m_s[~sample.stalled]
     if moving.size:
-        axes.hist(moving, bins=np.histogram_bin_edges(moving, 60).tolist(), color=SKY)
+        share = 100.0 * sample.weight[~sample.stalled] / sample.weight.sum()
+        axes.hist(moving, bins=np.histogram_bin_edges(moving, 60).tolist(), weights=share, color=SKY)
     axes.axvline(table.target_speed_m_s, color=INK, linewidth=1.0)
     title = (
-        f"{found.passes} passes: rms {found.rms_m_s:.3f} [{low:.3f}, {high:.3f}] m/s\n"
-        f"the file predicts {table.predicted.rms_m_s:.3f} m/s · {found.stalls} stopped"
+        f"{found.passes} passes: rms {found.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s\n"
+        f"the file predicts {table.predicted.rms_m_s:.4f} m/s · {found.stalled:.2%} stopped"
     )
-    dress(axes, title, "exit speed, m/s", "passes")
+    dress(axes, title, "exit speed, m/s", "cuts, %")
 
 
 def subject(table: ControllerTable) -> str:

@@ -110,7 +110,8 @@ class Swarm:
 
         entry, resistance, phase = (np.minimum(ndtr(self.scalars[:, i]), BELOW_ONE) for i in (1, 2, 3))
         # Copies: passes freeze their arrays, and a swarm's belong to the swarm.
-        return RandomPasses(self.scalars[:, 0].copy(), entry, phase, resistance, self.path.copy(), self.noise.copy())
+        first = self.scalars[:, 0].copy()
+        return RandomPasses(first, entry, phase, resistance, self.path.copy(), self.noise.copy(), np.ones(len(first)))
 
     def chosen(self, rows: NDArray[np.int64]) -> Swarm:
         """Copies of the particles `rows`."""

@@ -9,8 +9,8 @@ ABSENT = "–"
 
 
 def speed(value_m_s: float) -> str:
-    """A speed error in m/s, to the millimetre."""
-    return f"{value_m_s:.3f}" if math.isfinite(value_m_s) else ABSENT
+    """A speed error in m/s, to a tenth of a millimetre a second."""
+    return f"{value_m_s:.4f}" if math.isfinite(value_m_s) else ABSENT
 
 
 def quotient(value: float, digits: int = 2) -> str:
@@ -28,6 +28,22 @@ def percent(share: float) -> str:
 def interval(ends: tuple[float, float]) -> str:
     """A confidence interval of a speed."""
     return f"[{speed(ends[0])}, {speed(ends[1])}]"
+
+
+def quotient_interval(ends: tuple[float, float], digits: int = 2) -> str:
+    """A confidence interval of a ratio; '' for none."""
+    return f"[{ends[0]:.{digits}f}, {ends[1]:.{digits}f}]" if math.isfinite(ends[0]) else ""
+
+
+def in_ten_thousand(share: float, ends: tuple[float, float]) -> str:
+    """A probability as cuts in 10 000, with its interval."""
+    low, most, high = (few(1e4 * each) for each in (ends[0], share, ends[1]))
+    return f"{most} [{low}, {high}]" if share else f"fewer than {high}"
+
+
+def few(number: float) -> str:
+    """A number of cuts: two figures below 10."""
+    return f"{number:#.2g}" if number < 9.95 else f"{number:.0f}"
 
 
 def span(values: Sequence[float], form: str = ".2f") -> str:

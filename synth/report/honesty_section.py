@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from statistics import median
 
-from synth.plots.case_names import Contest, case_name, contest, honesty
+from synth.plots.case_names import Contest, case_name, contest
 from synth.report.book_report import BookReport
 from synth.report.case_table import HONEST
 from synth.report.figures import counted, span
@@ -20,42 +20,66 @@ FAR_OFF = 1.5
 def honesty_section(book: BookReport) -> Markup:
     """Two paragraphs, computed over the feasible cases (over all, where none is feasible)."""
     cases = book.feasible or book.cases
-    return element("div", element("p", own_prediction(cases)), element("p", published_prediction(cases)))
+    return element(
+        "div",
+        element("p", own_prediction(cases)),
+        left_out_estimators(book.cases),
+        element("p", published_prediction(cases)),
+    )
 
 
 def own_prediction(cases: Sequence[CaseResult]) -> str:
-    """What became of the prediction of the exported tables."""
-    ratios = [honesty(contest(case).table) for case in cases]
-    inside = sum(HONEST[0] <= ratio <= HONEST[1] for ratio in ratios)
-    if cases[0].estimate is not None:
-        gains = [ratio_to_without(contest(case)) for case in cases]
-        return (
-            "With an estimator the prediction is itself simulated, on passes with widely spread friction that neither "
-            "design nor validation use: it tests the sample, not the model. Predicted / simulated rms is "
-            f"{span(ratios)} over {counted(len(cases), 'case')}; {inside} of them within {HONEST[0]:g} to "
-            f"{HONEST[1]:g}. On the same passes the rms with the estimator is {span(gains)} times that of lines "
-            f"polished for the measured speed ({median(gains):.2f} in the median)."
+    """What became of the prediction of the exported tables: exact ones, and simulated ones of tables with estimator."""
+    exact = [case for case in cases if case.table.estimator is None]
+    estimated = [case for case in cases if case.table.estimator is not None]
+    sentences = []
+    if exact:
+        sentences.append(
+            "Prediction (the exit-speed density of the exported table, nothing sampled) and simulation (passes in time "
+            "with valves, sensor and sampling) are two independent computations of one quantity. " + ratios_of(exact)
         )
+    if estimated:
+        gains = [ratio_to_without(contest(case)) for case in estimated]
+        sentences.append(
+            "With an estimator the prediction is itself simulated, on stratified passes that neither "
+            f"design nor validation use: it tests the sample, not the model. {ratios_of(estimated)} On the same passes "
+            f"the rms with the estimator is {span(gains)} times that of lines polished for the measured speed "
+            f"({median(gains):.2f} in the median)."
+        )
+    return " ".join(sentences)
+
+
+def ratios_of(cases: Sequence[CaseResult]) -> str:
+    """Predicted over simulated rms, in a sentence."""
+    ratios = [contest(case).table.honesty for case in cases]
+    inside = sum(HONEST[0] <= ratio <= HONEST[1] for ratio in ratios)
     return (
-        "Prediction (the exit-speed density of the exported table, nothing sampled) and simulation (passes in time "
-        "with valves, sensor and sampling) are two independent computations of one quantity. Predicted / "
-        f"simulated rms is {span(ratios)} over {counted(len(cases), 'case')}; {inside} of them within "
+        f"Predicted / simulated rms is {span(ratios)} over {counted(len(cases), 'case')}; {inside} of them within "
         f"{HONEST[0]:g} to {HONEST[1]:g}."
     )
 
 
+def left_out_estimators(cases: Sequence[CaseResult]) -> Markup:
+    """Which tables have no estimator though the configuration asks for one; nothing if there is none."""
+    rows = [element("li", f"{case_name(case)}: {case.left_out}.") for case in cases if case.left_out]
+    if not rows:
+        return Markup("")
+    lead = (
+        f"The configuration asks for an estimator. {counted(len(rows), 'table')} of {len(cases)} "
+        f"{'has' if len(rows) == 1 else 'have'} none, and the lines are for the measured speed:"
+    )
+    return element("div", element("p", lead), element("ul", *rows))
+
+
 def ratio_to_without(found: Contest) -> float:
     """rms of the table / rms of the lines without estimator; NaN where there are none."""
-    without = found.without_estimator
-    if without is None or not without.statistics.rms_m_s:
-        return math.nan
-    return found.table.statistics.rms_m_s / without.statistics.rms_m_s
+    return math.nan if found.without_estimator is None else found.without_estimator.table_ratio
 
 
 def published_prediction(cases: Sequence[CaseResult]) -> str:
     """What became of the prediction that the formulation as published makes of itself."""
     found = [contest(case) for case in cases]
-    ratios = [honesty(each.published) for each in found]
+    ratios = [each.published.honesty for each in found]
     lead = (
         "The formulation as published takes the friction of every path quantum as independent, so that it averages out "
         f"within a pass. The rms that it promised: {span([c.published.predicted_rms_m_s for c in found], '.3f')} m/s; "

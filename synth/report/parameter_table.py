@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from plant_models.library import SourcedValue, Value
+from plant_models.library import SourcedValue, Value, sources_cited_in
 from synth.report.figures import ABSENT, counted
 from synth.report.markup import Cell, Markup, element, head_row, joined, table
 
@@ -19,12 +19,22 @@ def parameter_section(parameters: Sequence[SourcedValue]) -> Markup:
         "Replace those by the data of your retarder before you rely on a number of this page."
     )
     rows = [(parameter_row(parameter), "assumed" if parameter.assumed else "") for parameter in parameters]
-    return joined((element("p", lead), table("Parameters", (head_row(*COLUMNS),), rows, kind="parameters")))
+    shown = table("Parameters", (head_row(*COLUMNS),), rows, kind="parameters")
+    return joined((element("p", lead), shown, source_list(parameters)))
+
+
+def source_list(parameters: Sequence[SourcedValue]) -> Markup:
+    """What the parameters cite, with author, title, year and where to find it."""
+    cited = sources_cited_in(parameter.source for parameter in parameters)
+    if not cited:
+        return Markup()
+    entries = (element("li", element("code", f"[{source.name}]"), f" {source.reference}") for source in cited)
+    return joined((element("h3", "Sources"), element("ul", *entries)))
 
 
 def parameter_row(parameter: SourcedValue) -> list[str | Cell]:
     """The cells of one parameter."""
-    low_high = f"{parameter.range[0]:g} to {parameter.range[1]:g}" if parameter.range else ABSENT
+    low_high = parameter.span or ABSENT
     outside = "" if parameter.in_range else "bad"
     return [
         Cell(parameter.key, kind="code"),

@@ -1,4 +1,4 @@
-"""Two findings beside the tables: which degree suffices (R4), and what the indifferent region saves (R5)."""
+"""Two findings beside the tables: which degree suffices, and what the indifferent region saves (R5)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,11 @@ def studies_section(book: BookReport) -> Markup:
     """The table of the degree study, where there is one, and a sentence on the indifferent region."""
     parts = [element("p", indifference(book.feasible or book.cases))]
     if book.degree_studies:
-        lead = "Predicted rms in m/s of the polished lines by degree, in brackets before the polish."
+        lead = (
+            "Rms in m/s of rounded tables of polished lines by degree, in brackets before the polish, predicted as the "
+            "rms of an exported table is; the last column predicts the solver's lines on the same grid. The study "
+            "takes no limit on over-speed, no guard against the worst friction and no estimator."
+        )
         parts += [element("p", lead), degree_table(book.degree_studies)]
     return joined(parts)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from synth.plots.case_names import case_name, contest, why_infeasible
 from synth.report.book_report import BookReport
-from synth.report.figures import counted, interval, speed
+from synth.report.figures import counted, in_ten_thousand, interval, speed
 from synth.report.markup import Markup, element
 from synth.tuning.case_result import CaseResult
 
@@ -36,7 +36,17 @@ def worst_case(book: BookReport) -> str:
     return (
         f"Worst of the {counted(len(book.feasible), 'feasible case')}: {case_name(worst)}, simulated rms "
         f"{speed(found.rms_m_s)} m/s, 95 % interval {interval(found.rms_ci95_m_s)}, over {found.passes} passes; "
-        f"the limit is {speed(book.acceptance_rms_m_s)} m/s."
+        f"the limit is {speed(book.acceptance_rms_m_s)} m/s. {in_cuts(worst)}"
+    )
+
+
+def in_cuts(case: CaseResult) -> str:
+    """The same in cuts, as a yard counts them."""
+    found, power = contest(case).table.statistics, case.brake_power
+    out = in_ten_thousand(power.out_of_brake, power.out_of_brake_ci95)
+    return (
+        f"95 of 100 of its cuts leave within ±{speed(found.p95_m_s)} m/s of the target, 99 within "
+        f"±{speed(found.p99_m_s)}; out of brake power are {out} in 10 000."
     )
 
 

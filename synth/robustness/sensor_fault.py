@@ -7,12 +7,14 @@ with them.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.kernels.closed_loop import LONGEST_PASS_S
 from synth.problem import Plant
 from synth.simulation.random_passes import RandomPasses
 
@@ -59,6 +61,20 @@ class DropOut:
 
 
 @dataclass(frozen=True)
+class LostForGood:
+    """No reading in any pass from the moments on that `starts_s` gives for the transit times."""
+
+    starts_s: Callable[[Floats], Floats]
+
+    def __call__(self, passes: RandomPasses, plant: Plant, transit_s: Floats) -> RandomPasses:
+        """See `SensorFault`; with as many readings as the longest pass has, for repeated ones would come back."""
+        readings = math.ceil(LONGEST_PASS_S / plant.sensor.sample_period_s) + 1
+        repeats = -(-readings // passes.noise_z.shape[1])
+        longer = replace(passes, noise_z=np.tile(passes.noise_z, (1, repeats)))
+        return without_readings(longer, reading_times_s(longer, plant) >= self.starts_s(transit_s)[:, None])
+
+
+@dataclass(frozen=True)
 class LostReadings:
     """Every reading is missing with probability `share`, independently."""
 
@@ -89,13 +105,13 @@ def before_exit(duration_s: float) -> Callable[[Floats], Floats]:
 
 
 def reading_times_s(passes: RandomPasses, plant: Plant) -> Floats:
-    """Time of every reading from the entrance on, shape (n, 256)."""
+    """Time of every reading from the entrance on, of the shape of `passes.noise_z`."""
     count = passes.noise_z.shape[1]
     return np.asarray((passes.phase_u[:, None] + np.arange(count)) * plant.sensor.sample_period_s)
 
 
 def without_readings(passes: RandomPasses, missing: NDArray[np.bool_]) -> RandomPasses:
-    """`passes` with NaN where a reading is `missing`, shape (n, 256)."""
+    """`passes` with NaN where a reading is `missing`, of the shape of `passes.noise_z`."""
     return replace(passes, noise_z=np.where(missing, np.float32(np.nan), passes.noise_z).astype(np.float32))
 
 

@@ -136,7 +136,7 @@ def together(
         relative=relative,
         rms_m_s=rms,
         overspeed=np.array([outcome.statistics.overspeed for outcome in outcomes]),
-        stalls=np.array([outcome.statistics.stalls / outcome.statistics.passes for outcome in outcomes]),
+        stalls=np.array([outcome.statistics.stalled for outcome in outcomes]),
         rank_correlation=np.array([spearmanr(column, rms).statistic for column in relative.T]),
     )
 

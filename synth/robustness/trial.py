@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 from synth.problem import Plant
 from synth.robustness.perturbation import Perturbation
 from synth.simulation.closed_loop import TableController, simulate
-from synth.simulation.exit_statistics import NORMAL_95, ExitStatistics, clopper_pearson, exit_statistics, rms_ratio
+from synth.simulation.exit_statistics import ExitStatistics, exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from tuning_tables import ControllerTable
@@ -18,15 +17,13 @@ from tuning_tables import ControllerTable
 class Outcome:
     """What a table does under one perturbation.
 
-    `ratio`: rms / rms of the nominal plant on the same passes, with its 95 % interval (paired); stalls as a share with
-    the interval of Clopper and Pearson; `note` says where a value was clipped.
+    `ratio`: rms / rms of the nominal plant on the same passes, with its 95 % interval (paired); `note` says where a
+    value was clipped.
     """
 
     name: str
     note: str
     statistics: ExitStatistics
-    stall_ci95: tuple[float, float]
-    bias_ci95_m_s: tuple[float, float]
     ratio: float
     ratio_ci95: tuple[float, float]
 
@@ -63,13 +60,10 @@ class Trial:
         sample = self.sample(perturbation, table)
         found = exit_statistics(sample, self.target_m_s)
         ratio, interval = rms_ratio(sample, self.nominal, self.target_m_s)
-        half = NORMAL_95 * found.std_m_s / math.sqrt(found.passes)
         return Outcome(
             name=perturbation.name,
             note=perturbation.note,
             statistics=found,
-            stall_ci95=clopper_pearson(found.stalls, found.passes),
-            bias_ci95_m_s=(found.bias_m_s - half, found.bias_m_s + half),
             ratio=ratio,
             ratio_ci95=interval,
         )

@@ -20,7 +20,8 @@ from synth.problem import Plant
 from synth.simulation.controllers import Controller, LineController, TableController, fixed
 from synth.simulation.drive_pieces import drive_pieces
 from synth.simulation.passes import ExitSample, PassTrace
-from synth.simulation.random_passes import PATH_CELLS, RandomPasses, random_passes
+from synth.simulation.random_passes import PATH_CELLS, PassRow, RandomPasses
+from synth.simulation.stratified_passes import stratified_passes
 
 __all__ = [
     "ClosedLoop",
@@ -66,11 +67,11 @@ class ClosedLoop:
         return np.maximum(0.0, nominal - position.force.touch_pressure_kpa)
 
     def draws(self, passes: RandomPasses, cut_factor: float | None = None) -> kernel.Draws:
-        """What `passes` mean for this plant; `cut_factor` fixes ξ_cut (the friction is known)."""
+        """What `passes` mean for this plant; `cut_factor` fixes ξ_cut (the friction is known), for all cuts alike."""
         plant = self.plant
-        factor = plant.friction.cut_factor(passes.cut_z, plant.friction_cv)
+        factor, weight = plant.friction.cut_factor(passes.cut_z, plant.friction_cv), passes.weight
         if cut_factor is not None:
-            factor = np.full(len(passes), cut_factor, dtype=np.float64)
+            factor, weight = np.full(len(passes), cut_factor, dtype=np.float64), np.ones(len(passes))
         factor, path_z = fixed(factor, np.float64), fixed(passes.path_z, np.float32)
         rows = np.empty((len(passes), len(self.path.gravity_m_s2)))
         kernel.brake_rows(self.path, factor, path_z, rows)
@@ -82,6 +83,7 @@ class ClosedLoop:
             path_z,
             fixed(passes.noise_z, np.float32),
             fixed(rows, np.float64),
+            fixed(weight, np.float64),
         )
 
     def resistance_n_kn(self, u: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -100,7 +102,7 @@ class ClosedLoop:
             return self._alone(law, draws, np.empty((0, kernel.EVENT_FIELDS)))[0]
         exits = empty_exits(len(draws.cut_factor))
         lanes.run_lanes(self.path, self.pieces, self.sensor, law, draws, exits, lane_memory())
-        return sample_of(exits)
+        return sample_of(exits, draws)
 
     def follow(self, controller: Controller, draws: kernel.Draws) -> PassTrace:
         """The only pass of `draws` under `controller`, event by event."""
@@ -120,7 +122,7 @@ class ClosedLoop:
         """One pass after the other, with the events of the last."""
         exits = empty_exits(len(draws.cut_factor))
         count = kernel.run_passes(self.path, self.drive, self.sensor, law, draws, exits, events)
-        return sample_of(exits), events[:count]
+        return sample_of(exits, draws), events[:count]
 
 
 def empty_exits(passes: int) -> kernel.Exits:
@@ -144,9 +146,9 @@ def lane_memory() -> places.Work:
     return places.Work(floats.view(np.float64), ints, waiting, ended, told, heard.view(np.float64))
 
 
-def sample_of(exits: kernel.Exits) -> ExitSample:
-    """What the kernel has filled in, for reading."""
-    return ExitSample(exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s)
+def sample_of(exits: kernel.Exits, draws: kernel.Draws) -> ExitSample:
+    """What the kernel has filled in for `draws`, for reading."""
+    return ExitSample(exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s, draws.weight)
 
 
 def trace_of(events: NDArray[np.float64], stalled: bool) -> PassTrace:
@@ -228,9 +230,9 @@ def simulate_many(
     count: int,
     first_pass: int = 0,
     threads: int = 1,
-    cut_factor: float | None = None,
+    row: PassRow = stratified_passes,
 ) -> ExitSample:
-    """Passes `first_pass` … `first_pass + count − 1` of `seed`, in bounded memory.
+    """Passes `first_pass` … `first_pass + count − 1` of `seed`, in bounded memory; `row` draws them.
 
     The result does not depend on `threads` nor on how the passes are split.
     """
@@ -241,7 +243,7 @@ def simulate_many(
     starts, ends = [first_pass, *inner], [*inner, end]
 
     def chunk(start: int, stop: int) -> ExitSample:
-        return loop.run(controller, loop.draws(random_passes(seed, start, stop - start, cells), cut_factor))
+        return loop.run(controller, loop.draws(row(seed, start, stop - start, cells)))
 
     with ThreadPoolExecutor(max_workers=threads) as pool:
         samples = list(pool.map(chunk, starts, ends))

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import cache, cached_property, partial
 
 from synth.kernels.closed_loop import Draws
 from synth.problem import Plant
 from synth.simulation.closed_loop import ClosedLoop, close_loop
-from synth.simulation.controllers import Controller
+from synth.simulation.controllers import Controller, full_brake
 from synth.simulation.passes import ExitSample, PassTrace
 from synth.simulation.random_passes import RandomPasses
 
@@ -32,6 +32,12 @@ class CommonPasses:
     def run(self, controller: Controller) -> ExitSample:
         """All passes under `controller`."""
         return self.loop(controller.stages).run(controller, self.draws)
+
+    @cached_property
+    def at_full_brake(self) -> ExitSample:
+        """All passes under a regulator that raises at every decision: what brake power can do at most."""
+        plant = self.plant
+        return self.run(full_brake(plant.top_stage + 1, plant.exit_m))
 
     def trace(self, controller: Controller, index: int, cut_factor: float) -> PassTrace:
         """Pass `index` event by event, but with the friction factor `cut_factor`."""

@@ -82,6 +82,13 @@ class LineController:
         )
 
 
+def full_brake(stages: int, exit_m: float) -> LineController:
+    """A regulator of so many stages that raises at every decision, as far as there is a stage."""
+    lower, upper = np.full((stages, 2), -np.inf), np.full((stages, 2), -1.0)  # below every speed
+    upper[-1] = np.inf
+    return LineController(SwitchingLines(np.array([0.0, exit_m]), lower, upper))
+
+
 Controller = TableController | LineController
 
 

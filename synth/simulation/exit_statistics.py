@@ -1,14 +1,14 @@
-"""Figures of quality of a sample of exits, with their confidence intervals (model §3)."""
+"""Figures of quality of a sample of exits, each with its 95 % interval (model §3)."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from synth.simulation.passes import ExitSample
+from synth.simulation.replicates import Interval, mean_of, quantile_of, rms_of, rms_quotient, share_of
 
 OVERSPEED_M_S = 0.3
 """An exit that is faster than the target by more than this is an over-speed."""
@@ -21,82 +21,98 @@ NORMAL_95 = 1.959963984540054
 class ExitStatistics:
     """Exit-speed error e = V_exit − V_target over `passes` passes; a stalled pass counts with V_exit = 0.
 
-    `rms_ci95_m_s` and `overspeed_ci95` are (low, high); `p99_m_s` is the 99 % quantile of |e|;
-    `overspeed` the share of passes with e > 0.3 m/s; `switchings` the mean number of commands per pass.
+    Shares and means are of cuts as they come, whatever the strata the passes were drawn from; every `…_ci95` is the
+    95 % interval (low, high) of the figure before it. `p95_m_s`, `p99_m_s`: 95 and 99 % quantiles of |e|; `overspeed`:
+    share with e > 0.3 m/s; `stalled`: share that stops in the position; `switchings`: mean commands of a pass.
     """
 
     passes: int
     rms_m_s: float
-    rms_ci95_m_s: tuple[float, float]
+    rms_ci95_m_s: Interval
     bias_m_s: float
+    bias_ci95_m_s: Interval
     std_m_s: float
+    p95_m_s: float
+    p95_ci95_m_s: Interval
     p99_m_s: float
+    p99_ci95_m_s: Interval
     overspeed: float
-    overspeed_ci95: tuple[float, float]
-    stalls: int
+    overspeed_ci95: Interval
+    stalled: float
+    stalled_ci95: Interval
     switchings: float
+    switchings_ci95: Interval
+
+
+@dataclass(frozen=True)
+class BrakePower:
+    """What brake power the cuts of a sample leave, and how exactly they exit where it suffices; 95 % intervals.
+
+    `out_of_brake`: share of cuts that leave more than 0.3 m/s too fast even under a regulator that raises at every
+    decision: no table can hold them. `rms_within_m_s`: rms of the exit error of all others, None if there are none.
+    """
+
+    out_of_brake: float
+    out_of_brake_ci95: Interval
+    rms_within_m_s: float | None
+    rms_within_ci95_m_s: Interval | None
 
 
 def exit_statistics(sample: ExitSample, target_m_s: float) -> ExitStatistics:
-    """Statistics of `sample` against the commanded exit speed; raises `ValueError` for less than two passes."""
-    n = len(sample)
-    if n < 2:
-        raise ValueError(f"exit statistics: {n} passes; at least 2 are needed")
-    error = sample.exit_speed_m_s - target_m_s
-    over = int(np.count_nonzero(error > OVERSPEED_M_S))
-    square = error**2
+    """Statistics of `sample` against the commanded exit speed; `ValueError` for fewer than two replicates."""
+    error, weight = sample.exit_speed_m_s - target_m_s, sample.weight
+    rms, rms_ci95 = rms_of(error, weight)
+    bias = mean_of(error, weight)
+    p95, p95_ci95 = quantile_of(np.abs(error), weight, 0.95)
+    p99, p99_ci95 = quantile_of(np.abs(error), weight, 0.99)
+    over, over_ci95 = overspeed_of(sample, target_m_s, OVERSPEED_M_S)
+    stalled, stalled_ci95 = share_of(sample.stalled, weight)
+    switchings = mean_of(sample.switchings.astype(np.float64), weight)
     return ExitStatistics(
-        passes=n,
-        rms_m_s=math.sqrt(square.mean()),
-        rms_ci95_m_s=rms_interval(float(square.mean()), float(square.std(ddof=1)) / math.sqrt(n)),
-        bias_m_s=float(error.mean()),
-        std_m_s=float(error.std(ddof=1)),
-        p99_m_s=float(np.quantile(np.abs(error), 0.99)),
-        overspeed=over / n,
-        overspeed_ci95=clopper_pearson(over, n),
-        stalls=int(np.count_nonzero(sample.stalled)),
-        switchings=float(sample.switchings.mean()),
+        passes=len(sample),
+        rms_m_s=rms,
+        rms_ci95_m_s=rms_ci95,
+        bias_m_s=bias.value,
+        bias_ci95_m_s=bias.ci95,
+        std_m_s=math.sqrt(max(rms**2 - bias.value**2, 0.0)),
+        p95_m_s=p95,
+        p95_ci95_m_s=p95_ci95,
+        p99_m_s=p99,
+        p99_ci95_m_s=p99_ci95,
+        overspeed=over,
+        overspeed_ci95=over_ci95,
+        stalled=stalled,
+        stalled_ci95=stalled_ci95,
+        switchings=switchings.value,
+        switchings_ci95=switchings.ci95,
     )
 
 
-def pooled_statistics(samples: Sequence[ExitSample], weights: Sequence[float], target_m_s: float) -> ExitStatistics:
-    """Statistics of a mixture: stratum i has probability `weights`[i] and was sampled by `samples`[i].
-
-    The intervals follow from the strata's own variances; the one of `overspeed` is normal.
-    """
-    share = np.concatenate([np.full(len(s), w / len(s)) for s, w in zip(samples, weights, strict=True)])
-    share /= share.sum()
-    error = np.concatenate([s.exit_speed_m_s for s in samples]) - target_m_s
-    over = (error > OVERSPEED_M_S).astype(float)
-    mean_square, overspeed = float(share @ error**2), float(share @ over)
-    bias = float(share @ error)
-    square_se, over_se = 0.0, 0.0
-    for s, w in zip(samples, weights, strict=True):
-        e = s.exit_speed_m_s - target_m_s
-        square_se += (w**2) * float((e**2).var(ddof=1)) / len(s)
-        over_se += (w**2) * float((e > OVERSPEED_M_S).var(ddof=1)) / len(s)
-    order = np.argsort(np.abs(error))
-    p99 = np.abs(error)[order][np.searchsorted(np.cumsum(share[order]), 0.99)]
-    half = NORMAL_95 * math.sqrt(over_se)
-    return ExitStatistics(
-        passes=len(error),
-        rms_m_s=math.sqrt(mean_square),
-        rms_ci95_m_s=rms_interval(mean_square, math.sqrt(square_se)),
-        bias_m_s=bias,
-        std_m_s=math.sqrt(max(mean_square - bias**2, 0.0)),
-        p99_m_s=float(p99),
-        overspeed=overspeed,
-        overspeed_ci95=(max(overspeed - half, 0.0), min(overspeed + half, 1.0)),
-        stalls=sum(int(np.count_nonzero(s.stalled)) for s in samples),
-        switchings=float(share @ np.concatenate([s.switchings for s in samples])),
-    )
+def overspeed_of(sample: ExitSample, target_m_s: float, margin_m_s: float) -> tuple[float, Interval]:
+    """Share of cuts that leave faster than target + margin, and its 95 % interval."""
+    return share_of(sample.exit_speed_m_s - target_m_s > margin_m_s, sample.weight)
 
 
-def rms_interval(mean_square: float, standard_error: float) -> tuple[float, float]:
+def brake_power(sample: ExitSample, full_brake: ExitSample, target_m_s: float) -> BrakePower:
+    """What of `sample` is for want of brake power; `full_brake`: the same passes, raised at every decision."""
+    out = full_brake.exit_speed_m_s - target_m_s > OVERSPEED_M_S
+    share, ci95 = share_of(out, sample.weight)
+    if out.all():
+        return BrakePower(share, ci95, None, None)
+    within = replace(sample, weight=np.where(out, 0.0, sample.weight))
+    return BrakePower(share, ci95, *rms_of(within.exit_speed_m_s - target_m_s, within.weight))
+
+
+def rms_ratio(sample: ExitSample, other: ExitSample, target_m_s: float) -> tuple[float, Interval]:
+    """rms of `sample` / rms of `other`, same passes, and its 95 % interval (paired)."""
+    a, b = (x.exit_speed_m_s - target_m_s for x in (sample, other))
+    return rms_quotient(a, b, sample.weight)
+
+
+def rms_interval(mean_square: float, standard_error: float) -> Interval:
     """95 % interval of a root mean square, from the mean square and its standard error.
 
-    Normal limits of log(mean square) (delta method: its standard error is the relative one), mapped back;
-    so the low limit is never negative, and heavy-tailed errors widen the interval through the variance of e².
+    Normal limits of log(mean square) (delta method: its standard error is the relative one), mapped back.
     """
     if mean_square == 0.0:
         return 0.0, 0.0
@@ -105,17 +121,7 @@ def rms_interval(mean_square: float, standard_error: float) -> tuple[float, floa
     return rms / spread, rms * spread
 
 
-def rms_ratio(sample: ExitSample, other: ExitSample, target_m_s: float) -> tuple[float, tuple[float, float]]:
-    """rms of `sample` / rms of `other`, same passes, and its 95 % interval (delta method on the logarithm, paired)."""
-    a, b = ((x.exit_speed_m_s - target_m_s) ** 2 for x in (sample, other))
-    if a.mean() == 0.0 or b.mean() == 0.0:
-        raise ValueError("rms ratio: a sample without any error has no ratio")
-    ratio = math.sqrt(a.mean() / b.mean())
-    of_log = 0.5 * float(np.std(a / a.mean() - b / b.mean(), ddof=1)) / math.sqrt(len(a))
-    return ratio, (ratio * math.exp(-NORMAL_95 * of_log), ratio * math.exp(NORMAL_95 * of_log))
-
-
-def clopper_pearson(hits: int, n: int, confidence: float = 0.95) -> tuple[float, float]:
+def clopper_pearson(hits: int, n: int, confidence: float = 0.95) -> Interval:
     """Exact interval of a probability after `hits` in `n` independent trials (Clopper and Pearson 1934)."""
     from scipy.special import betaincinv  # start-up: scipy only where it is needed
 

@@ -10,12 +10,16 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class ExitSample:
-    """How n passes ended, arrays of shape (n,); a stalled pass has exit speed 0."""
+    """How n passes ended, arrays of shape (n,); a stalled pass has exit speed 0.
+
+    `weight`: how many cuts each pass stands for (`RandomPasses`).
+    """
 
     exit_speed_m_s: NDArray[np.float64]
     stalled: NDArray[np.bool_]
     switchings: NDArray[np.int32]
     transit_time_s: NDArray[np.float64]
+    weight: NDArray[np.float64]
 
     def __post_init__(self) -> None:
         for array in vars(self).values():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -29,6 +30,7 @@ class RandomPasses:
     `cut_z` (n,) standard normal for ξ_cut; `entry_u`, `phase_u`, `resistance_u` (n,) uniform in [0, 1) for
     the entry speed, the phase of the sampling and the rolling resistance; `path_z` (n, cells) and `noise_z`
     (n, 256) standard normal float32 for η along the path and the sensor. A NaN in `noise_z` is a missing reading.
+    `weight` (n,): how many cuts each pass stands for; 1 where passes are drawn as cuts come.
     """
 
     cut_z: NDArray[np.float64]
@@ -37,6 +39,7 @@ class RandomPasses:
     resistance_u: NDArray[np.float64]
     path_z: NDArray[np.float32]
     noise_z: NDArray[np.float32]
+    weight: NDArray[np.float64]
 
     def __post_init__(self) -> None:
         for array in vars(self).values():
@@ -51,6 +54,13 @@ class RandomPasses:
         """Passes `start` … `stop − 1` of these, as views."""
         return RandomPasses(**{name: getattr(self, name)[start:stop] for name in NAMES})
 
+    def every(self, step: int, start: int) -> RandomPasses:
+        """Passes `start`, `start` + `step`, … of these, as views."""
+        return RandomPasses(**{name: getattr(self, name)[start::step] for name in NAMES})
+
+
+PassRow = Callable[[int, int, int, int], RandomPasses]
+"""An endless row of passes: (seed, first pass, count, path cells)."""
 
 NAMES = tuple(field.name for field in fields(RandomPasses))
 
@@ -62,6 +72,13 @@ def random_passes(seed: int, first_pass: int, count: int, path_cells: int = PATH
     `SeedSequence(seed, spawn_key=(b,))` and its children. Who needs no more than `path_cells` numbers along the path
     saves the time for the others; it does not change them.
     """
+    return row_of_passes(block_of_passes, seed, first_pass, count, path_cells)
+
+
+def row_of_passes(
+    block_of: Callable[[int, int, int], RandomPasses], seed: int, first_pass: int, count: int, path_cells: int
+) -> RandomPasses:
+    """Passes `first_pass` … `first_pass + count − 1` of a row; `block_of(seed, block, path_cells)` gives its blocks."""
     if not 1 <= path_cells <= PATH_CELLS:
         raise ValueError(f"random passes: {path_cells} path cells, but 1 to {PATH_CELLS} are possible")
     if seed < 0 or first_pass < 0 or count < 0:
@@ -70,7 +87,7 @@ def random_passes(seed: int, first_pass: int, count: int, path_cells: int = PATH
     pieces: list[RandomPasses] = []
     for block in range(first_pass // BLOCK_PASSES, max(-(-end // BLOCK_PASSES), first_pass // BLOCK_PASSES + 1)):
         start = block * BLOCK_PASSES
-        drawn = block_of_passes(seed, block, path_cells)
+        drawn = block_of(seed, block, path_cells)
         pieces.append(drawn.part(max(first_pass, start) - start, min(end, start + BLOCK_PASSES) - start))
     if len(pieces) == 1:
         return pieces[0]
@@ -89,6 +106,7 @@ def block_of_passes(seed: int, block: int, path_cells: int) -> RandomPasses:
         resistance_u=rng.random(BLOCK_PASSES),
         noise_z=normal_columns(noise, NOISE_SAMPLES),
         path_z=normal_columns(path, path_cells),
+        weight=np.ones(BLOCK_PASSES),
     )
 
 

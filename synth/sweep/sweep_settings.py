@@ -86,7 +86,7 @@ class SweepSettings(Section):
     exit_speeds_m_s: Values | None = None
     cut: tuple[SweptCuts, ...] = Field((), max_length=MOST_VALUES, strict=False)
     condition: tuple[dict[str, Any], ...] = Field((), max_length=MOST_VALUES, strict=False)
-    passes: int = Field(2000, ge=100, le=50_000)
+    passes: int = Field(2000, ge=1000, le=50_000)
     interpolation_loss_m_s: float | None = Field(None, ge=1e-5, le=1.0)
     smallest_step_m_s: float = Field(SMALLEST_STEP_M_S, ge=0.01, le=5.0)
     tables: bool = False

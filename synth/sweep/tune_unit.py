@@ -18,12 +18,12 @@ from synth.fitting.tuned_lines import fitted
 from synth.markov_chain.grid import finer_for_check
 from synth.markov_chain.transitions import Transitions, check_transitions, persistent_transitions
 from synth.one_blas_thread import one_blas_thread
-from synth.output.acceptance import missed_limits, overspeed_share
+from synth.output.judgement import judgement
 from synth.problem import Plant
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import CommonPasses, common_passes
-from synth.simulation.exit_statistics import exit_statistics
-from synth.simulation.random_passes import random_passes
+from synth.simulation.exit_statistics import brake_power, exit_statistics, overspeed_of
+from synth.simulation.stratified_passes import stratified_passes
 from synth.sweep.plan import TARGETS_AT_ONCE, Refinement, UnitOrder
 from synth.sweep.refinement import Bench, Gap, refined
 from synth.sweep.unit_result import Refused, Row, UnitResult
@@ -75,7 +75,7 @@ def workshop(order: UnitOrder) -> Workshop:
         plant=plant,
         design=persistent_transitions(plant, config.resolution),
         check=check_transitions(plant, finer_for_check(config.resolution)),
-        passes=common_passes(plant, random_passes(config.validation.seed, 0, config.validation.passes)),
+        passes=common_passes(plant, stratified_passes(config.validation.seed, 0, config.validation.passes)),
         generator=Generator("retarder-synth", version("retarder-synth"), order.config_sha256),
     )
 
@@ -141,12 +141,12 @@ def validated(shop: Workshop, table: ControllerTable) -> Row:
     read, target, limits = from_json(to_json(table)), table.target_speed_m_s, shop.config.acceptance
     sample = shop.passes.run(TableController(read))
     found = exit_statistics(sample, target)
-    honest = table.predicted.rms_m_s / found.rms_m_s if found.rms_m_s else 0.0
     # In single precision, as a tune keeps them: both count the same passes.
-    speeds = sample.exit_speed_m_s.astype(np.float32)
-    over = overspeed_share(speeds, target, limits.overspeed_margin_m_s)
+    speeds = sample.exit_speed_m_s.astype(np.float32).astype(np.float64)
+    over = overspeed_of(replace(sample, exit_speed_m_s=speeds), target, limits.overspeed_margin_m_s)
+    power = brake_power(sample, shop.passes.at_full_brake, target)
     return Row(
         table=read.with_validated(Validated(found.passes, found.rms_m_s, found.rms_ci95_m_s)),
-        simulated=asdict(found),
-        missed=missed_limits(found, over, honest, limits),
+        simulated={**asdict(found), **asdict(power)},
+        judgement=judgement(found, over, table.predicted, limits),
     )

@@ -6,22 +6,23 @@ import json
 from dataclasses import asdict, dataclass
 from typing import Any, cast
 
+from synth.output.judgement import Judgement
 from synth.sweep.refinement import Gap
 from tuning_tables import ControllerTable, DamagedTable, TableError
 from tuning_tables.canonical import canonical_json
 from tuning_tables.document import from_document, to_document
 from tuning_tables.seal import seal_of, unsealed
 
-FORMAT, VERSION = "retarder-sweep-unit", 2
+FORMAT, VERSION = "retarder-sweep-unit", 3
 
 
 @dataclass(frozen=True)
 class Row:
-    """One table with the figures of its closed loop, and a phrase for each limit of [acceptance] that it misses."""
+    """One table with the figures of its closed loop, and what they say of the limits of [acceptance]."""
 
     table: ControllerTable
     simulated: dict[str, Any]
-    missed: tuple[str, ...]
+    judgement: Judgement
 
 
 @dataclass(frozen=True)
@@ -56,7 +57,8 @@ def to_bytes(result: UnitResult) -> bytes:
         "condition": result.condition,
         "label": result.label,
         "rows": [
-            {"table": to_document(row.table), "simulated": row.simulated, "missed": row.missed} for row in result.rows
+            {"table": to_document(row.table), "simulated": row.simulated, **asdict(row.judgement)}
+            for row in result.rows
         ],
         "gaps": [asdict(gap) for gap in result.gaps],
         "refused": [asdict(each) for each in result.refused],
@@ -89,4 +91,5 @@ def from_bytes(content: bytes, source: str) -> UnitResult:
 def row_from(row: dict[str, Any], source: str) -> Row:
     """One row of the file."""
     simulated = {name: tuple(value) if isinstance(value, list) else value for name, value in row["simulated"].items()}
-    return Row(from_document(row["table"], source), simulated, tuple(row["missed"]))
+    judgement = Judgement(tuple(row["missed"]), tuple(row["undecided"]))
+    return Row(from_document(row["table"], source), simulated, judgement)

@@ -1,4 +1,4 @@
-"""Best command and the region of indifferent control (R5) on the solver's grid."""
+"""Best command and the region of indifferent control on the solver's grid."""
 
 from __future__ import annotations
 

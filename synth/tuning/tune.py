@@ -14,15 +14,17 @@ from synth.comparison.friction_bound import friction_known_bounds
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.dynamic_programme.backward_induction import solve_all
 from synth.estimation.estimated_table import estimator_design
-from synth.estimation.simulated_prediction import weighted_passes
+from synth.estimation.simulated_prediction import prediction_passes
 from synth.markov_chain.grid import finer_for_check, require_memory
 from synth.markov_chain.transitions import as_published, check_transitions, persistent_transitions
 from synth.one_blas_thread import one_blas_thread
 from synth.problem import Plant, Problem
 from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.random_passes import RandomPasses, random_passes
+from synth.simulation.stratified_passes import stratified_passes
 from synth.tuning.case_result import CaseResult, DegreeStudy
-from synth.tuning.tune_case import CaseOrder, EstimatorOrder, degree_study, tune_case
+from synth.tuning.degree_study import degree_study, tables_by_degree
+from synth.tuning.tune_case import CaseOrder, EstimatorOrder, tune_case
 from synth.tuning.work_queue import run_nested
 from tuning_tables import ControllerTable, Generator, read_json, write_json
 
@@ -34,11 +36,6 @@ VALUES_KEPT = 1
 """Path nodes at which a case needs the values of its solution: the entrance."""
 
 TRIM_PASSES = 3000
-PREDICTION_PASSES = 10_000
-"""Only for tables with an estimator, which have no exact prediction."""
-
-MOST_COMPARED_PASSES = 50_000
-"""Passes kept in memory for the comparison of controllers; more are for `validate`."""
 
 Progress = Callable[[str], None]
 CaseDone = Callable[[CaseResult], None]
@@ -71,7 +68,7 @@ def tune(
     for label, plant in plants:
         require_memory(label, plant, config.resolution, workers)
     created = creation_time()
-    passes = random_passes(config.validation.seed, 0, min(config.validation.passes, MOST_COMPARED_PASSES))
+    passes = stratified_passes(config.validation.seed, 0, config.validation.passes)
     tuning = random_passes(config.validation.seed + 1, 0, TUNING_PASSES)
     generator = Generator("retarder-synth", version("retarder-synth"), config.sha256)
     heaviest_first = sorted(range(len(plants)), key=lambda i: -plants[i][1].top_stage * plants[i][1].cut.mass_t)
@@ -113,7 +110,7 @@ def class_tasks(
     bounds = friction_known_bounds(design, targets, criterion.squared(), passes, config.acceptance.rms_m_s)
     compared = common_passes(plant, passes)
     rehearsal = compared.of_others(tuning)
-    estimator = estimator_order(config, compared) if config.regulator.estimator else None
+    estimator = estimator_order(config, label, compared) if config.regulator.estimator else None
 
     def case(i: int) -> CaseResult:
         order = CaseOrder(
@@ -136,13 +133,15 @@ def class_tasks(
         result = tune_case(order)
         case_done(result)
         figures = result.comparison[0].statistics
-        progress(f"{label} to {targets[i]:g} m/s: rms {figures.rms_m_s:.3f} m/s in {figures.passes} simulated passes")
+        told = f"{label} to {targets[i]:g} m/s: rms {figures.rms_m_s:.3f} m/s in {figures.passes} simulated passes"
+        progress(f"{told}; {result.left_out}" if result.left_out else told)
         if result.finding is not None:
             progress(f"{label} to {targets[i]:g} m/s: {result.finding.sentence}")
         return result
 
     def study() -> DegreeStudy:
-        result = degree_study(solutions[0], label, DEGREES)
+        tables = tuple(tables_by_degree(solutions[0], DEGREES, generator, created))
+        result = degree_study(solutions[0], check, label, tables)
         progress(f"{label} to {targets[0]:g} m/s: degree study done")
         return result
 
@@ -150,15 +149,13 @@ def class_tasks(
     return tasks + [partial(case, i) for i in range(len(targets))]
 
 
-def estimator_order(config: ResolvedConfig, compared: CommonPasses) -> EstimatorOrder:
+def estimator_order(config: ResolvedConfig, label: str, compared: CommonPasses) -> EstimatorOrder:
     """Grid and passes to design for the estimator of a plant; the passes are not those `compared`, nor anybody's."""
     seed = config.validation.seed
-    prediction = weighted_passes(seed + 2, PREDICTION_PASSES)
     return EstimatorOrder(
         design=estimator_design(compared.plant, config.resolution, min(config.targets_m_s)),
         tuning=random_passes(seed + 1, TUNING_PASSES, TUNING_PASSES + TRIM_PASSES),
-        prediction=compared.of_others(prediction.passes),
-        weight=prediction.weight,
+        prediction=compared.of_others(prediction_passes(seed + 2, label)),
     )
 
 

@@ -6,10 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from synth.comparison.baselines import tune_baselines
-from synth.comparison.measured import Feasibility, Measured
+from synth.comparison.measured import Feasibility, Measured, independent_ratio
 from synth.criterion.exit_density import ExitDensity
 from synth.criterion.requirement import FrictionRange, OverspeedLimit
 from synth.criterion.requirement_found import Finding
@@ -27,9 +26,10 @@ from synth.markov_chain.transitions import Transitions
 from synth.problem import Criterion, Problem
 from synth.simulation.closed_loop import Controller, LineController, TableController
 from synth.simulation.common_passes import CommonPasses
-from synth.simulation.exit_statistics import exit_statistics
+from synth.simulation.exit_statistics import ExitStatistics, brake_power, exit_statistics, rms_ratio
+from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
-from synth.tuning.case_result import WITHOUT_ESTIMATOR, CaseResult, DegreeStudy, Indifference
+from synth.tuning.case_result import WITHOUT_ESTIMATOR, CaseResult, Indifference
 from synth.tuning.policy_map import policy_map
 from tuning_tables import ControllerTable, Generator, Validated
 
@@ -40,12 +40,11 @@ INDIFFERENCE_SHOWN_M2_S2 = 1e-4
 
 @dataclass(frozen=True)
 class EstimatorOrder:
-    """A grid for estimated speeds, passes to find error and trim on, and others, as weighted draws, to predict from."""
+    """A grid for estimated speeds, passes to find error and trim on, and others to predict from."""
 
     design: Transitions
     tuning: RandomPasses
     prediction: CommonPasses
-    weight: NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -110,13 +109,15 @@ def tune_case(order: CaseOrder) -> CaseResult:
         predicted=predicted,
         published_predicted_rms_m_s=rms_of_lines(published.transitions, published.lines, target),
         exit_speeds_m_s=sample.exit_speed_m_s.astype(np.float32),
+        exit_weight=sample.weight,
+        brake_power=brake_power(sample, order.passes.at_full_brake, target),
         comparison=(
-            Measured("table", statistics, table.predicted.rms_m_s),
-            run(order, "full lines", LineController(solution.lines)),
-            run(order, "as published", LineController(published.lines)),
-            order.known,
-            *(run(order, b.name, b.controller) for b in tune_baselines(order.tuning, target)),
-            *(() if made is None else (run(order, WITHOUT_ESTIMATOR, LineController(lines.at(nodes))),)),
+            Measured("table", statistics, table.predicted.rms_m_s, table.predicted.passes),
+            run(order, "full lines", LineController(solution.lines), sample),
+            run(order, "as published", LineController(published.lines), sample),
+            beside(order.known, statistics),
+            *(run(order, b.name, b.controller, sample) for b in tune_baselines(order.tuning, target)),
+            *(() if made is None else (run(order, WITHOUT_ESTIMATOR, LineController(lines.at(nodes)), sample),)),
         ),
         indifference=indifference(order, by_lines),
         feasibility=order.feasibility,
@@ -157,8 +158,8 @@ def predicted_by_passes(
     origin = (order.generator, order.table_id, order.created)
     table = tabulate(plant, made.lines, target, UNPREDICTED, *origin, made.estimator)
     sample = estimator.prediction.run(TableController(table))
-    density = density_of(sample, estimator.weight, estimator.design.grid.speed_m_s)
-    return replace(table, predicted=simulated_prediction(sample, estimator.weight, target)), density
+    density = density_of(sample, estimator.design.grid.speed_m_s)
+    return replace(table, predicted=simulated_prediction(sample, target)), density
 
 
 def with_prediction(check: Transitions, table: ControllerTable) -> tuple[ControllerTable, ExitDensity]:
@@ -175,9 +176,20 @@ def predict(check: Transitions, table: ControllerTable) -> ExitDensity:
     return exit_density(check, commands(check, used, staircase=True))
 
 
-def run(order: CaseOrder, name: str, controller: Controller) -> Measured:
-    """Closed loop of `controller` on the common passes, as figures."""
-    return Measured(name, exit_statistics(order.passes.run(controller), order.problem.target_speed_m_s))
+def run(order: CaseOrder, name: str, controller: Controller, table: ExitSample) -> Measured:
+    """Closed loop of `controller` on the common passes, as figures; `table`: how the table fares on them."""
+    sample, target = order.passes.run(controller), order.problem.target_speed_m_s
+    found = exit_statistics(sample, target)
+    if found.rms_m_s == 0.0:
+        return Measured(name, found)
+    ratio, ci95 = rms_ratio(table, sample, target)
+    return Measured(name, found, table_ratio=ratio, table_ratio_ci95=ci95)
+
+
+def beside(known: Measured, table: ExitStatistics) -> Measured:
+    """The friction-known reference with the ratio of the table to it."""
+    ratio, ci95 = independent_ratio(table, known.statistics)
+    return replace(known, table_ratio=ratio, table_ratio_ci95=ci95)
 
 
 def rms_of_lines(transitions: Transitions, lines: SwitchingLines, target_speed_m_s: float) -> float:
@@ -196,17 +208,3 @@ def indifference(order: CaseOrder, with_it: ExitDensity) -> Indifference:
         rms_without_m_s=without.rms_m_s(target),
         rms_with_m_s=with_it.rms_m_s(target),
     )
-
-
-def degree_study(solution: Solution, label: str, degrees: tuple[int, ...]) -> DegreeStudy:
-    """Predicted rms against the degree of the polynomials, fitted and polished (R4)."""
-    design, target, criterion = solution.transitions, solution.target_speed_m_s, solution.criterion
-    density, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
-    fitted, after = np.empty(len(degrees)), np.empty(len(degrees))
-    for i, degree in enumerate(degrees):
-        fit = fit_lines(solution, occupancy.samples, degree)
-        best = polished(design, fit, target, criterion)
-        for found, lines in ((fitted, fit.lines), (after, best)):
-            at_nodes = lines.at(design.grid.path_m)
-            found[i] = exit_density(design, commands(design, at_nodes, staircase=False)).rms_m_s(target)
-    return DegreeStudy(f"{label}, {target:g} m/s", degrees, fitted, after, density.rms_m_s(target))

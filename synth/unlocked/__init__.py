@@ -1,1 +1,1 @@
-"""Unlocked mode: a command may be given at every sample, also during a transient (model §2)."""
+"""Unlocked mode: a command may be given at every sample, also during a transient."""

@@ -48,7 +48,7 @@ class UnlockedLoop:
             raise ValueError(f"unlocked loop: {controller.stages} stages, the loop has {len(self.drive.stage_kpa)}")
         exits, loop = empty_exits(len(draws.cut_factor)), self.locked
         count = run_unlocked_passes(loop.path, self.drive, loop.sensor, controller.law(), draws, exits, events)
-        return sample_of(exits), events[:count]
+        return sample_of(exits, draws), events[:count]
 
 
 def unlocked_loop(plant: Plant) -> UnlockedLoop:

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import path_coefficients
-from synth.dynamic_programme.backward_induction import TIE_M2_S2, measured_speed_std, true_speed_weights
+from plant_models.speed_sensor import measured_speed_std
+from synth.dynamic_programme.backward_induction import TIE_M2_S2, true_speed_weights
 from synth.kernels.unlocked_bellman import unlocked_sweep
 from synth.markov_chain.grid import Grid, Resolution, make_grid
 from synth.markov_chain.path_noise import PathChain, correlated_chain

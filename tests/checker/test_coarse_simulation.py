@@ -96,7 +96,7 @@ def test_a_cut_that_is_always_braked_stalls(plant: Plant, table: Table) -> None:
 def test_friction_has_the_stated_spread_and_memory(plant: Plant) -> None:
     varied = dataclasses.replace(plant, friction_cv=0.0, axle_cv=0.0, path_std=0.1)
     ground, random = ground_of(varied), Random(5)
-    rows = [friction_row(varied, ground, random) for _ in range(3000)]
+    rows = [friction_row(varied, ground, 0.0, random) for _ in range(3000)]
     first = [row[0] - 1.0 for row in rows]
     lag = round(varied.correlation_m / ground.noise_cell_m)
     later = [row[lag] - 1.0 for row in rows]
@@ -129,15 +129,13 @@ def test_agrees_with_the_production_simulator(many: Passes, table: Table) -> Non
     assert abs(difference) < 4.0 * math.hypot(own, stated) + 0.01
 
 
-def test_true_claims_are_not_doubted(many: Passes, table: Table, plant: Plant) -> None:
+def test_true_claims_are_not_doubted(many: Passes, table: Table) -> None:
     """1 000 samples of 300 passes: none is doubted; five would be too many for a chance of 1e-3 (5e-3 at the level)."""
     random, doubted = Random(2), 0
     for _ in range(1000):
         chosen = [random.randrange(4000) for _ in range(300)]
-        sample = Passes(
-            *(tuple(column[i] for i in chosen) for column in (many.exit_m_s, many.stalled, many.switchings))
-        )
-        doubted += any(simulated_faults(table, plant, figures_of(sample, table.target_m_s), Honesty(0.8, 1.25)))
+        sample = Passes(*(tuple(column[i] for i in chosen) for column in vars(many).values()))
+        doubted += any(simulated_faults(table, figures_of(sample, table.target_m_s), Honesty(0.8, 1.25)))
     assert binomial_tail(doubted, 1000, FALSE_ALARM) > 5e-3
 
 

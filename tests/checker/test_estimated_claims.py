@@ -47,15 +47,16 @@ def test_the_closed_loop_with_the_estimator_is_that_of_the_simulator(many: Passe
 def test_without_running_the_estimator_the_claims_would_be_doubted(summary: Summary, table: Table) -> None:
     plant, blind = summary.plant(table), dataclasses.replace(table, estimator=None)
     figures = figures_of(simulate(plant, blind, 300, 1), table.target_m_s)
-    assert any("more than" in sentence for sentence in simulated_faults(table, plant, figures, HONESTY))
+    assert any("more than" in sentence for sentence in simulated_faults(table, figures, HONESTY))
 
 
 def honest_by_chance(pool: Passes, table: Table, validated: int, predicted: int) -> list[Table]:
     """Tables whose validated and predicted rms are two samples of one law, drawn from `pool`."""
     rng, tables = np.random.default_rng(4), []
     squares = (np.array(pool.exit_m_s) - table.target_m_s) ** 2
+    law = np.array(pool.weight) / math.fsum(pool.weight)
     for _ in range(2000):
-        one, other = (rng.choice(squares, count) for count in (validated, predicted))
+        one, other = (rng.choice(squares, count, p=law) for count in (validated, predicted))
         rms, half = math.sqrt(one.mean()), 1.96 * one.std() / one.mean() / 2.0 / math.sqrt(validated)
         figures = {"validated_rms_m_s": rms, "passes": validated, "predicted_rms_m_s": math.sqrt(other.mean())}
         interval = (rms * math.exp(-half), rms * math.exp(half))
@@ -77,18 +78,18 @@ def test_a_simulated_prediction_is_not_doubted_for_its_own_chance(many: Passes, 
     assert all(list(own_faults(each, strict)) for each in halved)
 
 
-def test_true_claims_of_two_samples_are_not_doubted(many: Passes, table: Table, summary: Summary) -> None:
+def test_true_claims_of_two_samples_are_not_doubted(many: Passes, table: Table) -> None:
     """Prediction from 300 passes, checked with 300 others, 500 times: both may be off."""
-    plant, chance, doubted = summary.plant(table), Random(2), 0
-    columns = (many.exit_m_s, many.stalled, many.switchings)
+    chance, doubted = Random(2), 0
+    columns = tuple(vars(many).values())
     for _ in range(500):
         one, other = (
             figures_of(Passes(*(tuple(column[i] for i in chosen) for column in columns)), table.target_m_s)
             for chosen in (chance.choices(range(len(many.exit_m_s)), k=300) for _ in range(2))
         )
         claimed = dataclasses.replace(
-            table, predicted_rms_m_s=one.rms_m_s, bias_m_s=one.bias_m_s, p_overspeed=one.over / 300,
-            p_stall=one.stalls / 300, switchings=one.switchings, predicted_passes=300,
+            table, predicted_rms_m_s=one.rms_m_s, bias_m_s=one.bias_m_s, p_overspeed=one.over / one.plain,
+            p_stall=one.stalls / one.plain, switchings=one.switchings, predicted_passes=300,
         )  # fmt: skip
-        doubted += any(simulated_faults(claimed, plant, other, HONESTY))
+        doubted += any(simulated_faults(claimed, other, HONESTY))
     assert binomial_tail(doubted, 500, FALSE_ALARM) > 5e-3

@@ -168,6 +168,7 @@ def change_text(file: Path, pattern: str, replacement: str) -> None:
             r"\n\1,40000000,",
             r"the estimate at sample \d+ of track '0'",
         ),
+        ("c/golden_tracks.csv", r",0(\r\n)", r",1\1", r"the estimate at sample \d+ of track '0'"),
         ("c/golden_tracks.csv", r"\n1,0,", "\n1,7,", "track '1' is of table '7'"),
         ("c/golden_tracks.csv", r"(?s)\n.*", "\n", "its estimator has no golden track"),
         ("c/golden_tracks.csv", r'\n(0,0,"[^"]*"),\w+,', r"\n\1,x,", "is no sample"),

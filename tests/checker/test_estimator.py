@@ -61,7 +61,7 @@ def word_of(x: float) -> int | None:
 
 
 def test_it_is_that_of_the_controller_bit_for_bit() -> None:
-    """Estimate and all seven numbers of the state, after each of 30 000 samples of 300 cuts."""
+    """Estimate and all eight numbers of the state, after each of 30 000 samples of 300 cuts."""
     chance, clamped = Random(7), 0
     for _ in range(300):
         estimator = random_estimator(chance)
@@ -70,7 +70,7 @@ def test_it_is_that_of_the_controller_bit_for_bit() -> None:
             with np.errstate(all="ignore"):
                 expected = observe(estimator.parameters, estimator.work, state, s, v, p)
             numbers = (own.observe(s, v, p), float(own.begun), own.s, own.v, own.factor)
-            numbers += (own.speed_variance, own.covariance, own.factor_variance)
+            numbers += (own.speed_variance, own.covariance, own.factor_variance, own.unseen)
             wanted = [np.float32(expected), *state]
             assert [word_of(x) for x in numbers] == [word_of(float(x)) for x in wanted]
             clamped += own.factor in (float(np.float32(0.3)), float(np.float32(1.9)))

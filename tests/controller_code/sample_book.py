@@ -51,13 +51,13 @@ def sample_book() -> TableBook:
 def estimating_book() -> TableBook:
     """The sample book with estimators: few and many breaks, one from before the path on, one with next to no noise.
 
-    Of the class with three targets the first two share an estimator, but for the touch pressure, and the third has
-    another, so that lines between them have a meaning only below the second; three tables have none.
+    Of the class with three targets the first two share an estimator, and the third has another, so that lines between
+    them have a meaning only below the second; one differs from theirs in the touch pressure; two tables have none.
     """
     usual, odd = estimator_of(16, 37.45), estimator_of(40, 120.0)
     given = {
-        "light-2.0": usual, "light-3.3": replace(usual, touch_pressure_kpa=75.0),
-        "light-4.0": replace(usual, friction_cv=0.1500001), "shadow-1.5": usual, "medium-4.0": odd, "medium-2.0": odd,
+        "light-2.0": usual, "light-3.3": usual, "shadow-1.5": replace(usual, touch_pressure_kpa=75.0),
+        "light-4.0": replace(usual, friction_cv=0.1500001), "medium-4.0": odd, "medium-2.0": odd,
         "other-degree": odd, "many-stages": estimator_of(2, 3.0, -4.0, 1.0), "constant": replace(odd, path_std=0.0),
         "odd": Estimator(1e-4, 0.0, 1.0, 1e3, 0.0, (0.0, 1e-3, 2.5), (0.0, -1.0, 5.0), (0.0, 0.02, 0.02)),
     }  # fmt: skip

@@ -18,7 +18,7 @@ from synth.in_the_loop.controller_process import CONTRACT, build_controller, com
 from synth.in_the_loop.hard_samples import hard_samples
 from tests.controller_code.conftest import Tool
 from tests.controller_code.sample_book import estimating_book, sample_book, table_of
-from tuning_tables import speed_for
+from tuning_tables import speed_for, unseen_samples
 from tuning_tables.c_source import c_files
 from tuning_tables.estimator import begin
 from tuning_tables.golden_tracks import golden_tracks
@@ -50,6 +50,8 @@ def changed_code(code: str) -> list[tuple[str, str]]:
     found = []
     for match in re.finditer(r" (?:[-+*/<>]|[<>=]=|&&) ", code):
         line = code[code.rfind("\n", 0, match.start()) + 1 : code.index("\n", match.start())]
+        if line.startswith("#"):
+            continue
         in_comment = code.rfind("/*", 0, match.start()) > code.rfind("*/", 0, match.start())
         if in_comment or (match[0] == " * " and "rounded" not in line):
             continue
@@ -71,8 +73,8 @@ def test_the_self_test_finds_every_wrong_operation(estimating: TableBook, tmp_pa
     for made in others:
         compile_with([gcc, "-std=c99", "-O1", "-c", made.removesuffix("o") + "c", "-o", made])
     text = (tmp_path / "retarder_table.c").read_text("ascii")
-    begin_at = text.index("#define LEAST_SPEED_M_S")
-    code, rest = text[begin_at : text.index("#else", begin_at)], text[text.index("#else", begin_at) :]
+    begin_at, end_at = text.index("#define LARGEST_SPEED_M_S"), text.index("static uint32_t crc_of_byte")
+    code, rest = text[begin_at:end_at], text[end_at:]
 
     def self_test(changed: str) -> str:
         (tmp_path / "retarder_table.c").write_text(text[:begin_at] + changed + rest, "ascii")
@@ -97,7 +99,9 @@ def test_the_self_test_finds_every_wrong_operation(estimating: TableBook, tmp_pa
          "(float)((double)work[j] + (double)part * (double)rounded(work[j + 1u] - work[j]))", "fault 5 at"),
         ("table->touch_kpa;", "table->touch_kpa + 1.0f;", "fault 5 at 0"),
         ("*estimate = unknown;", "(void)unknown;", "fault 5 at 0"),
-        ("table->breaks == 0u ? v_m_s :", "table->breaks == 0u ? 0.0f :", "fault 5 at"),
+        ("(void)is_seen(estimate, v_m_s);\n    return v_m_s;", "return v_m_s;", "fault 5 at"),
+        ("    return v_m_s;", "    return 0.0f;", "fault 5 at"),
+        ("is_credible ? 0.0f : rounded(estimate->unseen + 1.0f)", "rounded(estimate->unseen + 1.0f)", "fault 5 at"),
         ("return is_same_estimator(slower, faster);", "return 1;", "fault 4 at"),
         ("if (differ(slower->work[row][j], faster->work[row][j]))", "if (row > j)", "fault 4 at"),
         ("slower->breaks != faster->breaks ||", "slower->breaks == faster->breaks ||", "fault 4 at"),
@@ -133,8 +137,12 @@ int main(void)
     unsigned long count = 0u;
     memset(&estimate, 0xff, sizeof estimate);
     retarder_begin(0);
+    if (retarder_unseen(0) != 16777216.0f || retarder_unseen(&estimate) == 0.0f) {
+        return 1;
+    }
+    retarder_begin(&estimate);
     if (retarder_observe(0, &estimate, 1.0f, 2.0f, 3.0f) != -1.0f || retarder_touch_pressure(0) != 0.0f
-        || retarder_observe(&retarder_tables[0], 0, 1.0f, 2.0f, 3.0f) != -1.0f) {
+        || retarder_observe(&retarder_tables[0], 0, 1.0f, 2.0f, 3.0f) != -1.0f || retarder_unseen(&estimate) != 1.0f) {
         return 1;
     }
     while (fread(&table, sizeof table, 1, stdin) == 1 && fread(&estimate, sizeof estimate, 1, stdin) == 1
@@ -164,7 +172,7 @@ def test_spoilt_tables_and_estimates_and_null_pointers_do_no_harm(
     words = np.where(rng.random(words.shape) < rng.choice([0.0, 0.01, 0.3], (calls, 1)), wild, words)
     near = rng.choice([0, 1, 2, size.breaks, size.breaks + 1, 2**31, 2**32 - 1], calls)
     words[:, size.estimator.start] = np.where(rng.random(calls) < 0.5, near, words[:, size.estimator.start])
-    estimates = rng.integers(0, 2**32, (calls, 7), dtype=np.uint32)
+    estimates = rng.integers(0, 2**32, (calls, 8), dtype=np.uint32)
     samples = hard_samples(estimating, calls, 9)[:calls]
     readings = np.stack([samples[name] for name in ("s_m", "v_m_s", "overpressure_kpa")], axis=1).view(np.uint32)
     given = np.concatenate([words, estimates, readings], axis=1).astype(np.uint32).tobytes()
@@ -215,6 +223,7 @@ def test_golden_tracks_as_csv_are_estimated_as_they_say(estimating: TableBook) -
             estimate = np.float32(speed_for(table, state, *readings))
         assert f"{int(estimate.view(np.uint32)):08x}" == row["estimate_bits"]
         assert np.float32(row["estimate_m_s"]) == estimate
+        assert int(row["unseen_samples"]) == unseen_samples(state)
     assert len(tracks) == len(golden_tracks(estimating))
 
 

@@ -1,4 +1,4 @@
-"""What becomes of the predicted spread as the path quantum shrinks (model §2, finding 3)."""
+"""What becomes of the predicted spread as the path quantum shrinks."""
 
 from __future__ import annotations
 

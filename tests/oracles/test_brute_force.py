@@ -17,7 +17,8 @@ import pytest
 from numpy.typing import NDArray
 
 from plant_models import DopplerSensor, Friction, RollingResistance
-from synth.dynamic_programme.backward_induction import measured_speed_std, solve, true_speed_weights
+from plant_models.speed_sensor import measured_speed_std
+from synth.dynamic_programme.backward_induction import solve, true_speed_weights
 from synth.markov_chain.grid import Resolution
 from synth.markov_chain.transitions import Transitions, persistent_transitions
 from synth.problem import Criterion, Plant

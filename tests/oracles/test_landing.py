@@ -23,7 +23,7 @@ RESOLUTION = Resolution(path_step_m=0.5, speed_step_m_s=0.1, transient_substeps=
 
 
 def pressure_pieces(plant: Plant, start_kpa: float, wanted: int) -> list[tuple[float, float, float]]:
-    """(end of piece s, asymptote kPa, time constant s) since the sample, from the definition in model §1."""
+    """(end of piece s, asymptote kPa, time constant s) since the sample, from the definition."""
     p = plant.position.pneumatics
     goal = plant.position.stage_pressures_kpa[wanted]
     rest = (math.inf, start_kpa, 1.0)

@@ -1,4 +1,4 @@
-"""Forward density against the closed loop simulated in time: two computations of one quantity (model §2, item 7)."""
+"""Forward density against the closed loop simulated in time: two computations of one quantity."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The formulation as published (S2: independent noise in every quantum) once more, in plain numpy arrays.
+"""The formulation as published (zhukovitsky-2002: independent noise in every quantum) once more, in plain numpy arrays.
 
 With independent noise everything between the first and last quantum of a transient is summed in closed form, so no
 Markov chain is needed here. Taken from the package: grid, cell means, landing tables, true-speed weights.
@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from scipy.stats import norm
 
 from plant_models import DopplerSensor, Friction
-from synth.dynamic_programme.backward_induction import measured_speed_std, solve, true_speed_weights
+from plant_models.speed_sensor import measured_speed_std
+from synth.dynamic_programme.backward_induction import solve, true_speed_weights
 from synth.markov_chain.grid import Resolution
 from synth.markov_chain.transitions import Transitions, as_published, persistent_transitions
 from synth.problem import Criterion, Plant

@@ -2,9 +2,8 @@
 
 Valve delays and time constants go to nothing and so does the sampling period. What remains is a brake that, once per
 path quantum, goes at once a stage down, holds or goes a stage up: the classical backward induction over path quanta
-(S2), written here in a dozen lines of numpy. Noise is independent per quantum, so nothing is hidden and the classical
-recursion is exact. (The second formulation of model §2, *unlocked*, is not implemented yet; when it is, its limit has
-to agree with this one too.)
+(zhukovitsky-2002), written here in a dozen lines of numpy. Noise is independent per quantum, so nothing is hidden and
+the classical recursion is exact.
 """
 
 from __future__ import annotations

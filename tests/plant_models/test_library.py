@@ -201,7 +201,7 @@ def test_with_values_marks_what_changed_and_only_that() -> None:
     assert changed.position.pneumatics.brake_delay_s == 0.12
     sources = {v.key: v.source for v in changed.provenance}
     assert sources["retarder.pneumatics.brake_delay_s"] == "configuration"
-    assert sources["sensor.noise_m_s"].startswith("memory")
+    assert sources["sensor.noise_m_s"].startswith("engineering judgement: ")
     assert entry.position.pneumatics.brake_delay_s == 0.10
     with pytest.raises(PlantError, match=r"slope_kn_per_kpa_per_t is 1.0; the pressing force law of knp-5-bunch"):
         entry.with_values({"retarder.force.slope_kn_per_kpa_per_t": 1.0})

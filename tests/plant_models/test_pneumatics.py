@@ -1,4 +1,4 @@
-"""Pneumatics against closed forms and quadrature; the delays of S4; the hunting regulator."""
+"""Pneumatics against closed forms and quadrature; the delays of zhukovitsky-2012; the hunting regulator."""
 
 import math
 from dataclasses import replace

@@ -37,7 +37,7 @@ degree = 2
 SWEEP = """\
 [sweep]
 exit_speeds_m_s = { from = 1.5, to = 2.0, step = 0.5 }
-passes = 200
+passes = 1000
 tables = true
 [[sweep.cut]]
 car = "gondola-4"

@@ -60,7 +60,7 @@ speed_step_m_s = 0.2
 friction_scenarios = 2
 [sweep]
 exit_speeds_m_s = {speeds}
-passes = 200
+passes = 1000
 [[sweep.cut]]
 car = "gondola-4"
 mass_per_car_t = [22, 85]

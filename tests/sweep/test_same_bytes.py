@@ -14,7 +14,7 @@ from tuning_tables import read_book
 
 TUNED = """\
 [validation]
-passes = 200
+passes = 1000
 [targets]
 exit_speeds_m_s = [1.5, 2.0]
 [output]
@@ -54,7 +54,7 @@ def test_the_other_commands_take_what_a_sweep_leaves(command: Callable[..., Ran]
     code, said, _ = command("inspect", serial)
     assert code == 0
     assert "files that it lists are there unchanged" in said
-    code, said, warned = command("validate", serial / "book.h5", "--config", serial / "config.toml", "--passes", "200")
+    code, said, warned = command("validate", serial / "book.h5", "--config", serial / "config.toml", "--passes", "1000")
     assert code in (0, 1)
     assert said
     assert "another configuration" not in warned

@@ -33,15 +33,19 @@ FAULTS = {
     "too many": ("step = 0.5", "step = 0.0001", "at most 1000 values"),
     "no number": ("from = 1.5", "from = true", "a number, a list of 1 to 1000 numbers, or {from"),
     "infinite": ("from = 1.5", "from = -inf", "a number, a list"),
-    "unknown key": ("passes = 200", "pases = 200", "did you mean passes?"),
+    "unknown key": ("passes = 1000", "pases = 200", "did you mean passes?"),
     "unknown key of a class": ("mass_per_car_t", "mass_t", "did you mean mass_per_car_t?"),
     "missing key": ('car = "gondola-4"', "", "sweep.cut[0].car is missing"),
-    "too few passes": ("passes = 200", "passes = 1", "sweep.passes is 1; it must be from 100 to 50000"),
-    "text": ("passes = 200", "passes = 'many'", "sweep.passes is 'many'; it must be a whole number"),
+    "too few passes": ("passes = 1000", "passes = 1", "sweep.passes is 1; it must be from 1000 to 50000"),
+    "text": ("passes = 1000", "passes = 'many'", "sweep.passes is 'many'; it must be a whole number"),
     "no list of tables": ("[[sweep.cut]]", "[sweep.cut]", "write [[sweep.cut]], not [sweep.cut]"),
     "unknown car": ("gondola-4", "gondola-5", "cut[0].car is 'gondola-5'"),
     "too heavy": ("to = 30", "to = 130", "weigh together"),
-    "loss of zero": ("passes = 200", "interpolation_loss_m_s = 0.0", "sweep.interpolation_loss_m_s is 0.0; it must be"),
+    "loss of zero": (
+        "passes = 1000",
+        "interpolation_loss_m_s = 0.0",
+        "sweep.interpolation_loss_m_s is 0.0; it must be",
+    ),
     "target above entry": ("to = 2.0", "to = 4.5", "a target must be"),
     "cars": ("mass_per_car_t", "cars = [1.5]\nmass_per_car_t", "whole numbers from 1 to 60"),
     "base": ("degree = 2", "degre = 2", "did you mean degree?"),
@@ -107,7 +111,7 @@ def test_classes_targets_and_conditions_are_crossed() -> None:
     assert dry.targets_m_s == wet.targets_m_s == (1.5, 2.0)
     assert (dry.retarder.friction.common_cv, wet.retarder.friction.common_cv) == (0.15, 0.2)
     assert wet.retarder.position.pneumatics.fill_time_constant_s == 0.45
-    assert dry.validation.passes == 200
+    assert dry.validation.passes == 1000
 
 
 def test_a_key_tells_of_everything_but_the_date_and_the_other_classes() -> None:
@@ -118,7 +122,7 @@ def test_a_key_tells_of_everything_but_the_date_and_the_other_classes() -> None:
     assert keys(PLANT + SWEEP, "2021-01-01T00:00:00Z") == base
     assert keys('title = "Other"\n' + PLANT + SWEEP) == base
     assert keys(PLANT + SWEEP.replace("to = 30", "to = 34"))[:3] == base
-    for old, new in (("passes = 200", "passes = 300"), ("2.0", "2.5"), ("degree = 2", "degree = 3")):
+    for old, new in (("passes = 1000", "passes = 1200"), ("2.0", "2.5"), ("degree = 2", "degree = 3")):
         assert set(keys((PLANT + SWEEP).replace(old, new))).isdisjoint(base)
     assert set(keys(PLANT + SWEEP.replace("[sweep]", "[sweep]\ninterpolation_loss_m_s = 0.01"))).isdisjoint(base)
 

@@ -21,7 +21,7 @@ from synth.comparison.measured import Feasibility, Measured
 from synth.criterion.exit_density import ExitDensity
 from synth.dynamic_programme.switching_lines import SwitchingLines
 from synth.problem import EntrySpeed, Plant
-from synth.simulation.exit_statistics import exit_statistics
+from synth.simulation.exit_statistics import brake_power, exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample, PassTrace
 from synth.tuning.case_result import CaseResult, DegreeStudy, Indifference, PolicyMap
 from tuning_tables import (
@@ -77,8 +77,9 @@ def make_case(
     bias = 0.0 if feasible else 0.2
     samples = [make_sample(target + bias, factor * spread, seed) for seed, (_, factor) in enumerate(NAMES_AND_SPREAD)]
     density = make_density(target + bias, spread)
+    promised = density.rms_m_s(target)
     comparison = tuple(
-        Measured(name, exit_statistics(sample, target), density.rms_m_s(target) if name == "table" else math.nan)
+        measured(name, sample, samples[0], target, promised if name == "table" else math.nan)
         for (name, _), sample in zip(NAMES_AND_SPREAD, samples, strict=True)
     )
     entry = np.linspace(5.0, 6.5, 5)
@@ -93,12 +94,20 @@ def make_case(
         predicted=density,
         published_predicted_rms_m_s=0.4 * spread,
         exit_speeds_m_s=samples[0].exit_speed_m_s.astype(np.float32),
+        exit_weight=samples[0].weight,
+        brake_power=brake_power(samples[0], samples[1], target),
         comparison=comparison,
         indifference=Indifference(1e-5, 12.0, 9.5, spread, 1.01 * spread),
         feasibility=Feasibility(entry, np.full(5, spread + abs(bias)), 0.1, (5.0, 6.5) if feasible else None, feasible),
         traces=tuple(make_trace(plant, target, factor) for factor in (0.8, 1.0, 1.2)),
         trace_factors=(0.8, 1.0, 1.2),
     )
+
+
+def measured(name: str, sample: ExitSample, table: ExitSample, target: float, promised: float) -> Measured:
+    """`sample` beside that of the table."""
+    ratio, interval = rms_ratio(table, sample, target)
+    return Measured(name, exit_statistics(sample, target), promised, None, ratio, interval)
 
 
 def make_lines(plant: Plant, target: float, nodes: int, wiggle: float = 0.0) -> SwitchingLines:
@@ -132,7 +141,9 @@ def make_sample(mean: float, spread: float, seed: int) -> ExitSample:
     """Normal exit speeds; nothing stalls."""
     rng = np.random.default_rng(seed)
     speed = mean + spread * rng.standard_normal(PASSES)
-    return ExitSample(speed, np.zeros(PASSES, bool), np.full(PASSES, 9, np.int32), np.full(PASSES, 12.0))
+    return ExitSample(
+        speed, np.zeros(PASSES, bool), np.full(PASSES, 9, np.int32), np.full(PASSES, 12.0), np.ones(PASSES)
+    )
 
 
 def make_trace(plant: Plant, target: float, factor: float) -> PassTrace:

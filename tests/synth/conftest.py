@@ -1,4 +1,4 @@
-"""The pilot study's plants (model §2): two five-link pressing retarders, one gondola, Doppler sensor."""
+"""The plants of most tests: two five-link pressing retarders, one gondola, Doppler sensor."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from synth.problem import EntrySpeed, Plant
 
 GONDOLA_OFFSETS_M = (0.0, 1.85, 8.65, 10.5)
 
-# category, highest mass of it (t), stage allowed, mean and std of w0 (N/kN): domain facts §1.4 and §2.1
+# category, highest mass of it (t), stage allowed, mean and std of w0 (N/kN), as in the library
 CATEGORIES = (
     ("Л", 28.0, 2, 1.75, 0.67),
     ("ЛС", 44.0, 3, 1.54, 0.59),
@@ -31,7 +31,7 @@ CATEGORIES = (
 
 
 def pilot_plant(mass_t: float) -> Plant:
-    """The pilot study's plant with one gondola of `mass_t`."""
+    """The plant with one gondola of `mass_t`."""
     category, _, stage, mean, std = next(row for row in CATEGORIES if mass_t <= row[1])
     position = RetarderPosition(
         name="two КНП-5",

@@ -30,6 +30,7 @@ from synth.simulation.closed_loop import (
 )
 from synth.simulation.passes import PassTrace
 from synth.simulation.random_passes import PATH_CELLS, RandomPasses, random_passes
+from synth.simulation.stratified_passes import stratified_passes
 from tuning_tables.figures import Predicted, ValidRange
 from tuning_tables.json_file import read_json, write_json
 from tuning_tables.provenance import CutId, Generator, RetarderId
@@ -257,7 +258,7 @@ def test_threads_and_chunks_do_not_change_a_byte(plant_22t: Plant) -> None:
     whole = simulate_many(plant_22t, controller, seed=1, count=5300)
     threaded = simulate_many(plant_22t, controller, seed=1, count=5300, threads=2)
     later = simulate_many(plant_22t, controller, seed=1, count=3200, first_pass=2100)
-    direct = simulate(plant_22t, controller, random_passes(1, 0, 5300))
+    direct = simulate(plant_22t, controller, stratified_passes(1, 0, 5300))
     for name, array in vars(whole).items():
         assert array.tobytes() == getattr(threaded, name).tobytes()
         assert array.tobytes() == getattr(direct, name).tobytes()

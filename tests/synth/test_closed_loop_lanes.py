@@ -38,7 +38,7 @@ def alone(loop: ClosedLoop, controller: Controller, draws: kernel.Draws) -> Exit
     exits = kernel.Exits(np.empty(n), np.empty(n), np.empty(n, dtype=np.bool_), np.empty(n, dtype=np.int32))
     none = np.empty((0, kernel.EVENT_FIELDS))
     kernel.run_passes(loop.path, loop.drive, loop.sensor, controller.law(), draws, exits, none)
-    return ExitSample(exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s)
+    return ExitSample(exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s, draws.weight)
 
 
 def assert_same(loop: ClosedLoop, controller: Controller, draws: kernel.Draws) -> ExitSample:
@@ -148,7 +148,7 @@ def exits_of_a_few_passes() -> str:
     loop, rng, n = close_loop(plant, plant.top_stage + 1), np.random.default_rng(5), 12
     uniform = {name: rng.random(n) for name in ("entry_u", "phase_u", "resistance_u")}
     normal = {name: rng.standard_normal((n, 512), dtype=np.float32) for name in ("path_z", "noise_z")}
-    draws = loop.draws(RandomPasses(cut_z=rng.standard_normal(n), **uniform, **normal))
+    draws = loop.draws(RandomPasses(cut_z=rng.standard_normal(n), weight=np.ones(n), **uniform, **normal))
     table = TableController(wavy_table(plant, 3.0))
     laws = (table, threshold_with_lead(loop, 3.0, 3, 0.1, 0.0), energy_rule(loop, 3.0, 4, 0.8, 0.15, 0.3, 0.15))
     return "".join(array.tobytes().hex() for law in laws for array in vars(loop.run(law, draws)).values())

@@ -14,9 +14,9 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from synth.plots.case_names import by_class, contest, file_stem, honesty, why_infeasible
+from synth.plots.case_names import by_class, contest, file_stem, why_infeasible
 from synth.plots.degree_study import degree_study
-from synth.plots.exit_density import cell_edges_m_s, exit_density
+from synth.plots.exit_density import bin_edges_m_s, exit_density, predicted_density
 from synth.plots.feasibility import feasibility
 from synth.plots.figure_file import draw, save_figure
 from synth.plots.picture import save_picture
@@ -89,6 +89,7 @@ def test_hard_cases_are_drawn_too(cases: list[CaseResult]) -> None:
         "nothing leaves": replace(
             cases[0],
             exit_speeds_m_s=np.zeros(100, np.float32),
+            exit_weight=np.ones(100),
             predicted=replace(cases[0].predicted, probability=np.zeros(400), stalled=1.0),
         ),
     }
@@ -133,18 +134,41 @@ def test_every_part_of_a_pass_is_drawn_in_exactly_one_stage(cases: list[CaseResu
     assert segments == trace.speed_m_s.size - 1
 
 
-def test_energy_cells_tile_the_speeds() -> None:
-    speed = np.sqrt(2.0 * 0.06 * np.arange(50))
-    edges = cell_edges_m_s(speed)
-    assert edges.shape == speed.shape
-    assert np.all((edges[:-1] < speed[1:]) & (speed[1:] < edges[1:]))
+def test_a_predicted_density_breaks_off_only_where_its_grid_is_too_coarse(cases: list[CaseResult]) -> None:
+    """Negative weights are no density: there, and as far as one interpolation reaches, the error is what is told."""
+    exits, target = cases[1].predicted, cases[1].target_speed_m_s
+    weight = exits.probability.copy()
+    wrong = int(np.searchsorted(exits.speed_m_s, target + 0.15))
+    weight[wrong] = -1e-3
+    speed, density, error = predicted_density(replace(exits, probability=weight))
+    touched = (speed > exits.speed_m_s[wrong - 3]) & (speed < exits.speed_m_s[wrong + 3])
+    assert error[touched].min() > 0.9e-3 / np.diff(exits.speed_m_s)[wrong - 4]
+    assert np.all((density[~touched] >= 0.0) | (error[~touched] > 0.0))
+    assert error[speed < target].max() < 1e-12
+    _, smooth, none = predicted_density(exits)
+    assert none.max() < 1e-3 * smooth.max()
+    assert np.trapezoid(smooth, speed) == pytest.approx(1.0, abs=1e-3)
+    assert smooth.max() == pytest.approx(1.0 / (0.04 * np.sqrt(2.0 * np.pi)), rel=0.02)
+
+
+def test_bins_and_limits_are_the_same_in_every_panel(cases: list[CaseResult]) -> None:
+    edges = bin_edges_m_s(3.0, 6.6)
+    assert np.all(np.diff(edges) > 0.0)
+    assert edges[0] == 0.0
+    assert edges[-1] > 6.6
+    assert np.abs(edges - 3.0).min() == 0.0
+    for axes in exit_density(cases[:2]).axes:
+        dashed = sorted(float(line.get_xdata()[0]) for line in axes.get_lines() if line.get_linestyle() == "--")
+        assert len(dashed) == 2
+        assert dashed[1] - dashed[0] == pytest.approx(0.6)
+        assert axes.get_xlim()[0] < dashed[0] < dashed[1] < axes.get_xlim()[1]
 
 
 def test_roles_and_names(cases: list[CaseResult]) -> None:
     found = contest(cases[0])
     assert found.best_baseline is not None
     assert found.best_baseline.name == "energy rule"
-    assert honesty(found.published) == pytest.approx(
+    assert found.published.honesty == pytest.approx(
         cases[0].published_predicted_rms_m_s / found.published.statistics.rms_m_s
     )
     assert [len(group) for group in by_class(cases)] == [2, 2]

@@ -33,6 +33,7 @@ from synth.rare_events.tail_density import TailGrid, normal_cdf, predicted_tails
 from synth.rare_events.tail_probability import crude_tail
 from synth.simulation.closed_loop import TableController, close_loop, simulate_many
 from synth.simulation.exit_statistics import exit_statistics
+from synth.simulation.random_passes import random_passes
 from tuning_tables import (
     ControllerTable,
     CutId,
@@ -121,7 +122,7 @@ def test_four_ways_agree_where_plain_simulation_sees_the_event() -> None:
     controller = TableController(table)
     loop = close_loop(plant, controller.stages)
     score, coordinates = exit_error(loop, controller, TARGET_M_S), path_work_coordinates(loop)
-    plain = simulate_many(plant, controller, 21, 100_000, threads=2)
+    plain = simulate_many(plant, controller, 21, 100_000, threads=2, row=random_passes)
     over = plain.exit_speed_m_s - TARGET_M_S
     learnt = learn(score, coordinates, MARGINS_M_S, 22, Pilot(passes=2000), threads=2)
     weighted = weighted_passes(score, coordinates, mixture_of(learnt), 23, 20_000, threads=2)

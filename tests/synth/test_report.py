@@ -8,18 +8,24 @@ import sys
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 
 from plant_models.library import SourcedValue
 from synth.comparison.limit_cycle import hunting_report
+from synth.comparison.measured import Measured
+from synth.estimation.estimated_table import EstimatedTable
 from synth.plots.picture import Drawing, Picture
 from synth.report import BookReport, report_page, write_report
 from synth.report.checks_section import checks_section
 from synth.report.figures import counted, percent, quotient, span
 from synth.report.markup import VOID, Markup, element
 from synth.report.verdict import verdict
+from synth.tuning.case_result import WITHOUT_ESTIMATOR, CaseResult
 from tests.synth.case_factory import make_case, make_study
+from tuning_tables import Estimator
 
 ROOT = Path(__file__).parents[2]
 SVG = b'<svg xmlns="http://www.w3.org/2000/svg" width="10" height="10"></svg>'
@@ -80,8 +86,10 @@ def book() -> BookReport:
         ),
         degree_studies=(make_study(),),
         parameters=(
-            SourcedValue("friction.common_cv", 0.15, "1", (0.1, 0.25), "assumed: pilot study", "L"),
-            SourcedValue("retarder.zones_m", ((0.0, 12.475), (14.475, 26.95)), "m", (0.0, 40.0), "S2 & S4", "H"),
+            SourcedValue("friction.common_cv", 0.15, "1", (0.1, 0.25), "engineering judgement: usual", "L"),
+            SourcedValue(
+                "retarder.zones_m", ((0.0, 12.475), (14.475, 26.95)), "m", (0.0, 40.0), "<7> & [hump-norm]", "H"
+            ),
             SourcedValue("entry.high_m_s", 9.0, "m/s", (4.5, 7.0), "configuration", ""),
         ),
         accepted=False,
@@ -122,6 +130,18 @@ def test_links_lead_to_sections_of_the_page(page: Page) -> None:
     assert page.targets
 
 
+def test_cited_sources_are_told_in_full_and_a_point_is_called_fixed(page: Page, book: BookReport) -> None:
+    text = page.text
+    place = text.index("[hump-norm] Railway administration of the USSR")
+    assert text.index("<7> & [hump-norm]") < place < text.index("Limits of use", place)
+    assert "geum.ru" in text
+    assert "[hump-grades] " not in text
+    fixed = SourcedValue("cut 'a'.length_m", 13.92, "m", (13.92, 13.92), "engineering judgement", "H")
+    assert "13.92 to 13.92" not in (said := Page(report_page(replace(book, parameters=(fixed,)))).text)
+    assert "fixed" in said
+    assert "Sources" not in said
+
+
 def test_the_verdict_comes_first_and_names_the_infeasible_case(page: Page, book: BookReport) -> None:
     text = page.text
     assert text.index("Not accepted") < text.index("Results")
@@ -153,7 +173,38 @@ def test_the_published_formulation_is_judged_by_the_numbers(page: Page, book: Bo
 def test_the_studies_are_told_in_numbers(page: Page) -> None:
     assert "saves 2.50 switchings a pass" in page.text
     assert "multiplies the rms by 1.010" in page.text
-    assert "0.042 (0.060)" in page.text
+    assert "0.0420 (0.0600)" in page.text
+
+
+def test_tables_without_the_estimator_that_was_asked_for_are_told_and_not_counted(book: BookReport) -> None:
+    """One feasible table with it, three quarters of the rms of the lines without; one that it was left out of."""
+    made = cast(EstimatedTable, SimpleNamespace(rms_after_m_s=0.0352, plain_rms_m_s=0.0351))
+    asked = tuple(with_estimate(case, made) for case in book.cases)
+    with_it = replace(
+        asked[0].table,
+        estimator=Estimator(0.05, 0.15, 0.1, 2.0, 50.0, (0.0, 37.45), (0.0, 2.4), (0.0, 0.1)),
+        predicted=replace(asked[0].table.predicted, passes=10_000),
+    )
+    text = Page(report_page(replace(book, cases=(replace(asked[0], table=with_it), *asked[1:])))).text
+    assert "With an estimator the prediction is itself simulated" in text
+    assert "the rms with the estimator is 0.75 times that" in text
+    assert "two independent computations of one quantity. Predicted / simulated rms is" in text
+    assert "2 tables of 3 have none" in text
+    assert "gondola-85t, target 4 m/s: no estimator: it gained nothing" in text
+    assert "rms 0.0352 m/s with it, 0.0351 without" in text
+    none = Page(report_page(replace(book, cases=asked))).text
+    assert "prediction is itself simulated" not in none
+    assert "times that of lines polished for the measured speed" not in none
+    assert "3 tables of 3 have none" in none
+    assert "asks for an estimator" not in Page(report_page(book)).text
+
+
+def with_estimate(case: CaseResult, made: EstimatedTable) -> CaseResult:
+    """`case` as if an estimator had been asked for."""
+    statistics = case.comparison[0].statistics
+    worse = replace(statistics, rms_m_s=statistics.rms_m_s / 0.75)
+    without = Measured(WITHOUT_ESTIMATOR, worse, table_ratio=0.75, table_ratio_ci95=(0.74, 0.76))
+    return replace(case, estimate=made, comparison=(*case.comparison, without))
 
 
 def test_pictures_of_a_section_stand_together(page: Page) -> None:

@@ -10,7 +10,15 @@ import pytest
 
 from synth.comparison.baselines import energy_rule
 from synth.problem import Plant
-from synth.robustness.sensor_fault import Bias, DropOut, LostReadings, at_random, before_exit, reading_times_s
+from synth.robustness.sensor_fault import (
+    Bias,
+    DropOut,
+    LostForGood,
+    LostReadings,
+    at_random,
+    before_exit,
+    reading_times_s,
+)
 from synth.simulation.closed_loop import LineController, TableController, close_loop, simulate, trace
 from synth.simulation.exit_statistics import clopper_pearson
 from synth.simulation.random_passes import RandomPasses, random_passes
@@ -62,6 +70,18 @@ def test_no_command_is_given_in_a_drop_out(plant: Plant, controller: TableContro
         later += np.count_nonzero(times >= start + length)
     assert commanded > 10  # the fault had something to hide
     assert later > 10  # and the controller comes back
+
+
+def test_a_sensor_lost_for_good_does_not_come_back(plant: Plant, passes: RandomPasses) -> None:
+    """Random numbers of readings repeat after 25.6 s; a cut that hangs in the retarder would see again."""
+    few, start = passes.part(0, 5), 2.0
+    lost = LostForGood(from_moment(start))(few, plant, np.zeros(5))
+    time, missing = reading_times_s(lost, plant), np.isnan(lost.noise_z)
+    assert time[:, -1].min() > 299.0
+    assert np.array_equal(missing, time >= start)
+    assert np.array_equal(lost.noise_z[:, :15], few.noise_z[:, :15])
+    back = DropOut(1e9, from_moment(start))(few, plant, np.zeros(5))
+    assert back.noise_z.shape[1] == 256  # the reason for more of them
 
 
 def test_without_any_reading_the_brake_stays_open(

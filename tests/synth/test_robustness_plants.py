@@ -98,7 +98,7 @@ def test_values_are_clipped_to_their_limits_and_say_so(
     by_key = {p.key: p for p in cases[2][2]}
     low, mass = by_key["entry.low_m_s"], by_key["cut.mass_t"]
     assert (low.at(-0.5), low.at(0.5)) == (3.0, 6.5)  # the target; the highest entry speed
-    assert (mass.at(-0.5), mass.at(0.5)) == (44.0, 60.0)  # domain facts §2.1: the category С
+    assert (mass.at(-0.5), mass.at(0.5)) == (44.0, 60.0)  # the category С
     assert low.at(-0.1) == pytest.approx(4.5)
     assert "clipped to 44" in mass.note(-0.5)
     assert low.note(-0.1) == ""

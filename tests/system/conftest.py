@@ -26,7 +26,7 @@ friction_scenarios = 3
 [fit]
 degree = 2
 [validation]
-passes = 500
+passes = 1000
 [acceptance]
 honesty_high = 1.2
 [output]

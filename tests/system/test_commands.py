@@ -132,7 +132,7 @@ def test_validate_confirms_what_the_tables_say(command: Command, tuned: Path, tw
     other = command("validate", tuned / "tables" / f"{ID}.json", "--config", two_classes, "--seed", 7, "--passes", 4000)
     assert other.code == 0
     assert "limits kept, as stated" in other.out
-    assert "4000 passes of each table, seed 7" in other.out
+    assert "4000 stratified passes of each table, seed 7" in other.out
 
 
 def test_validate_finds_a_table_that_lies(command: Command, tuned: Path, two_classes: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ import pytest
 from synth.cli import main
 from synth.estimation.estimated_table import EstimatedTable
 from tests.system.conftest import CLASS, EPOCH, Command
-from tuning_tables import read_book, read_json
+from tuning_tables import TableBook, read_book, read_json, write_book
 
 Tuned = tuple[Path, Path, int]
 CONFIG = CLASS.replace("csv = true", "plots = false") + "[regulator]\nestimator = true\n"
@@ -68,7 +69,14 @@ def test_where_it_gains_nothing_it_is_left_out(
     command: Command, tuned: Tuned, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(EstimatedTable, "gains", property(lambda made: False))
-    assert command("tune", tuned[0], "-o", tmp_path / "out", "--workers", "1").code in (0, 1)
+    run = command("tune", tuned[0], "-o", tmp_path / "out", "--workers", "1")
+    assert run.code in (0, 1)
+    assert "no estimator: it gained nothing on the tuning passes" in run.out
+    assert "no estimator: it gained nothing on the tuning passes" in run.err
+    page = (tmp_path / "out" / "report.html").read_text()
+    assert "no estimator: it gained nothing on the tuning passes" in page
+    assert "two independent computations of one quantity" in page
+    assert "prediction is itself simulated" not in page
     (case,) = json.loads((tmp_path / "out" / "summary.json").read_text())["cases"]
     written = json.loads((tmp_path / "out" / case["table"]).read_text())
     assert (written["version"], case["estimate"]["used"]) == (1, False)
@@ -76,6 +84,22 @@ def test_where_it_gains_nothing_it_is_left_out(
     assert case["simulated"]["rms_m_s"] == pytest.approx(case["comparison"]["without estimator"]["rms_m_s"], rel=0.02)
     verified = command("verify", tmp_path / "out", "--passes", "200")
     assert verified.code == 0, verified.out
+
+
+def test_inspect_tells_which_tables_of_a_book_have_an_estimator(command: Command, tuned: Tuned, tmp_path: Path) -> None:
+    estimating = read_book(tuned[1] / "book.h5")[0]
+    none = replace(
+        estimating,
+        id="none",
+        target_speed_m_s=9.0,
+        estimator=None,
+        predicted=replace(estimating.predicted, passes=None),
+    )
+    write_book(TableBook((estimating, none)).tables, tmp_path / "mixed.h5")
+    told = command("inspect", tmp_path / "mixed.h5").out
+    assert "a book of 2 tables, 1 with an estimator and 1 without" in told
+    assert "estimator  none: the lines are for the measured speed" in told.split("none: leave with")[1]
+    assert "none: the lines are" not in command("inspect", tuned[1] / "book.h5").out
 
 
 def test_what_cannot_be_had_together_is_said(command: Command, tmp_path: Path) -> None:

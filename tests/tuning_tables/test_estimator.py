@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numba import njit
 
-from tuning_tables import ControllerTable, InvalidTable, Predicted, Status, TableBook, speed_for
+from tuning_tables import ControllerTable, InvalidTable, Predicted, Status, TableBook, speed_for, unseen_samples
 from tuning_tables.active_table import active
 from tuning_tables.estimator import LEAST_SPEED_M_S, Estimator, begin, observe
 
@@ -108,8 +108,42 @@ def test_nothing_is_estimated_before_a_speed_was_measured(estimator: Estimator) 
     state = begin()
     for v in (np.nan, np.inf, -1.0):
         assert observe(estimator.parameters, estimator.work, state, 0.1, v, 0.0) == -1.0
-        assert np.array_equal(state, begin())
+        assert np.array_equal(state[:7], begin()[:7])
+    assert unseen_samples(state) == 3
     assert observe(estimator.parameters, estimator.work, state, 0.2, 5.5, 0.0) == np.float32(5.5)
+
+
+def test_samples_without_a_credible_speed_are_counted(estimator: Estimator, estimated_table: ControllerTable) -> None:
+    """The same with an estimator and without: 0 after a credible one, before the first from the beginning on."""
+    plain = replace(estimated_table, estimator=None, predicted=Predicted(0, 0, 0, 0))
+    fastest = float(np.float32(40.0))
+    speeds = [np.nan, -1.0, 5.0, 5.0, np.inf, -0.5, 40.1, fastest, 0.0, np.nan]
+    for table in (estimated_table, plain):
+        state, counts = begin(), []
+        for sample, v in enumerate(speeds):
+            speed_for(table, state, 0.1 * sample, v, 0.0)
+            counts.append(unseen_samples(state))
+        assert counts == [1, 2, 0, 0, 1, 2, 3, 0, 0, 1]
+
+
+def test_the_count_of_unseen_samples_stays_at_its_end(estimator: Estimator) -> None:
+    state = begin()
+    observe(estimator.parameters, estimator.work, state, 0.0, 5.0, 0.0)
+    state[7] = 2**24 - 1
+    for _ in range(3):
+        observe(estimator.parameters, estimator.work, state, 0.0, np.nan, 0.0)
+        assert unseen_samples(state) == 2**24
+
+
+def test_the_count_changes_no_estimate(estimator: Estimator) -> None:
+    samples = passes_of(5, 1.1, 0.05)
+    samples[10:30:3, 2] = np.nan
+    _, states = run(estimator, samples)
+    for (_, counted), (s, _, v, p), after in zip(enumerate(states), samples[1:], states[1:], strict=False):
+        other = counted.copy()
+        other[7] = 12345.0
+        observe(estimator.parameters, estimator.work, other, s, v, p)
+        assert np.array_equal(other[:7], after[:7])
 
 
 def test_compiled_it_gives_the_same_bits(estimator: Estimator) -> None:
@@ -173,5 +207,6 @@ def test_lines_are_taken_between_tables_of_one_estimator_only(estimated_table: C
     choice = TableBook((estimated_table, faster)).choose(*asked)
     assert choice.status is Status.BETWEEN
     assert choice.table.estimator == estimated_table.estimator
-    for unlike in (other, plain):
+    touching = replace(faster, estimator=replace(estimated_table.estimator, touch_pressure_kpa=75.0))
+    for unlike in (other, plain, touching):
         assert TableBook((estimated_table, unlike)).choose(*asked).status is Status.SLOWER

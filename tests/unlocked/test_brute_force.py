@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 
 from plant_models import RollingResistance
-from synth.dynamic_programme.backward_induction import measured_speed_std, true_speed_weights
+from plant_models.speed_sensor import measured_speed_std
+from synth.dynamic_programme.backward_induction import true_speed_weights
 from synth.markov_chain.grid import Resolution
 from synth.problem import Criterion, Plant
 from synth.unlocked.solution import UnlockedPlant, solve_unlocked, unlocked_plant

@@ -89,7 +89,7 @@ def test_operations_of_an_estimate(estimating):
     worst = (0, 0)
     for track in golden_tracks(estimating)[:7]:
         program.call("RETARDER_BEGIN", program.new("RETARDER_BEGIN"), Estimate=estimate)
-        for s, v, kpa, _ in zip(*track.samples, strict=True):
+        for s, v, kpa, *_ in zip(*track.samples, strict=True):
             program.done.clear()
             program.call("RETARDER_OBSERVE", observer, Path_m=s, Speed_m_s=v, Overpressure_kpa=kpa, Table=table,
                          Estimate=estimate)  # fmt: skip

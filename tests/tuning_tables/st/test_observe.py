@@ -14,22 +14,22 @@ from tuning_tables.st_source import TABLE_FILE, st_files
 from tuning_tables.table_book import TableBook
 
 SAMPLES = 200_000
-MEMBERS = ("PATH_M", "SPEED_M_S", "FACTOR", "SPEEDVARIANCE", "COVARIANCE", "FACTORVARIANCE")
+MEMBERS = ("PATH_M", "SPEED_M_S", "FACTOR", "SPEEDVARIANCE", "COVARIANCE", "FACTORVARIANCE", "UNSEEN")
 
 
 @pytest.fixture(scope="module")
 def tracks(estimating_book):
-    """Samples in tracks of 100, (tracks, 100), and the bits of speed and estimate after each, (tracks, 100, 8)."""
+    """Samples in tracks of 100, (tracks, 100), and the bits of speed and estimate after each, (tracks, 100, 9)."""
     samples = hard_samples(estimating_book, SAMPLES, 20261123)
     samples["start"] = np.where(samples["start"] == 2, 0, samples["start"])
     # The golden tracks come first, and are of other lengths.
     samples = samples[sum(map(len, golden_tracks(estimating_book))) :]
     answers = observed(estimating_book, samples)
-    return samples.reshape(-1, TRACK_SAMPLES), answers.reshape(-1, TRACK_SAMPLES, 8)
+    return samples.reshape(-1, TRACK_SAMPLES), answers.reshape(-1, TRACK_SAMPLES, 9)
 
 
 def follow(program, number, samples):
-    """Speeds and estimates after every sample of tracks of table `number`, a lane a track: float32 (8, tracks, n)."""
+    """Speeds and estimates after every sample of tracks of table `number`, a lane a track: float32 (9, tracks, n)."""
     table, estimate = loaded(program, number), program.new("RETARDER_ESTIMATE")
     observer, beginner = program.new("RETARDER_OBSERVE"), program.new("RETARDER_BEGIN")
     found = []
@@ -40,6 +40,7 @@ def follow(program, number, samples):
             Overpressure_kpa=now["overpressure_kpa"], Table=table, Estimate=estimate,
         )  # fmt: skip
         values = [observer["OBSERVED_M_S"].value, estimate["BEGUN"].value, *(estimate[name].value for name in MEMBERS)]
+        assert np.array_equal(observer["UNSEEN"].value, estimate["UNSEEN"].value)
         found.append([np.broadcast_to(value, now.shape).astype(np.float32) for value in values])
     return np.moveaxis(np.array(found), 0, 2)
 
@@ -78,6 +79,7 @@ def test_hard_samples_are_estimated_alike(estimating_book, tracks, real):
         ("CrossPart := 2.0 * Slope", "CrossPart := 1.0 * Slope"),
         ("IF Estimate.FactorVariance < 0.0", "IF Estimate.FactorVariance < 0.01"),
         ("Change := Gain * CrossPart", "Change := Gain * SpeedPart"),
+        ("Unseen := Estimate.Unseen + 1.0;", "Unseen := 1.0;"),
     ],
 )
 def test_a_wrong_estimator_is_found(estimating_book, tracks, right, wrong):
@@ -92,7 +94,9 @@ def test_every_golden_track_is_estimated(estimating_book):
     for track in golden_tracks(estimating_book):
         samples = np.empty((1, len(track)), [(name, "f4") for name in ("s_m", "v_m_s", "overpressure_kpa")])
         samples["s_m"], samples["v_m_s"], samples["overpressure_kpa"] = track.samples[:3]
-        assert np.array_equal(follow(program, track.number, samples)[0, 0], track.estimate_m_s)
+        found = follow(program, track.number, samples)[:, 0]
+        assert np.array_equal(found[0], track.estimate_m_s)
+        assert np.array_equal(found[-1], track.unseen)
 
 
 def test_a_book_without_estimators_hands_the_speed_on(small_book, estimating_book):
@@ -108,6 +112,7 @@ def test_a_book_without_estimators_hands_the_speed_on(small_book, estimating_boo
         Estimate=estimate,
     )  # fmt: skip
     assert np.array_equal(observer["OBSERVED_M_S"].value, speeds, equal_nan=True)
+    assert np.array_equal(observer["UNSEEN"].value == 0.0, (speeds >= 0.0) & (speeds <= 40.0))
     assert loaded(plain, 0)["TOUCH_KPA"].value == 0.0
 
 
@@ -135,7 +140,7 @@ def test_a_spoilt_number_of_breaks_is_not_followed(estimating_book, breaks):
     observer, estimate = program.new("RETARDER_OBSERVE"), program.new("RETARDER_ESTIMATE")
     readings = {"Path_m": 1.0, "Speed_m_s": 3.0, "Overpressure_kpa": 100.0}
     program.call("RETARDER_OBSERVE", observer, **readings, Table=table, Estimate=estimate)
-    assert observer["OBSERVED_M_S"].value == -1.0
+    assert (observer["OBSERVED_M_S"].value, observer["UNSEEN"].value) == (-1.0, 1.0)
     program.call("RETARDER_WORK", worker, Path_m=1.0, Table=table)
     assert (worker["DRIVE"].value, worker["BRAKE"].value) == (0.0, 0.0)
 
