@@ -30,8 +30,8 @@ MOST_BISECTIONS = 10
 CLOSE = 0.95
 """A reached probability from this share of the limit to the limit ends the search."""
 
-POLISH_FINER, JUDGE_FINER = 2.0, 3.0
-"""Speed steps of the design and the check grid are divided by these."""
+FINER = 2.0
+"""Speed steps of the design and the check grid are divided by this."""
 
 NARROW = 1.02
 """As does a bracket whose ends differ by less than this factor."""
@@ -64,7 +64,7 @@ def keep_overspeed_limit(
     `MOST_GROWTHS` + `MOST_BISECTIONS` polishes, whether the limit can be kept or not.
     """
     law = check.scenarios  # few Gauss nodes would miss the rare cuts that make over-speed
-    ground, judge = finer_in_speed(design, POLISH_FINER, law), finer_in_speed(check, JUDGE_FINER, law)
+    ground, judge = finer_in_speed(design, FINER, law), finer_in_speed(check, FINER, law)
 
     def candidate(price: float, *begin: PolynomialLines) -> Candidate:
         priced = replace(criterion.squared(), terminal=PenalisedOverspeed(price, limit.margin_m_s))

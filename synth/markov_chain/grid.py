@@ -51,7 +51,7 @@ class Resolution:
 
 
 def finer_for_check(resolution: Resolution) -> Resolution:
-    """The resolution at which a table solved on `resolution` is predicted: half the path step, more scenarios.
+    """The resolution at which a table solved on `resolution` is predicted: half of both steps, more scenarios.
 
     Two levels of path noise suffice: they carry its variance and correlation exactly, and five change no
     predicted rms by more than 1e-5 m/s (docs/method.md).
@@ -59,7 +59,7 @@ def finer_for_check(resolution: Resolution) -> Resolution:
     return replace(
         resolution,
         path_step_m=0.5 * resolution.path_step_m,
-        speed_step_m_s=0.75 * resolution.speed_step_m_s,
+        speed_step_m_s=0.5 * resolution.speed_step_m_s,
         friction_nodes=CHECK_FRICTION_NODES,
         path_levels=2,
         resistance_nodes=3,

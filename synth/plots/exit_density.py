@@ -29,8 +29,8 @@ from synth.plots.house_style import (
 from synth.simulation.exit_statistics import OVERSPEED_M_S
 from synth.tuning.case_result import CaseResult
 
-ONE_PASS = 0.4
-"""Bottom of the logarithmic panel: this share of the density that the pass of least weight makes in a wide bin."""
+LEAST = 1e-4
+"""Bottom of the logarithmic panel, 1/(m/s): one cut in 100 000 in a wide bin."""
 
 NARROW_M_S, WIDE_M_S = 0.01, 0.1
 """Widths of the bins of simulated passes within `OVERSPEED_M_S` of the target, and beyond."""
@@ -47,7 +47,7 @@ def exit_density(cases: Sequence[CaseResult]) -> Figure:
     columns = len(cases)
     figure = new_figure(3.9 * columns + 0.7, 6.4, "Exit speed, predicted and simulated", cut_name(cases[0]))
     in_legend = min(5, 2 * columns)  # beside each other: a single panel is narrow
-    place(figure, left=0.65, right=0.2, bottom=0.75 + 0.2 * math.ceil(5 / in_legend), top=1.25, w=0.17, h=0.22)
+    place(figure, left=0.8, right=0.2, bottom=0.75 + 0.2 * math.ceil(5 / in_legend), top=1.25, w=0.2, h=0.22)
     panels = figure.subplots(2, columns, squeeze=False)
     for column, case in enumerate(cases):
         draw_case(panels[0, column], panels[1, column], case)
@@ -82,15 +82,14 @@ def draw_case(near: Axes, tails: Axes, case: CaseResult) -> None:
     simulated = np.histogram(speeds[moving], edges, weights=share[moving])[0] / np.diff(edges)
     dress(near, panel_title(case))
     dress(tails, x="exit speed, m/s")
-    floor = ONE_PASS * float(share.min()) / WIDE_M_S
-    resolved = predicted > np.maximum(error, floor)
-    shown = np.concatenate((speed[resolved], edges[1:][simulated > 0.0], edges[:-1][simulated > 0.0]))
+    resolved = predicted > np.maximum(error, LEAST)
+    shown = np.concatenate((speed[resolved], edges[1:][simulated > LEAST], edges[:-1][simulated > LEAST]))
     if not shown.size:
         near.text(0.5, 0.5, "no pass leaves the position", transform=near.transAxes, ha="center", fontsize=9)
         return
     for axes in (near, tails):
         axes.stairs(simulated, edges, fill=True, color=SKY, linewidth=0)
-        axes.fill_between(speed, 0.0, np.maximum(error, 1e-3 * floor), where=(error > floor) & ~resolved,
+        axes.fill_between(speed, 0.0, error, where=(error > LEAST) & ~resolved,
                           facecolor=PALE_GREY, edgecolor=GREY, hatch="////", linewidth=0, zorder=0.6)  # fmt: skip
         axes.plot(speed, np.where(resolved, predicted, np.nan), color=VERMILLION, linewidth=1.3)
         axes.axvline(target, color=INK, linewidth=1.0)
@@ -99,7 +98,7 @@ def draw_case(near: Axes, tails: Axes, case: CaseResult) -> None:
     highest, far = max(float(predicted.max()), float(simulated.max())), 1.2 * OVERSPEED_M_S
     near.set(xlim=(target - far, target + far), ylim=(0.0, 1.08 * highest))
     tails.set_xlim(min(target - far, float(shown.min())), max(target + far, float(shown.max())))
-    logarithmic_y(tails, (1.25 * floor, 2.0 * highest))
+    logarithmic_y(tails, (1.25 * LEAST, 2.0 * highest))
 
 
 def predicted_density(exits: ExitDensity) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
