@@ -17,19 +17,22 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     """Hand out a new empty file to be written and closed in the `with` block; afterwards it is found at `path`.
 
     Where the block raises, `path` is left as it was and the temporary file is removed. The file's permissions are those
-    of any new file of this process. Raises `OSError` where the directory cannot be written.
+    of any new file of this process. Raises `OSError` where the directory cannot be written; it names `path`, also where
+    the system names no file, as for a full disk, or the temporary one.
     """
     target = Path(path)
     part = target.with_name(f".{target.name}.{os.urandom(8).hex()}.part")
-    os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
     try:
+        os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
         yield part
         _force_to_disk(part)
         os.replace(part, target)
-    except BaseException:
+        _force_to_disk(target.parent)
+    except BaseException as fault:
         part.unlink(missing_ok=True)
+        if isinstance(fault, OSError) and fault.errno is not None and fault.filename in (None, str(part)):
+            raise OSError(fault.errno, fault.strerror, str(target)) from fault
         raise
-    _force_to_disk(target.parent)
 
 
 def write_atomically(path: str | os.PathLike[str], content: bytes) -> None:
