@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from synth.input_error import InputError
+from synth.machine_fault import MACHINE_FAULTS
 from tuning_tables import TableError, read_json
 
 SUMMARY = "summary.json"
@@ -61,6 +62,8 @@ def make_directory(path: Path) -> None:
     except NotADirectoryError:
         raise InputError(f"{path}: a part of this path is a file; give a directory by -o") from None
     except OSError as error:
+        if error.errno in MACHINE_FAULTS:
+            raise
         raise InputError(f"{path}: cannot be written ({error.strerror}); give another directory by -o") from None
 
 

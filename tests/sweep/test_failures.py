@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -157,3 +160,29 @@ def test_what_is_told_on_the_way(config: Path, tmp_path: Path) -> None:
     run(config, tmp_path / "out", LocalWorkers(2, poison.refusing), watcher)
     assert len(watcher.ended) == 3
     assert sum("failed: " in sentence for sentence in watcher.ended) == 1
+
+
+WORKERS_WITHOUT_A_CACHE = """
+import sys
+from pathlib import Path
+from synth.cli import leave
+from synth.sweep.local_workers import LocalWorkers
+from synth.sweep.plan import plan_of
+from synth.sweep.sweep_file import load_sweep
+from tests.sweep.poison import caching
+orders = [unit.order for unit in plan_of(load_sweep(Path(sys.argv[1])), "2020-01-01T00:00:00Z").units]
+print({answer.reason for answer in LocalWorkers(2, caching).answers(orders, lambda order: None)}, flush=True)
+leave(0)
+"""
+
+
+def test_workers_leave_no_kernel_cache_of_their_own(config: Path, tmp_path: Path) -> None:
+    nowhere = {"RETARDER_SYNTH_CACHE": "", "XDG_CACHE_HOME": "", "HOME": "/proc/none", "NUMBA_CACHE_DIR": ""}
+    ran = subprocess.run(
+        [sys.executable, "-c", WORKERS_WITHOUT_A_CACHE, str(config)],
+        env={**os.environ, **nowhere, "TMPDIR": str(tmp_path), "PYTHONPATH": str(Path(__file__).parents[2])},
+        capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert ran.returncode == 0, ran.stderr
+    assert ran.stdout.count(str(tmp_path)) == 1
+    assert list(tmp_path.iterdir()) == []
