@@ -23,6 +23,9 @@ PICTURES = re.compile(
 )
 """File names of the pictures that a tune draws."""
 
+SWEEP_LEDGER, SWEPT_CONFIG = "sweep/ledger.jsonl", "config.toml"
+"""What is in every directory of a sweep, and beside every book of one."""
+
 CSV_MARKS = (b"record,key,", b"\r\ntext,generator.name,retarder-synth,")
 
 
@@ -32,6 +35,7 @@ def output_directory(path: Path) -> Iterator[Path]:
 
     Within: no summary.json, which would not belong to what is written next, and no leftovers of a killed tune.
     """
+    require_no_sweep(path)
     make_directory(path)
     descriptor = os.open(path, os.O_RDONLY)
     try:
@@ -50,6 +54,13 @@ def output_directory(path: Path) -> Iterator[Path]:
         yield path
     finally:
         os.close(descriptor)
+
+
+def require_no_sweep(path: Path) -> None:
+    """`InputError` if `path` is the directory of a sweep, or that of one of its conditions."""
+    above = path.resolve().parent / SWEEP_LEDGER
+    if (path / SWEEP_LEDGER).exists() or (above.exists() and (path / SWEPT_CONFIG).exists()):
+        raise InputError(f"{path}: it holds the results of a sweep; give another directory by -o")
 
 
 def make_directory(path: Path) -> None:

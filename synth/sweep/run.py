@@ -11,10 +11,11 @@ from typing import Protocol
 
 from synth.input_error import InputError
 from synth.markov_chain.grid import available_memory_bytes
+from synth.output.output_directory import SWEPT_CONFIG
 from synth.sweep.bind import Failure, Outcome, bind
 from synth.sweep.ledger import DONE, ENDED, FAILED, FOUND_DAMAGED, PLAN, STARTED, Ledger, LedgerWriter
 from synth.sweep.plan import Plan, Unit, UnitOrder, plan_of
-from synth.sweep.sweep_directory import SweepDirectory
+from synth.sweep.sweep_directory import SweepDirectory, require_no_tune
 from synth.sweep.sweep_file import SweepFile
 from synth.sweep.work import Engine
 from tuning_tables import DamagedTable
@@ -72,7 +73,7 @@ def creation_time() -> str:
 
 
 def require_same_layout(file: SweepFile, ledger: Ledger, directory: SweepDirectory) -> None:
-    """`InputError` if an earlier run has bound books for conditions that `file` does not list."""
+    """`InputError` if an earlier run has bound books for conditions that `file` does not list, or a tune lies there."""
     earlier = {str(name) for event in ledger.of(PLAN) for name in event["conditions"]}
     lost = sorted(earlier - {condition.name for condition in file.conditions})
     if lost:
@@ -81,6 +82,10 @@ def require_same_layout(file: SweepFile, ledger: Ledger, directory: SweepDirecto
             f"{directory.path}: an earlier sweep there had {named}; its books would be stale: give another directory "
             "by -o, or delete this one"
         )
+    for condition in file.conditions:
+        folder = directory.book_folder(condition.name)
+        if condition.name not in earlier and not (folder / SWEPT_CONFIG).exists():  # a ledger can be torn
+            require_no_tune(folder)
 
 
 def fitting_workers(task: Task, asked: int) -> int:
