@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import resource
 from contextlib import closing
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
@@ -22,6 +23,9 @@ from tuning_tables import DamagedTable
 
 USABLE = 0.8
 """Share of the free memory that workers may take."""
+
+MAPPED_BYTES = 350 * 2**20
+"""Address space of a worker beside its memory: libraries, stacks, arenas; 240 MB were measured on two cores."""
 
 
 class Watcher(Protocol):
@@ -93,6 +97,7 @@ def fitting_workers(task: Task, asked: int) -> int:
     if not task.missing:
         return 1
     largest = max(task.missing, key=lambda unit: unit.memory_bytes)
+    require_address_space(largest)
     available = available_memory_bytes()
     fit = int(USABLE * available // largest.memory_bytes)
     if fit < 1:
@@ -101,6 +106,17 @@ def fitting_workers(task: Task, asked: int) -> int:
             f"{largest.memory_bytes / 1e9:.1f} GB and {available / 1e9:.1f} GB are free; make a step larger"
         )
     return min(asked, fit, len(task.missing))
+
+
+def require_address_space(largest: Unit) -> None:
+    """`InputError` if the limit of a process's address space is too low for a worker: OpenBLAS may hang then."""
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    needed = largest.memory_bytes + MAPPED_BYTES
+    if limit != resource.RLIM_INFINITY and limit < needed:
+        raise InputError(
+            f"ulimit -v is {limit // 1024} kB, but the worker for {largest.order.name} may map "
+            f"{needed // 1024} kB: raise that limit"
+        )
 
 
 def run_sweep(task: Task, directory: SweepDirectory, engine: Engine, watcher: Watcher) -> Outcome:

@@ -16,7 +16,7 @@ from synth.sweep.local_workers import LocalWorkers
 from synth.sweep.sweep_file import load_sweep
 from synth.sweep.work import InThisProcess, Work
 from tests.sweep import poison
-from tests.sweep.conftest import Ran, Silence, contents, events, run
+from tests.sweep.conftest import COMMAND, Ran, Silence, contents, events, run
 from tuning_tables import read_book
 
 
@@ -186,3 +186,13 @@ def test_workers_leave_no_kernel_cache_of_their_own(config: Path, tmp_path: Path
     assert ran.returncode == 0, ran.stderr
     assert ran.stdout.count(str(tmp_path)) == 1
     assert list(tmp_path.iterdir()) == []
+
+
+def test_too_little_address_space_is_refused_before_a_worker_hangs_in_it(config: Path, tmp_path: Path) -> None:
+    ran = subprocess.run(
+        ["bash", "-c", 'ulimit -v 600000; exec "$@"', "-", *COMMAND, "sweep", str(config), "-o", str(tmp_path / "out")],
+        capture_output=True, text=True, timeout=20, check=False,
+    )  # fmt: skip
+    assert ran.returncode == 2
+    assert "ulimit -v is 600000 kB, but the worker for gondola-4-" in ran.stderr
+    assert "Traceback" not in ran.stderr
