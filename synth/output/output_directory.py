@@ -13,6 +13,7 @@ from pathlib import Path
 from synth.input_error import InputError
 from synth.machine_fault import MACHINE_FAULTS
 from tuning_tables import TableError, read_json
+from tuning_tables.atomic_file import faults_naming
 
 SUMMARY = "summary.json"
 FOLDERS = ("tables", "c", "plots")
@@ -50,7 +51,8 @@ def output_directory(path: Path) -> Iterator[Path]:
             make_directory(path / folder)
         remove_leftovers(path)
         (path / SUMMARY).unlink(missing_ok=True)
-        os.fsync(descriptor)
+        with faults_naming(path):
+            os.fsync(descriptor)
         yield path
     finally:
         os.close(descriptor)

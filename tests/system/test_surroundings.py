@@ -124,6 +124,22 @@ def test_faults_of_the_machine_are_74_wherever_they_come_from(
     assert str(tuned if step == "read_book" else tmp_path) in ran.sentence
 
 
+def test_a_directory_or_ledger_that_cannot_be_forced_out_is_named(
+    command: Command, plain: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(_: int) -> None:
+        raise OSError(errno.EIO, os.strerror(errno.EIO))
+
+    monkeypatch.setattr(os, "fsync", fail)
+    for name, named in (("tune", tmp_path / "tune"), ("sweep", tmp_path / "sweep/sweep/ledger.jsonl")):
+        ran = command(name, plain, "-o", tmp_path / name)
+        assert (ran.code, ran.out) == (74, "")
+        assert (
+            ran.err.splitlines()[-1]
+            == f"retarder-synth: {named}: Input/output error; check the disk, then run the command again"
+        )
+
+
 def raising(fault: BaseException) -> object:
     def command(*_: object) -> int:
         raise fault
