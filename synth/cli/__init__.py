@@ -43,23 +43,24 @@ def leave(code: int) -> NoReturn:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line (by default that of the process) and return its exit code."""
+    from synth.cli.commands import run
     from synth.cli.standard_streams import standard_streams
 
     # See `synth.one_blas_thread`; before BLAS is loaded it starts no threads at all.
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
     with standard_streams() as stderr:
-        code = told(lambda: run_and_flush(sys.argv[1:] if arguments is None else list(arguments)))
-        # A whole result may have been left all the same: nothing ends for want of a reader of its progress.
-        return PIPE_CLOSED if stderr.reader_left and code in (OK, LIMITS_MISSED) else code
+        code = told(lambda: run(sys.argv[1:] if arguments is None else list(arguments)))
+        flushed = told(flush_stdout)
+        if code in (OK, LIMITS_MISSED):
+            # A whole result may have been left all the same: nothing ends for want of a reader of its progress.
+            return flushed or (PIPE_CLOSED if stderr.reader_left else code)
+        return code
 
 
-def run_and_flush(arguments: list[str]) -> int:
-    """Run a command; what it has printed is out when this returns."""
-    from synth.cli.commands import run
-
-    code = run(arguments)
+def flush_stdout() -> int:
+    """Have what was printed out."""
     sys.stdout.flush()
-    return code
+    return OK
 
 
 def told(call: Callable[[], int]) -> int:
@@ -96,8 +97,10 @@ def told_of_system(fault: OSError) -> int:
     """Tell of what the system has refused; the exit code."""
     from synth.machine_fault import MACHINE_FAULTS
 
+    if fault.errno is None:  # from a library, not from the system
+        return told_of_unforeseen(fault)
     where = f"{fault.filename}: " if fault.filename else ""
-    what = MACHINE_FAULTS.get(fault.errno or 0)
+    what = MACHINE_FAULTS.get(fault.errno)
     say(f"{where}{fault.strerror or fault}{f'; {what}' if what else ''}")
     return MACHINE_FAULT if what else INPUT_FAULT
 

@@ -89,6 +89,7 @@ def standard_streams() -> Iterator[UnfailingStream]:
     try:
         yield unfailing
     finally:
+        unfailing.flush()
         sys.stdout, sys.stderr = before
 
 

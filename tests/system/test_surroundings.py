@@ -49,7 +49,7 @@ def plain(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ("$tool 2>&-", 0, ""),
         ("$tool >&- 2>&- <&-", 0, ""),
         ("$tool 2>/dev/full", 0, ""),
-        ("{ $tool 2>&1 >/dev/null; echo code $? >&2; } | head -c 1 >/dev/null", None, "code 141"),
+        ("{ sleep 0.5; $tool 2>&1 >/dev/null; echo code $? >&2; } | true", None, "code 141"),
         ("$tool >/dev/full", 74, "standard output: No space left on device; make room"),
     ],
 )
@@ -65,7 +65,7 @@ def test_a_stream_that_takes_nothing_costs_no_result(
 
 @pytest.mark.parametrize("command", ["inspect", "verify"])
 def test_nobody_reads_a_long_output(tuned: Path, command: str) -> None:
-    ran = shell("{ $tool; echo code $? >&2; } | head -c 1", command, tuned, "--json")
+    ran = shell("{ sleep 0.5; $tool; echo code $? >&2; } | true", command, tuned, "--json")
     assert "code 141" in ran.stderr
     assert "Traceback" not in ran.stderr
 
@@ -147,7 +147,10 @@ def raising(fault: BaseException) -> object:
     return command
 
 
-@pytest.mark.parametrize("fault", [KeyError("x"), RuntimeError("odd\nthing"), ValueError("v"), RecursionError("deep")])
+@pytest.mark.parametrize(
+    "fault",
+    [KeyError("x"), RuntimeError("odd\nthing"), ValueError("v"), RecursionError("deep"), OSError("of a library")],
+)
 def test_an_unforeseen_fault_has_a_code_of_its_own(
     command: Command, monkeypatch: pytest.MonkeyPatch, fault: BaseException
 ) -> None:
@@ -161,6 +164,14 @@ def test_an_unforeseen_fault_has_a_code_of_its_own(
     told = command("init").err
     assert told.startswith("Traceback (most recent call last):")
     assert told.splitlines()[-1].startswith("retarder-synth: this is a fault of retarder-synth itself")
+
+
+def test_what_was_printed_before_a_fault_is_not_lost() -> None:
+    monkey = "import sys, synth.cli.init as i\ndef f(*_):\n print('printed'); raise KeyError(1)\ni.init_command = f\n"
+    ran = subprocess.run(
+        [sys.executable, "-c", f"{monkey}{PROGRAM}", "init"], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert (ran.returncode, ran.stdout) == (70, "printed\n")
 
 
 def test_want_of_memory_is_74(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
