@@ -79,7 +79,7 @@ def test_a_target_without_a_table_loses_none_but_itself(command: Callable[..., R
     code, said = swept("some", "[2.0, 3.0, 3.5, 4.0]")
     assert code == 1
     assert "targets without a table: 2" in said
-    assert "gondola-4-22t to 2 m/s failed (and 1 more): grid: " in said
+    assert "gondola-4-22t to 2 m/s failed (and 1 more): the grid is too coarse" in said
     code, listed, _ = command("sweep", "failed", tmp_path / "some")
     assert [line.split(":")[0] for line in listed.splitlines()] == ["gondola-4-22t to 2 m/s", "gondola-4-85t to 4 m/s"]
     status = command("sweep", "status", tmp_path / "some")[1]
@@ -111,7 +111,7 @@ def test_a_class_without_any_table_has_failed(command: Callable[..., Ran], tmp_p
     (tmp_path / "sweep.toml").write_text(TOO_COARSE.format(speeds="[4.0]"), encoding="utf-8")
     code, _, said = command("sweep", tmp_path / "sweep.toml", "-o", tmp_path / "out", "--workers", "1")
     assert code == 1
-    assert "gondola-4-85t failed: grid: " in said
+    assert "gondola-4-85t failed: the grid is too coarse" in said
     assert "1 of 2 units done, 1 failed\n" in command("sweep", "status", tmp_path / "out")[1]
 
 
@@ -120,7 +120,7 @@ def test_refining_gives_up_a_class_with_a_target_without_a_table(command: Callab
     (tmp_path / "sweep.toml").write_text(text, encoding="utf-8")
     code, _, said = command("sweep", tmp_path / "sweep.toml", "-o", tmp_path / "out", "--workers", "1")
     assert code == 1
-    assert "gondola-4-85t failed: grid: " in said
+    assert "gondola-4-85t failed: the grid is too coarse" in said
     assert {table.cut.mass_t for table in read_book(tmp_path / "out" / "book.h5")} == {22.0}
 
 
