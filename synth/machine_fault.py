@@ -14,6 +14,6 @@ MACHINE_FAULTS: Final[Mapping[int, str]] = {
     errno.EMFILE: "raise the limit of open files (ulimit -n), then run the command again",
     errno.ENFILE: "close other programs, then run the command again",
     errno.ENOMEM: "free memory or raise the limit of it (ulimit -v), then run the command again",
-    errno.EAGAIN: "raise the limit of processes (ulimit -u), then run the command again",
+    errno.EAGAIN: "wait a little or raise the limit of processes (ulimit -u), then run the command again",
 }
 """What to do, by the number of an `OSError`."""
