@@ -5,15 +5,18 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from plant_models.errors import require_between
+from plant_models.errors import require, require_between
+
+FINEST_RESOLUTION_M_S = 1e-6
+"""A thousand times finer than any Doppler sensor."""
 
 
 @dataclass(frozen=True)
 class DopplerSensor:
     """Measured speed = round((v + noise)/resolution)·resolution, once every `sample_period_s`.
 
-    `noise_m_s`: std of white Gaussian noise; `resolution_m_s`: 0 means not quantised;
-    `computing_delay_s`: from the sample to the command on the valves' wires.
+    `noise_m_s`: std of white Gaussian noise; `resolution_m_s`: 0 means not quantised, else 1e-6 or more, for the
+    quotient must be a number; `computing_delay_s`: from the sample to the command on the valves' wires.
     """
 
     noise_m_s: float
@@ -24,6 +27,11 @@ class DopplerSensor:
     def __post_init__(self) -> None:
         require_between("sensor: noise_m_s", self.noise_m_s, 0.0, 1.0)
         require_between("sensor: resolution_m_s", self.resolution_m_s, 0.0, 1.0)
+        require(
+            self.resolution_m_s == 0.0 or self.resolution_m_s >= FINEST_RESOLUTION_M_S,
+            f"sensor: resolution_m_s is {self.resolution_m_s!r}; it must be 0 (not quantised) or from "
+            f"{FINEST_RESOLUTION_M_S:g} to 1",
+        )
         require_between("sensor: sample_period_s", self.sample_period_s, 0.005, 2.0)
         require_between("sensor: computing_delay_s", self.computing_delay_s, 0.0, 2.0)
 

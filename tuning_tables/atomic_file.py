@@ -17,25 +17,38 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     """Hand out a new empty file to be written and closed in the `with` block; afterwards it is found at `path`.
 
     Where the block raises, `path` is left as it was and the temporary file is removed. The file's permissions are those
-    of any new file of this process. Raises `OSError` where the directory cannot be written.
+    of any new file of this process. Raises `OSError` where the directory cannot be written; it names `path`, also where
+    the system names no file, as for a full disk, or the temporary one.
     """
     target = Path(path)
     part = target.with_name(f".{target.name}.{os.urandom(8).hex()}.part")
-    os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
-    try:
-        yield part
-        _force_to_disk(part)
-        os.replace(part, target)
-    except BaseException:
-        part.unlink(missing_ok=True)
-        raise
-    _force_to_disk(target.parent)
+    with faults_naming(target, part):
+        try:
+            os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
+            yield part
+            _force_to_disk(part)
+            os.replace(part, target)
+            _force_to_disk(target.parent)
+        except BaseException:
+            part.unlink(missing_ok=True)
+            raise
 
 
 def write_atomically(path: str | os.PathLike[str], content: bytes) -> None:
     """Make `content` the content of the file at `path`, replacing what was there; raises `OSError`."""
     with replacing(path) as part:
         part.write_bytes(content)
+
+
+@contextmanager
+def faults_naming(path: Path, stand_in: Path | None = None) -> Iterator[None]:
+    """Within, an `OSError` that names no file, as for a full disk, or only `stand_in`, is raised naming `path`."""
+    try:
+        yield
+    except OSError as fault:
+        if fault.errno is None or fault.filename not in (None, stand_in and str(stand_in)):
+            raise
+        raise OSError(fault.errno, fault.strerror, str(path)) from fault
 
 
 def _force_to_disk(path: Path) -> None:

@@ -18,14 +18,22 @@ import csv
 import io
 import os
 from collections.abc import Iterator
+from typing import Final
 
 from tuning_tables.atomic_file import write_atomically
 from tuning_tables.document import to_document
+from tuning_tables.errors import InvalidTable
+from tuning_tables.excerpt import excerpt
 from tuning_tables.table import ControllerTable
+
+FORMULA_MARKS: Final = ("=", "+", "-", "@")
 
 
 def to_csv(table: ControllerTable) -> bytes:
-    """The CSV text of `table`, UTF-8, CR LF line ends; equal tables give equal bytes."""
+    """The CSV text of `table`, UTF-8, CR LF line ends; equal tables give equal bytes.
+
+    Raises `InvalidTable` for a text that a spreadsheet would take for a formula and compute.
+    """
     rows = [*_property_rows(to_document(table), ""), *_line_rows(table)]
     width = max(len(row) for row in rows)
     text = io.StringIO(newline="")
@@ -36,7 +44,7 @@ def to_csv(table: ControllerTable) -> bytes:
 
 
 def write_csv(table: ControllerTable, path: str | os.PathLike[str]) -> None:
-    """Write `to_csv(table)` to the file at `path`, complete or not at all; raises `OSError`."""
+    """Write `to_csv(table)` to the file at `path`, complete or not at all; raises `OSError`, and as `to_csv`."""
     write_atomically(path, to_csv(table))
 
 
@@ -52,6 +60,11 @@ def _property_rows(value: object, key: str) -> Iterator[list[str]]:
     elif isinstance(value, list):
         yield ["number", key, *map(repr, value)]
     elif isinstance(value, str):
+        if value.startswith(FORMULA_MARKS):
+            raise InvalidTable(
+                f"{key} is {excerpt(value)!r}, which a spreadsheet would compute; give it a name that does not begin "
+                f"with {value[0]!r}, or export another form."
+            )
         yield ["text", key, value]
     elif value is not None:
         yield ["number", key, repr(value)]

@@ -9,13 +9,18 @@ Two attributes are for xarray: `_Encoding` has it decode text (fixed-length UTF-
 tables apart. Equal books give equal bytes: nothing in the file tells time or place. The file ends with a seal (see
 `seal`), and is read only under an unbroken one; and only where the tables in it give the very same arrays again, so
 that nothing is in a book, not even in the padding, that was not read.
+
+HDF5 never writes to the disk itself: its library keeps silent about some writes that fail, and the seal would then be
+set over the damage. It makes the book in memory; what was written from there is read back before it takes the name.
 """
 
 from __future__ import annotations
 
+import errno
 import io
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -54,11 +59,9 @@ def write_book(
     """Write `tables` to the file at `path`, complete or not at all.
 
     `generator`: the run that bound the book, by default the generator of the tables, which must then be one for all.
-    Raises `InvalidTable` for no tables, an id given twice, generators that differ; `OSError`; `ImportError` without
-    h5py.
+    Raises `InvalidTable` for no tables, an id given twice, generators that differ; `OSError`, also where the file does
+    not read back as it was written; `ImportError` without h5py.
     """
-    import h5py
-
     arrays, layout = columns_of(tables), layout_of(tables)
     origin = generator or _common_generator(tables)
     attributes: dict[str, str | int] = {
@@ -69,16 +72,10 @@ def write_book(
         "tool_version": origin.version,
     }
     attributes["payload_sha256"] = payload_sha256(attributes, arrays, layout)
+    body = _body(attributes, arrays, layout)
     with replacing(path) as part:
-        with h5py.File(part, "w", libver=FILE_VERSION) as file:
-            for axis, meaning in layout.axes.items():
-                _write_axis(file, axis, layout.length(axis, arrays), meaning)
-            for column in layout.columns:
-                _write_column(file, column, arrays[column.name])
-            for name in _ATTRIBUTES:
-                file.attrs[name] = attributes[name]
-        body = part.read_bytes()
         part.write_bytes(body + seal_of(body))
+        _require_read_back(part, arrays)
 
 
 def read_book(path: str | os.PathLike[str]) -> tuple[ControllerTable, ...]:
@@ -88,6 +85,37 @@ def read_book(path: str | os.PathLike[str]) -> tuple[ControllerTable, ...]:
     a book of another version, `DamagedTable` for everything that is no complete, unchanged book, unsealed HDF5 files
     among them; `OSError` where the file cannot be opened; `ImportError` without h5py.
     """
+    source = os.fspath(path)
+    arrays = _stored_arrays(path)
+    try:
+        tables = tables_of(arrays)
+        _require_as_written(arrays, columns_of(tables), source)
+    except InvalidTable as invalid:
+        raise DamagedTable(f"{source}: {excerpt(str(invalid), LONGEST_REASON)}") from invalid
+    except UnicodeDecodeError as fault:
+        raise DamagedTable(f"{source}: not a readable table book ({fault}); export it again.") from fault
+    return tables
+
+
+def _body(attributes: Mapping[str, str | int], arrays: Columns, layout: Layout) -> bytes:
+    """The HDF5 file of a book, made in memory."""
+    import h5py
+
+    # The name stands nowhere in the file, and nothing is written to the disk.
+    with h5py.File("book", "w", libver=FILE_VERSION, driver="core", backing_store=False) as file:
+        for axis, meaning in layout.axes.items():
+            _write_axis(file, axis, layout.length(axis, arrays), meaning)
+        for column in layout.columns:
+            _write_column(file, column, arrays[column.name])
+        for name in _ATTRIBUTES:
+            file.attrs[name] = attributes[name]
+        file.flush()
+        image: bytes = file.id.get_file_image()
+    return image
+
+
+def _stored_arrays(path: str | os.PathLike[str]) -> dict[str, npt.NDArray[Any]]:
+    """The arrays of the book at `path`, whose seal, layout and checksums are right; raises as `read_book`."""
     import h5py
 
     source = os.fspath(path)
@@ -99,9 +127,7 @@ def read_book(path: str | os.PathLike[str]) -> tuple[ControllerTable, ...]:
     try:
         # From these bytes, not from the file: what was found unbroken is what is read.
         with h5py.File(io.BytesIO(body), "r") as file:
-            arrays = _checked_arrays(file, len(body), source)
-        tables = tables_of(arrays)
-        _require_as_written(arrays, columns_of(tables), source)
+            return _checked_arrays(file, len(body), source)
     except InvalidTable as invalid:
         raise DamagedTable(f"{source}: {excerpt(str(invalid), LONGEST_REASON)}") from invalid
     except TableError:
@@ -110,7 +136,18 @@ def read_book(path: str | os.PathLike[str]) -> tuple[ControllerTable, ...]:
     except Exception as fault:
         reason = excerpt(" ".join(str(fault).split()), LONGEST_REASON)
         raise DamagedTable(f"{source}: not a readable table book ({reason}); export it again.") from fault
-    return tables
+
+
+def _require_read_back(part: Path, arrays: Columns) -> None:
+    try:
+        found = _stored_arrays(part)
+        reason = (
+            "" if all(found[name].tobytes() == array.tobytes() for name, array in arrays.items()) else "other values"
+        )
+    except DamagedTable as fault:
+        reason = str(fault).removeprefix(f"{part}: ")
+    if reason:
+        raise OSError(errno.EIO, f"what was written does not read back ({reason})")
 
 
 def _common_generator(tables: Sequence[ControllerTable]) -> Generator:

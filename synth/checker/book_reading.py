@@ -5,40 +5,29 @@ from __future__ import annotations
 import hashlib
 import io
 import math
+import re
 from collections.abc import Mapping
 from typing import Any, Final
 
+from synth.checker.book_layout import (
+    NUMBER,
+    SCHEMAS,
+    axes_of,
+    datasets_of,
+    require_axes,
+    require_filled_up,
+    require_stored,
+)
 from synth.checker.canonical import canonical_form
-from synth.checker.document_shape import ESTIMATOR_NUMBERS, ESTIMATOR_ROWS
+from synth.checker.document_shape import ESTIMATOR_NUMBERS, ESTIMATOR_ROWS, TEXT, is_a
 from synth.checker.finding import DamagedError, shown
 from synth.checker.source_file import LARGEST_BYTES
 
 SIGNATURE: Final = b"\x89HDF\r\n\x1a\n"
 SEAL: Final = b"\n# sealed, sha256 of all before this line: "
-AXES: Final = frozenset({"table", "stage", "line", "power", "zone", "axle", "end"})
-ATTRIBUTES: Final = frozenset(
-    {"format", "schema_version", "tool_version", "config_sha256", "payload_sha256", "complete"}
-)
-NAMES: Final = frozenset(
-    {
-        *("id", "created", "generator_name", "generator_version", "config_sha256", "retarder", "category"),
-        *("target_speed_m_s", "mass_t", "exit_m", "dead_band_kpa", "degree", "n_stages", "zones_m", "axle_offsets_m"),
-        *("pressure_kpa", "coefficients", "has_line", "valid_s_m", "valid_v_m_s"),
-        *(f"predicted_{name}" for name in ("rms_m_s", "bias_m_s", "p_overspeed", "switchings", "p_stall")),
-        *(f"validated_{name}" for name in ("passes", "rms_m_s", "rms_ci95_m_s")),
-    }
-)
-"""The datasets of docs/table-format.md."""
-NUMBER: Final = "category_number"
-"""In books whose tables state it, of either version; 0: not stated."""
-ESTIMATOR_NAMES: Final = frozenset(
-    {"predicted_passes", "estimator_breaks", *(f"estimator_{name}" for name in (*ESTIMATOR_NUMBERS, *ESTIMATOR_ROWS))}
-)
-SCHEMAS: Final[Mapping[int, tuple[frozenset[str], frozenset[str]]]] = {
-    1: (NAMES, AXES),
-    2: (NAMES | ESTIMATOR_NAMES, AXES | {"break"}),
-}
-"""Datasets and axes by schema version."""
+NUMBERED: Final = frozenset({"schema_version", "complete"})
+ATTRIBUTES: Final = NUMBERED | {"format", "tool_version", "config_sha256", "payload_sha256"}
+SHA256: Final = re.compile("[0-9a-f]{64}")
 
 Row = Mapping[str, Any]
 
@@ -53,10 +42,10 @@ def read_documents(content: bytes) -> list[dict[str, Any]]:
     try:
         with h5py.File(io.BytesIO(body), "r") as book:
             columns = checked_columns(book)
-            count = len(columns["id"])
-            if any(len(column) != count for column in columns.values()):
-                raise DamagedError("its columns are of different lengths")
-            return [document_of({name: column[row] for name, column in columns.items()}) for row in range(count)]
+            rows = range(len(columns["id"]))
+            documents = [document_of({name: column[row] for name, column in columns.items()}) for row in rows]
+            require_filled_up(columns, documents)
+            return documents
     except DamagedError:
         raise
     except Exception as fault:  # h5py tells what it finds wrong in a dozen types
@@ -75,19 +64,19 @@ def unsealed(content: bytes) -> bytes:
 
 def checked_columns(book: Any) -> dict[str, list[Any]]:
     """All columns as lists, once attributes, names and `payload_sha256` are right."""
-    attributes = {name: plain(value) for name, value in book.attrs.items()}
-    if attributes.keys() != ATTRIBUTES or attributes["format"] != "retarder-book" or attributes["complete"] != 1:
-        raise DamagedError(f"its attributes {shown(attributes)} are not those of a complete book")
+    attributes = root_attributes(book)
     version = attributes["schema_version"]
-    if not isinstance(version, int) or version not in SCHEMAS:
+    if version not in SCHEMAS:
         raise DamagedError(f"its schema_version is {shown(version)}; this checker knows the versions 1 and 2 only")
-    names, axes = SCHEMAS[version]
-    names |= {NUMBER} & set(book)
-    if set(book) != names | axes:
-        raise DamagedError(f"the datasets {sorted(set(book) ^ (names | axes))} are missing or unknown")
+    names = datasets_of(version, NUMBER in book)
+    unlike = set(book) ^ (names.keys() | axes_of(names))
+    if unlike:
+        raise DamagedError(f"the datasets {shown(sorted(unlike))} are missing or unknown")
     stored = attributes.pop("payload_sha256")
-    for name in names:
+    for name in book:
         require_own(book, name)
+    for name in names:
+        require_stored(name, book[name], names[name])
     values = {name: book[name][()] for name in names}
     described = {
         name: {
@@ -104,6 +93,7 @@ def checked_columns(book: Any) -> dict[str, list[Any]]:
         raise DamagedError("its payload_sha256 does not fit its content")
     if NUMBER in values and not values[NUMBER].any():
         raise DamagedError(f"it holds {NUMBER}, but none of its tables states one")
+    require_axes(book, values, names)
     if version == 2 and not values["estimator_breaks"].any():
         raise DamagedError("its schema_version is 2, but none of its tables has an estimator")
     return {name: array.tolist() for name, array in values.items()}
@@ -120,9 +110,15 @@ def require_own(book: Any, name: str) -> None:
         raise DamagedError(f"{name} does not lie in the file, or is larger than {LARGEST_BYTES} bytes")
 
 
-def plain(value: Any) -> Any:
-    """An attribute as a Python value."""
-    return value.item() if hasattr(value, "item") else value
+def root_attributes(book: Any) -> dict[str, Any]:
+    """The attributes of the book itself, each a single text or whole number as documented."""
+    found = {name: value.item() if getattr(value, "shape", None) == () else value for name, value in book.attrs.items()}
+    whole = found.keys() == ATTRIBUTES and found["format"] == "retarder-book" and found["complete"] == 1
+    whole = whole and all(type(value) is (int if name in NUMBERED else str) for name, value in found.items())
+    whole = whole and is_a(TEXT, found["tool_version"]) and bool(SHA256.fullmatch(found["config_sha256"]))
+    if not whole:
+        raise DamagedError(f"its attributes {shown(found)} are not those of a complete book")
+    return found
 
 
 def document_of(row: Row) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
@@ -109,7 +110,10 @@ def is_a(form: str, value: Any) -> bool:
         return isinstance(value, str) and value != "" and value.isprintable()
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False
-    return abs(value) <= 2**53 if isinstance(value, int) else form == NUMBER
+    if isinstance(value, int):
+        return abs(value) <= 2**53
+    # The canonical form writes -0.0 as 0: no checksum would tell the two apart.
+    return form == NUMBER and math.isfinite(value) and (value != 0.0 or math.copysign(1.0, value) > 0.0)
 
 
 def refuse_unless(holds: bool, value: Any, path: str, wanted: str) -> None:

@@ -35,8 +35,9 @@ def read_source(path: Path) -> Source:
     """Everything at `path`; `NothingToVerifyError` where there is nothing."""
     if path.is_dir():
         return read_directory(path)
-    if not path.exists():
-        raise NothingToVerifyError(f"{path}: there is no such file; give a table (.json), a book (.h5) or a directory")
+    if not path.is_file():  # a pipe or device might never end
+        what = "this is no regular file" if path.exists() else "there is no such file"
+        raise NothingToVerifyError(f"{path}: {what}; give a table (.json), a book (.h5) or a directory")
     try:
         content = content_of(path)
         if content.startswith(SIGNATURE) or path.suffix in (".h5", ".hdf5"):

@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from synth.cli.arguments import directory, whole_number
+
 app = typer.Typer(
     name="retarder-synth",
     help="Designs the controller of a hump-yard car retarder: switching lines, controller tables, and their proof.",
@@ -62,9 +64,14 @@ def common(
 @app.command()
 def tune(
     config: Annotated[Path | None, typer.Argument(metavar="CONFIG.toml", help="Built-in unless given.")] = None,
-    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Where the results go.")] = Path("out"),
+    output: Annotated[
+        Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where the results go.")
+    ] = Path("out"),
     workers: Annotated[
-        int | None, typer.Option(min=1, max=256, help="Cut classes solved at once; by default one a processor.")
+        int | None,
+        typer.Option(
+            parser=whole_number(1, 256), metavar="N", help="Cut classes solved at once; by default one a processor."
+        ),
     ] = None,
     as_json: Json = False,
 ) -> int:
@@ -84,10 +91,14 @@ def sweep(
         typer.Argument(metavar="CONFIG.toml | status DIR | failed DIR", help="What to sweep, or what to tell of."),
     ],
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="DIR", help="Where a sweep keeps everything.")
+        Path | None,
+        typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where a sweep keeps everything."),
     ] = None,
     workers: Annotated[
-        int | None, typer.Option(min=1, max=1024, help="Processes on this machine; by default one a processor.")
+        int | None,
+        typer.Option(
+            parser=whole_number(1, 1024), metavar="N", help="Processes on this machine; by default one a processor."
+        ),
     ] = None,
     scheduler: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Compute on the workers of this Dask scheduler instead.")
@@ -109,10 +120,18 @@ def validate(
     source: Source,
     config: Config = None,
     passes: Annotated[
-        int | None, typer.Option(min=1000, max=100_000_000, help="Passes of each table; as configured unless given.")
+        int | None,
+        typer.Option(
+            parser=whole_number(1000, 100_000_000),
+            metavar="N",
+            help="Passes of each table; as configured unless given.",
+        ),
     ] = None,
     seed: Annotated[
-        int | None, typer.Option(min=0, max=2**63 - 1, help="Of the random numbers; as configured unless given.")
+        int | None,
+        typer.Option(
+            parser=whole_number(0, 2**63 - 1), metavar="N", help="Of the random numbers; as configured unless given."
+        ),
     ] = None,
     as_json: Json = False,
 ) -> int:
@@ -129,9 +148,14 @@ def validate(
 def verify(
     source: SourceOrDirectory,
     passes: Annotated[
-        int, typer.Option(min=100, max=1_000_000, help="Coarse passes of each table; 0.6 ms each.")
+        int,
+        typer.Option(
+            parser=whole_number(100, 1_000_000), metavar="N", help="Coarse passes of each table; 0.6 ms each."
+        ),
     ] = 300,
-    seed: Annotated[int, typer.Option(min=0, max=2**63 - 1, help="Of the random numbers.")] = 1,
+    seed: Annotated[
+        int, typer.Option(parser=whole_number(0, 2**63 - 1), metavar="N", help="Of the random numbers.")
+    ] = 1,
     as_json: Json = False,
 ) -> int:
     """Check exported tables by a second, independent program.
@@ -147,9 +171,9 @@ def verify(
 @app.command()
 def plot(
     source: SourceOrDirectory,
-    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Where the pictures go.")] = Path(
-        "plots"
-    ),
+    output: Annotated[
+        Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where the pictures go.")
+    ] = Path("plots"),
     config: Config = None,
     as_json: Json = False,
 ) -> int:
@@ -177,7 +201,9 @@ def inspect(source: SourceOrDirectory, as_json: Json = False) -> int:
 def export(
     source: Source,
     form: Annotated[str, typer.Option("--format", metavar="json|c|st|csv", help="Form of the tables.")],
-    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="Where they go.")] = Path(),
+    output: Annotated[
+        Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where they go.")
+    ] = Path(),
     prefix: Annotated[
         str | None, typer.Option(metavar="NAME", help="First word of all names in code, instead of RETARDER.")
     ] = None,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import signal
 import sys
 import threading
@@ -11,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from types import FrameType
 
-from synth.cli import INTERRUPTED, say
+from synth.cli import INTERRUPTED, leave, say
 
 
 @contextlib.contextmanager
@@ -34,7 +33,7 @@ def interruptible(directory: Path | None = None) -> Iterator[None]:
         say("interrupted" if directory is None else f"interrupted; {directory} holds no complete book")
         with contextlib.suppress(OSError, ValueError):
             sys.stdout.flush()
-        os._exit(INTERRUPTED)
+        leave(INTERRUPTED)
 
     before = signal.signal(signal.SIGINT, end)
     try:

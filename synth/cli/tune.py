@@ -48,7 +48,7 @@ def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, worker
         from synth.output.acceptance import judge
         from synth.output.outputs import write_outputs
         from synth.report.figures import counted
-        from synth.tuning.tune import no_notice, tune
+        from synth.tuning.tune import CaseError, no_notice, tune
         from tuning_tables import InvalidTable
 
         case_done = studio.case_done if wanted else no_notice
@@ -57,6 +57,11 @@ def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, worker
             progress.note(f"{counted(len(book.cases), 'case')} computed in {time.monotonic() - started:.1f} s")
             verdict = judge(book.cases, config.acceptance)
             summary = write_outputs(book, verdict, directory, studio, progress.note)
+        except CaseError as fault:
+            raise InputError(
+                f"{path or 'built-in configuration'}: no table for {fault.case}: {fault}; now grid.path_step_m is "
+                f"{config.grid.path_step_m:g} and grid.speed_step_m_s {config.grid.speed_step_m_s:g}"
+            ) from None
         except InvalidTable as fault:
             raise InputError(
                 f"{path or 'built-in configuration'}: the lines that were found make no table ({fault}) "

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, get_args
@@ -14,7 +13,9 @@ from pydantic_core import ErrorDetails
 from plant_models.library.near_miss import near_miss
 from synth.configuration.resolved_config import ResolvedConfig, resolve, setting_limits
 from synth.configuration.settings import Section, Settings
+from synth.configuration.toml_file import read_text, toml_tree
 from synth.input_error import InputError
+from tuning_tables.excerpt import excerpt
 
 BUILT_IN = "built-in configuration"
 
@@ -40,26 +41,9 @@ def load_config(path: Path | None) -> ResolvedConfig:
     return parse_config(read_text(path), str(path))
 
 
-def read_text(path: Path) -> str:
-    """The text of the file; `InputError` if it cannot be read."""
-    try:
-        return path.read_text(encoding="utf-8")
-    except FileNotFoundError:
-        raise InputError(f"{path}: there is no such file; write one with 'retarder-synth init > {path.name}'") from None
-    except IsADirectoryError:
-        raise InputError(f"{path}: this is a directory; give the path of a TOML configuration file") from None
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: byte {error.start} is not UTF-8 text; save the file as UTF-8") from None
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror}); check the path and its permissions") from None
-
-
 def parse_config(text: str, file: str) -> ResolvedConfig:
     """The configuration written in `text`; `file` is what messages call it."""
-    try:
-        tree = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{file}: this is not valid TOML: {error}; correct the file there") from None
+    tree = toml_tree(text, file)
     try:
         settings = Settings.model_validate(tree)
     except ValidationError as error:
@@ -145,7 +129,7 @@ def dotted_keys(section: type[BaseModel], prefix: str) -> list[str]:
 
 def key_path(location: Location) -> str:
     """('cut', 0, 'mass_t') → 'cut[0].mass_t'."""
-    path = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in location)
+    path = "".join(f"[{part}]" if isinstance(part, int) else f".{excerpt(part)}" for part in location)
     return path.removeprefix(".")
 
 

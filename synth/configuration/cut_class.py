@@ -20,6 +20,7 @@ from plant_models.library.near_miss import near_miss
 from plant_models.library.sourced_value import SET_BY_USER, SourcedTable
 from synth.configuration.settings import DEFAULT_CUTS, CutSettings
 from synth.input_error import InputError
+from tuning_tables.excerpt import excerpt
 
 DEFAULT_BOOK = "default book: one gondola for each weight category"
 
@@ -57,7 +58,7 @@ def resolve_cut(settings: CutSettings, index: int, retarder: RetarderEntry, file
     key = f"cut[{index}]"
     if settings.car not in car_names():
         raise InputError(
-            f"{file}: {key}.car is {settings.car!r}, which the library does not hold; "
+            f"{file}: {key}.car is {excerpt(settings.car)!r}, which the library does not hold; "
             f"{near_miss(settings.car, car_names())}"
         )
     entry = load_car(settings.car)
@@ -90,7 +91,7 @@ def resolve_cut(settings: CutSettings, index: int, retarder: RetarderEntry, file
     except PlantError as error:
         sentence = str(error).replace("rolling resistance: ", f"{key}.rolling_resistance.").replace("cut: ", f"{key}.")
         sentence = sentence.replace("weight category ", f"{key}.category is ").replace(" is not in", ", not in")
-        raise InputError(f"{file}: {sentence}") from None
+        raise InputError(f"{file}: {excerpt(sentence, 400)}") from None
     many = f"x{settings.cars}" if settings.cars > 1 else ""
     label = settings.label or f"{settings.car}{many}-{settings.mass_t:g}t"
     provenance = tuple(cut_values(settings, key, entry, table))

@@ -33,8 +33,12 @@ from synth.markov_chain.grid import Resolution
 from synth.markov_chain.grid_warnings import grid_warnings
 from synth.problem import Criterion, EntrySpeed, Plant, Problem
 from tuning_tables.canonical import canonical_json
+from tuning_tables.excerpt import excerpt
 
 TOOL_DEFAULT = "default of the tool"
+
+LONGEST_SENTENCE = 400
+"""Characters of what the plant says of a value, which it repeats."""
 
 KEY_OF_PLANT_MESSAGE = {
     "pneumatics: ": "retarder.pneumatics.",
@@ -173,7 +177,7 @@ def resolve(settings: Settings, file: str) -> ResolvedConfig:
         if config.regulator.estimator:
             estimator_resolution(config.resolution, retarder.sensor, min(targets))
     except PlantError as error:
-        raise InputError(f"{file}: {with_key_path(str(error))}") from None
+        raise InputError(f"{file}: {excerpt(with_key_path(str(error)), LONGEST_SENTENCE)}") from None
     return config
 
 
@@ -182,11 +186,14 @@ def resolve_retarder(settings: Settings, file: str) -> RetarderEntry:
     name = settings.retarder.name
     if name not in retarder_names():
         raise InputError(
-            f"{file}: retarder.name is {name!r}, which the library does not hold; {near_miss(name, retarder_names())}"
+            f"{file}: retarder.name is {excerpt(name)!r}, which the library does not hold; "
+            f"{near_miss(name, retarder_names())}"
         )
     zones = settings.retarder.zones_m
     if zones is not None and zones[0][0] != 0.0:
-        raise InputError(f"{file}: retarder.zones_m is {zones}; the first zone must start at 0, the entrance")
+        raise InputError(
+            f"{file}: retarder.zones_m begins with {zones[0]}; the first zone must start at 0, the entrance"
+        )
     try:
         retarder = load_retarder(name).with_values(settings.library_overrides())
         pressures = retarder.position.stage_pressures_kpa
@@ -194,7 +201,7 @@ def resolve_retarder(settings: Settings, file: str) -> RetarderEntry:
             for end in pressures:  # a regulator that hunts is found here, not in the middle of a solve
                 retarder.position.pneumatics.respond(start, end, retarder.position.force.touch_pressure_kpa)
     except PlantError as error:
-        raise InputError(f"{file}: {with_key_path(str(error))}") from None
+        raise InputError(f"{file}: {excerpt(with_key_path(str(error)), LONGEST_SENTENCE)}") from None
     return retarder
 
 
@@ -206,8 +213,15 @@ def resolve_targets(speeds_m_s: tuple[float, ...], highest_entry_m_s: float, fil
                 f"{file}: targets.exit_speeds_m_s holds {speed!r}; a target must be at least 0.3 m/s and below the "
                 f"highest entry speed, entry.high_m_s = {highest_entry_m_s:g}"
             )
-        if speeds_m_s.count(speed) > 1:
-            raise InputError(f"{file}: targets.exit_speeds_m_s holds {speed!r} more than once; give each target once")
+    named: dict[str, float] = {}
+    for speed in speeds_m_s:
+        name = f"{speed:g}"
+        if name in named:
+            raise InputError(
+                f"{file}: targets.exit_speeds_m_s holds {named[name]!r} and {speed!r}, but tables are named by six "
+                "digits of their target; give each only once"
+            )
+        named[name] = speed
     return speeds_m_s
 
 

@@ -8,36 +8,19 @@ here. `synth.configuration.config_file` turns every fault into one sentence.
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import Any
 
-from pydantic import BaseModel, ConfigDict, Field, PlainValidator
+from pydantic import BaseModel, ConfigDict, Field
 
 from plant_models.errors import require
 from plant_models.library import Value
-from plant_models.library.data_file import Form, form_name, number_or_pairs, numbers, pairs
+from synth.configuration.value_forms import Grade, Numbers, Pairs, Title
 from synth.criterion.requirement import FrictionRange, OverspeedLimit, Requirement
 from synth.criterion.terminal_cost import AsymmetricSquare, SquaredError
 from synth.markov_chain.grid import Resolution
 from synth.problem import Criterion
 
 DEFAULT_RETARDER = "knp-5-bunch"
-
-
-def in_form(form: Form) -> PlainValidator:
-    """Validator by a form of the library."""
-
-    def check(raw: object) -> Value:
-        value = form(raw)
-        if value is None:
-            raise ValueError(f"it must be {form_name(form)}")
-        return value
-
-    return PlainValidator(check)
-
-
-Numbers = Annotated[tuple[float, ...], in_form(numbers)]
-Pairs = Annotated[tuple[tuple[float, float], ...], in_form(pairs)]
-Grade = Annotated[float | tuple[tuple[float, float], ...], in_form(number_or_pairs)]
 
 
 def setting(default: float, unit: str, low: float, high: float, meaning: str) -> Any:
@@ -262,7 +245,7 @@ class OutputSettings(Section):
 class Settings(Section):
     """A whole configuration file; an empty one is the built-in default."""
 
-    title: str | None = None
+    title: Title | None = None
     retarder: RetarderSettings = RetarderSettings()
     track: TrackSettings = TrackSettings()
     entry: EntrySettings = EntrySettings()

@@ -177,8 +177,8 @@ def polish(
     before = first[0]
     require(
         before > 0.0,
-        "grid: speed_step_m_s or path_step_m is too coarse for this plant (an expected square came out negative): "
-        "make both smaller",
+        "the grid is too coarse for these lines (an expected square came out negative): make path_step_m and "
+        "speed_step_m_s smaller",
     )
     scale = whitening(curvature[free], matrix, before)
     best: list[tuple[float, PolynomialLines]] = [(before, start)]

@@ -91,12 +91,20 @@ def transient_noise(
         second = second + 2.0 * g * first * level + g**2 * zeroth * square
         first = first + g * zeroth * level
         goes_on = (np.arange(longest) > t)[None, :, None, None]
-        zeroth = np.where(goes_on, zeroth @ chain.transition, zeroth)
-        first = np.where(goes_on, first @ chain.transition, first)
-        second = np.where(goes_on, second @ chain.transition, second)
+        zeroth = np.where(goes_on, one_quantum_on(zeroth, chain.transition), zeroth)
+        first = np.where(goes_on, one_quantum_on(first, chain.transition), first)
+        second = np.where(goes_on, one_quantum_on(second, chain.transition), second)
     mean = first / zeroth.clip(1e-300)
     variance = (second / zeroth.clip(1e-300) - mean**2).clip(0.0)
     return TransientNoise(zeroth, mean, np.sqrt(variance))
+
+
+def one_quantum_on(matrices: NDArray[np.float64], transition: NDArray[np.float64]) -> NDArray[np.float64]:
+    """`matrices` @ `transition`, summed level by level: BLAS would round by its own kernel for the processor."""
+    total: NDArray[np.float64] = matrices[..., :, :1] * transition[0]
+    for level in range(1, len(transition)):
+        total = total + matrices[..., :, level : level + 1] * transition[level]
+    return total
 
 
 def force_weights(overpressure: NDArray[np.float64], periods: NDArray[np.int64], longest: int) -> NDArray[np.float64]:

@@ -11,7 +11,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from synth.input_error import InputError
+from synth.machine_fault import MACHINE_FAULTS
 from tuning_tables import TableError, read_json
+from tuning_tables.atomic_file import faults_naming
 
 SUMMARY = "summary.json"
 FOLDERS = ("tables", "c", "plots")
@@ -22,6 +24,9 @@ PICTURES = re.compile(
 )
 """File names of the pictures that a tune draws."""
 
+SWEEP_LEDGER, SWEPT_CONFIG = "sweep/ledger.jsonl", "config.toml"
+"""What is in every directory of a sweep, and beside every book of one."""
+
 CSV_MARKS = (b"record,key,", b"\r\ntext,generator.name,retarder-synth,")
 
 
@@ -31,6 +36,7 @@ def output_directory(path: Path) -> Iterator[Path]:
 
     Within: no summary.json, which would not belong to what is written next, and no leftovers of a killed tune.
     """
+    require_no_sweep(path)
     make_directory(path)
     descriptor = os.open(path, os.O_RDONLY)
     try:
@@ -45,10 +51,18 @@ def output_directory(path: Path) -> Iterator[Path]:
             make_directory(path / folder)
         remove_leftovers(path)
         (path / SUMMARY).unlink(missing_ok=True)
-        os.fsync(descriptor)
+        with faults_naming(path):
+            os.fsync(descriptor)
         yield path
     finally:
         os.close(descriptor)
+
+
+def require_no_sweep(path: Path) -> None:
+    """`InputError` if `path` is the directory of a sweep, or that of one of its conditions."""
+    above = path.resolve().parent / SWEEP_LEDGER
+    if (path / SWEEP_LEDGER).exists() or (above.exists() and (path / SWEPT_CONFIG).exists()):
+        raise InputError(f"{path}: it holds the results of a sweep; give another directory by -o")
 
 
 def make_directory(path: Path) -> None:
@@ -61,6 +75,8 @@ def make_directory(path: Path) -> None:
     except NotADirectoryError:
         raise InputError(f"{path}: a part of this path is a file; give a directory by -o") from None
     except OSError as error:
+        if error.errno in MACHINE_FAULTS:
+            raise
         raise InputError(f"{path}: cannot be written ({error.strerror}); give another directory by -o") from None
 
 

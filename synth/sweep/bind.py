@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 
-from synth.output.output_directory import SUMMARY, make_directory, remove_stale
+from synth.output.output_directory import SUMMARY, SWEPT_CONFIG, make_directory, remove_stale
 from synth.sweep.book_summary import BookFigures, Failure, book_summary, case_of, sweep_summary
 from synth.sweep.plan import Plan, Unit
 from synth.sweep.sweep_directory import SweepDirectory
@@ -19,7 +19,7 @@ from tuning_tables import ControllerTable, Generator, InvalidTable, TableBook, T
 from tuning_tables.canonical import canonical_json
 from tuning_tables.json_file import write_json
 
-BOOK, CONFIG, PICTURE = "book.h5", "config.toml", "rms-by-mass-and-target"
+BOOK, CONFIG, PICTURE = "book.h5", SWEPT_CONFIG, "rms-by-mass-and-target"
 
 Say = Callable[[str], None]
 

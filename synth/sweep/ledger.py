@@ -7,6 +7,7 @@ the units; the ledger tells when, how long, and why something failed.
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import time
@@ -16,6 +17,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from tuning_tables.atomic_file import faults_naming
 from tuning_tables.canonical import CHECKSUM_KEY, canonical_json, document_checksum
 
 PLAN, STARTED, DONE, FAILED, FOUND_DAMAGED, ENDED = "plan", "started", "done", "failed", "damaged", "ended"
@@ -76,10 +78,12 @@ class LedgerWriter:
     """Appends to the ledger at a path; a context manager. Only the holder of the directory may write."""
 
     def __init__(self, path: Path) -> None:
+        self._path = path
         self._descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
-        size = os.fstat(self._descriptor).st_size
-        if size and os.pread(self._descriptor, 1, size - 1) != b"\n":
-            os.write(self._descriptor, b"\n")
+        with faults_naming(path):
+            size = os.fstat(self._descriptor).st_size
+            if size and os.pread(self._descriptor, 1, size - 1) != b"\n":
+                os.write(self._descriptor, b"\n")
 
     def __enter__(self) -> LedgerWriter:
         return self
@@ -90,10 +94,10 @@ class LedgerWriter:
         os.close(self._descriptor)
 
     def write(self, kind: str, facts: Mapping[str, Any]) -> None:
-        """Append one event with the time; on the disk when this returns. Raises `OSError`."""
+        """Append one event with the time; on the disk when this returns. Raises `OSError` that names the ledger."""
         event = {"event": kind, "time_s": round(time.time(), 3), **facts}
         line = canonical_json({**event, CHECKSUM_KEY: document_checksum(event)}) + b"\n"
-        written = os.write(self._descriptor, line)
-        if written != len(line):
-            raise OSError(28, "the disk took only a part of a line of the ledger")
-        os.fsync(self._descriptor)
+        with faults_naming(self._path):
+            if os.write(self._descriptor, line) != len(line):
+                raise OSError(errno.ENOSPC, "the disk took only a part of a line")
+            os.fsync(self._descriptor)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import resource
 from contextlib import closing
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
@@ -11,16 +12,20 @@ from typing import Protocol
 
 from synth.input_error import InputError
 from synth.markov_chain.grid import available_memory_bytes
+from synth.output.output_directory import SWEPT_CONFIG
 from synth.sweep.bind import Failure, Outcome, bind
 from synth.sweep.ledger import DONE, ENDED, FAILED, FOUND_DAMAGED, PLAN, STARTED, Ledger, LedgerWriter
 from synth.sweep.plan import Plan, Unit, UnitOrder, plan_of
-from synth.sweep.sweep_directory import SweepDirectory
+from synth.sweep.sweep_directory import SweepDirectory, require_no_tune
 from synth.sweep.sweep_file import SweepFile
 from synth.sweep.work import Engine
 from tuning_tables import DamagedTable
 
 USABLE = 0.8
 """Share of the free memory that workers may take."""
+
+MAPPED_BYTES = 350 * 2**20
+"""Address space of a worker beside its memory: libraries, stacks, arenas; 240 MB were measured on two cores."""
 
 
 class Watcher(Protocol):
@@ -72,7 +77,7 @@ def creation_time() -> str:
 
 
 def require_same_layout(file: SweepFile, ledger: Ledger, directory: SweepDirectory) -> None:
-    """`InputError` if an earlier run has bound books for conditions that `file` does not list."""
+    """`InputError` if an earlier run has bound books for conditions that `file` does not list, or a tune lies there."""
     earlier = {str(name) for event in ledger.of(PLAN) for name in event["conditions"]}
     lost = sorted(earlier - {condition.name for condition in file.conditions})
     if lost:
@@ -81,6 +86,10 @@ def require_same_layout(file: SweepFile, ledger: Ledger, directory: SweepDirecto
             f"{directory.path}: an earlier sweep there had {named}; its books would be stale: give another directory "
             "by -o, or delete this one"
         )
+    for condition in file.conditions:
+        folder = directory.book_folder(condition.name)
+        if condition.name not in earlier and not (folder / SWEPT_CONFIG).exists():  # a ledger can be torn
+            require_no_tune(folder)
 
 
 def fitting_workers(task: Task, asked: int) -> int:
@@ -88,6 +97,7 @@ def fitting_workers(task: Task, asked: int) -> int:
     if not task.missing:
         return 1
     largest = max(task.missing, key=lambda unit: unit.memory_bytes)
+    require_address_space(largest)
     available = available_memory_bytes()
     fit = int(USABLE * available // largest.memory_bytes)
     if fit < 1:
@@ -96,6 +106,17 @@ def fitting_workers(task: Task, asked: int) -> int:
             f"{largest.memory_bytes / 1e9:.1f} GB and {available / 1e9:.1f} GB are free; make a step larger"
         )
     return min(asked, fit, len(task.missing))
+
+
+def require_address_space(largest: Unit) -> None:
+    """`InputError` if the limit of a process's address space is too low for a worker: OpenBLAS may hang then."""
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    needed = largest.memory_bytes + MAPPED_BYTES
+    if limit != resource.RLIM_INFINITY and limit < needed:
+        raise InputError(
+            f"ulimit -v is {limit // 1024} kB, but the worker for {largest.order.name} may map "
+            f"{needed // 1024} kB: raise that limit"
+        )
 
 
 def run_sweep(task: Task, directory: SweepDirectory, engine: Engine, watcher: Watcher) -> Outcome:

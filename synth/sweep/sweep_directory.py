@@ -17,11 +17,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from synth.input_error import InputError
-from synth.output.output_directory import LEFTOVER, make_directory
+from synth.output.output_directory import LEFTOVER, SUMMARY, SWEEP_LEDGER, make_directory
 from synth.sweep.ledger import Ledger, read_ledger
 from synth.sweep.unit_result import UnitResult, from_bytes, to_bytes
 from tuning_tables import DamagedTable, write_atomically
 from tuning_tables.seal import unsealed
+
+TUNED = ("book.h5", SUMMARY, "report.html", "c/retarder_table.c")
+"""What a tune leaves, in the directory that a book of the sweep goes to."""
 
 TRIES, PAUSE_S = 10, 0.05
 """The lock is asked for so often: `sweep status` takes it for a moment to see whether it is free."""
@@ -36,7 +39,7 @@ class SweepDirectory:
     @property
     def ledger_file(self) -> Path:
         """The ledger."""
-        return self.path / "sweep" / "ledger.jsonl"
+        return self.path / SWEEP_LEDGER
 
     @property
     def units(self) -> Path:
@@ -94,8 +97,8 @@ def held(path: Path) -> Iterator[SweepDirectory]:
     try:
         if not locked(descriptor):
             raise InputError(f"{path}: another sweep or tune is writing there; wait for it, or give another one by -o")
-        if not directory.ledger_file.exists() and any((path / name).exists() for name in ("book.h5", "summary.json")):
-            raise InputError(f"{path}: it holds the results of something else; give another directory by -o")
+        if not directory.ledger_file.exists():
+            require_no_tune(path)
         for folder in (path / "sweep", directory.units):
             make_directory(folder)
             for file in folder.glob(".*.part"):
@@ -105,6 +108,12 @@ def held(path: Path) -> Iterator[SweepDirectory]:
         yield directory
     finally:
         os.close(descriptor)
+
+
+def require_no_tune(path: Path) -> None:
+    """`InputError` if `path` holds what a tune leaves."""
+    if any((path / name).exists() for name in TUNED):
+        raise InputError(f"{path}: it holds the results of something else; give another directory by -o")
 
 
 def locked(descriptor: int) -> bool:

@@ -3,28 +3,29 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from plant_models.library.near_miss import near_miss
-from synth.configuration.config_file import ALLOWED, first_fault, key_path, read_text, shown
+from synth.configuration.config_file import ALLOWED, first_fault, key_path, shown
 from synth.configuration.resolved_config import ResolvedConfig, resolve, setting_limits
 from synth.configuration.settings import DEFAULT_CUTS, CutSettings, Settings
+from synth.configuration.toml_file import Tree, read_text, toml_tree
 from synth.input_error import InputError
 from synth.sweep.sweep_settings import CONDITION_SECTIONS, SweepSettings, SweptCuts
+from tuning_tables.excerpt import excerpt
 
 AS_CONFIGURED = ""
 """Name of the only condition where the file lists none."""
 
-NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,30}")
+NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9._-]{0,29}[A-Za-z0-9_-])?")
 
-Tree = dict[str, Any]
+TAKEN = re.compile(r"sweep|(?:con|prn|aux|nul|com[0-9]|lpt[0-9])(?:\..*)?", re.IGNORECASE)
+"""Names of no condition: the folder of the sweep's own files, and the devices of Windows and its shares."""
 
 
 @dataclass(frozen=True)
@@ -51,10 +52,7 @@ def load_sweep(path: Path) -> SweepFile:
 
 def parse_sweep(text: str, file: str) -> SweepFile:
     """The sweep written in `text`; `file` is what messages call it."""
-    try:
-        tree = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{file}: this is not valid TOML: {error}; correct the file there") from None
+    tree = toml_tree(text, file)
     raw = tree.pop("sweep", {})
     if not isinstance(raw, dict):
         raise InputError(f"{file}: sweep is {shown(raw)}; it must be a table, [sweep]")
@@ -72,7 +70,6 @@ def parse_sweep(text: str, file: str) -> SweepFile:
         where = f'{file}: in sweep.condition[{place}], "{name}"' if name else file
         merged = overlaid(swept, changed)
         config = resolve(valid_settings(merged, where), where)
-        require_distinct(config, where)
         if config.regulator.estimator:
             raise InputError(
                 f"{file}: regulator.estimator is true, but a sweep makes tables for the measured speed only; set it to "
@@ -117,14 +114,19 @@ def condition_names(settings: SweepSettings, file: str) -> list[str]:
         if not isinstance(name, str) or not NAME.fullmatch(name):
             raise InputError(
                 f"{file}: {key}.name is {shown(name)}; it must be made of at most 31 letters, digits, dots, hyphens "
-                "and underscores"
+                "and underscores, with no dot at the end"
+            )
+        if TAKEN.fullmatch(name):
+            raise InputError(
+                f"{file}: {key}.name is {name!r}, which is a folder of the sweep itself or a device of Windows; "
+                "give it another name"
             )
         if name.lower() in (other.lower() for other in names):
             raise InputError(f"{file}: {key}.name is {name!r}, which another condition has; give it another name")
         for section in condition:
             if section not in ("name", *CONDITION_SECTIONS):
                 raise InputError(
-                    f"{file}: {key}.{section} cannot be changed by a condition; "
+                    f"{file}: {key}.{excerpt(section)} cannot be changed by a condition; "
                     f"{near_miss(section, ('name', *CONDITION_SECTIONS))}"
                 )
         names.append(name)
@@ -138,16 +140,6 @@ def overlaid(tree: Tree, changes: Tree) -> Tree:
         below = merged.get(key)
         merged[key] = overlaid(below, value) if isinstance(below, dict) and isinstance(value, dict) else deepcopy(value)
     return merged
-
-
-def require_distinct(config: ResolvedConfig, where: str) -> None:
-    """`InputError` if two targets are the same in the six digits that table ids show."""
-    shown_as = [f"{target:g}" for target in config.targets_m_s]
-    for place, text in enumerate(shown_as):
-        if text in shown_as[:place]:
-            raise InputError(
-                f"{where}: two exit speeds are {text} m/s to six digits; leave one out, for tables are named by them"
-            )
 
 
 def sweep_fault(error: ValidationError) -> str:

@@ -35,6 +35,8 @@ def stepped(low: float, high: float, step: float) -> tuple[float, ...]:
     """`low`, `low` + `step`, … `high`, rounded to 1e-9; both ends are in it."""
     if not (step > 0.0 and low <= high):
         raise ValueError("it must have step above 0 and to not below from")
+    if not (high - low) / step < 2.0 * MOST_VALUES:
+        raise ValueError(f"it must have at most {MOST_VALUES} values")
     count = round((high - low) / step)
     if abs(low + count * step - high) > 1e-6 * step:
         raise ValueError(f"it must have a whole number of steps from {low:g} to {high:g}")

@@ -6,7 +6,6 @@ import os
 import resource
 import sys
 import time
-import traceback
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
@@ -14,6 +13,7 @@ from typing import Protocol
 from synth.sweep.plan import UnitOrder
 from synth.sweep.software import software_sha256
 from synth.sweep.unit_result import UnitResult
+from synth.unforeseen import unforeseen
 
 
 @dataclass(frozen=True)
@@ -70,12 +70,9 @@ def sentence_of(fault: Exception) -> str:
     from plant_models import PlantError
     from tuning_tables import TableError
 
-    text = " ".join(str(fault).split()) or "no words"
     if isinstance(fault, PlantError | TableError) or type(fault) is ValueError:
-        return text
-    frames = traceback.extract_tb(fault.__traceback__)
-    place = f" (in {os.path.basename(frames[-1].filename)}, line {frames[-1].lineno})" if frames else ""
-    return f"{type(fault).__name__}: {text}{place}"
+        return " ".join(str(fault).split()) or "no words"
+    return unforeseen(fault)
 
 
 def peak_bytes() -> int:

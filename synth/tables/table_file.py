@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from synth.input_error import InputError
+from synth.machine_fault import MACHINE_FAULTS
 from tuning_tables import ControllerTable, read_book, read_json
 from tuning_tables.regular_file import first_bytes
 
@@ -59,6 +60,8 @@ def read_table_file(path: Path) -> TableFile:
     except FileNotFoundError:
         raise InputError(f"{path}: there is no such file; give a table (.json) or a book (.h5)") from None
     except OSError as error:
+        if error.errno in MACHINE_FAULTS:
+            raise
         raise InputError(f"{path}: cannot be read ({error.strerror}); check the path and its permissions") from None
 
 

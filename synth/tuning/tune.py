@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 
+from plant_models import PlantError
 from synth.comparison.friction_bound import friction_known_bounds
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.dynamic_programme.backward_induction import solve_all
@@ -43,6 +45,23 @@ CaseDone = Callable[[CaseResult], None]
 
 def no_notice(case: CaseResult) -> None:
     """Nobody wants to know of a finished case."""
+
+
+class CaseError(Exception):
+    """One case of a book cannot be computed; `case`: its class and target. The message says why."""
+
+    def __init__(self, case: str, reason: str) -> None:
+        super().__init__(reason)
+        self.case = case
+
+
+@contextmanager
+def naming(label: str, target_m_s: float) -> Iterator[None]:
+    """Within, a `PlantError` becomes a `CaseError` that names the case."""
+    try:
+        yield
+    except PlantError as fault:
+        raise CaseError(f"{label} to {target_m_s:g} m/s", str(fault)) from None
 
 
 @dataclass(frozen=True)
@@ -130,7 +149,8 @@ def class_tasks(
             store=lambda table: write_and_read_back(table, tables),
             estimator=estimator,
         )
-        result = tune_case(order)
+        with naming(label, targets[i]):
+            result = tune_case(order)
         case_done(result)
         figures = result.comparison[0].statistics
         told = f"{label} to {targets[i]:g} m/s: rms {figures.rms_m_s:.3f} m/s in {figures.passes} simulated passes"
@@ -140,8 +160,9 @@ def class_tasks(
         return result
 
     def study() -> DegreeStudy:
-        tables = tuple(tables_by_degree(solutions[0], DEGREES, generator, created))
-        result = degree_study(solutions[0], check, label, tables)
+        with naming(label, targets[0]):
+            tables = tuple(tables_by_degree(solutions[0], DEGREES, generator, created))
+            result = degree_study(solutions[0], check, label, tables)
         progress(f"{label} to {targets[0]:g} m/s: degree study done")
         return result
 

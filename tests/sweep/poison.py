@@ -7,6 +7,7 @@ import signal
 from dataclasses import replace
 from pathlib import Path
 
+from synth.kernel_cache import use_kernel_cache
 from synth.sweep.plan import UnitOrder
 from synth.sweep.work import Answer, answer
 
@@ -40,3 +41,10 @@ def dying_once(order: UnitOrder) -> Answer:
 def strange(order: UnitOrder) -> Answer:
     """A worker whose program is another."""
     return answer(replace(order, software="0" * 64))
+
+
+def caching(order: UnitOrder) -> Answer:
+    """A worker that only tells where its kernels are kept, and leaves one there."""
+    directory = use_kernel_cache()
+    (directory / f"{os.getpid()}.nbi").touch()
+    return Answer(order.key, None, str(directory))

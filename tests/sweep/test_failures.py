@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,7 +16,7 @@ from synth.sweep.local_workers import LocalWorkers
 from synth.sweep.sweep_file import load_sweep
 from synth.sweep.work import InThisProcess, Work
 from tests.sweep import poison
-from tests.sweep.conftest import Ran, Silence, contents, events, run
+from tests.sweep.conftest import COMMAND, Ran, Silence, contents, events, run
 from tuning_tables import read_book
 
 
@@ -76,7 +79,7 @@ def test_a_target_without_a_table_loses_none_but_itself(command: Callable[..., R
     code, said = swept("some", "[2.0, 3.0, 3.5, 4.0]")
     assert code == 1
     assert "targets without a table: 2" in said
-    assert "gondola-4-22t to 2 m/s failed (and 1 more): grid: " in said
+    assert "gondola-4-22t to 2 m/s failed (and 1 more): the grid is too coarse" in said
     code, listed, _ = command("sweep", "failed", tmp_path / "some")
     assert [line.split(":")[0] for line in listed.splitlines()] == ["gondola-4-22t to 2 m/s", "gondola-4-85t to 4 m/s"]
     status = command("sweep", "status", tmp_path / "some")[1]
@@ -108,7 +111,7 @@ def test_a_class_without_any_table_has_failed(command: Callable[..., Ran], tmp_p
     (tmp_path / "sweep.toml").write_text(TOO_COARSE.format(speeds="[4.0]"), encoding="utf-8")
     code, _, said = command("sweep", tmp_path / "sweep.toml", "-o", tmp_path / "out", "--workers", "1")
     assert code == 1
-    assert "gondola-4-85t failed: grid: " in said
+    assert "gondola-4-85t failed: the grid is too coarse" in said
     assert "1 of 2 units done, 1 failed\n" in command("sweep", "status", tmp_path / "out")[1]
 
 
@@ -117,7 +120,7 @@ def test_refining_gives_up_a_class_with_a_target_without_a_table(command: Callab
     (tmp_path / "sweep.toml").write_text(text, encoding="utf-8")
     code, _, said = command("sweep", tmp_path / "sweep.toml", "-o", tmp_path / "out", "--workers", "1")
     assert code == 1
-    assert "gondola-4-85t failed: grid: " in said
+    assert "gondola-4-85t failed: the grid is too coarse" in said
     assert {table.cut.mass_t for table in read_book(tmp_path / "out" / "book.h5")} == {22.0}
 
 
@@ -157,3 +160,39 @@ def test_what_is_told_on_the_way(config: Path, tmp_path: Path) -> None:
     run(config, tmp_path / "out", LocalWorkers(2, poison.refusing), watcher)
     assert len(watcher.ended) == 3
     assert sum("failed: " in sentence for sentence in watcher.ended) == 1
+
+
+WORKERS_WITHOUT_A_CACHE = """
+import sys
+from pathlib import Path
+from synth.cli import leave
+from synth.sweep.local_workers import LocalWorkers
+from synth.sweep.plan import plan_of
+from synth.sweep.sweep_file import load_sweep
+from tests.sweep.poison import caching
+orders = [unit.order for unit in plan_of(load_sweep(Path(sys.argv[1])), "2020-01-01T00:00:00Z").units]
+print({answer.reason for answer in LocalWorkers(2, caching).answers(orders, lambda order: None)}, flush=True)
+leave(0)
+"""
+
+
+def test_workers_leave_no_kernel_cache_of_their_own(config: Path, tmp_path: Path) -> None:
+    nowhere = {"RETARDER_SYNTH_CACHE": "", "XDG_CACHE_HOME": "", "HOME": "/proc/none", "NUMBA_CACHE_DIR": ""}
+    ran = subprocess.run(
+        [sys.executable, "-c", WORKERS_WITHOUT_A_CACHE, str(config)],
+        env={**os.environ, **nowhere, "TMPDIR": str(tmp_path), "PYTHONPATH": str(Path(__file__).parents[2])},
+        capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert ran.returncode == 0, ran.stderr
+    assert ran.stdout.count(str(tmp_path)) == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_too_little_address_space_is_refused_before_a_worker_hangs_in_it(config: Path, tmp_path: Path) -> None:
+    ran = subprocess.run(
+        ["bash", "-c", 'ulimit -v 600000; exec "$@"', "-", *COMMAND, "sweep", str(config), "-o", str(tmp_path / "out")],
+        capture_output=True, text=True, timeout=20, check=False,
+    )  # fmt: skip
+    assert ran.returncode == 2
+    assert "ulimit -v is 600000 kB, but the worker for gondola-4-" in ran.stderr
+    assert "Traceback" not in ran.stderr

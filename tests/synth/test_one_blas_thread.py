@@ -1,4 +1,4 @@
-"""The last bit of a table does not depend on how many threads BLAS has."""
+"""The last bit of a table does not depend on how many threads BLAS has, nor on the kernel that it takes."""
 
 from __future__ import annotations
 
@@ -28,6 +28,27 @@ design = persistent_transitions(plants.random_plant(), plants.COARSE)
 for target_m_s in (1.5, 2.0, 2.5, 3.0):
     print(tuned_lines(design, target_m_s, Criterion(1.0, 1e-5), 3).coefficients.tobytes().hex())
 """
+
+NOISE = """
+import importlib.util, sys
+from synth.kernel_cache import use_kernel_cache
+use_kernel_cache()
+from synth.markov_chain.transitions import persistent_transitions
+spec = importlib.util.spec_from_file_location("plants", sys.argv[1])
+plants = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(plants)
+noise = persistent_transitions(plants.random_plant(), plants.COARSE).noise
+print(noise.probability.tobytes().hex(), noise.mean.tobytes().hex(), noise.std.tobytes().hex())
+"""
+PLANTS = Path(__file__).parents[1] / "properties" / "conftest.py"
+
+
+def printed(program: str, **environment: str) -> str:
+    """What `program` prints of the random plants."""
+    return subprocess.run(
+        [sys.executable, "-c", program, str(PLANTS)],
+        env={**os.environ, **environment}, check=True, capture_output=True, text=True,
+    ).stdout  # fmt: skip
 
 
 def threads() -> set[int]:
@@ -66,14 +87,14 @@ def test_what_was_is_restored_after_a_fault() -> None:
 
 
 def test_polished_lines_are_the_same_to_the_bit_whatever_blas_is_told() -> None:
-    def polished(count: str) -> str:
-        plants = Path(__file__).parents[1] / "properties" / "conftest.py"
-        return subprocess.run(
-            [sys.executable, "-c", POLISHED, str(plants)],
-            env={**os.environ, "OPENBLAS_NUM_THREADS": count}, check=True, capture_output=True, text=True,
-        ).stdout  # fmt: skip
-
-    one = polished("1")
+    one = printed(POLISHED, OPENBLAS_NUM_THREADS="1")
     assert len(one) > 1000
-    assert polished("2") == one
-    assert polished("4") == one
+    assert printed(POLISHED, OPENBLAS_NUM_THREADS="2") == one
+    assert printed(POLISHED, OPENBLAS_NUM_THREADS="4") == one
+
+
+def test_the_noise_of_the_prediction_is_the_same_to_the_bit_by_every_kernel_of_blas() -> None:
+    # The oldest kernels, which do not fuse multiplication and addition, and those of this processor.
+    own = printed(NOISE, OPENBLAS_CORETYPE="")
+    assert len(own) > 100
+    assert printed(NOISE, OPENBLAS_CORETYPE="Nehalem") == own

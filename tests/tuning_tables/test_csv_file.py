@@ -3,8 +3,11 @@
 import csv
 import io
 import json
+from dataclasses import replace
 
-from tuning_tables import to_csv, to_json, write_csv
+import pytest
+
+from tuning_tables import InvalidTable, to_csv, to_json, write_csv
 
 
 def test_every_value_reads_back_exactly(table, linear_table):
@@ -54,3 +57,15 @@ def flattened(value, key=""):
         yield key, tuple(value)
     else:
         yield key, (value,) if isinstance(value, int | float) else value
+
+
+@pytest.mark.parametrize("mark", ["=", "+", "-", "@"])
+def test_no_cell_is_a_formula(table, tmp_path, mark):
+    for forged in (
+        replace(table, id=f"{mark}cmd|' /C calc'!A0"),
+        replace(table, cut=replace(table.cut, category=f"{mark}1")),
+        replace(table, retarder=replace(table.retarder, name=f"{mark}1")),
+    ):
+        with pytest.raises(InvalidTable, match="a spreadsheet would compute"):
+            write_csv(forged, tmp_path / "table.csv")
+    assert list(tmp_path.iterdir()) == []

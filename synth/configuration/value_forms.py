@@ -1,0 +1,35 @@
+"""Forms of values that a configuration file may hold beside numbers, names and switches."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import AfterValidator, PlainValidator
+
+from plant_models.library import Value
+from plant_models.library.data_file import Form, form_name, number_or_pairs, numbers, pairs
+
+
+def in_form(form: Form) -> PlainValidator:
+    """Validator by a form of the library."""
+
+    def check(raw: object) -> Value:
+        value = form(raw)
+        if value is None:
+            raise ValueError(f"it must be {form_name(form)}")
+        return value
+
+    return PlainValidator(check)
+
+
+def printable(text: str) -> str:
+    """Validator: `text` itself; `ValueError` where it holds what no terminal and no page should get."""
+    if not text.isprintable():
+        raise ValueError("it must be made of printable characters")
+    return text
+
+
+Numbers = Annotated[tuple[float, ...], in_form(numbers)]
+Pairs = Annotated[tuple[tuple[float, float], ...], in_form(pairs)]
+Grade = Annotated[float | tuple[tuple[float, float], ...], in_form(number_or_pairs)]
+Title = Annotated[str, AfterValidator(printable)]

@@ -1,0 +1,142 @@
+"""A book that the reader refuses is refused by the checker too, although every sum in it is right."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from synth.checker.finding import Kind
+from synth.checker.source import read_source
+from tests.tuning_tables.forged_book import forge, put
+from tuning_tables import TableError, read_book, write_book
+from tuning_tables.book_columns import PLAIN, WITH_ESTIMATORS
+
+Edit = Callable[[Any], None]
+
+
+@pytest.fixture(scope="module")
+def mixed(estimated_once: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A book of the table of a tune with estimator, and of one that is shorter in every array; not to be changed."""
+    first, _ = read_book(estimated_once / "book.h5")
+    shorter = replace(
+        first,
+        id="shorter",
+        cut=replace(first.cut, axle_offsets_m=first.cut.axle_offsets_m[:-1]),
+        stages=(*first.stages[:-2], replace(first.stages[-2], upper=None)),
+        estimator=None,
+        validated=None,
+        predicted=replace(first.predicted, passes=None),
+    )
+    path = tmp_path_factory.mktemp("mixed") / "book.h5"
+    write_book([first, shorter], path)
+    assert read_source(path).findings == ()
+    return path
+
+
+def refused(original: Path, path: Path, edit: Edit) -> None:
+    """Both the reader and the checker refuse the book with `edit` done to it, the checker as damaged."""
+    path.write_bytes(original.read_bytes())
+    forge(path, edit)
+    with pytest.raises(TableError):
+        read_book(path)
+    (finding,) = read_source(path).findings
+    assert finding.kind is Kind.DAMAGED
+    assert len(finding.sentence) < 400
+
+
+def numbered(axis: str, values: Callable[[int], Any]) -> Edit:
+    def edit(file: Any) -> None:
+        length = file[axis].shape[0]
+        del file[axis]
+        file.create_dataset(axis, data=values(length))
+
+    return edit
+
+
+@pytest.mark.parametrize("axis", WITH_ESTIMATORS.axes)
+@pytest.mark.parametrize(
+    "values",
+    [lambda n: np.zeros(n, "<i4"), lambda n: np.arange(1, n + 1, dtype="<i4"), lambda n: np.arange(n + 1, dtype="<i4"),
+     lambda n: np.arange(float(n)), lambda n: "none"],
+)  # fmt: skip
+def test_an_axis_that_does_not_number_from_0(mixed: Path, tmp_path: Path, axis: str, values: Any) -> None:
+    refused(mixed, tmp_path / "book.h5", numbered(axis, values))
+
+
+@pytest.mark.parametrize("column", WITH_ESTIMATORS.columns, ids=lambda column: column.name)
+def test_a_column_of_another_type_unit_or_length(mixed: Path, tmp_path: Path, column: Any) -> None:
+    name = column.name
+
+    def other_unit(file: Any) -> None:
+        file[name].attrs["units"] = "furlong"
+
+    def wider(file: Any) -> None:
+        put(file, name, file[name][()].astype({"S": "S90", "<f8": "<f4", "<f4": "<f8"}.get(column.dtype, "<i2")))
+
+    edits = [other_unit, wider]
+    for axis in range(len(column.axes)):
+
+        def longer(file: Any, axis: int = axis) -> None:
+            values = file[name][()]
+            put(file, name, np.concatenate([values, np.take(values, [-1], axis=axis)], axis=axis))
+
+        edits.append(longer)
+    for edit in edits:
+        refused(mixed, tmp_path / "book.h5", edit)
+
+
+@pytest.mark.parametrize("axis", ["zone", "axle", "stage", "power", "break"])
+def test_arrays_longer_than_the_longest_table(mixed: Path, tmp_path: Path, axis: str) -> None:
+    def edit(file: Any) -> None:
+        for column in WITH_ESTIMATORS.columns:
+            if axis in column.axes:
+                values, place = file[column.name][()], column.axes.index(axis)
+                filler = np.full_like(np.take(values, [0], axis=place), np.nan if values.dtype.kind == "f" else 0)
+                put(file, column.name, np.concatenate([values, filler], axis=place))
+        numbered(axis, lambda length: np.arange(length + 1, dtype="<i4"))(file)
+
+    refused(mixed, tmp_path / "book.h5", edit)
+
+
+@pytest.mark.parametrize(
+    ("name", "index"),
+    [("axle_offsets_m", (0, 1)), ("pressure_kpa", (1, -1)), ("coefficients", (1, -1, 0, 0)),
+     ("coefficients", (0, 0, 0, 0)), ("has_line", (1, -1, 0)), ("validated_rms_m_s", (1,)),
+     ("validated_rms_ci95_m_s", (1, 0)), ("estimator_s_m", (1, 0)), ("estimator_path_std", (1,))],
+)  # fmt: skip
+def test_nothing_stands_beside_the_tables(mixed: Path, tmp_path: Path, name: str, index: tuple[int, ...]) -> None:
+    def edit(file: Any) -> None:
+        file[name][index] = 1 if name != "axle_offsets_m" else np.nan
+
+    refused(mixed, tmp_path / "book.h5", edit)
+
+
+@pytest.mark.parametrize("column", [each for each in PLAIN.columns if "f" in each.dtype], ids=lambda each: each.name)
+@pytest.mark.parametrize("value", [-0.0, np.inf, -np.inf])
+def test_a_number_that_is_none(mixed: Path, tmp_path: Path, column: Any, value: float) -> None:
+    index = (0, 0, 1, 0) if column.name == "coefficients" else (0,) * len(column.axes)
+
+    def edit(file: Any) -> None:
+        file[column.name][index] = value
+
+    refused(mixed, tmp_path / "book.h5", edit)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("complete", True), ("complete", [1]), ("complete", 1.0), ("schema_version", 2.0), ("schema_version", [2]),
+     ("format", ["retarder-book"]), ("format", np.bytes_(b"retarder-book")), ("config_sha256", "0" * 63),
+     ("config_sha256", 0), ("tool_version", ""), ("tool_version", "two\nlines"), ("tool_version", 0.1)],
+    ids=repr,
+)  # fmt: skip
+def test_a_root_attribute_of_another_kind(mixed: Path, tmp_path: Path, name: str, value: Any) -> None:
+    def edit(file: Any) -> None:
+        del file.attrs[name]
+        file.attrs[name] = value
+
+    refused(mixed, tmp_path / "book.h5", edit)

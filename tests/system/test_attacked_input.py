@@ -1,0 +1,159 @@
+"""Input made to break the program: each is refused at once, by one short sentence that names the file and the key."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.system.conftest import CLASS, Command
+
+DIGITS = "9" * 400
+LONG = "x" * 100_000
+
+CONFIGURATIONS = {
+    "thousands of digits": (CLASS.replace("degree = 2", f"degree = {DIGITS * 11}"), "thousands of digits"),
+    "hundreds of digits": (CLASS.replace("degree = 2", f"degree = {DIGITS}"), "fit.degree is 99999"),
+    "nested lists": (f"x = {'[' * 3000}{']' * 3000}\n", "nested too deeply"),
+    "nested inline tables": ("x = " + "{a=" * 3000 + "1" + "}" * 3000, "nested too deeply"),
+    "nested table names": (f"[{'.'.join('a' * 2000)}]\n", "nested too deeply"),
+    "some nested lists": (f"x = {'[' * 40}{']' * 40}\n", "nested too deeply"),
+    "long car": (CLASS.replace("gondola-4", LONG), "cut[0].car is 'xxx"),
+    "long category": (CLASS + f'category = "{LONG}"\n', "cut[0].category is"),
+    "long retarder": (CLASS.replace("rnz-2m-park", LONG), "retarder.name is 'xxx"),
+    "long key": (CLASS + f"{LONG} = 1\n", "unknown key"),
+    "long stages": (
+        CLASS.replace("[entry]", f"stage_pressures_kpa = {[0.0] * 2000}\n[entry]"), "retarder.stage_pressures_kpa"
+    ),
+    "long zones": (CLASS.replace("[entry]", f"zones_m = {[[1.0, 2.0]] * 2000}\n[entry]"), "retarder.zones_m"),
+    "huge stage": (CLASS + f"allowed_stage = {DIGITS}\n", "cut[0].allowed_stage is 99999"),
+    "huge file": ("#" * (4 * 2**20 + 1), "more than 4194304 bytes"),
+    "equal ids": (CLASS.replace("[1.5]", "[1.5, 1.5000001]"), "holds 1.5 and 1.5000001, but tables are named by six"),
+    "denormal resolution": (CLASS + "[sensor]\nresolution_m_s = 5e-324\n", "resolution_m_s is 5e-324; it must be 0"),
+    "NUL in the title": ('title = "a\\u0000b"\n' + CLASS, "title is 'a\\x00b'; it must be made of printable"),
+    "ESC in the title": ('title = "\\u001b[31m"\n' + CLASS, "title is '\\x1b[31m'; it must be made of printable"),
+}  # fmt: skip
+
+SWEPT = CLASS.replace('[[cut]]\ncar = "gondola-4"\nmass_t = 22\n', '[[sweep.cut]]\ncar = "gondola-4"\n')
+CONDITIONS = CLASS + '[[sweep.condition]]\nname = "dry"\n[[sweep.condition]]\nname = "NAME"\n'
+
+SWEEPS = {
+    "range beyond the doubles": (
+        SWEPT + "mass_per_car_t = { from = -1e308, to = 1e308, step = 1 }\n", "it must have at most 1000 values"
+    ),
+    "huge mass": (SWEPT + f"mass_per_car_t = {DIGITS}\n", "sweep.cut[0].mass_per_car_t is 999"),
+    "huge masses": (SWEPT + f"mass_per_car_t = [22, {DIGITS}]\n", "sweep.cut[0].mass_per_car_t[1] is 999"),
+    "huge range": (SWEPT + f"mass_per_car_t = {{ from = 22, to = {DIGITS}, step = 1 }}\n", "mass_per_car_t.to is 999"),
+    "huge target": (CLASS + f"[sweep]\nexit_speeds_m_s = {DIGITS}\n", "sweep.exit_speeds_m_s is 999"),
+    "thousands of digits": (CLASS + f"[sweep]\npasses = {DIGITS * 11}\n", "thousands of digits"),
+    "nested lists": (CLASS + f"[sweep]\nx = {'[' * 3000}{']' * 3000}\n", "nested too deeply"),
+    "equal ids": (CLASS + "[sweep]\nexit_speeds_m_s = [1.5, 1.5000001]\n", "but tables are named by six digits"),
+    "a condition called sweep": (CONDITIONS.replace("NAME", "Sweep"), "sweep.condition[1].name is 'Sweep', which is a"),
+    "a condition called NUL": (CONDITIONS.replace("NAME", "NUL"), "a device of Windows"),
+    "a condition called con.1": (CONDITIONS.replace("NAME", "con.1"), "a device of Windows"),
+    "a dot at the end": (CONDITIONS.replace("NAME", "dry."), "with no dot at the end"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", [*CONFIGURATIONS, *(f"sweep: {name}" for name in SWEEPS)])
+def test_one_short_sentence(command: Command, tmp_path: Path, name: str) -> None:
+    swept = name.startswith("sweep: ")
+    text, said = SWEEPS[name.removeprefix("sweep: ")] if swept else CONFIGURATIONS[name]
+    config, out = tmp_path / "bad.toml", tmp_path / "out"
+    config.write_text(text)
+    ran = command("sweep" if swept else "tune", config, "-o", out)
+    assert (ran.code, ran.out) == (2, "")
+    assert ran.sentence.startswith(f"{config}: ")
+    assert said in ran.sentence
+    assert len(ran.sentence) < 900
+    assert not out.exists()
+
+
+@pytest.mark.parametrize("name", ["com10", "console", "dry.1", "sweep1", "a"])
+def test_names_that_conditions_may_have(tmp_path: Path, name: str) -> None:
+    from synth.sweep.sweep_file import parse_sweep
+
+    assert [each.name for each in parse_sweep(CONDITIONS.replace("NAME", name), "x").conditions] == ["dry", name]
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes with names are POSIX's")
+@pytest.mark.parametrize("command", ["tune", "sweep", "validate"])
+@pytest.mark.parametrize("kind", ["pipe", "/dev/zero", "10-gb"])
+def test_a_configuration_that_is_no_ordinary_file(tmp_path: Path, command: str, kind: str) -> None:
+    """In a process of its own, with little memory: it may neither wait nor read for ever."""
+    path = Path(kind) if kind.startswith("/") else tmp_path / kind
+    if kind == "pipe":
+        os.mkfifo(path)
+    elif kind == "10-gb":
+        path.touch()
+        os.truncate(path, 10 * 2**30)
+    table = tmp_path / "table.json"
+    arguments = ["validate", str(table), "--config", str(path)] if command == "validate" else [command, str(path)]
+    output = [] if command == "validate" else ["-o", str(tmp_path / "out")]
+    source = "import sys; from synth.cli import main; raise SystemExit(main(sys.argv[1:]))"
+    ran = subprocess.run(
+        ["bash", "-c", 'ulimit -v 3000000; exec "$@"', "-", sys.executable, "-c", source, *arguments, *output],
+        capture_output=True, text=True, timeout=30, check=False,
+    )  # fmt: skip
+    assert ran.returncode == 2
+    if command != "validate":  # which may look for the table first
+        assert ran.stderr.startswith(f"retarder-synth: {path}: ")
+        assert ("not a regular file" if kind != "10-gb" else "more than 4194304 bytes") in ran.stderr
+    assert ran.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("name", ["tune", "sweep", "plot", "export"])
+def test_an_empty_output_is_refused(
+    command: Command, tuned: Path, one_class: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    form = ["--format", "csv"] if name == "export" else []
+    before = sorted(tmp_path.rglob("*"))
+    ran = command(name, one_class if name in ("tune", "sweep") else tuned / "book.h5", *form, "-o", "")
+    assert (ran.code, ran.out) == (2, "")
+    assert "it is empty; give a directory" in ran.sentence
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("tune", "--workers", "0"), "it is '0'; give a whole number from 1 to 256"),
+        (("tune", "--workers", "many"), "it is 'many'; give a whole number from 1 to 256"),
+        (("sweep", "x.toml", "--workers", "1025"), "it is '1025'; give a whole number from 1 to 1024"),
+        (("validate", "x.json", "--passes", "5"), "it is '5'; give a whole number from 100 to 100000000"),
+        (("validate", "x.json", "--seed", "-1"), "it is '-1'; give a whole number from 0 to"),
+        (("verify", "x.json", "--passes", "1e3"), "it is '1e3'; give a whole number from 100 to 1000000"),
+        (("verify", "x.json", "--seed", "9" * 5000), "give a whole number from 0 to 9223372036854775807"),
+    ],
+)
+def test_a_number_of_the_command_line_tells_what_is_allowed(
+    command: Command, arguments: tuple[str, ...], said: str
+) -> None:
+    ran = command(*arguments)
+    assert (ran.code, ran.out) == (2, "")
+    assert said in ran.sentence
+    assert len(ran.sentence) < 200
+
+
+def test_a_target_that_the_grid_is_too_coarse_for_is_named(command: Command, tmp_path: Path) -> None:
+    config = tmp_path / "coarse.toml"
+    config.write_text(CLASS.replace("csv = true", "plots = false") + "[criterion]\noverspeed_factor = 1000\n")
+    ran = command("tune", config, "-o", tmp_path / "out")
+    assert (ran.code, ran.out) == (2, "")
+    told = ran.err.splitlines()[-1]
+    assert told.startswith(f"retarder-synth: {config}: no table for gondola-4-22t to 1.5 m/s: the grid is too coarse")
+    assert "grid.path_step_m is 1 and grid.speed_step_m_s 0.05" in told
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes with names are POSIX's")
+@pytest.mark.parametrize("command_name", ["inspect", "verify", "validate", "plot"])
+def test_what_is_no_regular_file_is_no_damaged_table(command: Command, tmp_path: Path, command_name: str) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    for path in (tmp_path / "pipe", Path("/dev/zero")):
+        ran = command(command_name, path)
+        assert (ran.code, ran.out) == (2, "")
+        assert ran.sentence.startswith(f"{path}: ")
