@@ -14,6 +14,7 @@ from tests.controller_code.conftest import Tool
 from tests.controller_code.sample_book import estimator_of, table_of
 from tuning_tables import Estimator, Status
 from tuning_tables.st_source import TABLE_FILE, st_files
+from tuning_tables.table_block import LAYOUT
 from tuning_tables.table_book import TableBook
 
 LIGHT = 1
@@ -83,7 +84,7 @@ def test_python_takes_lines_between_of_equal_estimators_only(pairs: TableBook) -
 
 def test_c_agrees_in_every_case(pairs: TableBook, tmp_path: Path, tool: Tool) -> None:
     controller = build_controller(pairs, tmp_path, tool("gcc"))
-    commands = np.array([(LIGHT, axles_of(name), BETWEEN_M_S) for name in CASES], COMMAND)
+    commands = np.array([(LAYOUT, LIGHT, axles_of(name), BETWEEN_M_S) for name in CASES], COMMAND)
     statuses, words = controller.select(commands)
     own_statuses, own_words = choices_of(pairs, commands)
     assert np.array_equal(statuses, own_statuses)
@@ -96,7 +97,7 @@ def test_structured_text_agrees_in_every_case(pairs: TableBook) -> None:
     program = evaluator.Program(st_files(pairs)[TABLE_FILE])
     for name in CASES:
         selector, table = program.new("RETARDER_SELECT"), program.new("RETARDER_TABLE")
-        program.call("RETARDER_SELECT", selector, Category=LIGHT, Axles=axles_of(name),
+        program.call("RETARDER_SELECT", selector, Layout=LAYOUT, Category=LIGHT, Axles=axles_of(name),
                      Commanded_m_s=np.float32(BETWEEN_M_S), Table=table)  # fmt: skip
         choice = pairs.choose("Л", axles_of(name), BETWEEN_M_S)
         assert selector["STATUS"].value == choice.status, name
