@@ -26,8 +26,8 @@ degree = 2
 [validation]
 passes = 4000
 [acceptance]
-honesty_low = 0.8
-honesty_high = 1.25
+honesty_low = 0.9
+honesty_high = 1.35
 [output]
 csv = true
 plots = false

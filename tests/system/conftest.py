@@ -28,7 +28,7 @@ degree = 2
 [validation]
 passes = 1000
 [acceptance]
-honesty_high = 1.2
+honesty_high = 1.35
 [output]
 csv = true
 [[cut]]
