@@ -124,7 +124,7 @@ def test_an_empty_output_is_refused(
         (("tune", "--workers", "0"), "it is '0'; give a whole number from 1 to 256"),
         (("tune", "--workers", "many"), "it is 'many'; give a whole number from 1 to 256"),
         (("sweep", "x.toml", "--workers", "1025"), "it is '1025'; give a whole number from 1 to 1024"),
-        (("validate", "x.json", "--passes", "5"), "it is '5'; give a whole number from 100 to 100000000"),
+        (("validate", "x.json", "--passes", "5"), "it is '5'; give a whole number from 1000 to 100000000"),
         (("validate", "x.json", "--seed", "-1"), "it is '-1'; give a whole number from 0 to"),
         (("verify", "x.json", "--passes", "1e3"), "it is '1e3'; give a whole number from 100 to 1000000"),
         (("verify", "x.json", "--seed", "9" * 5000), "give a whole number from 0 to 9223372036854775807"),
