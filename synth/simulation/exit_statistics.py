@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from synth.simulation.passes import ExitSample
-from synth.simulation.replicates import Interval, mean_of, quantile_of, rms_of, rms_quotient, share_of
+from synth.simulation.replicates import Interval, mean_of, quantiles_of, rms_of, rms_quotient, share_of
 
 OVERSPEED_M_S = 0.3
 """An exit that is faster than the target by more than this is an over-speed."""
@@ -63,8 +63,7 @@ def exit_statistics(sample: ExitSample, target_m_s: float) -> ExitStatistics:
     error, weight = sample.exit_speed_m_s - target_m_s, sample.weight
     rms, rms_ci95 = rms_of(error, weight)
     bias = mean_of(error, weight)
-    p95, p95_ci95 = quantile_of(np.abs(error), weight, 0.95)
-    p99, p99_ci95 = quantile_of(np.abs(error), weight, 0.99)
+    (p95, p95_ci95), (p99, p99_ci95) = quantiles_of(np.abs(error), weight, (0.95, 0.99))
     over, over_ci95 = overspeed_of(sample, target_m_s, OVERSPEED_M_S)
     stalled, stalled_ci95 = share_of(sample.stalled, weight)
     switchings = mean_of(sample.switchings.astype(np.float64), weight)

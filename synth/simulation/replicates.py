@@ -9,6 +9,7 @@ Student's law bounds it. Plain passes are replicates too. How often these interv
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -96,17 +97,23 @@ def share_of(hits: NDArray[np.bool_], weight: NDArray[np.float64]) -> tuple[floa
     return p, (low / (1.0 + low), high / (1.0 + high))
 
 
-def quantile_of(values: NDArray[np.float64], weight: NDArray[np.float64], level: float) -> tuple[float, Interval]:
-    """Quantile of `values` (n,) over all cuts, and its 95 % interval (Woodruff 1952: from that of the share below)."""
+def quantiles_of(
+    values: NDArray[np.float64], weight: NDArray[np.float64], levels: Sequence[float]
+) -> list[tuple[float, Interval]]:
+    """Quantiles of `values` (n,) over all cuts, with 95 % intervals (Woodruff 1952: from that of the share below)."""
     order = np.argsort(values)
-    share = np.cumsum(weight[order]) / weight.sum()
+    share = np.cumsum(weight[order])
+    share /= share[-1]
 
     def value_at(p: float) -> float:
         return float(values[order[min(int(np.searchsorted(share, p)), len(order) - 1)]])
 
-    quantile = value_at(level)
-    half = mean_of((values <= quantile).astype(np.float64), weight).half_width
-    return quantile, (value_at(level - half), value_at(level + half))
+    found = []
+    for level in levels:
+        quantile = value_at(level)
+        half = mean_of((values <= quantile).astype(np.float64), weight).half_width
+        found.append((quantile, (value_at(level - half), value_at(level + half))))
+    return found
 
 
 def rms_quotient(

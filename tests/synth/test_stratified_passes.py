@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from synth.simulation.random_passes import random_passes
-from synth.simulation.replicates import REPLICATE_PASSES, mean_of, quantile_of, rms_of, share_of
+from synth.simulation.replicates import REPLICATE_PASSES, mean_of, quantiles_of, rms_of, share_of
 from synth.simulation.stratified_passes import AS_THEY_COME, LARGEST_WEIGHT, stratified_passes
 
 N = 100_000
@@ -55,7 +55,7 @@ def test_intervals_hold_the_truth_in_95_of_100_samples(passes: int) -> None:
         held["rms"] += low <= np.sqrt(square + 0.01**2) <= high
         low, high = share_of(out[here], w)[1]
         held["share"] += low <= tail <= high
-        low, high = quantile_of(row.entry_u[here], w, 0.95)[1]
+        low, high = quantiles_of(row.entry_u[here], w, (0.95,))[0][1]
         held["quantile"] += low <= 0.95 <= high
     # 95 % ± 4 standard errors of 500 trials; the strata leave the uniform number next to no error.
     assert 0.911 <= held["rms"] / trials <= 0.989
