@@ -139,8 +139,8 @@ def panel_title(case: CaseResult) -> str:
     low, high = table.statistics.rms_ci95_m_s
     lines = [
         f"target {case.target_speed_m_s:g} m/s",
-        f"predicted rms {table.predicted_rms_m_s:.3f} m/s",
-        f"simulated rms {table.statistics.rms_m_s:.3f} [{low:.3f}, {high:.3f}] m/s",
+        f"predicted rms {table.predicted_rms_m_s:.4f} m/s",
+        f"simulated rms {table.statistics.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s",
     ]
     if table.statistics.stalled:
         lines[0] += f" · {table.statistics.stalled:.2%} of the passes stopped"
