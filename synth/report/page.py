@@ -26,8 +26,10 @@ HOW_TO_READ = (
     "Table loss: rms of the exported polynomial table / rms of the full switching lines. Friction known: a controller "
     "that is told the friction of each cut, with full lines and one stage a command; regret: rms of the table / rms of "
     "that controller, which is a reference and no lower bound. Feasible: that controller meets the limit. Over-speed: "
-    "more than 0.3 m/s above the target. All controllers see the same passes, but for the one that is told the "
-    "friction: its passes have a few fixed values of it."
+    "more than 0.3 m/s above the target. Out of brake: leaves that fast even where every decision raises the stage, so "
+    "that no table can hold it. Brackets: 95 % intervals, from passes in strata of the friction; the chance of these "
+    "passes is all that they cover. All controllers see the same passes, but for the one that is told the friction: "
+    "its passes have a few fixed values of it."
 )
 
 
