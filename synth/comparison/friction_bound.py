@@ -17,6 +17,7 @@ from synth.simulation.closed_loop import LineController, close_loop
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
+from synth.simulation.replicates import Interval
 
 ENTRY_POINTS = 41
 
@@ -54,7 +55,7 @@ def friction_known_bounds(
     bounds = []
     for target, samples, square in zip(targets_m_s, strata, squares, strict=True):
         told = Measured("friction known", exit_statistics(interleaved(samples, weights), target))
-        bounds.append((told, feasibility_of(transitions, target, square, told.statistics.rms_ci95_m_s[0], limit_m_s)))
+        bounds.append((told, feasibility_of(transitions, target, square, told.statistics.rms_ci95_m_s, limit_m_s)))
     return tuple(bounds)
 
 
@@ -77,11 +78,11 @@ def interleaved(samples: Sequence[ExitSample], weights: NDArray[np.float64]) -> 
 
 
 def feasibility_of(
-    transitions: Transitions, target_speed_m_s: float, square: np.ndarray, least_rms_m_s: float, limit_m_s: float
+    transitions: Transitions, target_speed_m_s: float, square: np.ndarray, rms_ci95_m_s: Interval, limit_m_s: float
 ) -> Feasibility:
     """Range of entry speeds that the position can serve; `square` (E,): bound's mean square by entry energy.
 
-    `least_rms_m_s`: low end of the interval of the simulated bound.
+    `rms_ci95_m_s`: interval of the simulated bound.
     """
     plant, speed = transitions.plant, transitions.grid.speed_m_s
     entry = np.linspace(
@@ -98,5 +99,6 @@ def feasibility_of(
         bound_rms_m_s=rms,
         limit_m_s=limit_m_s,
         served_m_s=(float(served.min()), float(served.max())) if len(served) else None,
-        feasible=least_rms_m_s <= limit_m_s,
+        feasible=rms_ci95_m_s[0] <= limit_m_s,
+        undecided=rms_ci95_m_s[0] <= limit_m_s < rms_ci95_m_s[1],
     )

@@ -80,7 +80,7 @@ class Feasibility:
     `entry_m_s` (n,) from the target to the position's highest entry speed, and `bound_rms_m_s` (n,): friction-known
     rms by entry speed; `served_m_s`: (low, high) where it meets `limit_m_s`, None if nowhere; `feasible`: the 95 %
     interval of the simulated bound over the configured entry range reaches down to the limit, so that the passes do
-    not exclude that the bound meets it.
+    not exclude that the bound meets it; `undecided`: the limit lies within that interval.
     """
 
     entry_m_s: NDArray[np.float64]
@@ -88,3 +88,4 @@ class Feasibility:
     limit_m_s: float
     served_m_s: tuple[float, float] | None
     feasible: bool
+    undecided: bool = False

@@ -85,5 +85,9 @@ def judge_case(case: CaseResult, limits: AcceptanceSettings) -> CaseVerdict:
     error = case.exit_speeds_m_s.astype(float) - case.target_speed_m_s
     over = share_of(error > limits.overspeed_margin_m_s, case.exit_weight)
     obstacle = "" if case.feasibility.feasible else why_infeasible(case)
-    found = contest(case).table.statistics
-    return CaseVerdict(case_name(case), obstacle, judgement(found, over, case.table.predicted, limits))
+    found = judgement(contest(case).table.statistics, over, case.table.predicted, limits)
+    if case.feasibility.undecided and found.missed:
+        # What is missed would not count in an infeasible case, and that cannot be told.
+        unsure = "the friction-known reference is too near to the limit to tell whether the case is feasible"
+        found = Judgement((), (*found.missed, *found.undecided, unsure))
+    return CaseVerdict(case_name(case), obstacle, found)

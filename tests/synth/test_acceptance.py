@@ -123,6 +123,15 @@ def test_a_book_that_the_passes_cannot_judge_says_so() -> None:
     assert verdict.sentence.startswith("no limit is missed, but the passes are too few to decide 1 of 1 feasible case")
 
 
+def test_a_miss_does_not_count_where_the_passes_cannot_tell_whether_the_case_is_feasible() -> None:
+    bad = make_case("gondola-85t", 2.0, spread=0.15)
+    unsure = replace(bad, feasibility=replace(bad.feasibility, undecided=True))
+    verdict = judge([honest_case(), unsure], LIMITS)
+    assert [case.word for case in verdict.cases] == ["accepted", "not decidable"]
+    assert not verdict.accepted
+    assert "too near to the limit to tell whether the case is feasible" in verdict.sentence
+
+
 def test_overspeed_is_counted_beyond_the_configured_margin() -> None:
     speeds = np.tile([0.0, 3.0, 3.2, 3.4], 100)
     sample = ExitSample(speeds, speeds == 0.0, np.zeros(400, np.int32), np.ones(400), np.ones(400))
