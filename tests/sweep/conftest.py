@@ -83,11 +83,20 @@ def events(directory: Path, kind: str) -> list[dict[str, Any]]:
 
 
 def begin(*arguments: object) -> subprocess.Popen[str]:
-    """The command line in a process of its own."""
-    environment = {**os.environ, "SOURCE_DATE_EPOCH": EPOCH}
+    """The command line in a process of its own, which a Ctrl-C reaches even where the tests run in the background."""
     return subprocess.Popen(
-        [*COMMAND, *map(str, arguments)], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+        [*COMMAND, *map(str, arguments)],
+        env={**os.environ, "SOURCE_DATE_EPOCH": EPOCH},
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=hear_ctrl_c,
     )
+
+
+def hear_ctrl_c() -> None:
+    """Undo what a shell does to a process in the background."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def wait_until(true: Callable[[], object], process: subprocess.Popen[str], longest_s: float = 90.0) -> None:
