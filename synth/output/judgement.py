@@ -43,9 +43,9 @@ def judgement(
         (found.rms_ci95_m_s, (0.0, limits.rms_m_s),
          f"rms {found.rms_m_s:.4f} {interval_text(found.rms_ci95_m_s)} m/s, allowed {limits.rms_m_s:g}"),
         (overspeed[1], (0.0, limits.p_overspeed),
-         f"over-speed in {share_text(overspeed)} of the passes, allowed {limits.p_overspeed:.3%}"),
+         f"over-speed in {share_text(overspeed)} of the cuts, allowed {limits.p_overspeed:.3%}"),
         (found.stalled_ci95, (0.0, limits.p_stall),
-         f"stop in the position in {share_text((found.stalled, found.stalled_ci95))} of the passes, "
+         f"stop in the position in {share_text((found.stalled, found.stalled_ci95))} of the cuts, "
          f"allowed {limits.p_stall:.3%}"),
         (honest_ci95, (low, high),
          f"predicted / simulated rms {honest:.3f} {interval_text(honest_ci95, 3)}, allowed {low:g} to {high:g}"),

@@ -1,4 +1,4 @@
-"""Figures of quality of a sample of exits, each with its 95 % interval (model §3)."""
+"""Figures of quality of a sample of exits, each with its 95 % interval."""
 
 from __future__ import annotations
 

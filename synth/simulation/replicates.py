@@ -90,9 +90,9 @@ def share_of(hits: NDArray[np.bool_], weight: NDArray[np.float64]) -> tuple[floa
     if not hits.any() or hits.all():
         unseen = min(float(weight.max()) * -math.expm1(math.log(UPPER_TAIL) / len(hits)), 1.0)
         return (1.0, (1.0 - unseen, 1.0)) if hits.all() else (0.0, (0.0, unseen))
-    p = found.value
-    spread = math.exp(min(found.half_width / (p * (1.0 - p)), 700.0))
-    odds = p / (1.0 - p)
+    p, rest = found.value, float(weight[~hits].sum() / weight.sum())  # 1 − p may round to 0
+    spread = math.exp(min(found.half_width / (p * rest), 300.0))
+    odds = p / rest
     low, high = odds / spread, odds * spread
     return p, (low / (1.0 + low), high / (1.0 + high))
 

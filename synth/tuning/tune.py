@@ -153,7 +153,9 @@ def class_tasks(
             result = tune_case(order)
         case_done(result)
         figures = result.comparison[0].statistics
-        told = f"{label} to {targets[i]:g} m/s: rms {figures.rms_m_s:.3f} m/s in {figures.passes} simulated passes"
+        low, high = figures.rms_ci95_m_s
+        rms = f"rms {figures.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s in {figures.passes} passes"
+        told = f"{label} to {targets[i]:g} m/s: {rms}"
         progress(f"{told}; {result.left_out}" if result.left_out else told)
         if result.finding is not None:
             progress(f"{label} to {targets[i]:g} m/s: {result.finding.sentence}")

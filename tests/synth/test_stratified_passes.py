@@ -71,3 +71,12 @@ def test_a_share_without_a_hit_has_an_upper_limit() -> None:
     assert (1.0 - high) ** 1000 == pytest.approx(0.025, rel=1e-9)
     assert share_of(none, np.full(1000, 2.0))[1][1] == pytest.approx(2.0 * high)
     assert share_of(~none, np.ones(1000))[1] == (1.0 - high, 1.0)
+
+
+def test_a_share_that_rounds_to_1_has_an_interval() -> None:
+    """One pass of the least weight that a low friction can have is not met, all others are."""
+    hits, weight = np.ones(1000, dtype=np.bool_), np.ones(1000)
+    hits[7], weight[7] = False, 1e-16
+    share, (low, high) = share_of(hits, weight)
+    assert share == 1.0
+    assert 0.999 < low <= high <= 1.0
