@@ -4,6 +4,7 @@ from plant_models.cut import Car, Cut, couple
 from plant_models.errors import PlantError
 from plant_models.friction import Friction
 from plant_models.motion import PathCoefficients, braked_axles, mean_braked_axles, path_breaks_m, path_coefficients
+from plant_models.plant import EntrySpeed, Plant
 from plant_models.pneumatics import Pneumatics, PressureHistory
 from plant_models.retarder import PressingForce, RetarderPosition, WeightForce
 from plant_models.rolling_resistance import RollingResistance
@@ -14,8 +15,10 @@ __all__ = [
     "Car",
     "Cut",
     "DopplerSensor",
+    "EntrySpeed",
     "Friction",
     "PathCoefficients",
+    "Plant",
     "PlantError",
     "Pneumatics",
     "PressingForce",

@@ -6,7 +6,7 @@ import os
 
 from hypothesis import settings
 
-from synth.kernel_cache import use_kernel_cache
+from synth.kernels.cache import use_kernel_cache
 
 # Before any kernel is imported: numba's own cache beside the sources would not notice a change in another file.
 use_kernel_cache()

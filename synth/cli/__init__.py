@@ -47,7 +47,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from synth.cli.commands import run
     from synth.cli.standard_streams import standard_streams
 
-    # See `synth.one_blas_thread`; before BLAS is loaded it starts no threads at all.
+    # See `synth.solver.one_blas_thread`; before BLAS is loaded it starts no threads at all.
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
     with standard_streams() as stderr:
         code = told(lambda: run(sys.argv[1:] if arguments is None else list(arguments)))
@@ -83,7 +83,7 @@ def told(call: Callable[[], int]) -> int:
         return MACHINE_FAULT
     except ValueError as fault:
         from plant_models import PlantError
-        from synth.input_error import InputError
+        from synth.faults.input_error import InputError
         from tuning_tables import TableError
 
         if not isinstance(fault, InputError | PlantError | TableError):
@@ -96,7 +96,7 @@ def told(call: Callable[[], int]) -> int:
 
 def told_of_system(fault: OSError) -> int:
     """Tell of what the system has refused; the exit code."""
-    from synth.machine_fault import MACHINE_FAULTS
+    from synth.faults.machine_fault import MACHINE_FAULTS
 
     if fault.errno is None:  # from a library, not from the system
         return told_of_unforeseen(fault)
@@ -108,7 +108,7 @@ def told_of_system(fault: OSError) -> int:
 
 def told_of_unforeseen(fault: Exception) -> int:
     """Tell of a fault of this program; the exit code."""
-    from synth.unforeseen import unforeseen
+    from synth.faults.unforeseen import unforeseen
 
     if os.environ.get(TRACEBACK):
         import traceback

@@ -139,7 +139,7 @@ def plus_minus(value: float | None, ends: Ends, digits: int = 2) -> str:
 
 def ten_thousand(value: float, ends: Ends) -> str:
     """A probability as cuts in 10 000, with the wider half of its 95 % interval; where no pass met one, a bound."""
-    from synth.report.figures import few
+    from synth.book.printed_numbers import few
 
     low, high = (1e4 * (end or 0.0) for end in ends)
     if value == 0.0:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from synth.cli import say
-from synth.input_error import InputError
+from synth.faults.input_error import InputError
 
 if TYPE_CHECKING:
     from tuning_tables import ControllerTable
@@ -25,10 +25,10 @@ class AskedCode:
 
 def export_command(source: Path, form: str, output: Path, asked: AskedCode, as_json: bool) -> int:
     """Write the tables in `source` as `form` into the directory `output`, and print the names of the files."""
-    from synth.output.output_directory import make_directory
-    from synth.tables.code_options import code_options
-    from synth.tables.table_file import read_tables
-    from synth.tables.table_forms import FORMS
+    from synth.book.forms.code_options import code_options
+    from synth.book.forms.table_file import read_tables
+    from synth.book.forms.table_forms import FORMS
+    from synth.book.output_directory import make_directory
     from tuning_tables import InvalidTable, write_atomically
 
     if form not in FORMS:

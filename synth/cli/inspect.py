@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from synth.tables.exported_code import exported_code
-from synth.tables.table_file import TableFile, holds_tables, read_tables, summary_beside
+from synth.book.forms.exported_code import exported_code
+from synth.book.forms.table_file import TableFile, holds_tables, read_tables, summary_beside
 from tuning_tables import DamagedTable
 from tuning_tables.document import to_document
 from tuning_tables.estimator import Estimator

@@ -26,7 +26,7 @@ def interruptible(directory: Path | None = None) -> Iterator[None]:
     def end(number: int, frame: FrameType | None) -> None:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         if directory is not None:
-            from synth.output.output_directory import remove_leftovers
+            from synth.book.output_directory import remove_leftovers
 
             with contextlib.suppress(OSError):
                 remove_leftovers(directory)

@@ -13,20 +13,20 @@ PASSES = 5000
 
 def plot_command(source: Path, output: Path, config_path: Path | None, as_json: bool) -> int:
     """Draw the tables in `source` into `output`; passes only for tables that a class of the configuration fits."""
+    from synth.book.forms.table_file import file_stem, read_tables
+    from synth.book.output_directory import make_directory
     from synth.cli.interrupt import interruptible
     from synth.configuration.config_file import BUILT_IN, load_config
-    from synth.input_error import InputError
-    from synth.kernel_cache import guarded, use_kernel_cache
-    from synth.output.output_directory import make_directory
-    from synth.tables.table_file import file_stem, read_tables
+    from synth.faults.input_error import InputError
+    from synth.kernels.cache import guarded, use_kernel_cache
 
     config = load_config(config_path)
     tables = [table for file in read_tables(source, directory_allowed=True) for table in file.tables]
     make_directory(output)
     use_kernel_cache()
-    from synth.output.validate_table import plant_for
-    from synth.plots.figure_file import save_figure
-    from synth.plots.table_picture import Passes, table_lines, table_passes, table_surfaces
+    from synth.book.validate_table import plant_for
+    from synth.present.plots.figure_file import save_figure
+    from synth.present.plots.table_picture import Passes, table_lines, table_passes, table_surfaces
     from tuning_tables import ControllerTable
 
     def passes_of(table: ControllerTable) -> Passes:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from synth.cli import LIMITS_MISSED, OK, say
 from synth.cli.processors import available
-from synth.input_error import InputError
+from synth.faults.input_error import InputError
 
 if TYPE_CHECKING:
     from synth.cli.progress import Progress

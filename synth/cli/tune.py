@@ -11,13 +11,13 @@ from pathlib import Path
 from synth.cli import LIMITS_MISSED, OK, say
 from synth.cli.processors import available
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.input_error import InputError
+from synth.faults.input_error import InputError
 
 
 def tune_command(path: Path | None, output: Path, workers: int | None, as_json: bool) -> int:
     """Tune the configuration in `path` into the directory `output`; the exit code."""
+    from synth.book.output_directory import output_directory
     from synth.configuration.config_file import load_config
-    from synth.output.output_directory import output_directory
 
     config = load_config(path)
     workers = workers or min(len(config.cuts), available())
@@ -33,7 +33,7 @@ def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, worker
     """The work itself, and what is said about it."""
     from synth.cli.interrupt import interruptible
     from synth.cli.progress import Progress
-    from synth.kernel_cache import guarded, use_kernel_cache
+    from synth.kernels.cache import guarded, use_kernel_cache
 
     started = time.monotonic()
     cache = use_kernel_cache()
@@ -41,14 +41,14 @@ def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, worker
     with interruptible(directory), Progress(cases) as progress, ExitStack() as stack:
         if next(cache.rglob("*.nbi"), None) is None:
             progress.note("compiling the kernels for this machine, once; this takes about a minute")
-        from synth.output.draw_pictures import Studio
+        from synth.present.draw_pictures import Studio
 
         wanted = config.output.plots or config.output.report
         studio = stack.enter_context(Studio(workers if wanted else 1))
-        from synth.output.acceptance import judge
-        from synth.output.outputs import write_outputs
-        from synth.report.figures import counted
-        from synth.tuning.tune import CaseError, no_notice, tune
+        from synth.book.acceptance import judge
+        from synth.book.printed_numbers import counted
+        from synth.book.tune import CaseError, no_notice, tune
+        from synth.present.outputs import write_outputs
         from tuning_tables import InvalidTable
 
         case_done = studio.case_done if wanted else no_notice
@@ -80,7 +80,7 @@ def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, worker
 def require_room(config: ResolvedConfig, path: Path | None, workers: int) -> None:
     """`InputError` if the grid would not fit into memory."""
     from plant_models import PlantError
-    from synth.markov_chain.grid import require_memory
+    from synth.solver.chain.grid import require_memory
 
     for label, plant in config.plants():
         try:

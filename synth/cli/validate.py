@@ -10,20 +10,20 @@ from synth.cli import LIMITS_MISSED, OK, say
 from synth.cli.processors import available
 
 if TYPE_CHECKING:
-    from synth.output.validate_table import Revalidation
+    from synth.book.validate_table import Revalidation
 
 
 def validate_command(path: Path, config_path: Path | None, passes: int | None, seed: int | None, as_json: bool) -> int:
     """Simulate the tables in `path`; 1 if one that is not known to be infeasible is not shown to keep every limit."""
+    from synth.book.forms.table_file import is_infeasible, read_tables, summary_beside
     from synth.cli.interrupt import interruptible
     from synth.configuration.config_file import BUILT_IN, load_config
-    from synth.kernel_cache import guarded, use_kernel_cache
-    from synth.tables.table_file import is_infeasible, read_tables, summary_beside
+    from synth.kernels.cache import guarded, use_kernel_cache
 
     config, (file,) = load_config(config_path), read_tables(path)
     source, summary = str(config_path or BUILT_IN), summary_beside(path)
     use_kernel_cache()
-    from synth.output.validate_table import Rehearsal, plant_for, revalidate_all
+    from synth.book.validate_table import Rehearsal, plant_for, revalidate_all
 
     for table in file.tables:
         plant_for(table, config, source)  # refused before anything is simulated
@@ -37,7 +37,7 @@ def validate_command(path: Path, config_path: Path | None, passes: int | None, s
     if not all(each.same_config for each in found):
         say(f"warning: {path} was made from another configuration than {source}; the plant may differ")
     if as_json:
-        from synth.output.summary import plain
+        from synth.book.summary import plain
 
         print(json.dumps(plain([document(each) for each in found]), indent=1, ensure_ascii=False))
     else:

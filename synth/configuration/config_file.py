@@ -14,7 +14,7 @@ from plant_models.library.near_miss import near_miss
 from synth.configuration.resolved_config import ResolvedConfig, resolve, setting_limits
 from synth.configuration.settings import Section, Settings
 from synth.configuration.toml_file import read_text, toml_tree
-from synth.input_error import InputError
+from synth.faults.input_error import InputError
 from tuning_tables.excerpt import excerpt
 
 BUILT_IN = "built-in configuration"

@@ -19,7 +19,7 @@ from plant_models.library import (
 from plant_models.library.near_miss import near_miss
 from plant_models.library.sourced_value import SET_BY_USER, SourcedTable
 from synth.configuration.settings import DEFAULT_CUTS, CutSettings
-from synth.input_error import InputError
+from synth.faults.input_error import InputError
 from tuning_tables.excerpt import excerpt
 
 DEFAULT_BOOK = "default book: one gondola for each weight category"

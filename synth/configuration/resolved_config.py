@@ -10,11 +10,12 @@ from typing import Any
 from annotated_types import Ge, Le
 from pydantic.fields import FieldInfo
 
-from plant_models import PlantError
+from plant_models import EntrySpeed, Plant, PlantError
 from plant_models.library import RetarderEntry, SourcedValue, load_retarder, retarder_names
 from plant_models.library.near_miss import near_miss
 from plant_models.library.sourced_value import SET_BY_USER
 from synth.configuration.cut_class import CutClass, category_warnings, resolve_cut
+from synth.configuration.grid_warnings import grid_warnings
 from synth.configuration.settings import (
     NUMERICAL_SECTIONS,
     AcceptanceSettings,
@@ -27,11 +28,11 @@ from synth.configuration.settings import (
     Settings,
     ValidationSettings,
 )
-from synth.input_error import InputError
-from synth.markov_chain.estimator_grid import estimator_resolution
-from synth.markov_chain.grid import Resolution
-from synth.markov_chain.grid_warnings import grid_warnings
-from synth.problem import Criterion, EntrySpeed, Plant, Problem
+from synth.faults.input_error import InputError
+from synth.problem.criterion import Criterion
+from synth.problem.estimator_resolution import estimator_resolution
+from synth.problem.problem import Problem
+from synth.problem.resolution import Resolution
 from tuning_tables.canonical import canonical_json
 from tuning_tables.excerpt import excerpt
 

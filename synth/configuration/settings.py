@@ -15,10 +15,10 @@ from pydantic import BaseModel, ConfigDict, Field
 from plant_models.errors import require
 from plant_models.library import Value
 from synth.configuration.value_forms import Grade, Numbers, Pairs, Title
-from synth.criterion.requirement import FrictionRange, OverspeedLimit, Requirement
-from synth.criterion.terminal_cost import AsymmetricSquare, SquaredError
-from synth.markov_chain.grid import Resolution
-from synth.problem import Criterion
+from synth.problem.criterion import Criterion
+from synth.problem.requirement import FrictionRange, OverspeedLimit, Requirement
+from synth.problem.resolution import Resolution
+from synth.problem.terminal_cost import AsymmetricSquare, SquaredError
 
 DEFAULT_RETARDER = "knp-5-bunch"
 

@@ -10,13 +10,12 @@ from itertools import accumulate, pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models import path_breaks_m, path_coefficients
-from synth.kernels import closed_loop as kernel
-from synth.kernels import closed_loop_lanes as lanes
-from synth.kernels import lane_places as places
-from synth.kernels import regulator
-from synth.markov_chain.actuator import stage_locked_actuator
-from synth.problem import Plant
+from plant_models import Plant, path_breaks_m, path_coefficients
+from plant_models.stage_regulator import stage_locked_actuator
+from synth.kernels.loop import closed_loop as kernel
+from synth.kernels.loop import closed_loop_lanes as lanes
+from synth.kernels.loop import lane_places as places
+from synth.kernels.loop import regulator
 from synth.simulation.controllers import Controller, LineController, TableController, fixed
 from synth.simulation.drive_pieces import drive_pieces
 from synth.simulation.passes import ExitSample, PassTrace

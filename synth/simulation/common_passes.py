@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
 
-from synth.kernels.closed_loop import Draws
-from synth.problem import Plant
+from plant_models import Plant
+from synth.kernels.loop.closed_loop import Draws
 from synth.simulation.closed_loop import ClosedLoop, close_loop
 from synth.simulation.controllers import Controller, full_brake
 from synth.simulation.passes import ExitSample, PassTrace

@@ -8,8 +8,8 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.dynamic_programme.switching_lines import SwitchingLines
-from synth.kernels import regulator
+from synth.kernels.loop import regulator
+from synth.solver.switching_lines import SwitchingLines
 from tuning_tables.active_table import ActiveTable
 from tuning_tables.estimator import Estimator
 from tuning_tables.table import ControllerTable

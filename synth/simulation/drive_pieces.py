@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from synth.kernels.closed_loop import Drive
-from synth.kernels.lane_places import Pieces
+from synth.kernels.loop.closed_loop import Drive
+from synth.kernels.loop.lane_places import Pieces
 from synth.simulation.controllers import fixed
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.kernels.normal_numbers import normal_rows
+from synth.kernels.loop.normal_numbers import normal_rows
 
 BLOCK_PASSES = 1000
 """Passes that share one random stream; fixed, because pass i must not depend on how many are asked for."""

@@ -18,13 +18,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.simulation.random_passes import (
-    BLOCK_PASSES,
-    PATH_CELLS,
-    RandomPasses,
-    block_of_passes,
-    row_of_passes,
-)
+from synth.simulation.random_passes import BLOCK_PASSES, PATH_CELLS, RandomPasses, block_of_passes, row_of_passes
 from synth.simulation.replicates import REPLICATE_PASSES
 
 AS_THEY_COME = 50

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 
-from synth.output.output_directory import SUMMARY, SWEPT_CONFIG, make_directory, remove_stale
+from synth.book.output_directory import SUMMARY, SWEPT_CONFIG, make_directory, remove_stale
 from synth.sweep.book_summary import BookFigures, Failure, book_summary, case_of, sweep_summary
 from synth.sweep.plan import Plan, Unit
 from synth.sweep.sweep_directory import SweepDirectory
@@ -106,7 +106,7 @@ def bind_one(
             files.append(folder / "tables" / f"{table.id}.json")
             write_json(table, files[-1])
     if tables and condition.config.output.plots:
-        from synth.plots.figure_file import save_figure
+        from synth.present.plots.figure_file import save_figure
         from synth.sweep.heat_map import heat_map
 
         make_directory(folder / "plots")

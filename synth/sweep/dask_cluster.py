@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
-from synth.input_error import InputError
+from synth.faults.input_error import InputError
 from synth.sweep.plan import UnitOrder
 from synth.sweep.work import Answer, Begun, Work, answer
 

@@ -20,7 +20,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnProcess
 from typing import Any
 
-from synth.kernel_cache import use_kernel_cache
+from synth.kernels.cache import use_kernel_cache
 from synth.sweep.plan import UnitOrder
 from synth.sweep.work import Answer, Begun, Work, answer
 

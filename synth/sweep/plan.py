@@ -8,9 +8,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
+from plant_models import Plant
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.markov_chain.grid import finer_for_check, make_grid, memory_estimate_bytes
-from synth.problem import Plant
+from synth.problem.resolution import finer_for_check
+from synth.solver.chain.grid import make_grid, memory_estimate_bytes
 from synth.sweep.software import software_sha256
 from synth.sweep.sweep_file import Condition, SweepFile
 from tuning_tables.canonical import canonical_json

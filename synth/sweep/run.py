@@ -10,9 +10,9 @@ from datetime import UTC, datetime
 from importlib.metadata import version
 from typing import Protocol
 
-from synth.input_error import InputError
-from synth.markov_chain.grid import available_memory_bytes
-from synth.output.output_directory import SWEPT_CONFIG
+from synth.book.output_directory import SWEPT_CONFIG
+from synth.faults.input_error import InputError
+from synth.solver.chain.grid import available_memory_bytes
 from synth.sweep.bind import Failure, Outcome, bind
 from synth.sweep.ledger import DONE, ENDED, FAILED, FOUND_DAMAGED, PLAN, STARTED, Ledger, LedgerWriter
 from synth.sweep.plan import Plan, Unit, UnitOrder, plan_of
@@ -70,7 +70,7 @@ def task_of(file: SweepFile, directory: SweepDirectory) -> Task:
 
 
 def creation_time() -> str:
-    """Now in UTC, or the time of SOURCE_DATE_EPOCH; as `synth.tuning.tune`, without loading the solver."""
+    """Now in UTC, or the time of SOURCE_DATE_EPOCH; as `synth.book.tune`, without loading the solver."""
     epoch = os.environ.get("SOURCE_DATE_EPOCH")
     moment = datetime.fromtimestamp(int(epoch), UTC) if epoch else datetime.now(UTC)
     return moment.strftime("%Y-%m-%dT%H:%M:%SZ")

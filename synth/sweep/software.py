@@ -7,9 +7,9 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
-from synth.kernel_cache import kernel_fingerprint
+from synth.kernels.cache import kernel_fingerprint
 
-WITHOUT_RESULTS = ("synth/checker/", "synth/cli/", "synth/in_the_loop/", "synth/plots/", "synth/report/")
+WITHOUT_RESULTS = ("synth/checker/", "synth/cli/", "synth/studies/in_the_loop/", "synth/plots/", "synth/report/")
 """Parts that show or check results and make none."""
 
 PATTERNS = ("plant_models/**/*.py", "plant_models/**/*.toml", "synth/**/*.py", "tuning_tables/**/*.py")

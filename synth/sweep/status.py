@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from synth.input_error import InputError
+from synth.faults.input_error import InputError
 from synth.sweep.ledger import DONE, FAILED, STARTED, Event, Ledger
 from synth.sweep.sweep_directory import SweepDirectory, is_held
 

@@ -16,8 +16,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from synth.input_error import InputError
-from synth.output.output_directory import LEFTOVER, SUMMARY, SWEEP_LEDGER, make_directory
+from synth.book.output_directory import LEFTOVER, SUMMARY, SWEEP_LEDGER, make_directory
+from synth.faults.input_error import InputError
 from synth.sweep.ledger import Ledger, read_ledger
 from synth.sweep.unit_result import UnitResult, from_bytes, to_bytes
 from tuning_tables import DamagedTable, write_atomically

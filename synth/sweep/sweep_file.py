@@ -15,7 +15,7 @@ from synth.configuration.config_file import ALLOWED, first_fault, key_path, show
 from synth.configuration.resolved_config import ResolvedConfig, resolve, setting_limits
 from synth.configuration.settings import DEFAULT_CUTS, CutSettings, Settings
 from synth.configuration.toml_file import Tree, read_text, toml_tree
-from synth.input_error import InputError
+from synth.faults.input_error import InputError
 from synth.sweep.sweep_settings import CONDITION_SECTIONS, SweepSettings, SweptCuts
 from tuning_tables.excerpt import excerpt
 

@@ -9,25 +9,24 @@ from typing import Any
 
 import numpy as np
 
-from plant_models import PlantError
+from plant_models import Plant, PlantError
+from synth.book.judgement import judgement
+from synth.book.tune_case import predict, required, with_prediction
 from synth.configuration.resolved_config import ResolvedConfig, resolve
 from synth.configuration.settings import Settings
-from synth.dynamic_programme.backward_induction import Solution, solve_all
-from synth.fitting.tabulate import UNPREDICTED, tabulate
-from synth.fitting.tuned_lines import fitted
-from synth.markov_chain.grid import finer_for_check
-from synth.markov_chain.transitions import Transitions, check_transitions, persistent_transitions
-from synth.one_blas_thread import one_blas_thread
-from synth.output.judgement import judgement
-from synth.problem import Plant
+from synth.problem.resolution import finer_for_check
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.exit_statistics import brake_power, exit_statistics, overspeed_of
 from synth.simulation.stratified_passes import stratified_passes
+from synth.solver.backward_induction import Solution, solve_all
+from synth.solver.chain.transitions import Transitions, check_transitions, persistent_transitions
+from synth.solver.one_blas_thread import one_blas_thread
+from synth.solver.tabulate import UNPREDICTED, tabulate
+from synth.solver.tuned_lines import fitted
 from synth.sweep.plan import TARGETS_AT_ONCE, Refinement, UnitOrder
 from synth.sweep.refinement import Bench, Gap, refined
 from synth.sweep.unit_result import Refused, Row, UnitResult
-from synth.tuning.tune_case import predict, required, with_prediction
 from tuning_tables import ControllerTable, Generator, InvalidTable, Validated, from_json, to_json
 from tuning_tables.active_table import between
 

@@ -6,7 +6,7 @@ import json
 from dataclasses import asdict, dataclass
 from typing import Any, cast
 
-from synth.output.judgement import Judgement
+from synth.book.judgement import Judgement
 from synth.sweep.refinement import Gap
 from tuning_tables import ControllerTable, DamagedTable, TableError
 from tuning_tables.canonical import canonical_json

@@ -10,10 +10,10 @@ from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
+from synth.faults.unforeseen import unforeseen
 from synth.sweep.plan import UnitOrder
 from synth.sweep.software import software_sha256
 from synth.sweep.unit_result import UnitResult
-from synth.unforeseen import unforeseen
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ def computed(order: UnitOrder) -> UnitResult:
             f"the worker {worker_name()} has another version of retarder-synth or of its libraries, or another "
             "processor, than the run that asked; its tables might differ"
         )
-    from synth.kernel_cache import guarded, use_kernel_cache
+    from synth.kernels.cache import guarded, use_kernel_cache
 
     use_kernel_cache()
     from synth.sweep.tune_unit import tune_unit

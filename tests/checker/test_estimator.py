@@ -10,6 +10,7 @@ from random import Random
 import numpy as np
 import pytest
 
+from synth.book.estimation.estimator_design import estimator_of
 from synth.checker.claims import Honesty
 from synth.checker.estimator import Observer
 from synth.checker.estimator import estimator_of as read_estimator
@@ -17,7 +18,6 @@ from synth.checker.estimator_sense import estimator_faults, work_of
 from synth.checker.float32 import bits
 from synth.checker.plant import Plant, plant_of
 from synth.configuration.config_file import parse_config
-from synth.estimation.estimator_design import estimator_of
 from tests.checker.planted_fault import Document
 from tuning_tables.estimator import Estimator, begin, observe
 

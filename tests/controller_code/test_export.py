@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from synth.in_the_loop.controller_process import (
+from synth.studies.in_the_loop.controller_process import (
     CONTRACT,
     BuildError,
     build_controller,

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from synth.in_the_loop.agreement import ask, differences, follow
-from synth.in_the_loop.controller_process import CONTRACT, Controller, compile_with
+from synth.studies.in_the_loop.agreement import ask, differences, follow
+from synth.studies.in_the_loop.controller_process import CONTRACT, Controller, compile_with
 from tests.controller_code.conftest import Tool
 from tests.controller_code.sample_book import estimating_book, park_book, sample_book
 from tuning_tables.c_source import c_files
@@ -40,8 +40,8 @@ int main(int count, char **arguments)
 
 
 def both_in_one(folder: Path, small: bool) -> Path:
-    """A program that holds both controllers, each with a process around it (`synth.in_the_loop`)."""
-    around = (files("synth.in_the_loop") / "controller_process.c").read_text("ascii")
+    """A program that holds both controllers, each with a process around it (`synth.studies.in_the_loop`)."""
+    around = (files("synth.studies.in_the_loop") / "controller_process.c").read_text("ascii")
     objects = []
     for name, book in POSITIONS.items():
         prefix = ExportPrefix(name.upper())

@@ -7,14 +7,15 @@ import pytest
 from plant_models import (
     Cut,
     DopplerSensor,
+    EntrySpeed,
     Friction,
+    Plant,
     Pneumatics,
     PressingForce,
     RetarderPosition,
     RollingResistance,
     TrackProfile,
 )
-from synth.problem import EntrySpeed, Plant
 
 
 @pytest.fixture(scope="session")

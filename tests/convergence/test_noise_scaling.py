@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from plant_models import Friction
-from synth.dynamic_programme.backward_induction import solve
-from synth.dynamic_programme.policy_evaluation import commands, exit_density
-from synth.dynamic_programme.switching_lines import SwitchingLines
-from synth.markov_chain.grid import Resolution
-from synth.markov_chain.transitions import Transitions, as_published, persistent_transitions
-from synth.problem import Criterion, EntrySpeed, Plant
+from plant_models import EntrySpeed, Friction, Plant
+from synth.problem.criterion import Criterion
+from synth.problem.resolution import Resolution
+from synth.solver.backward_induction import solve
+from synth.solver.chain.transitions import Transitions, as_published, persistent_transitions
+from synth.solver.policy_evaluation import commands, exit_density
+from synth.solver.switching_lines import SwitchingLines
 
 STEPS_M = (1.0, 0.5, 0.25)
 

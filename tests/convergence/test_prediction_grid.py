@@ -6,14 +6,14 @@ from dataclasses import replace
 
 import pytest
 
+from synth.book.degree_study import tables_by_degree
+from synth.book.tune_case import predict
 from synth.configuration.config_file import load_config
-from synth.dynamic_programme.backward_induction import solve
-from synth.markov_chain.grid import finer_for_check
-from synth.markov_chain.transitions import check_transitions, persistent_transitions
+from synth.problem.resolution import finer_for_check
 from synth.simulation.closed_loop import TableController, simulate_many
 from synth.simulation.random_passes import random_passes
-from synth.tuning.degree_study import tables_by_degree
-from synth.tuning.tune_case import predict
+from synth.solver.backward_induction import solve
+from synth.solver.chain.transitions import check_transitions, persistent_transitions
 from tuning_tables import Generator
 
 NEAR_M_S = 0.3

@@ -7,13 +7,14 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.dynamic_programme.backward_induction import solve
-from synth.dynamic_programme.policy_evaluation import commands, exit_density, occupancy_of
-from synth.dynamic_programme.switching_lines import SwitchingLines
-from synth.fitting.polynomial_fit import stage_occupancy
-from synth.markov_chain.grid import Resolution
-from synth.markov_chain.transitions import Transitions, persistent_transitions
-from synth.problem import Criterion, Plant
+from plant_models import Plant
+from synth.problem.criterion import Criterion
+from synth.problem.resolution import Resolution
+from synth.solver.backward_induction import solve
+from synth.solver.chain.transitions import Transitions, persistent_transitions
+from synth.solver.policy_evaluation import commands, exit_density, occupancy_of
+from synth.solver.polynomial_fit import stage_occupancy
+from synth.solver.switching_lines import SwitchingLines
 
 TARGET_M_S = 3.0
 

@@ -9,14 +9,15 @@ import pytest
 from plant_models import (
     Cut,
     DopplerSensor,
+    EntrySpeed,
     Friction,
+    Plant,
     Pneumatics,
     PressingForce,
     RetarderPosition,
     RollingResistance,
     TrackProfile,
 )
-from synth.problem import EntrySpeed, Plant
 
 DRIVE = Pneumatics(
     supply_pressure_kpa=700.0,

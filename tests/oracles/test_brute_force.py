@@ -16,12 +16,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from plant_models import DopplerSensor, Friction, RollingResistance
+from plant_models import DopplerSensor, Friction, Plant, RollingResistance
 from plant_models.speed_sensor import measured_speed_std
-from synth.dynamic_programme.backward_induction import solve, true_speed_weights
-from synth.markov_chain.grid import Resolution
-from synth.markov_chain.transitions import Transitions, persistent_transitions
-from synth.problem import Criterion, Plant
+from synth.problem.criterion import Criterion
+from synth.problem.resolution import Resolution
+from synth.solver.backward_induction import solve, true_speed_weights
+from synth.solver.chain.transitions import Transitions, persistent_transitions
 
 Row = list[float]
 

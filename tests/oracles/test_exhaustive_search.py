@@ -15,12 +15,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from plant_models import DopplerSensor, Pneumatics, PressingForce, PressureHistory
-from synth.criterion.terminal_cost import AsymmetricSquare
-from synth.dynamic_programme.backward_induction import solve
-from synth.markov_chain.grid import Resolution
-from synth.markov_chain.transitions import persistent_transitions
-from synth.problem import Criterion, EntrySpeed, Plant
+from plant_models import DopplerSensor, EntrySpeed, Plant, Pneumatics, PressingForce, PressureHistory
+from synth.problem.criterion import Criterion
+from synth.problem.resolution import Resolution
+from synth.problem.terminal_cost import AsymmetricSquare
+from synth.solver.backward_induction import solve
+from synth.solver.chain.transitions import persistent_transitions
 
 SUBSTEP_S = 2e-3
 SQUARED = Criterion(1.0, 0.0)

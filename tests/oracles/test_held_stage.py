@@ -8,13 +8,12 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from plant_models import Friction, PressingForce, RollingResistance, TrackProfile
-from synth.criterion.exit_density import ExitDensity
-from synth.dynamic_programme.policy_evaluation import commands, exit_density
-from synth.dynamic_programme.switching_lines import SwitchingLines
-from synth.markov_chain.grid import Resolution
-from synth.markov_chain.transitions import Transitions, check_transitions, persistent_transitions
-from synth.problem import EntrySpeed, Plant
+from plant_models import EntrySpeed, Friction, Plant, PressingForce, RollingResistance, TrackProfile
+from synth.problem.resolution import Resolution
+from synth.solver.chain.transitions import Transitions, check_transitions, persistent_transitions
+from synth.solver.exit_density import ExitDensity
+from synth.solver.policy_evaluation import commands, exit_density
+from synth.solver.switching_lines import SwitchingLines
 
 NEVER = math.inf
 

@@ -11,10 +11,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from plant_models import PressingForce
-from synth.markov_chain.grid import Resolution
-from synth.markov_chain.transitions import Transitions, persistent_transitions
-from synth.problem import Plant
+from plant_models import Plant, PressingForce
+from synth.problem.resolution import Resolution
+from synth.solver.chain.transitions import Transitions, persistent_transitions
 
 STALLED = -1.0
 

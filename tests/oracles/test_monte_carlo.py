@@ -10,14 +10,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from plant_models import DopplerSensor, Friction, PressingForce
-from synth.dynamic_programme.policy_evaluation import commands, exit_density
-from synth.dynamic_programme.switching_lines import SwitchingLines
-from synth.markov_chain.grid import Resolution
-from synth.markov_chain.transitions import persistent_transitions
-from synth.problem import EntrySpeed, Plant
+from plant_models import DopplerSensor, EntrySpeed, Friction, Plant, PressingForce
+from synth.problem.resolution import Resolution
 from synth.simulation.closed_loop import LineController, simulate
 from synth.simulation.random_passes import random_passes
+from synth.solver.chain.transitions import persistent_transitions
+from synth.solver.policy_evaluation import commands, exit_density
+from synth.solver.switching_lines import SwitchingLines
 
 PASSES = 4000
 

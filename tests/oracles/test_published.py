@@ -14,12 +14,12 @@ import pytest
 from numpy.typing import NDArray
 from scipy.stats import norm
 
-from plant_models import DopplerSensor, Friction
+from plant_models import DopplerSensor, Friction, Plant
 from plant_models.speed_sensor import measured_speed_std
-from synth.dynamic_programme.backward_induction import solve, true_speed_weights
-from synth.markov_chain.grid import Resolution
-from synth.markov_chain.transitions import Transitions, as_published, persistent_transitions
-from synth.problem import Criterion, Plant
+from synth.problem.criterion import Criterion
+from synth.problem.resolution import Resolution
+from synth.solver.backward_induction import solve, true_speed_weights
+from synth.solver.chain.transitions import Transitions, as_published, persistent_transitions
 
 Array = NDArray[np.float64]
 

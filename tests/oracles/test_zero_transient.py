@@ -16,12 +16,12 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from plant_models import DopplerSensor, Friction, Pneumatics, PressingForce
-from synth.dynamic_programme.backward_induction import solve
-from synth.dynamic_programme.policy_evaluation import commands, expected_cost
-from synth.markov_chain.grid import Resolution
-from synth.markov_chain.transitions import Transitions, as_published, persistent_transitions
-from synth.problem import Criterion, EntrySpeed, Plant
+from plant_models import DopplerSensor, EntrySpeed, Friction, Plant, Pneumatics, PressingForce
+from synth.problem.criterion import Criterion
+from synth.problem.resolution import Resolution
+from synth.solver.backward_induction import solve
+from synth.solver.chain.transitions import Transitions, as_published, persistent_transitions
+from synth.solver.policy_evaluation import commands, expected_cost
 
 QUANTUM = Resolution(0.5, 0.02, transient_substeps=2, friction_nodes=1, path_levels=1)
 

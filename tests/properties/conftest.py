@@ -9,16 +9,17 @@ import pytest
 from plant_models import (
     Cut,
     DopplerSensor,
+    EntrySpeed,
     Friction,
+    Plant,
     Pneumatics,
     PressingForce,
     RetarderPosition,
     RollingResistance,
     TrackProfile,
 )
-from synth.markov_chain.grid import Resolution
-from synth.markov_chain.transitions import Transitions, persistent_transitions
-from synth.problem import EntrySpeed, Plant
+from synth.problem.resolution import Resolution
+from synth.solver.chain.transitions import Transitions, persistent_transitions
 
 ROUGH = Friction(0.12, 0.0, 0.10, 2.0)
 RADAR = DopplerSensor(0.05, 0.04, 0.1, 0.02)

@@ -10,7 +10,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from synth.dynamic_programme.policy_evaluation import (
+from synth.problem.criterion import Criterion
+from synth.solver.chain.transitions import Transitions
+from synth.solver.policy_evaluation import (
     commands,
     cost_and_gradient,
     exit_density,
@@ -18,9 +20,7 @@ from synth.dynamic_programme.policy_evaluation import (
     forward_all,
     forward_one,
 )
-from synth.dynamic_programme.switching_lines import SwitchingLines
-from synth.markov_chain.transitions import Transitions
-from synth.problem import Criterion
+from synth.solver.switching_lines import SwitchingLines
 
 SEEDS = st.integers(0, 2**32 - 1)
 

@@ -10,12 +10,12 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from plant_models import DopplerSensor, Friction, RollingResistance
-from synth.dynamic_programme.backward_induction import Solution, solve
-from synth.dynamic_programme.policy_evaluation import commands, exit_density, expected_cost
-from synth.markov_chain.grid import Resolution
-from synth.markov_chain.transitions import Transitions, persistent_transitions, with_known_friction
-from synth.problem import Criterion, Plant
+from plant_models import DopplerSensor, Friction, Plant, RollingResistance
+from synth.problem.criterion import Criterion
+from synth.problem.resolution import Resolution
+from synth.solver.backward_induction import Solution, solve
+from synth.solver.chain.transitions import Transitions, persistent_transitions, with_known_friction
+from synth.solver.policy_evaluation import commands, exit_density, expected_cost
 
 TARGET_M_S = 2.5
 

@@ -13,12 +13,13 @@ import numpy as np
 import pytest
 from numba import njit
 
-from synth.dynamic_programme.backward_induction import solve, solve_all
-from synth.dynamic_programme.policy_evaluation import commands, cost_and_gradient, exit_density
-from synth.kernels import packs
-from synth.markov_chain.grid import Resolution
-from synth.markov_chain.transitions import Transitions, persistent_transitions
-from synth.problem import Criterion, Plant
+from plant_models import Plant
+from synth.kernels.vector import packs
+from synth.problem.criterion import Criterion
+from synth.problem.resolution import Resolution
+from synth.solver.backward_induction import solve, solve_all
+from synth.solver.chain.transitions import Transitions, persistent_transitions
+from synth.solver.policy_evaluation import commands, cost_and_gradient, exit_density
 
 CRITERION = Criterion(1.0, 1e-5)
 

@@ -8,11 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from synth.dynamic_programme.backward_induction import Solution, solve_all
-from synth.dynamic_programme.policy_evaluation import commands, cost_and_gradient
-from synth.markov_chain.grid import Resolution
-from synth.markov_chain.transitions import persistent_transitions
-from synth.problem import Criterion, Plant
+from plant_models import Plant
+from synth.problem.criterion import Criterion
+from synth.problem.resolution import Resolution
+from synth.solver.backward_induction import Solution, solve_all
+from synth.solver.chain.transitions import persistent_transitions
+from synth.solver.policy_evaluation import commands, cost_and_gradient
 
 TARGETS = (1.0, 2.5, 4.0)
 

@@ -10,14 +10,14 @@ import numba
 import numpy as np
 import pytest
 
-from synth.kernels.shared_work import fetch_add, finish, take, wait
-from synth.reference_problem.by_numpy import backward, largest_regret, solve_by_numpy
-from synth.reference_problem.by_plain_loops import solve_by_plain_loops
-from synth.reference_problem.by_quantecon import quantecon_is_there, solve_by_quantecon
-from synth.reference_problem.by_scipy import solve_by_scipy, solve_targets_by_scipy
-from synth.reference_problem.operator_work import operator_work
-from synth.reference_problem.problem import ReferenceProblem, batch_of_16
-from synth.reference_problem.solver import ReferenceSolution, ReferenceSolver
+from synth.studies.reference_problem.by_numpy import backward, largest_regret, solve_by_numpy
+from synth.studies.reference_problem.by_plain_loops import solve_by_plain_loops
+from synth.studies.reference_problem.by_quantecon import quantecon_is_there, solve_by_quantecon
+from synth.studies.reference_problem.by_scipy import solve_by_scipy, solve_targets_by_scipy
+from synth.studies.reference_problem.kernels.shared_work import fetch_add, finish, take, wait
+from synth.studies.reference_problem.operator_work import operator_work
+from synth.studies.reference_problem.problem import ReferenceProblem, batch_of_16
+from synth.studies.reference_problem.solver import ReferenceSolution, ReferenceSolver
 
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="LLVM vectors exist only in compiled kernels")
 

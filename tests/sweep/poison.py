@@ -7,7 +7,7 @@ import signal
 from dataclasses import replace
 from pathlib import Path
 
-from synth.kernel_cache import use_kernel_cache
+from synth.kernels.cache import use_kernel_cache
 from synth.sweep.plan import UnitOrder
 from synth.sweep.work import Answer, answer
 

@@ -10,20 +10,21 @@ from numpy.typing import NDArray
 from plant_models import (
     Cut,
     DopplerSensor,
+    EntrySpeed,
     Friction,
+    Plant,
     Pneumatics,
     PressingForce,
     RetarderPosition,
     RollingResistance,
     TrackProfile,
 )
-from synth.comparison.measured import Feasibility, Measured
-from synth.criterion.exit_density import ExitDensity
-from synth.dynamic_programme.switching_lines import SwitchingLines
-from synth.problem import EntrySpeed, Plant
+from synth.book.case_result import CaseResult, DegreeStudy, Indifference, PolicyMap
+from synth.book.comparison.measured import Feasibility, Measured
 from synth.simulation.exit_statistics import brake_power, exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample, PassTrace
-from synth.tuning.case_result import CaseResult, DegreeStudy, Indifference, PolicyMap
+from synth.solver.exit_density import ExitDensity
+from synth.solver.switching_lines import SwitchingLines
 from tuning_tables import (
     ControllerTable,
     CutId,

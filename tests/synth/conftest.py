@@ -9,14 +9,15 @@ import pytest
 from plant_models import (
     Cut,
     DopplerSensor,
+    EntrySpeed,
     Friction,
+    Plant,
     Pneumatics,
     PressingForce,
     RetarderPosition,
     RollingResistance,
     TrackProfile,
 )
-from synth.problem import EntrySpeed, Plant
 
 GONDOLA_OFFSETS_M = (0.0, 1.85, 8.65, 10.5)
 

@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from synth.comparison.measured import honesty_of
+from synth.book.acceptance import judge
+from synth.book.case_result import CaseResult
+from synth.book.comparison.measured import honesty_of
+from synth.book.judgement import judgement
 from synth.configuration.settings import AcceptanceSettings
-from synth.output.acceptance import judge
-from synth.output.judgement import judgement
 from synth.simulation.exit_statistics import ExitStatistics, overspeed_of
 from synth.simulation.passes import ExitSample
-from synth.tuning.case_result import CaseResult
 from tests.synth.case_factory import make_case
 from tuning_tables import Predicted
 

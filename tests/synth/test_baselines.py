@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from synth.comparison.baselines import (
+from plant_models import Plant
+from synth.book.comparison.baselines import (
     FAMILIES,
     TunedBaseline,
     energy_rule,
@@ -13,8 +14,7 @@ from synth.comparison.baselines import (
     tune_baselines,
     two_thresholds,
 )
-from synth.kernels.closed_loop import LEFT, advance
-from synth.problem import Plant
+from synth.kernels.loop.closed_loop import LEFT, advance
 from synth.simulation.closed_loop import close_loop, simulate
 from synth.simulation.common_passes import common_passes
 from synth.simulation.exit_statistics import exit_statistics

@@ -12,12 +12,10 @@ import pytest
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from plant_models import Cut, Friction, PressureHistory, RollingResistance
-from synth.comparison.baselines import energy_rule
-from synth.dynamic_programme.switching_lines import SwitchingLines
-from synth.kernels.closed_loop import LEFT, MOVING, STALLED, Draws, advance
-from synth.markov_chain.actuator import stage_locked_actuator
-from synth.problem import Plant
+from plant_models import Cut, Friction, Plant, PressureHistory, RollingResistance
+from plant_models.stage_regulator import stage_locked_actuator
+from synth.book.comparison.baselines import energy_rule
+from synth.kernels.loop.closed_loop import LEFT, MOVING, STALLED, Draws, advance
 from synth.simulation.closed_loop import (
     ClosedLoop,
     LineController,
@@ -31,6 +29,7 @@ from synth.simulation.closed_loop import (
 from synth.simulation.passes import PassTrace
 from synth.simulation.random_passes import PATH_CELLS, RandomPasses, random_passes
 from synth.simulation.stratified_passes import stratified_passes
+from synth.solver.switching_lines import SwitchingLines
 from tuning_tables.figures import Predicted, ValidRange
 from tuning_tables.json_file import read_json, write_json
 from tuning_tables.provenance import CutId, Generator, RetarderId

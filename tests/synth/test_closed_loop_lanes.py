@@ -11,16 +11,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from plant_models import RollingResistance, TrackProfile
-from synth.comparison.baselines import energy_rule, threshold_with_lead
+from plant_models import Plant, RollingResistance, TrackProfile
+from synth.book.comparison.baselines import energy_rule, threshold_with_lead
 from synth.configuration.config_file import load_config
-from synth.dynamic_programme.switching_lines import SwitchingLines
-from synth.kernels import closed_loop as kernel
-from synth.kernels.closed_loop_lanes import LANES
-from synth.problem import Plant
+from synth.kernels.loop import closed_loop as kernel
+from synth.kernels.loop.closed_loop_lanes import LANES
 from synth.simulation.closed_loop import ClosedLoop, Controller, LineController, TableController, close_loop
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses, random_passes
+from synth.solver.switching_lines import SwitchingLines
 from tuning_tables.figures import Predicted, ValidRange
 from tuning_tables.provenance import CutId, Generator, RetarderId
 from tuning_tables.stage import Stage, round_coefficients

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from synth.dynamic_programme.switching_lines import SwitchingLines
-from synth.problem import Plant
+from plant_models import Plant
 from synth.simulation.closed_loop import LineController, simulate, trace
 from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.random_passes import random_passes
+from synth.solver.switching_lines import SwitchingLines
 
 
 @pytest.fixture

@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from plant_models import DopplerSensor, Friction, RollingResistance
-from synth.comparison.baselines import energy_rule, threshold_with_lead
-from synth.comparison.control_system import (
+from plant_models import DopplerSensor, Friction, Plant, RollingResistance
+from synth.book.comparison.baselines import energy_rule, threshold_with_lead
+from synth.simulation.closed_loop import Controller, LineController, TableController, close_loop, trace
+from synth.simulation.control_system import (
     SOLVER,
     drive_system,
     motion_system,
@@ -18,11 +19,9 @@ from synth.comparison.control_system import (
     nominal_response,
     regulator_system,
 )
-from synth.dynamic_programme.switching_lines import SwitchingLines
-from synth.problem import Plant
-from synth.simulation.closed_loop import Controller, LineController, TableController, close_loop, trace
 from synth.simulation.passes import PassTrace
 from synth.simulation.random_passes import random_passes
+from synth.solver.switching_lines import SwitchingLines
 from tuning_tables import ControllerTable, CutId, Generator, Predicted, RetarderId, Stage, ValidRange
 
 control = pytest.importorskip("control")

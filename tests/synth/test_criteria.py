@@ -9,14 +9,25 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from plant_models import PlantError, PressingForce, RetarderPosition, RollingResistance
+from plant_models import EntrySpeed, Plant, PlantError, PressingForce, RetarderPosition, RollingResistance
+from synth.book.tune_case import required
 from synth.configuration.config_file import parse_config
 from synth.configuration.config_template import default_config_toml
-from synth.criterion.requirement import FrictionRange, OverspeedLimit
-from synth.criterion.requirement_found import OverspeedLimitFound
-from synth.criterion.terminal_cost import AsymmetricSquare, PenalisedOverspeed, SquaredError, TerminalCost
-from synth.dynamic_programme.backward_induction import solve
-from synth.dynamic_programme.policy_evaluation import (
+from synth.faults.input_error import InputError
+from synth.problem.criterion import Criterion
+from synth.problem.problem import Problem
+from synth.problem.requirement import FrictionRange, OverspeedLimit
+from synth.problem.requirement_found import OverspeedLimitFound
+from synth.problem.resolution import Resolution, finer_for_check
+from synth.problem.terminal_cost import AsymmetricSquare, PenalisedOverspeed, SquaredError, TerminalCost
+from synth.simulation.closed_loop import LineController, simulate
+from synth.simulation.exit_statistics import clopper_pearson, exit_statistics
+from synth.simulation.random_passes import random_passes
+from synth.solver.backward_induction import solve
+from synth.solver.chain.transitions import Transitions, check_transitions, persistent_transitions
+from synth.solver.chance_constraint import keep_overspeed_limit, predicted_density
+from synth.solver.finer_speed import finer_in_speed, known_factors
+from synth.solver.policy_evaluation import (
     commands,
     evaluator,
     exit_density,
@@ -25,20 +36,10 @@ from synth.dynamic_programme.policy_evaluation import (
     scenario_costs,
     scenario_density,
 )
-from synth.dynamic_programme.switching_lines import SwitchingLines
-from synth.fitting.chance_constraint import keep_overspeed_limit, predicted_density
-from synth.fitting.finer_speed import finer_in_speed, known_factors
-from synth.fitting.polynomial_fit import Fit, PolynomialLines, basis, fit_lines, whitening
-from synth.fitting.tuned_lines import polished
-from synth.fitting.worst_case import FACTORS, guard_worst_case
-from synth.input_error import InputError
-from synth.markov_chain.grid import Resolution, finer_for_check
-from synth.markov_chain.transitions import Transitions, check_transitions, persistent_transitions
-from synth.problem import Criterion, EntrySpeed, Plant, Problem
-from synth.simulation.closed_loop import LineController, simulate
-from synth.simulation.exit_statistics import clopper_pearson, exit_statistics
-from synth.simulation.random_passes import random_passes
-from synth.tuning.tune_case import required
+from synth.solver.polynomial_fit import Fit, PolynomialLines, basis, fit_lines, whitening
+from synth.solver.switching_lines import SwitchingLines
+from synth.solver.tuned_lines import polished
+from synth.solver.worst_case import FACTORS, guard_worst_case
 
 COARSE = Resolution(path_step_m=0.5, speed_step_m_s=0.05, friction_nodes=3)
 TARGET_M_S = 3.0

@@ -8,17 +8,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from plant_models import Friction
-from synth.dynamic_programme.switching_lines import SwitchingLines
-from synth.estimation.estimated_table import controller_of, estimated_table, estimator_design, shifted, trimmed
-from synth.estimation.estimator_design import as_estimated, estimator_of, speed_error_m_s
-from synth.fitting.polynomial_fit import PolynomialLines
-from synth.fitting.tuned_lines import tuned_lines
-from synth.markov_chain.grid import Resolution
-from synth.markov_chain.transitions import persistent_transitions
-from synth.problem import Criterion, Plant, Problem
+from plant_models import Friction, Plant
+from synth.book.estimation.estimated_table import controller_of, estimated_table, estimator_design, shifted, trimmed
+from synth.book.estimation.estimator_design import as_estimated, estimator_of, speed_error_m_s
+from synth.problem.criterion import Criterion
+from synth.problem.problem import Problem
+from synth.problem.resolution import Resolution
 from synth.simulation.closed_loop import LineController, close_loop, simulate, trace
 from synth.simulation.random_passes import RandomPasses, random_passes
+from synth.solver.chain.transitions import persistent_transitions
+from synth.solver.polynomial_fit import PolynomialLines
+from synth.solver.switching_lines import SwitchingLines
+from synth.solver.tuned_lines import tuned_lines
 
 
 @pytest.fixture(scope="module")

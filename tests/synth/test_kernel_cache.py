@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from synth.kernel_cache import empty_kernel_cache, guarded, kernel_fingerprint, use_kernel_cache
+from synth.kernels.cache import empty_kernel_cache, guarded, kernel_fingerprint, use_kernel_cache
 
 SOURCES = (
     "plant_models/motion.py",
-    "synth/kernels/bellman.py",
+    "synth/kernels/sweep/bellman.py",
     "synth/kernels/deep/er.py",
     "tuning_tables/rule.py",
     "tuning_tables/estimator.py",
@@ -50,7 +50,7 @@ def test_one_changed_byte_in_a_kernel_source_changes_the_fingerprint(checkout: P
 
 def test_renamed_and_new_sources_change_the_fingerprint(checkout: Path) -> None:
     seen = {kernel_fingerprint(checkout)}
-    (checkout / "synth/kernels/bellman.py").rename(checkout / "synth/kernels/bellmann.py")
+    (checkout / "synth/kernels/sweep/bellman.py").rename(checkout / "synth/kernels/sweep/bellmann.py")
     seen.add(kernel_fingerprint(checkout))
     (checkout / "plant_models/empty.py").write_text("")
     seen.add(kernel_fingerprint(checkout))
@@ -150,7 +150,7 @@ def double(x):
 
 DAMAGE_AND_MEND = """
 import importlib, json, pickle, sys
-from synth.kernel_cache import guarded, use_kernel_cache
+from synth.kernels.cache import guarded, use_kernel_cache
 
 directory = use_kernel_cache()
 assert "numba" not in sys.modules

@@ -9,9 +9,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from plant_models import Cut, DopplerSensor, Friction, PlantError, Pneumatics, RollingResistance, TrackProfile
-from synth.comparison.control_system import describing_function_analysis
-from synth.comparison.limit_cycle import (
+from plant_models import (
+    Cut,
+    DopplerSensor,
+    EntrySpeed,
+    Friction,
+    Plant,
+    PlantError,
+    Pneumatics,
+    RollingResistance,
+    TrackProfile,
+)
+from synth.book.comparison.limit_cycle import (
     StagePair,
     first_harmonic,
     harmonic_pressure_cycle,
@@ -21,10 +30,10 @@ from synth.comparison.limit_cycle import (
     pressure_limit_cycle,
     relay_cycle,
 )
-from synth.dynamic_programme.switching_lines import SwitchingLines
-from synth.problem import EntrySpeed, Plant
 from synth.simulation.closed_loop import LineController, trace
+from synth.simulation.control_system import describing_function_analysis
 from synth.simulation.random_passes import random_passes
+from synth.solver.switching_lines import SwitchingLines
 
 TOUCH_KPA = 50.0
 

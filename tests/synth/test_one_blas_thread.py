@@ -12,15 +12,15 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from synth.one_blas_thread import one_blas_thread
+from synth.solver.one_blas_thread import one_blas_thread
 
 POLISHED = """
 import importlib.util, sys
-from synth.kernel_cache import use_kernel_cache
+from synth.kernels.cache import use_kernel_cache
 use_kernel_cache()
-from synth.fitting.tuned_lines import tuned_lines
-from synth.markov_chain.transitions import persistent_transitions
-from synth.problem import Criterion
+from synth.solver.tuned_lines import tuned_lines
+from synth.solver.chain.transitions import persistent_transitions
+from synth.problem.criterion import Criterion
 spec = importlib.util.spec_from_file_location("plants", sys.argv[1])
 plants = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(plants)
@@ -31,9 +31,9 @@ for target_m_s in (1.5, 2.0, 2.5, 3.0):
 
 NOISE = """
 import importlib.util, sys
-from synth.kernel_cache import use_kernel_cache
+from synth.kernels.cache import use_kernel_cache
 use_kernel_cache()
-from synth.markov_chain.transitions import persistent_transitions
+from synth.solver.chain.transitions import persistent_transitions
 spec = importlib.util.spec_from_file_location("plants", sys.argv[1])
 plants = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(plants)

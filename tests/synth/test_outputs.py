@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from synth.input_error import InputError
-from synth.output.draw_pictures import Studio, draw_job
-from synth.output.output_directory import output_directory, remove_stale
-from synth.output.summary import plain
-from synth.tables.table_file import file_stem, is_infeasible
+from synth.book.forms.table_file import file_stem, is_infeasible
+from synth.book.output_directory import output_directory, remove_stale
+from synth.book.summary import plain
+from synth.faults.input_error import InputError
+from synth.present.draw_pictures import Studio, draw_job
 from tests.synth.case_factory import make_case, make_study
 from tuning_tables import write_csv, write_json
 

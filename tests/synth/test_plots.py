@@ -14,19 +14,19 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from synth.plots.case_names import by_class, contest, file_stem, why_infeasible
-from synth.plots.degree_study import degree_study
-from synth.plots.exit_density import bin_edges_m_s, exit_density, predicted_density
-from synth.plots.feasibility import feasibility
-from synth.plots.figure_file import draw, save_figure
-from synth.plots.picture import save_picture
-from synth.plots.picture_book import all_pictures
-from synth.plots.policy_map import command_image, parts_in_stage, policy_map
-from synth.plots.rms_by_controller import rms_by_controller
-from synth.plots.sample_passes import outcome, sample_passes
-from synth.plots.surfaces import surfaces
-from synth.plots.switchings import switchings
-from synth.tuning.case_result import CaseResult
+from synth.book.case_names import by_class, contest, file_stem, why_infeasible
+from synth.book.case_result import CaseResult
+from synth.present.plots.degree_study import degree_study
+from synth.present.plots.exit_density import bin_edges_m_s, exit_density, predicted_density
+from synth.present.plots.feasibility import feasibility
+from synth.present.plots.figure_file import draw, save_figure
+from synth.present.plots.picture import save_picture
+from synth.present.plots.picture_book import all_pictures
+from synth.present.plots.policy_map import command_image, parts_in_stage, policy_map
+from synth.present.plots.rms_by_controller import rms_by_controller
+from synth.present.plots.sample_passes import outcome, sample_passes
+from synth.present.plots.surfaces import surfaces
+from synth.present.plots.switchings import switchings
 from tests.synth.case_factory import make_case, make_study
 
 ROOT = Path(__file__).parents[2]
@@ -182,5 +182,7 @@ def test_a_stalled_pass_is_called_so(cases: list[CaseResult]) -> None:
 
 def test_drawing_needs_neither_pyplot_nor_kernels() -> None:
     heavy = ("matplotlib.pyplot", "numba", "scipy", "pydantic", "control", "h5py")
-    command = f"import synth.plots.picture_book, sys; raise SystemExit(any(each in sys.modules for each in {heavy}))"
+    command = (
+        f"import synth.present.plots.picture_book, sys; raise SystemExit(any(each in sys.modules for each in {heavy}))"
+    )
     assert subprocess.run([sys.executable, "-c", command], cwd=ROOT, timeout=60, check=False).returncode == 0

@@ -8,11 +8,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from synth.dynamic_programme.backward_induction import solve
-from synth.dynamic_programme.policy_evaluation import commands, cost_and_gradient, occupancy_of
-from synth.dynamic_programme.switching_lines import SwitchingLines
-from synth.fitting import polynomial_fit
-from synth.fitting.polynomial_fit import (
+from plant_models import Plant
+from synth.problem.criterion import Criterion
+from synth.problem.resolution import Resolution
+from synth.solver import polynomial_fit
+from synth.solver.backward_induction import solve
+from synth.solver.chain.transitions import Transitions, persistent_transitions
+from synth.solver.policy_evaluation import commands, cost_and_gradient, occupancy_of
+from synth.solver.polynomial_fit import (
     MINIMUM_GAP_M_S,
     Fit,
     PolynomialLines,
@@ -22,9 +25,7 @@ from synth.fitting.polynomial_fit import (
     polish,
     whitening,
 )
-from synth.markov_chain.grid import Resolution
-from synth.markov_chain.transitions import Transitions, persistent_transitions
-from synth.problem import Criterion, Plant
+from synth.solver.switching_lines import SwitchingLines
 
 COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=3)
 TARGET_M_S = 3.0

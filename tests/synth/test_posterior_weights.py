@@ -8,15 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from plant_models import Friction
-from synth.dynamic_programme.backward_induction import hidden_prior, solve, solve_all
-from synth.dynamic_programme.policy_evaluation import commands, occupancy_of
-from synth.dynamic_programme.posterior_weights import CONVERGED, posterior_weights, solve_by_posterior
-from synth.markov_chain.grid import Resolution
-from synth.markov_chain.transitions import Transitions, persistent_transitions
-from synth.problem import Criterion, Plant
+from plant_models import Friction, Plant
+from synth.problem.criterion import Criterion
+from synth.problem.resolution import Resolution
 from synth.simulation.closed_loop import LineController, trace
 from synth.simulation.random_passes import random_passes
+from synth.solver.backward_induction import hidden_prior, solve, solve_all
+from synth.solver.chain.transitions import Transitions, persistent_transitions
+from synth.solver.policy_evaluation import commands, occupancy_of
+from synth.solver.posterior_weights import CONVERGED, posterior_weights, solve_by_posterior
 
 CRITERION = Criterion(switching_tolerance_m2_s2=0.0)
 

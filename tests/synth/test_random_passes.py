@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from synth.kernels.normal_numbers import normal_pairs
+from synth.kernels.loop.normal_numbers import normal_pairs
 from synth.simulation.random_passes import NOISE_SAMPLES, PATH_CELLS, RandomPasses, random_passes
 
 

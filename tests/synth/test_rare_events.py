@@ -10,16 +10,16 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 from scipy.stats import multivariate_normal
 
-from synth.problem import Plant
-from synth.rare_events.cross_entropy import LearntComponents, Pilot, fitted, learn, mixture_of
-from synth.rare_events.gaussian_mixture import BROAD, NOMINAL, GaussianComponent, GaussianMixture
-from synth.rare_events.importance_sampling import WeightedPasses, weighted_passes
-from synth.rare_events.pass_coordinates import PassCoordinates, path_work_coordinates
-from synth.rare_events.subset_simulation import SubsetPlan, subset_tails
-from synth.rare_events.tail_probability import TailProbability, crude_tail, sampled_tail
+from plant_models import Plant
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.exit_statistics import NORMAL_95
 from synth.simulation.random_passes import RandomPasses, random_passes
+from synth.studies.rare_events.cross_entropy import LearntComponents, Pilot, fitted, learn, mixture_of
+from synth.studies.rare_events.gaussian_mixture import BROAD, NOMINAL, GaussianComponent, GaussianMixture
+from synth.studies.rare_events.importance_sampling import WeightedPasses, weighted_passes
+from synth.studies.rare_events.pass_coordinates import PassCoordinates, path_work_coordinates
+from synth.studies.rare_events.subset_simulation import SubsetPlan, subset_tails
+from synth.studies.rare_events.tail_probability import TailProbability, crude_tail, sampled_tail
 
 TOY_CELLS = 4
 TOY = PassCoordinates(np.full(TOY_CELLS, 0.5))

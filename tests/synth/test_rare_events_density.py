@@ -14,26 +14,27 @@ from scipy.special import ndtr
 from plant_models import (
     Cut,
     DopplerSensor,
+    EntrySpeed,
     Friction,
+    Plant,
     Pneumatics,
     PressingForce,
     RetarderPosition,
     RollingResistance,
     TrackProfile,
 )
-from synth.markov_chain.grid import Resolution
-from synth.problem import EntrySpeed, Plant
-from synth.rare_events.adaptive_simpson import adaptive_simpson
-from synth.rare_events.cross_entropy import Pilot, learn, mixture_of
-from synth.rare_events.importance_sampling import weighted_passes
-from synth.rare_events.pass_coordinates import path_work_coordinates
-from synth.rare_events.pass_score import exit_error
-from synth.rare_events.subset_simulation import SubsetPlan, subset_tails
-from synth.rare_events.tail_density import TailGrid, normal_cdf, predicted_tails, tail_integral
-from synth.rare_events.tail_probability import crude_tail
+from synth.problem.resolution import Resolution
 from synth.simulation.closed_loop import TableController, close_loop, simulate_many
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.random_passes import random_passes
+from synth.studies.rare_events.adaptive_simpson import adaptive_simpson
+from synth.studies.rare_events.cross_entropy import Pilot, learn, mixture_of
+from synth.studies.rare_events.importance_sampling import weighted_passes
+from synth.studies.rare_events.pass_coordinates import path_work_coordinates
+from synth.studies.rare_events.pass_score import exit_error
+from synth.studies.rare_events.subset_simulation import SubsetPlan, subset_tails
+from synth.studies.rare_events.tail_density import TailGrid, normal_cdf, predicted_tails, tail_integral
+from synth.studies.rare_events.tail_probability import crude_tail
 from tuning_tables import (
     ControllerTable,
     CutId,

@@ -14,16 +14,16 @@ from typing import cast
 import pytest
 
 from plant_models.library import SourcedValue
-from synth.comparison.limit_cycle import hunting_report
-from synth.comparison.measured import Measured
-from synth.estimation.estimated_table import EstimatedTable
-from synth.plots.picture import Drawing, Picture
-from synth.report import BookReport, report_page, write_report
-from synth.report.checks_section import checks_section
-from synth.report.figures import counted, percent, quotient, span
-from synth.report.markup import VOID, Markup, element
-from synth.report.verdict import verdict
-from synth.tuning.case_result import WITHOUT_ESTIMATOR, CaseResult
+from synth.book.case_result import WITHOUT_ESTIMATOR, CaseResult
+from synth.book.comparison.limit_cycle import hunting_report
+from synth.book.comparison.measured import Measured
+from synth.book.estimation.estimated_table import EstimatedTable
+from synth.book.printed_numbers import counted, percent, quotient, span
+from synth.present.plots.picture import Drawing, Picture
+from synth.present.report import BookReport, report_page, write_report
+from synth.present.report.checks_section import checks_section
+from synth.present.report.markup import VOID, Markup, element
+from synth.present.report.verdict import verdict
 from tests.synth.case_factory import make_case, make_study
 from tuning_tables import Estimator
 
@@ -234,7 +234,7 @@ def test_a_book_without_feasible_case_and_one_without_infeasible(book: BookRepor
 
 
 def test_the_report_is_written_without_matplotlib() -> None:
-    command = "import synth.report, sys; raise SystemExit('matplotlib' in sys.modules)"
+    command = "import synth.present.report, sys; raise SystemExit('matplotlib' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", command], cwd=ROOT, timeout=60, check=False).returncode == 0
 
 

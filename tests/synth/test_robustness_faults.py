@@ -8,9 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from synth.comparison.baselines import energy_rule
-from synth.problem import Plant
-from synth.robustness.sensor_fault import (
+from plant_models import Plant
+from synth.book.comparison.baselines import energy_rule
+from synth.simulation.closed_loop import LineController, TableController, close_loop, simulate, trace
+from synth.simulation.exit_statistics import clopper_pearson
+from synth.simulation.random_passes import RandomPasses, random_passes
+from synth.studies.robustness.sensor_fault import (
     Bias,
     DropOut,
     LostForGood,
@@ -19,9 +22,6 @@ from synth.robustness.sensor_fault import (
     before_exit,
     reading_times_s,
 )
-from synth.simulation.closed_loop import LineController, TableController, close_loop, simulate, trace
-from synth.simulation.exit_statistics import clopper_pearson
-from synth.simulation.random_passes import RandomPasses, random_passes
 from tests.synth.case_factory import make_plant, make_table
 from tuning_tables import ControllerTable
 from tuning_tables.stage import Stage

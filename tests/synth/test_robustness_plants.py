@@ -9,19 +9,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from plant_models import Friction, PlantError, WeightForce
+from plant_models import Friction, Plant, PlantError, WeightForce
 from synth.configuration.config_file import load_config
 from synth.configuration.cut_class import CutClass
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.dynamic_programme.switching_lines import SwitchingLines
-from synth.kernels.closed_loop import brake_rows
-from synth.problem import Plant
-from synth.robustness.condition import aged_valves, conditions, friction, out_of_service, shifted_stages
-from synth.robustness.parameter import LEFT_OUT, Parameter, assumed_keys, parameters
-from synth.robustness.perturbation import all_off, one_off, sensible_ends
-from synth.robustness.plant_values import NEARLY_SUPPLY, SLOPE_BY_AXLES, STAGE_PRESSURES, by_axles, with_values
+from synth.kernels.loop.closed_loop import brake_rows
 from synth.simulation.closed_loop import LineController, TableController, close_loop, simulate
 from synth.simulation.random_passes import RandomPasses, random_passes
+from synth.solver.switching_lines import SwitchingLines
+from synth.studies.robustness.condition import aged_valves, conditions, friction, out_of_service, shifted_stages
+from synth.studies.robustness.parameter import LEFT_OUT, Parameter, assumed_keys, parameters
+from synth.studies.robustness.perturbation import all_off, one_off, sensible_ends
+from synth.studies.robustness.plant_values import NEARLY_SUPPLY, SLOPE_BY_AXLES, STAGE_PRESSURES, by_axles, with_values
 from tests.synth.case_factory import make_plant, make_table
 
 SUPPLY = "retarder.pneumatics.supply_pressure_kpa"

@@ -7,19 +7,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from synth.book.tune_case import predict
 from synth.configuration.config_file import load_config
-from synth.markov_chain.grid import finer_for_check
-from synth.markov_chain.transitions import check_transitions
-from synth.robustness.condition import aged_valves, friction
-from synth.robustness.parameter import Parameter
-from synth.robustness.perturbation import Perturbation, ends_by
-from synth.robustness.retuned_table import retuned
-from synth.robustness.sensor_fault import Bias
-from synth.robustness.study import Sweep, one_at_a_time, sweep, together
-from synth.robustness.trial import Trial, trial_of
+from synth.problem.resolution import finer_for_check
 from synth.simulation.exit_statistics import rms_ratio
 from synth.simulation.random_passes import random_passes
-from synth.tuning.tune_case import predict
+from synth.solver.chain.transitions import check_transitions
+from synth.studies.robustness.condition import aged_valves, friction
+from synth.studies.robustness.parameter import Parameter
+from synth.studies.robustness.perturbation import Perturbation, ends_by
+from synth.studies.robustness.retuned_table import retuned
+from synth.studies.robustness.sensor_fault import Bias
+from synth.studies.robustness.study import Sweep, one_at_a_time, sweep, together
+from synth.studies.robustness.trial import Trial, trial_of
 from tests.synth.case_factory import make_plant, make_sample, make_table
 
 

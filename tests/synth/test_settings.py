@@ -9,8 +9,8 @@ import pytest
 from plant_models.library import retarder_names
 from synth.configuration.config_file import load_config, parse_config
 from synth.configuration.config_template import default_config_toml
-from synth.input_error import InputError
-from synth.markov_chain.grid import Resolution
+from synth.faults.input_error import InputError
+from synth.problem.resolution import Resolution
 from tuning_tables.canonical import canonical_json
 
 CUT = '[[cut]]\ncar = "gondola-4"\nmass_t = 22\n'

@@ -7,14 +7,14 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from synth.criterion.exit_density import ExitDensity
-from synth.dynamic_programme.policy_evaluation import commands, exit_density
-from synth.dynamic_programme.switching_lines import SwitchingLines
-from synth.fitting.polynomial_fit import PolynomialLines
-from synth.fitting.tabulate import lines_of, prediction_of, tabulate
-from synth.markov_chain.grid import Resolution
-from synth.markov_chain.transitions import persistent_transitions
-from synth.problem import Plant
+from plant_models import Plant
+from synth.problem.resolution import Resolution
+from synth.solver.chain.transitions import persistent_transitions
+from synth.solver.exit_density import ExitDensity
+from synth.solver.policy_evaluation import commands, exit_density
+from synth.solver.polynomial_fit import PolynomialLines
+from synth.solver.switching_lines import SwitchingLines
+from synth.solver.tabulate import lines_of, prediction_of, tabulate
 from tuning_tables import HOLD, LOWER, ControllerTable, Generator, InvalidTable, Predicted, decide_for
 
 GENERATOR = Generator("retarder-synth", "0.1.0", "0" * 64)

@@ -7,13 +7,14 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from synth.comparison.told_friction import best_polished, told_friction
-from synth.dynamic_programme.backward_induction import solve
-from synth.dynamic_programme.policy_evaluation import commands, evaluator, exit_density
-from synth.fitting.tuned_lines import fitted
-from synth.markov_chain.grid import Resolution
-from synth.markov_chain.transitions import persistent_transitions
-from synth.problem import Criterion, Plant
+from plant_models import Plant
+from synth.problem.criterion import Criterion
+from synth.problem.resolution import Resolution
+from synth.solver.backward_induction import solve
+from synth.solver.chain.transitions import persistent_transitions
+from synth.solver.policy_evaluation import commands, evaluator, exit_density
+from synth.solver.tuned_lines import fitted
+from synth.studies.told_friction import best_polished, told_friction
 
 COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.05)
 CRITERION = Criterion(switching_tolerance_m2_s2=0.0)

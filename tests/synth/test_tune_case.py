@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from synth.book.case_result import CaseResult
+from synth.book.tune import Book, tune
 from synth.configuration.config_file import parse_config
-from synth.fitting.tabulate import lines_of
-from synth.tuning.case_result import CaseResult
-from synth.tuning.tune import Book, tune
+from synth.solver.tabulate import lines_of
 from tuning_tables import read_json
 
 SMALL = """

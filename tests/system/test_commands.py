@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from synth.book.output_directory import output_directory
 from synth.configuration.config_file import parse_config
-from synth.output.output_directory import output_directory
 from tests.system.conftest import CLASS, Command
 from tuning_tables import from_json, read_book, read_json, to_csv, to_json, write_book
 from tuning_tables.canonical import canonical_json, document_checksum

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
+from synth.book.estimation.estimated_table import EstimatedTable
 from synth.cli import main
-from synth.estimation.estimated_table import EstimatedTable
 from tests.system.conftest import CLASS, EPOCH, Command
 from tuning_tables import TableBook, read_book, read_json, write_book
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from synth.book.validate_table import Rehearsal, Revalidation, plant_for, revalidate_all
 from synth.configuration.config_file import load_config
-from synth.output.validate_table import Rehearsal, Revalidation, plant_for, revalidate_all
 from synth.simulation.closed_loop import TableController, simulate_many
 from synth.simulation.controllers import full_brake
 from synth.simulation.exit_statistics import brake_power, exit_statistics

@@ -15,7 +15,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from synth.output.output_directory import LEFTOVER, PICTURES
+from synth.book.output_directory import LEFTOVER, PICTURES
 from tuning_tables import read_book, read_json
 
 TUNE = [sys.executable, "-c", "import sys; from synth.cli import main; raise SystemExit(main(sys.argv[1:]))", "tune"]
@@ -130,7 +130,7 @@ def test_ctrl_c_at_a_terminal_is_told_in_one_line(tmp_path: Path) -> None:
 
 
 DRAW_FOR_EVER = """
-from synth.output.draw_pictures import Studio
+from synth.present.draw_pictures import Studio
 from tests.synth.case_factory import make_case
 if __name__ == "__main__":
     with Studio(2) as studio:

@@ -117,7 +117,7 @@ def test_faults_of_the_machine_are_74_wherever_they_come_from(
     def fail(path: object, *_: object, **__: object) -> None:
         raise OSError(number, os.strerror(number), str(path))
 
-    monkeypatch.setattr("synth.tables.table_file.read_book" if step == "read_book" else "pathlib.Path.mkdir", fail)
+    monkeypatch.setattr("synth.book.forms.table_file.read_book" if step == "read_book" else "pathlib.Path.mkdir", fail)
     ran = command("export", tuned / "book.h5", "--format", "csv", "-o", tmp_path / "csv")
     assert (ran.code, ran.out) == (74, "")
     assert f"{os.strerror(number)}; " in ran.sentence
@@ -193,7 +193,7 @@ def test_nothing_is_left_in_the_temporary_directory(two_classes: Path, tmp_path:
 
 def test_a_private_cache_goes_with_its_process(tmp_path: Path) -> None:
     source = (
-        "from synth.kernel_cache import use_kernel_cache; from synth.cli import leave; import sys; "
+        "from synth.kernels.cache import use_kernel_cache; from synth.cli import leave; import sys; "
         "d = use_kernel_cache(); (d / 'kernel.nbi').write_bytes(b'x'); print(d, flush=True); leave(5)"
     )
     nowhere = {"RETARDER_SYNTH_CACHE": "", "XDG_CACHE_HOME": "", "HOME": "/proc/none", "TMPDIR": str(tmp_path)}

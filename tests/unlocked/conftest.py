@@ -7,14 +7,15 @@ import pytest
 from plant_models import (
     Cut,
     DopplerSensor,
+    EntrySpeed,
     Friction,
+    Plant,
     Pneumatics,
     PressingForce,
     RetarderPosition,
     RollingResistance,
     TrackProfile,
 )
-from synth.problem import EntrySpeed, Plant
 
 VALVES = Pneumatics(700.0, 0.0, 0.1, 0.2, 0.1, 0.3, 0.3, 15.0)
 

@@ -13,12 +13,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from plant_models import RollingResistance
+from plant_models import Plant, RollingResistance
 from plant_models.speed_sensor import measured_speed_std
-from synth.dynamic_programme.backward_induction import true_speed_weights
-from synth.markov_chain.grid import Resolution
-from synth.problem import Criterion, Plant
-from synth.unlocked.solution import UnlockedPlant, solve_unlocked, unlocked_plant
+from synth.problem.criterion import Criterion
+from synth.problem.resolution import Resolution
+from synth.solver.backward_induction import true_speed_weights
+from synth.studies.unlocked.solution import UnlockedPlant, solve_unlocked, unlocked_plant
 
 Row = list[float]
 

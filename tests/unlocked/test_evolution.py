@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from synth.unlocked.evolution import evolve
+from synth.studies.unlocked.evolution import evolve
 
 
 def test_a_narrow_turned_valley() -> None:

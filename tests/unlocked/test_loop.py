@@ -7,13 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from synth.dynamic_programme.switching_lines import SwitchingLines
-from synth.problem import Plant
+from plant_models import Plant
 from synth.simulation.closed_loop import LineController
 from synth.simulation.random_passes import random_passes
-from synth.unlocked.drive_modes import drive_modes
-from synth.unlocked.laws import CompactController, SurfaceController, at_rest_only
-from synth.unlocked.loop import unlocked_loop
+from synth.solver.switching_lines import SwitchingLines
+from synth.studies.unlocked.drive_modes import drive_modes
+from synth.studies.unlocked.laws import CompactController, SurfaceController, at_rest_only
+from synth.studies.unlocked.loop import unlocked_loop
 
 
 def falling_lines(plant: Plant, nodes: int) -> SwitchingLines:

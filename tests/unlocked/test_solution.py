@@ -7,18 +7,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from plant_models import Pneumatics
-from synth.dynamic_programme.backward_induction import solve
-from synth.dynamic_programme.policy_evaluation import commands, exit_density
-from synth.markov_chain.grid import Resolution
-from synth.markov_chain.transitions import persistent_transitions
-from synth.problem import Criterion, Plant
+from plant_models import Plant, Pneumatics
+from synth.problem.criterion import Criterion
+from synth.problem.resolution import Resolution
 from synth.simulation.random_passes import random_passes
-from synth.unlocked.compact import Compact, Form, cost_of, fit_surfaces
-from synth.unlocked.laws import SurfaceController, at_rest_only
-from synth.unlocked.loop import unlocked_loop
-from synth.unlocked.solution import evaluate_unlocked, only_at_rest, solve_unlocked, unlocked_plant
-from synth.unlocked.surfaces import SwitchingSurfaces
+from synth.solver.backward_induction import solve
+from synth.solver.chain.transitions import persistent_transitions
+from synth.solver.policy_evaluation import commands, exit_density
+from synth.studies.unlocked.compact import Compact, Form, cost_of, fit_surfaces
+from synth.studies.unlocked.laws import SurfaceController, at_rest_only
+from synth.studies.unlocked.loop import unlocked_loop
+from synth.studies.unlocked.solution import evaluate_unlocked, only_at_rest, solve_unlocked, unlocked_plant
+from synth.studies.unlocked.surfaces import SwitchingSurfaces
 
 TARGET_M_S = 3.0
 CRITERION = Criterion()

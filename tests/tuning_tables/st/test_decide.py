@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from synth.in_the_loop.agreement import ask
+from synth.studies.in_the_loop.agreement import ask
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Fault
 from tuning_tables import decide_many

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from synth.in_the_loop.hard_samples import TRACK_SAMPLES, hard_samples
-from synth.in_the_loop.observed import observed
+from synth.studies.in_the_loop.hard_samples import TRACK_SAMPLES, hard_samples
+from synth.studies.in_the_loop.observed import observed
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.test_decide import loaded
 from tuning_tables.golden_tracks import golden_tracks

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from synth.in_the_loop.agreement import ask
+from synth.studies.in_the_loop.agreement import ask
 from tests.tuning_tables.st.evaluator import Program
 from tuning_tables import decide_many
 from tuning_tables.st_source import TABLE_FILE, st_files

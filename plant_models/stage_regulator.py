@@ -1,0 +1,108 @@
+"""The stage-locked actuator: resting modes, commands and the pressure histories between them.
+
+A command is taken at a sample; no other is taken until its transient has ended (zhukovitsky-2002: choice only at the
+discrete pressures P_k). So a change of stage lasts a whole number of sampling periods, and what the
+brake does meanwhile is known when the command is given. Because the regulator stops at the edge of its
+dead band, a stage rests at P_k − ε when it is reached from below and at P_k + ε from above: the resting
+*mode* is (stage, pressure).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.pneumatics import PressureHistory
+from plant_models.retarder import RetarderPosition
+from plant_models.speed_sensor import DopplerSensor
+
+
+@dataclass(frozen=True)
+class Actuator:
+    """Modes and commands of a position for a cut that may use stages 0 … K.
+
+    H modes: `mode_stage` (H,), `mode_overpressure_kpa` (H,) = max(0, P − P0); mode 0 is the released one.
+    `command` (H, K + 1): index of the chain that leads from a mode to a stage, −1 to the stage itself.
+    C chains: `chain_mode` (C,) resting mode at the end, `chain_samples` (C,) duration in sampling periods,
+    `chain_overpressure_kpa` (C, longest·substeps): means over `substeps` equal parts of each period,
+    counted from the sample at which the command was decided (computing delay and valve delay included).
+    """
+
+    mode_stage: NDArray[np.int64]
+    mode_pressure_kpa: NDArray[np.float64]
+    mode_overpressure_kpa: NDArray[np.float64]
+    command: NDArray[np.int64]
+    chain_mode: NDArray[np.int64]
+    chain_samples: NDArray[np.int64]
+    chain_overpressure_kpa: NDArray[np.float64]
+    substeps: int
+
+    def __post_init__(self) -> None:
+        for array in vars(self).values():
+            if isinstance(array, np.ndarray):
+                array.setflags(write=False)
+
+    @property
+    def stages(self) -> int:
+        """Number of stages K + 1."""
+        return int(self.command.shape[1])
+
+
+def stage_locked_actuator(position: RetarderPosition, sensor: DopplerSensor, top_stage: int, substeps: int) -> Actuator:
+    """Modes and chains of `position` with its stages 0 … `top_stage` under the regulator's sampling."""
+    touch = position.force.touch_pressure_kpa
+    modes = resting_modes(position, top_stage)
+    command = np.full((len(modes), top_stage + 1), -1)
+    ends: list[int] = []
+    samples: list[int] = []
+    histories: list[tuple[float, PressureHistory]] = []
+    for mode, (stage, pressure) in enumerate(modes):
+        for wanted in range(top_stage + 1):
+            if wanted == stage:
+                continue
+            history = position.pneumatics.respond(pressure, position.stage_pressures_kpa[wanted], touch)
+            command[mode, wanted] = len(ends)
+            distance = [abs(p - history.end_kpa) if k == wanted else math.inf for k, p in modes]
+            ends.append(int(np.argmin(distance)))
+            busy_s = sensor.computing_delay_s + history.duration_s
+            samples.append(max(1, math.ceil(busy_s / sensor.sample_period_s - 1e-9)))
+            histories.append((pressure, history))
+    count = max(samples) * substeps
+    edges = np.arange(count + 1) * (sensor.sample_period_s / substeps) - sensor.computing_delay_s
+    overpressure = np.empty((len(ends), count))
+    for chain, (pressure, history) in enumerate(histories):
+        before = max(0.0, pressure - touch) * np.minimum(edges, 0.0)
+        after = history.overpressure_integral(np.maximum(edges, 0.0), touch)
+        overpressure[chain] = np.diff(before + after) / np.diff(edges)
+    pressures = np.array([p for _, p in modes])
+    return Actuator(
+        mode_stage=np.array([k for k, _ in modes]),
+        mode_pressure_kpa=pressures,
+        mode_overpressure_kpa=np.maximum(0.0, pressures - touch),
+        command=command,
+        chain_mode=np.array(ends),
+        chain_samples=np.array(samples),
+        chain_overpressure_kpa=overpressure,
+        substeps=substeps,
+    )
+
+
+def resting_modes(position: RetarderPosition, top_stage: int) -> list[tuple[int, float]]:
+    """(stage, pressure) pairs at which the regulator can rest: P_k − ε from below, P_k + ε from above.
+
+    Closing delays shift them; the pressures are those that commands between neighbouring stages end at.
+    """
+    pressures = position.stage_pressures_kpa
+    touch = position.force.touch_pressure_kpa
+    below, above = [0.0] * (top_stage + 1), [0.0] * (top_stage + 1)
+    for k in range(1, top_stage + 1):
+        below[k] = position.pneumatics.respond(pressures[k - 1], pressures[k], touch).end_kpa
+    for k in range(top_stage):
+        above[k] = position.pneumatics.respond(pressures[k + 1], pressures[k], touch).end_kpa
+    modes = [(0, above[0])]
+    for k in range(1, top_stage):
+        modes += [(k, below[k]), (k, above[k])]
+    return [*modes, (top_stage, below[top_stage])]

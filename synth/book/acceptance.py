@@ -1,0 +1,93 @@
+"""Whether a book of tables keeps the limits that its configuration sets: the verdict, case by case, with reasons."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from synth.book.case_names import case_name, contest, why_infeasible
+from synth.book.case_result import CaseResult
+from synth.book.judgement import Judgement, interval_text, judgement
+from synth.book.printed_numbers import counted
+from synth.configuration.settings import AcceptanceSettings
+from synth.simulation.replicates import share_of
+
+
+@dataclass(frozen=True)
+class CaseVerdict:
+    """One case: `judgement` of its table, whether it is feasible or not.
+
+    `obstacle`: what makes the case infeasible, '' for a feasible one.
+    """
+
+    name: str
+    obstacle: str
+    judgement: Judgement
+
+    @property
+    def feasible(self) -> bool:
+        """A controller that knows the friction would keep the limit of the rms."""
+        return not self.obstacle
+
+    @property
+    def word(self) -> str:
+        """'accepted', 'missed', 'not decidable' or 'infeasible'."""
+        return self.judgement.word if self.feasible else "infeasible"
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """`accepted`: there are feasible cases, and all of them keep every limit; `sentence` says it in words.
+
+    Infeasible cases do not count, but the sentence names them.
+    """
+
+    accepted: bool
+    sentence: str
+    cases: tuple[CaseVerdict, ...]
+
+
+def judge(cases: Sequence[CaseResult], limits: AcceptanceSettings) -> Verdict:
+    """The verdict on the simulated passes of `cases`."""
+    judged = tuple(judge_case(case, limits) for case in cases)
+    feasible = [(case, verdict) for case, verdict in zip(cases, judged, strict=True) if verdict.feasible]
+    bad = [verdict for _, verdict in feasible if verdict.judgement.missed]
+    open_ones = [verdict for _, verdict in feasible if verdict.judgement.word == "not decidable"]
+    if not feasible:
+        sentence = "no case is feasible, so there is nothing to accept"
+    elif bad:
+        sentence = f"a limit is missed in {len(bad)} of {counted(len(feasible), 'feasible case')} ({told(bad)})"
+    elif open_ones:
+        sentence = (
+            f"no limit is missed, but the passes are too few to decide {len(open_ones)} of "
+            f"{counted(len(feasible), 'feasible case')} ({told(open_ones)}); raise validation.passes"
+        )
+    else:
+        worst = max((case for case, _ in feasible), key=lambda case: contest(case).table.statistics.rms_m_s)
+        found = contest(worst).table.statistics
+        sentence = (
+            f"the limits are kept in {counted(len(feasible), 'feasible case')}; the worst rms is {found.rms_m_s:.4f} "
+            f"{interval_text(found.rms_ci95_m_s)} m/s ({case_name(worst)}) where {limits.rms_m_s:g} m/s are allowed"
+        )
+    outside = [f"{verdict.name} ({verdict.obstacle})" for verdict in judged if not verdict.feasible]
+    if outside:
+        sentence += f"; infeasible and outside this verdict: {', '.join(outside)}"
+    return Verdict(bool(feasible) and not bad and not open_ones, sentence, judged)
+
+
+def told(verdicts: Sequence[CaseVerdict]) -> str:
+    """Cases with what is missed or undecided in them."""
+    return "; ".join(f"{verdict.name}: {', '.join(verdict.judgement.phrases)}" for verdict in verdicts)
+
+
+def judge_case(case: CaseResult, limits: AcceptanceSettings) -> CaseVerdict:
+    """The verdict on one case, from the passes that its table was simulated on."""
+    error = case.exit_speeds_m_s.astype(float) - case.target_speed_m_s
+    over = share_of(error > limits.overspeed_margin_m_s, case.exit_weight)
+    obstacle = "" if case.feasibility.feasible else why_infeasible(case)
+    found = judgement(contest(case).table.statistics, over, case.table.predicted, limits)
+    if case.feasibility.undecided and found.missed:
+        # What is missed would not count in an infeasible case, and that cannot be told.
+        unsure = "the friction-known reference is too near to the limit to tell whether the case is feasible"
+        found = Judgement((), (*found.missed, *found.undecided, unsure))
+    return CaseVerdict(case_name(case), obstacle, found)

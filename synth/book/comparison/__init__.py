@@ -1,0 +1,1 @@
+"""What a table is compared with: tuned classical laws, bounds, limit cycles."""

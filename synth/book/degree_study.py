@@ -1,0 +1,62 @@
+"""Which degree the lines need: tables of every degree, rounded and predicted as the exported one is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from synth.book.case_result import DegreeStudy
+from synth.book.tune_case import predict, rms_of_lines
+from synth.solver.backward_induction import Solution
+from synth.solver.chain.transitions import Transitions
+from synth.solver.policy_evaluation import commands, occupancy_of
+from synth.solver.polynomial_fit import PolynomialLines, fit_lines
+from synth.solver.tabulate import UNPREDICTED, tabulate
+from synth.solver.tuned_lines import polished
+from tuning_tables import ControllerTable, Generator, InvalidTable
+
+
+@dataclass(frozen=True)
+class TablesOfDegree:
+    """Tables of lines of one degree, fitted and polished; None where rounding would let two lines touch."""
+
+    degree: int
+    fitted: ControllerTable | None
+    polished: ControllerTable | None
+
+
+def tables_by_degree(
+    solution: Solution, degrees: tuple[int, ...], generator: Generator, created: str
+) -> Iterator[TablesOfDegree]:
+    """Lines of every degree, fitted and polished as a tune does for a criterion without a requirement."""
+    design, target, criterion = solution.transitions, solution.target_speed_m_s, solution.criterion
+    _, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
+
+    def table(lines: PolynomialLines) -> ControllerTable | None:
+        try:
+            return tabulate(design.plant, lines, target, UNPREDICTED, generator, f"degree-{lines.degree}", created)
+        except InvalidTable:
+            return None
+
+    for degree in degrees:
+        fit = fit_lines(solution, occupancy.samples, degree)
+        yield TablesOfDegree(degree, table(fit.lines), table(polished(design, fit, target, criterion)))
+
+
+def degree_study(solution: Solution, check: Transitions, label: str, tables: tuple[TablesOfDegree, ...]) -> DegreeStudy:
+    """Rms that the forward density on `check` gives each of `tables`, and the solver's lines; NaN without a table."""
+    target = solution.target_speed_m_s
+
+    def rms_m_s(table: ControllerTable | None) -> float:
+        return math.nan if table is None else predict(check, table).rms_m_s(target)
+
+    return DegreeStudy(
+        label=f"{label}, {target:g} m/s",
+        degrees=tuple(each.degree for each in tables),
+        fitted_rms_m_s=np.array([rms_m_s(each.fitted) for each in tables]),
+        polished_rms_m_s=np.array([rms_m_s(each.polished) for each in tables]),
+        lines_rms_m_s=rms_of_lines(check, solution.lines.at(check.grid.path_m), target),
+    )

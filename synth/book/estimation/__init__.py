@@ -1,0 +1,1 @@
+"""Tables with an estimator of the speed."""

@@ -1,0 +1,64 @@
+"""The estimator of a plant, and the plant as a regulator with an estimator sees it: what its lines are designed on."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from plant_models import Plant, path_breaks_m, path_coefficients
+from plant_models.speed_sensor import measured_speed_std
+from synth.kernels.loop.closed_loop import Draws
+from synth.simulation.closed_loop import ClosedLoop
+from synth.simulation.controllers import Controller
+from synth.simulation.random_passes import RandomPasses
+from tuning_tables.estimator import MOST_BREAKS, Estimator
+
+
+def estimator_of(plant: Plant) -> Estimator:
+    """The estimator that knows this plant: its work by grade, mean resistance and brake, its sensor and friction.
+
+    Quantisation counts as noise, resolution/√12. D and W are exact at the breaks of N(s) and grade; very long cuts,
+    with more breaks than a table takes, have evenly spaced ones instead.
+    """
+    breaks = path_breaks_m(plant.position, plant.cut, plant.profile)
+    inside = breaks[(breaks > 0.0) & (breaks < plant.exit_m)]
+    edges = np.unique(np.concatenate([[0.0], inside, [plant.exit_m]]))
+    # Slivers between nearly equal breaks would vanish in float32.
+    edges = edges[np.concatenate([[True], np.diff(edges) > 2e-3])]
+    if len(edges) > MOST_BREAKS:
+        edges = np.linspace(0.0, plant.exit_m, MOST_BREAKS)
+    cells = path_coefficients(plant.position, plant.cut, plant.profile, edges)
+    drive = cells.gravity_m_s2 - cells.resistance_m_s2_per_n_kn * plant.resistance.mean_n_per_kn
+    length = np.diff(edges)
+    sensor, friction = plant.sensor, plant.friction
+    return Estimator(
+        speed_noise_m_s=measured_speed_std(sensor.noise_m_s, sensor.resolution_m_s),
+        friction_cv=plant.friction_cv,
+        path_std=friction.path_std,
+        correlation_length_m=friction.correlation_length_m,
+        touch_pressure_kpa=plant.position.force.touch_pressure_kpa,
+        s_m=tuple(edges.tolist()),
+        drive_m2_s2=(0.0, *np.cumsum(drive * length).tolist()),
+        brake_m2_s2_per_kpa=(0.0, *np.cumsum(cells.brake_m_s2_per_kpa * length).tolist()),
+    )
+
+
+def speed_error_m_s(loop: ClosedLoop, controller: Controller, passes: RandomPasses) -> float:
+    """Root mean square error of the speed that `controller` compares with its lines, where it decides."""
+    draws = loop.draws(passes)
+    squares, count = 0.0, 0
+    for index in range(len(passes)):
+        one: Any = (each[index : index + 1] for each in draws)
+        trace = loop.follow(controller, Draws(*one))
+        decided = ~np.isnan(trace.measured_m_s)
+        squares += float(((trace.measured_m_s - trace.speed_m_s)[decided] ** 2).sum())
+        count += int(decided.sum())
+    return math.sqrt(squares / max(count, 1))
+
+
+def as_estimated(plant: Plant, error_m_s: float) -> Plant:
+    """`plant` whose regulator sees the speed with a white error of this standard deviation, unquantised."""
+    return replace(plant, sensor=replace(plant.sensor, noise_m_s=error_m_s, resolution_m_s=0.0))

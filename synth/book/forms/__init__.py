@@ -1,0 +1,1 @@
+"""The forms of a table: JSON, CSV, C, Structured Text."""

@@ -1,0 +1,45 @@
+"""What may be asked of an export of controller code, from the words of the command line."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from synth.faults.input_error import InputError
+from tuning_tables.export_prefix import RETARDER, ExportPrefix
+from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
+
+SELF_TESTS: Mapping[str, SelfTestSize] = {"full": FULL, "small": SMALL}
+OPTIONS: Mapping[str, tuple[str, ...]] = {
+    "c": ("--prefix", "--self-test"),
+    "st": ("--prefix", "--self-test", "--split"),
+}
+"""Of the forms that have any."""
+
+
+@dataclass(frozen=True)
+class CodeOptions:
+    """`prefix` of all names, what the `self_test` asks; `split`: a file each unit of Structured Text."""
+
+    prefix: ExportPrefix = RETARDER
+    self_test: SelfTestSize = FULL
+    split: bool = False
+
+
+PLAIN = CodeOptions()
+
+
+def code_options(form: str, prefix: str | None, self_test: str | None, split: bool) -> CodeOptions:
+    """The options as given, None for those that were not; `InputError` where `form` has no such option or value."""
+    given = {"--prefix": prefix is not None, "--self-test": self_test is not None, "--split": split}
+    for name in given:
+        if given[name] and name not in OPTIONS.get(form, ()):
+            takers = " and ".join(each for each, options in OPTIONS.items() if name in options)
+            raise InputError(f"{name} is for --format {takers}, not for {form}; leave it out")
+    if self_test is not None and self_test not in SELF_TESTS:
+        raise InputError(f"--self-test {self_test}: there is no such self-test; give {', '.join(SELF_TESTS)}")
+    try:
+        named = RETARDER if prefix is None else ExportPrefix(prefix)
+    except ValueError as fault:
+        raise InputError(f"--prefix {prefix}: {fault}") from None
+    return CodeOptions(named, SELF_TESTS[self_test or "full"], split)

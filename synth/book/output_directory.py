@@ -1,0 +1,122 @@
+"""The directory that a tune leaves its results in: checked before anything is computed, held by one tune at a time."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import re
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from synth.faults.input_error import InputError
+from synth.faults.machine_fault import MACHINE_FAULTS
+from tuning_tables import TableError, read_json
+from tuning_tables.atomic_file import faults_naming
+
+SUMMARY = "summary.json"
+FOLDERS = ("tables", "c", "plots")
+LEFTOVER = re.compile(r"\..+\.[0-9a-f]{16}\.part")
+PICTURES = re.compile(
+    r"(rms-by-controller|feasibility|switchings|degree-study|(exit-density|surfaces|policy-map|sample-passes)-.+)"
+    r"\.(png|svg)"
+)
+"""File names of the pictures that a tune draws."""
+
+SWEEP_LEDGER, SWEPT_CONFIG = "sweep/ledger.jsonl", "config.toml"
+"""What is in every directory of a sweep, and beside every book of one."""
+
+CSV_MARKS = (b"record,key,", b"\r\ntext,generator.name,retarder-synth,")
+
+
+@contextlib.contextmanager
+def output_directory(path: Path) -> Iterator[Path]:
+    """Make and hold `path` for one tune; `InputError` if it cannot be written or another tune holds it.
+
+    Within: no summary.json, which would not belong to what is written next, and no leftovers of a killed tune.
+    """
+    require_no_sweep(path)
+    make_directory(path)
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        try:
+            # On the directory itself: no lock file is left, and the lock ends with the process, however it ends.
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise InputError(f"{path}: another tune is writing there; wait for it, or give another one by -o") from None
+        except OSError:  # a file system without locks
+            pass
+        for folder in FOLDERS:
+            make_directory(path / folder)
+        remove_leftovers(path)
+        (path / SUMMARY).unlink(missing_ok=True)
+        with faults_naming(path):
+            os.fsync(descriptor)
+        yield path
+    finally:
+        os.close(descriptor)
+
+
+def require_no_sweep(path: Path) -> None:
+    """`InputError` if `path` is the directory of a sweep, or that of one of its conditions."""
+    above = path.resolve().parent / SWEEP_LEDGER
+    if (path / SWEEP_LEDGER).exists() or (above.exists() and (path / SWEPT_CONFIG).exists()):
+        raise InputError(f"{path}: it holds the results of a sweep; give another directory by -o")
+
+
+def make_directory(path: Path) -> None:
+    """Make `path` a directory that can be written, if it is not; `InputError` otherwise."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=path).close()
+    except FileExistsError:
+        raise InputError(f"{path}: this is a file; give a directory by -o") from None
+    except NotADirectoryError:
+        raise InputError(f"{path}: a part of this path is a file; give a directory by -o") from None
+    except OSError as error:
+        if error.errno in MACHINE_FAULTS:
+            raise
+        raise InputError(f"{path}: cannot be written ({error.strerror}); give another directory by -o") from None
+
+
+def remove_leftovers(path: Path) -> None:
+    """Remove the unfinished files that a killed tune has left; only the holder of the directory may."""
+    for folder in (path, *(path / name for name in FOLDERS)):
+        for file in folder.glob(".*.part"):
+            if LEFTOVER.fullmatch(file.name):
+                file.unlink(missing_ok=True)
+
+
+def remove_stale(path: Path, written: set[str]) -> tuple[str, ...]:
+    """Remove what an earlier tune left in `path` and this one did not write; names of odd files that were left alone.
+
+    `written` holds names relative to `path`, with slashes. Removed are tables that retarder-synth made, whole ones,
+    in tables/, pictures called as a tune calls them in plots/, and the report.
+    """
+    odd = []
+    for file in sorted(path.glob("tables/*.json")):
+        if f"tables/{file.name}" not in written and file.is_file():
+            try:
+                if read_json(file).generator.name == "retarder-synth":
+                    file.unlink()
+            except (OSError, TableError):
+                odd.append(f"tables/{file.name}")
+    for file in sorted(path.glob("tables/*.csv")):
+        if f"tables/{file.name}" not in written and is_own_csv(file):
+            file.unlink()
+    for file in sorted(path.glob("plots/*")):
+        if f"plots/{file.name}" not in written and PICTURES.fullmatch(file.name) and file.is_file():
+            file.unlink()
+    report = path / "report.html"
+    if report.name not in written and report.is_file() and b"retarder-synth" in report.read_bytes():
+        report.unlink()
+    return tuple(odd)
+
+
+def is_own_csv(file: Path) -> bool:
+    """Whether `file` is a table of this tool as CSV."""
+    if not file.is_file():
+        return False
+    content = file.read_bytes()
+    return content.startswith(CSV_MARKS[0]) and CSV_MARKS[1] in content

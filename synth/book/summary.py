@@ -1,0 +1,172 @@
+"""summary.json: every figure of a book for programs, and the hashes of the files that belong to it.
+
+The same book gives the same bytes; times of computing are not in it.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict
+from importlib.metadata import version
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+from synth.book.acceptance import CaseVerdict, Verdict
+from synth.book.case_names import contest
+from synth.book.case_result import CaseResult, DegreeStudy
+from synth.book.comparison.limit_cycle import hunting_report, pressure_hunting
+from synth.book.comparison.measured import Measured
+from synth.book.estimation.estimated_table import EstimatedTable
+from synth.book.tune import Book
+from synth.problem.requirement_found import Finding
+from tuning_tables.canonical import LARGEST_EXACT_INTEGER
+
+FORMAT = "retarder-summary"
+VERSION = 1
+
+Document = dict[str, Any]
+"""A JSON object."""
+
+
+def summary_of(book: Book, verdict: Verdict, file_hashes: Mapping[str, str]) -> Document:
+    """The document of `book`; `file_hashes`: SHA-256 by file name, all files but summary.json itself."""
+    config = book.config
+    document = {
+        "format": FORMAT,
+        "version": VERSION,
+        "created": book.created,
+        "generator": {"name": "retarder-synth", "version": version("retarder-synth"), "config_sha256": config.sha256},
+        "title": config.title,
+        "config": json.loads(config.canonical_json()),
+        "warnings": config.warnings,
+        "parameters_assumed": [value.key for value in config.parameters if value.assumed],
+        "criterion": config.criterion.sentence,
+        "accepted": verdict.accepted,
+        "verdict": verdict.sentence,
+        "overall": overall(book.cases),
+        "cases": [case_of(case, word) for case, word in zip(book.cases, verdict.cases, strict=True)],
+        "degree_studies": [study_of(study) for study in book.degree_studies],
+        "files": dict(file_hashes),
+    }
+    plain_document: Document = plain(document)
+    return plain_document
+
+
+def overall(cases: tuple[CaseResult, ...]) -> Document:
+    """Figures over the feasible cases; infeasible ones are only counted."""
+    found = [contest(case) for case in cases if case.feasibility.feasible]
+    figures: Document = {"cases": len(cases), "feasible": len(found)}
+    if found:
+        honest, published = [c.table.honesty for c in found], [c.published.honesty for c in found]
+        figures |= {
+            "highest_rms_m_s": max(c.table.statistics.rms_m_s for c in found),
+            "median_regret": median(c.regret for c in found),
+            "highest_table_loss": max(c.table_loss for c in found),
+            "honesty": [min(honest), max(honest)],
+            "as_published_honesty": [min(published), max(published)],
+        }
+    return figures
+
+
+def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
+    """Everything about one case."""
+    found = contest(case)
+    served, entry = case.feasibility.served_m_s, case.plant.entry
+    return {
+        "id": case.table.id,
+        "table": f"tables/{case.table.id}.json",
+        "label": case.label,
+        "category": case.plant.cut.category,
+        "mass_t": case.plant.cut.mass_t,
+        "top_stage": case.plant.top_stage,
+        "target_speed_m_s": case.target_speed_m_s,
+        "verdict": verdict.word,
+        "missed_limits": verdict.judgement.missed,
+        "undecided_limits": verdict.judgement.undecided,
+        "feasible": verdict.feasible,
+        "why_infeasible": verdict.obstacle or None,
+        "entry_m_s": (entry.low_m_s, entry.high_m_s),
+        "served_entry_m_s": served,
+        "predicted": asdict(case.table.predicted),
+        "simulated": measured_of(found.table),
+        "brake_power": asdict(case.brake_power),
+        "honesty": found.table.honesty,
+        "honesty_ci95": found.table.honesty_ci95,
+        "table_loss": found.table_loss,
+        "table_loss_ci95": found.lines.table_ratio_ci95,
+        "regret": found.regret,
+        "regret_ci95": found.known_friction.table_ratio_ci95,
+        "best_baseline": found.best_baseline.name if found.best_baseline else None,
+        "comparison": {entry.name: measured_of(entry) for entry in found.entries},
+        "as_published_honesty": found.published.honesty,
+        "requirement": None if case.finding is None else requirement_of(case.finding),
+        "indifference": asdict(case.indifference),
+        "estimate": None if case.estimate is None else {**estimate_of(case.estimate), "left_out": case.left_out},
+        "escaped_probability": case.predicted.escaped,
+        "hunting": {
+            "pressure": [{"stage": stage, **asdict(cycle)} for stage, cycle in pressure_hunting(case.plant)],
+            "speed": [asdict(each) for each in hunting_report(case.plant, case.table_lines)],
+        },
+    }
+
+
+def measured_of(entry: Measured) -> Document:
+    """The statistics of one controller, with what it promised, and the ratio of the table to it."""
+    return {
+        **asdict(entry.statistics),
+        "predicted_rms_m_s": entry.predicted_rms_m_s,
+        "table_ratio": entry.table_ratio,
+        "table_ratio_ci95": entry.table_ratio_ci95,
+    }
+
+
+def estimate_of(made: EstimatedTable) -> Document:
+    """How lines for the estimated speed were designed."""
+    return {
+        "error_m_s": made.error_m_s,
+        "trim_m_s": made.trim_m_s,
+        "rounds": made.rounds,
+        "designed": made.designed,
+        "used": made.gains,
+        "tuning_rms_without_m_s": made.plain_rms_m_s,
+        "tuning_rms_before_trim_m_s": made.rms_before_m_s,
+        "tuning_rms_m_s": made.rms_after_m_s,
+    }
+
+
+def requirement_of(finding: Finding) -> Document:
+    """What keeping the criterion's requirement took, with its sentence."""
+    return {**asdict(finding), "sentence": finding.sentence}
+
+
+def study_of(study: DegreeStudy) -> Document:
+    """A degree study with its arrays as lists."""
+    return {
+        "label": study.label,
+        "degrees": study.degrees,
+        "fitted_rms_m_s": study.fitted_rms_m_s.tolist(),
+        "polished_rms_m_s": study.polished_rms_m_s.tolist(),
+        "lines_rms_m_s": study.lines_rms_m_s,
+    }
+
+
+def plain(value: Any) -> Any:
+    """`value` as JSON holds it: tuples as lists, numbers of numpy as those of Python, NaN and infinities as null.
+
+    Whole numbers that a double cannot hold become strings.
+    """
+    if isinstance(value, dict):
+        return {key: plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, np.generic):
+        return plain(value.item())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    if isinstance(value, int) and abs(value) > LARGEST_EXACT_INTEGER:
+        return str(value)
+    return value

@@ -1,1 +1,0 @@
-"""What the lines shall be good at; plain values."""

@@ -1,1 +1,0 @@
-"""The stochastic dynamic programme: solved backward, its policies evaluated exactly."""

@@ -1,0 +1,1 @@
+"""What can go wrong: with the input, with the machine, and what nobody foresaw."""

@@ -1,0 +1,154 @@
+"""Where numba keeps compiled kernels, and how a stale or damaged cache is kept from being used.
+
+numba renews a cached kernel when the file that defines it changes, but not when a constant or helper that it took from
+another file does. The cache directory is therefore named by a fingerprint of every file that can hold kernels, of the
+versions that compile them, and of the machine: after any change the kernels are compiled anew, in a new directory.
+
+This module imports no numba, so that the command line starts at once.
+"""
+
+import atexit
+import contextlib
+import hashlib
+import os
+import platform
+import re
+import shutil
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from importlib.metadata import version
+from pathlib import Path
+from types import TracebackType
+from typing import ParamSpec, TypeVar
+
+_P = ParamSpec("_P")
+_R = TypeVar("_R")
+
+_OWNER = "retarder-synth"
+_KERNEL_SOURCES = (
+    "plant_models/**/*.py",
+    "synth/**/kernels/**/*.py",
+    "tuning_tables/rule.py",
+    "tuning_tables/estimator.py",
+)
+_COMPILERS = ("llvmlite", "numba", "numpy")
+_FINGERPRINT = re.compile(r"[0-9a-f]{16}")
+_UNUSED_AFTER_S = 30 * 24 * 3600.0
+_HARMLESS_SETTINGS = ("NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS")
+
+
+def use_kernel_cache() -> Path:
+    """Point numba at the cache directory of exactly these kernels, and return that directory.
+
+    The directory is BASE/retarder-synth/FINGERPRINT, where BASE is the first absolute and writable path of
+    $RETARDER_SYNTH_CACHE, $XDG_CACHE_HOME and ~/.cache; where none is, a private temporary directory that is removed
+    when the process ends. A NUMBA_CACHE_DIR set by the user is replaced: it could hold stale kernels.
+
+    Call it before the first kernel module is imported, for a kernel keeps the directory it found on import. Calling it
+    again changes nothing. Directories of other fingerprints that were not used for 30 days are removed.
+    """
+    fingerprint = kernel_fingerprint()
+    current = _directory_in_use()
+    if current is not None and current.name == fingerprint and _is_writable(current):
+        directory = current
+    else:
+        directory = _base_directory() / _OWNER / fingerprint
+        directory.mkdir(parents=True, exist_ok=True)
+        _remove_unused(directory)
+    os.utime(directory)
+    os.environ["NUMBA_CACHE_DIR"] = str(directory)
+    if "numba" in sys.modules:
+        sys.modules["numba"].config.CACHE_DIR = str(directory)
+    return directory
+
+
+def kernel_fingerprint(root: Path | None = None) -> str:
+    """Return 16 hexadecimal digits that change with any kernel source, compiler version or setting, and the processor.
+
+    `root` is the directory that holds the three packages; by default the one this module was loaded from.
+    """
+    root = Path(__file__).resolve().parents[2] if root is None else root
+    facts = [f"{name} {version(name)}" for name in _COMPILERS]
+    facts += [platform.python_implementation(), platform.python_version(), sys.platform, _processor()]
+    facts += sorted(f"{k}={v}" for k, v in os.environ.items() if k.startswith("NUMBA_") and k not in _HARMLESS_SETTINGS)
+    digest = hashlib.sha256(repr(facts).encode())
+    sources = {path.relative_to(root).as_posix(): path for pattern in _KERNEL_SOURCES for path in root.glob(pattern)}
+    for name in sorted(sources):
+        content = sources[name].read_bytes()
+        digest.update(f"\0{name}\0{len(content)}\0".encode() + content)
+    return digest.hexdigest()[:16]
+
+
+def guarded(call: Callable[_P, _R], *args: _P.args, **kwargs: _P.kwargs) -> _R:
+    """Return `call(*args, **kwargs)`; where numba could not read its cache, empty the cache and call once more.
+
+    Only an error raised while numba was reading its cache counts; any other error, and a second one, passes through.
+    A call that is repeated starts afresh, so it must leave nothing behind when a kernel fails to load. What numba
+    itself cannot notice (a bit flipped inside the machine code of a kernel) is not noticed here either.
+    """
+    try:
+        return call(*args, **kwargs)
+    except Exception as error:
+        directory = _directory_in_use()
+        if directory is None or isinstance(error, OSError) or not _raised_in_numba_cache(error.__traceback__):
+            raise
+        empty_kernel_cache(directory)
+    return call(*args, **kwargs)
+
+
+def empty_kernel_cache(directory: Path) -> None:
+    """Remove every compiled kernel below `directory`, but no directory: another process may be writing there."""
+    for path in [*directory.rglob("*.nbi"), *directory.rglob("*.nbc")]:
+        path.unlink(missing_ok=True)
+
+
+def _directory_in_use() -> Path | None:
+    directory = Path(os.environ.get("NUMBA_CACHE_DIR", ""))
+    ours = directory.parent.name == _OWNER and _FINGERPRINT.fullmatch(directory.name) is not None
+    return directory if ours else None
+
+
+def _base_directory() -> Path:
+    named = (os.environ.get("RETARDER_SYNTH_CACHE"), os.environ.get("XDG_CACHE_HOME"), "~/.cache")
+    for base in [os.path.expanduser(name) for name in named if name]:
+        if os.path.isabs(base) and _is_writable(Path(base, _OWNER)):
+            return Path(base)
+    private = tempfile.mkdtemp(prefix=f"{_OWNER}-")
+    atexit.register(shutil.rmtree, private, ignore_errors=True)
+    return Path(private)
+
+
+def _is_writable(directory: Path) -> bool:
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=directory).close()
+    except OSError:
+        return False
+    return True
+
+
+def _remove_unused(directory: Path) -> None:
+    oldest = time.time() - _UNUSED_AFTER_S
+    for sibling in directory.parent.iterdir():
+        with contextlib.suppress(FileNotFoundError):  # another process may be removing the same one
+            if _FINGERPRINT.fullmatch(sibling.name) and sibling != directory and sibling.stat().st_mtime < oldest:
+                shutil.rmtree(sibling, ignore_errors=True)
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        lines = []
+    model = next((line for line in lines if line.startswith(("model name", "CPU part"))), platform.processor())
+    return f"{platform.machine()} {model}"
+
+
+def _raised_in_numba_cache(traceback: TracebackType | None) -> bool:
+    while traceback is not None:
+        if traceback.tb_frame.f_globals.get("__name__") == "numba.core.caching":
+            return True
+        traceback = traceback.tb_next
+    return False

@@ -1,0 +1,184 @@
+"""Kernel of the closed loop for many passes: lanes that move in step, bit for bit what `kernels.closed_loop` computes.
+
+One pass is a chain of roots and divisions, each waiting for the one before, with branches that no processor foretells.
+So `LANES` passes move side by side, one piece of motion a turn: to the edge of the path cell or to the end of a piece
+of constant overpressure, whichever comes first. A lane whose pass has ended takes the next one. What each pass does
+does not depend on its neighbours.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from synth.kernels.loop.closed_loop import LONGEST_PASS_S, Draws, Exits, Path
+from synth.kernels.loop.lane_places import (
+    BEFORE,
+    CELL,
+    DRAG,
+    FIRST_S,
+    FLOATS,
+    INTS,
+    LANES,
+    LEFT_S,
+    NUMBER,
+    PASS,
+    PIECE,
+    PLACES,
+    ROW,
+    SAMPLE,
+    SLOPE,
+    STAGE,
+    SWITCHINGS,
+    Floats,
+    Ints,
+    Pieces,
+    S,
+    V,
+    Work,
+)
+from synth.kernels.loop.lane_regulator import listen, regulate
+from synth.kernels.loop.regulator import Rule, Sensor
+from synth.kernels.vector import packs
+from synth.kernels.vector.borrowing import borrowing, borrowing_inline
+
+LINE_BYTES = 64
+"""What the memory delivers at once."""
+
+SAMPLES_FETCHED = 128
+"""Noise of a pass that is worth asking for in advance; most passes need less."""
+
+
+@borrowing_inline
+def move(work: Work, active: int, path: Path, brakes: Floats, pieces: Pieces, looked_at: int, longest: int) -> Any:
+    """Move each lane by one turn of `closed_loop.advance`, and on to the next cell or piece; one that stalls stays.
+
+    Returns how many lanes wait for the regulator (at pieces below `looked_at`), those in `waiting`, and how many passes
+    are over, at the exit, by a stall or by taking too long, those in `ended`.
+    """
+    x, n = work.floats, work.ints
+    cells, waiting, ended = path.gravity_m_s2.shape[0], 0, 0
+    for lane in range(0, active, packs.EIGHT):
+        s, v, left = packs.load8(x, S + lane), packs.load8(x, V + lane), packs.load8(x, LEFT_S + lane)
+        cell, piece = packs.load8(n, CELL + lane), packs.load8(n, PIECE + lane)
+        brake = packs.gather(brakes, packs.load8(n, ROW + lane) + cell)
+        free = packs.gather(path.gravity_m_s2, cell) - packs.load8(x, DRAG + lane)
+        edge = packs.gather(path.edges_m, cell + 1)
+        a = free - brake * packs.gather(pieces.kpa, piece)
+        gap = edge - s
+        v_end = v + a * left
+        way = 0.5 * (v + v_end) * left
+        ends = (v_end > 0.0) & (way < gap)
+        square = v * v + 2.0 * a * gap
+        crosses = packs.opposite(ends) & (square > 0.0)
+        v_edge = packs.root(packs.greatest(square, 0.0))
+        later = packs.greatest(0.0, left - 2.0 * gap / (v + v_edge))
+        packs.store(x, S + lane, packs.choose(ends, s + way, packs.choose(crosses, edge, s)))
+        packs.store(x, V + lane, packs.choose(ends, v_end, packs.choose(crosses, v_edge, v)))
+        cell = packs.choose(crosses, cell + 1, cell)
+        packs.store(n, CELL + lane, cell)
+        piece = packs.choose(ends, packs.gather(pieces.after, piece), piece)
+        packs.store(n, PIECE + lane, piece)
+        lasts = packs.gather(pieces.duration_s, piece)
+        packs.store(x, LEFT_S + lane, packs.choose(ends, lasts, packs.choose(crosses, later, left)))
+        sample = packs.load8(n, SAMPLE + lane)
+        sample = packs.choose(ends & (piece < pieces.sampled), sample + 1, sample)
+        packs.store(n, SAMPLE + lane, sample)
+        stalls = packs.opposite(ends) & (square <= 0.0)
+        over = (cell == cells) | stalls | (ends & (piece < pieces.resting) & (sample >= longest))
+        looks = ends & (piece < looked_at) & packs.opposite(over)
+        number = packs.load8(n, NUMBER + lane)
+        waiting += packs.keep(work.waiting, waiting, looks, number)
+        if packs.holds_anywhere(over):
+            ended += packs.keep(work.ended, ended, over, number)
+    packs.store(work.waiting, waiting, packs.load8(n, NUMBER + LANES))  # fill up the last pack
+    return waiting, ended
+
+
+@borrowing_inline
+def begin(x: Floats, n: Ints, lane: int, i: int, path: Path, draws: Draws) -> None:
+    """Pass `i` enters, released, on `lane`; its sample −1 lasts until the first."""
+    x[S + lane], x[V + lane] = 0.0, draws.entry_m_s[i]
+    x[LEFT_S + lane], x[FIRST_S + lane] = draws.first_sample_s[i], draws.first_sample_s[i]
+    x[DRAG + lane] = path.drag_m_s2_per_n_kn * draws.resistance_n_kn[i]
+    x[SLOPE + lane], x[BEFORE + lane] = 0.0, math.nan
+    n[CELL + lane], n[ROW + lane], n[PASS + lane] = 0, i * path.gravity_m_s2.shape[0], i
+    n[PIECE + lane], n[SAMPLE + lane], n[STAGE + lane], n[SWITCHINGS + lane] = 0, -1, 0, 0
+
+
+@borrowing_inline
+def fetch_ahead(i: int, path: Path, draws: Draws) -> None:
+    """Ask the memory for the rows of pass `i`, which is to begin soon: gathers do not tell it what comes next."""
+    for cell in range(0, path.gravity_m_s2.shape[0], LINE_BYTES // 8):
+        packs.fetch(draws.brake_m_s2_per_kpa, i * path.gravity_m_s2.shape[0] + cell)
+    for sample in range(0, SAMPLES_FETCHED, LINE_BYTES // 4):
+        packs.fetch(draws.noise_z, i * draws.noise_z.shape[1] + sample)
+
+
+@borrowing_inline
+def record(
+    work: Work, lane: int, longest: int, path: Path, pieces: Pieces, sensor: Sensor, draws: Draws, exits: Exits
+) -> None:
+    """Write down how the pass on `lane` has ended: at the exit, by a stall, or by taking too long."""
+    x, n = work.floats, work.ints
+    i, cell, piece, sample = n[PASS + lane], n[CELL + lane], n[PIECE + lane], n[SAMPLE + lane]
+    started, lasts = 0.0, x[FIRST_S + lane]
+    if piece > 0:
+        started = x[FIRST_S + lane] + sample * sensor.period_s + pieces.start_s[piece]
+        lasts = pieces.duration_s[piece]
+    used = lasts - x[LEFT_S + lane]
+    leaves = cell == path.gravity_m_s2.shape[0]
+    if not leaves and not (piece < pieces.resting and sample >= longest):
+        free = path.gravity_m_s2[cell] - x[DRAG + lane]
+        used -= x[V + lane] / (free - draws.brake_m_s2_per_kpa[i, cell] * pieces.kpa[piece])
+    exits.speed_m_s[i] = x[V + lane] if leaves else 0.0
+    exits.time_s[i] = started + used
+    exits.stalled[i] = not leaves
+    exits.switchings[i] = n[SWITCHINGS + lane]
+
+
+@borrowing_inline
+def clear(work: Work) -> None:
+    """No pass anywhere."""
+    work.floats[:], work.ints[:] = 0.0, 0
+    for place in range(PLACES):
+        work.floats[V + place], work.ints[NUMBER + place] = math.nan, min(place, LANES)
+
+
+@borrowing_inline
+def leave(x: Floats, n: Ints, lane: int, last: int) -> None:
+    """Lane `lane` takes over the pass of lane `last`, which falls idle."""
+    for field in range(FLOATS):
+        x[field * PLACES + lane] = x[field * PLACES + last]
+    for field in range(INTS - 1):  # the number is the lane's own
+        n[field * PLACES + lane] = n[field * PLACES + last]
+    x[V + last], n[CELL + last] = math.nan, 0
+
+
+@borrowing
+def run_lanes(path: Path, pieces: Pieces, sensor: Sensor, law: Rule, draws: Draws, exits: Exits, work: Work) -> None:
+    """Simulate all passes of `draws` into `exits`; the law must be without estimator."""
+    x, n = work.floats, work.ints
+    brakes, passes = draws.brake_m_s2_per_kpa.reshape(-1), draws.cut_factor.shape[0]
+    active, longest = min(LANES, passes), int(LONGEST_PASS_S / sensor.period_s)
+    looked_at = pieces.sampled if law.lead_s != 0.0 else pieces.resting
+    clear(work)
+    for lane in range(active):
+        begin(x, n, lane, lane, path, draws)
+    following = active
+    while active > 0:
+        waiting, ended = move(work, active, path, brakes, pieces, looked_at, longest)
+        told = listen(work, waiting, pieces, sensor, law, draws.noise_z)
+        for k in range(told):
+            regulate(x, n, work.told[k], work.heard[k], pieces, law)
+        # From the last lane down: it may be moved into one that falls idle.
+        for k in range(ended - 1, -1, -1):
+            lane = work.ended[k]
+            record(work, lane, longest, path, pieces, sensor, draws, exits)
+            if following < passes:
+                begin(x, n, lane, following, path, draws)
+                fetch_ahead(following + 2, path, draws)
+                following += 1
+            else:
+                active -= 1
+                leave(x, n, lane, active)

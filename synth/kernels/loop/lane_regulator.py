@@ -1,0 +1,126 @@
+"""Kernel of the regulator for passes side by side: what `kernels.regulator` computes, for eight lanes at a time.
+
+The rule itself is only asked where it has a command to give: its branches are dear, and commands are few.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.kernels.loop.lane_places import (
+    BEFORE,
+    LANES,
+    LEFT_S,
+    PASS,
+    PIECE,
+    SAMPLE,
+    SLOPE,
+    STAGE,
+    SWITCHINGS,
+    Floats,
+    Ints,
+    Pieces,
+    S,
+    V,
+    Work,
+)
+from synth.kernels.loop.regulator import Rule, Sensor, stage_by_lines, table_decision
+from synth.kernels.vector import packs
+from synth.kernels.vector.borrowing import borrowing_inline
+
+
+@borrowing_inline
+def listen(work: Work, count: int, pieces: Pieces, sensor: Sensor, law: Rule, noise_z: NDArray[np.float32]) -> int:
+    """Measured speed of the first `count` lanes of `waiting`; returns how many have a command, those in `told`."""
+    x, n, waiting = work.floats, work.ints, work.waiting
+    told = 0
+    for k in range(0, count, packs.EIGHT):
+        lane = packs.load8(waiting, k)
+        s, stage = packs.gather(x, lane + S), packs.gather(n, lane + STAGE)
+        speed = measured(x, n, lane, sensor, noise_z)
+        if law.coefficients.shape[0] > 0:
+            speaks = speaks_by_table(law, stage, s, speed)
+        else:
+            if law.lead_s != 0.0:
+                speed = speed + law.lead_s * slope(x, lane, speed, sensor.period_s, law.filter_s)
+            speaks = speaks_by_lines(law, stage, s, speed)
+            if law.lead_s != 0.0:  # looks at the sensor within a chain, too, but has no command there
+                speaks = speaks & (packs.gather(n, lane + PIECE) < pieces.resting)
+        packs.keep(work.heard, told, speaks, speed)
+        told += packs.keep(work.told, told, speaks, lane)
+    return told
+
+
+@borrowing_inline
+def measured(x, n, lane, sensor, noise_z):
+    """`regulator.measure` for a pack of lanes."""
+    width = noise_z.shape[1]
+    sample = packs.gather(n, lane + SAMPLE)
+    while packs.holds_anywhere(sample >= width):
+        sample = packs.choose(sample >= width, sample - width, sample)
+    z = packs.wide(packs.gather(noise_z, packs.gather(n, lane + PASS) * width + packs.greatest(sample, 0)))
+    value = packs.gather(x, lane + V) + sensor.noise_m_s * z
+    if sensor.resolution_m_s > 0.0:
+        value = packs.nearest(value / sensor.resolution_m_s) * sensor.resolution_m_s
+    return packs.choose(value < 0.0, 0.0, value)
+
+
+@borrowing_inline
+def slope(x, lane, speed, period_s, filter_s):
+    """Filtered slope of the measured speed (as in `closed_loop.run_pass`), noted for the next sample."""
+    change = speed - packs.gather(x, lane + BEFORE)
+    past = packs.gather(x, lane + SLOPE)
+    known = change == change  # neither at the first sample nor beside a missing reading
+    gain = period_s / (period_s + filter_s)
+    new = packs.choose(known, past + gain * (change / period_s - past), past)
+    packs.scatter(x, lane + SLOPE, known, new)
+    packs.scatter(x, lane + BEFORE, lane < LANES, speed)
+    return new
+
+
+@borrowing_inline
+def speaks_by_table(law, stage, s_m, v_m_s):
+    """Whether the table has a command, by the arithmetic of `rule.decide`; a line that is not there is NaN.
+
+    For readings within the numbers of float32, which is all that the loop has; NaN: no command.
+    """
+    s, v = packs.narrow(s_m), packs.narrow(v_m_s)
+    s = packs.least(packs.greatest(s, law.valid[0]), law.valid[1])
+    terms = law.coefficients.shape[2]
+    below, above = stage * (2 * terms), stage * (2 * terms) + terms
+    lower = packs.gather(law.coefficients, below + (terms - 1))
+    upper = packs.gather(law.coefficients, above + (terms - 1))
+    for power in range(terms - 2, -1, -1):
+        lower = lower * s + packs.gather(law.coefficients, below + power)
+        upper = upper * s + packs.gather(law.coefficients, above + power)
+    return (v < lower) | (v > upper)
+
+
+@borrowing_inline
+def speaks_by_lines(law, stage, s, v):
+    """Whether `regulator.line_decision` is not 0."""
+    place = s / law.spacing_m
+    node = packs.least(packs.whole(place), law.lower.shape[1] - 2)
+    part = place - packs.fraction(node)
+    at = stage * law.lower.shape[1] + node
+    lower, upper = packs.gather(law.lower, at), packs.gather(law.upper, at)
+    below = v < lower + part * (packs.gather(law.lower, at + 1) - lower)
+    above = v > upper + part * (packs.gather(law.upper, at + 1) - upper)
+    return below | above
+
+
+@borrowing_inline
+def regulate(x: Floats, n: Ints, lane: int, speed_m_s: float, pieces: Pieces, law: Rule) -> None:
+    """What the regulator does where it has a command (as in `closed_loop.run_pass`)."""
+    s, stage, top = x[S + lane], n[STAGE + lane], pieces.command.shape[1] - 1
+    if law.coefficients.shape[0] > 0:
+        decision = table_decision(law.coefficients, law.has_line, law.valid, stage, s, speed_m_s)
+        wanted = min(max(stage + decision, 0), top)
+    else:
+        wanted = stage_by_lines(law.lower, law.upper, law.spacing_m, law.multi_step, stage, top, s, speed_m_s)
+    if wanted != stage:
+        first = pieces.command[np.uint64(n[PIECE + lane] - 1), np.uint64(wanted)]
+        n[STAGE + lane], n[PIECE + lane] = wanted, first
+        n[SWITCHINGS + lane] += 1
+        x[LEFT_S + lane] = pieces.duration_s[first]

@@ -1,0 +1,1 @@
+"""Kernels of the dynamic programme, and of the exact evaluation of a policy."""

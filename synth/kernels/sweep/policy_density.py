@@ -1,0 +1,248 @@
+"""Forward density of a fixed policy, scenario by scenario (Chapman–Kolmogorov equation).
+
+The chain is embedded at the samples of the regulator. At a sample the cut stands at a path node with the
+stage at rest; it is told to go down, to hold (then the next sample is v·T_c further, spread over the two
+nodes around it) or to go up (then the next sample is at the end of the transient).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from synth.kernels.sweep.flow import NO_MASS, add_row, clear, extent, push, shifts, widen
+from synth.kernels.sweep.landing_plan import landing_scratch, landing_tables
+from synth.kernels.sweep.next_sample import quanta_to_next_sample
+from synth.kernels.sweep.transient import spread_changes
+from synth.kernels.vector.borrowing import borrowing
+from synth.kernels.vector.packs import EIGHT, choose, fraction, holds_anywhere, least, load8, magnitude, store, whole
+
+NEGLIGIBLE_MASS = 1e-11
+"""A state with less mass is left out."""
+
+MATTERS = 1e-3 * NEGLIGIBLE_MASS
+"""Energies at which no state has this mass are not looked at."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def forward(
+    down, up, entry, speed, stage, pressure, lower_chain, upper_chain, chain_mode,
+    ends, factors, probability, mean, std, levels, transition, stationary,
+    drive, brake, factor, extra, path_step, energy_step, period, density, band, exits, totals,
+):  # fmt: skip
+    """Density of sampled states, and the distribution at the exit, in the scenarios `factor`, `extra` (I,).
+
+    `down`, `up` (N, K + 1, E) command probabilities; `entry` (M + 1, E): probability of entering with speed j
+    and having the first sample at node r; the rest as in `flow` and `transient`. Outputs: `density`
+    (I, N, H, L, E) expected number of samples at each node and state, or (I, 0, 0, 0, 0); `band` (I, N, 2) range of
+    energies that are met at a node; `exits` (I, E) exit probability by energy; `totals` (I, 4): stalled mass,
+    escaped mass, changes down, changes up.
+    """
+    modes, size, points, row = pressure.shape[0], levels.shape[0], speed.shape[0], ends.shape[4]
+    reach, ring = entry.shape[0], probability.shape[1] + 3
+    heading = np.empty((reach, modes, size, row))
+    arriving, mixing = np.zeros((ring, modes, size, row)), np.zeros((ring, modes, size, row))
+    memory = np.zeros(row), np.zeros(row), np.ones(row), np.zeros((2, row)), np.empty((modes, size))
+    spans, arrived = np.empty((reach, modes, size, 2), np.int64), np.zeros((modes, size, 2), np.int64)
+    landed = np.empty((ring, modes, 2), np.int64)
+    scratch = landing_scratch(row, size, speed.dtype)
+    for i in range(factor.shape[0]):
+        met, slope = landing_tables(
+            factor[i : i + 1], extra[i : i + 1], factors, probability, mean, std,
+            levels, pressure, drive, brake, path_step,
+        )  # fmt: skip
+        heading[:], spans[:], landed[:] = 0.0, 0, 0
+        for r in range(reach):
+            for q in range(size):
+                heading[r, 0, q, :points] = entry[r] * stationary[q]
+                spans[r, 0, q, 1] = points
+        follow(
+            heading, arriving, mixing, memory, scratch, spans, arrived, landed,
+            down, up, speed, stage, pressure, lower_chain, upper_chain, chain_mode,
+            ends, factors, met[0], slope[0], levels, transition,
+            drive, brake, factor[i], extra[i], path_step, energy_step, period, density[i], band[i], totals[i],
+        )  # fmt: skip
+        collect(arriving[drive.shape[0] % ring], mixing[drive.shape[0] % ring], heading, exits[i])
+
+
+@borrowing
+def follow(
+    heading, arriving, mixing, memory, scratch, spans, arrived, landed,
+    down, up, speed, stage, pressure, lower_chain, upper_chain, chain_mode,
+    ends, factors, met, slope, levels, transition,
+    drive, brake, factor, extra, path_step, energy_step, period, density, band, totals,
+):  # fmt: skip
+    """One scenario: masses on their way (`heading`) and after transients (`arriving`, `mixing`: rings).
+
+    Most states are empty, and it is known which: `spans` (M + 1, H, L, 2) ranges of energies out of which `heading` is
+    zero, `landed` (ring, H, 2) the same of the rings, `arrived` (H, L, 2) of what matters of the arrivals at this node.
+    The rings are zero before, and after but for the exit node.
+    """
+    moved, mass, quanta, chance, shift = memory
+    nodes, reach, ring = drive.shape[0], heading.shape[0], arriving.shape[0]
+    modes, size, points = pressure.shape[0], levels.shape[0], speed.shape[0]
+    totals[:] = 0.0
+    first, last = 0, points
+    for n in range(nodes):
+        here, mixed = arriving[n % ring], mixing[n % ring]
+        find_arrivals(here, mixed, transition, landed[n % ring], arrived)
+        first, last = occupied(heading, spans, arrived, points)
+        band[n, 0], band[n, 1] = first, last
+        shifts(n, factor, levels, drive, brake, pressure, extra, path_step, energy_step, shift)
+        lowest = max(first, 1)
+        for h in range(modes):
+            k = stage[h]
+            for q in range(size):
+                totals[0] += here[h, q, 0] + heading[0, h, q, 0]
+                begin, end = masses_at_sample(
+                    here[h, q], arrived[h, q], heading[0, h, q], spans[0, h, q], lowest, last, mass
+                )
+                acceleration = shift[h, q] * energy_step / path_step
+                quanta_to_next_sample(speed, begin, end, acceleration, period, path_step, quanta)
+                for j in range(begin, end):
+                    chance[0, j], chance[1, j] = down[n, k, j], up[n, k, j]
+                go_on(mass, chance, quanta, begin, end, heading, spans, h, q)
+                if density.shape[0] > 0:
+                    for j in range(lowest, last):
+                        density[n, h, q, j] = mass[j] if begin <= j < end else 0.0
+                for side in range(2):
+                    c = upper_chain[h] if side == 1 else lower_chain[h]
+                    share = chance[side]
+                    low, high = extent(share, begin, end, NEGLIGIBLE_MASS)
+                    if c < 0 or low >= high:
+                        continue
+                    changes = totals[2 + side]
+                    for j in range(low, high):
+                        changes += share[j]
+                    totals[2 + side] = changes
+                    totals[0] += spread_changes(
+                        share, n, nodes, c, q, low, high, factor, chain_mode[c], ends, factors, met, slope,
+                        extra, path_step, energy_step, points, arriving, mixing, landed, scratch,
+                    )  # fmt: skip
+        clear_landed(here, mixed, landed[n % ring])
+        for r in range(1, reach):
+            clear_spans(heading[r - 1], spans[r - 1])
+            fallen, escaped = push(
+                heading[r], spans[r], transition, shift, points, first, last, heading[r - 1], spans[r - 1], moved
+            )
+            totals[0] += fallen
+            totals[1] += escaped
+        clear_spans(heading[reach - 1], spans[reach - 1])
+
+
+@borrowing
+def find_arrivals(here, mixed, transition, landed, arrived):
+    """Mass that was deposited before the noise level changed joins `here` (H, L, E') after the change.
+
+    `landed` (H, 2): ranges of energies out of which both are zero; `arrived` (H, L, 2) becomes the ranges out of which
+    nothing that matters has arrived.
+    """
+    modes, levels, row = here.shape
+    for h in range(modes):
+        low, high = landed[h, 0], landed[h, 1]
+        for q in range(levels):
+            begin, end = extent(mixed[h, q], low, high, NO_MASS)
+            for m in range(levels):
+                add_row(mixed[h, q], transition[q, m], begin, end, here, (h * levels + m) * row)
+        for q in range(levels):
+            arrived[h, q, 0], arrived[h, q, 1] = extent(here[h, q], low, high, MATTERS)
+
+
+@borrowing
+def clear_landed(here, mixed, landed):
+    """Set a node's rows (H, L, E') to zero where `landed` (H, 2) says and mixing filled packs; then it says nowhere."""
+    for h in range(here.shape[0]):
+        for q in range(here.shape[1]):
+            clear(here[h, q], landed[h, 0], landed[h, 1] + EIGHT)
+            clear(mixed[h, q], landed[h, 0], landed[h, 1])
+        landed[h, 0], landed[h, 1] = 0, 0
+
+
+@borrowing
+def occupied(heading, spans, arrived, points):
+    """The range of energies at which mass that matters stands, has arrived or is on its way."""
+    low, high = heading.shape[3], 0
+    for h in range(arrived.shape[0]):
+        for q in range(arrived.shape[1]):
+            if arrived[h, q, 0] < arrived[h, q, 1]:
+                low, high = min(low, arrived[h, q, 0]), max(high, arrived[h, q, 1])
+            for r in range(heading.shape[0]):
+                begin, end = extent(heading[r, h, q], spans[r, h, q, 0], min(spans[r, h, q, 1], points), MATTERS)
+                if begin < end:
+                    low, high = min(low, begin), max(high, end)
+    return min(low, high), high
+
+
+@borrowing
+def masses_at_sample(here, arrived, heading, span, first, last, mass):
+    """`mass` (E',) = `here` + `heading` where it is not negligible: the range returned, which zeros follow."""
+    begin, end = span[0], span[1]
+    if begin >= end:
+        begin, end = arrived[0], arrived[1]
+    elif arrived[0] < arrived[1]:
+        begin, end = min(begin, arrived[0]), max(end, arrived[1])
+    begin, end = max(begin, first), min(end, last)
+    for j in range(begin, end):
+        mass[j] = here[j] + heading[j]
+    begin, end = extent(mass, begin, end, NEGLIGIBLE_MASS)
+    for j in range(end, end + EIGHT):
+        mass[j] = 0.0
+    return begin, end
+
+
+@borrowing
+def go_on(mass, chance, quanta, begin, end, heading, spans, h, q):
+    """What holds is on its way to its next sample, in `heading` (M + 1, H, L, E') at mode `h` and level `q`.
+
+    `mass` (E',) becomes the expected number of samples at this node: where the next sample may be at it again, the
+    geometric series is summed. `chance` (2, E'), probabilities of the commands down and up, becomes the masses that
+    get them. What is negligible goes nowhere.
+    """
+    reach, row = heading.shape[0], mass.shape[0]
+    size = heading.shape[2]
+    stride, state = heading.shape[1] * size * row, (h * size + q) * row
+    for j in range(begin, end, EIGHT):
+        found, f = load8(mass, j), load8(quanta, j)
+        down, up = load8(chance, j), load8(chance, row + j)
+        matters = magnitude(found) >= NEGLIGIBLE_MASS
+        step = least(whole(f), reach - 2)
+        x = least(f - fraction(step), 1.0)
+        hold, again = 1.0 - down - up, step < 1
+        samples = choose(again, found / (1.0 - hold * (1.0 - x)), found)
+        store(mass, j, choose(matters, samples, found))
+        samples = choose(matters, samples, 0.0)
+        far, near = samples * hold * x, choose(again, 0.0, samples * hold * (1.0 - x))
+        for r in range(reach - 1):
+            lanes = step == r
+            if holds_anywhere(lanes):
+                at = r * stride + state + j
+                widen(spans[r, h, q], j, min(j + EIGHT, row))
+                widen(spans[r + 1, h, q], j, min(j + EIGHT, row))
+                store(heading, at, load8(heading, at) + choose(lanes, near, 0.0))
+                store(heading, at + stride, load8(heading, at + stride) + choose(lanes, far, 0.0))
+        down, up = samples * down, samples * up
+        store(chance, j, choose(magnitude(down) >= NEGLIGIBLE_MASS, down, 0.0))
+        store(chance, row + j, choose(magnitude(up) >= NEGLIGIBLE_MASS, up, 0.0))
+
+
+@borrowing
+def clear_spans(rows, spans):
+    """Set `rows` (H, L, E') to zero in the ranges `spans` (H, L, 2), which become empty."""
+    for h in range(rows.shape[0]):
+        for q in range(rows.shape[1]):
+            clear(rows[h, q], spans[h, q, 0], spans[h, q, 1])
+            spans[h, q, 0], spans[h, q, 1] = 0, 0
+
+
+@borrowing
+def collect(arriving, mixing, heading, exits):
+    """Sum all mass at the exit over modes and levels into `exits` (E,), and leave the rings empty."""
+    exits[:] = 0.0
+    for h in range(arriving.shape[0]):
+        for q in range(arriving.shape[1]):
+            for j in range(exits.shape[0]):
+                exits[j] += arriving[h, q, j] + mixing[h, q, j]
+                for r in range(heading.shape[0]):
+                    exits[j] += heading[r, h, q, j]
+    arriving[:] = 0.0
+    mixing[:] = 0.0

@@ -1,0 +1,122 @@
+"""A change of stage as one step of the chain: from the deciding sample to the first unlocked one, for one policy.
+
+`spread_changes` takes masses to where they land, `change_values` fetches the expected values from there; both follow
+the same plan (`landing_plan`), so that they are transposes of one another.
+
+Values and masses live in rings over the path: node n is at index n mod ring length, the exit node N too. Rows hold
+E' ≥ E energies. Further arguments, the same for both: `n`, `c`, `q` node, transient, noise level; begin ≤ j < end the
+energies; `factor` ξ_cut; `mode` reached; `met`, `slope` of the scenario from `landing_plan.landing_tables`; `scratch`
+from `landing_plan.landing_scratch`; the rest as in `landing_plan`.
+"""
+
+from __future__ import annotations
+
+from synth.kernels.sweep.flow import widen
+from synth.kernels.sweep.landing_plan import find_runs, landing_of_pack, law_met, planned, store_plan
+from synth.kernels.vector.borrowing import borrowing, borrowing_inline
+from synth.kernels.vector.packs import EIGHT, add_to, choose, eight, gather, greatest, item, least, load8, store, whole
+
+
+@borrowing
+def spread_changes(
+    share, n, last, c, q, begin, end, factor, mode, ends, factors, met, slope,
+    extra, path_step, energy_step, points, arriving, mixing, landed, scratch,
+):  # fmt: skip
+    """Spread the masses `share` (E',) over `arriving` and `mixing` (ring, H, L, E'); returns the mass that stalls.
+
+    `landed` (ring, H, 2): ranges of energies out of which both are zero, widened.
+    """
+    crossed, runs, place, weight = scratch
+    ring, modes, size, row = arriving.shape
+    at, stride = (n * ends.shape[1] + c) * ends.shape[2] * 2 * row, modes * size * row
+    quanta, cells, start = 1.0 / path_step, 1.0 / energy_step, n % ring
+    count = find_runs(n, c, begin, end, factor, ends, factors, path_step, met.shape[1] - 1, crossed, runs)
+    stalled = 0.0
+    bottom, top = eight(points), eight(0.0)
+    soonest, latest = whole(eight(last)), whole(top)
+    for side in range(2):
+        for k in range(count):
+            stop, over = runs[k + 1, 0], runs[k, 1]
+            for j in range(runs[k, 0], stop, EIGHT):
+                mass = load8(share, j)
+                for m in range(size):
+                    law = law_met(met, c, max(over, 0), q, m, side)
+                    at_a, at_b, a, b, by, lowest, highest = landing_of_pack(
+                        ends, at + j, row, law, over < 0, slope[mode, m, n:], last - n, extra, quanta, cells, points,
+                        stride, start * stride + (mode * size + m) * row, ring - start, ring * stride,
+                    )  # fmt: skip
+                    a = a[0] * mass, a[1] * mass, a[2] * mass, a[3] * mass
+                    b = b[0] * mass, b[1] * mass, b[2] * mass, b[3] * mass
+                    store_plan(at_a, at_b, a, b, m, place, weight)
+                    bottom, top = least(bottom, lowest), greatest(top, highest)
+                    soonest, latest = least(soonest, by), greatest(latest, by)
+                for lane in range(min(stop - j, EIGHT)):  # levels inside: additions to different rows can overlap
+                    for m in range(size):
+                        to_a, to_b, first_a, first_b = planned(m, lane, place, weight)
+                        if to_a < 0:
+                            stalled += item(weight, first_a)
+                            continue
+                        add_four(arriving, to_a, weight, first_a)
+                        add_four(mixing, to_b, weight, first_b)
+    store(place, 0, soonest)
+    store(place, EIGHT, latest)
+    store(weight, 0, bottom)
+    store(weight, EIGHT, top)
+    widen_landed(place, weight, n, last, points, landed[:, mode])
+    return stalled
+
+
+@borrowing_inline
+def add_four(masses, at, weight, first):
+    """Add four numbers, every eighth of `weight` from flat index `first` on, to neighbours in `masses` from `at` on."""
+    for k in range(4):
+        add_to(masses, at + k, item(weight, first + EIGHT * k))
+
+
+@borrowing
+def widen_landed(quanta, cells, n, last, points, landed):
+    """Widen `landed` (ring, 2) by landings from node `n`.
+
+    `quanta` (2, 8) least and largest numbers of quanta crossed, `cells` (2, 8) of positions, of which any may be met.
+    """
+    low, high, soonest, latest = points - 3, 1, last, 0
+    for lane in range(EIGHT):
+        low, high = min(low, int(item(cells, lane))), max(high, int(item(cells, EIGHT + lane)))
+        soonest, latest = min(soonest, item(quanta, lane)), max(latest, item(quanta, EIGHT + lane))
+    for k in range(n + soonest, n + latest + 2):
+        widen(landed[k % landed.shape[0]], max(low, 1) - 1, min(high, points - 3) + 3)
+
+
+@borrowing
+def change_values(
+    n, last, c, q, begin, end, factor, mode, ends, factors, met, slope,
+    extra, path_step, energy_step, points, values, mixed, stalled, scratch, out,
+):  # fmt: skip
+    """`out`[begin:end] (E',) = expected value after transient `c`; `values`, `mixed` (ring, H, L, E').
+
+    What follows in `out` within a pack is overwritten too.
+    """
+    crossed, runs, _, _ = scratch
+    ring, modes, size, row = values.shape
+    at, stride = (n * ends.shape[1] + c) * ends.shape[2] * 2 * row, modes * size * row
+    quanta, cells, start = 1.0 / path_step, 1.0 / energy_step, n % ring
+    count = find_runs(n, c, begin, end, factor, ends, factors, path_step, met.shape[1] - 1, crossed, runs)
+    for k in range(count):
+        over = runs[k, 1]
+        for j in range(runs[k, 0], runs[k + 1, 0], EIGHT):
+            total = eight(0.0)
+            for m in range(size):
+                for side in range(2):
+                    law = law_met(met, c, max(over, 0), q, m, side)
+                    at_a, at_b, a, b, _, _, _ = landing_of_pack(
+                        ends, at + j, row, law, over < 0, slope[mode, m, n:], last - n, extra, quanta, cells, points,
+                        stride, start * stride + (mode * size + m) * row, ring - start, ring * stride,
+                    )  # fmt: skip
+                    stopped = at_a < 0
+                    at_a = greatest(at_a, 0)
+                    f0 = gather(values, at_a) * a[0] + gather(mixed, at_b) * b[0]
+                    f1 = gather(values, at_a + 1) * a[1] + gather(mixed, at_b + 1) * b[1]
+                    f2 = gather(values, at_a + 2) * a[2] + gather(mixed, at_b + 2) * b[2]
+                    f3 = gather(values, at_a + 3) * a[3] + gather(mixed, at_b + 3) * b[3]
+                    total = total + choose(stopped, a[0] * stalled, (f0 + f1) + (f2 + f3))
+            store(out, j, total)  # beyond the run: overwritten by the next, or out of range

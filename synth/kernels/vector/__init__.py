@@ -1,0 +1,1 @@
+"""Packs of numbers that the processor works on at once."""

@@ -1,1 +1,0 @@
-"""The verdict on tables, and what a tune leaves in its directory."""

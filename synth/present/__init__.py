@@ -1,0 +1,1 @@
+"""Pictures and reports of what a tune found, and the directory that holds them."""

@@ -1,0 +1,33 @@
+"""A figure as the bytes of a PNG and an SVG file: the same figure gives the same bytes."""
+
+from __future__ import annotations
+
+import io
+import threading
+from pathlib import Path
+
+import matplotlib
+from matplotlib.figure import Figure
+
+from synth.present.plots.house_style import DOTS_PER_INCH
+from synth.present.plots.picture import Drawing, save_drawing
+
+IDENTIFIER_SALT = "retarder-synth"
+"""Makes the identifiers inside an SVG a hash of what they name instead of random."""
+
+_salted = threading.Lock()
+
+
+def draw(figure: Figure) -> Drawing:
+    """Both forms of `figure`, without dates."""
+    png, svg = io.BytesIO(), io.BytesIO()
+    figure.savefig(png, format="png", dpi=DOTS_PER_INCH, metadata={"Software": None}, pil_kwargs={"compress_level": 3})
+    # The salt is a global setting of matplotlib: one thread at a time.
+    with _salted, matplotlib.rc_context({"svg.hashsalt": IDENTIFIER_SALT, "svg.fonttype": "path"}):
+        figure.savefig(svg, format="svg", dpi=DOTS_PER_INCH, metadata={"Date": None, "Creator": None})
+    return Drawing(png.getvalue(), svg.getvalue())
+
+
+def save_figure(figure: Figure, directory: Path, name: str) -> tuple[Path, Path]:
+    """Draw `figure` and write it as `directory/name.png` and `.svg`; raises `OSError`."""
+    return save_drawing(draw(figure), directory, name)

@@ -1,0 +1,114 @@
+"""All pictures of a book: what is drawn, and what is said under it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from matplotlib.figure import Figure
+
+from synth.book.case_names import by_class, case_name, file_stem
+from synth.book.case_result import CaseResult, DegreeStudy
+from synth.present.plots.degree_study import degree_study
+from synth.present.plots.exit_density import NARROW_M_S, WIDE_M_S, exit_density, prediction_origin
+from synth.present.plots.feasibility import feasibility
+from synth.present.plots.figure_file import draw
+from synth.present.plots.picture import Picture
+from synth.present.plots.policy_map import policy_map
+from synth.present.plots.rms_by_controller import rms_by_controller
+from synth.present.plots.sample_passes import sample_passes
+from synth.present.plots.surfaces import surfaces
+from synth.present.plots.switchings import switchings
+from synth.simulation.exit_statistics import OVERSPEED_M_S
+
+
+def all_pictures(cases: Sequence[CaseResult], studies: Sequence[DegreeStudy], limit_m_s: float) -> Iterator[Picture]:
+    """Every picture of the book in the order of the report; each is drawn when it is asked for."""
+    yield from book_pictures(cases, studies, limit_m_s)
+    for group in by_class(cases):
+        yield from class_pictures(group)
+    for case in cases:
+        yield from case_pictures(case)
+
+
+def book_pictures(cases: Sequence[CaseResult], studies: Sequence[DegreeStudy], limit_m_s: float) -> Iterator[Picture]:
+    """The pictures that set all cases side by side; `limit_m_s`: acceptance limit of the rms."""
+    yield picture(
+        rms_by_controller(cases, limit_m_s),
+        "rms-by-controller",
+        "Accuracy",
+        "Exit-speed error by controller",
+        "Simulated rms with its 95 % interval, the same passes for every controller. Hollow: the rms that the method "
+        "itself predicted. Grey: infeasible, even one told the friction misses the limit.",
+    )
+    yield picture(
+        feasibility(cases),
+        "feasibility",
+        "Accuracy",
+        "Served entry speeds",
+        "Rms of a controller that knows the friction of the cut, over entry speed: what the position can do at all.",
+    )
+    yield picture(
+        switchings(cases),
+        "switchings",
+        "Switchings",
+        "Use of the indifferent region",
+        "Where several commands cost the same within the tolerance, hold is taken: predicted switchings a pass and "
+        "rms of the solver's lines with and without this rule.",
+    )
+    if studies:
+        yield picture(
+            degree_study(studies),
+            "degree-study",
+            "Degree of the lines",
+            "Exit-speed error by degree",
+            "Rms that the forward equation predicts of rounded tables with lines of degree r, on the grid on which the "
+            "exported tables are predicted: fitted to the solver's lines, and polished. Dotted: the solver's lines "
+            "themselves on that grid.",
+        )
+
+
+def class_pictures(cases: Sequence[CaseResult]) -> Iterator[Picture]:
+    """The pictures of one cut class over its targets; surfaces and sample passes for the middle target only."""
+    label, middle = cases[0].label, cases[len(cases) // 2]
+    yield picture(
+        exit_density(cases),
+        file_stem("exit-density", label),
+        "Predicted and simulated exit speed",
+        f"Exit speed of {label}",
+        f"{label}: density of the exported table ({prediction_origin(cases)}), over the simulated passes in bins of "
+        f"{NARROW_M_S:g} m/s, beyond ±{OVERSPEED_M_S:g} m/s of {WIDE_M_S:g} m/s; above near the target, below on a "
+        "logarithmic scale with the tails. The step of the grid widens the predicted peak, most at low targets. "
+        "Hatched: the prediction is smaller than the error of its grid there, and is not drawn.",
+    )
+    yield picture(
+        surfaces(middle),
+        file_stem("surfaces", case_name(middle)),
+        "Switching surfaces",
+        f"Switching surfaces of {case_name(middle)}",
+        f"{case_name(middle)}: the exported lines (bold) over path and pressure, joined linearly between the stages.",
+    )
+    yield picture(
+        sample_passes(middle),
+        file_stem("sample-passes", case_name(middle)),
+        "Sample passes",
+        f"Sample passes, {case_name(middle)}",
+        f"{case_name(middle)}: passes with low, nominal and high friction under the exported table.",
+    )
+
+
+def case_pictures(case: CaseResult) -> Iterator[Picture]:
+    """The pictures of one case."""
+    name = case_name(case)
+    yield picture(
+        policy_map(case),
+        file_stem("policy-map", name),
+        "Switching lines",
+        f"Best command by stage, {name}",
+        f"{name}: best command by stage, the region of indifferent control (hatched), the solver's switching lines "
+        "(dots), the exported polynomial lines (bold), and simulated passes while they were in the stage.",
+    )
+
+
+def picture(figure: Figure, name: str, section: str, title: str, caption: str) -> Picture:
+    """Draw `figure` as a picture."""
+    return Picture(name, section, title, caption, draw(figure))

@@ -1,0 +1,43 @@
+"""Everything that a report says, as one value."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from plant_models.library import SourcedValue
+from synth.book.case_result import CaseResult, DegreeStudy
+from synth.present.plots.picture import Picture
+
+
+@dataclass(frozen=True)
+class BookReport:
+    """A tune's results and where they come from.
+
+    `created`: UTC instant, given by the caller; `verdict`: one sentence, `accepted`: the same as a bit;
+    `acceptance_rms_m_s`: the limit that the tables had to keep; `parameters`: every number the results depend on;
+    `file_hashes`: SHA-256 by file name; `pictures` in the order of the page.
+    """
+
+    title: str
+    tool_version: str
+    config_sha256: str
+    created: str
+    cases: tuple[CaseResult, ...]
+    degree_studies: tuple[DegreeStudy, ...]
+    parameters: tuple[SourcedValue, ...]
+    accepted: bool
+    verdict: str
+    acceptance_rms_m_s: float
+    file_hashes: Mapping[str, str]
+    pictures: tuple[Picture, ...]
+
+    @property
+    def feasible(self) -> tuple[CaseResult, ...]:
+        """Cases that a controller knowing the friction would serve within the limit."""
+        return tuple(case for case in self.cases if case.feasibility.feasible)
+
+    @property
+    def infeasible(self) -> tuple[CaseResult, ...]:
+        """The other cases."""
+        return tuple(case for case in self.cases if not case.feasibility.feasible)

@@ -1,0 +1,80 @@
+"""The summary table: one row a case."""
+
+from __future__ import annotations
+
+from synth.book.case_names import contest, why_infeasible
+from synth.book.case_result import CaseResult
+from synth.book.printed_numbers import ABSENT, in_ten_thousand, interval, percent, quotient, quotient_interval, speed
+from synth.present.report.book_report import BookReport
+from synth.present.report.markup import Cell, Markup, head_row, table
+from synth.simulation.exit_statistics import BrakePower
+
+HONEST = (0.9, 1.1)
+"""Predicted / simulated rms inside this is called honest."""
+
+GROUPS = (
+    ("", 1), ("Cut and target", 3), ("Exported table", 4), ("Of the cuts that leave", 4), ("Full lines", 2),
+    ("Friction known", 2), ("Best baseline", 2), ("As published", 3), ("Table: risk and effort", 3),
+)  # fmt: skip
+
+COLUMNS = (
+    "case", "mass, t", "target, m/s", "feasible", "rms, m/s", "95 % interval", "predicted", "predicted / simulated",
+    "95 of 100 within ±, m/s", "99 of 100 within ±, m/s", "in 10 000 out of brake", "rms of all others, m/s",
+    "rms, m/s", "table loss", "rms, m/s", "regret", "which", "rms, m/s", "predicted", "simulated",
+    "predicted / simulated", "over-speed, % [95 %]", "stopped inside, % [95 %]", "switchings a pass",
+)  # fmt: skip
+
+
+def case_table(book: BookReport) -> Markup:
+    """All cases; infeasible ones are marked, not left out."""
+    rows = [(case_row(case, book.acceptance_rms_m_s), "" if case.feasibility.feasible else "infeasible")
+            for case in book.cases]  # fmt: skip
+    return table("Results by case", (head_row(*GROUPS), head_row(*COLUMNS)), rows, kind="cases")
+
+
+def case_row(case: CaseResult, limit_m_s: float) -> list[str | Cell]:
+    """The cells of one case."""
+    found = contest(case)
+    table, best = found.table.statistics, found.best_baseline
+    feasible, power = case.feasibility.feasible, case.brake_power
+    over = "bad" if feasible and table.rms_ci95_m_s[0] > limit_m_s else "key"
+    ratio, (low, high) = found.table.honesty, found.table.honesty_ci95
+    honest = low <= HONEST[1] and high >= HONEST[0]
+    return [
+        case.label,
+        f"{case.plant.cut.mass_t:g}",
+        f"{case.target_speed_m_s:g}",
+        Cell("yes" if feasible else f"no: {why_infeasible(case)}", kind="words"),
+        Cell(speed(table.rms_m_s), f"{table.passes} passes, bias {table.bias_m_s:+.3f} m/s", over),
+        interval(table.rms_ci95_m_s),
+        speed(found.table.predicted_rms_m_s),
+        Cell(f"{quotient(ratio, 3)} {quotient_interval((low, high), 3)}", kind="" if honest or not feasible else "bad"),
+        f"{speed(table.p95_m_s)} {interval(table.p95_ci95_m_s)}",
+        f"{speed(table.p99_m_s)} {interval(table.p99_ci95_m_s)}",
+        in_ten_thousand(power.out_of_brake, power.out_of_brake_ci95),
+        within_power(power),
+        speed(found.lines.statistics.rms_m_s),
+        f"{quotient(found.table_loss, 3)} {quotient_interval(found.lines.table_ratio_ci95, 3)}",
+        speed(found.known_friction.statistics.rms_m_s),
+        f"{quotient(found.regret, 3)} {quotient_interval(found.known_friction.table_ratio_ci95, 3)}",
+        best.name if best else ABSENT,
+        speed(best.statistics.rms_m_s) if best else ABSENT,
+        speed(found.published.predicted_rms_m_s),
+        speed(found.published.statistics.rms_m_s),
+        f"{quotient(found.published.honesty, 3)} {quotient_interval(found.published.honesty_ci95, 3)}",
+        share_cell(table.overspeed, table.overspeed_ci95),
+        share_cell(table.stalled, table.stalled_ci95),
+        f"{table.switchings:.1f}",
+    ]
+
+
+def share_cell(share: float, ends: tuple[float, float]) -> str:
+    """A probability in per cent, with its interval."""
+    return f"{percent(share)} [{percent(ends[0])}, {percent(ends[1])}]"
+
+
+def within_power(power: BrakePower) -> str:
+    """The rms of the cuts within brake power, with its interval."""
+    if power.rms_within_m_s is None or power.rms_within_ci95_m_s is None:
+        return ABSENT
+    return f"{speed(power.rms_within_m_s)} {interval(power.rms_within_ci95_m_s)}"

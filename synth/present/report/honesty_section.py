@@ -1,0 +1,113 @@
+"""How far the predictions can be trusted: the table's own, and that of the formulation as published."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from statistics import median
+
+from synth.book.case_names import Contest, case_name, contest
+from synth.book.case_result import CaseResult
+from synth.book.printed_numbers import counted, span
+from synth.present.report.book_report import BookReport
+from synth.present.report.case_table import HONEST
+from synth.present.report.markup import Markup, element
+
+FAR_OFF = 1.5
+"""From this factor on, between promised and simulated rms, a prediction is called far off."""
+
+
+def honesty_section(book: BookReport) -> Markup:
+    """Two paragraphs, computed over the feasible cases (over all, where none is feasible)."""
+    cases = book.feasible or book.cases
+    return element(
+        "div",
+        element("p", own_prediction(cases)),
+        left_out_estimators(book.cases),
+        element("p", published_prediction(cases)),
+    )
+
+
+def own_prediction(cases: Sequence[CaseResult]) -> str:
+    """What became of the prediction of the exported tables: exact ones, and simulated ones of tables with estimator."""
+    exact = [case for case in cases if case.table.estimator is None]
+    estimated = [case for case in cases if case.table.estimator is not None]
+    sentences = []
+    if exact:
+        sentences.append(
+            "Prediction (the exit-speed density of the exported table, nothing sampled) and simulation (passes in time "
+            "with valves, sensor and sampling) are two independent computations of one quantity. " + ratios_of(exact)
+        )
+    if estimated:
+        gains = [ratio_to_without(contest(case)) for case in estimated]
+        sentences.append(
+            "With an estimator the prediction is itself simulated, on stratified passes that neither "
+            f"design nor validation use: it tests the sample, not the model. {ratios_of(estimated)} On the same passes "
+            f"the rms with the estimator is {span(gains)} times that of lines polished for the measured speed "
+            f"({median(gains):.2f} in the median)."
+        )
+    return " ".join(sentences)
+
+
+def ratios_of(cases: Sequence[CaseResult]) -> str:
+    """Predicted over simulated rms, in a sentence."""
+    ratios = [contest(case).table.honesty for case in cases]
+    inside = sum(HONEST[0] <= ratio <= HONEST[1] for ratio in ratios)
+    return (
+        f"Predicted / simulated rms is {span(ratios)} over {counted(len(cases), 'case')}; {inside} of them within "
+        f"{HONEST[0]:g} to {HONEST[1]:g}."
+    )
+
+
+def left_out_estimators(cases: Sequence[CaseResult]) -> Markup:
+    """Which tables have no estimator though the configuration asks for one; nothing if there is none."""
+    rows = [element("li", f"{case_name(case)}: {case.left_out}.") for case in cases if case.left_out]
+    if not rows:
+        return Markup("")
+    lead = (
+        f"The configuration asks for an estimator. {counted(len(rows), 'table')} of {len(cases)} "
+        f"{'has' if len(rows) == 1 else 'have'} none, and the lines are for the measured speed:"
+    )
+    return element("div", element("p", lead), element("ul", *rows))
+
+
+def ratio_to_without(found: Contest) -> float:
+    """rms of the table / rms of the lines without estimator; NaN where there are none."""
+    return math.nan if found.without_estimator is None else found.without_estimator.table_ratio
+
+
+def published_prediction(cases: Sequence[CaseResult]) -> str:
+    """What became of the prediction that the formulation as published makes of itself."""
+    found = [contest(case) for case in cases]
+    ratios = [each.published.honesty for each in found]
+    lead = (
+        "The formulation as published takes the friction of every path quantum as independent, so that it averages out "
+        f"within a pass. The rms that it promised: {span([c.published.predicted_rms_m_s for c in found], '.3f')} m/s; "
+        f"simulated, where the friction of a cut persists: "
+        f"{span([c.published.statistics.rms_m_s for c in found], '.3f')} m/s. "
+    )
+    return lead + judgement(cases, ratios) + " " + comparison(found)
+
+
+def judgement(cases: Sequence[CaseResult], ratios: Sequence[float]) -> str:
+    """Whether its promise holds, in one sentence."""
+    if all(HONEST[0] <= ratio <= HONEST[1] for ratio in ratios):
+        return f"Here its own prediction holds: predicted / simulated is {span(ratios)}."
+    middle = f"Predicted / simulated is {span(ratios)}, {median(ratios):.2f} in the median: "
+    place = min(range(len(ratios)), key=lambda i: -abs(math.log(ratios[i])) if ratios[i] > 0.0 else -math.inf)
+    ratio = ratios[place]
+    factor = (1.0 / ratio if ratio < 1.0 else ratio) if ratio > 0.0 else math.inf
+    direction = "less" if ratio < 1.0 else "more"
+    return (
+        f"{middle}its own prediction is {'far off' if factor > FAR_OFF else 'off'}, most in {case_name(cases[place])}, "
+        f"where it promised {factor:.1f} times {direction} error than there was. Its predictions must not be used."
+    )
+
+
+def comparison(found: Sequence[Contest]) -> str:
+    """How its lines fare beside the exported tables, on the same passes."""
+    worse = [each.published.statistics.rms_m_s / each.table.statistics.rms_m_s for each in found]
+    return (
+        f"On the same passes the rms of its lines is {span(worse)} times that of the exported tables "
+        f"({median(worse):.2f} in the median)."
+    )

@@ -1,0 +1,63 @@
+"""The verdict: accepted or not, the worst case, and what is infeasible and why."""
+
+from __future__ import annotations
+
+from synth.book.case_names import case_name, contest, why_infeasible
+from synth.book.case_result import CaseResult
+from synth.book.printed_numbers import counted, in_ten_thousand, interval, speed
+from synth.present.report.book_report import BookReport
+from synth.present.report.markup import Markup, element
+
+
+def verdict(book: BookReport) -> Markup:
+    """The box at the head of the page."""
+    word = "Accepted" if book.accepted else "Not accepted"
+    parts = [element("p", element("strong", word), " — ", book.verdict)]
+    if book.feasible:
+        parts.append(element("p", worst_case(book)))
+    if book.infeasible:
+        lead = (
+            f"{counted(len(book.infeasible), 'case')} of {len(book.cases)} infeasible: even a controller that is "
+            f"told the friction of every cut, and moves one stage a command, stays above "
+            f"{speed(book.acceptance_rms_m_s)} m/s there. "
+            "They take no part in the verdict and are shown everywhere."
+        )
+        parts.append(element("p", lead))
+        parts.append(element("ul", *(element("li", infeasible_case(case)) for case in book.infeasible)))
+    else:
+        parts.append(element("p", "Every case is feasible."))
+    return element("section", *parts, class_="verdict accepted" if book.accepted else "verdict refused", id="verdict")
+
+
+def worst_case(book: BookReport) -> str:
+    """The feasible case of highest simulated rms."""
+    worst = max(book.feasible, key=lambda case: contest(case).table.statistics.rms_m_s)
+    found = contest(worst).table.statistics
+    return (
+        f"Worst of the {counted(len(book.feasible), 'feasible case')}: {case_name(worst)}, simulated rms "
+        f"{speed(found.rms_m_s)} m/s, 95 % interval {interval(found.rms_ci95_m_s)}, over {found.passes} passes; "
+        f"the limit is {speed(book.acceptance_rms_m_s)} m/s. {in_cuts(worst)}"
+    )
+
+
+def in_cuts(case: CaseResult) -> str:
+    """The same in cuts, as a yard counts them."""
+    found, power = contest(case).table.statistics, case.brake_power
+    out = in_ten_thousand(power.out_of_brake, power.out_of_brake_ci95)
+    return (
+        f"95 of 100 of its cuts leave within ±{speed(found.p95_m_s)} m/s of the target, 99 within "
+        f"±{speed(found.p99_m_s)}; out of brake power are {out} in 10 000."
+    )
+
+
+def infeasible_case(case: CaseResult) -> str:
+    """Why one case cannot be served, and what of it can."""
+    known = contest(case).known_friction.statistics.rms_m_s
+    entry, served = case.plant.entry, case.feasibility.served_m_s
+    part = (
+        f"entry speeds from {served[0]:.2f} to {served[1]:.2f} m/s are served" if served else "no entry speed is served"
+    )
+    return (
+        f"{case_name(case)}: {why_infeasible(case)}; rms with the friction known {speed(known)} m/s at entry speeds of "
+        f"{entry.low_m_s:g} to {entry.high_m_s:g} m/s; {part}."
+    )

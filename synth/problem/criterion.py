@@ -1,0 +1,55 @@
+"""What the lines are optimised for: the cost of a pass, and what the exported lines must keep besides."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.errors import require, require_between
+from synth.problem.requirement import Requirement
+from synth.problem.terminal_cost import SquaredError, TerminalCost
+
+SQUARED_ERROR = SquaredError()
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """Cost of one pass: `terminal` of its exit speed, plus `stall_cost_m2_s2` for a stall in the position.
+
+    `switching_tolerance_m2_s2`: a change of stage must gain more than this, else hold wins: commands whose
+    costs differ by less count as equal, and of these the one with the fewest switchings is taken.
+    `requirement`: what the exported lines must keep besides; only with the squared error.
+    """
+
+    stall_cost_m2_s2: float = 1.0
+    switching_tolerance_m2_s2: float = 3e-5
+    terminal: TerminalCost = SQUARED_ERROR
+    requirement: Requirement | None = None
+
+    def __post_init__(self) -> None:
+        require_between("criterion: stall_cost_m2_s2", self.stall_cost_m2_s2, 0.0, 1e4)
+        require_between("criterion: switching_tolerance_m2_s2", self.switching_tolerance_m2_s2, 0.0, 1.0)
+        require(
+            self.requirement is None or self.terminal == SQUARED_ERROR,
+            "criterion: a chance constraint or a worst case goes with the squared error only; leave out one of the two",
+        )
+
+    def exit_costs(self, speed_m_s: NDArray[np.float64], target_speed_m_s: float) -> tuple[NDArray[np.float64], float]:
+        """(cost of leaving with every grid speed (E,), cost of a stall: that of exit speed 0 and the stall cost)."""
+        terminal = self.terminal.at_exit(speed_m_s, target_speed_m_s)
+        return terminal, float(terminal[0]) + self.stall_cost_m2_s2
+
+    def squared(self) -> Criterion:
+        """The same prices with the squared error and no requirement: what references are measured by."""
+        return replace(self, terminal=SQUARED_ERROR, requirement=None)
+
+    @property
+    def sentence(self) -> str:
+        """What is minimised, in words."""
+        return self.terminal.sentence if self.requirement is None else self.requirement.sentence
+
+
+SQUARED_ERROR_CRITERION = Criterion()
+"""The default."""

@@ -1,0 +1,40 @@
+"""What is to be solved: one cut class at one retarder position, and the speed it must leave with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from plant_models import Plant
+from plant_models.errors import require, require_between
+from synth.problem.criterion import SQUARED_ERROR_CRITERION, Criterion
+from synth.problem.requirement import FrictionRange
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A plant, the commanded exit speed and the cost."""
+
+    plant: Plant
+    target_speed_m_s: float
+    criterion: Criterion = SQUARED_ERROR_CRITERION
+
+    def __post_init__(self) -> None:
+        require_between("targets: target_speed_m_s", self.target_speed_m_s, 0.3, 20.0)
+        require(
+            self.target_speed_m_s < self.plant.entry.high_m_s,
+            f"targets: {self.target_speed_m_s:g} m/s is not below the highest entry speed "
+            f"{self.plant.entry.high_m_s:g} m/s: there is nothing to brake; lower the target",
+        )
+        if isinstance(self.criterion.requirement, FrictionRange):
+            require_modelled(self.plant, self.criterion.requirement)
+
+
+def require_modelled(plant: Plant, friction: FrictionRange) -> None:
+    """Raise `PlantError` unless the range lies within four standard deviations of ξ_cut, which grids cover."""
+    low, high = max(plant.friction.floor, 1.0 - 4.0 * plant.friction_cv), 1.0 + 4.0 * plant.friction_cv
+    for name, value in (("low", friction.low), ("high", friction.high)):
+        require(
+            low <= value <= high,
+            f"criterion: worst_friction_{name} is {value:g}; the friction of this cut is modelled from {low:.3g} "
+            f"to {high:.3g}: keep within, or raise friction.common_cv",
+        )

@@ -1,6 +1,0 @@
-"""The report of a tune: one self-contained HTML page."""
-
-from synth.report.book_report import BookReport
-from synth.report.page import report_page, write_report
-
-__all__ = ["BookReport", "report_page", "write_report"]

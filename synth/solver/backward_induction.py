@@ -1,0 +1,159 @@
+"""Solve a problem: backward induction over path quanta to switching lines."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from plant_models.speed_sensor import measured_speed_std
+from synth.kernels.sweep.bellman import sweep
+from synth.kernels.vector.packs import EIGHT
+from synth.problem.criterion import Criterion
+from synth.solver.chain.transitions import Transitions
+from synth.solver.switching_lines import SwitchingLines
+
+TIE_M2_S2 = 1e-9
+"""Averaged gains smaller than this are none: hold wins."""
+
+ROUNDINGS = 16
+"""Gains are none, too, that so many roundings of the cost itself could make. Without it float32 puts lines where a cut
+is beyond help, at 26 nodes of the default book where switchings have no price."""
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Result of a sweep.
+
+    `lines`: the common policy; `gain_down`, `gain_up` (N, K + 1, E): mean-square cost saved by a change of stage
+    at a measured speed (what the lines bound, and what R5's indifferent region is read from); `values`
+    (I, N + 1, H, L, E), or of fewer nodes: estimated cost to go by scenario, in the type that was asked for.
+    """
+
+    transitions: Transitions
+    target_speed_m_s: float
+    criterion: Criterion
+    lines: SwitchingLines
+    gain_down: NDArray[np.float64]
+    gain_up: NDArray[np.float64]
+    values: NDArray[np.floating[Any]]
+
+    @property
+    def status(self) -> str:
+        """One sentence: what was solved."""
+        shape = self.values.shape
+        return (
+            f"solved {len(self.gain_up)} path quanta × {shape[2]} resting modes × {shape[4]} speeds × "
+            f"{shape[0]} scenarios × {shape[3]} noise levels for {self.target_speed_m_s:g} m/s"
+        )
+
+
+def solve(
+    transitions: Transitions,
+    target_speed_m_s: float,
+    criterion: Criterion,
+    value_type: type[np.floating[Any]] = np.float32,
+) -> Solution:
+    """Backward induction for one target speed; `value_type` as of `solve_all`."""
+    return solve_all(transitions, [(target_speed_m_s, criterion)], value_type=value_type)[0]
+
+
+def solve_all(
+    transitions: Transitions,
+    aims: Sequence[tuple[float, Criterion]],
+    weights: NDArray[np.float64] | None = None,
+    nodes_kept: int | None = None,
+    value_type: type[np.floating[Any]] = np.float32,
+) -> tuple[Solution, ...]:
+    """Backward induction for several (target speed, criterion) in one sweep: they share all motion.
+
+    Up to eight cost little more than one, and none depends on which others there are. `weights` (1 or N, I, H, L, 1
+    or E): of what is hidden, by path node and speed, instead of the prior. `nodes_kept`: at how many path nodes, from
+    the entrance on, the solutions hold values, by default at all; they are most of the memory of a solution.
+    `value_type`: of the numbers that values are computed and kept in. float32 takes 0.6 to 0.7 of the time of float64
+    and half the memory; what it costs: `docs/method.md`.
+    """
+    t = transitions
+    exit_costs, stall_costs = zip(*(c.exit_costs(t.grid.speed_m_s, target) for target, c in aims), strict=True)
+    by_energy, change_costs = np.stack(exit_costs, axis=1), [c.switching_tolerance_m2_s2 for _, c in aims]
+    nodes, stages, points, width = len(t.drive_m_s2), t.actuator.stages, len(t.grid.speed_m_s), len(aims)
+    kept = nodes + 1 if nodes_kept is None else nodes_kept
+    states = (len(t.actuator.mode_stage), len(t.chain.levels), points)
+    values = np.empty((len(t.scenarios.factor), kept, *states, width), value_type)
+    lower, upper = np.empty((nodes, stages, width)), np.empty((nodes, stages, width))
+    gain_down, gain_up = (np.empty((nodes, stages, width, points)) for _ in range(2))
+    noise = measured_speed_std(t.plant.sensor.noise_m_s, t.plant.sensor.resolution_m_s)
+    smear_start, smear = true_speed_weights(t.grid.speed_m_s, noise)
+    hidden = hidden_prior(t)[None, ..., None] if weights is None else weights
+    arguments = (
+        *(in_packs_of_targets(costs, value_type).ravel() for costs in (by_energy, stall_costs, change_costs)),
+        TIE_M2_S2, ROUNDINGS * float(np.finfo(value_type).eps), noise, smear_start, smear.astype(value_type),
+        hidden.astype(value_type), *sweep_arguments(t), t.scenarios.factor, t.scenarios.extra_m_s2,
+        t.grid.path_step_m, t.grid.energy_step_m2_s2, t.plant.sensor.sample_period_s, len(t.entry),
+        values, lower, upper, gain_down, gain_up,
+    )  # fmt: skip
+    sweep(*arguments)
+    return tuple(
+        Solution(
+            transitions=t,
+            target_speed_m_s=target,
+            criterion=criterion,
+            lines=SwitchingLines(t.grid.path_m, with_exit_node(lower[:, :, i]), with_exit_node(upper[:, :, i])),
+            gain_down=gain_down[:, :, i],
+            gain_up=gain_up[:, :, i],
+            values=values[..., i],
+        )
+        for i, (target, criterion) in enumerate(aims)
+    )
+
+
+def in_packs_of_targets(by_target: ArrayLike, value_type: type[np.floating[Any]]) -> NDArray[np.floating[Any]]:
+    """Zeros added for targets that nobody asked for, until the last axis fills whole packs of the kernel."""
+    numbers = np.asarray(by_target, dtype=value_type)
+    missing = -numbers.shape[-1] % EIGHT
+    return np.pad(numbers, [(0, 0)] * (numbers.ndim - 1) + [(0, missing)])
+
+
+def sweep_arguments(t: Transitions) -> Any:
+    """The plant's arrays, a tuple in the order in which `sweep` takes them."""
+    a = t.landings
+    return (
+        t.grid.speed_m_s, t.actuator.mode_stage, t.actuator.mode_overpressure_kpa,
+        a.lower_chain, a.upper_chain, a.end_mode, a.ends, a.factors,
+        t.noise.probability, t.noise.mean, t.noise.std, t.chain.levels, t.chain.transition,
+        t.drive_m_s2, t.brake_m_s2_per_kpa,
+    )  # fmt: skip
+
+
+def hidden_prior(t: Transitions) -> NDArray[np.float64]:
+    """Prior weights (I, H, L) of scenario, resting mode within its stage, and noise level."""
+    stage = t.actuator.mode_stage
+    per_mode = 1.0 / np.bincount(stage)[stage]
+    prior: NDArray[np.float64] = np.einsum("i,h,l->ihl", t.scenarios.weight, per_mode, t.chain.stationary)
+    return prior
+
+
+def true_speed_weights(
+    speed_m_s: NDArray[np.float64], noise_m_s: float
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Bands of P(true speed | measured speed) on the grid: first index (E,) and weights (E, W).
+
+    Flat prior in speed: weight φ((v' − v)/σ)·dv', cut at four standard deviations.
+    """
+    v = speed_m_s
+    width = np.gradient(v)
+    first = np.searchsorted(v, v - 4 * noise_m_s)
+    last = np.searchsorted(v, v + 4 * noise_m_s, side="right")
+    span = int((last - first).max())
+    start = np.minimum(first, len(v) - span)
+    index = start[:, None] + np.arange(span)
+    weights = np.exp(-0.5 * ((v[index] - v[:, None]) / noise_m_s) ** 2) * width[index]
+    return start, weights / weights.sum(axis=1, keepdims=True)
+
+
+def with_exit_node(lines: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(N, K + 1) per quantum start → (K + 1, N + 1) with the last row repeated at S_exit."""
+    return np.concatenate([lines, lines[-1:]]).T.copy()

@@ -1,0 +1,88 @@
+"""The quantised state space: path quanta and kinetic energy."""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models import Plant
+from plant_models.errors import require
+from synth.problem.resolution import Resolution, finer_for_check
+
+MARGIN_CELLS = 10
+"""Cells of the energy grid above the fastest pass: interpolation there must not ripple into it."""
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Nodes of the state space.
+
+    `path_m` (N + 1,): s_n = n·ΔS, the last one S_exit; `energy_m2_s2` (E,): e_j = j·Δe, e_0 = 0 standing for
+    a stall; `speed_m_s` (E,) = sqrt(2 e).
+    """
+
+    path_m: NDArray[np.float64]
+    energy_m2_s2: NDArray[np.float64]
+    speed_m_s: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        for array in (self.path_m, self.energy_m2_s2, self.speed_m_s):
+            array.setflags(write=False)
+
+    @property
+    def path_step_m(self) -> float:
+        """ΔS."""
+        return float(self.path_m[1])
+
+    @property
+    def energy_step_m2_s2(self) -> float:
+        """Δe."""
+        return float(self.energy_m2_s2[1])
+
+
+def make_grid(plant: Plant, resolution: Resolution) -> Grid:
+    """The grid for `plant`: it holds every speed that an unbraked pass can reach, and a margin."""
+    quanta = max(4, round(plant.exit_m / resolution.path_step_m))
+    step = resolution.speed_step_m_s * resolution.reference_speed_m_s
+    downhill = max(0.0, max(plant.profile.grades_permille)) * 1e-3 * plant.cut.reduced_gravity_m_s2 * plant.exit_m
+    top = 0.5 * plant.entry.high_m_s**2 + downhill + MARGIN_CELLS * step
+    energy = step * np.arange(math.ceil(top / step) + 1, dtype=np.float64)
+    return Grid(np.linspace(0.0, plant.exit_m, quanta + 1), energy, np.sqrt(2.0 * energy))
+
+
+def memory_estimate_bytes(plant: Plant, resolution: Resolution) -> int:
+    """What one solve and one check of `plant` will hold at most, from the sizes of their largest arrays."""
+    total = 0
+    for r in (resolution, finer_for_check(resolution)):
+        quanta = max(4, round(plant.exit_m / r.path_step_m))
+        points = 0.5 * plant.entry.high_m_s**2 / (r.speed_step_m_s * r.reference_speed_m_s) * 1.2
+        modes, chains = 2 * plant.top_stage, 4 * plant.top_stage
+        landings = quanta * chains * 7 * points * 2
+        scenarios = r.friction_nodes * r.resistance_nodes if r is resolution else 2
+        values = 3 * scenarios * quanta * modes * r.path_levels * points
+        total += int(8 * (landings + values + 6 * quanta * (plant.top_stage + 1) * points))
+    return total
+
+
+def require_memory(label: str, plant: Plant, resolution: Resolution, workers: int) -> None:
+    """Raise `PlantError` if `workers` solves at once would not fit into this machine's memory."""
+    needed = workers * memory_estimate_bytes(plant, resolution)
+    available = available_memory_bytes()
+    require(
+        needed <= 0.8 * available,
+        f"grid: path_step_m is {resolution.path_step_m:g} and speed_step_m_s {resolution.speed_step_m_s:g}; solving "
+        f"{label} would take about {needed / 1e9:.1f} GB and {available / 1e9:.1f} GB are free: make a step larger",
+    )
+
+
+def available_memory_bytes() -> int:
+    """Memory that a process can still get: what Linux says is available, elsewhere all physical memory."""
+    try:
+        with open("/proc/meminfo", encoding="ascii") as lines:
+            return next(1024 * int(line.split()[1]) for line in lines if line.startswith("MemAvailable"))
+    except (OSError, StopIteration):
+        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")

@@ -1,0 +1,99 @@
+"""Readings and commands where a wrong implementation of the rule or the choice shows."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.studies.in_the_loop.controller_process import COMMAND, READING
+from tuning_tables.golden_choices import golden_choices
+from tuning_tables.golden_vectors import golden_vectors, line_speeds
+from tuning_tables.table_block import LAYOUT
+from tuning_tables.table_book import TableBook
+
+
+def hard_readings(book: TableBook, count: int, seed: int) -> NDArray[np.void]:
+    """`count` readings, dtype READING: golden ones, ties and their neighbours, any bits, stages out of range."""
+    rng = np.random.default_rng(seed)
+    kinds = (golden_readings(book), near_lines(book, count // 2, rng), anything(book, count // 4, rng))
+    found = np.concatenate(kinds)
+    assert len(found) < count
+    return np.concatenate([found, plausible(book, count - len(found), rng)])
+
+
+def golden_readings(book: TableBook) -> NDArray[np.void]:
+    """The vectors that are shipped."""
+    parts = []
+    for number, table in enumerate(book.tables):
+        vectors = golden_vectors(table)
+        parts.append(readings(np.full(len(vectors), number), vectors.stage, vectors.s_m, vectors.v_m_s))
+    return np.concatenate(parts)
+
+
+def near_lines(book: TableBook, count: int, rng: np.random.Generator) -> NDArray[np.void]:
+    """Speeds on a line or up to two float32 steps from it."""
+    parts, lines = [], [
+        (number, k, i) for number, t in enumerate(book.tables) for k, i in np.argwhere(t.has_line).tolist()
+    ]  # fmt: skip
+    each = count // len(lines)
+    for number, k, i in lines:
+        table = book.tables[number]
+        low, high = (float(end) for end in table.valid_range[:2])
+        s = rng.uniform(low - 1.0, high + 1.0, each).astype(np.float32)
+        v = line_speeds(table.coefficients[k, i], np.clip(s, table.valid_range[0], table.valid_range[1]))
+        steps = rng.integers(-2, 3, each)
+        for _ in range(2):
+            towards = np.where(steps < 0, -np.inf, np.inf).astype(np.float32)
+            v = np.where(steps != 0, np.nextafter(v, towards), v)
+            steps -= np.sign(steps)
+        parts.append(readings(np.full(each, number), np.full(each, k), s, v))
+    return np.concatenate(parts)
+
+
+def anything(book: TableBook, count: int, rng: np.random.Generator) -> NDArray[np.void]:
+    """Any bits as path and speed: NaN of every kind, infinities, denormals; any stage."""
+    bits = rng.integers(0, 2**32, (2, count), dtype=np.uint32)
+    special = rng.integers(0, 4, (2, count))
+    edged = bits & np.uint32(0x807FFFFF) | rng.choice(EXPONENTS, (2, count))
+    bits = np.where(special == 0, edged, np.where(special == 1, edged & np.uint32(0xFF800000), bits)).astype(np.uint32)
+    s, v = bits.view(np.float32)
+    ordinary = rng.random(count) < 0.5
+    s = np.where(ordinary, rng.uniform(-5.0, 45.0, count).astype(np.float32), s)
+    stage = np.where(rng.random(count) < 0.1, rng.integers(-(2**31), 2**31, count), rng.integers(-2, 11, count))
+    return readings(rng.integers(0, len(book.tables), count), stage, s, v)
+
+
+EXPONENTS = np.array([0x00000000, 0x7F800000, 0x7F000000, 0x00800000], dtype=np.uint32)
+"""Of denormals and zeros, of NaN and infinity, of the largest and of the smallest normal numbers."""
+
+
+def plausible(book: TableBook, count: int, rng: np.random.Generator) -> NDArray[np.void]:
+    """What a cut really gives."""
+    s, v = rng.uniform(-1.0, 39.0, count), rng.uniform(0.0, 9.0, count)
+    return readings(rng.integers(0, len(book.tables), count), rng.integers(0, 5, count), s, v)
+
+
+def readings(table: NDArray[Any], stage: NDArray[Any], s: NDArray[Any], v: NDArray[Any]) -> NDArray[np.void]:
+    """As an array of READING."""
+    found = np.empty(len(table), READING)
+    found["table"], found["stage"], found["s_m"], found["v_m_s"] = table, stage, s, v
+    return found
+
+
+def hard_commands(book: TableBook, count: int, seed: int) -> NDArray[np.void]:
+    """Commands for a choice, dtype COMMAND: the golden ones, and random ones with a third of them senseless."""
+    rng = np.random.default_rng(seed)
+    found = np.empty(count, COMMAND)
+    numbers = [book.number_of(category) for category in book.category_numbers]
+    found["layout"] = np.where(rng.random(count) < 0.02, rng.integers(0, 2**32, count, dtype=np.uint32), LAYOUT)
+    found["category"] = rng.choice([*numbers, 0, max(numbers) + 1], count)
+    found["axles"] = rng.choice([4, 6, 8], count)
+    targets = np.array([table.target_speed_m_s for table in book.tables], dtype=np.float32)
+    speed = rng.uniform(1.0, 5.0, count).astype(np.float32)
+    speed = np.where(rng.random(count) < 0.2, rng.choice(targets, count), speed)
+    wild = rng.integers(0, 2**32, count, dtype=np.uint32).view(np.float32)
+    found["speed_m_s"] = np.where(rng.random(count) < 0.3, wild, speed)
+    golden = np.array([(c.layout, c.category, c.axles, c.commanded_m_s) for c in golden_choices(book)], COMMAND)
+    return np.concatenate([golden, found])

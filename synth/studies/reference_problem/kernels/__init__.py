@@ -1,0 +1,1 @@
+"""Kernels of the neutral problem that other programs solve too."""

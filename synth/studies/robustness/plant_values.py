@@ -1,0 +1,117 @@
+"""A plant with other values under some keys of the configuration, all put in at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, Final
+
+from plant_models import EntrySpeed, Plant, Pneumatics, PressingForce, RetarderPosition, TrackProfile, WeightForce
+
+STAGE_PRESSURES: Final = "retarder.stage_pressures_kpa"
+GRADE: Final = "track.grade_permille"
+SLOPE_BY_AXLES: Final = "retarder.force.slope_factor_by_axles"
+SLOPES: Final = ("retarder.force.slope_kn_per_kpa", "retarder.force.slope_kn_per_kpa_per_t")
+TOUCH_PRESSURE: Final = "retarder.force.touch_pressure_kpa"
+RELATIVE: Final = (STAGE_PRESSURES, GRADE, SLOPE_BY_AXLES)
+"""Keys whose value here is a factor: on all stage pressures; on all grades; c(n) with all n axles of the cut inside,
+c being 1 + (c(n) − 1)·(j − 1)/(n − 1) times the plant's own for j axles."""
+
+SECTIONS: Final = ("retarder.pneumatics", "friction", "sensor", "cut", "cut.rolling_resistance", "entry")
+
+NEARLY_SUPPLY: Final = 0.99
+"""A stage that the supply cannot reach rests at this share of the supply pressure; 4.6 time constants of filling."""
+
+
+def with_values(plant: Plant, values: Mapping[str, float]) -> Plant:
+    """`plant` with `values` in SI under keys of the configuration ('cut.' for 'cut[i].'); no key: the same values.
+
+    Stages that the supply no longer reaches are lowered, see `within_supply`. The highest entry speed is at least the
+    lowest. Raises `ValueError` for a key that is not known here, `PlantError` for a value that the plant refuses.
+    """
+    known = {*RELATIVE, *SLOPES, TOUCH_PRESSURE}
+    for key in values:
+        if key not in known and key.rpartition(".")[0] not in SECTIONS:
+            raise ValueError(f"{key}: a plant has no such value")
+    cut = replace(plant.cut, **fields_in("cut", values))
+    return Plant(
+        position=changed_position(plant, values),
+        cut=cut,
+        profile=changed_profile(plant.profile, values.get(GRADE, 1.0)),
+        friction=replace(plant.friction, **fields_in("friction", values)),
+        resistance=replace(plant.resistance, **fields_in("cut.rolling_resistance", values)),
+        sensor=replace(plant.sensor, **fields_in("sensor", values)),
+        entry=changed_entry(plant.entry, values),
+    )
+
+
+def stages_out_of_reach(plant: Plant, values: Mapping[str, float]) -> int:
+    """How many stages `with_values` lowers because the supply does not reach them."""
+    factor = values.get(STAGE_PRESSURES, 1.0)
+    reached = changed_position(plant, values).stage_pressures_kpa
+    return sum(p < factor * q for p, q in zip(reached, plant.position.stage_pressures_kpa, strict=True))
+
+
+def fields_in(section: str, values: Mapping[str, float]) -> dict[str, Any]:
+    """Those of `values` that stand directly in `section`, by the last part of their keys."""
+    parts = ((key.rpartition("."), value) for key, value in values.items())
+    return {name: value for (head, _, name), value in parts if head == section}
+
+
+def changed_position(plant: Plant, values: Mapping[str, float]) -> RetarderPosition:
+    """The position with another drive, force law and stage pressures."""
+    position = plant.position
+    air = replace(position.pneumatics, **fields_in("retarder.pneumatics", values))
+    factor = values.get(STAGE_PRESSURES, 1.0)
+    pressures = within_supply(tuple(factor * p for p in position.stage_pressures_kpa), air)
+    force = changed_force(plant, values)
+    return replace(position, pneumatics=air, stage_pressures_kpa=pressures, force=force)
+
+
+def changed_force(plant: Plant, values: Mapping[str, float]) -> PressingForce | WeightForce:
+    """The force law with other numbers."""
+    force = plant.position.force
+    touch = values.get(TOUCH_PRESSURE, force.touch_pressure_kpa)
+    if isinstance(force, PressingForce):
+        slope = values.get(SLOPES[0], force.slope_kn_per_kpa_per_pair)
+        factors = by_axles(force.slope_factor_by_axles, values.get(SLOPE_BY_AXLES, 1.0), plant.cut.axles)
+        return PressingForce(slope, touch, factors)
+    if isinstance(force, WeightForce):
+        slope = values.get(SLOPES[1], force.slope_kn_per_kpa_per_t)
+        factors = by_axles(force.slope_factor_by_axles, values.get(SLOPE_BY_AXLES, 1.0), plant.cut.axles)
+        return WeightForce(slope, touch, factors)
+    raise ValueError(f"robustness: the force law {type(force).__name__} has no numbers that can be changed")
+
+
+def by_axles(factors: tuple[float, ...], at_all: float, axles: int) -> tuple[float, ...]:
+    """c(j) for j = 1 … n, times 1 for one axle, times `at_all` for all `axles`, linear between."""
+    if at_all == 1.0 or axles == 1:
+        return factors
+    known = [factors[min(j, len(factors) - 1)] for j in range(axles)]
+    return tuple(c * (1.0 + (at_all - 1.0) * j / (axles - 1)) for j, c in enumerate(known))
+
+
+def within_supply(pressures_kpa: tuple[float, ...], air: Pneumatics) -> tuple[float, ...]:
+    """Stage pressures as they come about: what the supply cannot reach rests just below it.
+
+    The top stage is at most where filling stops at 99 % of the supply; each stage below keeps two half bands and 1 kPa
+    under the next, so that the stages stay apart as the regulator needs.
+    """
+    highest = NEARLY_SUPPLY * air.supply_pressure_kpa + air.dead_band_kpa
+    reached: list[float] = []
+    for pressure in reversed(pressures_kpa):
+        reached.append(min(pressure, highest))
+        highest = reached[-1] - 2.0 * air.dead_band_kpa - 1.0
+    return tuple(reversed(reached))
+
+
+def changed_profile(profile: TrackProfile, factor: float) -> TrackProfile:
+    """All grades times `factor`."""
+    return replace(profile, grades_permille=tuple(factor * grade for grade in profile.grades_permille))
+
+
+def changed_entry(entry: EntrySpeed, values: Mapping[str, float]) -> EntrySpeed:
+    """Entry speeds; low and high may be moved at once, and must not cross."""
+    fields = fields_in("entry", values)
+    low = fields.get("low_m_s", entry.low_m_s)
+    return EntrySpeed(low, max(low, fields.get("high_m_s", entry.high_m_s)))

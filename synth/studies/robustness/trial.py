@@ -1,0 +1,74 @@
+"""One table on its nominal plant, and the same passes on any other plant."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from plant_models import Plant
+from synth.simulation.closed_loop import TableController, simulate
+from synth.simulation.exit_statistics import ExitStatistics, exit_statistics, rms_ratio
+from synth.simulation.passes import ExitSample
+from synth.simulation.random_passes import RandomPasses
+from synth.studies.robustness.perturbation import Perturbation
+from tuning_tables import ControllerTable
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a table does under one perturbation.
+
+    `ratio`: rms / rms of the nominal plant on the same passes, with its 95 % interval (paired); `note` says where a
+    value was clipped.
+    """
+
+    name: str
+    note: str
+    statistics: ExitStatistics
+    ratio: float
+    ratio_ci95: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A table, the plant it was tuned for, common random passes, and how they end there."""
+
+    label: str
+    table: ControllerTable
+    plant: Plant
+    passes: RandomPasses
+    nominal: ExitSample
+
+    @property
+    def target_m_s(self) -> float:
+        """The commanded exit speed."""
+        return self.table.target_speed_m_s
+
+    def first(self, count: int) -> Trial:
+        """The same with the first `count` passes only."""
+        names = vars(self.nominal)
+        nominal = ExitSample(**{name: array[:count] for name, array in names.items()})
+        return Trial(self.label, self.table, self.plant, self.passes.part(0, count), nominal)
+
+    def sample(self, perturbation: Perturbation, table: ControllerTable | None = None) -> ExitSample:
+        """The passes under `perturbation`, by the trial's table or another; `PlantError` for an impossible plant."""
+        plant = perturbation.change(self.plant)
+        passes = perturbation.fault(self.passes, plant, self.nominal.transit_time_s)
+        return simulate(plant, TableController(table or self.table), passes)
+
+    def outcome(self, perturbation: Perturbation, table: ControllerTable | None = None) -> Outcome:
+        """Figures of `sample`, compared with the nominal passes of the trial's table."""
+        sample = self.sample(perturbation, table)
+        found = exit_statistics(sample, self.target_m_s)
+        ratio, interval = rms_ratio(sample, self.nominal, self.target_m_s)
+        return Outcome(
+            name=perturbation.name,
+            note=perturbation.note,
+            statistics=found,
+            ratio=ratio,
+            ratio_ci95=interval,
+        )
+
+
+def trial_of(label: str, table: ControllerTable, plant: Plant, passes: RandomPasses) -> Trial:
+    """The trial of `table`, tuned for `plant`."""
+    return Trial(label, table, plant, passes, simulate(plant, TableController(table), passes))

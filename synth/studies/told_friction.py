@@ -1,0 +1,115 @@
+"""What could be reached if the regulator were told the friction of every cut: the practical reference for regret.
+
+For each of several known friction factors lines are designed from several beginnings, polished until nothing is gained,
+and the best are kept: a polish that ends early, or in a poor corner, would flatter everything that is compared with it.
+All else is as it is: sensor, sampling, valves, path noise, one stage a command, lines of the same degree. It is no
+lower bound: whoever measures the speed better than the sensor can do better.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models import PlantError
+from synth.problem.criterion import Criterion
+from synth.solver.backward_induction import solve
+from synth.solver.chain.transitions import Transitions, with_known_friction
+from synth.solver.exit_density import ExitDensity
+from synth.solver.policy_evaluation import commands, evaluator, exit_density
+from synth.solver.polynomial_fit import Fit, Polish, PolynomialLines, polish
+from synth.solver.tuned_lines import fitted
+
+
+@dataclass(frozen=True)
+class Effort:
+    """Of each polish; begun anew from its own end in further `rounds`, it forgets a bad Hessian."""
+
+    iterations: int = 100
+    tolerance: float = 1e-4
+    rounds: int = 2
+
+
+TO_THE_END = Effort()
+
+
+@dataclass(frozen=True)
+class ToldFriction:
+    """Lines and exact exit-speed densities for known factors (I,) that occur with probability `weight` (I,)."""
+
+    factor: NDArray[np.float64]
+    weight: NDArray[np.float64]
+    lines: tuple[PolynomialLines, ...]
+    densities: tuple[ExitDensity, ...]
+
+    def rms_m_s(self, target_speed_m_s: float) -> float:
+        """Rms error over all cuts."""
+        squares = [density.rms_m_s(target_speed_m_s) ** 2 for density in self.densities]
+        return float(np.sqrt(self.weight @ np.array(squares)))
+
+    def near(self, target_speed_m_s: float, within_m_s: float) -> tuple[float, float]:
+        """(rms error of the cuts that end within a distance of the target, their share)."""
+        square, share = 0.0, 0.0
+        for weight, density in zip(self.weight, self.densities, strict=True):
+            error = density.speed_m_s - target_speed_m_s
+            inside = np.abs(error) <= within_m_s
+            square += weight * float((density.probability * error**2)[inside].sum())
+            share += weight * float(density.probability[inside].sum())
+        return float(np.sqrt(square / share)), share
+
+
+def told_friction(
+    design: Transitions,
+    target_speed_m_s: float,
+    criterion: Criterion,
+    degree: int,
+    nodes: int,
+    effort: Effort = TO_THE_END,
+) -> ToldFriction:
+    """Lines for each of `nodes` Gauss–Hermite factors of ξ_cut, and for the friction unknown as one more beginning."""
+    plant = design.plant
+    z, weight = np.polynomial.hermite_e.hermegauss(nodes)
+    factors = plant.friction.cut_factor(z, plant.friction_cv)
+    unknown = fitted(solve(design, target_speed_m_s, criterion), degree)
+    common = best_polished(design, target_speed_m_s, criterion, [(unknown.lines, unknown)], effort)
+    best, densities = [], []
+    for factor in factors:
+        known = with_known_friction(design, float(factor))
+        own = fitted(solve(known, target_speed_m_s, criterion), degree)
+        begins = [(own.lines, own), (common, own), (common, unknown)]
+        lines = best_polished(known, target_speed_m_s, criterion, begins, effort)
+        best.append(lines)
+        densities.append(exit_density(known, commands(known, lines.at(known.grid.path_m), staircase=False)))
+    return ToldFriction(factors, weight / weight.sum(), tuple(best), tuple(densities))
+
+
+def best_polished(
+    design: Transitions,
+    target_speed_m_s: float,
+    criterion: Criterion,
+    begins: list[tuple[PolynomialLines, Fit]],
+    effort: Effort = TO_THE_END,
+) -> PolynomialLines:
+    """The best end of polishes from several lines, each in the coordinates of a fit.
+
+    A beginning whose cost comes out negative on this grid is left out; `PlantError` if none is left.
+    """
+    evaluate, nodes = evaluator(design, target_speed_m_s, criterion), design.grid.path_m
+
+    def ends() -> Iterator[Polish]:
+        for lines, fit in begins:
+            try:
+                found = polish(lines, fit.curvature, nodes, evaluate, effort.iterations, effort.tolerance)
+                for _ in range(effort.rounds - 1):
+                    found = polish(found.lines, fit.curvature, nodes, evaluate, effort.iterations, effort.tolerance)
+            except PlantError:
+                continue
+            yield found
+
+    best = min(ends(), key=lambda end: end.cost_after, default=None)
+    if best is None:
+        raise PlantError("grid: speed_step_m_s or path_step_m is too coarse for this plant: make both smaller")
+    return best.lines

@@ -1,0 +1,1 @@
+"""Kernels of the programme that may give a command at every sample."""

@@ -1,1 +1,0 @@
-"""Tables that are there already: found, read, exported."""
