@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant, PressureHistory, path_breaks_m, path_coefficients
+from plant_models.frozen_arrays import frozen_arrays
 from plant_models.stage_regulator import Actuator, stage_locked_actuator
 from synth.kernels.loop import closed_loop as kernel
 from synth.kernels.loop import regulator
@@ -48,7 +49,8 @@ SOLVER = {"method": "RK45", "rtol": 1e-7, "atol": 1e-8, "max_step": 0.02}
 """For `solve_ivp`; `max_step` keeps the solver from stepping over a change of N(s)."""
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class NominalResponse:
     """One nominal pass, arrays of shape (points,), from the entrance to the exit or to the stall.
 
@@ -61,11 +63,6 @@ class NominalResponse:
     pressure_kpa: NDArray[np.float64]
     stage: NDArray[np.int64]
     stalled: bool
-
-    def __post_init__(self) -> None:
-        for array in vars(self).values():
-            if isinstance(array, np.ndarray):
-                array.setflags(write=False)
 
     @property
     def exit_speed_m_s(self) -> float:
