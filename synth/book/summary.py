@@ -17,8 +17,9 @@ import numpy as np
 
 from synth.book.acceptance import CaseVerdict, Verdict
 from synth.book.case_result import CaseResult, DegreeStudy
-from synth.book.comparison.limit_cycle import hunting_report, pressure_hunting
+from synth.book.comparison.limit_cycle import hunting_report
 from synth.book.comparison.measured import Measured
+from synth.book.comparison.pressure_cycle import pressure_hunting
 from synth.book.estimation.estimated_table import EstimatedTable
 from synth.book.tune import Book
 from synth.problem.requirement_found import Finding

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 
 from synth.book.case_names import case_name
 from synth.book.case_result import CaseResult
-from synth.book.comparison.limit_cycle import Hunting, hunting_report, pressure_hunting
+from synth.book.comparison.limit_cycle import Hunting, hunting_report
+from synth.book.comparison.pressure_cycle import pressure_hunting
 from synth.book.printed_numbers import ABSENT, counted, percent
 from synth.present.report.book_report import BookReport
 from synth.present.report.markup import Cell, Markup, element, head_row, joined, table

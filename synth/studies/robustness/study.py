@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant
+from plant_models.frozen_arrays import frozen_arrays
 from synth.simulation.exit_statistics import clopper_pearson
 from synth.studies.robustness.parameter import Parameter
 from synth.studies.robustness.perturbation import Ends, Perturbation, all_off, one_off
@@ -69,7 +70,8 @@ class Sweep:
         return down, first_crossing(self.relative[centre:], rms[centre:], limit_m_s)
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Together:
     """All assumed parameters off at once, at n points of a Latin hypercube over ±`span`.
 
