@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, get_args
 
@@ -123,8 +123,14 @@ def field_at(location: Location) -> FieldInfo:
 
 def sections_in(field: FieldInfo) -> list[type[Section]]:
     """The section that a field holds, or a list of; empty for a plain value."""
-    candidates = (field.annotation, *get_args(field.annotation))
-    return [c for c in candidates if isinstance(c, type) and issubclass(c, Section)]
+    return [c for c in parts_of(field.annotation) if isinstance(c, type) and issubclass(c, Section)]
+
+
+def parts_of(annotation: Any) -> Iterator[Any]:
+    """A type, and all that it is made of."""
+    yield annotation
+    for part in get_args(annotation):
+        yield from parts_of(part)
 
 
 def dotted_keys(section: type[BaseModel], prefix: str) -> list[str]:

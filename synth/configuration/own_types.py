@@ -27,7 +27,7 @@ from plant_models.library import (
     TypeFileError,
 )
 from plant_models.library.data_file import parse_toml
-from plant_models.library.near_miss import near_miss
+from plant_models.library.near_miss import close_name
 from synth.configuration.toml_file import Tree, read_text
 from synth.faults.input_error import InputError
 from tuning_tables.excerpt import excerpt
@@ -128,13 +128,13 @@ def take_folder(collection: Collection, folder: Path, entry: str, where: str) ->
             f"{', '.join(kind.folder + '/' for kind in KINDS)} or some of these"
         )
     kinds = {kind.folder: kind for kind in KINDS}
-    for below in sorted(folder.iterdir()):
-        files = sorted(below.glob(f"*{SUFFIX}")) if below.is_dir() else [below] if below.suffix == SUFFIX else []
-        if files and (below.name not in kinds or not below.is_dir()):
-            raise InputError(
-                f"{where}: {below} is in no folder of a library; its folders are named by what they hold: "
-                f"{near_miss(below.name, kinds)}"
-            )
+    for below in sorted(path for path in folder.iterdir() if path.is_dir()):
+        meant = close_name(below.name, kinds)
+        if meant is None:
+            continue
+        files = sorted(below.glob(f"*{SUFFIX}"))
+        if files and below.name not in kinds:
+            raise InputError(f"{where}: {below} is no folder of a library; did you mean {meant}?")
         if len(files) > MOST_FILES:
             raise InputError(f"{where}: {below} holds {len(files)} files; at most {MOST_FILES} are read")
         for path in files:
