@@ -1,0 +1,188 @@
+"""What is lost by lines between two tables of a book, against a table tuned for the very speed commanded.
+
+A book is tuned with targets a step apart, and tables at equal parts of every step. At each part the lines between the
+two tables of the book are compared with the table tuned for that speed, on the same passes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.configuration.config_file import load_config
+from synth.configuration.resolved_config import ResolvedConfig
+from synth.solver.backward_induction import solve_all
+from synth.solver.tabulate import UNPREDICTED, tabulate
+from synth.solver.tuned_lines import lines_of_solution
+from synth.solver.chain.transitions import persistent_transitions
+from plant_models import Plant
+from synth.simulation.closed_loop import TableController, simulate
+from synth.simulation.random_passes import RandomPasses
+from synth.simulation.replicates import Interval, mean_of, rms_of
+from synth.simulation.stratified_passes import stratified_passes
+from synth.studies.cases import of_masses
+from synth.studies.markdown_table import MarkdownTable, span, table
+from synth.studies.options import option
+from synth.studies.side_by_side import side_by_side
+from synth.studies.study import Findings, Method, Tell
+from tuning_tables import ControllerTable, Generator
+from tuning_tables.table_book import Status, TableBook
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FRESH = 104729
+"""Added to the configured seed: passes that no tuning has seen."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """What is compared."""
+
+    config: Path | None = option(None, "configuration; the built-in default book without it")
+    masses_t: tuple[float, ...] = option((), "only cuts of these masses, t")
+    passes: int = option(20_000, "passes of each table", (200, 10**7))
+    step_m_s: float = option(1.0, "between the targets of the book, m/s", (0.1, 5.0))
+    parts: int = option(4, "equal parts of a step", (2, 100))
+
+
+@dataclass(frozen=True)
+class Row:
+    """One commanded speed: the table tuned for it beside what a book makes of it.
+
+    `between`: no table of the book is for this speed. `excess_m2_s2`: mean square of the lines of the book less that of
+    the tuned ones, paired.
+    """
+
+    label: str
+    target_m_s: float
+    between: bool
+    tuned_rms_m_s: float
+    book_rms_m_s: float
+    tuned_bias_m_s: float
+    book_bias_m_s: float
+    excess_m2_s2: float
+    excess_ci95_m2_s2: Interval
+
+
+@dataclass(frozen=True)
+class Interpolated(Findings):
+    """All commanded speeds of all classes of cuts."""
+
+    config_sha256: str
+    seed: int
+    passes: int
+    rows: tuple[Row, ...]
+
+    @property
+    def between(self) -> tuple[Row, ...]:
+        """The speeds between tables."""
+        return tuple(row for row in self.rows if row.between)
+
+    def tables(self) -> Mapping[str, MarkdownTable]:
+        """`between`: a row a speed between two tables."""
+        heads = (
+            "class",
+            "target, m/s",
+            "tuned rms",
+            "rms between",
+            "bias between",
+            "excess of the mean square, mm²/s² [95 %]",
+        )
+        rows = [
+            (row.label, f"{row.target_m_s:g}", f"{row.tuned_rms_m_s:.4f}", f"{row.book_rms_m_s:.4f}",
+             f"{row.book_bias_m_s:+.4f}", f"{1e6 * row.excess_m2_s2:.0f} {span(row.excess_ci95_m2_s2, 0, 1e6)}")
+            for row in self.between
+        ]  # fmt: skip
+        return {"between": table("Lines between two tables of a book, m/s", heads, rows)}
+
+    def sentences(self) -> tuple[str, ...]:
+        """The worst losses, and how many speeds show none."""
+        rows = self.between
+        most, worst = (max(rows, key=lambda row: key(row)) for key in (added, ratio))
+        none = sum(row.excess_ci95_m2_s2[0] <= 0.0 for row in rows)
+        return (
+            f"{self.passes} passes each, seed {self.seed}; {len(rows)} speeds between tables",
+            f"the rms rises by at most {1e3 * added(most):.1f} mm/s ({most.label} to {most.target_m_s:g} m/s) and "
+            f"{100.0 * (ratio(worst) - 1.0):.1f} % ({worst.label} to {worst.target_m_s:g} m/s)",
+            f"in {none} of {len(rows)} the 95 % interval shows no loss",
+        )
+
+    def figures(self) -> Mapping[str, Figure]:
+        """rms over the commanded speed."""
+        from synth.studies.interpolation_picture import picture
+
+        return {"": picture(self.rows)}
+
+
+def added(row: Row) -> float:
+    """What lines between tables add to the rms."""
+    return row.book_rms_m_s - row.tuned_rms_m_s
+
+
+def ratio(row: Row) -> float:
+    """rms by lines between tables / rms of the tuned ones."""
+    return row.book_rms_m_s / row.tuned_rms_m_s
+
+
+def run(options: Options, tell: Tell) -> Interpolated:
+    """Tune, choose between tables, simulate."""
+    config = of_masses(load_config(options.config), options.masses_t)
+    targets = parted(config.targets_m_s, options.step_m_s, options.parts)
+    seed = config.validation.seed + FRESH
+    passes = stratified_passes(seed, 0, options.passes)
+
+    def rows_of(item: tuple[str, Plant]) -> list[Row]:
+        label, plant = item
+        rows = compared(label, plant, tuned_tables(config, label, plant, targets), options.parts, passes)
+        tell(f"{label}: {len(rows)} speeds")
+        return rows
+
+    found = side_by_side(rows_of, config.plants())
+    return Interpolated(config.sha256, seed, options.passes, tuple(row for rows in found for row in rows))
+
+
+def parted(targets_m_s: Sequence[float], step_m_s: float, parts: int) -> list[float]:
+    """All commanded speeds: equal parts of whole steps from the lowest to about the highest target."""
+    low, high = min(targets_m_s), max(targets_m_s)
+    steps = max(1, round((high - low) / step_m_s))
+    return [float(target) for target in np.linspace(low, high, steps * parts + 1)]
+
+
+def tuned_tables(config: ResolvedConfig, label: str, plant: Plant, targets: list[float]) -> list[ControllerTable]:
+    """A table for each target of one class, as in a tune, without its other controllers."""
+    design = persistent_transitions(plant, config.resolution)
+    maker = Generator("retarder-synth study", "0", config.sha256)
+    return [
+        tabulate(
+            plant, lines_of_solution(solution, config.fit.degree), solution.target_speed_m_s, UNPREDICTED, maker,
+            f"{label}-{solution.target_speed_m_s:g}", "2000-01-01T00:00:00Z",
+        )
+        for solution in solve_all(design, [(target, config.criterion) for target in targets])
+    ]  # fmt: skip
+
+
+def compared(label: str, plant: Plant, tables: list[ControllerTable], parts: int, passes: RandomPasses) -> list[Row]:
+    """Lines of a book of every `parts`-th table beside each of the tables."""
+    book, rows = TableBook(tuple(tables[::parts])), []
+    for tuned in tables:
+        target = tuned.target_speed_m_s
+        choice = book.choose(plant.cut.category, len(plant.cut.axle_offsets_m), target)
+        assert choice.table is not None, f"the book has no lines to {target:g} m/s"
+        own, other = (simulate(plant, TableController(each), passes) for each in (tuned, choice.table))
+        weight, error, between = own.weight, own.exit_speed_m_s - target, other.exit_speed_m_s - target
+        excess = mean_of(between**2 - error**2, weight)
+        rows.append(
+            Row(
+                label, target, choice.status is Status.BETWEEN, rms_of(error, weight)[0], rms_of(between, weight)[0],
+                mean_of(error, weight).value, mean_of(between, weight).value, excess.value, excess.ci95,
+            )
+        )  # fmt: skip
+    return rows
+
+
+METHOD = Method(Options, Options(masses_t=(52.0,), passes=400, parts=2), Interpolated, run)
