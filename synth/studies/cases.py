@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from synth.faults.input_error import InputError
 
 if TYPE_CHECKING:
-    from synth.configuration.resolved_config import ResolvedConfig
     from plant_models import Plant
+    from synth.configuration.resolved_config import ResolvedConfig
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ STUDIES: tuple[Study, ...] = (
     Study(
         "interpolation",
         "What is lost by lines between two tables of a book, against a table tuned for the very speed commanded?",
-        30.0,
+        6.0,
         "controllers.md",
         "synth.studies.interpolation",
     ),

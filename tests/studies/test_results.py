@@ -57,7 +57,7 @@ def study(monkeypatch: pytest.MonkeyPatch) -> Study:
     return Study("counted", "How many?", 1.0, "", "nowhere")
 
 
-def left(study: Study, path: Path, **changes: Any) -> Path:
+def left(study: Study, path: Path, changes: dict[str, Any]) -> Path:
     document = json.loads(study.run().json()) | changes
     (path / "counted.json").write_text(json.dumps(document), encoding="utf-8")
     return path / "counted.json"
@@ -92,7 +92,7 @@ def test_numbers_of_a_list_stand_in_one_line(study: Study) -> None:
     ],
 )
 def test_what_no_run_left_is_refused(study: Study, tmp_path: Path, changes: dict[str, Any]) -> None:
-    path = left(study, tmp_path, **changes)
+    path = left(study, tmp_path, changes)
     with pytest.raises(InputError, match=r"counted\.json: .*study counted' again"):
         read_result(study, path)
 

@@ -1,4 +1,4 @@
-"""`retarder-synth study`: its list is light, a wrong word is told in one sentence, files and JSON are those of a run."""
+"""`retarder-synth study`: a light list, one sentence for a wrong word, files and JSON of the same run."""
 
 from __future__ import annotations
 
