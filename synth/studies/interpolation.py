@@ -125,10 +125,8 @@ def worst_of(rows: Sequence[Row]) -> tuple[str, ...]:
     worst = max(rows, key=lambda row: row.book_rms_m_s - row.tuned_rms_m_s)
     rise, share = worst.book_rms_m_s - worst.tuned_rms_m_s, worst.book_rms_m_s / worst.tuned_rms_m_s - 1.0
     kept = sum(row.excess_ci95_m2_s2[0] <= 0.0 for row in rows)
-    return (
-        worst.label, f"{rise:.4f} ({100.0 * share:.1f} %)" if rise > 0.0 else "none", f"{worst.tuned_rms_m_s:.4f}", f"{worst.target_m_s:g} m/s",
-        f"{kept} of {len(rows)} speeds",
-    )  # fmt: skip
+    most = f"{rise:.4f} ({100.0 * share:.1f} %)" if rise > 0.0 else "none"
+    return worst.label, most, f"{worst.tuned_rms_m_s:.4f}", f"{worst.target_m_s:g} m/s", f"{kept} of {len(rows)} speeds"
 
 
 def run(options: Options, tell: Tell) -> Interpolated:
