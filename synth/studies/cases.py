@@ -52,3 +52,12 @@ def of_masses(config: ResolvedConfig, masses_t: Sequence[float]) -> ResolvedConf
         all_known = ", ".join(f"{mass:g}" for mass in sorted(known))
         raise InputError(f"study: no cut of the configuration has {unknown[0]:g} t; its masses are {all_known} t")
     return replace(config, cuts=tuple(c for c in config.cuts if not masses_t or c.cut.mass_t in masses_t))
+
+
+def class_cases(config: ResolvedConfig, masses_t: Sequence[float], targets_m_s: Sequence[float]) -> tuple[Case, ...]:
+    """The cuts of these masses (all for none) to each of these speeds (the targets for none). Raises `InputError`."""
+    return tuple(
+        Case(label, plant, target)
+        for label, plant in of_masses(config, masses_t).plants()
+        for target in targets_m_s or config.targets_m_s
+    )

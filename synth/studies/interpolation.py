@@ -22,14 +22,14 @@ from synth.simulation.replicates import Interval, mean_of, rms_of
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.backward_induction import solve_all
 from synth.solver.chain.transitions import persistent_transitions
-from synth.solver.tabulate import UNPREDICTED, tabulate
 from synth.solver.tuned_lines import lines_of_solution
 from synth.studies.cases import of_masses
 from synth.studies.markdown_table import MarkdownTable, span, table
 from synth.studies.options import option
 from synth.studies.side_by_side import side_by_side
 from synth.studies.study import Findings, Method, Tell
-from tuning_tables import ControllerTable, Generator
+from synth.studies.tuned_table import rounded
+from tuning_tables import ControllerTable
 from tuning_tables.table_book import Status, TableBook
 
 if TYPE_CHECKING:
@@ -138,7 +138,7 @@ def run(options: Options, tell: Tell) -> Interpolated:
 
     def rows_of(item: tuple[str, Plant]) -> list[Row]:
         label, plant = item
-        rows = compared(label, plant, tuned_tables(config, label, plant, targets), options.parts, passes)
+        rows = compared(label, plant, tuned_tables(config, plant, targets), options.parts, passes)
         tell(f"{label}: {len(rows)} speeds")
         return rows
 
@@ -153,17 +153,12 @@ def parted(targets_m_s: Sequence[float], step_m_s: float, parts: int) -> list[fl
     return [float(target) for target in np.linspace(low, high, steps * parts + 1)]
 
 
-def tuned_tables(config: ResolvedConfig, label: str, plant: Plant, targets: list[float]) -> list[ControllerTable]:
+def tuned_tables(config: ResolvedConfig, plant: Plant, targets: list[float]) -> list[ControllerTable]:
     """A table for each target of one class, as in a tune, without its other controllers."""
     design = persistent_transitions(plant, config.resolution)
-    maker = Generator("retarder-synth study", "0", config.sha256)
-    return [
-        tabulate(
-            plant, lines_of_solution(solution, config.fit.degree), solution.target_speed_m_s, UNPREDICTED, maker,
-            f"{label}-{solution.target_speed_m_s:g}", "2000-01-01T00:00:00Z",
-        )
-        for solution in solve_all(design, [(target, config.criterion) for target in targets])
-    ]  # fmt: skip
+    solutions = solve_all(design, [(target, config.criterion) for target in targets])
+    lines = [(lines_of_solution(each, config.fit.degree), each.target_speed_m_s) for each in solutions]
+    return [rounded(config, plant, own, target) for own, target in lines]
 
 
 def compared(label: str, plant: Plant, tables: list[ControllerTable], parts: int, passes: RandomPasses) -> list[Row]:

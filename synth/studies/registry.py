@@ -8,11 +8,46 @@ from synth.studies.study import Study
 
 STUDIES: tuple[Study, ...] = (
     Study(
+        "estimator",
+        "What is gained when the regulator compares an estimated speed with its lines?",
+        60.0,
+        "estimator.md#what-it-gains",
+        "synth.studies.estimator.study",
+    ),
+    Study(
+        "estimator-spreads",
+        "What does the estimator gain at other spreads of friction, and at another position?",
+        60.0,
+        "estimator.md#what-it-gains",
+        "synth.studies.estimator.spreads",
+    ),
+    Study(
+        "estimator-wrong",
+        "What does the estimator cost where it is wrong: another friction, mass or gauge, a lost sensor?",
+        60.0,
+        "estimator.md#where-it-is-wrong",
+        "synth.studies.estimator.wrong_study",
+    ),
+    Study(
         "interpolation",
         "What is lost by lines between two tables of a book, against a table tuned for the very speed commanded?",
         6.0,
         "controllers.md",
         "synth.studies.interpolation",
+    ),
+    Study(
+        "limits",
+        "What limits the accuracy: what does each source of error or of delay cost a controller that knows of it?",
+        60.0,
+        "estimator.md",
+        "synth.studies.limits.study",
+    ),
+    Study(
+        "robustness",
+        "What does a table do on another plant than it was tuned for: wrong parameters, worn parts, faulty sensors?",
+        600.0,
+        "robustness.md",
+        "synth.studies.robustness.study",
     ),
 )
 

@@ -14,12 +14,19 @@ from synth.simulation.exit_statistics import rms_ratio
 from synth.simulation.random_passes import random_passes
 from synth.solver.chain.transitions import check_transitions
 from synth.studies.robustness.condition import aged_valves, friction
+from synth.studies.robustness.experiments import (
+    hypercube,
+    one_at_a_time,
+    steepest,
+    sweep,
+    together,
+    tolerated,
+)
 from synth.studies.robustness.parameter import Parameter
 from synth.studies.robustness.perturbation import Perturbation, ends_by
-from synth.studies.robustness.retuned_table import retuned
 from synth.studies.robustness.sensor_fault import Bias
-from synth.studies.robustness.study import Sweep, one_at_a_time, sweep, together
 from synth.studies.robustness.trial import Trial, trial_of
+from synth.studies.tuned_table import tuned_table as retuned
 from tests.synth.case_factory import make_plant, make_sample, make_table
 
 
@@ -42,7 +49,7 @@ def few() -> tuple[Parameter, ...]:
 def test_nominal_passes_have_the_ratio_one(trial: Trial) -> None:
     outcome = trial.outcome(Perturbation("nominal"))
     assert (outcome.ratio, outcome.ratio_ci95) == (1.0, (1.0, 1.0))
-    assert outcome.statistics.bias_ci95_m_s[0] < outcome.statistics.bias_m_s < outcome.statistics.bias_ci95_m_s[1]
+    assert outcome.bias_ci95_m_s[0] < outcome.bias_m_s < outcome.bias_ci95_m_s[1]
 
 
 def test_the_ratio_is_paired() -> None:
@@ -71,44 +78,43 @@ def test_a_trial_of_fewer_passes_is_a_part_of_it(trial: Trial) -> None:
 
 
 def test_strongest_parameter_comes_first(trial: Trial, few: tuple[Parameter, ...]) -> None:
-    found = one_at_a_time(trial, few, ends_by(0.5), threads=1)
-    assert [row.worst.statistics.rms_m_s for row in found] == sorted(r.worst.statistics.rms_m_s for r in found)[::-1]
-    assert found[0].parameter.name == "K"
-    assert {row.parameter for row in found} == set(few)
-    zero = next(row for row in found if row.parameter.name == "axle CV")
+    found = one_at_a_time(trial, few, ends_by(0.5))
+    assert [row.worst.rms_m_s for row in found] == sorted(r.worst.rms_m_s for r in found)[::-1]
+    assert found[0].name == "K"
+    assert {row.key for row in found} == {p.key for p in few}
+    zero = next(row for row in found if row.name == "axle CV")
     assert zero.less.ratio == 1.0 != zero.more.ratio
 
 
 def test_a_sweep_passes_through_the_nominal_plant(trial: Trial, few: tuple[Parameter, ...]) -> None:
-    found = sweep(trial, few[0], (-0.1, 0.0, 0.1), threads=2)
-    assert found.outcomes[1].ratio == 1.0
-    assert found.outcomes[0].ratio != 1.0 != found.outcomes[2].ratio
+    found = sweep(trial, few[0], (-0.1, 0.0, 0.1), 0.1)
+    nominal = trial.outcome(Perturbation("nominal")).rms_m_s
+    assert found.rms_m_s[1] == nominal
+    assert found.rms_m_s[0] != nominal != found.rms_m_s[2]
 
 
-def test_where_a_sweep_passes_the_limit(
-    trial: Trial, few: tuple[Parameter, ...], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    rms = (0.3, 0.15, 0.05, 0.04, 0.06)
-    monkeypatch.setattr(Sweep, "rms_m_s", property(lambda self: rms))
-    found = Sweep(few[0], (-0.2, -0.1, 0.0, 0.1, 0.2), ())
-    assert found.tolerated(0.1) == (pytest.approx(-0.05), None)
-    assert found.tolerated(0.055) == (pytest.approx(-0.005), pytest.approx(0.175))
-    assert found.tolerated(0.03) == (0.0, 0.0)
-    assert found.steepest == pytest.approx(3.0)
+def test_where_a_sweep_passes_the_limit() -> None:
+    relative, rms = (-0.2, -0.1, 0.0, 0.1, 0.2), (0.3, 0.15, 0.05, 0.04, 0.06)
+    assert tolerated(relative, rms, 0.1) == (pytest.approx(-0.05), None)
+    assert tolerated(relative, rms, 0.055) == (pytest.approx(-0.005), pytest.approx(0.175))
+    assert tolerated(relative, rms, 0.03) == (0.0, 0.0)
+    assert steepest(rms) == pytest.approx(3.0)
 
 
-def test_latin_hypercube_is_one_in_every_stratum_and_the_same_by_any_threads(
-    trial: Trial, few: tuple[Parameter, ...]
-) -> None:
-    one, two = (together(trial.first(200), few, 0.2, 16, seed=3, threads=n) for n in (1, 2))
-    assert np.array_equal(one.rms_m_s, two.rms_m_s)
-    assert [p.name for p in one.parameters] == ["K", "noise"]  # neither zero nor measured values
-    strata = np.floor((one.relative / 0.2 + 1.0) * 8.0).astype(int)
+def test_latin_hypercube_is_one_in_every_stratum() -> None:
+    relative = hypercube(5, 0.2, 16, seed=3)
+    strata = np.floor((relative / 0.2 + 1.0) * 8.0).astype(int)
     assert all(sorted(column.tolist()) == list(range(16)) for column in strata.T)
+
+
+def test_all_together_varies_what_is_assumed_and_not_zero(trial: Trial, few: tuple[Parameter, ...]) -> None:
+    one = together(trial.first(200), few, 0.2, 16, seed=3)
+    assert one.names == ("K", "noise")
+    assert len(set(one.rms_m_s)) == 16
     share, (low, high) = one.share_within(float(np.median(one.rms_m_s)))
     assert low < share == 0.5 < high
     middle, (below, above) = one.quantile_m_s(0.5)
-    assert one.rms_m_s.min() <= below < middle < above <= one.rms_m_s.max()
+    assert min(one.rms_m_s) <= below < middle < above <= max(one.rms_m_s)
 
 
 @pytest.fixture(scope="module")
@@ -121,7 +127,7 @@ def tuned() -> Trial:
 
 
 def test_a_bias_of_the_sensor_is_a_bias_of_the_exit_speed(tuned: Trial) -> None:
-    high, low = (tuned.outcome(Perturbation("bias", fault=Bias(b))).statistics for b in (0.1, -0.1))
+    high, low = (tuned.outcome(Perturbation("bias", fault=Bias(b))) for b in (0.1, -0.1))
     assert 0.5 * (low.bias_m_s - high.bias_m_s) == pytest.approx(0.1, abs=0.02)
 
 
@@ -136,5 +142,5 @@ def test_a_wrong_table_does_what_the_exact_density_predicts(tuned: Trial) -> Non
     aged = Perturbation("aged valves", aged_valves)
     check = check_transitions(aged.change(tuned.plant), finer_for_check(load_config(None).resolution))
     predicted = predict(check, tuned.table).rms_m_s(3.0)
-    assert predicted / tuned.outcome(aged).statistics.rms_m_s == pytest.approx(1.0, abs=0.1)
-    assert predicted > 2.0 * tuned.outcome(Perturbation("nominal")).statistics.rms_m_s
+    assert predicted / tuned.outcome(aged).rms_m_s == pytest.approx(1.0, abs=0.1)
+    assert predicted > 2.0 * tuned.outcome(Perturbation("nominal")).rms_m_s
