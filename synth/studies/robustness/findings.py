@@ -174,26 +174,22 @@ class Robustness(Findings):
 
     def ranges(self) -> MarkdownTable:
         """A row a parameter whose sensible range matters, at its worse end, by the largest ratio in any case."""
-        by_key = {
-            row.key: [next((r for r in case.sensible if r.key == row.key), None) for case in self.cases]
-            for row in self.cases[0].sensible
-        }
-        largest = {key: max(row.worst.ratio for row in rows if row) for key, rows in by_key.items()}
-        shown = sorted((key for key in by_key if largest[key] > SHOWN_RATIO), key=lambda key: -largest[key])
+        by_key = {row.key: [of_key(case.sensible, row.key) for case in self.cases] for row in self.cases[0].sensible}
+        largest = {key: max(row.worst.ratio for row in found if row) for key, found in by_key.items()}
+        names = {row.key: row.name for row in self.cases[0].sensible}
         rows = [
-            (by_key[key][0].name, *(f"{row.worst_value:.3g}: {row.worst.cell}" if row else ABSENT for row in by_key[key]))
-            for key in shown if by_key[key][0] is not None
-        ]  # fmt: skip
-        title = (
-            "the worse end of the library's sensible range: value, rms, m/s [95 %] / of a table tuned for that plant"
-        )
+            (names[key], *(f"{row.worst_value:.3g}: {row.worst.cell}" if row else ABSENT for row in by_key[key]))
+            for key in sorted(by_key, key=lambda key: -largest[key])
+            if largest[key] > SHOWN_RATIO
+        ]
+        title = "worse end of the library's sensible range: value, rms, m/s [95 %] / of a table tuned for that plant"
         return table(title, ("parameter", *self.names), rows)
 
     def halves(self) -> MarkdownTable:
         """A row a parameter at −50 % and +50 %, the strongest of the first case first."""
         rows = []
         for first in self.cases[0].halves[:SHOWN_HALVES]:
-            found = [next((r for r in case.halves if r.key == first.key), None) for case in self.cases]
+            found = [of_key(case.halves, first.key) for case in self.cases]
             cells = (f"{r.less.rms_m_s:.3f} / {r.more.rms_m_s:.3f}" if r else ABSENT for r in found)
             rows.append((first.name, *cells))
         return table("rms at −50 % / at +50 % of one parameter, m/s", ("parameter", *self.names), rows)
@@ -204,14 +200,14 @@ class Robustness(Findings):
         for at, first in enumerate(self.cases[0].sweeps):
             swept = [case.sweeps[at] for case in self.cases]
             rows.append((first.name, *map(crossed, swept), f"{max(each.steepest for each in swept):.2f}"))
-        heads = ("parameter", *self.names, "largest factor of a step of 5 %")
+        heads = ("parameter", *self.names, "largest factor of a step")
         return table(f"error of one parameter at which the rms passes {self.limit_m_s:g} m/s", heads, rows)
 
     def together(self) -> MarkdownTable:
         """A row a case and span."""
         heads = ("all assumed parameters within", "case", f"within {self.limit_m_s:g} m/s, % [95 %]", "median rms",
                  "95 % quantile", "worst stalls, %", "strongest rank correlations")  # fmt: skip
-        rows = []
+        rows: list[tuple[str, ...]] = []
         for case in self.cases:
             for drawn in case.together:
                 share, ends = drawn.share_within(self.limit_m_s)
@@ -248,6 +244,11 @@ class Robustness(Findings):
             "together": all_together(self.cases, self.limit_m_s),
             "conditions": named_conditions(self.cases, self.limit_m_s),
         }
+
+
+def of_key(rows: tuple[EndsRow, ...], key: str) -> EndsRow | None:
+    """The row of a parameter; None where the plant of a case has none."""
+    return next((row for row in rows if row.key == key), None)
 
 
 def without_mass(name: str) -> str:
