@@ -43,6 +43,13 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.limits.study",
     ),
     Study(
+        "rare-events",
+        "How often does a cut leave far too fast, down to one in a million and below?",
+        300.0,
+        "rare-events.md",
+        "synth.studies.rare_events.study",
+    ),
+    Study(
         "robustness",
         "What does a table do on another plant than it was tuned for: wrong parameters, worn parts, faulty sensors?",
         600.0,

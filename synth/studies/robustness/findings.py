@@ -216,7 +216,8 @@ class Robustness(Findings):
                      around(*drawn.quantile_m_s(0.5), 3), around(*drawn.quantile_m_s(0.95), 2),
                      f"{100.0 * max(drawn.stalled):.2g}", ", ".join(drawn.leading[:4])),
                 )  # fmt: skip
-        return table("all assumed parameters wrong at once", heads, sorted(rows, key=lambda row: row[0]))
+        rows.sort(key=lambda row: row[0])
+        return table("all assumed parameters wrong at once", heads, rows)
 
     def sentences(self) -> tuple[str, ...]:
         """How much was simulated, cliffs, stalls."""
