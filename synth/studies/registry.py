@@ -8,6 +8,27 @@ from synth.studies.study import Study
 
 STUDIES: tuple[Study, ...] = (
     Study(
+        "convergence",
+        "How do value, lines and prediction change as the steps of the grid are halved?",
+        120.0,
+        "method.md#11-convergence",
+        "synth.studies.convergence.study",
+    ),
+    Study(
+        "criteria",
+        "What do other criteria than the mean square make of the tables, and what does a price on switchings buy?",
+        60.0,
+        "method.md#12-criteria",
+        "synth.studies.criteria.study",
+    ),
+    Study(
+        "degree",
+        "Which degree do the polynomial lines need?",
+        60.0,
+        "degree.md",
+        "synth.studies.degree",
+    ),
+    Study(
         "estimator",
         "What is gained when the regulator compares an estimated speed with its lines?",
         60.0,
