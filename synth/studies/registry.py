@@ -8,6 +8,20 @@ from synth.studies.study import Study
 
 STUDIES: tuple[Study, ...] = (
     Study(
+        "accuracy-grid",
+        "How near are the tables to what physics leaves, over a whole grid of cases, and are all limits kept?",
+        200.0,
+        "estimator.md#the-whole-grid",
+        "synth.studies.accuracy_grid.study",
+    ),
+    Study(
+        "book",
+        "How accurate are the tables of the default book?",
+        10.0,
+        "results.md",
+        "synth.studies.book",
+    ),
+    Study(
         "convergence",
         "How do value, lines and prediction change as the steps of the grid are halved?",
         120.0,
