@@ -91,6 +91,13 @@ STUDIES: tuple[Study, ...] = (
         "robustness.md",
         "synth.studies.robustness.study",
     ),
+    Study(
+        "unlocked",
+        "What is gained when a command may be given at every sample, also during a change of stage?",
+        1800.0,
+        "unlocked.md",
+        "synth.studies.unlocked.study",
+    ),
 )
 
 
