@@ -1,8 +1,8 @@
 """What is gained when a command may be given at every sample, also during a pressure transient.
 
 On the same fresh passes: stage-locked lines of the solver, stage-locked polished cubics, the same taken through a
-direct search on simulated passes, the unlocked surfaces, the compact unlocked form (cubic in path, linear in pressure) and
-cubics without pressure after the same search, and the energy rule.
+direct search on simulated passes, the unlocked surfaces, the compact unlocked form (cubic in path, linear in pressure),
+and cubics without pressure after the same search, and the energy rule.
 """
 
 from __future__ import annotations
