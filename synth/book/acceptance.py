@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from synth.book.case_names import case_name, contest, why_infeasible
+from synth.book.case_names import case_name, why_infeasible
 from synth.book.case_result import CaseResult
 from synth.book.judgement import Judgement, interval_text, judgement
 from synth.book.printed_numbers import counted
@@ -63,8 +63,8 @@ def judge(cases: Sequence[CaseResult], limits: AcceptanceSettings) -> Verdict:
             f"{counted(len(feasible), 'feasible case')} ({told(open_ones)}); raise validation.passes"
         )
     else:
-        worst = max((case for case, _ in feasible), key=lambda case: contest(case).table.statistics.rms_m_s)
-        found = contest(worst).table.statistics
+        worst = max((case for case, _ in feasible), key=lambda case: case.comparison.table.statistics.rms_m_s)
+        found = worst.comparison.table.statistics
         sentence = (
             f"the limits are kept in {counted(len(feasible), 'feasible case')}; the worst rms is {found.rms_m_s:.4f} "
             f"{interval_text(found.rms_ci95_m_s)} m/s ({case_name(worst)}) where {limits.rms_m_s:g} m/s are allowed"
@@ -85,7 +85,7 @@ def judge_case(case: CaseResult, limits: AcceptanceSettings) -> CaseVerdict:
     error = case.exit_speeds_m_s.astype(float) - case.target_speed_m_s
     over = share_of(error > limits.overspeed_margin_m_s, case.exit_weight)
     obstacle = "" if case.feasibility.feasible else why_infeasible(case)
-    found = judgement(contest(case).table.statistics, over, case.table.predicted, limits)
+    found = judgement(case.comparison.table.statistics, over, case.table.predicted, limits)
     if case.feasibility.undecided and found.missed:
         # What is missed would not count in an infeasible case, and that cannot be told.
         unsure = "the friction-known reference is too near to the limit to tell whether the case is feasible"

@@ -3,54 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
 
 from synth.book.case_result import CaseResult
-from synth.book.comparison.measured import Measured
-
-
-@dataclass(frozen=True)
-class Contest:
-    """The comparison of a case by role."""
-
-    table: Measured
-    lines: Measured
-    published: Measured
-    known_friction: Measured
-    baselines: tuple[Measured, ...]
-    without_estimator: Measured | None = None
-
-    @property
-    def entries(self) -> tuple[Measured, ...]:
-        """All controllers, in the order of `CaseResult.comparison`."""
-        last = () if self.without_estimator is None else (self.without_estimator,)
-        return (self.table, self.lines, self.published, self.known_friction, *self.baselines, *last)
-
-    @property
-    def best_baseline(self) -> Measured | None:
-        """The baseline of least rms, None if there is none."""
-        return min(self.baselines, key=lambda entry: entry.statistics.rms_m_s, default=None)
-
-    @property
-    def regret(self) -> float:
-        """rms of the table / rms of the friction-known bound."""
-        return self.known_friction.table_ratio
-
-    @property
-    def table_loss(self) -> float:
-        """rms of the table / rms of the full switching lines."""
-        return self.lines.table_ratio
-
-
-def contest(case: CaseResult) -> Contest:
-    """The comparison of `case` by role, taken from the order of `CaseResult.comparison`.
-
-    The prediction of the formulation as published is the one that the case itself states.
-    """
-    table, lines, published, known, *baselines = case.comparison
-    published = replace(published, predicted_rms_m_s=case.published_predicted_rms_m_s)
-    without = baselines.pop() if case.estimate is not None else None
-    return Contest(table, lines, published, known, tuple(baselines), without)
 
 
 def target_name(case: CaseResult) -> str:
@@ -85,5 +39,5 @@ def by_class(cases: Iterable[CaseResult]) -> tuple[tuple[CaseResult, ...], ...]:
 
 def why_infeasible(case: CaseResult) -> str:
     """What stands in the way of an infeasible case, in three words."""
-    too_fast = contest(case).known_friction.statistics.bias_m_s > 0.0
+    too_fast = case.comparison.friction_known.statistics.bias_m_s > 0.0
     return "out of brake power" if too_fast else "leaves too slow"

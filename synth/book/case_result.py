@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant
-from synth.book.comparison.measured import Feasibility, Measured
-from synth.problem.criterion import SQUARED_ERROR_CRITERION, Criterion
+from synth.book.comparison.comparison import Comparison
+from synth.book.comparison.measured import Feasibility
+from synth.problem.criterion import Criterion
+from synth.problem.problem import Problem
 from synth.problem.requirement_found import Finding
 from synth.simulation.exit_statistics import BrakePower
 from synth.simulation.passes import PassTrace
@@ -20,9 +22,7 @@ from tuning_tables import ControllerTable
 
 if TYPE_CHECKING:  # who draws or reports a case needs no kernels
     from synth.book.estimation.estimated_table import EstimatedTable
-
-WITHOUT_ESTIMATOR = "without estimator"
-"""Name of the polished lines for the measured speed, where the table has an estimator."""
+    from synth.solver.polynomial_fit import Polish
 
 
 @dataclass(frozen=True)
@@ -67,39 +67,59 @@ class DegreeStudy:
 
 
 @dataclass(frozen=True)
-class CaseResult:
-    """One cut class and target: table, prediction, closed loop, comparison.
+class CaseStudy:
+    """What a case shows besides its figures.
 
-    `table`, `table_lines` the exported polynomial lines (sampled densely), `solver_lines` the raw matrices;
-    `predicted` exact density of the exported table; `exit_speeds_m_s` simulated, stalls as 0, and `exit_weight`: how
-    many cuts each pass stands for; `brake_power`: what of their error is for want of it; `comparison` by controller:
-    first our table, then full lines, as published, friction known, baselines; `traces` a few passes of the table (low,
-    nominal and high friction) with `trace_factors` their ξ_cut; `criterion` in force and, where it requires something,
-    `finding`: what that took. Where an estimator is asked for, `estimate`: how its lines were designed; then the
-    comparison ends with lines for the measured speed, `WITHOUT_ESTIMATOR`, and `predicted` is simulated if the table
-    has the estimator (else it is `left_out`).
+    `table_lines` the exported polynomial lines (sampled densely), `solver_lines` the raw matrices; `traces` a few
+    passes of the table (low, nominal and high friction) with `trace_factors` their ξ_cut.
     """
 
-    label: str
-    plant: Plant
-    target_speed_m_s: float
-    table: ControllerTable
     table_lines: SwitchingLines
     solver_lines: SwitchingLines
     policy_map: PolicyMap
+    indifference: Indifference
+    traces: tuple[PassTrace, ...]
+    trace_factors: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class CaseResult:
+    """One cut class and target: the table with its prediction, its closed loop, and the comparison.
+
+    `predicted`: exact density of the exported table, or a simulated one if the table has an estimator; `polish`: how
+    the lines of least cost were found; `finding`: what the criterion's requirement took; `estimate`: where an estimator
+    is asked for, how its lines were designed. `exit_speeds_m_s` simulated, stalls as 0, and `exit_weight`: how many
+    cuts each pass stands for; `brake_power`: what of their error is for want of it.
+    """
+
+    label: str
+    problem: Problem
+    table: ControllerTable
     predicted: ExitDensity
-    published_predicted_rms_m_s: float
+    polish: Polish
+    finding: Finding | None
+    estimate: EstimatedTable | None
     exit_speeds_m_s: NDArray[np.float32]
     exit_weight: NDArray[np.float64]
     brake_power: BrakePower
-    comparison: tuple[Measured, ...]
-    indifference: Indifference
+    comparison: Comparison
     feasibility: Feasibility
-    traces: tuple[PassTrace, ...]
-    trace_factors: tuple[float, ...]
-    criterion: Criterion = SQUARED_ERROR_CRITERION
-    finding: Finding | None = None
-    estimate: EstimatedTable | None = None
+    study: CaseStudy
+
+    @property
+    def plant(self) -> Plant:
+        """Everything about a pass but the commanded speed."""
+        return self.problem.plant
+
+    @property
+    def target_speed_m_s(self) -> float:
+        """The commanded exit speed."""
+        return self.problem.target_speed_m_s
+
+    @property
+    def criterion(self) -> Criterion:
+        """What a pass costs."""
+        return self.problem.criterion
 
     @property
     def left_out(self) -> str:
@@ -111,7 +131,3 @@ class CaseResult:
             f"no estimator: it gained nothing on the tuning passes (rms {made.rms_after_m_s:.4f} m/s with it, "
             f"{made.plain_rms_m_s:.4f} without), so the table is of version 1"
         )
-
-    def by_name(self, name: str) -> Measured:
-        """The controller called `name` in the comparison."""
-        return next(entry for entry in self.comparison if entry.name == name)

@@ -9,14 +9,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from synth.book.case_result import DegreeStudy
-from synth.book.tune_case import predict, rms_of_lines
+from synth.book.class_setup import Origin
+from synth.book.tuned_table import predict
 from synth.solver.backward_induction import Solution
-from synth.solver.chain.transitions import Transitions
-from synth.solver.policy_evaluation import commands, occupancy_of
+from synth.solver.chain.chain import Chain
+from synth.solver.evaluation import Evaluation
+from synth.solver.policy_density import density_and_occupancy
 from synth.solver.polynomial_fit import PolynomialLines, fit_lines
 from synth.solver.tabulate import UNPREDICTED, tabulate
 from synth.solver.tuned_lines import polished
-from tuning_tables import ControllerTable, Generator, InvalidTable
+from tuning_tables import ControllerTable, InvalidTable
 
 
 @dataclass(frozen=True)
@@ -28,27 +30,26 @@ class TablesOfDegree:
     polished: ControllerTable | None
 
 
-def tables_by_degree(
-    solution: Solution, degrees: tuple[int, ...], generator: Generator, created: str
-) -> Iterator[TablesOfDegree]:
+def tables_by_degree(solution: Solution, degrees: tuple[int, ...], origin: Origin) -> Iterator[TablesOfDegree]:
     """Lines of every degree, fitted and polished as a tune does for a criterion without a requirement."""
-    design, target, criterion = solution.transitions, solution.target_speed_m_s, solution.criterion
-    _, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
+    target_m_s, plant = solution.aim.target_speed_m_s, solution.chain.plant
+    _, occupancy = density_and_occupancy(solution.chain, solution.lines)
 
     def table(lines: PolynomialLines) -> ControllerTable | None:
+        stamp = (origin.generator, f"degree-{lines.degree}", origin.created)
         try:
-            return tabulate(design.plant, lines, target, UNPREDICTED, generator, f"degree-{lines.degree}", created)
+            return tabulate(plant, lines, target_m_s, UNPREDICTED, *stamp)
         except InvalidTable:
             return None
 
     for degree in degrees:
         fit = fit_lines(solution, occupancy.samples, degree)
-        yield TablesOfDegree(degree, table(fit.lines), table(polished(design, fit, target, criterion)))
+        yield TablesOfDegree(degree, table(fit.lines), table(polished(solution, fit).lines))
 
 
-def degree_study(solution: Solution, check: Transitions, label: str, tables: tuple[TablesOfDegree, ...]) -> DegreeStudy:
+def degree_study(solution: Solution, check: Chain, label: str, tables: tuple[TablesOfDegree, ...]) -> DegreeStudy:
     """Rms that the forward density on `check` gives each of `tables`, and the solver's lines; NaN without a table."""
-    target = solution.target_speed_m_s
+    target = solution.aim.target_speed_m_s
 
     def rms_m_s(table: ControllerTable | None) -> float:
         return math.nan if table is None else predict(check, table).rms_m_s(target)
@@ -58,5 +59,5 @@ def degree_study(solution: Solution, check: Transitions, label: str, tables: tup
         degrees=tuple(each.degree for each in tables),
         fitted_rms_m_s=np.array([rms_m_s(each.fitted) for each in tables]),
         polished_rms_m_s=np.array([rms_m_s(each.polished) for each in tables]),
-        lines_rms_m_s=rms_of_lines(check, solution.lines.at(check.grid.path_m), target),
+        lines_rms_m_s=Evaluation(check, solution.aim).rms_m_s(solution.lines.at(check.grid.path_m)),
     )

@@ -15,7 +15,7 @@ def policy_map(solution: Solution, tolerance_m2_s2: float) -> PolicyMap:
     The cost of holding is taken as 0, of a change as minus its gain; the best command is the cheapest, hold in
     a tie; a state is indifferent if a second command costs at most `tolerance_m2_s2` more than the best.
     """
-    grid = solution.transitions.grid
+    grid = solution.chain.grid
     down, up = (np.moveaxis(gain, 1, 0) for gain in (solution.gain_down, solution.gain_up))
     down, up = np.where(available(down), down, -np.inf), np.where(available(up), up, -np.inf)
     best = np.maximum(0.0, np.maximum(down, up))

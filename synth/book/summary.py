@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 
 from synth.book.acceptance import CaseVerdict, Verdict
-from synth.book.case_names import contest
 from synth.book.case_result import CaseResult, DegreeStudy
 from synth.book.comparison.limit_cycle import hunting_report, pressure_hunting
 from synth.book.comparison.measured import Measured
@@ -58,10 +57,10 @@ def summary_of(book: Book, verdict: Verdict, file_hashes: Mapping[str, str]) -> 
 
 def overall(cases: tuple[CaseResult, ...]) -> Document:
     """Figures over the feasible cases; infeasible ones are only counted."""
-    found = [contest(case) for case in cases if case.feasibility.feasible]
+    found = [case.comparison for case in cases if case.feasibility.feasible]
     figures: Document = {"cases": len(cases), "feasible": len(found)}
     if found:
-        honest, published = [c.table.honesty for c in found], [c.published.honesty for c in found]
+        honest, published = [c.table.honesty for c in found], [c.as_published.honesty for c in found]
         figures |= {
             "highest_rms_m_s": max(c.table.statistics.rms_m_s for c in found),
             "median_regret": median(c.regret for c in found),
@@ -74,7 +73,7 @@ def overall(cases: tuple[CaseResult, ...]) -> Document:
 
 def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
     """Everything about one case."""
-    found = contest(case)
+    found = case.comparison
     served, entry = case.feasibility.served_m_s, case.plant.entry
     return {
         "id": case.table.id,
@@ -97,19 +96,19 @@ def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
         "honesty": found.table.honesty,
         "honesty_ci95": found.table.honesty_ci95,
         "table_loss": found.table_loss,
-        "table_loss_ci95": found.lines.table_ratio_ci95,
+        "table_loss_ci95": found.full_lines.table_ratio_ci95,
         "regret": found.regret,
-        "regret_ci95": found.known_friction.table_ratio_ci95,
+        "regret_ci95": found.friction_known.table_ratio_ci95,
         "best_baseline": found.best_baseline.name if found.best_baseline else None,
         "comparison": {entry.name: measured_of(entry) for entry in found.entries},
-        "as_published_honesty": found.published.honesty,
+        "as_published_honesty": found.as_published.honesty,
         "requirement": None if case.finding is None else requirement_of(case.finding),
-        "indifference": asdict(case.indifference),
+        "indifference": asdict(case.study.indifference),
         "estimate": None if case.estimate is None else {**estimate_of(case.estimate), "left_out": case.left_out},
         "escaped_probability": case.predicted.escaped,
         "hunting": {
             "pressure": [{"stage": stage, **asdict(cycle)} for stage, cycle in pressure_hunting(case.plant)],
-            "speed": [asdict(each) for each in hunting_report(case.plant, case.table_lines)],
+            "speed": [asdict(each) for each in hunting_report(case.plant, case.study.table_lines)],
         },
     }
 

@@ -29,6 +29,7 @@ from synth.configuration.settings import (
     ValidationSettings,
 )
 from synth.faults.input_error import InputError
+from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.estimator_resolution import estimator_resolution
 from synth.problem.problem import Problem
@@ -92,7 +93,9 @@ class ResolvedConfig:
 
     def problems(self) -> tuple[tuple[str, Problem], ...]:
         """(label, problem) of every cut class and target, targets innermost."""
-        return tuple((label, Problem(p, v, self.criterion)) for label, p in self.plants() for v in self.targets_m_s)
+        return tuple(
+            (label, Problem(p, Aim(v, self.criterion))) for label, p in self.plants() for v in self.targets_m_s
+        )
 
     @property
     def criterion(self) -> Criterion:
@@ -103,6 +106,14 @@ class ResolvedConfig:
     def resolution(self) -> Resolution:
         """The grid settings as the solver takes them."""
         return self.grid.resolution(self.retarder.sensor.sample_period_s)
+
+    @property
+    def design_resolutions(self) -> tuple[Resolution, ...]:
+        """Every grid that lines of a class are designed on: one more where the regulator has an estimator."""
+        if not self.regulator.estimator:
+            return (self.resolution,)
+        finer = estimator_resolution(self.resolution, self.retarder.sensor, min(self.targets_m_s))
+        return self.resolution, finer
 
     def canonical_json(self) -> str:
         """What the results depend on, in the canonical form of RFC 8785 (title and [output] are left out)."""

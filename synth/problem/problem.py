@@ -5,21 +5,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from plant_models import Plant
-from plant_models.errors import require, require_between
-from synth.problem.criterion import SQUARED_ERROR_CRITERION, Criterion
+from plant_models.errors import require
+from synth.problem.aim import Aim
+from synth.problem.criterion import Criterion
 from synth.problem.requirement import FrictionRange
 
 
 @dataclass(frozen=True)
 class Problem:
-    """A plant, the commanded exit speed and the cost."""
+    """A plant, and what its lines are for: `PlantError` where the two do not fit."""
 
     plant: Plant
-    target_speed_m_s: float
-    criterion: Criterion = SQUARED_ERROR_CRITERION
+    aim: Aim
 
     def __post_init__(self) -> None:
-        require_between("targets: target_speed_m_s", self.target_speed_m_s, 0.3, 20.0)
         require(
             self.target_speed_m_s < self.plant.entry.high_m_s,
             f"targets: {self.target_speed_m_s:g} m/s is not below the highest entry speed "
@@ -27,6 +26,16 @@ class Problem:
         )
         if isinstance(self.criterion.requirement, FrictionRange):
             require_modelled(self.plant, self.criterion.requirement)
+
+    @property
+    def target_speed_m_s(self) -> float:
+        """The commanded exit speed."""
+        return self.aim.target_speed_m_s
+
+    @property
+    def criterion(self) -> Criterion:
+        """What a pass costs."""
+        return self.aim.criterion
 
 
 def require_modelled(plant: Plant, friction: FrictionRange) -> None:

@@ -9,11 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from plant_models.speed_sensor import measured_speed_std
 from synth.kernels.sweep.bellman import sweep
 from synth.kernels.vector.packs import EIGHT
-from synth.problem.criterion import Criterion
-from synth.solver.chain.transitions import Transitions
+from synth.problem.aim import Aim
+from synth.solver.chain.chain import Chain
 from synth.solver.switching_lines import SwitchingLines
 
 TIE_M2_S2 = 1e-9
@@ -33,80 +32,64 @@ class Solution:
     (I, N + 1, H, L, E), or of fewer nodes: estimated cost to go by scenario, in the type that was asked for.
     """
 
-    transitions: Transitions
-    target_speed_m_s: float
-    criterion: Criterion
+    chain: Chain
+    aim: Aim
     lines: SwitchingLines
     gain_down: NDArray[np.float64]
     gain_up: NDArray[np.float64]
     values: NDArray[np.floating[Any]]
 
-    @property
-    def status(self) -> str:
-        """One sentence: what was solved."""
-        shape = self.values.shape
-        return (
-            f"solved {len(self.gain_up)} path quanta × {shape[2]} resting modes × {shape[4]} speeds × "
-            f"{shape[0]} scenarios × {shape[3]} noise levels for {self.target_speed_m_s:g} m/s"
-        )
 
-
-def solve(
-    transitions: Transitions,
-    target_speed_m_s: float,
-    criterion: Criterion,
-    value_type: type[np.floating[Any]] = np.float32,
-) -> Solution:
-    """Backward induction for one target speed; `value_type` as of `solve_all`."""
-    return solve_all(transitions, [(target_speed_m_s, criterion)], value_type=value_type)[0]
+def solve(chain: Chain, aim: Aim, value_type: type[np.floating[Any]] = np.float32) -> Solution:
+    """Backward induction for one aim; `value_type` as of `solve_all`."""
+    return solve_all(chain, [aim], value_type=value_type)[0]
 
 
 def solve_all(
-    transitions: Transitions,
-    aims: Sequence[tuple[float, Criterion]],
-    weights: NDArray[np.float64] | None = None,
+    chain: Chain,
+    aims: Sequence[Aim],
     nodes_kept: int | None = None,
     value_type: type[np.floating[Any]] = np.float32,
 ) -> tuple[Solution, ...]:
-    """Backward induction for several (target speed, criterion) in one sweep: they share all motion.
+    """Backward induction for several aims in one sweep: they share all motion.
 
-    Up to eight cost little more than one, and none depends on which others there are. `weights` (1 or N, I, H, L, 1
-    or E): of what is hidden, by path node and speed, instead of the prior. `nodes_kept`: at how many path nodes, from
-    the entrance on, the solutions hold values, by default at all; they are most of the memory of a solution.
-    `value_type`: of the numbers that values are computed and kept in. float32 takes 0.6 to 0.7 of the time of float64
-    and half the memory; what it costs: `docs/method.md`.
+    Up to eight cost little more than one, and none depends on which others there are. `nodes_kept`: at how many path
+    nodes, from the entrance on, the solutions hold values, by default at all; they are most of the memory of a
+    solution. `value_type`: of the numbers that values are computed and kept in. float32 takes 0.6 to 0.7 of the time of
+    float64 and half the memory; what it costs: `docs/method.md`.
     """
-    t = transitions
-    exit_costs, stall_costs = zip(*(c.exit_costs(t.grid.speed_m_s, target) for target, c in aims), strict=True)
-    by_energy, change_costs = np.stack(exit_costs, axis=1), [c.switching_tolerance_m2_s2 for _, c in aims]
-    nodes, stages, points, width = len(t.drive_m_s2), t.actuator.stages, len(t.grid.speed_m_s), len(aims)
+    c = chain
+    priced = [each.criterion.exit_costs(c.grid.speed_m_s, each.target_speed_m_s) for each in aims]
+    exit_costs, stall_costs = zip(*priced, strict=True)
+    change_costs = [each.criterion.switching_tolerance_m2_s2 for each in aims]
+    nodes, stages, points, width = len(c.drive_m_s2), c.actuator.stages, len(c.grid.speed_m_s), len(aims)
     kept = nodes + 1 if nodes_kept is None else nodes_kept
-    states = (len(t.actuator.mode_stage), len(t.chain.levels), points)
-    values = np.empty((len(t.scenarios.factor), kept, *states, width), value_type)
+    states = (len(c.actuator.mode_stage), len(c.path_noise.levels), points)
+    values = np.empty((len(c.scenarios.factor), kept, *states, width), value_type)
     lower, upper = np.empty((nodes, stages, width)), np.empty((nodes, stages, width))
     gain_down, gain_up = (np.empty((nodes, stages, width, points)) for _ in range(2))
-    noise = measured_speed_std(t.plant.sensor.noise_m_s, t.plant.sensor.resolution_m_s)
-    smear_start, smear = true_speed_weights(t.grid.speed_m_s, noise)
-    hidden = hidden_prior(t)[None, ..., None] if weights is None else weights
+    noise_m_s = c.measurement.std_m_s
+    smear_start, smear = true_speed_weights(c.grid.speed_m_s, noise_m_s)
+    costs = (np.stack(exit_costs, axis=1), stall_costs, change_costs)
     arguments = (
-        *(in_packs_of_targets(costs, value_type).ravel() for costs in (by_energy, stall_costs, change_costs)),
-        TIE_M2_S2, ROUNDINGS * float(np.finfo(value_type).eps), noise, smear_start, smear.astype(value_type),
-        hidden.astype(value_type), *sweep_arguments(t), t.scenarios.factor, t.scenarios.extra_m_s2,
-        t.grid.path_step_m, t.grid.energy_step_m2_s2, t.plant.sensor.sample_period_s, len(t.entry),
+        *(in_packs_of_targets(each, value_type).ravel() for each in costs),
+        TIE_M2_S2, ROUNDINGS * float(np.finfo(value_type).eps), noise_m_s, smear_start, smear.astype(value_type),
+        hidden_prior(c)[None, ..., None].astype(value_type), *sweep_arguments(c),
+        c.scenarios.factor, c.scenarios.extra_m_s2,
+        c.grid.path_step_m, c.grid.energy_step_m2_s2, c.plant.sensor.sample_period_s, len(c.entry),
         values, lower, upper, gain_down, gain_up,
     )  # fmt: skip
     sweep(*arguments)
     return tuple(
         Solution(
-            transitions=t,
-            target_speed_m_s=target,
-            criterion=criterion,
-            lines=SwitchingLines(t.grid.path_m, with_exit_node(lower[:, :, i]), with_exit_node(upper[:, :, i])),
+            chain=c,
+            aim=aim,
+            lines=SwitchingLines(c.grid.path_m, with_exit_node(lower[:, :, i]), with_exit_node(upper[:, :, i])),
             gain_down=gain_down[:, :, i],
             gain_up=gain_up[:, :, i],
             values=values[..., i],
         )
-        for i, (target, criterion) in enumerate(aims)
+        for i, aim in enumerate(aims)
     )
 
 
@@ -117,22 +100,23 @@ def in_packs_of_targets(by_target: ArrayLike, value_type: type[np.floating[Any]]
     return np.pad(numbers, [(0, 0)] * (numbers.ndim - 1) + [(0, missing)])
 
 
-def sweep_arguments(t: Transitions) -> Any:
+def sweep_arguments(c: Chain) -> Any:
     """The plant's arrays, a tuple in the order in which `sweep` takes them."""
-    a = t.landings
+    a = c.landings
     return (
-        t.grid.speed_m_s, t.actuator.mode_stage, t.actuator.mode_overpressure_kpa,
+        c.grid.speed_m_s, c.actuator.mode_stage, c.actuator.mode_overpressure_kpa,
         a.lower_chain, a.upper_chain, a.end_mode, a.ends, a.factors,
-        t.noise.probability, t.noise.mean, t.noise.std, t.chain.levels, t.chain.transition,
-        t.drive_m_s2, t.brake_m_s2_per_kpa,
+        c.transient_noise.probability, c.transient_noise.mean, c.transient_noise.std,
+        c.path_noise.levels, c.path_noise.transition,
+        c.drive_m_s2, c.brake_m_s2_per_kpa,
     )  # fmt: skip
 
 
-def hidden_prior(t: Transitions) -> NDArray[np.float64]:
+def hidden_prior(c: Chain) -> NDArray[np.float64]:
     """Prior weights (I, H, L) of scenario, resting mode within its stage, and noise level."""
-    stage = t.actuator.mode_stage
+    stage = c.actuator.mode_stage
     per_mode = 1.0 / np.bincount(stage)[stage]
-    prior: NDArray[np.float64] = np.einsum("i,h,l->ihl", t.scenarios.weight, per_mode, t.chain.stationary)
+    prior: NDArray[np.float64] = np.einsum("i,h,l->ihl", c.scenarios.weight, per_mode, c.path_noise.stationary)
     return prior
 
 

@@ -12,14 +12,16 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from synth.problem.criterion import Criterion
+from synth.problem.aim import Aim
 from synth.problem.requirement import OverspeedLimit
 from synth.problem.requirement_found import OverspeedLimitFound
 from synth.problem.terminal_cost import PenalisedOverspeed
-from synth.solver.chain.transitions import Transitions
+from synth.solver.backward_induction import Solution
+from synth.solver.chain.chain import Chain
+from synth.solver.evaluation import Evaluation
 from synth.solver.exit_density import ExitDensity
 from synth.solver.finer_speed import finer_in_speed
-from synth.solver.policy_evaluation import commands, evaluator, exit_density
+from synth.solver.policy_density import exit_density
 from synth.solver.polynomial_fit import Fit, PolynomialLines, polish
 
 PRICE_GROWTH = 4.0
@@ -50,25 +52,20 @@ class Candidate:
 
 
 def keep_overspeed_limit(
-    design: Transitions,
-    check: Transitions,
-    start: PolynomialLines,
-    fit: Fit,
-    target_speed_m_s: float,
-    criterion: Criterion,
-    limit: OverspeedLimit,
+    solution: Solution, check: Chain, fit: Fit, start: PolynomialLines, limit: OverspeedLimit
 ) -> tuple[PolynomialLines, OverspeedLimitFound]:
     """The lines of least predicted mean square among those found that keep `limit`, and what that took.
 
     `start`: the lines of least cost without the limit; `fit`: where they came from. Ends after at most
     `MOST_GROWTHS` + `MOST_BISECTIONS` polishes, whether the limit can be kept or not.
     """
+    target_speed_m_s, criterion = solution.aim.target_speed_m_s, solution.aim.criterion
     law = check.scenarios  # few Gauss nodes would miss the rare cuts that make over-speed
-    ground, judge = finer_in_speed(design, FINER, law), finer_in_speed(check, FINER, law)
+    ground, judge = finer_in_speed(solution.chain, FINER, law), finer_in_speed(check, FINER, law)
 
     def candidate(price: float, *begin: PolynomialLines) -> Candidate:
         priced = replace(criterion.squared(), terminal=PenalisedOverspeed(price, limit.margin_m_s))
-        evaluate = evaluator(ground, target_speed_m_s, priced)
+        evaluate = Evaluation(ground, Aim(target_speed_m_s, priced)).gradient
         ends = [polish(at, fit.curvature, ground.grid.path_m, evaluate, ITERATIONS, TOLERANCE) for at in begin]
         return judged(price, min(ends, key=lambda end: end.cost_after).lines)
 
@@ -121,6 +118,6 @@ def bisected(tried: list[Candidate], highest: float, candidate: Callable[..., Ca
     return added
 
 
-def predicted_density(check: Transitions, lines: PolynomialLines) -> ExitDensity:
+def predicted_density(check: Chain, lines: PolynomialLines) -> ExitDensity:
     """Prediction of unrounded lines; rounding to float32 moves a line by less than 1e-6 m/s."""
-    return exit_density(check, commands(check, lines.at(check.grid.path_m), staircase=True))
+    return exit_density(check, lines.at(check.grid.path_m))

@@ -8,21 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant
-from synth.problem.resolution import Resolution
-from synth.solver.chain.transitions import Scenarios, Transitions, persistent_transitions, resistance_scenarios
+from synth.solver.chain.chain import Chain, chain_of
+from synth.solver.chain.scenarios import Scenarios, resistance_scenarios
 
 
-def finer_in_speed(transitions: Transitions, times: float, scenarios: Scenarios) -> Transitions:
-    """The same plant and path step with a speed step `times` as fine, and with `scenarios`."""
-    t = transitions
-    resolution = Resolution(
-        path_step_m=t.grid.path_step_m,
-        speed_step_m_s=t.grid.energy_step_m2_s2 / Resolution().reference_speed_m_s / times,
-        transient_substeps=t.actuator.substeps,
-        friction_nodes=1,
-        path_levels=len(t.chain.levels),
-    )
-    return replace(persistent_transitions(t.plant, resolution), scenarios=scenarios)
+def finer_in_speed(chain: Chain, times: float, scenarios: Scenarios) -> Chain:
+    """The same plant, path step and measurement with a speed step `times` as fine, and with `scenarios`."""
+    resolution = replace(chain.resolution, speed_step_m_s=chain.resolution.speed_step_m_s / times)
+    return replace(chain_of(chain.plant, resolution, scenarios), measurement=chain.measurement)
 
 
 def known_factors(plant: Plant, factors: NDArray[np.float64], resistance_nodes: int) -> Scenarios:

@@ -1,7 +1,7 @@
 """Polynomial switching lines: fitted to the matrices by what being off the line costs, then polished.
 
 The polish minimises the exactly evaluated cost of the polynomial policy itself over all coefficients at once;
-its gradient comes from one forward and one backward pass (`policy_evaluation.cost_and_gradient`).
+its gradient comes from one forward and one backward pass (`evaluation.Evaluation.gradient`).
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def fit_lines(solution: Solution, occupancy: NDArray[np.float64], degree: int) -
     `occupancy` (I, N, H, L, E): expected samples under the solution's own policy. Where a line is never near a
     sample it costs nothing to be off it; a thousandth of the largest weight keeps it near its matrix.
     """
-    t = solution.transitions
+    t = solution.chain
     nodes, exit_m, stages = t.grid.path_m[:-1], t.plant.exit_m, t.actuator.stages
     has_line = np.ones((stages, 2), dtype=bool)
     has_line[0, 0] = has_line[-1, 1] = False
@@ -140,12 +140,13 @@ Evaluate = Callable[[SwitchingLines], tuple[float, NDArray[np.float64], NDArray[
 
 @dataclass(frozen=True)
 class Polish:
-    """Result of `polish`: the lines, cost before and after, evaluations used, and why it ended."""
+    """Result of `polish`: the lines, cost before and after, evaluations used, whether and why the search ended well."""
 
     lines: PolynomialLines
     cost_before: float
     cost_after: float
     evaluations: int
+    converged: bool
     status: str
 
 
@@ -160,8 +161,8 @@ def polish(
 ) -> Polish:
     """Minimise `evaluate` over all coefficients, keeping V_hi − V_lo ≥ `MINIMUM_GAP_M_S` on the path.
 
-    It ends when a step changes the cost by less than `tolerance` of the first cost. The lines cost no more than those
-    to start from, and not less than nothing, which only an error of the grid can make of them.
+    It ends when a step changes the cost by less than `tolerance` of the first cost. The cost of the result is positive
+    and no higher than the start's. A negative cost can only come from a grid that is too coarse.
 
     Raises `PlantError` if the cost to start from is not positive: the grid is too coarse.
 
@@ -210,7 +211,7 @@ def polish(
         cost = evaluate(found.at(nodes_m))[0]
         if not 0.0 < cost < before:
             cost, found = before, start
-    return Polish(found, before, cost, calls, str(result.message))
+    return Polish(found, before, cost, calls, bool(result.success), str(result.message))
 
 
 def whitening(curvature: NDArray[np.float64], matrix: NDArray[np.float64], cost: float) -> NDArray[np.float64]:

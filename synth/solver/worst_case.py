@@ -16,13 +16,14 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.problem.criterion import Criterion
 from synth.problem.requirement import FrictionRange
 from synth.problem.requirement_found import CERTIFIED_GAP, WorstCaseFound
-from synth.solver.chain.transitions import Transitions
+from synth.solver.backward_induction import Solution
+from synth.solver.chain.chain import Chain
 from synth.solver.chance_constraint import predicted_density
+from synth.solver.evaluation import Evaluation, ScenarioCosts
 from synth.solver.finer_speed import finer_in_speed, known_factors
-from synth.solver.policy_evaluation import ScenarioCosts, commands, scenario_costs, scenario_density
+from synth.solver.policy_density import scenario_densities
 from synth.solver.polynomial_fit import Evaluate, Fit, PolynomialLines, polish
 from synth.solver.switching_lines import SwitchingLines
 
@@ -45,19 +46,14 @@ ITERATIONS, TOLERANCE = 40, 1e-4
 
 
 def guard_worst_case(
-    design: Transitions,
-    check: Transitions,
-    start: PolynomialLines,
-    fit: Fit,
-    target_speed_m_s: float,
-    criterion: Criterion,
-    friction: FrictionRange,
+    solution: Solution, check: Chain, fit: Fit, start: PolynomialLines, friction: FrictionRange
 ) -> tuple[PolynomialLines, WorstCaseFound]:
     """The lines found of least worst rms as predicted on the check grid, and what that took.
 
     `start`: the lines of least mean cost; `fit`: where they came from. Cost and rms at a factor are means over the
     running resistance. The result is never worse than `start`: a polish can live off the errors of its own grid.
     """
+    design, target_speed_m_s = solution.chain, solution.aim.target_speed_m_s
     factors = friction.factors(FACTORS)
     ground = finer_in_speed(design, POLISH_FINER, known_factors(design.plant, factors, RESISTANCE_NODES))
     known = known_factors(check.plant, friction.factors(CHECK_FACTORS), CHECK_RESISTANCE_NODES)
@@ -65,8 +61,7 @@ def guard_worst_case(
     weight = FACTORS * ground.scenarios.weight.reshape(FACTORS, -1)
 
     def costs_of(lines: SwitchingLines) -> ScenarioCosts:
-        policy = commands(ground, lines, staircase=False)
-        return scenario_costs(ground, policy, target_speed_m_s, criterion).grouped(weight)
+        return Evaluation(ground, solution.aim).scenario_costs(lines).grouped(weight)
 
     def lowered(lines: PolynomialLines) -> PolynomialLines:
         for sharpness in SHARPNESS:
@@ -133,10 +128,10 @@ def soft_weights(cost: NDArray[np.float64], beta: float) -> NDArray[np.float64]:
     return weights
 
 
-def worst_predicted(judge: Transitions, lines: PolynomialLines, target_speed_m_s: float) -> tuple[float, float]:
+def worst_predicted(judge: Chain, lines: PolynomialLines, target_speed_m_s: float) -> tuple[float, float]:
     """(largest predicted rms in m/s, its friction factor) over the `CHECK_FACTORS` factors of `judge`."""
-    policy, scenarios = commands(judge, lines.at(judge.grid.path_m), staircase=True), judge.scenarios
-    rms = [scenario_density(judge, policy, i).rms_m_s(target_speed_m_s) for i in range(len(scenarios.factor))]
+    scenarios = judge.scenarios
+    rms = [each.rms_m_s(target_speed_m_s) for each in scenario_densities(judge, lines.at(judge.grid.path_m))]
     share = CHECK_FACTORS * scenarios.weight
     squares = (share * np.array(rms) ** 2).reshape(CHECK_FACTORS, -1).sum(axis=1)
     worst = int(np.argmax(squares))

@@ -15,14 +15,16 @@ import numpy as np
 
 from plant_models import Plant
 from synth.book.case_result import DegreeStudy
+from synth.book.class_setup import Origin
 from synth.book.degree_study import TablesOfDegree, degree_study, tables_by_degree
 from synth.configuration.config_file import load_config
 from synth.configuration.resolved_config import ResolvedConfig
+from synth.problem.aim import Aim
 from synth.problem.resolution import finer_for_check
 from synth.simulation.closed_loop import Controller, LineController, TableController, simulate_many
 from synth.simulation.replicates import Interval, rms_of, rms_quotient, share_of
 from synth.solver.backward_induction import Solution, solve_all
-from synth.solver.chain.transitions import check_transitions, persistent_transitions
+from synth.solver.chain.chain import check_chain, persistent_chain
 from synth.studies.cases import of_masses
 from synth.studies.markdown_table import MarkdownTable, plus_minus, table
 from synth.studies.near_target import NEAR_M_S
@@ -159,12 +161,12 @@ def run(options: Options, tell: Tell) -> Degrees:
     degrees = tuple(sorted({*options.degrees, COMPARED}))
 
     def rows_of(plant: Plant) -> list[CaseRow]:
-        check = check_transitions(plant, finer_for_check(config.resolution))
-        design = persistent_transitions(plant, config.resolution)
-        aims = [(target, config.criterion) for target in options.targets_m_s or config.targets_m_s]
+        check = check_chain(plant, finer_for_check(config.resolution))
+        design = persistent_chain(plant, config.resolution)
+        aims = [Aim(target, config.criterion) for target in options.targets_m_s or config.targets_m_s]
         rows = []
         for solution in solve_all(design, aims):
-            tables = tuple(tables_by_degree(solution, degrees, maker(config), CREATED))
+            tables = tuple(tables_by_degree(solution, degrees, origin(config)))
             study = degree_study(solution, check, f"{plant.cut.mass_t:g} t", tables)
             rows.append(case_row(solution, study, tables, config.validation.seed, options.passes))
             tell(f"{rows[-1].case}: {len(degrees)} degrees")
@@ -175,16 +177,16 @@ def run(options: Options, tell: Tell) -> Degrees:
     return Degrees(config.sha256, config.validation.seed, options.passes, degrees, every)
 
 
-def maker(config: ResolvedConfig) -> Generator:
+def origin(config: ResolvedConfig) -> Origin:
     """Who makes the tables."""
-    return Generator("retarder-synth study", "0", config.sha256)
+    return Origin(Generator("retarder-synth study", "0", config.sha256), CREATED)
 
 
 def case_row(
     solution: Solution, study: DegreeStudy, tables: tuple[TablesOfDegree, ...], seed: int, passes: int
 ) -> CaseRow:
     """Figures of every polished table, the solver's lines last, all on the same passes."""
-    plant, target = solution.transitions.plant, solution.target_speed_m_s
+    plant, target = solution.chain.plant, solution.aim.target_speed_m_s
     laws: dict[int, Controller] = {
         each.degree: TableController(each.polished) for each in tables if each.polished is not None
     }

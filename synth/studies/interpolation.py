@@ -16,19 +16,19 @@ import numpy as np
 from plant_models import Plant
 from synth.configuration.config_file import load_config
 from synth.configuration.resolved_config import ResolvedConfig
+from synth.problem.aim import Aim
 from synth.simulation.closed_loop import TableController, simulate
 from synth.simulation.random_passes import RandomPasses
 from synth.simulation.replicates import Interval, mean_of, rms_of
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.backward_induction import solve_all
-from synth.solver.chain.transitions import persistent_transitions
-from synth.solver.tuned_lines import lines_of_solution
+from synth.solver.chain.chain import persistent_chain
 from synth.studies.cases import of_masses
 from synth.studies.markdown_table import MarkdownTable, span, table
 from synth.studies.options import option
 from synth.studies.side_by_side import side_by_side
 from synth.studies.study import Findings, Method, Tell
-from synth.studies.tuned_table import rounded
+from synth.studies.tuned_table import lines_of_solution, rounded
 from tuning_tables import ControllerTable
 from tuning_tables.table_book import Status, TableBook
 
@@ -155,9 +155,9 @@ def parted(targets_m_s: Sequence[float], step_m_s: float, parts: int) -> list[fl
 
 def tuned_tables(config: ResolvedConfig, plant: Plant, targets: list[float]) -> list[ControllerTable]:
     """A table for each target of one class, as in a tune, without its other controllers."""
-    design = persistent_transitions(plant, config.resolution)
-    solutions = solve_all(design, [(target, config.criterion) for target in targets])
-    lines = [(lines_of_solution(each, config.fit.degree), each.target_speed_m_s) for each in solutions]
+    design = persistent_chain(plant, config.resolution)
+    solutions = solve_all(design, [Aim(target, config.criterion) for target in targets])
+    lines = [(lines_of_solution(each, config.fit.degree), each.aim.target_speed_m_s) for each in solutions]
     return [rounded(config, plant, own, target) for own, target in lines]
 
 

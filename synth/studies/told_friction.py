@@ -15,11 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import PlantError
-from synth.problem.criterion import Criterion
+from synth.problem.aim import Aim
 from synth.solver.backward_induction import solve
-from synth.solver.chain.transitions import Transitions, with_known_friction
+from synth.solver.chain.chain import Chain, with_known_friction
+from synth.solver.evaluation import Evaluation
 from synth.solver.exit_density import ExitDensity
-from synth.solver.policy_evaluation import commands, evaluator, exit_density
+from synth.solver.policy_density import exit_density
 from synth.solver.polynomial_fit import Fit, Polish, PolynomialLines, polish
 from synth.solver.tuned_lines import fitted
 
@@ -61,43 +62,32 @@ class ToldFriction:
         return float(np.sqrt(square / share)), share
 
 
-def told_friction(
-    design: Transitions,
-    target_speed_m_s: float,
-    criterion: Criterion,
-    degree: int,
-    nodes: int,
-    effort: Effort = TO_THE_END,
-) -> ToldFriction:
+def told_friction(design: Chain, aim: Aim, degree: int, nodes: int, effort: Effort = TO_THE_END) -> ToldFriction:
     """Lines for each of `nodes` Gauss–Hermite factors of ξ_cut, and for the friction unknown as one more beginning."""
     plant = design.plant
     z, weight = np.polynomial.hermite_e.hermegauss(nodes)
     factors = plant.friction.cut_factor(z, plant.friction_cv)
-    unknown = fitted(solve(design, target_speed_m_s, criterion), degree)
-    common = best_polished(design, target_speed_m_s, criterion, [(unknown.lines, unknown)], effort)
+    unknown = fitted(solve(design, aim), degree)
+    common = best_polished(Evaluation(design, aim), [(unknown.lines, unknown)], effort)
     best, densities = [], []
     for factor in factors:
         known = with_known_friction(design, float(factor))
-        own = fitted(solve(known, target_speed_m_s, criterion), degree)
+        own = fitted(solve(known, aim), degree)
         begins = [(own.lines, own), (common, own), (common, unknown)]
-        lines = best_polished(known, target_speed_m_s, criterion, begins, effort)
+        lines = best_polished(Evaluation(known, aim), begins, effort)
         best.append(lines)
-        densities.append(exit_density(known, commands(known, lines.at(known.grid.path_m), staircase=False)))
+        densities.append(exit_density(known, lines.at(known.grid.path_m)))
     return ToldFriction(factors, weight / weight.sum(), tuple(best), tuple(densities))
 
 
 def best_polished(
-    design: Transitions,
-    target_speed_m_s: float,
-    criterion: Criterion,
-    begins: list[tuple[PolynomialLines, Fit]],
-    effort: Effort = TO_THE_END,
+    evaluation: Evaluation, begins: list[tuple[PolynomialLines, Fit]], effort: Effort = TO_THE_END
 ) -> PolynomialLines:
     """The best end of polishes from several lines, each in the coordinates of a fit.
 
     A beginning whose cost comes out negative on this grid is left out; `PlantError` if none is left.
     """
-    evaluate, nodes = evaluator(design, target_speed_m_s, criterion), design.grid.path_m
+    evaluate, nodes = evaluation.gradient, evaluation.chain.grid.path_m
 
     def ends() -> Iterator[Polish]:
         for lines, fit in begins:

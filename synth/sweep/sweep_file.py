@@ -70,10 +70,11 @@ def parse_sweep(text: str, file: str) -> SweepFile:
         where = f'{file}: in sweep.condition[{place}], "{name}"' if name else file
         merged = overlaid(swept, changed)
         config = resolve(valid_settings(merged, where), where)
-        if config.regulator.estimator:
+        if config.regulator.estimator and settings.interpolation_loss_m_s is not None:
             raise InputError(
-                f"{file}: regulator.estimator is true, but a sweep makes tables for the measured speed only; set it to "
-                "false, or tune the book with 'retarder-synth tune'"
+                f"{file}: regulator.estimator is true and sweep.interpolation_loss_m_s is "
+                f"{settings.interpolation_loss_m_s:g}, but lines for the estimated speed have no exact prediction to "
+                "measure that loss by; leave out one of the two"
             )
         conditions.append(Condition(name, merged, config))
     return SweepFile(settings, tuple(conditions))

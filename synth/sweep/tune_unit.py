@@ -3,45 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
-from importlib.metadata import version
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
 
-from plant_models import Plant, PlantError
+from plant_models import PlantError
+from synth.book.class_setup import ClassSetup, class_setup, origin_of, validation_passes
 from synth.book.judgement import judgement
-from synth.book.tune_case import predict, required, with_prediction
+from synth.book.tuned_table import predict, solutions, tuned_table, validated_table
 from synth.configuration.resolved_config import ResolvedConfig, resolve
 from synth.configuration.settings import Settings
-from synth.problem.resolution import finer_for_check
-from synth.simulation.closed_loop import TableController
-from synth.simulation.common_passes import CommonPasses, common_passes
-from synth.simulation.exit_statistics import brake_power, exit_statistics, overspeed_of
-from synth.simulation.stratified_passes import stratified_passes
-from synth.solver.backward_induction import Solution, solve_all
-from synth.solver.chain.transitions import Transitions, check_transitions, persistent_transitions
+from synth.problem.aim import Aim
+from synth.simulation.exit_statistics import overspeed_of
+from synth.solver.chain.chain import Chain
 from synth.solver.one_blas_thread import one_blas_thread
-from synth.solver.tabulate import UNPREDICTED, tabulate
-from synth.solver.tuned_lines import fitted
 from synth.sweep.plan import TARGETS_AT_ONCE, Refinement, UnitOrder
 from synth.sweep.refinement import Bench, Gap, refined
 from synth.sweep.unit_result import Refused, Row, UnitResult
-from tuning_tables import ControllerTable, Generator, InvalidTable, Validated, from_json, to_json
+from tuning_tables import ControllerTable, InvalidTable, from_json, to_json
 from tuning_tables.active_table import between
-
-
-@dataclass(frozen=True)
-class Workshop:
-    """What all targets of a unit share: grids, landings, passes and what the tables are stamped with."""
-
-    order: UnitOrder
-    config: ResolvedConfig
-    plant: Plant
-    design: Transitions
-    check: Transitions
-    passes: CommonPasses
-    generator: Generator
 
 
 @one_blas_thread()
@@ -51,80 +32,66 @@ def tune_unit(order: UnitOrder) -> UnitResult:
     Raises `PlantError` and others where nothing can be tuned, or where targets are to be refined and one of them is
     refused: its gaps could not be measured.
     """
-    shop = workshop(order)
+    config, setup = setup_of(order)
     refused: tuple[Refused, ...] = ()
     gaps: tuple[Gap, ...] = ()
     if order.refinement is None:
-        tables, refused = tried(shop, shop.config.targets_m_s)
+        tables, refused = tuned_tables(config, setup, config.targets_m_s)
         if not tables:
             raise PlantError(refused[0].reason)
     else:
-        tables, gaps = refined_tables(shop, order.refinement)
-    rows = tuple(validated(shop, table) for table in tables)
+        tables, gaps = refined_tables(config, setup, order.refinement)
+    rows = tuple(row_of(config, setup, table) for table in tables)
     return UnitResult(order.key, order.condition, order.label, rows, gaps, refused)
 
 
-def workshop(order: UnitOrder) -> Workshop:
-    """Everything that does not depend on the target."""
+def setup_of(order: UnitOrder) -> tuple[ResolvedConfig, ClassSetup]:
+    """The configuration of a unit, and what its targets share."""
     config = resolve(Settings.model_validate(order.tree), order.name)
     ((_, plant),) = config.plants()
-    return Workshop(
-        order=order,
-        config=config,
-        plant=plant,
-        design=persistent_transitions(plant, config.resolution),
-        check=check_transitions(plant, finer_for_check(config.resolution)),
-        passes=common_passes(plant, stratified_passes(config.validation.seed, 0, config.validation.passes)),
-        generator=Generator("retarder-synth", version("retarder-synth"), order.config_sha256),
-    )
+    stem = f"{order.condition}-{order.label}" if order.condition else order.label
+    origin = origin_of(order.config_sha256, order.created)
+    return config, class_setup(config, order.label, plant, validation_passes(config), origin, stem)
 
 
-def refined_tables(shop: Workshop, wanted: Refinement) -> tuple[list[ControllerTable], tuple[Gap, ...]]:
-    """The fewest tables that bisection finds for the loss that is wanted."""
+def refined_tables(
+    config: ResolvedConfig, setup: ClassSetup, wanted: Refinement
+) -> tuple[list[ControllerTable], tuple[Gap, ...]]:
+    """The fewest tables that bisection finds for the loss that is wanted; `PlantError` where one of them is refused."""
+
+    def tune(targets_m_s: Sequence[float]) -> list[ControllerTable]:
+        tables, refused = tuned_tables(config, setup, targets_m_s)
+        if refused:
+            raise PlantError(refused[0].reason)
+        return tables
+
     bench = Bench(
-        tune=lambda targets: tables_for(shop, targets),
+        tune=tune,
         own_rms_m_s=lambda table: table.predicted.rms_m_s,
-        between_rms_m_s=lambda slower, faster, target: between_rms_m_s(shop.check, slower, faster, target),
+        between_rms_m_s=lambda slower, faster, target: between_rms_m_s(setup.check, slower, faster, target),
     )
-    return refined(shop.config.targets_m_s, bench, wanted)
+    return refined(config.targets_m_s, bench, wanted)
 
 
-def tables_for(shop: Workshop, targets_m_s: Sequence[float]) -> list[ControllerTable]:
-    """Predicted tables for some targets, in their order; `PlantError` where one of them is refused."""
-    tables, refused = tried(shop, targets_m_s)
-    if refused:
-        raise PlantError(refused[0].reason)
-    return tables
-
-
-def tried(shop: Workshop, targets_m_s: Sequence[float]) -> tuple[list[ControllerTable], tuple[Refused, ...]]:
+def tuned_tables(
+    config: ResolvedConfig, setup: ClassSetup, targets_m_s: Sequence[float]
+) -> tuple[list[ControllerTable], tuple[Refused, ...]]:
     """Predicted tables for some targets, and those for which there is none, both in the order of the targets.
 
     A few are solved together, and then given up.
     """
     tables, refused = [], []
     for first in range(0, len(targets_m_s), TARGETS_AT_ONCE):
-        aims = [(target, shop.config.criterion) for target in targets_m_s[first : first + TARGETS_AT_ONCE]]
-        for solution in solve_all(shop.design, aims, nodes_kept=1):
+        aims = [Aim(target, config.criterion) for target in targets_m_s[first : first + TARGETS_AT_ONCE]]
+        for solution in solutions(setup.design, aims):
             try:
-                tables.append(predicted_table(shop, solution))
+                tables.append(tuned_table(setup, solution).table)
             except (PlantError, InvalidTable) as fault:
-                refused.append(Refused(solution.target_speed_m_s, " ".join(str(fault).split())))
+                refused.append(Refused(solution.aim.target_speed_m_s, " ".join(str(fault).split())))
     return tables, tuple(refused)
 
 
-def predicted_table(shop: Workshop, solution: Solution) -> ControllerTable:
-    """The table of one solution: fitted, polished, rounded, and exactly predicted."""
-    target, config = solution.target_speed_m_s, shop.config
-    fit = fitted(solution, config.fit.degree)
-    lines, _ = required(shop.design, shop.check, fit, target, config.criterion)
-    label = f"{shop.order.condition}-{shop.order.label}" if shop.order.condition else shop.order.label
-    name = f"{label}-to-{target:g}-m-s"
-    table = tabulate(shop.plant, lines, target, UNPREDICTED, shop.generator, name, shop.order.created)
-    return with_prediction(shop.check, table)[0]
-
-
-def between_rms_m_s(check: Transitions, slower: ControllerTable, faster: ControllerTable, target_m_s: float) -> float:
+def between_rms_m_s(check: Chain, slower: ControllerTable, faster: ControllerTable, target_m_s: float) -> float:
     """Exactly predicted rms of the lines that a controller takes between two tables."""
     lines = between(slower, faster, np.float32(target_m_s))
     stages: list[Any] = []
@@ -135,17 +102,20 @@ def between_rms_m_s(check: Transitions, slower: ControllerTable, faster: Control
     return predict(check, table).rms_m_s(target_m_s)
 
 
-def validated(shop: Workshop, table: ControllerTable) -> Row:
-    """The table as a controller reads it, simulated on the common passes."""
-    read, target, limits = from_json(to_json(table)), table.target_speed_m_s, shop.config.acceptance
-    sample = shop.passes.run(TableController(read))
-    found = exit_statistics(sample, target)
+def row_of(config: ResolvedConfig, setup: ClassSetup, table: ControllerTable) -> Row:
+    """The table as a controller reads it, simulated on the common passes, and judged."""
+    found, limits = validated_table(setup, table, as_read), config.acceptance
     # In single precision, as a tune keeps them: both count the same passes.
-    speeds = sample.exit_speed_m_s.astype(np.float32).astype(np.float64)
-    over = overspeed_of(replace(sample, exit_speed_m_s=speeds), target, limits.overspeed_margin_m_s)
-    power = brake_power(sample, shop.passes.at_full_brake, target)
+    speeds = found.sample.exit_speed_m_s.astype(np.float32).astype(np.float64)
+    counted = replace(found.sample, exit_speed_m_s=speeds)
+    over = overspeed_of(counted, table.target_speed_m_s, limits.overspeed_margin_m_s)
     return Row(
-        table=read.with_validated(Validated(found.passes, found.rms_m_s, found.rms_ci95_m_s)),
-        simulated={**asdict(found), **asdict(power)},
-        judgement=judgement(found, over, table.predicted, limits),
+        table=found.table,
+        simulated={**asdict(found.statistics), **asdict(found.brake_power)},
+        judgement=judgement(found.statistics, over, table.predicted, limits),
     )
+
+
+def as_read(table: ControllerTable) -> ControllerTable:
+    """The table as a controller will load it; it is kept in the unit's file."""
+    return from_json(to_json(table))

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from plant_models import EntrySpeed, Friction, Plant
+from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import solve
-from synth.solver.chain.transitions import Transitions, as_published, persistent_transitions
-from synth.solver.policy_evaluation import commands, exit_density
+from synth.solver.chain.chain import Chain, as_published, persistent_chain
+from synth.solver.policy_density import exit_density
 from synth.solver.switching_lines import SwitchingLines
 
 STEPS_M = (1.0, 0.5, 0.25)
@@ -20,11 +21,11 @@ STEPS_M = (1.0, 0.5, 0.25)
 GRID = Resolution(1.0, 0.02, transient_substeps=2, friction_nodes=5, path_levels=2)
 
 
-def braked_spread(t: Transitions) -> float:
+def braked_spread(t: Chain) -> float:
     """Std of the exit energy when the lowest stage, which brakes, is held all the way."""
     shape = (t.actuator.stages, len(t.grid.path_m))
     lines = SwitchingLines(np.array(t.grid.path_m), np.full(shape, -np.inf), np.full(shape, np.inf))
-    density = exit_density(t, commands(t, lines, staircase=False))
+    density = exit_density(t, lines)
     energy = t.grid.energy_m2_s2
     mean = (density.probability * energy).sum()
     return float(np.sqrt((density.probability * (energy - mean) ** 2).sum()))
@@ -46,7 +47,7 @@ def test_spread_of_constant_braking(plant: Plant) -> None:
     )
     work = 0.06 * 80.0 / 10.42 * 12.0
     for step in STEPS_M:
-        t = persistent_transitions(braked, replace(GRID, path_step_m=step))
+        t = persistent_chain(braked, replace(GRID, path_step_m=step))
         persistent, published = braked_spread(t), braked_spread(as_published(t))
         print(f"ΔS {step}: persistent {persistent:.4f} as published {published:.4f} m²/s²")
         assert persistent == pytest.approx(0.2 * work, rel=0.02)
@@ -63,12 +64,12 @@ def test_published_prediction_is_no_prediction(plant: Plant) -> None:
     sharp = replace(sharp, friction=Friction(0.15, 0.0, 0.0, 2.0))
     ratios, expectations = [], []
     for step in (0.5, 0.25, 0.125):
-        t = persistent_transitions(sharp, replace(GRID, path_step_m=step))
+        t = persistent_chain(sharp, replace(GRID, path_step_m=step))
         p = as_published(t)
-        lines, naive = (solve(x, 3.0, Criterion()).lines for x in (t, p))
-        expects = exit_density(p, commands(p, naive, False)).rms_m_s(3.0)
-        gets = exit_density(t, commands(t, naive, False)).rms_m_s(3.0)
-        ours = exit_density(t, commands(t, lines, False)).rms_m_s(3.0)
+        lines, naive = (solve(x, Aim(3.0, Criterion())).lines for x in (t, p))
+        expects = exit_density(p, naive).rms_m_s(3.0)
+        gets = exit_density(t, naive).rms_m_s(3.0)
+        ours = exit_density(t, lines).rms_m_s(3.0)
         print(f"ΔS {step}: as published expects {expects:.4f}, gets {gets:.4f}; persistent {ours:.4f}")
         assert ours < gets
         expectations.append(expects)

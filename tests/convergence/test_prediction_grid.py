@@ -6,14 +6,16 @@ from dataclasses import replace
 
 import pytest
 
+from synth.book.class_setup import Origin
 from synth.book.degree_study import tables_by_degree
-from synth.book.tune_case import predict
+from synth.book.tuned_table import predict
 from synth.configuration.config_file import load_config
+from synth.problem.aim import Aim
 from synth.problem.resolution import finer_for_check
 from synth.simulation.closed_loop import TableController, simulate_many
 from synth.simulation.random_passes import random_passes
 from synth.solver.backward_induction import solve
-from synth.solver.chain.transitions import check_transitions, persistent_transitions
+from synth.solver.chain.chain import check_chain, persistent_chain
 from tuning_tables import Generator
 
 NEAR_M_S = 0.3
@@ -27,13 +29,13 @@ def test_prediction_of_a_polished_table_is_that_of_the_limit_and_of_passes(label
     """
     config = load_config(None)
     plant, target = dict(config.plants())[label], config.targets_m_s[0]
-    solution = solve(persistent_transitions(plant, config.resolution), target, config.criterion)
-    generator = Generator("retarder-synth", "0", "ab" * 32)
-    table = next(tables_by_degree(solution, (config.fit.degree,), generator, "2026-11-21T00:00:00Z")).polished
+    solution = solve(persistent_chain(plant, config.resolution), Aim(target, config.criterion))
+    origin = Origin(Generator("retarder-synth", "0", "ab" * 32), "2026-11-21T00:00:00Z")
+    table = next(tables_by_degree(solution, (config.fit.degree,), origin)).polished
     assert table is not None
     check = finer_for_check(config.resolution)
     half = replace(check, speed_step_m_s=0.5 * check.speed_step_m_s)
-    density, finer = (predict(check_transitions(plant, resolution), table) for resolution in (check, half))
+    density, finer = (predict(check_chain(plant, resolution), table) for resolution in (check, half))
     assert density.rms_m_s(target) == pytest.approx(finer.rms_m_s(target), rel=0.02)
 
     near = abs(density.speed_m_s - target) <= NEAR_M_S

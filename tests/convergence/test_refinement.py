@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant
+from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import solve
-from synth.solver.chain.transitions import Transitions, persistent_transitions
-from synth.solver.policy_evaluation import commands, exit_density, occupancy_of
+from synth.solver.chain.chain import Chain, persistent_chain
+from synth.solver.policy_density import density_and_occupancy, exit_density
 from synth.solver.polynomial_fit import stage_occupancy
 from synth.solver.switching_lines import SwitchingLines
 
@@ -29,21 +30,21 @@ def straight_lines(nodes_m: NDArray[np.float64]) -> SwitchingLines:
     return SwitchingLines(np.array(nodes_m), lower, np.stack([3.6 - 0.3 * u, 4.6 - 1.2 * u, never]))
 
 
-def predicted(t: Transitions) -> float:
+def predicted(t: Chain) -> float:
     """Rms of the straight lines, m/s."""
-    return exit_density(t, commands(t, straight_lines(t.grid.path_m), staircase=False)).rms_m_s(TARGET_M_S)
+    return exit_density(t, straight_lines(t.grid.path_m)).rms_m_s(TARGET_M_S)
 
 
-def solved(t: Transitions) -> float:
+def solved(t: Chain) -> float:
     """Rms of the solver's own lines on their own grid, m/s."""
-    lines = solve(t, TARGET_M_S, Criterion()).lines
-    return exit_density(t, commands(t, lines, staircase=False)).rms_m_s(TARGET_M_S)
+    lines = solve(t, Aim(TARGET_M_S, Criterion())).lines
+    return exit_density(t, lines).rms_m_s(TARGET_M_S)
 
 
-def series(plant: Plant, **levels: tuple[float, ...]) -> list[Transitions]:
-    """Transitions for several values of one field of the resolution."""
+def series(plant: Plant, **levels: tuple[float, ...]) -> list[Chain]:
+    """Chain for several values of one field of the resolution."""
     ((name, values),) = levels.items()
-    return [persistent_transitions(plant, replace(BASE, **{name: value})) for value in values]
+    return [persistent_chain(plant, replace(BASE, **{name: value})) for value in values]
 
 
 def orders(name: str, rms: list[float]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -87,9 +88,9 @@ def test_solution_converges(plant: Plant) -> None:
         assert differences[1] < 0.01 * rms[-1]
 
 
-def lines_apart(t: Transitions, coarse: SwitchingLines, fine: SwitchingLines) -> float:
+def lines_apart(t: Chain, coarse: SwitchingLines, fine: SwitchingLines) -> float:
     """Mean distance of two sets of lines at the nodes of `t`, weighted by the samples taken near the coarse ones."""
-    _, occupancy = occupancy_of(t, commands(t, coarse, staircase=False))
+    _, occupancy = density_and_occupancy(t, coarse)
     samples = stage_occupancy(occupancy.samples, t.actuator.mode_stage, t.actuator.stages)
     total = weights = 0.0
     stride = (len(fine.nodes_m) - 1) // (len(coarse.nodes_m) - 1)
@@ -108,7 +109,7 @@ def test_lines_converge(plant: Plant) -> None:
         ("path_step_m", (0.5, 0.25, 0.125)), ("speed_step_m_s", (0.08, 0.04, 0.02)), ("transient_substeps", (1, 2, 4))
     ):  # fmt: skip
         levels = series(plant, **{name: values})
-        lines = [solve(t, TARGET_M_S, Criterion()).lines for t in levels]
+        lines = [solve(t, Aim(TARGET_M_S, Criterion())).lines for t in levels]
         moves = [lines_apart(levels[i], lines[i], lines[i + 1]) for i in (0, 1)]
         print(f"lines, {name}: moved by {moves}")
         assert moves[1] < moves[0]

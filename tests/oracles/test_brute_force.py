@@ -18,10 +18,11 @@ from numpy.typing import NDArray
 
 from plant_models import DopplerSensor, Friction, Plant, RollingResistance
 from plant_models.speed_sensor import measured_speed_std
+from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import solve, true_speed_weights
-from synth.solver.chain.transitions import Transitions, persistent_transitions
+from synth.solver.chain.chain import Chain, persistent_chain
 
 Row = list[float]
 
@@ -61,11 +62,11 @@ def brake_shares(profile: Row, quanta: int) -> Row:
 class BruteForce:
     """Values and switching lines of one problem, by recursion with memory."""
 
-    def __init__(self, t: Transitions, target_m_s: float, criterion: Criterion) -> None:
+    def __init__(self, t: Chain, target_m_s: float, criterion: Criterion) -> None:
         self.t, self.target, self.criterion = t, target_m_s, criterion
         self.nodes, self.points = len(t.drive_m_s2), len(t.grid.speed_m_s)
         self.scenarios = range(len(t.scenarios.factor))
-        self.modes, self.levels = range(len(t.actuator.mode_stage)), range(len(t.chain.levels))
+        self.modes, self.levels = range(len(t.actuator.mode_stage)), range(len(t.path_noise.levels))
         self.stalled = target_m_s**2 + criterion.stall_cost_m2_s2
         self.furthest = len(t.entry) - 2
         exit_row = [(float(v) - target_m_s) ** 2 for v in t.grid.speed_m_s]
@@ -81,7 +82,7 @@ class BruteForce:
     def slope(self, i: int, n: int, h: int, u: int) -> float:
         """dv²/2 per metre of path in quantum n."""
         t = self.t
-        factor = t.scenarios.factor[i] * (1.0 + t.chain.levels[u])
+        factor = t.scenarios.factor[i] * (1.0 + t.path_noise.levels[u])
         braking = factor * t.brake_m_s2_per_kpa[n] * t.actuator.mode_overpressure_kpa[h]
         return float(t.drive_m_s2[n] + t.scenarios.extra_m_s2[i] - braking)
 
@@ -90,7 +91,7 @@ class BruteForce:
         if n == self.nodes:
             mixed = list(rows(u))
         else:
-            chances = self.t.chain.transition[u]
+            chances = self.t.path_noise.transition[u]
             mixed = [sum(float(chances[m]) * rows(m)[j] for m in self.levels) for j in range(self.points)]
         return mixed
 
@@ -125,7 +126,7 @@ class BruteForce:
     def noise_between(self, c: int, r: int, u: int, m: int) -> tuple[float, float, float]:
         """P(level m after r boundaries | u), mean and std of the force-weighted η: every path of levels listed."""
         if (c, r, u, m) not in self.noise:
-            land, chain = self.t.landings, self.t.chain
+            land, chain = self.t.landings, self.t.path_noise
             used = int(land.samples[c]) * self.t.actuator.substeps
             shares = brake_shares([float(p) for p in land.overpressure_kpa[c][:used]], r + 1)
             moments = [0.0, 0.0, 0.0]
@@ -207,7 +208,7 @@ class BruteForce:
                 mean = [0.0] * self.points
                 for j in range(1, self.points):
                     weights = {
-                        (i, h, u): float(t.scenarios.weight[i] * t.chain.stationary[u])
+                        (i, h, u): float(t.scenarios.weight[i] * t.path_noise.stationary[u])
                         for i, h, u in hidden
                         if stage_of[h] == k
                     }
@@ -305,9 +306,9 @@ def test_solve_agrees_with_plain_loops(
 ) -> None:
     """The same lines and values to 1e-9: only the order of additions differs."""
     resolution = TINY if w_std == 0.0 else replace(TINY, resistance_nodes=2)
-    t = persistent_transitions(noisy(plant_with, stages_kpa, period_s, w_std), resolution)
+    t = persistent_chain(noisy(plant_with, stages_kpa, period_s, w_std), resolution)
     criterion = Criterion(switching_tolerance_m2_s2=price)
-    found = solve(t, target_m_s, criterion, np.float64)
+    found = solve(t, Aim(target_m_s, criterion), np.float64)
     expected = BruteForce(t, target_m_s, criterion)
     values = array_of(expected)
     assert np.isfinite(values).all()

@@ -16,11 +16,12 @@ import pytest
 from numpy.typing import NDArray
 
 from plant_models import DopplerSensor, EntrySpeed, Plant, Pneumatics, PressingForce, PressureHistory
+from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.problem.terminal_cost import AsymmetricSquare
 from synth.solver.backward_induction import solve
-from synth.solver.chain.transitions import persistent_transitions
+from synth.solver.chain.chain import persistent_chain
 
 SUBSTEP_S = 2e-3
 SQUARED = Criterion(1.0, 0.0)
@@ -105,8 +106,8 @@ def costs(
     def square(v: float) -> float:
         return (v - target_m_s) ** 2
 
-    t = persistent_transitions(plant, grid)
-    found = solve(t, target_m_s, criterion).values[0, 0, 0, 0]
+    t = persistent_chain(plant, grid)
+    found = solve(t, Aim(target_m_s, criterion)).values[0, 0, 0, 0]
     v = t.grid.speed_m_s
     inside = np.nonzero((v > plant.entry.low_m_s) & (v < plant.entry.high_m_s))[0][::every]
     search = Search(plant, pay or square)

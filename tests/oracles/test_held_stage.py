@@ -10,9 +10,9 @@ import pytest
 
 from plant_models import EntrySpeed, Friction, Plant, PressingForce, RollingResistance, TrackProfile
 from synth.problem.resolution import Resolution
-from synth.solver.chain.transitions import Transitions, check_transitions, persistent_transitions
+from synth.solver.chain.chain import Chain, check_chain, persistent_chain
 from synth.solver.exit_density import ExitDensity
-from synth.solver.policy_evaluation import commands, exit_density
+from synth.solver.policy_density import exit_density
 from synth.solver.switching_lines import SwitchingLines
 
 NEVER = math.inf
@@ -20,11 +20,11 @@ NEVER = math.inf
 ONE_SCENARIO = Resolution(path_step_m=0.25, speed_step_m_s=0.02, transient_substeps=2, friction_nodes=1, path_levels=1)
 
 
-def without_commands(t: Transitions) -> ExitDensity:
+def without_commands(t: Chain) -> ExitDensity:
     """Exit density when no line is ever crossed: the stage of the entrance is held."""
     shape = (t.actuator.stages, len(t.grid.path_m))
     lines = SwitchingLines(t.grid.path_m.copy(), np.full(shape, -NEVER), np.full(shape, NEVER))
-    return exit_density(t, commands(t, lines, staircase=False))
+    return exit_density(t, lines)
 
 
 def moments(density: ExitDensity) -> tuple[float, float]:
@@ -70,7 +70,7 @@ def test_coasting_adds_the_energy_of_the_grade(
 ) -> None:
     """v² grows by 2 g'(i − w)·S: shifts keep the mean energy exactly, its variance to one cell."""
     plant = coasting(plant_with, entry=entry, profile=profile)
-    t = persistent_transitions(plant, ONE_SCENARIO)
+    t = persistent_chain(plant, ONE_SCENARIO)
     density = without_commands(t)
     mean, variance = moments(density)
     mean_0, variance_0 = entry_energy(entry)
@@ -86,7 +86,7 @@ def test_coasting_adds_the_energy_of_the_grade(
 def test_coasting_exit_speed(plant_with: Callable[..., Plant]) -> None:
     """One entry speed: all mass leaves close to v = sqrt(v0² + 2·gain)."""
     plant = coasting(plant_with, entry=EntrySpeed(4.0, 4.0))
-    density = without_commands(persistent_transitions(plant, ONE_SCENARIO))
+    density = without_commands(persistent_chain(plant, ONE_SCENARIO))
     v = math.sqrt(4.0**2 + 2.0 * coasting_gain(plant))
     assert density.rms_m_s(v) < 0.01  # half a speed cell
     assert density.bias_m_s(v) == pytest.approx(0.0, abs=1e-4)  # curvature of sqrt over one cell
@@ -110,7 +110,7 @@ def test_constant_braking_takes_the_brake_work(plant_with: Callable[..., Plant],
     """The energy falls by exactly ξ·∫β p ds however the quanta fall on the steps of N(s)."""
     plant = constantly_braked(plant_with)
     resolution = Resolution(path_step_m, 0.02, transient_substeps=2, friction_nodes=1, path_levels=1)
-    mean, variance = moments(without_commands(persistent_transitions(plant, resolution)))
+    mean, variance = moments(without_commands(persistent_chain(plant, resolution)))
     assert mean == pytest.approx(4.5**2 / 2 + coasting_gain(plant) - brake_work(plant), abs=1e-9)
     assert variance < 0.3 * 0.06**2
 
@@ -119,7 +119,7 @@ def test_persistent_friction_spreads_the_exit_by_its_own_variance(plant_with: Ca
     """Var e = (CV·work)² with CV² = σ_c² + σ_a²/N̄, N̄ = (1.5·1 + 2.5·2 + 1.5·1)/5.5; Gauss–Hermite is exact."""
     plant = constantly_braked(plant_with, friction=Friction(0.10, 0.08, 0.0, 2.0))
     resolution = Resolution(0.5, 0.02, transient_substeps=2, friction_nodes=5, path_levels=1)
-    mean, variance = moments(without_commands(persistent_transitions(plant, resolution)))
+    mean, variance = moments(without_commands(persistent_chain(plant, resolution)))
     work = brake_work(plant)
     cv_square = 0.10**2 + 0.08**2 / (8.0 / 5.5)
     assert mean == pytest.approx(4.5**2 / 2 + coasting_gain(plant) - work, abs=1e-9)
@@ -130,7 +130,7 @@ def test_unknown_resistance_spreads_the_exit_by_its_own_variance(plant_with: Cal
     """Var e = (g'·1e-3·S·σ_w)² exactly for the Gauss quadrature of the gamma law (3 nodes: degree 5)."""
     plant = coasting(plant_with, resistance=RollingResistance(6.0, 0.6), entry=EntrySpeed(4.0, 4.0))
     resolution = Resolution(0.5, 0.002, transient_substeps=1, friction_nodes=1, path_levels=1, resistance_nodes=3)
-    mean, variance = moments(without_commands(persistent_transitions(plant, resolution)))
+    mean, variance = moments(without_commands(persistent_chain(plant, resolution)))
     assert mean == pytest.approx(8.0 + coasting_gain(plant), abs=1e-9)
     expected = (plant.cut.reduced_gravity_m_s2 * 1e-3 * plant.exit_m * 0.6) ** 2
     assert variance == pytest.approx(expected, abs=0.3 * 0.006**2)
@@ -142,7 +142,7 @@ def test_scenarios_of_the_check_have_the_same_moments(plant_with: Callable[..., 
         plant_with, friction=Friction(0.12, 0.0, 0.0, 2.0), resistance=RollingResistance(1.5, 0.6)
     )  # fmt: skip
     resolution = Resolution(0.5, 0.005, transient_substeps=1, friction_nodes=17, path_levels=1, resistance_nodes=3)
-    mean, variance = moments(without_commands(check_transitions(plant, resolution)))
+    mean, variance = moments(without_commands(check_chain(plant, resolution)))
     work, drag = brake_work(plant), plant.cut.reduced_gravity_m_s2 * 1e-3 * plant.exit_m
     assert mean == pytest.approx(4.5**2 / 2 + coasting_gain(plant) - work, abs=1e-6)
     assert variance == pytest.approx((0.12 * work) ** 2 + (0.6 * drag) ** 2, rel=0.005)
@@ -162,7 +162,7 @@ def test_path_noise_has_the_variance_of_the_continuous_process(
         plant_with, axles_m=(0.0,), zones_m=((0.0, 8.0),), mass_t=8.0, friction=Friction(0.0, 0.0, 0.2, 1.0)
     )
     resolution = Resolution(path_step_m, 0.02, transient_substeps=2, friction_nodes=1, path_levels=levels)
-    _, variance = moments(without_commands(persistent_transitions(plant, resolution)))
+    _, variance = moments(without_commands(persistent_chain(plant, resolution)))
     braking = 0.05 * 65.0 / (8.0 + 0.42)
     expected = 2.0 * 0.2**2 * (8.0 - 1.0 + math.exp(-8.0)) * braking**2
     assert variance == pytest.approx(expected, rel=0.03)

@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 
 from plant_models import Plant, PressingForce
 from synth.problem.resolution import Resolution
-from synth.solver.chain.transitions import Transitions, persistent_transitions
+from synth.solver.chain.chain import Chain, persistent_chain
 
 STALLED = -1.0
 
@@ -87,7 +87,7 @@ def ride(
     return s - start, 0.5 * v * v
 
 
-def commands_of(t: Transitions) -> list[tuple[int, int, int]]:
+def commands_of(t: Chain) -> list[tuple[int, int, int]]:
     """(transient, mode before, stage wanted) of all changes to a neighbouring stage."""
     found = []
     for mode, stage in enumerate(t.actuator.mode_stage):
@@ -100,7 +100,7 @@ def commands_of(t: Transitions) -> list[tuple[int, int, int]]:
 Case = tuple[int, int, int, int, int]  # node, transient, friction node, speed node; then the stage wanted
 
 
-def outcomes(t: Transitions, nodes: list[int], speeds_m_s: list[float]) -> dict[Case, tuple[float, float]]:
+def outcomes(t: Chain, nodes: list[int], speeds_m_s: list[float]) -> dict[Case, tuple[float, float]]:
     """What scipy says, for the lowest, a middle and the highest friction factor of the tables."""
     found = {}
     speeds = [int(np.argmin(np.abs(t.grid.speed_m_s - v))) for v in speeds_m_s]
@@ -114,7 +114,7 @@ def outcomes(t: Transitions, nodes: list[int], speeds_m_s: list[float]) -> dict[
     return found
 
 
-def errors(t: Transitions, expected: dict[Case, tuple[float, float]], leaving: bool) -> tuple[float, float]:
+def errors(t: Chain, expected: dict[Case, tuple[float, float]], leaving: bool) -> tuple[float, float]:
     """Largest error of travel (m) and of energy (m²/s²) over cases that end inside, or that leave."""
     worst = np.zeros(2)
     for (n, c, f, j, _), (travel, energy) in expected.items():
@@ -125,9 +125,9 @@ def errors(t: Transitions, expected: dict[Case, tuple[float, float]], leaving: b
     return float(worst[0]), float(worst[1])
 
 
-def refined(plant: Plant, substeps: tuple[int, ...]) -> list[Transitions]:
+def refined(plant: Plant, substeps: tuple[int, ...]) -> list[Chain]:
     """The plant's transitions for several numbers of transient sub-steps."""
-    return [persistent_transitions(plant, replace(RESOLUTION, transient_substeps=m)) for m in substeps]
+    return [persistent_chain(plant, replace(RESOLUTION, transient_substeps=m)) for m in substeps]
 
 
 @pytest.fixture(scope="module")
@@ -185,7 +185,7 @@ def test_landing_between_the_nodes(plant_with: Callable[..., Plant]) -> None:
     plant = plant_with(zones_m=((0.0, 8.13),), axles_m=(0.0, 1.67))
     worst = []
     for step in (0.5, 0.25, 0.125):
-        t = persistent_transitions(plant, replace(RESOLUTION, path_step_m=step, transient_substeps=20))
+        t = persistent_chain(plant, replace(RESOLUTION, path_step_m=step, transient_substeps=20))
         nodes = [0, round(2.0 / t.grid.path_step_m), round(7.0 / t.grid.path_step_m)]
         worst.append(errors(t, outcomes(t, nodes, [1.0, 2.0, 3.2, 4.4]), leaving=False)[1])
     print("landing between the nodes: errors", worst)

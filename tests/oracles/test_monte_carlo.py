@@ -14,8 +14,8 @@ from plant_models import DopplerSensor, EntrySpeed, Friction, Plant, PressingFor
 from synth.problem.resolution import Resolution
 from synth.simulation.closed_loop import LineController, simulate
 from synth.simulation.random_passes import random_passes
-from synth.solver.chain.transitions import persistent_transitions
-from synth.solver.policy_evaluation import commands, exit_density
+from synth.solver.chain.chain import persistent_chain
+from synth.solver.policy_density import exit_density
 from synth.solver.switching_lines import SwitchingLines
 
 PASSES = 4000
@@ -56,9 +56,9 @@ def test_density_predicts_the_simulation(
     """
     plant, target_m_s = loop_plant(plant_with, cv, path_std, resolution_m_s), 3.0
     nodes = (7, 3) if cv > 0 else (1, 1)
-    t = persistent_transitions(plant, replace(GRID, friction_nodes=nodes[0], path_levels=nodes[1]))
+    t = persistent_chain(plant, replace(GRID, friction_nodes=nodes[0], path_levels=nodes[1]))
     lines = straight_lines(t.grid.path_m)
-    density = exit_density(t, commands(t, lines, staircase=True))
+    density = exit_density(t.quantised(), lines)
     sample = simulate(plant, LineController(lines), random_passes(7, 0, PASSES))
     error = sample.exit_speed_m_s - target_m_s
     square = error**2

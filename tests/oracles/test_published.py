@@ -16,10 +16,11 @@ from scipy.stats import norm
 
 from plant_models import DopplerSensor, Friction, Plant
 from plant_models.speed_sensor import measured_speed_std
+from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import solve, true_speed_weights
-from synth.solver.chain.transitions import Transitions, as_published, persistent_transitions
+from synth.solver.chain.chain import Chain, as_published, persistent_chain
 
 Array = NDArray[np.float64]
 
@@ -48,7 +49,7 @@ def sampled(rows: Array, position: Array) -> Array:
 class Published:
     """Values V (N + 1, H, 5, E) and lines (N, K + 1) of the published formulation."""
 
-    def __init__(self, t: Transitions, target_m_s: float, criterion: Criterion) -> None:
+    def __init__(self, t: Chain, target_m_s: float, criterion: Criterion) -> None:
         self.t = t
         plant, sensor = t.plant, t.plant.sensor
         self.step, self.cell = t.grid.path_step_m, t.grid.energy_step_m2_s2
@@ -212,9 +213,9 @@ def noisy(plant_with: Callable[..., Plant]) -> Plant:
 @pytest.mark.parametrize(("target_m_s", "tolerance"), [(2.4, 1e-5), (3.2, 0.0)])
 def test_solve_agrees_with_numpy(plant_with: Callable[..., Plant], target_m_s: float, tolerance: float) -> None:
     """The same lines and values to 1e-9: only the order of additions differs."""
-    t = as_published(persistent_transitions(noisy(plant_with), SMALL))
+    t = as_published(persistent_chain(noisy(plant_with), SMALL))
     criterion = Criterion(switching_tolerance_m2_s2=tolerance)
-    found, expected = solve(t, target_m_s, criterion, np.float64), Published(t, target_m_s, criterion)
+    found, expected = solve(t, Aim(target_m_s, criterion), np.float64), Published(t, target_m_s, criterion)
     np.testing.assert_allclose(found.lines.lower_m_s[:, :-1].T, expected.lower, rtol=0, atol=1e-8)
     np.testing.assert_allclose(found.lines.upper_m_s[:, :-1].T, expected.upper, rtol=0, atol=1e-8)
     np.testing.assert_allclose(found.values[0], expected.V, rtol=0, atol=1e-9)

@@ -17,11 +17,12 @@ import numpy as np
 import pytest
 
 from plant_models import DopplerSensor, EntrySpeed, Friction, Plant, Pneumatics, PressingForce
+from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import solve
-from synth.solver.chain.transitions import Transitions, as_published, persistent_transitions
-from synth.solver.policy_evaluation import commands, expected_cost
+from synth.solver.chain.chain import Chain, as_published, persistent_chain
+from synth.solver.evaluation import Evaluation
 
 QUANTUM = Resolution(0.5, 0.02, transient_substeps=2, friction_nodes=1, path_levels=1)
 
@@ -41,7 +42,7 @@ def quick_plant(plant_with: Callable[..., Plant], period_s: float, pneumatics: P
     )
 
 
-def ideal_cost(t: Transitions, target_m_s: float, criterion: Criterion, with_lines: bool) -> float:
+def ideal_cost(t: Chain, target_m_s: float, criterion: Criterion, with_lines: bool) -> float:
     """Mean cost over the entry of an actuator without transients, one stage a quantum.
 
     `with_lines`: commands are bounded by one speed each (the best such speeds); otherwise by nothing.
@@ -76,10 +77,10 @@ def ideal_cost(t: Transitions, target_m_s: float, criterion: Criterion, with_lin
     return float(np.interp(0.5 * v**2, energy, value[0]).mean())
 
 
-def solved_cost(t: Transitions, target_m_s: float, criterion: Criterion) -> float:
+def solved_cost(t: Chain, target_m_s: float, criterion: Criterion) -> float:
     """Cost of the solver's lines."""
-    lines = solve(t, target_m_s, criterion).lines
-    return expected_cost(t, commands(t, lines, staircase=False), target_m_s, criterion)
+    lines = solve(t, Aim(target_m_s, criterion)).lines
+    return Evaluation(t, Aim(target_m_s, criterion)).cost(lines)
 
 
 def test_cost_tends_to_that_of_an_ideal_actuator(plant_with: Callable[..., Plant]) -> None:
@@ -88,7 +89,7 @@ def test_cost_tends_to_that_of_an_ideal_actuator(plant_with: Callable[..., Plant
     Measured at ΔV = 0.01 m/s: 0.8 %, at 0.005: 0.2 %. An ideal actuator free of lines is the lower bound.
     """
     grid = replace(QUANTUM, speed_step_m_s=0.01)
-    t = as_published(persistent_transitions(quick_plant(plant_with, 0.01, AT_ONCE), grid))
+    t = as_published(persistent_chain(quick_plant(plant_with, 0.01, AT_ONCE), grid))
     criterion = Criterion(1.0, 0.0)
     rms, with_lines, free = (
         math.sqrt(cost)
@@ -113,7 +114,7 @@ def test_shrinking_transients_tend_to_the_ideal(plant_with: Callable[..., Plant]
     for share in (1 / 4, 1 / 8, 1 / 16, 1 / 20):
         times = ("brake_delay_s", "touch_delay_s", "release_delay_s", "fill_time_constant_s", "exhaust_time_constant_s")
         quick = replace(drive, dead_band_kpa=0.1, **{name: share * getattr(drive, name) for name in times})
-        t = as_published(persistent_transitions(quick_plant(plant_with, 0.1 * share, quick), QUANTUM))
+        t = as_published(persistent_chain(quick_plant(plant_with, 0.1 * share, quick), QUANTUM))
         ideal = math.sqrt(ideal_cost(t, 2.5, criterion, with_lines=True))
         distances.append(abs(math.sqrt(solved_cost(t, 2.5, criterion)) - ideal))
     print("shrinking transients: distance from the ideal rms, m/s", distances)

@@ -19,7 +19,7 @@ from plant_models import (
     TrackProfile,
 )
 from synth.problem.resolution import Resolution
-from synth.solver.chain.transitions import Transitions, persistent_transitions
+from synth.solver.chain.chain import Chain, persistent_chain
 
 ROUGH = Friction(0.12, 0.0, 0.10, 2.0)
 RADAR = DopplerSensor(0.05, 0.04, 0.1, 0.02)
@@ -63,7 +63,7 @@ def coarse() -> Resolution:
 
 
 @pytest.fixture(scope="session")
-def small() -> Callable[[], Transitions]:
+def small() -> Callable[[], Chain]:
     """The random plant on the coarse grid; behind a call, as hypothesis prints its arguments."""
-    transitions = persistent_transitions(random_plant(), COARSE)
+    transitions = persistent_chain(random_plant(), COARSE)
     return lambda: transitions

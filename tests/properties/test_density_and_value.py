@@ -10,13 +10,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
-from synth.solver.chain.transitions import Transitions
-from synth.solver.policy_evaluation import (
+from synth.solver.chain.chain import Chain
+from synth.solver.evaluation import Evaluation
+from synth.solver.policy_density import (
     commands,
-    cost_and_gradient,
     exit_density,
-    expected_cost,
     forward_all,
     forward_one,
 )
@@ -29,7 +29,7 @@ FEW = settings(
 )
 
 
-def random_lines(t: Transitions, seed: int) -> SwitchingLines:
+def random_lines(t: Chain, seed: int) -> SwitchingLines:
     """Ordered lines between 0.5 and 5.5 m/s, rough along the path, some of them absent."""
     rng = np.random.default_rng(seed)
     shape = (t.actuator.stages, len(t.grid.path_m))
@@ -55,33 +55,39 @@ def shifted(lines: SwitchingLines, by_lower: NDArray[np.float64], by_upper: NDAr
 @FEW
 @given(seed=SEEDS, target=st.floats(1.0, 4.0), staircase=st.booleans(), stall_cost=st.floats(0.0, 20.0))
 def test_density_and_value_agree(
-    small: Callable[[], Transitions], seed: int, target: float, staircase: bool, stall_cost: float
+    small: Callable[[], Chain], seed: int, target: float, staircase: bool, stall_cost: float
 ) -> None:
     """rms² + stall cost + cost of commands = value at the entrance, to 1e-8 (`NEGLIGIBLE_MASS` is dropped)."""
     t, criterion = small(), Criterion(stall_cost, 1e-3)
-    policy = commands(t, random_lines(t, seed), staircase)
-    density = exit_density(t, policy)
+    chain, lines = t.quantised() if staircase else t, random_lines(t, seed)
+    density = exit_density(chain, lines)
     forward = density.rms_m_s(target) ** 2 + density.stalled * stall_cost + 1e-3 * density.switchings
-    assert expected_cost(t, policy, target, criterion) == pytest.approx(forward, rel=1e-8)
+    assert Evaluation(chain, Aim(target, criterion)).cost(lines) == pytest.approx(forward, rel=1e-8)
 
 
 @FEW
 @given(seed=SEEDS)
-def test_no_mass_is_lost(small: Callable[[], Transitions], seed: int) -> None:
-    """Exits and stalls sum to one within 1e-9; what reaches the top of the grid are ripples of unbraked passes."""
-    t = small()
-    density = exit_density(t, commands(t, random_lines(t, seed), staircase=False))
-    assert density.probability.sum() + density.stalled == pytest.approx(1.0, abs=1e-9)
+def test_no_mass_is_lost(small: Callable[[], Chain], seed: int) -> None:
+    """Exits and stalls sum to one within 1e-9. Cubic weights can leave stalls of −1e-6, which the density clips."""
+    t, total, stalled = small(), 0.0, 0.0
+    policy, band = commands(t, random_lines(t, seed)), np.empty((len(t.drive_m_s2), 2), dtype=np.int64)
+    for i, weight in enumerate(t.scenarios.weight):
+        exits, totals = forward_one(t, policy, i, np.empty((0, 0, 0, 0)), band)
+        total += weight * (exits.sum() + totals[0])
+        stalled += weight * totals[0]
+    density = exit_density(t, random_lines(t, seed))
+    assert total == pytest.approx(1.0, abs=1e-9)
+    assert density.probability.sum() + density.stalled == pytest.approx(1.0 - min(stalled, 0.0), abs=1e-9)
     assert density.escaped < 1e-3
-    assert density.stalled > -1e-6
+    assert stalled > -1e-5
 
 
 @FEW
 @given(seed=SEEDS)
-def test_a_scenario_leaves_nothing_to_the_next(small: Callable[[], Transitions], seed: int) -> None:
+def test_a_scenario_leaves_nothing_to_the_next(small: Callable[[], Chain], seed: int) -> None:
     """Followed after others, in the same memory, a scenario has the exits and totals that it has alone, to the bit."""
     t = small()
-    policy = commands(t, random_lines(t, seed), staircase=False)
+    policy = commands(t, random_lines(t, seed))
     scenarios, nothing = len(t.scenarios.weight), np.empty((0, 0, 0, 0))
     band = np.empty((scenarios, len(t.drive_m_s2), 2), dtype=np.int64)
     together = forward_all(t, policy, slice(None), np.empty((scenarios, 0, 0, 0, 0)), band)
@@ -93,20 +99,17 @@ def test_a_scenario_leaves_nothing_to_the_next(small: Callable[[], Transitions],
 
 @FEW
 @given(seed=SEEDS, target=st.floats(1.0, 4.0))
-def test_gradient_is_the_slope_of_the_cost(small: Callable[[], Transitions], seed: int, target: float) -> None:
+def test_gradient_is_the_slope_of_the_cost(small: Callable[[], Chain], seed: int, target: float) -> None:
     """Along a random direction: central difference over ±1e-4 m/s, 1e-5 of the largest slope (third derivative)."""
     t, criterion = small(), Criterion(1.0, 1e-4)
     lines = random_lines(t, seed)
     rng = np.random.default_rng(seed + 1)
     shape = lines.lower_m_s[:, :-1].shape
     direction = rng.standard_normal((2, *shape))
-    cost, by_lower, by_upper = cost_and_gradient(t, commands(t, lines, False), target, criterion)
+    cost, by_lower, by_upper = Evaluation(t, Aim(target, criterion)).gradient(lines)
     h = 1e-4
-    sides = [
-        expected_cost(t, commands(t, shifted(lines, *(s * h * direction)), False), target, criterion)
-        for s in (1.0, -1.0)
-    ]
+    sides = [Evaluation(t, Aim(target, criterion)).cost(shifted(lines, *(s * h * direction))) for s in (1.0, -1.0)]
     size = np.abs(by_lower).sum() + np.abs(by_upper).sum()
     along = (by_lower * direction[0]).sum() + (by_upper * direction[1]).sum()
     assert along == pytest.approx((sides[0] - sides[1]) / (2 * h), abs=1e-5 * size + 1e-9)
-    assert cost == pytest.approx(expected_cost(t, commands(t, lines, False), target, criterion), rel=1e-8)
+    assert cost == pytest.approx(Evaluation(t, Aim(target, criterion)).cost(lines), rel=1e-8)

@@ -11,31 +11,33 @@ import numpy as np
 import pytest
 
 from plant_models import DopplerSensor, Friction, Plant, RollingResistance
+from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import Solution, solve
-from synth.solver.chain.transitions import Transitions, persistent_transitions, with_known_friction
-from synth.solver.policy_evaluation import commands, exit_density, expected_cost
+from synth.solver.chain.chain import Chain, persistent_chain, with_known_friction
+from synth.solver.evaluation import Evaluation
+from synth.solver.policy_density import exit_density
 
 TARGET_M_S = 2.5
 
 CRITERION = Criterion(1.0, 1e-5)
 
 
-def solved_cost(t: Transitions, criterion: Criterion = CRITERION) -> float:
+def solved_cost(t: Chain, criterion: Criterion = CRITERION) -> float:
     """Cost of the solver's own lines, evaluated exactly."""
-    lines = solve(t, TARGET_M_S, criterion).lines
-    return expected_cost(t, commands(t, lines, staircase=False), TARGET_M_S, criterion)
+    lines = solve(t, Aim(TARGET_M_S, criterion)).lines
+    return Evaluation(t, Aim(TARGET_M_S, criterion)).cost(lines)
 
 
-def test_information_cannot_hurt(small: Callable[[], Transitions]) -> None:
+def test_information_cannot_hurt(small: Callable[[], Chain]) -> None:
     """Told ξ, each scenario with its own lines costs on average less than one set of lines for all."""
     t = small()
-    lines = solve(t, TARGET_M_S, CRITERION).lines
+    lines = solve(t, Aim(TARGET_M_S, CRITERION)).lines
     common, known = [], []
     for factor in t.scenarios.factor:
         told = with_known_friction(t, float(factor))
-        common.append(expected_cost(told, commands(told, lines, False), TARGET_M_S, CRITERION))
+        common.append(Evaluation(told, Aim(TARGET_M_S, CRITERION)).cost(lines))
         known.append(solved_cost(told))
     weight = t.scenarios.weight
     assert weight @ common == pytest.approx(solved_cost(t), rel=1e-9)  # one resistance: the same three scenarios
@@ -56,19 +58,19 @@ def test_less_noise_costs_less(plant_with: Callable[..., Plant], coarse: Resolut
             sensor=DopplerSensor(0.15 * share if source == "sensor" else 0.03, 0.0, 0.1, 0.02),
             resistance=RollingResistance(1.5, 0.0),
         )
-        costs.append(solved_cost(persistent_transitions(plant, coarse)))
+        costs.append(solved_cost(persistent_chain(plant, coarse)))
     print("noise", source, costs)
     assert all(a > b for a, b in pairwise(costs))
 
 
-def test_dearer_commands_are_fewer(small: Callable[[], Transitions]) -> None:
+def test_dearer_commands_are_fewer(small: Callable[[], Chain]) -> None:
     """The switchings per pass fall with the switching tolerance, and the mean square hardly gains by switching less."""
     t = small()
     switchings, squares = [], []
     for tolerance in (0.0, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0):
         criterion = replace(CRITERION, switching_tolerance_m2_s2=tolerance)
-        lines = solve(t, TARGET_M_S, criterion).lines
-        density = exit_density(t, commands(t, lines, staircase=False))
+        lines = solve(t, Aim(TARGET_M_S, criterion)).lines
+        density = exit_density(t, lines)
         switchings.append(density.switchings)
         squares.append(density.rms_m_s(TARGET_M_S) ** 2)
     print("tolerance", switchings, squares)
@@ -84,12 +86,12 @@ def bytes_of(solution: Solution) -> tuple[bytes, ...]:
 
 def test_same_bytes_twice_and_from_two_threads(plant_with: Callable[..., Plant], coarse: Resolution) -> None:
     """Nothing depends on memory left over, on the order of threads, or on what ran before."""
-    t = persistent_transitions(plant_with(), coarse)
-    first = bytes_of(solve(t, TARGET_M_S, CRITERION))
-    again = persistent_transitions(plant_with(), coarse)
+    t = persistent_chain(plant_with(), coarse)
+    first = bytes_of(solve(t, Aim(TARGET_M_S, CRITERION)))
+    again = persistent_chain(plant_with(), coarse)
     assert again.landings.energy_m2_s2.tobytes() == t.landings.energy_m2_s2.tobytes()
-    assert bytes_of(solve(again, TARGET_M_S, CRITERION)) == first
+    assert bytes_of(solve(again, Aim(TARGET_M_S, CRITERION))) == first
     with ThreadPoolExecutor(2) as pool:
-        runs = [pool.submit(solve, t, target, CRITERION) for target in (TARGET_M_S, 2.0, TARGET_M_S, 2.0)]
+        runs = [pool.submit(solve, t, Aim(target, CRITERION)) for target in (TARGET_M_S, 2.0, TARGET_M_S, 2.0)]
         assert bytes_of(runs[0].result()) == bytes_of(runs[2].result()) == first
         assert bytes_of(runs[1].result()) == bytes_of(runs[3].result())

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 from plant_models import Plant
+from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import Solution, solve_all
-from synth.solver.chain.transitions import persistent_transitions
-from synth.solver.policy_evaluation import commands, cost_and_gradient
+from synth.solver.chain.chain import persistent_chain
+from synth.solver.evaluation import Evaluation
 
 TARGETS = (1.0, 2.5, 4.0)
 
@@ -23,8 +24,8 @@ def pairs(
     request: pytest.FixtureRequest, plant_with: Callable[..., Plant], coarse: Resolution
 ) -> list[tuple[Solution, Solution]]:
     """Solutions in float32 and in float64; the last path quantum is too short for any change of stage."""
-    design = persistent_transitions(plant_with(), replace(coarse, path_step_m=0.25))
-    aims = [(target, Criterion(1.0, request.param)) for target in TARGETS]
+    design = persistent_chain(plant_with(), replace(coarse, path_step_m=0.25))
+    aims = [Aim(target, Criterion(1.0, request.param)) for target in TARGETS]
     return list(zip(*(solve_all(design, aims, value_type=kind) for kind in (np.float32, np.float64)), strict=True))
 
 
@@ -57,8 +58,6 @@ def test_the_policy_costs_what_that_of_float64_does(pairs: list[tuple[Solution, 
     """Evaluated exactly, in float64."""
     for single, double in pairs:
         cost, best = (
-            cost_and_gradient(t, commands(t, each.lines, staircase=False), each.target_speed_m_s, each.criterion)[0]
-            for each in (single, double)
-            for t in (each.transitions,)
+            Evaluation(t, each.aim).gradient(each.lines)[0] for each in (single, double) for t in (each.chain,)
         )
         assert abs(cost - best) < 1e-7 * best + 1e-10

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from synth.book.tune_case import predict
+from synth.book.tuned_table import predict
 from synth.configuration.config_file import load_config
 from synth.problem.resolution import finer_for_check
 from synth.simulation.exit_statistics import rms_ratio
 from synth.simulation.random_passes import random_passes
-from synth.solver.chain.transitions import check_transitions
+from synth.solver.chain.chain import check_chain
 from synth.studies.robustness.condition import aged_valves, friction
 from synth.studies.robustness.experiments import (
     hypercube,
@@ -140,7 +140,7 @@ def test_a_table_tuned_for_the_true_plant_is_better_there_and_worse_elsewhere(tu
 
 def test_a_wrong_table_does_what_the_exact_density_predicts(tuned: Trial) -> None:
     aged = Perturbation("aged valves", aged_valves)
-    check = check_transitions(aged.change(tuned.plant), finer_for_check(load_config(None).resolution))
+    check = check_chain(aged.change(tuned.plant), finer_for_check(load_config(None).resolution))
     predicted = predict(check, tuned.table).rms_m_s(3.0)
     assert predicted / tuned.outcome(aged).rms_m_s == pytest.approx(1.0, abs=0.1)
     assert predicted > 2.0 * tuned.outcome(Perturbation("nominal")).rms_m_s

@@ -14,7 +14,7 @@ from synth.simulation.random_passes import random_passes
 from synth.sweep.plan import Refinement, plan_of
 from synth.sweep.refinement import Bench, Gap, refined
 from synth.sweep.sweep_file import parse_sweep
-from synth.sweep.tune_unit import between_rms_m_s, tables_for, tune_unit, workshop
+from synth.sweep.tune_unit import between_rms_m_s, setup_of, tune_unit, tuned_tables
 from synth.sweep.work import InThisProcess
 from tests.sweep.conftest import PLANT, SWEEP, run
 from tuning_tables import TableBook, read_book
@@ -78,21 +78,21 @@ def test_lines_between_are_those_that_a_controller_takes() -> None:
     text = text.replace(
         "path_step_m = 1.0\nspeed_step_m_s = 0.05\nfriction_scenarios = 3\n", ""
     )  # the default grid instead: a coarse one predicts too much
-    shop = workshop(plan_of(parse_sweep(text, "x"), "2020-01-01T00:00:00Z").units[0].order)
-    slower, faster = tables_for(shop, (1.5, 2.5))
+    config, setup = setup_of(plan_of(parse_sweep(text, "x"), "2020-01-01T00:00:00Z").units[0].order)
+    (slower, faster), _ = tuned_tables(config, setup, (1.5, 2.5))
     # At the targets themselves the lines between are the tables' own: rounding is all that may differ.
     for table in (slower, faster):
         target = table.target_speed_m_s
-        assert between_rms_m_s(shop.check, slower, faster, target) == pytest.approx(table.predicted.rms_m_s, rel=1e-5)
+        assert between_rms_m_s(setup.check, slower, faster, target) == pytest.approx(table.predicted.rms_m_s, rel=1e-5)
     # Half-way, the choice of the book is simulated: another way to the lines and another way to the error.
     choice = TableBook((slower, faster)).choose(slower.cut.category, 4, 2.0)
     assert choice.table is not None
     n = 20_000
-    loop = close_loop(shop.plant, choice.table.coefficients.shape[0])
+    loop = close_loop(setup.plant, choice.table.coefficients.shape[0])
     sample = loop.run(TableController(choice.table), loop.draws(random_passes(7, 0, n)))
     square = (sample.exit_speed_m_s - 2.0) ** 2
     half = 1.96 * square.std() / math.sqrt(n)
-    exact = between_rms_m_s(shop.check, slower, faster, 2.0)
+    exact = between_rms_m_s(setup.check, slower, faster, 2.0)
     assert exact == pytest.approx(math.sqrt(square.mean()), rel=0.1 + half / square.mean())
 
 

@@ -49,7 +49,11 @@ FAULTS = {
     "target above entry": ("to = 2.0", "to = 4.5", "a target must be"),
     "cars": ("mass_per_car_t", "cars = [1.5]\nmass_per_car_t", "whole numbers from 1 to 60"),
     "base": ("degree = 2", "degre = 2", "did you mean degree?"),
-    "estimator": ("[sweep]", "[regulator]\nestimator = true\n[sweep]", "measured speed only"),
+    "estimator": (
+        "[sweep]",
+        "[regulator]\nestimator = true\n[sweep]\ninterpolation_loss_m_s = 0.01",
+        "no exact prediction to measure",
+    ),
     "equal names": ("[sweep]", '[[sweep.condition]]\nname = "A"\n[[sweep.condition]]\nname = "a"\n[sweep]', "name"),
     "no TOML": ("[sweep]", "[sweep", "not valid TOML"),
 }

@@ -19,11 +19,15 @@ from plant_models import (
     RollingResistance,
     TrackProfile,
 )
-from synth.book.case_result import CaseResult, DegreeStudy, Indifference, PolicyMap
+from synth.book.case_result import CaseResult, CaseStudy, DegreeStudy, Indifference, PolicyMap
+from synth.book.comparison.comparison import Comparison
 from synth.book.comparison.measured import Feasibility, Measured
+from synth.problem.aim import Aim
+from synth.problem.problem import Problem
 from synth.simulation.exit_statistics import brake_power, exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample, PassTrace
 from synth.solver.exit_density import ExitDensity
+from synth.solver.polynomial_fit import Polish, PolynomialLines
 from synth.solver.switching_lines import SwitchingLines
 from tuning_tables import (
     ControllerTable,
@@ -79,30 +83,42 @@ def make_case(
     samples = [make_sample(target + bias, factor * spread, seed) for seed, (_, factor) in enumerate(NAMES_AND_SPREAD)]
     density = make_density(target + bias, spread)
     promised = density.rms_m_s(target)
-    comparison = tuple(
-        measured(name, sample, samples[0], target, promised if name == "table" else math.nan)
+    promises = {"table": promised, "as published": 0.4 * spread}
+    table, lines, published, known, *baselines = (
+        measured(name, sample, samples[0], target, promises.get(name, math.nan))
         for (name, _), sample in zip(NAMES_AND_SPREAD, samples, strict=True)
     )
     entry = np.linspace(5.0, 6.5, 5)
     return CaseResult(
         label=label,
-        plant=plant,
-        target_speed_m_s=target,
+        problem=Problem(plant, Aim(target)),
         table=make_table(label, plant, target),
-        table_lines=make_lines(plant, target, 129),
-        solver_lines=make_lines(plant, target, 76, wiggle=0.05),
-        policy_map=make_policy_map(plant, target),
         predicted=density,
-        published_predicted_rms_m_s=0.4 * spread,
+        polish=Polish(make_polynomials(plant), 2.0 * spread**2, spread**2, 20, True, "Optimization terminated"),
+        finding=None,
+        estimate=None,
         exit_speeds_m_s=samples[0].exit_speed_m_s.astype(np.float32),
         exit_weight=samples[0].weight,
         brake_power=brake_power(samples[0], samples[1], target),
-        comparison=comparison,
-        indifference=Indifference(1e-5, 12.0, 9.5, spread, 1.01 * spread),
+        comparison=Comparison(table, lines, published, known, tuple(baselines)),
         feasibility=Feasibility(entry, np.full(5, spread + abs(bias)), 0.1, (5.0, 6.5) if feasible else None, feasible),
-        traces=tuple(make_trace(plant, target, factor) for factor in (0.8, 1.0, 1.2)),
-        trace_factors=(0.8, 1.0, 1.2),
+        study=CaseStudy(
+            table_lines=make_lines(plant, target, 129),
+            solver_lines=make_lines(plant, target, 76, wiggle=0.05),
+            policy_map=make_policy_map(plant, target),
+            indifference=Indifference(1e-5, 12.0, 9.5, spread, 1.01 * spread),
+            traces=tuple(make_trace(plant, target, factor) for factor in (0.8, 1.0, 1.2)),
+            trace_factors=(0.8, 1.0, 1.2),
+        ),
     )
+
+
+def make_polynomials(plant: Plant) -> PolynomialLines:
+    """Constant lines, for those who ask only how the polish ended."""
+    stages = plant.top_stage + 1
+    has_line = np.ones((stages, 2), dtype=bool)
+    has_line[0, 0] = has_line[-1, 1] = False
+    return PolynomialLines(plant.exit_m, np.zeros((stages, 2, 4)), has_line)
 
 
 def measured(name: str, sample: ExitSample, table: ExitSample, target: float, promised: float) -> Measured:

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from plant_models import EntrySpeed, Plant, PlantError, PressingForce, RetarderPosition, RollingResistance
-from synth.book.tune_case import required
 from synth.configuration.config_file import parse_config
 from synth.configuration.config_template import default_config_toml
 from synth.faults.input_error import InputError
+from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.problem import Problem
 from synth.problem.requirement import FrictionRange, OverspeedLimit
@@ -23,22 +23,16 @@ from synth.problem.terminal_cost import AsymmetricSquare, PenalisedOverspeed, Sq
 from synth.simulation.closed_loop import LineController, simulate
 from synth.simulation.exit_statistics import clopper_pearson, exit_statistics
 from synth.simulation.random_passes import random_passes
-from synth.solver.backward_induction import solve
-from synth.solver.chain.transitions import Transitions, check_transitions, persistent_transitions
+from synth.solver.backward_induction import Solution, solve
+from synth.solver.chain.chain import Chain, check_chain, persistent_chain
 from synth.solver.chance_constraint import keep_overspeed_limit, predicted_density
+from synth.solver.evaluation import Evaluation
 from synth.solver.finer_speed import finer_in_speed, known_factors
-from synth.solver.policy_evaluation import (
-    commands,
-    evaluator,
-    exit_density,
-    expected_cost,
-    occupancy_of,
-    scenario_costs,
-    scenario_density,
-)
-from synth.solver.polynomial_fit import Fit, PolynomialLines, basis, fit_lines, whitening
+from synth.solver.policy_density import exit_density, scenario_densities
+from synth.solver.polynomial_fit import Fit, PolynomialLines, basis, whitening
+from synth.solver.required_lines import required_lines
 from synth.solver.switching_lines import SwitchingLines
-from synth.solver.tuned_lines import polished
+from synth.solver.tuned_lines import fitted, polished
 from synth.solver.worst_case import FACTORS, guard_worst_case
 
 COARSE = Resolution(path_step_m=0.5, speed_step_m_s=0.05, friction_nodes=3)
@@ -57,29 +51,27 @@ def plant(plant_of: Callable[[float], Plant]) -> Plant:
 
 
 @pytest.fixture(scope="module")
-def design(plant: Plant) -> Transitions:
-    return persistent_transitions(plant, COARSE)
+def design(plant: Plant) -> Chain:
+    return persistent_chain(plant, COARSE)
 
 
 @pytest.fixture(scope="module")
-def check(plant: Plant) -> Transitions:
-    return check_transitions(plant, replace(finer_for_check(COARSE), friction_nodes=7))
+def check(plant: Plant) -> Chain:
+    return check_chain(plant, replace(finer_for_check(COARSE), friction_nodes=7))
 
 
 @pytest.fixture(scope="module")
-def fit(design: Transitions) -> Fit:
-    return fitted(design, Criterion())
+def fit(design: Chain) -> Fit:
+    return fitted(solved(design, Criterion()), DEGREE)
 
 
 @pytest.fixture(scope="module")
-def start(design: Transitions, fit: Fit) -> PolynomialLines:
-    return polished(design, fit, TARGET_M_S, Criterion())
+def start(design: Chain, fit: Fit) -> PolynomialLines:
+    return polished(solved(design, Criterion()), fit).lines
 
 
-def fitted(design: Transitions, criterion: Criterion) -> Fit:
-    solution = solve(design, TARGET_M_S, criterion)
-    _, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
-    return fit_lines(solution, occupancy.samples, DEGREE)
+def solved(design: Chain, criterion: Criterion) -> Solution:
+    return solve(design, Aim(TARGET_M_S, criterion))
 
 
 def test_costs_by_hand() -> None:
@@ -96,20 +88,18 @@ def test_costs_by_hand() -> None:
     assert Criterion(0.5, 0.0, ASYMMETRIC).exit_costs(speed, target)[1] == pytest.approx(target**2 + 0.5)
 
 
-def test_a_penalised_overspeed_costs_its_price_times_the_probability(
-    design: Transitions, start: PolynomialLines
-) -> None:
-    policy = commands(design, start.at(design.grid.path_m), staircase=False)
-    density = exit_density(design, policy)
+def test_a_penalised_overspeed_costs_its_price_times_the_probability(design: Chain, start: PolynomialLines) -> None:
+    lines = start.at(design.grid.path_m)
+    density = exit_density(design, lines)
     free = Criterion(1.0, 0.0)
     priced = replace(free, terminal=PenalisedOverspeed(2.0, 0.02))
-    paid = expected_cost(design, policy, TARGET_M_S, priced) - expected_cost(design, policy, TARGET_M_S, free)
+    dear, cheap = (Evaluation(design, Aim(TARGET_M_S, each)).cost(lines) for each in (priced, free))
     assert density.p_overspeed(TARGET_M_S + 0.02) > 0.02
-    assert paid == pytest.approx(2.0 * density.p_overspeed(TARGET_M_S + 0.02), rel=1e-6)
+    assert dear - cheap == pytest.approx(2.0 * density.p_overspeed(TARGET_M_S + 0.02), rel=1e-6)
 
 
 @pytest.mark.parametrize("terminal", [SquaredError(), ASYMMETRIC, PenalisedOverspeed(0.05, 0.05)])
-def test_gradient_is_the_slope_of_the_cost(design: Transitions, start: PolynomialLines, terminal: TerminalCost) -> None:
+def test_gradient_is_the_slope_of_the_cost(design: Chain, start: PolynomialLines, terminal: TerminalCost) -> None:
     """Every scenario by itself: central difference over ±3e-5 m/s along a random direction of the line values."""
     criterion = Criterion(1.0, 3e-5, terminal)
     lines, h = start.at(design.grid.path_m), 3e-5
@@ -117,9 +107,9 @@ def test_gradient_is_the_slope_of_the_cost(design: Transitions, start: Polynomia
 
     def costs(by: float) -> np.ndarray:
         moved = SwitchingLines(lines.nodes_m, lines.lower_m_s + by * direction[0], lines.upper_m_s + by * direction[1])
-        return scenario_costs(design, commands(design, moved, staircase=False), TARGET_M_S, criterion).cost
+        return Evaluation(design, Aim(TARGET_M_S, criterion)).scenario_costs(moved).cost
 
-    found = scenario_costs(design, commands(design, lines, staircase=False), TARGET_M_S, criterion)
+    found = Evaluation(design, Aim(TARGET_M_S, criterion)).scenario_costs(lines)
     along = (found.by_lower * direction[0][:, :-1]).sum((1, 2)) + (found.by_upper * direction[1][:, :-1]).sum((1, 2))
     size = np.abs(found.by_lower).sum((1, 2)) + np.abs(found.by_upper).sum((1, 2))
     assert np.abs(along).max() > 1e-4
@@ -128,57 +118,58 @@ def test_gradient_is_the_slope_of_the_cost(design: Transitions, start: Polynomia
     assert np.all(np.abs(along - (costs(h) - costs(-h)) / (2 * h)) < 1e-5 * size + 1e-9 + steps)
 
 
-def test_an_asymmetric_table_is_best_by_its_own_cost_and_slower(design: Transitions, start: PolynomialLines) -> None:
+def test_an_asymmetric_table_is_best_by_its_own_cost_and_slower(design: Chain, start: PolynomialLines) -> None:
     asymmetric = Criterion(terminal=ASYMMETRIC)
-    lines = polished(design, fitted(design, asymmetric), TARGET_M_S, asymmetric)
-    policies = [commands(design, each.at(design.grid.path_m), staircase=False) for each in (lines, start)]
-    own, other = (expected_cost(design, policy, TARGET_M_S, asymmetric) for policy in policies)
+    solution = solved(design, asymmetric)
+    policies = [each.at(design.grid.path_m) for each in (polished(solution, fitted(solution, DEGREE)).lines, start)]
+    own, other = (Evaluation(design, solution.aim).cost(policy) for policy in policies)
     assert own < 0.95 * other
     slower, default = (exit_density(design, policy) for policy in policies)
     assert slower.bias_m_s(TARGET_M_S) < default.bias_m_s(TARGET_M_S) - 0.005
     assert slower.rms_m_s(TARGET_M_S) > default.rms_m_s(TARGET_M_S)
 
 
-def test_a_factor_of_one_is_the_squared_error_to_the_bit(design: Transitions) -> None:
-    one, default = (solve(design, TARGET_M_S, c) for c in (Criterion(terminal=AsymmetricSquare(1.0)), Criterion()))
+def test_a_factor_of_one_is_the_squared_error_to_the_bit(design: Chain) -> None:
+    one, default = (solve(design, Aim(TARGET_M_S, c)) for c in (Criterion(terminal=AsymmetricSquare(1.0)), Criterion()))
     assert np.array_equal(one.values, default.values)
     assert np.array_equal(one.lines.upper_m_s, default.lines.upper_m_s)
 
 
-def test_scenario_costs_are_those_of_simulated_passes(plant: Plant, check: Transitions, start: PolynomialLines) -> None:
+def test_scenario_costs_are_those_of_simulated_passes(plant: Plant, check: Chain, start: PolynomialLines) -> None:
     """Each friction factor by itself against 8 000 passes: within the interval and the 6 % of the coarse grid."""
     factors = np.array([0.75, 1.0, 1.25])
     known = replace(check, scenarios=known_factors(plant, factors, 1))
-    policy = commands(known, start.at(known.grid.path_m), staircase=True)
+    densities = scenario_densities(known, start.at(known.grid.path_m))
     controller = LineController(start.at(np.linspace(0.0, plant.exit_m, 401)))
     passes = random_passes(5, 0, 8000)
     for i, factor in enumerate(factors):
         found = exit_statistics(simulate(plant, controller, passes, float(factor)), TARGET_M_S)
         low, high = found.rms_ci95_m_s
-        predicted = scenario_density(known, policy, i).rms_m_s(TARGET_M_S)
+        predicted = densities[i].rms_m_s(TARGET_M_S)
         print(f"ξ {factor}: predicted {predicted:.5f}, simulated {found.rms_m_s:.5f} [{low:.5f}, {high:.5f}]")
         assert 0.94 * low < predicted < 1.06 * high
 
 
 def test_an_inactive_limit_has_no_multiplier_and_changes_nothing(
-    design: Transitions, check: Transitions, fit: Fit, start: PolynomialLines
+    design: Chain, check: Chain, fit: Fit, start: PolynomialLines
 ) -> None:
     limit = OverspeedLimit(0.2, 0.5)
-    lines, found = required(design, check, fit, TARGET_M_S, Criterion(requirement=limit))
+    kept = required_lines(solved(design, Criterion(requirement=limit)), check, fit)
+    found = kept.finding
     assert isinstance(found, OverspeedLimitFound)
     assert (found.multiplier_m2_s2, found.met, found.rounds) == (0.0, True, 0)
-    assert np.array_equal(lines.coefficients, start.coefficients)
+    assert np.array_equal(kept.lines.coefficients, start.coefficients)
     assert "not active" in found.sentence
 
 
 def test_an_active_limit_is_met_where_lagrangian_and_limit_meet(
-    plant: Plant, design: Transitions, check: Transitions, fit: Fit, start: PolynomialLines
+    plant: Plant, design: Chain, check: Chain, fit: Fit, start: PolynomialLines
 ) -> None:
     """KKT: the limit holds with equality within 20 %, the multiplier is positive, and a Newton step on the Lagrangian
     promises less than 3 % of it. The probability is that of simulated passes within 20 % for the coarse grid."""
     free = predicted_density(finer_in_speed(check, 3.0, check.scenarios), start).p_overspeed(TARGET_M_S + 0.05)
     limit = OverspeedLimit(0.05, 0.4 * free)
-    lines, found = keep_overspeed_limit(design, check, start, fit, TARGET_M_S, Criterion(), limit)
+    lines, found = keep_overspeed_limit(solved(design, Criterion()), check, fit, start, limit)
     print(found.sentence, found.rounds)
     assert found.met
     assert found.multiplier_m2_s2 > 0.0
@@ -186,7 +177,7 @@ def test_an_active_limit_is_met_where_lagrangian_and_limit_meet(
     assert found.rms_m_s > 0.98 * found.rms_without_m_s
     ground = finer_in_speed(design, 2.0, check.scenarios)
     priced = Criterion(terminal=PenalisedOverspeed(found.multiplier_m2_s2, 0.05))
-    cost, by_lower, by_upper = evaluator(ground, TARGET_M_S, priced)(lines.at(ground.grid.path_m))
+    cost, by_lower, by_upper = Evaluation(ground, Aim(TARGET_M_S, priced)).gradient(lines.at(ground.grid.path_m))
     matrix, free_lines = basis(ground.grid.path_m[:-1], lines.exit_m, DEGREE), np.nonzero(lines.has_line)
     gradient = np.stack([by_lower @ matrix, by_upper @ matrix], axis=1)[free_lines] / cost
     step = np.einsum("lab,la->lb", whitening(fit.curvature[free_lines], matrix, cost), gradient)
@@ -200,15 +191,16 @@ def test_an_active_limit_is_met_where_lagrangian_and_limit_meet(
 
 
 def test_a_limit_that_no_price_meets_is_said_to_be_so(
-    plant: Plant, design: Transitions, check: Transitions, fit: Fit, start: PolynomialLines
+    plant: Plant, design: Chain, check: Chain, fit: Fit, start: PolynomialLines
 ) -> None:
     """Cuts that the top stage cannot stop are too fast whatever the lines: friction at a third of the nominal."""
     weak = replace(plant, friction=replace(plant.friction, common_cv=0.01), position=weakened(plant))
-    coarse = persistent_transitions(weak, COARSE)
-    own = fitted(coarse, Criterion())
-    begin = polished(coarse, own, TARGET_M_S, Criterion())
-    fine = check_transitions(weak, finer_for_check(COARSE))
-    _, found = keep_overspeed_limit(coarse, fine, begin, own, TARGET_M_S, Criterion(), OverspeedLimit(0.1, 0.01))
+    coarse = persistent_chain(weak, COARSE)
+    solution = solved(coarse, Criterion())
+    own = fitted(solution, DEGREE)
+    begin = polished(solution, own).lines
+    fine = check_chain(weak, finer_for_check(COARSE))
+    _, found = keep_overspeed_limit(solution, fine, own, begin, OverspeedLimit(0.1, 0.01))
     print(found.sentence, found.rounds)
     assert not found.met
     assert found.probability > 0.01
@@ -222,18 +214,15 @@ def weakened(plant: Plant) -> RetarderPosition:
     return replace(plant.position, force=replace(force, slope_kn_per_kpa_per_pair=force.slope_kn_per_kpa_per_pair / 3))
 
 
-def test_the_worst_case_is_lowered_and_certified(
-    design: Transitions, check: Transitions, fit: Fit, start: PolynomialLines
-) -> None:
+def test_the_worst_case_is_lowered_and_certified(design: Chain, check: Chain, fit: Fit, start: PolynomialLines) -> None:
     """Equaliser: scenarios of positive weight cost the same within 3 %, the others less; the bound is independent of
     how the lines were found."""
-    lines, found = guard_worst_case(design, check, start, fit, TARGET_M_S, Criterion(), RANGE)
+    lines, found = guard_worst_case(solved(design, Criterion()), check, fit, start, RANGE)
     print(found.sentence, np.round(found.weights, 3))
     ground = finer_in_speed(design, 2.0, known_factors(design.plant, RANGE.factors(FACTORS), 1))
 
     def costs(of: PolynomialLines) -> np.ndarray:
-        policy = commands(ground, of.at(ground.grid.path_m), staircase=False)
-        return scenario_costs(ground, policy, TARGET_M_S, Criterion()).cost
+        return Evaluation(ground, Aim(TARGET_M_S)).scenario_costs(of.at(ground.grid.path_m)).cost
 
     after, before, weights = costs(lines), costs(start), np.array(found.weights)
     assert after.max() < 0.98 * before.max()
@@ -277,4 +266,4 @@ def test_a_requirement_goes_with_the_squared_error_only(plant: Plant) -> None:
     with pytest.raises(PlantError, match="squared error only"):
         Criterion(terminal=ASYMMETRIC, requirement=RANGE)
     with pytest.raises(PlantError, match="worst_friction_high is 2"):
-        Problem(plant, TARGET_M_S, Criterion(requirement=FrictionRange(0.9, 2.0)))
+        Problem(plant, Aim(TARGET_M_S, Criterion(requirement=FrictionRange(0.9, 2.0))))

@@ -10,13 +10,15 @@ import pytest
 
 from plant_models import Friction, Plant
 from synth.book.estimation.estimated_table import controller_of, estimated_table, estimator_design, shifted, trimmed
-from synth.book.estimation.estimator_design import as_estimated, estimator_of, speed_error_m_s
+from synth.book.estimation.estimator_design import estimator_of, speed_error_m_s
+from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.problem import Problem
 from synth.problem.resolution import Resolution
 from synth.simulation.closed_loop import LineController, close_loop, simulate, trace
 from synth.simulation.random_passes import RandomPasses, random_passes
-from synth.solver.chain.transitions import persistent_transitions
+from synth.solver.chain.chain import persistent_chain
+from synth.solver.chain.speed_measurement import SmoothMeasurement
 from synth.solver.polynomial_fit import PolynomialLines
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tuned_lines import tuned_lines
@@ -82,9 +84,9 @@ def test_it_is_designed_for_its_own_error_and_better_than_no_estimator(
     plant_of: Callable[[float], Plant], passes: RandomPasses
 ) -> None:
     plant = plant_of(36.0)
-    problem = Problem(plant, 3.0, Criterion())
+    problem = Problem(plant, Aim(3.0, Criterion()))
     coarse = Resolution(path_step_m=1.0, speed_step_m_s=0.05)
-    measured = tuned_lines(persistent_transitions(plant, coarse), 3.0, problem.criterion, 3)
+    measured = tuned_lines(persistent_chain(plant, coarse), Aim(3.0, problem.criterion), 3).lines
     made = estimated_table(problem, estimator_design(plant, coarse, 3.0), measured, passes)
     assert made.designed
     assert made.gains
@@ -116,8 +118,10 @@ def test_a_trim_cannot_make_lines_meet(plant_of: Callable[[float], Plant]) -> No
     assert near.coefficients[1, :, 0] == pytest.approx([3.01, 3.08])
 
 
-def test_as_estimated_changes_the_sensor_alone(plant_of: Callable[[float], Plant]) -> None:
-    plant = plant_of(36.0)
-    seen = as_estimated(plant, 0.02)
-    assert (seen.sensor.noise_m_s, seen.sensor.resolution_m_s) == (0.02, 0.0)
-    assert replace(seen, sensor=plant.sensor) == plant
+def test_a_white_error_enters_the_commands_alone(plant_of: Callable[[float], Plant]) -> None:
+    """Lines for another measurement of the same chain are, to the bit, those of a plant with a sensor like that."""
+    plant, coarse = plant_of(36.0), Resolution(path_step_m=1.0, speed_step_m_s=0.04)
+    seen = replace(persistent_chain(plant, coarse), measurement=SmoothMeasurement(0.02))
+    other = replace(plant, sensor=replace(plant.sensor, noise_m_s=0.02, resolution_m_s=0.0))
+    lines = [tuned_lines(chain, Aim(3.0), 3).lines for chain in (seen, persistent_chain(other, coarse))]
+    np.testing.assert_array_equal(lines[0].coefficients, lines[1].coefficients)

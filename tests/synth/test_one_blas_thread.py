@@ -19,25 +19,26 @@ import importlib.util, sys
 from synth.kernels.cache import use_kernel_cache
 use_kernel_cache()
 from synth.solver.tuned_lines import tuned_lines
-from synth.solver.chain.transitions import persistent_transitions
+from synth.solver.chain.chain import persistent_chain
+from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 spec = importlib.util.spec_from_file_location("plants", sys.argv[1])
 plants = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(plants)
-design = persistent_transitions(plants.random_plant(), plants.COARSE)
+design = persistent_chain(plants.random_plant(), plants.COARSE)
 for target_m_s in (1.5, 2.0, 2.5, 3.0):
-    print(tuned_lines(design, target_m_s, Criterion(1.0, 1e-5), 3).coefficients.tobytes().hex())
+    print(tuned_lines(design, Aim(target_m_s, Criterion(1.0, 1e-5)), 3).lines.coefficients.tobytes().hex())
 """
 
 NOISE = """
 import importlib.util, sys
 from synth.kernels.cache import use_kernel_cache
 use_kernel_cache()
-from synth.solver.chain.transitions import persistent_transitions
+from synth.solver.chain.chain import persistent_chain
 spec = importlib.util.spec_from_file_location("plants", sys.argv[1])
 plants = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(plants)
-noise = persistent_transitions(plants.random_plant(), plants.COARSE).noise
+noise = persistent_chain(plants.random_plant(), plants.COARSE).transient_noise
 print(noise.probability.tobytes().hex(), noise.mean.tobytes().hex(), noise.std.tobytes().hex())
 """
 PLANTS = Path(__file__).parents[1] / "properties" / "conftest.py"

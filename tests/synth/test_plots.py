@@ -14,7 +14,7 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from synth.book.case_names import by_class, contest, file_stem, why_infeasible
+from synth.book.case_names import by_class, file_stem, why_infeasible
 from synth.book.case_result import CaseResult
 from synth.present.plots.degree_study import degree_study
 from synth.present.plots.exit_density import bin_edges_m_s, exit_density, predicted_density
@@ -82,7 +82,9 @@ def test_no_text_leaves_the_figure(cases: list[CaseResult]) -> None:
 def test_hard_cases_are_drawn_too(cases: list[CaseResult]) -> None:
     hard = {
         "two stages, no passes, no baselines": replace(
-            make_case(stages=2), traces=(), trace_factors=(), comparison=cases[0].comparison[:4]
+            make_case(stages=2),
+            study=replace(make_case(stages=2).study, traces=(), trace_factors=()),
+            comparison=replace(cases[0].comparison, baselines=()),
         ),
         "errors wider than the picture": make_case(spread=1.5),
         "errors narrower than a cell": make_case(spread=0.0005),
@@ -104,7 +106,7 @@ def test_a_figure_is_saved_in_both_forms(tmp_path: Path, cases: list[CaseResult]
 
 def test_outer_panels_say_what_is_drawn(cases: list[CaseResult]) -> None:
     panels = policy_map(cases[1]).axes
-    stages = cases[1].solver_lines.stages
+    stages = cases[1].study.solver_lines.stages
     assert sum(axes.get_ylabel() == "speed, m/s" for axes in panels) == 2
     assert sum(axes.get_xlabel().startswith("path") for axes in panels[:stages]) == (stages + 2) // 2
 
@@ -119,7 +121,7 @@ def test_the_picture_book_names_every_picture_once_and_every_case(tmp_path: Path
 
 def test_the_map_shows_command_and_indifference_where_they_are(cases: list[CaseResult]) -> None:
     case = cases[1]
-    image = command_image(case.policy_map, 1, case.plant.exit_m, (2.0, 6.9), (240, 200))
+    image = command_image(case.study.policy_map, 1, case.plant.exit_m, (2.0, 6.9), (240, 200))
     up, down = image[-1, -1], image[0, -1]
     assert up[0] > up[2], "up is reddish"
     assert down[2] > down[0], "down is bluish"
@@ -128,7 +130,7 @@ def test_the_map_shows_command_and_indifference_where_they_are(cases: list[CaseR
 
 
 def test_every_part_of_a_pass_is_drawn_in_exactly_one_stage(cases: list[CaseResult]) -> None:
-    trace = cases[0].traces[1]
+    trace = cases[0].study.traces[1]
     shown = [parts_in_stage((trace,), stage)[1][:-1] for stage in range(3)]
     segments = sum(int(np.count_nonzero(np.isfinite(v[1:]) & np.isfinite(v[:-1]))) for v in shown)
     assert segments == trace.speed_m_s.size - 1
@@ -165,11 +167,11 @@ def test_bins_and_limits_are_the_same_in_every_panel(cases: list[CaseResult]) ->
 
 
 def test_roles_and_names(cases: list[CaseResult]) -> None:
-    found = contest(cases[0])
+    found = cases[0].comparison
     assert found.best_baseline is not None
     assert found.best_baseline.name == "energy rule"
-    assert found.published.honesty == pytest.approx(
-        cases[0].published_predicted_rms_m_s / found.published.statistics.rms_m_s
+    assert found.as_published.honesty == pytest.approx(
+        found.as_published.predicted_rms_m_s / found.as_published.statistics.rms_m_s
     )
     assert [len(group) for group in by_class(cases)] == [2, 2]
     assert why_infeasible(cases[2]) == "out of brake power"
@@ -177,7 +179,7 @@ def test_roles_and_names(cases: list[CaseResult]) -> None:
 
 
 def test_a_stalled_pass_is_called_so(cases: list[CaseResult]) -> None:
-    assert outcome(replace(cases[0].traces[0], stalled=True)) == "stopped in the position"
+    assert outcome(replace(cases[0].study.traces[0], stalled=True)) == "stopped in the position"
 
 
 def test_drawing_needs_neither_pyplot_nor_kernels() -> None:

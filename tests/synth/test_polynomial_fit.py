@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 
 from plant_models import Plant
+from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.solver import polynomial_fit
 from synth.solver.backward_induction import solve
-from synth.solver.chain.transitions import Transitions, persistent_transitions
-from synth.solver.policy_evaluation import commands, cost_and_gradient, occupancy_of
+from synth.solver.chain.chain import Chain, persistent_chain
+from synth.solver.evaluation import Evaluation
+from synth.solver.policy_density import density_and_occupancy
 from synth.solver.polynomial_fit import (
     MINIMUM_GAP_M_S,
     Fit,
@@ -33,21 +35,21 @@ CRITERION = Criterion()
 
 
 @pytest.fixture(scope="module")
-def design(plant_of: Callable[[float], Plant]) -> Transitions:
+def design(plant_of: Callable[[float], Plant]) -> Chain:
     """A coarse grid for the 22 t car."""
-    return persistent_transitions(plant_of(22.0), COARSE)
+    return persistent_chain(plant_of(22.0), COARSE)
 
 
 @pytest.fixture(scope="module")
-def fit(design: Transitions) -> Fit:
+def fit(design: Chain) -> Fit:
     """Weighted cubic fit of the solver's lines."""
-    solution = solve(design, TARGET_M_S, CRITERION)
-    _, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
+    solution = solve(design, Aim(TARGET_M_S, CRITERION))
+    _, occupancy = density_and_occupancy(design, solution.lines)
     return fit_lines(solution, occupancy.samples, 3)
 
 
-def evaluate_on(design: Transitions) -> Callable[[SwitchingLines], tuple[float, np.ndarray, np.ndarray]]:
-    return lambda lines: cost_and_gradient(design, commands(design, lines, staircase=False), TARGET_M_S, CRITERION)
+def evaluate_on(design: Chain) -> Callable[[SwitchingLines], tuple[float, np.ndarray, np.ndarray]]:
+    return lambda lines: Evaluation(design, Aim(TARGET_M_S, CRITERION)).gradient(lines)
 
 
 def lines_with(lower: float, upper: float) -> PolynomialLines:
@@ -91,7 +93,7 @@ def test_whitening_makes_the_hessian_the_unit_matrix() -> None:
         assert t.T @ hessian @ t == pytest.approx(np.eye(4), abs=1e-9)
 
 
-def test_polish_lowers_the_exact_cost_and_keeps_the_gap(design: Transitions, fit: Fit) -> None:
+def test_polish_lowers_the_exact_cost_and_keeps_the_gap(design: Chain, fit: Fit) -> None:
     evaluate = evaluate_on(design)
     result = polish(fit.lines, fit.curvature, design.grid.path_m, evaluate, 25)
     assert result.cost_before == pytest.approx(evaluate(fit.lines.at(design.grid.path_m))[0], rel=1e-12)
@@ -103,7 +105,7 @@ def test_polish_lowers_the_exact_cost_and_keeps_the_gap(design: Transitions, fit
 
 @pytest.mark.parametrize("error", [-1.0, 1e3])
 def test_a_polish_that_opening_spoils_leaves_the_lines_as_they_were(
-    design: Transitions, fit: Fit, monkeypatch: pytest.MonkeyPatch, error: float
+    design: Chain, fit: Fit, monkeypatch: pytest.MonkeyPatch, error: float
 ) -> None:
     """On a grid too coarse, lines a hair's breadth from good ones may cost less than nothing."""
     nodes, exact = design.grid.path_m, evaluate_on(design)
@@ -120,7 +122,7 @@ def test_a_polish_that_opening_spoils_leaves_the_lines_as_they_were(
     assert result.cost_after == result.cost_before > 0.0
 
 
-def test_polish_ends_where_the_projected_gradient_is_small(design: Transitions, fit: Fit) -> None:
+def test_polish_ends_where_the_projected_gradient_is_small(design: Chain, fit: Fit) -> None:
     """A Newton step along the whitened gradient must not promise more than a few per cent of the cost."""
     evaluate = evaluate_on(design)
     best = polish(fit.lines, fit.curvature, design.grid.path_m, evaluate, 40).lines
@@ -135,10 +137,10 @@ def test_polish_ends_where_the_projected_gradient_is_small(design: Transitions, 
     assert gains[1] < 0.2 * gains[0]
 
 
-def test_a_higher_degree_fits_no_worse_in_its_own_weights(design: Transitions) -> None:
+def test_a_higher_degree_fits_no_worse_in_its_own_weights(design: Chain) -> None:
     """Least squares over a larger space; the lowest line of the top stage has no partner to be kept off."""
-    solution = solve(design, TARGET_M_S, CRITERION)
-    _, occupancy = occupancy_of(design, commands(design, solution.lines, staircase=False))
+    solution = solve(design, Aim(TARGET_M_S, CRITERION))
+    _, occupancy = density_and_occupancy(design, solution.lines)
     raw = solution.lines.lower_m_s[2, :-1]
     known = np.isfinite(raw)
     misfits = []

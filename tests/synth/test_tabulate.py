@@ -9,9 +9,9 @@ import pytest
 
 from plant_models import Plant
 from synth.problem.resolution import Resolution
-from synth.solver.chain.transitions import persistent_transitions
+from synth.solver.chain.chain import persistent_chain
 from synth.solver.exit_density import ExitDensity
-from synth.solver.policy_evaluation import commands, exit_density
+from synth.solver.policy_density import commands, exit_density
 from synth.solver.polynomial_fit import PolynomialLines
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tabulate import lines_of, prediction_of, tabulate
@@ -75,13 +75,13 @@ def test_prediction_counts_stalls_and_overspeed() -> None:
 def test_the_staircase_of_the_sensor_is_the_exact_quantisation(plant_of: Callable[[float], Plant]) -> None:
     """P(round((v + noise)/q)·q > line), by the definition of rounding, against the command probabilities."""
     plant = plant_of(52.0)
-    design = persistent_transitions(plant, Resolution(path_step_m=4.0, speed_step_m_s=0.1, friction_nodes=1))
+    design = persistent_chain(plant, Resolution(path_step_m=4.0, speed_step_m_s=0.1, friction_nodes=1))
     nodes = design.grid.path_m
     level = 3.017
     shape = (design.actuator.stages, len(nodes))
     upper = np.full(shape, level)
     upper[-1] = np.inf
-    found = commands(design, SwitchingLines(nodes, np.full(shape, -np.inf), upper), staircase=True).up[0, 1]
+    found = commands(design.quantised(), SwitchingLines(nodes, np.full(shape, -np.inf), upper)).up[0, 1]
     q, noise = plant.sensor.resolution_m_s, plant.sensor.noise_m_s
     z = np.random.default_rng(5).normal(size=40_000)
     near = np.abs(design.grid.speed_m_s - level) < 0.15
@@ -91,7 +91,7 @@ def test_the_staircase_of_the_sensor_is_the_exact_quantisation(plant_of: Callabl
 
 
 def test_density_is_a_distribution(plant_52t: Plant) -> None:
-    design = persistent_transitions(plant_52t, Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=3))
+    design = persistent_chain(plant_52t, Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=3))
     lines = lines_of(table_of(plant_52t), design.grid.path_m)
-    density = exit_density(design, commands(design, lines, staircase=True))
+    density = exit_density(design.quantised(), lines)
     assert density.probability.sum() + density.stalled == pytest.approx(1.0, abs=1e-8)

@@ -52,28 +52,27 @@ def test_the_table_on_disk_is_the_one_that_was_validated(book: Book, directory: 
     for case in book.cases:
         assert read_json(directory / f"{case.table.id}.json") == case.table
         assert case.table.validated is not None
-        assert case.table.validated.rms_m_s == case.comparison[0].statistics.rms_m_s
+        assert case.table.validated.rms_m_s == case.comparison.table.statistics.rms_m_s
         assert json.loads((directory / f"{case.table.id}.json").read_bytes())["generator"]["name"] == "retarder-synth"
 
 
 def test_the_prediction_is_honest_and_the_cubic_loses_nothing(book: Book) -> None:
     for case in book.cases:
-        figures = {m.name: m for m in case.comparison}
-        table = figures["table"]
+        figures, table = case.comparison, case.comparison.table
         assert table.statistics.rms_m_s < 0.06
         assert 0.85 < table.predicted_rms_m_s / table.statistics.rms_m_s < 1.15
-        assert table.statistics.rms_m_s < 1.1 * figures["full lines"].statistics.rms_m_s
-        assert table.statistics.rms_m_s < 1.25 * figures["friction known"].statistics.rms_m_s
-        assert len(figures) == 8
+        assert table.statistics.rms_m_s < 1.1 * figures.full_lines.statistics.rms_m_s
+        assert table.statistics.rms_m_s < 1.25 * figures.friction_known.statistics.rms_m_s
+        assert len(figures.entries) == 8
 
 
 def test_published_formulation_promises_more_than_it_keeps(case: CaseResult) -> None:
-    assert case.published_predicted_rms_m_s < 0.9 * case.by_name("as published").statistics.rms_m_s
+    assert case.comparison.as_published.honesty < 0.9
 
 
 def test_the_tolerance_saves_switchings_at_little_cost(book: Book) -> None:
     for case in book.cases:
-        saved = case.indifference
+        saved = case.study.indifference
         assert saved.switchings_with < saved.switchings_without
         gain = saved.tolerance_m2_s2 * (saved.switchings_without - saved.switchings_with)
         assert saved.rms_with_m_s**2 <= saved.rms_without_m_s**2 + 2.0 * gain + 1e-4
@@ -81,7 +80,7 @@ def test_the_tolerance_saves_switchings_at_little_cost(book: Book) -> None:
 
 def test_the_map_agrees_with_the_lines_and_marks_indifference(case: CaseResult) -> None:
     """Far above its line a stage goes up, far below down; where lines are infinite nothing is gained."""
-    chart, lines = case.policy_map, case.solver_lines
+    chart, lines = case.study.policy_map, case.study.solver_lines
     assert chart.command.shape == chart.indifferent.shape == (5, len(chart.path_m), len(chart.speed_m_s))
     assert not (chart.command[0] == -1).any()
     assert not (chart.command[-1] == 1).any()
@@ -101,14 +100,14 @@ def test_feasibility_falls_with_entry_speed(case: CaseResult) -> None:
 
 
 def test_traces_are_passes_of_the_exported_table(case: CaseResult) -> None:
-    for trace, factor in zip(case.traces, case.trace_factors, strict=True):
+    for trace, factor in zip(case.study.traces, case.study.trace_factors, strict=True):
         assert trace.exit_speed_m_s == pytest.approx(case.target_speed_m_s, abs=0.3), factor
         assert np.all(np.diff(trace.path_m) >= 0.0)
 
 
 def test_table_lines_are_the_tables(case: CaseResult) -> None:
-    again = lines_of(case.table, case.table_lines.nodes_m)
-    assert np.array_equal(again.upper_m_s, case.table_lines.upper_m_s)
+    again = lines_of(case.table, case.study.table_lines.nodes_m)
+    assert np.array_equal(again.upper_m_s, case.study.table_lines.upper_m_s)
 
 
 def test_degree_study_predicts_the_exported_table_to_the_last_digit(book: Book) -> None:

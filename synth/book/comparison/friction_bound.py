@@ -10,14 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.book.comparison.measured import Feasibility, Measured
-from synth.problem.criterion import Criterion
+from synth.problem.aim import Aim
 from synth.simulation.closed_loop import LineController, close_loop
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from synth.simulation.replicates import Interval
 from synth.solver.backward_induction import solve_all
-from synth.solver.chain.transitions import Transitions, equally_spaced_normal, with_known_friction
+from synth.solver.chain.chain import Chain, with_known_friction
+from synth.solver.chain.scenarios import equally_spaced_normal
 
 ENTRY_POINTS = 41
 
@@ -26,36 +27,33 @@ FRICTION_NODES = 6
 
 
 def friction_known_bounds(
-    transitions: Transitions,
-    targets_m_s: Sequence[float],
-    criterion: Criterion,
-    passes: RandomPasses,
-    limit_m_s: float,
+    chain: Chain, aims: Sequence[Aim], passes: RandomPasses, limit_m_s: float
 ) -> tuple[tuple[Measured, Feasibility], ...]:
-    """For every target: solved and simulated for each of several known ξ_cut, with full switching lines.
+    """For every aim: solved and simulated for each of several known ξ_cut, with full switching lines.
 
-    All else is equal: sensor, sampling, valves, path noise, resistance; the switching price is dropped. The
-    position is feasible for a target if the interval of this reference reaches `limit_m_s`. It is no strict lower
-    bound: its lines are the solver's, one stage a command, and not polished as the table's are.
+    All else is equal: sensor, sampling, valves, path noise, resistance; the squared error counts, and switchings have
+    no price. The position is feasible for a target if the interval of this reference reaches `limit_m_s`. It is no
+    strict lower bound: its lines are the solver's, one stage a command, and not polished as the table's are.
     """
-    plant = transitions.plant
-    free = replace(criterion, switching_tolerance_m2_s2=0.0)
+    plant = chain.plant
+    free = [Aim(a.target_speed_m_s, replace(a.criterion.squared(), switching_tolerance_m2_s2=0.0)) for a in aims]
     z, weights = (nodes[:-1] for nodes in equally_spaced_normal(FRICTION_NODES))
     weights = weights / weights.sum()
     factors = plant.friction.cut_factor(z, plant.friction_cv)
-    strata: list[list[ExitSample]] = [[] for _ in targets_m_s]
-    squares = np.zeros((len(targets_m_s), len(transitions.grid.speed_m_s)))
+    strata: list[list[ExitSample]] = [[] for _ in aims]
+    squares = np.zeros((len(aims), len(chain.grid.speed_m_s)))
     loop = close_loop(plant, plant.top_stage + 1)
     for i, (factor, weight) in enumerate(zip(factors, weights, strict=True)):
         draws = loop.draws(passes.every(len(z), i), float(factor))
-        known = with_known_friction(transitions, float(factor))
-        for t, solution in enumerate(solve_all(known, [(target, free) for target in targets_m_s], nodes_kept=1)):
+        known = with_known_friction(chain, float(factor))
+        for t, solution in enumerate(solve_all(known, free, nodes_kept=1)):
             strata[t].append(loop.run(LineController(solution.lines), draws))
-            squares[t] += weight * (solution.values[0, 0, 0] * transitions.chain.stationary[:, None]).sum(axis=0)
+            squares[t] += weight * (solution.values[0, 0, 0] * chain.path_noise.stationary[:, None]).sum(axis=0)
     bounds = []
-    for target, samples, square in zip(targets_m_s, strata, squares, strict=True):
-        told = Measured("friction known", exit_statistics(interleaved(samples, weights), target))
-        bounds.append((told, feasibility_of(transitions, target, square, told.statistics.rms_ci95_m_s, limit_m_s)))
+    for aim, samples, square in zip(aims, strata, squares, strict=True):
+        told = Measured("friction known", exit_statistics(interleaved(samples, weights), aim.target_speed_m_s))
+        reached = told.statistics.rms_ci95_m_s
+        bounds.append((told, feasibility_of(chain, aim.target_speed_m_s, square, reached, limit_m_s)))
     return tuple(bounds)
 
 
@@ -78,13 +76,13 @@ def interleaved(samples: Sequence[ExitSample], weights: NDArray[np.float64]) -> 
 
 
 def feasibility_of(
-    transitions: Transitions, target_speed_m_s: float, square: np.ndarray, rms_ci95_m_s: Interval, limit_m_s: float
+    chain: Chain, target_speed_m_s: float, square: np.ndarray, rms_ci95_m_s: Interval, limit_m_s: float
 ) -> Feasibility:
     """Range of entry speeds that the position can serve; `square` (E,): bound's mean square by entry energy.
 
     `rms_ci95_m_s`: interval of the simulated bound.
     """
-    plant, speed = transitions.plant, transitions.grid.speed_m_s
+    plant, speed = chain.plant, chain.grid.speed_m_s
     entry = np.linspace(
         max(target_speed_m_s, 0.5), min(plant.position.max_entry_speed_m_s, float(speed[-1])), ENTRY_POINTS
     )

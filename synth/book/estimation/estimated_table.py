@@ -16,14 +16,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant
-from synth.book.estimation.estimator_design import as_estimated, estimator_of, speed_error_m_s
+from plant_models.speed_sensor import measured_speed_std
+from synth.book.estimation.estimator_design import estimator_of, speed_error_m_s
 from synth.kernels.loop.closed_loop import Draws
 from synth.problem.estimator_resolution import estimator_resolution, guessed_error_m_s
 from synth.problem.problem import Problem
 from synth.problem.resolution import Resolution
 from synth.simulation.closed_loop import ClosedLoop, LineController, close_loop
 from synth.simulation.random_passes import RandomPasses
-from synth.solver.chain.transitions import Transitions, persistent_transitions
+from synth.solver.chain.chain import Chain, persistent_chain
+from synth.solver.chain.speed_measurement import SmoothMeasurement
 from synth.solver.polynomial_fit import PolynomialLines, opened
 from synth.solver.tuned_lines import tuned_lines
 from tuning_tables.estimator import Estimator
@@ -63,14 +65,12 @@ class EstimatedTable:
         return self.rms_after_m_s < self.plain_rms_m_s
 
 
-def estimator_design(plant: Plant, resolution: Resolution, lowest_target_m_s: float) -> Transitions:
+def estimator_design(plant: Plant, resolution: Resolution, lowest_target_m_s: float) -> Chain:
     """The grid to design lines for estimated speeds on, for all errors and targets of a plant."""
-    return persistent_transitions(plant, estimator_resolution(resolution, plant.sensor, lowest_target_m_s))
+    return persistent_chain(plant, estimator_resolution(resolution, plant.sensor, lowest_target_m_s))
 
 
-def estimated_table(
-    problem: Problem, design: Transitions, measured: PolynomialLines, tuning: RandomPasses
-) -> EstimatedTable:
+def estimated_table(problem: Problem, design: Chain, measured: PolynomialLines, tuning: RandomPasses) -> EstimatedTable:
     """Design the lines of one case for its estimator, on the `estimator_design` of its plant.
 
     `measured`: lines for the measured speed, of the degree wanted; kept where design goes wrong. `tuning` are passes to
@@ -101,11 +101,10 @@ def estimated_table(
     return EstimatedTable(shifted(lines, *shifts), estimator, error, shifts, before, after, rounds, designed, plain)
 
 
-def designed_lines(problem: Problem, design: Transitions, degree: int, error_m_s: float) -> PolynomialLines:
-    """Solved, fitted and polished for a regulator that sees the speed with a white error."""
-    # The error of the sensor enters where commands are weighed; motion and grid do not know of it.
-    seen = replace(design, plant=as_estimated(problem.plant, error_m_s))
-    return tuned_lines(seen, problem.target_speed_m_s, problem.criterion, degree)
+def designed_lines(problem: Problem, design: Chain, degree: int, error_m_s: float) -> PolynomialLines:
+    """Solved, fitted and polished for a regulator that sees the speed with a white error, unquantised."""
+    seen = replace(design, measurement=SmoothMeasurement(measured_speed_std(error_m_s, 0.0)))
+    return tuned_lines(seen, problem.aim, degree).lines
 
 
 def controller_of(lines: PolynomialLines, estimator: Estimator | None) -> LineController:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -57,8 +56,3 @@ def speed_error_m_s(loop: ClosedLoop, controller: Controller, passes: RandomPass
         squares += float(((trace.measured_m_s - trace.speed_m_s)[decided] ** 2).sum())
         count += int(decided.sum())
     return math.sqrt(squares / max(count, 1))
-
-
-def as_estimated(plant: Plant, error_m_s: float) -> Plant:
-    """`plant` whose regulator sees the speed with a white error of this standard deviation, unquantised."""
-    return replace(plant, sensor=replace(plant.sensor, noise_m_s=error_m_s, resolution_m_s=0.0))

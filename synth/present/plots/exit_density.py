@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from synth.book.case_names import contest, cut_name
+from synth.book.case_names import cut_name
 from synth.book.case_result import CaseResult
 from synth.present.plots.house_style import (
     GREY,
@@ -135,7 +135,7 @@ def bin_edges_m_s(target_m_s: float, highest_m_s: float) -> NDArray[np.float64]:
 
 def panel_title(case: CaseResult) -> str:
     """Target, both rms with the interval of the simulated one, stalls if there are any."""
-    table = contest(case).table
+    table = case.comparison.table
     low, high = table.statistics.rms_ci95_m_s
     lines = [
         f"target {case.target_speed_m_s:g} m/s",

@@ -38,7 +38,7 @@ PASSES_SHOWN = 3
 
 def policy_map(case: CaseResult) -> Figure:
     """Path in m across, speed in m/s upwards; colours: command, hatched: several commands cost the same."""
-    stages = case.solver_lines.stages
+    stages = case.study.solver_lines.stages
     figure, grid = stage_panels("Best command by stage", f"{cut_name(case)}, {target_name(case)}", stages)
     for stage in range(stages):
         draw_stage(grid.flat[stage], case, stage)
@@ -78,14 +78,14 @@ def draw_stage(axes: Axes, case: CaseResult, stage: int) -> None:
     low, high = speed_window_m_s(case)
     exit_m = case.plant.exit_m
     pixels = round(axes.bbox.width), round(axes.bbox.height)
-    image = command_image(case.policy_map, stage, exit_m, (low, high), pixels)
+    image = command_image(case.study.policy_map, stage, exit_m, (low, high), pixels)
     axes.imshow(image, extent=(0.0, exit_m, low, high), origin="lower", aspect="auto", interpolation="none")
-    raw, exported = case.solver_lines, case.table_lines
+    raw, exported = case.study.solver_lines, case.study.table_lines
     sides = ((raw.lower_m_s, exported.lower_m_s, BLUE, "--"), (raw.upper_m_s, exported.upper_m_s, VERMILLION, "-"))
     for dots, line, colour, style in sides:
         axes.plot(raw.nodes_m, finite(dots[stage]), ".", color=colour, markersize=2.2, zorder=3)
         axes.plot(exported.nodes_m, finite(line[stage]), style, color=colour, linewidth=2.2, zorder=5)
-    axes.plot(*parts_in_stage(case.traces[:PASSES_SHOWN], stage), color=INK, linewidth=0.8, zorder=6)
+    axes.plot(*parts_in_stage(case.study.traces[:PASSES_SHOWN], stage), color=INK, linewidth=0.8, zorder=6)
     mark_zones(axes, case)
     dress(axes, f"stage {stage} · {case.plant.position.stage_pressures_kpa[stage]:g} kPa")
     axes.grid(False)

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from synth.book.case_names import by_class, contest, why_infeasible
+from synth.book.case_names import by_class, why_infeasible
 from synth.book.case_result import CaseResult
 from synth.book.comparison.measured import Measured
 from synth.present.plots.house_style import (
@@ -70,7 +70,7 @@ def rms_by_controller(cases: Sequence[CaseResult], limit_m_s: float) -> Figure:
     axes = figure.subplots()
     dress(axes, y="rms of exit speed − target, m/s")
     axes.grid(False, axis="x")
-    for place_no, entries in enumerate(zip(*(contest(case).entries for case in cases), strict=False)):
+    for place_no, entries in enumerate(zip(*(case.comparison.entries for case in cases), strict=False)):
         draw_controller(axes, place_no, entries)
     axes.axhline(limit_m_s, color=INK, linewidth=1.2, linestyle="--", zorder=1)
     logarithmic_y(axes, values_m_s(cases, limit_m_s))
@@ -79,7 +79,7 @@ def rms_by_controller(cases: Sequence[CaseResult], limit_m_s: float) -> Figure:
     mark_cases(axes, cases)
     # Four columns of entries, the longest of which is a sentence, need 8.6 inches.
     columns = 4 if figure.get_size_inches()[0] >= 8.6 else 3
-    legend_below(figure, legend_entries(cases[0].comparison), columns=columns)
+    legend_below(figure, legend_entries(cases[0].comparison.entries), columns=columns)
     return figure
 
 
@@ -130,7 +130,7 @@ def mark_cases(axes: Axes, cases: Sequence[CaseResult]) -> None:
 
 def values_m_s(cases: Sequence[CaseResult], limit_m_s: float) -> list[float]:
     """Everything that the figure must have room for."""
-    entries = [entry for case in cases for entry in contest(case).entries]
+    entries = [entry for case in cases for entry in case.comparison.entries]
     return [limit_m_s, *(e.statistics.rms_m_s for e in entries), *(e.predicted_rms_m_s for e in entries)]
 
 

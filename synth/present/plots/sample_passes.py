@@ -32,7 +32,9 @@ def sample_passes(case: CaseResult) -> Figure:
     grid = figure.add_gridspec(2, 2, width_ratios=(1.15, 1.0))
     speed, pressure, stage = (figure.add_subplot(grid[part]) for part in ((slice(None), 0), (0, 1), (1, 1)))
     handles: list[Line2D] = []
-    for trace, factor, colour, style in zip(case.traces, case.trace_factors, LINE_COLOURS, LINE_STYLES, strict=False):
+    for trace, factor, colour, style in zip(
+        case.study.traces, case.study.trace_factors, LINE_COLOURS, LINE_STYLES, strict=False
+    ):
         speed.plot(trace.path_m, trace.speed_m_s, color=colour, linestyle=style, linewidth=1.6)
         pressure.step(trace.time_s, trace.overpressure_kpa, where="post", color=colour, linestyle=style, linewidth=1.3)
         stage.step(trace.time_s, trace.stage, where="post", color=colour, linestyle=style, linewidth=1.3)
@@ -41,10 +43,14 @@ def sample_passes(case: CaseResult) -> Figure:
     finish_speed(speed, case)
     dress(pressure, "pressure above the touch of the pads, kPa")
     dress(stage, "commanded stage", "time since the first axle entered, s")
-    last_s = max((float(trace.time_s[-1]) for trace in case.traces), default=1.0)
+    last_s = max((float(trace.time_s[-1]) for trace in case.study.traces), default=1.0)
     pressure.tick_params(labelbottom=False)
     pressure.set(xlim=(0.0, last_s), ylim=(0.0, None))
-    stage.set(xlim=(0.0, last_s), yticks=range(case.solver_lines.stages), ylim=(-0.15, case.solver_lines.stages - 0.85))
+    stage.set(
+        xlim=(0.0, last_s),
+        yticks=range(case.study.solver_lines.stages),
+        ylim=(-0.15, case.study.solver_lines.stages - 0.85),
+    )
     legend_below(figure, handles, columns=len(handles) or 1)
     return figure
 
@@ -63,7 +69,7 @@ def finish_speed(axes: Axes, case: CaseResult) -> None:
         textcoords="offset points", va="center", fontsize=8, color=GREY,
     )  # fmt: skip
     dress(axes, "true speed, m/s", "path of the first axle, m")
-    highest = max((float(trace.speed_m_s.max()) for trace in case.traces), default=case.plant.entry.high_m_s)
+    highest = max((float(trace.speed_m_s.max()) for trace in case.study.traces), default=case.plant.entry.high_m_s)
     axes.set(xlim=(0.0, case.plant.exit_m), ylim=(0.0, 1.05 * highest))
 
 

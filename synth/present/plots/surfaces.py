@@ -22,7 +22,7 @@ POINTS_PER_STAGE = 3
 
 def surfaces(case: CaseResult) -> Figure:
     """The exported lines of a case over path and pressure; see `surface_figure`."""
-    stages = case.table_lines.stages
+    stages = case.study.table_lines.stages
     path = np.linspace(0.0, case.plant.exit_m, PATH_POINTS)
     lines = lines_of(case.table, path)
     pressure = np.asarray(case.plant.position.stage_pressures_kpa[:stages])

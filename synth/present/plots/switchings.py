@@ -20,7 +20,7 @@ def switchings(cases: Sequence[CaseResult]) -> Figure:
     figure = new_figure(10.0, 0.27 * len(cases) + 1.9, "Use of the indifferent region: switchings saved, error paid")
     place(figure, left=1.9, right=0.25, bottom=0.95, top=0.7, w=0.08)
     left, right = figure.subplots(1, 2, sharey=True)
-    found = [case.indifference for case in cases]
+    found = [case.study.indifference for case in cases]
     draw_pairs(left, np.array([(i.switchings_without, i.switchings_with) for i in found]))
     draw_pairs(right, np.array([(i.rms_without_m_s, i.rms_with_m_s) for i in found]))
     dress(left, x="switchings a pass")
@@ -48,5 +48,5 @@ def draw_pairs(axes: Axes, pairs: NDArray[np.float64]) -> None:
 
 def tolerances(cases: Sequence[CaseResult]) -> str:
     """The tolerance of the cost in words; several where the cases differ."""
-    values = sorted({case.indifference.tolerance_m2_s2 for case in cases})
+    values = sorted({case.study.indifference.tolerance_m2_s2 for case in cases})
     return ", ".join(f"{value:g}" for value in values) + " m²/s²"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from synth.book.case_names import contest, why_infeasible
+from synth.book.case_names import why_infeasible
 from synth.book.case_result import CaseResult
 from synth.book.printed_numbers import ABSENT, in_ten_thousand, interval, percent, quotient, quotient_interval, speed
 from synth.present.report.book_report import BookReport
@@ -34,7 +34,7 @@ def case_table(book: BookReport) -> Markup:
 
 def case_row(case: CaseResult, limit_m_s: float) -> list[str | Cell]:
     """The cells of one case."""
-    found = contest(case)
+    found = case.comparison
     table, best = found.table.statistics, found.best_baseline
     feasible, power = case.feasibility.feasible, case.brake_power
     over = "bad" if feasible and table.rms_ci95_m_s[0] > limit_m_s else "key"
@@ -53,15 +53,15 @@ def case_row(case: CaseResult, limit_m_s: float) -> list[str | Cell]:
         f"{speed(table.p99_m_s)} {interval(table.p99_ci95_m_s)}",
         in_ten_thousand(power.out_of_brake, power.out_of_brake_ci95),
         within_power(power),
-        speed(found.lines.statistics.rms_m_s),
-        f"{quotient(found.table_loss, 3)} {quotient_interval(found.lines.table_ratio_ci95, 3)}",
-        speed(found.known_friction.statistics.rms_m_s),
-        f"{quotient(found.regret, 3)} {quotient_interval(found.known_friction.table_ratio_ci95, 3)}",
+        speed(found.full_lines.statistics.rms_m_s),
+        f"{quotient(found.table_loss, 3)} {quotient_interval(found.full_lines.table_ratio_ci95, 3)}",
+        speed(found.friction_known.statistics.rms_m_s),
+        f"{quotient(found.regret, 3)} {quotient_interval(found.friction_known.table_ratio_ci95, 3)}",
         best.name if best else ABSENT,
         speed(best.statistics.rms_m_s) if best else ABSENT,
-        speed(found.published.predicted_rms_m_s),
-        speed(found.published.statistics.rms_m_s),
-        f"{quotient(found.published.honesty, 3)} {quotient_interval(found.published.honesty_ci95, 3)}",
+        speed(found.as_published.predicted_rms_m_s),
+        speed(found.as_published.statistics.rms_m_s),
+        f"{quotient(found.as_published.honesty, 3)} {quotient_interval(found.as_published.honesty_ci95, 3)}",
         share_cell(table.overspeed, table.overspeed_ci95),
         share_cell(table.stalled, table.stalled_ci95),
         f"{table.switchings:.1f}",

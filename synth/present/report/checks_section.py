@@ -22,7 +22,9 @@ HUNTING = (
 def checks_section(book: BookReport) -> Markup:
     """Hunting by case, the stage pressure regulator, and escaped probability."""
     rows = [
-        (hunting_row(case, each), "") for case in book.cases for each in hunting_report(case.plant, case.table_lines)
+        (hunting_row(case, each), "")
+        for case in book.cases
+        for each in hunting_report(case.plant, case.study.table_lines)
     ]
     head = head_row("case", "stages", "from, m", "to, m", "periods", "amplitude, m/s", "period, s")
     cycles = (

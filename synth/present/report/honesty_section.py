@@ -6,8 +6,9 @@ import math
 from collections.abc import Sequence
 from statistics import median
 
-from synth.book.case_names import Contest, case_name, contest
+from synth.book.case_names import case_name
 from synth.book.case_result import CaseResult
+from synth.book.comparison.comparison import Comparison
 from synth.book.printed_numbers import counted, span
 from synth.present.report.book_report import BookReport
 from synth.present.report.case_table import HONEST
@@ -39,7 +40,7 @@ def own_prediction(cases: Sequence[CaseResult]) -> str:
             "with valves, sensor and sampling) are two independent computations of one quantity. " + ratios_of(exact)
         )
     if estimated:
-        gains = [ratio_to_without(contest(case)) for case in estimated]
+        gains = [ratio_to_without(case.comparison) for case in estimated]
         sentences.append(
             "With an estimator the prediction is itself simulated, on stratified passes that neither "
             f"design nor validation use: it tests the sample, not the model. {ratios_of(estimated)} On the same passes "
@@ -51,7 +52,7 @@ def own_prediction(cases: Sequence[CaseResult]) -> str:
 
 def ratios_of(cases: Sequence[CaseResult]) -> str:
     """Predicted over simulated rms, in a sentence."""
-    ratios = [contest(case).table.honesty for case in cases]
+    ratios = [case.comparison.table.honesty for case in cases]
     inside = sum(HONEST[0] <= ratio <= HONEST[1] for ratio in ratios)
     return (
         f"Predicted / simulated rms is {span(ratios)} over {counted(len(cases), 'case')}; {inside} of them within "
@@ -71,20 +72,21 @@ def left_out_estimators(cases: Sequence[CaseResult]) -> Markup:
     return element("div", element("p", lead), element("ul", *rows))
 
 
-def ratio_to_without(found: Contest) -> float:
+def ratio_to_without(found: Comparison) -> float:
     """rms of the table / rms of the lines without estimator; NaN where there are none."""
     return math.nan if found.without_estimator is None else found.without_estimator.table_ratio
 
 
 def published_prediction(cases: Sequence[CaseResult]) -> str:
     """What became of the prediction that the formulation as published makes of itself."""
-    found = [contest(case) for case in cases]
-    ratios = [each.published.honesty for each in found]
+    found = [case.comparison for case in cases]
+    published = [each.as_published for each in found]
+    ratios = [each.honesty for each in published]
     lead = (
         "The formulation as published takes the friction of every path quantum as independent, so that it averages out "
-        f"within a pass. The rms that it promised: {span([c.published.predicted_rms_m_s for c in found], '.3f')} m/s; "
+        f"within a pass. The rms that it promised: {span([each.predicted_rms_m_s for each in published], '.3f')} m/s; "
         f"simulated, where the friction of a cut persists: "
-        f"{span([c.published.statistics.rms_m_s for c in found], '.3f')} m/s. "
+        f"{span([each.statistics.rms_m_s for each in published], '.3f')} m/s. "
     )
     return lead + judgement(cases, ratios) + " " + comparison(found)
 
@@ -104,9 +106,9 @@ def judgement(cases: Sequence[CaseResult], ratios: Sequence[float]) -> str:
     )
 
 
-def comparison(found: Sequence[Contest]) -> str:
+def comparison(found: Sequence[Comparison]) -> str:
     """How its lines fare beside the exported tables, on the same passes."""
-    worse = [each.published.statistics.rms_m_s / each.table.statistics.rms_m_s for each in found]
+    worse = [each.as_published.statistics.rms_m_s / each.table.statistics.rms_m_s for each in found]
     return (
         f"On the same passes the rms of its lines is {span(worse)} times that of the exported tables "
         f"({median(worse):.2f} in the median)."

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from synth.book.case_names import contest
 from synth.book.printed_numbers import percent
 from synth.present.report.book_report import BookReport
 from synth.present.report.markup import Markup, element
@@ -31,7 +30,7 @@ def sentences(book: BookReport) -> list[str]:
 
 def rare_events(book: BookReport) -> str:
     """What none in n passes means, in this book's numbers."""
-    found = [contest(case).table.statistics for case in book.cases]
+    found = [case.comparison.table.statistics for case in book.cases]
     fewest = min((each.passes for each in found), default=0)
     without = [each.overspeed_ci95[1] for each in found if each.overspeed == 0.0]
     if not without:

@@ -44,7 +44,7 @@ def degree_row(study: DegreeStudy, degrees: Sequence[int]) -> list[str | Cell]:
 
 def indifference(cases: Sequence[CaseResult]) -> str:
     """Switchings saved and error paid by holding within the tolerance, over `cases`."""
-    found = [case.indifference for case in cases]
+    found = [case.study.indifference for case in cases]
     saved = [each.switchings_without - each.switchings_with for each in found]
     paid = [each.rms_with_m_s / each.rms_without_m_s for each in found if each.rms_without_m_s]
     text = (

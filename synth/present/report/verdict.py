@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from synth.book.case_names import case_name, contest, why_infeasible
+from synth.book.case_names import case_name, why_infeasible
 from synth.book.case_result import CaseResult
 from synth.book.printed_numbers import counted, in_ten_thousand, interval, speed
 from synth.present.report.book_report import BookReport
@@ -31,8 +31,8 @@ def verdict(book: BookReport) -> Markup:
 
 def worst_case(book: BookReport) -> str:
     """The feasible case of highest simulated rms."""
-    worst = max(book.feasible, key=lambda case: contest(case).table.statistics.rms_m_s)
-    found = contest(worst).table.statistics
+    worst = max(book.feasible, key=lambda case: case.comparison.table.statistics.rms_m_s)
+    found = worst.comparison.table.statistics
     return (
         f"Worst of the {counted(len(book.feasible), 'feasible case')}: {case_name(worst)}, simulated rms "
         f"{speed(found.rms_m_s)} m/s, 95 % interval {interval(found.rms_ci95_m_s)}, over {found.passes} passes; "
@@ -42,7 +42,7 @@ def worst_case(book: BookReport) -> str:
 
 def in_cuts(case: CaseResult) -> str:
     """The same in cuts, as a yard counts them."""
-    found, power = contest(case).table.statistics, case.brake_power
+    found, power = case.comparison.table.statistics, case.brake_power
     out = in_ten_thousand(power.out_of_brake, power.out_of_brake_ci95)
     return (
         f"95 of 100 of its cuts leave within ±{speed(found.p95_m_s)} m/s of the target, 99 within "
@@ -52,7 +52,7 @@ def in_cuts(case: CaseResult) -> str:
 
 def infeasible_case(case: CaseResult) -> str:
     """Why one case cannot be served, and what of it can."""
-    known = contest(case).known_friction.statistics.rms_m_s
+    known = case.comparison.friction_known.statistics.rms_m_s
     entry, served = case.plant.entry, case.feasibility.served_m_s
     part = (
         f"entry speeds from {served[0]:.2f} to {served[1]:.2f} m/s are served" if served else "no entry speed is served"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,27 +55,27 @@ def make_grid(plant: Plant, resolution: Resolution) -> Grid:
     return Grid(np.linspace(0.0, plant.exit_m, quanta + 1), energy, np.sqrt(2.0 * energy))
 
 
-def memory_estimate_bytes(plant: Plant, resolution: Resolution) -> int:
-    """What one solve and one check of `plant` will hold at most, from the sizes of their largest arrays."""
+def memory_estimate_bytes(plant: Plant, designs: Sequence[Resolution]) -> int:
+    """What solves of `plant` on the `designs` and a check of the first will hold at most, from their largest arrays."""
     total = 0
-    for r in (resolution, finer_for_check(resolution)):
+    for r in (*designs, finer_for_check(designs[0])):
         quanta = max(4, round(plant.exit_m / r.path_step_m))
         points = 0.5 * plant.entry.high_m_s**2 / (r.speed_step_m_s * r.reference_speed_m_s) * 1.2
         modes, chains = 2 * plant.top_stage, 4 * plant.top_stage
         landings = quanta * chains * 7 * points * 2
-        scenarios = r.friction_nodes * r.resistance_nodes if r is resolution else 2
+        scenarios = r.friction_nodes * r.resistance_nodes if r in designs else 2
         values = 3 * scenarios * quanta * modes * r.path_levels * points
         total += int(8 * (landings + values + 6 * quanta * (plant.top_stage + 1) * points))
     return total
 
 
-def require_memory(label: str, plant: Plant, resolution: Resolution, workers: int) -> None:
+def require_memory(label: str, plant: Plant, designs: Sequence[Resolution], workers: int) -> None:
     """Raise `PlantError` if `workers` solves at once would not fit into this machine's memory."""
-    needed = workers * memory_estimate_bytes(plant, resolution)
+    needed = workers * memory_estimate_bytes(plant, designs)
     available = available_memory_bytes()
     require(
         needed <= 0.8 * available,
-        f"grid: path_step_m is {resolution.path_step_m:g} and speed_step_m_s {resolution.speed_step_m_s:g}; solving "
+        f"grid: path_step_m is {designs[0].path_step_m:g} and speed_step_m_s {designs[-1].speed_step_m_s:g}; solving "
         f"{label} would take about {needed / 1e9:.1f} GB and {available / 1e9:.1f} GB are free: make a step larger",
     )
 

@@ -12,7 +12,7 @@ from plant_models import Friction
 
 
 @dataclass(frozen=True)
-class PathChain:
+class PathNoise:
     """η, constant in each path quantum: `levels` (L,), `transition` (L, L) rows from, `stationary` (L,)."""
 
     levels: NDArray[np.float64]
@@ -24,13 +24,13 @@ class PathChain:
             array.setflags(write=False)
 
 
-def correlated_chain(friction: Friction, quantum_m: float, levels: int) -> PathChain:
+def correlated_noise(friction: Friction, quantum_m: float, levels: int) -> PathNoise:
     """Rouwenhorst's chain: variance and exponential autocorrelation of η exactly, for any quantum.
 
     One level means no path noise. Source: Kopecky & Suen, Rev. Econ. Dyn. 13 (2010), §2.
     """
     if levels == 1 or friction.path_std == 0.0:
-        return PathChain(np.zeros(1), np.ones((1, 1)), np.ones(1))
+        return PathNoise(np.zeros(1), np.ones((1, 1)), np.ones(1))
     stay = 0.5 * (1.0 + float(friction.path_correlation(quantum_m)))
     matrix = np.array([[stay, 1 - stay], [1 - stay, stay]])
     for size in range(3, levels + 1):
@@ -44,14 +44,14 @@ def correlated_chain(friction: Friction, quantum_m: float, levels: int) -> PathC
     span = float(friction.path_cell_std(quantum_m)) * math.sqrt(levels - 1)
     stationary = np.array([math.comb(levels - 1, i) for i in range(levels)]) / 2.0 ** (levels - 1)
     values = np.maximum(np.linspace(-span, span, levels), -1.0)  # bars brake or do nothing
-    return PathChain(values, matrix / matrix.sum(axis=1, keepdims=True), stationary)
+    return PathNoise(values, matrix / matrix.sum(axis=1, keepdims=True), stationary)
 
 
-def independent_chain(std: float, levels: int) -> PathChain:
+def independent_noise(std: float, levels: int) -> PathNoise:
     """Independent normal noise of std `std` in every quantum: the formulation as published (zhukovitsky-2002)."""
     x, weights = np.polynomial.hermite_e.hermegauss(levels)
     weights = weights / weights.sum()
-    return PathChain(np.maximum(std * x, -1.0), np.tile(weights, (levels, 1)), weights)
+    return PathNoise(np.maximum(std * x, -1.0), np.tile(weights, (levels, 1)), weights)
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class TransientNoise:
 
 
 def transient_noise(
-    chain: PathChain, overpressure: NDArray[np.float64], periods: NDArray[np.int64], longest: int
+    chain: PathNoise, overpressure: NDArray[np.float64], periods: NDArray[np.int64], longest: int
 ) -> TransientNoise:
     """Exact first and second moments of Σ g_t η_t along the chain, weights g_t following the brake force.
 

@@ -19,10 +19,11 @@ from synth.book.comparison.baselines import tune_baselines
 from synth.book.comparison.friction_bound import friction_known_bounds, interleaved
 from synth.book.estimation.estimated_table import estimated_table, estimator_design
 from synth.book.estimation.simulated_prediction import simulated_prediction
-from synth.book.tune_case import predict
+from synth.book.tuned_table import predict
 from synth.book.work_queue import run_nested
 from synth.configuration.config_file import parse_config
 from synth.configuration.resolved_config import ResolvedConfig
+from synth.problem.aim import Aim
 from synth.problem.problem import Problem
 from synth.problem.resolution import Resolution, finer_for_check
 from synth.simulation.closed_loop import ClosedLoop, LineController, TableController, close_loop
@@ -32,15 +33,14 @@ from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.backward_induction import solve
-from synth.solver.chain.transitions import Transitions, check_transitions, persistent_transitions
-from synth.solver.tuned_lines import lines_of_solution
+from synth.solver.chain.chain import Chain, check_chain, persistent_chain
 from synth.studies.accuracy_grid.figures import Errors, Figures, GridCase
 from synth.studies.accuracy_grid.findings import Grid
 from synth.studies.options import option
 from synth.studies.side_by_side import THREADS
 from synth.studies.study import Method, Tell
 from synth.studies.told_friction import Effort, told_friction
-from synth.studies.tuned_table import rounded
+from synth.studies.tuned_table import lines_of_solution, rounded
 
 SEED, FRESH, TUNING, PREDICTION = 20261120, 86028121, 32452843, 49979687
 TUNING_PASSES, BASELINE_PASSES, PREDICTION_PASSES = 3000, 600, 10_000
@@ -105,8 +105,8 @@ class Class:
 
     config: ResolvedConfig
     plant: Plant
-    design: Transitions
-    check: Transitions
+    design: Chain
+    check: Chain
     seconds: float
     passes: Row
     told_nodes: int
@@ -140,11 +140,12 @@ def class_tasks(order: ClassOrder, options: Options, passes: Row, tell: Tell) ->
     ((label, nominal),) = config.plants()
     plant = replace(nominal, friction=replace(nominal.friction, common_cv=order.cv))
     started = time.perf_counter()
-    design = persistent_transitions(plant, config.resolution)
-    check = check_transitions(plant, finer_for_check(config.resolution))
+    design = persistent_chain(plant, config.resolution)
+    check = check_chain(plant, finer_for_check(config.resolution))
     seconds = (time.perf_counter() - started) / len(targets)
     shared = Class(config, plant, design, check, seconds, passes, options.told_nodes)
-    bounds = friction_known_bounds(design, targets, config.criterion, passes.tuning, config.acceptance.rms_m_s)
+    aims = [Aim(target, config.criterion) for target in targets]
+    bounds = friction_known_bounds(design, aims, passes.tuning, config.acceptance.rms_m_s)
 
     def task(target: float, known_rms_m_s: float, feasible: bool) -> GridCase:
         figures = figures_on_a_grid_fine_enough(shared, target) if feasible else None
@@ -165,21 +166,21 @@ def figures_on_a_grid_fine_enough(shared: Class, target_m_s: float) -> Figures:
         return figures_of(shared, target_m_s, shared.design, resolution)
     except PlantError:
         finer = replace(resolution, speed_step_m_s=0.5 * resolution.speed_step_m_s)
-        found = figures_of(shared, target_m_s, persistent_transitions(shared.plant, finer), finer)
+        found = figures_of(shared, target_m_s, persistent_chain(shared.plant, finer), finer)
         return replace(found, finer=True)
 
 
-def figures_of(shared: Class, target: float, design: Transitions, resolution: Resolution) -> Figures:
+def figures_of(shared: Class, target: float, design: Chain, resolution: Resolution) -> Figures:
     """All controllers of a feasible case on the same passes."""
     plant, config, passes = shared.plant, shared.config, shared.passes
     loop, used = close_loop(plant, plant.position.top_stage + 1), close_loop(plant, plant.top_stage + 1)
     started = time.perf_counter()
-    solution = solve(design, target, config.criterion)
+    solution = solve(design, Aim(target, config.criterion))
     lines = lines_of_solution(solution, config.fit.degree)
     table = rounded(config, plant, lines, target)
     predicted = predict(shared.check, table).rms_m_s(target)
     turned = time.perf_counter()
-    problem = Problem(plant, target, config.criterion)
+    problem = Problem(plant, Aim(target, config.criterion))
     made = estimated_table(problem, estimator_design(plant, resolution, target), lines, passes.tuning)
     estimated = rounded(config, plant, made.lines, target, made.estimator)
     foreseen = loop.run(TableController(estimated), loop.draws(passes.prediction))
@@ -208,11 +209,11 @@ def figures_of(shared: Class, target: float, design: Transitions, resolution: Re
     )
 
 
-def told(shared: Class, target: float, design: Transitions, loop: ClosedLoop) -> Errors:
+def told(shared: Class, target: float, design: Chain, loop: ClosedLoop) -> Errors:
     """Lines for each known friction, simulated there, weighted by how probable it is."""
     config, nodes = shared.config, shared.told_nodes
     free = replace(config.criterion, switching_tolerance_m2_s2=0.0)
-    found = told_friction(design, target, free, config.fit.degree, nodes, TOLD_EFFORT)
+    found = told_friction(design, Aim(target, free), config.fit.degree, nodes, TOLD_EFFORT)
     path_m = np.linspace(0.0, shared.plant.exit_m, LINE_NODES)
     strata = []
     for i, (factor, lines) in enumerate(zip(found.factor, found.lines, strict=True)):

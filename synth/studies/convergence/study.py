@@ -17,13 +17,13 @@ from numpy.typing import NDArray
 from plant_models import Plant
 from synth.configuration.config_file import load_config
 from synth.configuration.resolved_config import ResolvedConfig
+from synth.problem.aim import Aim
 from synth.problem.resolution import Resolution, finer_for_check
 from synth.solver.backward_induction import Solution, solve
-from synth.solver.chain.transitions import Transitions, check_transitions, persistent_transitions
-from synth.solver.exit_density import ExitDensity
-from synth.solver.policy_evaluation import commands, exit_density, occupancy_of
+from synth.solver.chain.chain import check_chain, persistent_chain
+from synth.solver.evaluation import Evaluation
+from synth.solver.policy_density import density_and_occupancy, exit_density
 from synth.solver.polynomial_fit import PolynomialLines, stage_occupancy
-from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tuned_lines import fitted
 from synth.studies.cases import Case, named_cases
 from synth.studies.convergence.findings import CaseRow, Convergence, Level, Refinement
@@ -65,32 +65,27 @@ def at_level(base: Resolution, kind: str, level: int) -> Resolution:
     )  # fmt: skip
 
 
-def density_of(chain: Transitions, lines: SwitchingLines, staircase: bool) -> ExitDensity:
-    """Exit density of lines; `staircase`: by the quantised speed."""
-    return exit_density(chain, commands(chain, lines, staircase))
-
-
 def samples_of(solution: Solution) -> NDArray[np.float64]:
     """How often the solver's own lines are asked, (nodes, stages, speeds)."""
-    chain = solution.transitions
-    _, occupancy = occupancy_of(chain, commands(chain, solution.lines, staircase=False))
+    chain = solution.chain
+    _, occupancy = density_and_occupancy(chain, solution.lines)
     return stage_occupancy(occupancy.samples, chain.actuator.mode_stage, chain.actuator.stages)
 
 
 def own_rms(solution: Solution) -> float:
     """rms of the solver's own lines on their own grid."""
-    return density_of(solution.transitions, solution.lines, staircase=False).rms_m_s(solution.target_speed_m_s)
+    return Evaluation(solution.chain, solution.aim).rms_m_s(solution.lines)
 
 
 def lines_apart(coarse: Solution, fine: Solution) -> float:
     """Mean distance of the lines, m/s, weighted by the samples taken near the coarse ones."""
-    grid = coarse.transitions.grid
+    grid = coarse.chain.grid
     samples = samples_of(coarse)
     total = weights = 0.0
     for a, b in ((coarse.lines.lower_m_s, fine.lines.lower_m_s), (coarse.lines.upper_m_s, fine.lines.upper_m_s)):
         for k in range(a.shape[0]):
             finite = np.nan_to_num(b[k], posinf=1e9, neginf=-1e9)
-            there = np.interp(grid.path_m[:-1], fine.transitions.grid.path_m, finite)
+            there = np.interp(grid.path_m[:-1], fine.chain.grid.path_m, finite)
             for n in np.flatnonzero(np.isfinite(a[k, :-1]) & (np.abs(there) < FAR_LINE_M_S)):
                 weight = float(samples[n, k, np.abs(grid.speed_m_s - a[k, n]) < NEAR_LINE_M_S].sum())
                 total += weight * abs(a[k, n] - there[n])
@@ -103,9 +98,9 @@ def refined(case: Case, config: ResolvedConfig, kind: str, levels: int, cubic: P
     rows: list[Level] = []
     before: Solution | None = None
     for level in range(levels):
-        chain = persistent_transitions(case.plant, at_level(config.resolution, kind, level))
-        solution = solve(chain, case.target_m_s, config.criterion)
-        density = density_of(chain, cubic.at(chain.grid.path_m), staircase=False)
+        chain = persistent_chain(case.plant, at_level(config.resolution, kind, level))
+        solution = solve(chain, Aim(case.target_m_s, config.criterion))
+        density = exit_density(chain, cubic.at(chain.grid.path_m))
         if before is not None:
             rows[-1] = replace(rows[-1], lines_move_m_s=lines_apart(before, solution))
         rows.append(
@@ -120,8 +115,8 @@ def refined(case: Case, config: ResolvedConfig, kind: str, levels: int, cubic: P
 
 def prediction_rms(plant: Plant, resolution: Resolution, cubic: PolynomialLines, target_m_s: float) -> float:
     """Predicted rms of the cubic as of an exported table."""
-    chain = check_transitions(plant, resolution)
-    return density_of(chain, cubic.at(chain.grid.path_m), staircase=True).rms_m_s(target_m_s)
+    chain = check_chain(plant, resolution)
+    return exit_density(chain, cubic.at(chain.grid.path_m)).rms_m_s(target_m_s)
 
 
 def halved(check: Resolution) -> Resolution:
@@ -136,7 +131,7 @@ def halved(check: Resolution) -> Resolution:
 
 def studied(case: Case, config: ResolvedConfig, levels: int) -> CaseRow:
     """Everything about one case."""
-    default = solve(persistent_transitions(case.plant, config.resolution), case.target_m_s, config.criterion)
+    default = solve(persistent_chain(case.plant, config.resolution), Aim(case.target_m_s, config.criterion))
     cubic = fitted(default, DEGREE).lines
     check = finer_for_check(config.resolution)
     return CaseRow(

@@ -13,9 +13,10 @@ from pathlib import Path
 
 import numpy as np
 
-from synth.book.tune_case import predict, required
+from synth.book.tuned_table import predict
 from synth.configuration.config_file import load_config
 from synth.configuration.resolved_config import ResolvedConfig
+from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.requirement import FrictionRange, OverspeedLimit
 from synth.problem.resolution import finer_for_check
@@ -26,7 +27,8 @@ from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.backward_induction import Solution, solve_all
-from synth.solver.chain.transitions import Transitions, check_transitions, persistent_transitions
+from synth.solver.chain.chain import Chain, check_chain, persistent_chain
+from synth.solver.required_lines import required_lines
 from synth.solver.tuned_lines import fitted
 from synth.studies.cases import Case, named_cases
 from synth.studies.criteria.findings import Criteria, CriterionRow, Measured, PriceRow
@@ -72,17 +74,16 @@ class Bench:
 
     case: Case
     config: ResolvedConfig
-    design: Transitions
-    check: Transitions
+    design: Chain
+    check: Chain
     loop: ClosedLoop
     passes: RandomPasses
 
     def table(self, solution: Solution) -> tuple[ControllerTable, str | None]:
         """The exported table of a solution, and what its requirement took."""
-        fit = fitted(solution, self.config.fit.degree)
-        lines, finding = required(self.design, self.check, fit, self.case.target_m_s, solution.criterion)
-        table = rounded(self.config, self.case.plant, lines, self.case.target_m_s)
-        return table, None if finding is None else finding.sentence
+        found = required_lines(solution, self.check, fitted(solution, self.config.fit.degree))
+        table = rounded(self.config, self.case.plant, found.lines, self.case.target_m_s)
+        return table, None if found.finding is None else found.finding.sentence
 
     def sample(self, table: ControllerTable) -> ExitSample:
         """The common passes by `table`."""
@@ -120,7 +121,7 @@ def run(options: Options, tell: Tell) -> Criteria:
         bench = bench_of(case, config, passes)
         asked = criteria(config.criterion)
         priced = [replace(config.criterion, switching_tolerance_m2_s2=t) for t in options.tolerances_m2_s2]
-        solutions = solve_all(bench.design, [(case.target_m_s, each) for each in (*asked.values(), *priced)])
+        solutions = solve_all(bench.design, [Aim(case.target_m_s, each) for each in (*asked.values(), *priced)])
         by_criterion = dict(zip(asked, solutions[: len(asked)], strict=True))
         rows = criterion_rows(bench, by_criterion, options.factors)
         prices = price_rows(bench, options.tolerances_m2_s2, solutions[len(asked) :])
@@ -137,8 +138,8 @@ def bench_of(case: Case, config: ResolvedConfig, passes: RandomPasses) -> Bench:
     """Everything about one case that its tables share."""
     plant = case.plant
     loop = close_loop(plant, plant.position.top_stage + 1)  # as many stages as a table holds
-    check = check_transitions(plant, finer_for_check(config.resolution))
-    return Bench(case, config, persistent_transitions(plant, config.resolution), check, loop, passes)
+    check = check_chain(plant, finer_for_check(config.resolution))
+    return Bench(case, config, persistent_chain(plant, config.resolution), check, loop, passes)
 
 
 def criterion_rows(bench: Bench, solutions: dict[str, Solution], factors: int) -> list[CriterionRow]:

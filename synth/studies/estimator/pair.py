@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from plant_models import Plant
+from synth.book.class_setup import TRIM_PASSES, TUNING_PASSES
 from synth.book.estimation.estimated_table import controller_of, estimated_table, estimator_design
-from synth.book.tune import TRIM_PASSES, TUNING_PASSES
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.problem import Problem
 from synth.simulation.closed_loop import Controller, TableController, simulate
@@ -16,7 +16,7 @@ from synth.simulation.exit_statistics import OVERSPEED_M_S, exit_statistics, rms
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.replicates import Interval, share_of
-from synth.solver.chain.transitions import persistent_transitions
+from synth.solver.chain.chain import persistent_chain
 from synth.solver.polynomial_fit import PolynomialLines
 from synth.solver.tuned_lines import tuned_lines
 from synth.studies.tuned_table import rounded
@@ -82,7 +82,8 @@ def as_tuned(problem: Problem, config: ResolvedConfig) -> Pair:
 
 def without_price(problem: Problem, config: ResolvedConfig) -> Pair:
     """Lines, not rounded, without a price on switchings; the estimator made for this very target."""
-    free = replace(problem, criterion=replace(problem.criterion, switching_tolerance_m2_s2=0.0))
+    criterion = replace(problem.criterion, switching_tolerance_m2_s2=0.0)
+    free = replace(problem, aim=replace(problem.aim, criterion=criterion))
     tuning = random_passes(config.validation.seed + TUNING, 0, TRIM_PASSES)
     return designed(free, config, problem.target_speed_m_s, tuning)[0]
 
@@ -91,8 +92,8 @@ def designed(
     problem: Problem, config: ResolvedConfig, lowest_target_m_s: float, tuning: RandomPasses
 ) -> tuple[Pair, PolynomialLines, PolynomialLines]:
     """(both, lines for the measured speed, lines for the estimated one)."""
-    design = persistent_transitions(problem.plant, config.resolution)
-    lines = tuned_lines(design, problem.target_speed_m_s, problem.criterion, config.fit.degree)
+    design = persistent_chain(problem.plant, config.resolution)
+    lines = tuned_lines(design, problem.aim, config.fit.degree).lines
     estimator = estimator_design(problem.plant, config.resolution, lowest_target_m_s)
     made = estimated_table(problem, estimator, lines, tuning)
     ratio = made.rms_after_m_s / made.plain_rms_m_s

@@ -8,6 +8,7 @@ from statistics import median
 
 from synth.configuration.config_file import load_config, parse_config
 from synth.configuration.resolved_config import ResolvedConfig
+from synth.problem.aim import Aim
 from synth.problem.problem import Problem
 from synth.simulation.stratified_passes import stratified_passes
 from synth.studies.cases import Case, class_cases
@@ -87,7 +88,7 @@ def run(options: Options, tell: Tell) -> Spreads:
 
     def row_of(order: tuple[ResolvedConfig, Case]) -> Row:
         config, case = order
-        pair = without_price(Problem(case.plant, case.target_m_s, config.criterion), config)
+        pair = without_price(Problem(case.plant, Aim(case.target_m_s, config.criterion)), config)
         figures = nominal(case.plant, case.target_m_s, pair, passes)
         row = Row(case.plant.position.name, case.plant.friction.common_cv, case.name, figures)
         tell(f"{row.position}, CV {row.cv:g}, {row.case}: ratio {figures.ratio:.3f}")

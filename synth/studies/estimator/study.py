@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING
 
 from synth.configuration.config_file import load_config
 from synth.configuration.resolved_config import ResolvedConfig
+from synth.problem.aim import Aim
 from synth.problem.problem import Problem
 from synth.simulation.stratified_passes import stratified_passes
-from synth.solver.chain.transitions import persistent_transitions
+from synth.solver.chain.chain import persistent_chain
 from synth.studies.cases import Case, class_cases
 from synth.studies.estimator.pair import FRESH, Compared, nominal, without_price
 from synth.studies.markdown_table import MarkdownTable, around, table
@@ -120,7 +121,7 @@ def run(options: Options, tell: Tell) -> Gains:
     passes = stratified_passes(seed, 0, options.passes)
 
     def row_of(case: Case) -> Row:
-        pair = without_price(Problem(case.plant, case.target_m_s, config.criterion), config)
+        pair = without_price(Problem(case.plant, Aim(case.target_m_s, config.criterion)), config)
         figures = nominal(case.plant, case.target_m_s, pair, passes)
         effort = replace(TO_THE_END, iterations=options.told_iterations)
         row = Row(case.name, pair.error_m_s, told_rms_m_s(case, config, options.told_nodes, effort), figures)
@@ -135,8 +136,8 @@ def told_rms_m_s(case: Case, config: ResolvedConfig, nodes: int, effort: Effort)
     """Exact rms where the regulator is told the friction of every cut."""
     finer = replace(config.resolution, speed_step_m_s=min(config.resolution.speed_step_m_s, FINE_STEP_M_S))
     free = replace(config.criterion, switching_tolerance_m2_s2=0.0)
-    design = persistent_transitions(case.plant, finer)
-    return told_friction(design, case.target_m_s, free, config.fit.degree, nodes, effort).rms_m_s(case.target_m_s)
+    design = persistent_chain(case.plant, finer)
+    return told_friction(design, Aim(case.target_m_s, free), config.fit.degree, nodes, effort).rms_m_s(case.target_m_s)
 
 
 METHOD = Method(

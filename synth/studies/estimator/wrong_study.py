@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.book.tune import TRIM_PASSES
+from synth.book.class_setup import TRIM_PASSES
 from synth.configuration.config_file import load_config
+from synth.problem.aim import Aim
 from synth.problem.problem import Problem
 from synth.simulation.closed_loop import simulate
 from synth.simulation.stratified_passes import stratified_passes
@@ -108,7 +109,7 @@ def run(options: Options, tell: Tell) -> Misled:
     passes = stratified_passes(seed, 0, options.passes)
 
     def row_of(case: Case) -> CaseRow:
-        pair = as_tuned(Problem(case.plant, case.target_m_s, config.criterion), config)
+        pair = as_tuned(Problem(case.plant, Aim(case.target_m_s, config.criterion)), config)
         transit_s = simulate(case.plant, pair.plain, passes).transit_time_s.astype(np.float64)
         found = {}
         for wrong in wrongs(case.plant, seed):

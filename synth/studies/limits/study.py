@@ -17,13 +17,14 @@ import numpy as np
 from synth.book.estimation.estimated_table import controller_of, estimated_table, estimator_design
 from synth.configuration.config_file import load_config
 from synth.configuration.resolved_config import ResolvedConfig
+from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.problem import Problem
 from synth.simulation.closed_loop import LineController, simulate
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.replicates import rms_of
 from synth.simulation.stratified_passes import stratified_passes
-from synth.solver.chain.transitions import persistent_transitions
+from synth.solver.chain.chain import persistent_chain
 from synth.solver.polynomial_fit import PolynomialLines
 from synth.solver.tuned_lines import tuned_lines
 from synth.studies.cases import Case, named_cases
@@ -126,8 +127,8 @@ def changed(case: Case, change: Change, config: ResolvedConfig, passes: RandomPa
     resolution = config.resolution
     if change.speed_step_m_s is not None:
         resolution = replace(resolution, speed_step_m_s=min(resolution.speed_step_m_s, change.speed_step_m_s))
-    design = persistent_transitions(change.plant, resolution)
-    lines = tuned_lines(design, case.target_m_s, free(config), change.degree)
+    design = persistent_chain(change.plant, resolution)
+    lines = tuned_lines(design, Aim(case.target_m_s, free(config)), change.degree).lines
     return simulated(case, change, controller_for(case, lines), passes)
 
 
@@ -146,8 +147,8 @@ def simulated(case: Case, change: Change, controller: LineController, passes: Ra
 def told(case: Case, config: ResolvedConfig, nodes: int, effort: Effort) -> Row:
     """Exact errors where the regulator is told the friction of every cut."""
     finer = replace(config.resolution, speed_step_m_s=min(config.resolution.speed_step_m_s, QUIET_M_S))
-    design = persistent_transitions(case.plant, finer)
-    found = told_friction(design, case.target_m_s, free(config), config.fit.degree, nodes, effort)
+    design = persistent_chain(case.plant, finer)
+    found = told_friction(design, Aim(case.target_m_s, free(config)), config.fit.degree, nodes, effort)
     rms, share = found.near(case.target_m_s, NEAR_M_S)
     near = NearTarget(rms, None, max(1.0 - share, 0.0))
     return Row(case.name, "told the friction of every cut", found.rms_m_s(case.target_m_s), near)
@@ -156,11 +157,10 @@ def told(case: Case, config: ResolvedConfig, nodes: int, effort: Effort) -> Row:
 def estimated(case: Case, config: ResolvedConfig, passes: RandomPasses) -> Row:
     """Lines for the estimated speed, with the estimator."""
     tuning = random_passes(config.validation.seed + TUNING, 0, TUNING_PASSES)
-    lines = tuned_lines(
-        persistent_transitions(case.plant, config.resolution), case.target_m_s, free(config), config.fit.degree
-    )
+    aim = Aim(case.target_m_s, free(config))
+    lines = tuned_lines(persistent_chain(case.plant, config.resolution), aim, config.fit.degree).lines
     design = estimator_design(case.plant, config.resolution, case.target_m_s)
-    made = estimated_table(Problem(case.plant, case.target_m_s, free(config)), design, lines, tuning)
+    made = estimated_table(Problem(case.plant, aim), design, lines, tuning)
     change = Change("with the estimator", case.plant, config.fit.degree)
     return simulated(case, change, controller_of(made.lines, made.estimator), passes)
 

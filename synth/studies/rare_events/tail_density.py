@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 
 from plant_models import Plant
 from synth.problem.resolution import Resolution, finer_for_check
-from synth.solver.chain.transitions import Scenarios, Transitions, check_transitions, resistance_scenarios
-from synth.solver.policy_evaluation import Commands, commands, forward_one
+from synth.solver.chain.chain import Chain, check_chain
+from synth.solver.chain.scenarios import Scenarios, resistance_scenarios
+from synth.solver.policy_density import Commands, commands, forward_one
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tabulate import lines_of
 from synth.studies.rare_events.adaptive_simpson import adaptive_simpson
@@ -131,7 +132,7 @@ def tail_integral(
     plant: Plant, table: ControllerTable, limits_m_s: NDArray[np.float64], grid: TailGrid, threads: int
 ) -> TailIntegral:
     """P(V_exit > limit) for every limit, on one grid."""
-    transitions = check_transitions(plant, grid.resolution)
+    transitions = check_chain(plant, grid.resolution)
     policy = policy_of(transitions, table)
     above = cells_above(transitions, limits_m_s)
     count = len(limits_m_s)
@@ -164,14 +165,14 @@ def tail_integral(
     )
 
 
-def policy_of(transitions: Transitions, table: ControllerTable) -> Commands:
+def policy_of(transitions: Chain, table: ControllerTable) -> Commands:
     """Command probabilities of the table's float32 lines, the stages that the cut may use."""
     lines, stages = lines_of(table, transitions.grid.path_m), transitions.actuator.stages
     used = SwitchingLines(lines.nodes_m, lines.lower_m_s[:stages], lines.upper_m_s[:stages])
-    return commands(transitions, used, staircase=True)
+    return commands(transitions, used)
 
 
-def cells_above(transitions: Transitions, limits_m_s: NDArray[np.float64]) -> NDArray[np.float64]:
+def cells_above(transitions: Chain, limits_m_s: NDArray[np.float64]) -> NDArray[np.float64]:
     """(M, E): share of each energy cell that lies above a limit, the cell at the limit cut linearly in energy."""
     energy = transitions.grid.energy_m2_s2
     step = transitions.grid.energy_step_m2_s2
@@ -179,7 +180,7 @@ def cells_above(transitions: Transitions, limits_m_s: NDArray[np.float64]) -> ND
 
 
 def exits_by_scenario(
-    transitions: Transitions, policy: Commands, threads: int
+    transitions: Chain, policy: Commands, threads: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Exit probabilities (I, E) of every hidden scenario, and what is missing (I,): |1 − all that arrived|."""
 

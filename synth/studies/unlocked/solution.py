@@ -14,9 +14,11 @@ from plant_models.speed_sensor import measured_speed_std
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import TIE_M2_S2, true_speed_weights
+from synth.solver.chain.entry import entry_distribution
 from synth.solver.chain.grid import Grid, make_grid
-from synth.solver.chain.path_noise import PathChain, correlated_chain
-from synth.solver.chain.transitions import FINE_CELLS_PER_QUANTUM, Scenarios, entry_distribution, persistent_scenarios
+from synth.solver.chain.landings import FINE_CELLS_PER_QUANTUM
+from synth.solver.chain.path_noise import PathNoise, correlated_noise
+from synth.solver.chain.scenarios import Scenarios, persistent_scenarios
 from synth.studies.unlocked.drive_modes import DriveModes, drive_modes
 from synth.studies.unlocked.kernels.unlocked_bellman import unlocked_sweep
 from synth.studies.unlocked.surfaces import SwitchingSurfaces
@@ -39,7 +41,7 @@ class UnlockedPlant:
     plant: Plant
     grid: Grid
     modes: DriveModes
-    chain: PathChain
+    chain: PathNoise
     scenarios: Scenarios
     lift_m2_s2: NDArray[np.float64]
     work_m2_s2_per_kpa: NDArray[np.float64]
@@ -63,7 +65,7 @@ def unlocked_plant(
 ) -> UnlockedPlant:
     """`plant` on a grid; raises `PlantError` for drives that cannot be commanded during a transient."""
     grid = make_grid(plant, resolution)
-    chain = correlated_chain(plant.friction, grid.path_step_m, resolution.path_levels)
+    chain = correlated_noise(plant.friction, grid.path_step_m, resolution.path_levels)
     fine = np.linspace(0.0, plant.exit_m, FINE_CELLS_PER_QUANTUM * (len(grid.path_m) - 1) + 1)
     cells = path_coefficients(plant.position, plant.cut, plant.profile, fine)
     free = cells.gravity_m_s2 - cells.resistance_m_s2_per_n_kn * plant.resistance.mean_n_per_kn

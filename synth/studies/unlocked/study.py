@@ -18,6 +18,7 @@ from plant_models import Plant
 from synth.book.comparison.baselines import tune_baselines
 from synth.configuration.config_file import load_config
 from synth.configuration.resolved_config import ResolvedConfig
+from synth.problem.aim import Aim
 from synth.problem.resolution import Resolution
 from synth.simulation.closed_loop import LineController
 from synth.simulation.common_passes import common_passes
@@ -26,14 +27,14 @@ from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.backward_induction import solve
-from synth.solver.chain.transitions import persistent_transitions
+from synth.solver.chain.chain import persistent_chain
 from synth.solver.polynomial_fit import PolynomialLines
-from synth.solver.tuned_lines import lines_of_solution
 from synth.studies.cases import Case, named_cases
 from synth.studies.near_target import near_ratio, near_target
 from synth.studies.options import option
 from synth.studies.side_by_side import side_by_side
 from synth.studies.study import Method, Tell
+from synth.studies.tuned_table import lines_of_solution
 from synth.studies.unlocked.compact import LINE_NODES, SLOPES_M_S, Compact, Form, fit_surfaces, search, search_locked
 from synth.studies.unlocked.evolution import Vector
 from synth.studies.unlocked.findings import (
@@ -160,7 +161,7 @@ def studied(
 def bench_of(case: Case, config: ResolvedConfig, options: Options) -> Bench:
     """The case with its stage-locked lines."""
     rehearsal = random_passes(config.validation.seed + TUNING, 0, TUNING_PASSES)
-    solution = solve(persistent_transitions(case.plant, config.resolution), case.target_m_s, config.criterion)
+    solution = solve(persistent_chain(case.plant, config.resolution), Aim(case.target_m_s, config.criterion))
     cubics = lines_of_solution(solution, config.fit.degree)
     return Bench(
         case, config, unlocked_loop(case.plant), rehearsal, LineController(solution.lines), cubics, options

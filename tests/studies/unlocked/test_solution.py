@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 from plant_models import Plant, Pneumatics
+from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.simulation.random_passes import random_passes
 from synth.solver.backward_induction import solve
-from synth.solver.chain.transitions import persistent_transitions
-from synth.solver.policy_evaluation import commands, exit_density
+from synth.solver.chain.chain import persistent_chain
+from synth.solver.policy_density import exit_density
 from synth.studies.unlocked.compact import Compact, Form, cost_of, fit_surfaces
 from synth.studies.unlocked.laws import SurfaceController, at_rest_only
 from synth.studies.unlocked.loop import unlocked_loop
@@ -63,9 +64,9 @@ def test_more_freedom_cannot_cost_more(plant: Plant) -> None:
 def test_stage_locked_lines_cost_what_the_locked_solver_says(plant: Plant) -> None:
     # Two discretisations of one process: transients as one step, or sample by sample with the pressure as a state.
     resolution = replace(KNOWN, transient_substeps=4)
-    transitions = persistent_transitions(plant, resolution)
-    lines = solve(transitions, TARGET_M_S, CRITERION).lines
-    density = exit_density(transitions, commands(transitions, lines, staircase=False))
+    transitions = persistent_chain(plant, resolution)
+    lines = solve(transitions, Aim(TARGET_M_S, CRITERION)).lines
+    density = exit_density(transitions, lines)
     theirs = density.rms_m_s(TARGET_M_S) ** 2 + CRITERION.switching_tolerance_m2_s2 * density.switchings
     problem = unlocked_plant(plant, resolution)
     ours = evaluate_unlocked(problem, at_rest_only(lines, problem.modes), TARGET_M_S, CRITERION)

@@ -1,0 +1,107 @@
+"""What all targets of one cut class share: chains, passes, and what the tables are stamped with."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from importlib.metadata import version
+
+from plant_models import Plant
+from synth.book.estimation.estimated_table import estimator_design
+from synth.book.estimation.simulated_prediction import prediction_passes
+from synth.configuration.resolved_config import ResolvedConfig
+from synth.problem.resolution import finer_for_check
+from synth.simulation.common_passes import CommonPasses, common_passes
+from synth.simulation.random_passes import RandomPasses, random_passes
+from synth.simulation.stratified_passes import stratified_passes
+from synth.solver.chain.chain import Chain, check_chain, persistent_chain
+from tuning_tables import Generator
+
+TUNING_PASSES = 600
+"""Passes that baselines are tuned on: the first of the row after that of the validation."""
+
+TRIM_PASSES = 3000
+"""Passes that the error of an estimator and the trim of its lines are found on: those that follow."""
+
+
+@dataclass(frozen=True)
+class Origin:
+    """What tables are stamped with: program and problem, and when."""
+
+    generator: Generator
+    created: str
+
+
+@dataclass(frozen=True)
+class EstimatorSetup:
+    """A chain to design lines for estimated speeds on, passes to find error and trim on, and others to predict from."""
+
+    design: Chain
+    tuning: RandomPasses
+    prediction: CommonPasses
+
+
+@dataclass(frozen=True)
+class ClassSetup:
+    """`design`: the chain that lines are solved and polished on; `check`: the finer one that tables are predicted on;
+    `passes`: what every controller is simulated on; `table_stem`: how the names of the tables begin."""
+
+    label: str
+    table_stem: str
+    plant: Plant
+    degree: int
+    design: Chain
+    check: Chain
+    passes: CommonPasses
+    origin: Origin
+    estimator: EstimatorSetup | None
+
+    def table_id(self, target_speed_m_s: float) -> str:
+        """Name of the table for a target, also as a file name."""
+        return f"{self.table_stem}-to-{target_speed_m_s:g}-m-s"
+
+
+def class_setup(
+    config: ResolvedConfig, label: str, plant: Plant, passes: RandomPasses, origin: Origin, table_stem: str = ""
+) -> ClassSetup:
+    """The setup of the class `label` of `config`, simulated on `passes`; `table_stem` is the label unless given."""
+    compared = common_passes(plant, passes)
+    return ClassSetup(
+        label=label,
+        table_stem=table_stem or label,
+        plant=plant,
+        degree=config.fit.degree,
+        design=persistent_chain(plant, config.resolution),
+        check=check_chain(plant, finer_for_check(config.resolution)),
+        passes=compared,
+        origin=origin,
+        estimator=estimator_setup(config, label, compared) if config.regulator.estimator else None,
+    )
+
+
+def estimator_setup(config: ResolvedConfig, label: str, compared: CommonPasses) -> EstimatorSetup:
+    """Grid and passes to design for the estimator of a plant; the passes are not those `compared`, nor anybody's."""
+    seed = config.validation.seed
+    return EstimatorSetup(
+        design=estimator_design(compared.plant, config.resolution, min(config.targets_m_s)),
+        tuning=random_passes(seed + 1, TUNING_PASSES, TUNING_PASSES + TRIM_PASSES),
+        prediction=compared.of_others(prediction_passes(seed + 2, label)),
+    )
+
+
+def validation_passes(config: ResolvedConfig) -> RandomPasses:
+    """The passes that every table of `config` is simulated on."""
+    return stratified_passes(config.validation.seed, 0, config.validation.passes)
+
+
+def origin_of(config_sha256: str, created: str) -> Origin:
+    """This program, for the problem of that hash."""
+    return Origin(Generator("retarder-synth", version("retarder-synth"), config_sha256), created)
+
+
+def creation_time() -> str:
+    """Now in UTC, or the time of SOURCE_DATE_EPOCH (which makes a run's files reproducible to the byte)."""
+    epoch = os.environ.get("SOURCE_DATE_EPOCH")
+    moment = datetime.fromtimestamp(int(epoch), UTC) if epoch else datetime.now(UTC)
+    return moment.strftime("%Y-%m-%dT%H:%M:%SZ")

@@ -1,0 +1,125 @@
+"""The one way from an aim to a validated table: solve, fit, polish, round, predict, simulate.
+
+`tune` adds comparison and studies to it, a sweep adds nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from synth.book.class_setup import ClassSetup, EstimatorSetup
+from synth.book.estimation.estimated_table import EstimatedTable, estimated_table
+from synth.book.estimation.simulated_prediction import density_of, simulated_prediction
+from synth.problem.aim import Aim
+from synth.problem.problem import Problem
+from synth.problem.requirement_found import Finding
+from synth.simulation.closed_loop import TableController
+from synth.simulation.exit_statistics import BrakePower, ExitStatistics, brake_power, exit_statistics
+from synth.simulation.passes import ExitSample
+from synth.solver.backward_induction import Solution, solve_all
+from synth.solver.chain.chain import Chain
+from synth.solver.exit_density import ExitDensity
+from synth.solver.policy_density import density_and_occupancy, exit_density
+from synth.solver.polynomial_fit import Polish, PolynomialLines, fit_lines
+from synth.solver.required_lines import required_lines
+from synth.solver.switching_lines import SwitchingLines
+from synth.solver.tabulate import UNPREDICTED, lines_of, prediction_of, tabulate
+from tuning_tables import ControllerTable, Validated
+
+NODES_KEPT = 1
+"""Path nodes at which a solution keeps its values: the entrance. Nothing after the solve reads more."""
+
+Store = Callable[[ControllerTable], ControllerTable]
+"""Keeps a table, and gives it back as a controller will read it."""
+
+
+@dataclass(frozen=True)
+class TunedTable:
+    """The rounded table with its prediction, not yet simulated.
+
+    `predicted`: the exit density behind the prediction; `lines`: polished, for the measured speed; `solver_density`:
+    of the solver's own lines on the design chain; `estimate`: where an estimator is asked for, how its lines were
+    designed.
+    """
+
+    table: ControllerTable
+    predicted: ExitDensity
+    lines: PolynomialLines
+    polish: Polish
+    solver_density: ExitDensity
+    finding: Finding | None
+    estimate: EstimatedTable | None
+
+
+@dataclass(frozen=True)
+class ValidatedTable:
+    """The table as stored, with what the closed loop on the common passes says of it."""
+
+    table: ControllerTable
+    sample: ExitSample
+    statistics: ExitStatistics
+    brake_power: BrakePower
+
+
+def solutions(chain: Chain, aims: Sequence[Aim]) -> tuple[Solution, ...]:
+    """Solutions for several aims at once, with no more values than anybody reads."""
+    return solve_all(chain, aims, nodes_kept=NODES_KEPT)
+
+
+def tuned_table(setup: ClassSetup, solution: Solution) -> TunedTable:
+    """The table of one solution on `setup.design`: fitted, polished, rounded, and predicted.
+
+    Raises `PlantError` where the grid is too coarse for lines, `InvalidTable` where rounding would let lines touch.
+    """
+    problem = Problem(setup.plant, solution.aim)
+    density, occupancy = density_and_occupancy(solution.chain, solution.lines)
+    kept = required_lines(solution, setup.check, fit_lines(solution, occupancy.samples, setup.degree))
+    made = None
+    if setup.estimator is not None:
+        made = estimated_table(problem, setup.estimator.design, kept.lines, setup.estimator.tuning)
+    if setup.estimator is not None and made is not None and made.gains:
+        table, predicted = predicted_by_passes(setup, made, setup.estimator, problem.target_speed_m_s)
+    else:
+        table, predicted = with_prediction(setup.check, rounded(setup, kept.lines, problem.target_speed_m_s))
+    return TunedTable(table, predicted, kept.lines, kept.polish, density, kept.finding, made)
+
+
+def validated_table(setup: ClassSetup, table: ControllerTable, store: Store) -> ValidatedTable:
+    """`table` stored, simulated on the setup's passes as it is read back, and stored with the figures."""
+    target, kept = table.target_speed_m_s, store(table)
+    sample = setup.passes.run(TableController(kept))
+    found = exit_statistics(sample, target)
+    figures = Validated(found.passes, found.rms_m_s, found.rms_ci95_m_s)
+    power = brake_power(sample, setup.passes.at_full_brake, target)
+    return ValidatedTable(store(kept.with_validated(figures)), sample, found, power)
+
+
+def rounded(setup: ClassSetup, lines: PolynomialLines, target_speed_m_s: float) -> ControllerTable:
+    """The table of `lines` for the measured speed, not yet predicted."""
+    origin = (setup.origin.generator, setup.table_id(target_speed_m_s), setup.origin.created)
+    return tabulate(setup.plant, lines, target_speed_m_s, UNPREDICTED, *origin)
+
+
+def predicted_by_passes(
+    setup: ClassSetup, made: EstimatedTable, estimator: EstimatorSetup, target_speed_m_s: float
+) -> tuple[ControllerTable, ExitDensity]:
+    """The rounded table for the estimated speed, with what passes that nothing else uses say of it."""
+    origin = (setup.origin.generator, setup.table_id(target_speed_m_s), setup.origin.created)
+    table = tabulate(setup.plant, made.lines, target_speed_m_s, UNPREDICTED, *origin, made.estimator)
+    sample = estimator.prediction.run(TableController(table))
+    density = density_of(sample, estimator.design.grid.speed_m_s)
+    return replace(table, predicted=simulated_prediction(sample, target_speed_m_s)), density
+
+
+def with_prediction(check: Chain, table: ControllerTable) -> tuple[ControllerTable, ExitDensity]:
+    """`table` with the figures of its exit-speed density on `check`, and the density."""
+    density = predict(check, table)
+    return replace(table, predicted=prediction_of(density, table.target_speed_m_s)), density
+
+
+def predict(check: Chain, table: ControllerTable) -> ExitDensity:
+    """Exit-speed density of an exported table on `check`."""
+    lines = lines_of(table, check.grid.path_m)
+    stages = check.actuator.stages
+    return exit_density(check, SwitchingLines(lines.nodes_m, lines.lower_m_s[:stages], lines.upper_m_s[:stages]))

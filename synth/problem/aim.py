@@ -1,0 +1,19 @@
+"""What the lines of one table are for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from plant_models.errors import require_between
+from synth.problem.criterion import SQUARED_ERROR_CRITERION, Criterion
+
+
+@dataclass(frozen=True)
+class Aim:
+    """The commanded exit speed, and what a pass costs that misses it."""
+
+    target_speed_m_s: float
+    criterion: Criterion = SQUARED_ERROR_CRITERION
+
+    def __post_init__(self) -> None:
+        require_between("targets: target_speed_m_s", self.target_speed_m_s, 0.3, 20.0)

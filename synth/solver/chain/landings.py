@@ -1,0 +1,90 @@
+"""Where every change of stage ends: the motion through it, integrated once for all policies and targets."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models import Plant, path_coefficients
+from plant_models.stage_regulator import Actuator
+from synth.kernels.sweep.landing import land
+from synth.kernels.vector.packs import EIGHT, SIXTEEN
+from synth.solver.chain.grid import Grid
+
+FACTOR_STEP = 0.5
+"""Largest distance of the friction factors for which transients are integrated; between them a parabola.
+
+Halving it changes no predicted rms in the sixth digit."""
+
+FINE_CELLS_PER_QUANTUM = 4
+
+
+@dataclass(frozen=True)
+class Landings:
+    """End of every neighbouring stage change from every grid node, for friction `factors` (F,).
+
+    `ends` (N, C, F, 2, E'), see `kernels.landing.land`, of which `points` E are energies of the grid; `lower_chain`,
+    `upper_chain` (H,): index of the transient one stage down / up from a mode, −1 if none; `end_mode` (C,).
+    """
+
+    factors: NDArray[np.float64]
+    ends: NDArray[np.float64]
+    lower_chain: NDArray[np.int64]
+    upper_chain: NDArray[np.int64]
+    end_mode: NDArray[np.int64]
+    overpressure_kpa: NDArray[np.float64]
+    samples: NDArray[np.int64]
+    points: int
+
+    @property
+    def travel_m(self) -> NDArray[np.float64]:
+        """Path until the end of the transient, or to S_exit, (N, C, F, E); −1 for a stall."""
+        return self.ends[..., 0, : self.points]
+
+    @property
+    def energy_m2_s2(self) -> NDArray[np.float64]:
+        """v²/2 at the end of the transient, (N, C, F, E)."""
+        return self.ends[..., 1, : self.points]
+
+
+def make_landings(plant: Plant, grid: Grid, actuator: Actuator) -> Landings:
+    """Integrate the motion through every change to a neighbouring stage (kernel `land`)."""
+    modes = len(actuator.mode_stage)
+    used: list[int] = []
+    lower, upper = np.full(modes, -1), np.full(modes, -1)
+    for neighbours, step in ((lower, -1), (upper, 1)):
+        for mode, stage in enumerate(actuator.mode_stage):
+            if 0 <= stage + step < actuator.stages:
+                neighbours[mode] = len(used)
+                used.append(int(actuator.command[mode, stage + step]))
+    fine = np.linspace(0.0, plant.exit_m, FINE_CELLS_PER_QUANTUM * (len(grid.path_m) - 1) + 1)
+    cells = path_coefficients(plant.position, plant.cut, plant.profile, fine)
+    work = np.concatenate([[0.0], np.cumsum(cells.brake_m_s2_per_kpa * np.diff(fine))])
+    drive = cells.gravity_m_s2 - cells.resistance_m_s2_per_n_kn * plant.resistance.mean_n_per_kn
+    factors = friction_factors(plant)
+    samples = actuator.chain_samples[used]
+    overpressure = np.ascontiguousarray(actuator.chain_overpressure_kpa[used, : samples.max() * actuator.substeps])
+    speed = in_whole_packs(grid.speed_m_s)
+    ends = np.empty((len(grid.path_m) - 1, len(used), len(factors), 2, len(speed)))
+    dt = plant.sensor.sample_period_s / actuator.substeps
+    land(
+        grid.path_step_m, work, drive, overpressure, samples, actuator.substeps, dt, factors,
+        speed, ends,
+    )  # fmt: skip
+    return Landings(factors, ends, lower, upper, actuator.chain_mode[used], overpressure, samples, len(grid.speed_m_s))
+
+
+def in_whole_packs(speed_m_s: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The speeds, the last one repeated, so that whole packs may be read from any of them on (`kernels.packs`)."""
+    return np.pad(speed_m_s, (0, EIGHT + -(len(speed_m_s) + EIGHT) % SIXTEEN), mode="edge")
+
+
+def friction_factors(plant: Plant) -> NDArray[np.float64]:
+    """Equally spaced factors ξ that cover four standard deviations of ξ_cut and three of η."""
+    cv, std = plant.friction_cv, plant.friction.path_std
+    low = min(max(plant.friction.floor, 1.0 - 4.0 * cv) * max(1.0 - 3.0 * std, 0.0), 0.9)
+    high = max((1.0 + 4.0 * cv) * (1.0 + 3.0 * std), 1.1)
+    return np.linspace(low, high, max(3, math.ceil((high - low) / FACTOR_STEP) + 1))

@@ -1,0 +1,61 @@
+"""What is hidden of a pass and constant in it: friction of the cut and running resistance, as weighted scenarios."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models import Plant
+
+
+@dataclass(frozen=True)
+class Scenarios:
+    """Hidden constants of a pass: friction factor ξ_cut, added acceleration by w − E w, weights; shape (I,)."""
+
+    factor: NDArray[np.float64]
+    extra_m_s2: NDArray[np.float64]
+    weight: NDArray[np.float64]
+
+
+def persistent_scenarios(plant: Plant, friction_nodes: int, resistance_nodes: int) -> Scenarios:
+    """Product of Gauss–Hermite nodes of ξ_cut and Gauss nodes of w."""
+    z, z_weight = np.polynomial.hermite_e.hermegauss(friction_nodes)
+    factor = plant.friction.cut_factor(z, plant.friction_cv)
+    extra, w_weight = resistance_scenarios(plant, resistance_nodes)
+    return Scenarios(
+        factor=np.repeat(factor, len(extra)),
+        extra_m_s2=np.tile(extra, len(z)),
+        weight=np.outer(z_weight / z_weight.sum(), w_weight).ravel(),
+    )
+
+
+def check_scenarios(plant: Plant, friction_nodes: int, resistance_nodes: int) -> Scenarios:
+    """Scenarios for a prediction that must get the tails right, and not pay for every pair of (ξ_cut, w).
+
+    ξ_cut at equally spaced nodes up to four standard deviations (the cost has a kink where the brake power
+    ends, which a Gauss rule misses); w added as its main effect: E f(ξ, w) ≈ E f(ξ, w̄) + E f(1, w) − f(1, w̄),
+    so one weight may be negative. `friction_nodes` must be odd.
+    """
+    z, z_weight = equally_spaced_normal(friction_nodes)
+    extra, w_weight = resistance_scenarios(plant, resistance_nodes)
+    z_weight[friction_nodes // 2] -= 1.0
+    return Scenarios(
+        factor=np.concatenate([plant.friction.cut_factor(z, plant.friction_cv), np.ones(len(extra))]),
+        extra_m_s2=np.concatenate([np.zeros(len(z)), extra]),
+        weight=np.concatenate([z_weight, w_weight]),
+    )
+
+
+def equally_spaced_normal(count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Nodes from −4 to 4 and trapezoidal weights of the standard normal law, (count,) each."""
+    z = np.linspace(-4.0, 4.0, count)
+    weight = np.exp(-0.5 * z**2)
+    return z, weight / weight.sum()
+
+
+def resistance_scenarios(plant: Plant, count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(added acceleration of w − E w in m/s², probability) at Gauss nodes of the gamma law."""
+    w, weight = plant.resistance.nodes(count)
+    return -plant.cut.reduced_gravity_m_s2 * 1e-3 * (w - plant.resistance.mean_n_per_kn), weight

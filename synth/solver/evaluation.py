@@ -1,0 +1,105 @@
+"""What a policy of switching lines costs, exactly, and the gradient of that cost by every line value.
+
+The cost is followed backward through every hidden scenario; the forward recursion of `policy_density` is its
+transpose, and the two agree to rounding.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.kernels.sweep.policy_value import backward
+from synth.problem.aim import Aim
+from synth.solver.chain.chain import Chain
+from synth.solver.exit_density import ExitDensity
+from synth.solver.policy_density import Commands, commands, exit_density, forward_one, shared_arguments
+from synth.solver.switching_lines import SwitchingLines
+
+Gradient = tuple[float, NDArray[np.float64], NDArray[np.float64]]
+"""A cost, and its derivatives by the lower and by the upper lines at the path nodes, (K + 1, N) each."""
+
+
+@dataclass(frozen=True)
+class ScenarioCosts:
+    """Cost of a policy in every hidden scenario (I,), and its derivatives by the line values (I, K + 1, N)."""
+
+    cost: NDArray[np.float64]
+    by_lower: NDArray[np.float64]
+    by_upper: NDArray[np.float64]
+
+    def weighted(self, weight: NDArray[np.float64]) -> Gradient:
+        """Sum over the scenarios."""
+        cost, by_lower, by_upper = 0.0, np.zeros(self.by_lower.shape[1:]), np.zeros(self.by_upper.shape[1:])
+        for one, share in enumerate(weight):
+            cost += share * self.cost[one]
+            by_lower += share * self.by_lower[one]
+            by_upper += share * self.by_upper[one]
+        return float(cost), by_lower, by_upper
+
+    def grouped(self, weight: NDArray[np.float64]) -> ScenarioCosts:
+        """The mean over every group of scenarios that stand side by side, by the groups' own `weight` (G, members)."""
+        groups, members = weight.shape
+
+        def mean(values: NDArray[np.float64]) -> NDArray[np.float64]:
+            apart = values.reshape(groups, members, *values.shape[1:])
+            over_group: NDArray[np.float64] = np.einsum("gm,gm...->g...", weight, apart)
+            return over_group
+
+        return ScenarioCosts(mean(self.cost), mean(self.by_lower), mean(self.by_upper))
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Exact figures of policies on one chain for one aim; the lines may have any nodes that the chain's path has."""
+
+    chain: Chain
+    aim: Aim
+
+    def density(self, lines: SwitchingLines) -> ExitDensity:
+        """Exit-speed density, all scenarios weighted."""
+        return exit_density(self.chain, lines)
+
+    def rms_m_s(self, lines: SwitchingLines) -> float:
+        """Predicted rms error at the exit."""
+        return self.density(lines).rms_m_s(self.aim.target_speed_m_s)
+
+    def cost(self, lines: SwitchingLines) -> float:
+        """Expected cost by the backward recursion, every state valued."""
+        policy = commands(self.chain, lines)
+        nothing, no_band = np.empty((0, 0, 0, 0)), np.empty((0, 2), dtype=np.int64)
+        weights = enumerate(self.chain.scenarios.weight)
+        return float(sum(weight * self._backward(policy, i, nothing, no_band)[0] for i, weight in weights))
+
+    def gradient(self, lines: SwitchingLines) -> Gradient:
+        """Cost, and its exact derivatives by every line value; what `polynomial_fit.polish` minimises."""
+        return self.scenario_costs(lines).weighted(self.chain.scenarios.weight)
+
+    def scenario_costs(self, lines: SwitchingLines) -> ScenarioCosts:
+        """Cost and exact gradient in every scenario; their weights play no part."""
+        c, policy = self.chain, commands(self.chain, lines)
+        nodes, _, points = policy.down.shape
+        density = np.empty((nodes, len(c.actuator.mode_stage), len(c.path_noise.levels), points))
+        band = np.empty((nodes, 2), dtype=np.int64)
+        found = []
+        for i in range(len(c.scenarios.weight)):
+            forward_one(c, policy, i, density, band)
+            one, lower, upper = self._backward(policy, i, density, band)
+            found.append((one, lower.T, upper.T))
+        return ScenarioCosts(*(np.array(each) for each in zip(*found, strict=True)))
+
+    def _backward(self, policy: Commands, i: int, density: NDArray[np.float64], band: NDArray[np.int64]) -> Gradient:
+        """Backward recursion in scenario `i`; gradient (N, K + 1) if `density`, `band` are its forward ones."""
+        c, criterion = self.chain, self.aim.criterion
+        nodes, stages, _ = policy.down.shape
+        by_lower, by_upper = np.zeros((nodes, stages)), np.zeros((nodes, stages))
+        arguments = (
+            policy.down, policy.up, policy.down_slope, policy.up_slope,
+            *criterion.exit_costs(c.grid.speed_m_s, self.aim.target_speed_m_s),
+            criterion.switching_tolerance_m2_s2, c.entry, *shared_arguments(c), c.scenarios.factor[i],
+            c.scenarios.extra_m_s2[i], c.grid.path_step_m, c.grid.energy_step_m2_s2, c.plant.sensor.sample_period_s,
+            density, band, by_lower, by_upper,
+        )  # fmt: skip
+        return backward(*arguments), by_lower, by_upper

@@ -1,0 +1,124 @@
+"""Where a policy of switching lines takes the cuts: the exact exit-speed density, and what every state is visited.
+
+Nothing is sampled: the Chapman–Kolmogorov equation is followed forward for every hidden scenario.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.kernels.sweep.commands import command_probabilities
+from synth.kernels.sweep.policy_density import forward
+from synth.solver.chain.chain import Chain
+from synth.solver.exit_density import ExitDensity
+from synth.solver.switching_lines import SwitchingLines
+
+
+@dataclass(frozen=True)
+class Commands:
+    """P(down), P(up) at every node, stage and true speed (N, K + 1, E), and their slopes by the line value."""
+
+    down: NDArray[np.float64]
+    up: NDArray[np.float64]
+    down_slope: NDArray[np.float64]
+    up_slope: NDArray[np.float64]
+
+
+def commands(chain: Chain, lines: SwitchingLines) -> Commands:
+    """Command probabilities of `lines`, linear between their nodes, under the chain's measurement."""
+    nodes, points = len(chain.drive_m_s2), len(chain.grid.speed_m_s)
+    lower, upper = lines.lower_m_s[:, :nodes].T.copy(), lines.upper_m_s[:, :nodes].T.copy()
+    lower, upper, noise_m_s = chain.measurement.thresholds(lower, upper)
+    arrays = [np.empty((nodes, lines.stages, points)) for _ in range(4)]
+    command_probabilities(lower, upper, chain.grid.speed_m_s, noise_m_s, *arrays)
+    return Commands(*arrays)
+
+
+@dataclass(frozen=True)
+class Occupancy:
+    """Where a policy takes the cut: `samples` (I, N, H, L, E) expected samples in every hidden state, weighted
+    by the scenarios; `band` (I, N, 2) range of energies met at a node."""
+
+    samples: NDArray[np.float64]
+    band: NDArray[np.int64]
+
+
+def exit_density(chain: Chain, lines: SwitchingLines) -> ExitDensity:
+    """Exit-speed density of the policy, all scenarios weighted."""
+    nothing = np.empty((len(chain.scenarios.weight), 0, 0, 0, 0))
+    return forward_pass(chain, commands(chain, lines), nothing)[0]
+
+
+def density_and_occupancy(chain: Chain, lines: SwitchingLines) -> tuple[ExitDensity, Occupancy]:
+    """Exit-speed density, and the occupancy of every hidden state, from one forward recursion."""
+    c = chain
+    shape = (len(c.drive_m_s2), len(c.actuator.mode_stage), len(c.path_noise.levels), len(c.grid.speed_m_s))
+    samples = np.zeros((len(c.scenarios.weight), *shape))
+    density, band = forward_pass(c, commands(c, lines), samples)
+    return density, Occupancy(samples, band)
+
+
+def scenario_densities(chain: Chain, lines: SwitchingLines) -> tuple[ExitDensity, ...]:
+    """Exit-speed density in every scenario alone, in their order."""
+    c, policy = chain, commands(chain, lines)
+    return tuple(scenario_density(c, policy, i) for i in range(len(c.scenarios.weight)))
+
+
+def scenario_density(chain: Chain, policy: Commands, i: int) -> ExitDensity:
+    """Exit-speed density in scenario `i` alone."""
+    band = np.empty((len(chain.drive_m_s2), 2), dtype=np.int64)
+    exits, totals = forward_one(chain, policy, i, np.empty((0, 0, 0, 0)), band)
+    stalled, escaped = max(float(totals[0]), 0.0), float(totals[1])
+    return ExitDensity(chain.grid.speed_m_s, exits, stalled, escaped, float(totals[2] + totals[3]))
+
+
+def forward_pass(c: Chain, policy: Commands, samples: NDArray[np.float64]) -> tuple[ExitDensity, NDArray[np.int64]]:
+    """Forward recursion over all scenarios; `samples` (I, N, H, L, E) is filled unless its nodes are 0."""
+    weights, points = c.scenarios.weight, len(c.grid.speed_m_s)
+    band = np.empty((len(weights), len(c.drive_m_s2), 2), dtype=np.int64)
+    exits_of, totals_of = forward_all(c, policy, slice(None), samples, band)
+    exits, totals = np.zeros(points), np.zeros(4)
+    for i, weight in enumerate(weights):
+        samples[i] *= weight
+        exits += weight * exits_of[i]
+        totals += weight * totals_of[i]
+    stalled = max(float(totals[0]), 0.0)  # cubic weights leave −1e-8 or so
+    total = ExitDensity(c.grid.speed_m_s, exits, stalled, float(totals[1]), float(totals[2] + totals[3]))
+    return total, band
+
+
+def forward_one(
+    c: Chain, policy: Commands, i: int, density: NDArray[np.float64], band: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Forward recursion in scenario `i`: exit probabilities (E,) and the kernel's totals (4,)."""
+    exits, totals = forward_all(c, policy, slice(i, i + 1), density[None], band[None])
+    return exits[0], totals[0]
+
+
+def forward_all(
+    c: Chain, policy: Commands, scenarios: slice, density: NDArray[np.float64], band: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Forward recursion in several scenarios: exit probabilities (I, E) and the kernel's totals (I, 4)."""
+    factor = c.scenarios.factor[scenarios]
+    exits, totals = np.empty((len(factor), len(c.grid.speed_m_s))), np.empty((len(factor), 4))
+    arguments = (
+        policy.down, policy.up, c.entry, *shared_arguments(c), factor, c.scenarios.extra_m_s2[scenarios],
+        c.grid.path_step_m, c.grid.energy_step_m2_s2, c.plant.sensor.sample_period_s, density, band, exits, totals,
+    )  # fmt: skip
+    forward(*arguments)
+    return exits, totals
+
+
+def shared_arguments(c: Chain) -> Any:
+    """The plant's arrays, a tuple in the order in which `forward` and `backward` take them."""
+    a = c.landings
+    return (
+        c.grid.speed_m_s, c.actuator.mode_stage, c.actuator.mode_overpressure_kpa,
+        a.lower_chain, a.upper_chain, a.end_mode, a.ends, a.factors,
+        c.transient_noise.probability, c.transient_noise.mean, c.transient_noise.std,
+        c.path_noise.levels, c.path_noise.transition, c.path_noise.stationary, c.drive_m_s2, c.brake_m_s2_per_kpa,
+    )  # fmt: skip
