@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant
+from plant_models.frozen_arrays import frozen_arrays
 from synth.book.comparison.comparison import Comparison
 from synth.book.comparison.measured import Feasibility
 from synth.problem.criterion import Criterion
@@ -25,18 +26,25 @@ if TYPE_CHECKING:  # who draws or reports a case needs no kernels
     from synth.solver.polynomial_fit import Polish
 
 
-@dataclass(frozen=True)
+MOST_ESCAPED = 1e-4
+"""Probability that may leave the top of the speed grid before a prediction is called doubtful."""
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class PolicyMap:
     """Best command and indifferent region on the solver's grid, by stage.
 
     `path_m` (N,), `speed_m_s` (E,); `command` (K + 1, N, E) int8: −1 down, 0 hold, +1 up; `indifferent`
-    (K + 1, N, E): several commands cost the same within the tolerance.
+    (K + 1, N, E): several commands cost the same within the tolerance. `ties`: share of the states with a change at
+    hand where hold wins because the best change gains nothing.
     """
 
     path_m: NDArray[np.float64]
     speed_m_s: NDArray[np.float64]
     command: NDArray[np.int8]
     indifferent: NDArray[np.bool_]
+    ties: float
 
 
 @dataclass(frozen=True)
@@ -50,7 +58,8 @@ class Indifference:
     rms_with_m_s: float
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class DegreeStudy:
     """Exit error against the degree of the polynomials; arrays by `degrees`, rms in m/s.
 
@@ -66,7 +75,8 @@ class DegreeStudy:
     lines_rms_m_s: float
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class CaseStudy:
     """What a case shows besides its figures.
 
@@ -82,7 +92,8 @@ class CaseStudy:
     trace_factors: tuple[float, ...]
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class CaseResult:
     """One cut class and target: the table with its prediction, its closed loop, and the comparison.
 
@@ -120,6 +131,22 @@ class CaseResult:
     def criterion(self) -> Criterion:
         """What a pass costs."""
         return self.problem.criterion
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What throws doubt on the figures of the case, a sentence each."""
+        found = []
+        if not self.polish.converged:
+            found.append(
+                f"the polish ended before it converged ({self.polish.status}): its lines are the best of "
+                f"{self.polish.evaluations} evaluations"
+            )
+        if self.predicted.escaped > MOST_ESCAPED:
+            found.append(
+                f"a probability of {self.predicted.escaped:.1e} left the top of the speed grid in the prediction, "
+                f"where {MOST_ESCAPED:g} is allowed: lower grid.speed_step_m_s"
+            )
+        return tuple(found)
 
     @property
     def left_out(self) -> str:

@@ -122,7 +122,7 @@ def class_tasks(run: TuneRun, label: str, plant: Plant, studied: bool) -> list[T
     """
     config = run.config
     setup = class_setup(config, label, plant, run.passes, run.origin)
-    aims = [Aim(target, config.criterion) for target in config.targets_m_s]
+    aims = [Aim(target, config.criterion) for target in config.targets_of(label)]
     free = [replace(aim, criterion=replace(aim.criterion, switching_tolerance_m2_s2=0.0)) for aim in aims]
     both = solutions(setup.design, [*aims, *free])
     published = solutions(as_published(setup.design, PUBLISHED_LEVELS), aims)
@@ -157,6 +157,8 @@ def case_task(run: TuneRun, order: CaseOrder) -> CaseResult:
     rms = f"rms {figures.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s in {figures.passes} passes"
     told = f"{label} to {target:g} m/s: {rms}"
     run.progress(f"{told}; {result.left_out}" if result.left_out else told)
+    for warning in result.warnings:
+        run.progress(f"warning: {label} to {target:g} m/s: {warning}")
     if result.finding is not None:
         run.progress(f"{label} to {target:g} m/s: {result.finding.sentence}")
     return result

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from synth.cli.arguments import directory, whole_number
+from synth.cli.arguments import directory, whole_number, with_names
 
 app = typer.Typer(
     name="retarder-synth",
@@ -33,7 +33,7 @@ def run(arguments: list[str]) -> int:
     from synth.cli import INPUT_FAULT, say
 
     try:
-        code = app(arguments, prog_name="retarder-synth", standalone_mode=False)
+        code = app(with_names(arguments), prog_name="retarder-synth", standalone_mode=False)
     except typer.TyperException as fault:
         if not arguments:
             typer.echo(fault.format_message(), err=True)
@@ -187,6 +187,25 @@ def plot(
 
 
 @app.command()
+def loop(
+    source: SourceOrDirectory,
+    output: Annotated[
+        Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where pictures and figures go.")
+    ] = Path("loops"),
+    config: Config = None,
+    as_json: Json = False,
+) -> int:
+    """Show exported tables as control loops.
+
+    Nominal response by python-control beside the simulator's, phase portrait with the lines, predicted limit cycles.
+    Exit code 1 if the two responses do not agree.
+    """
+    from synth.cli.loop import loop_command
+
+    return loop_command(source, output, config, as_json)
+
+
+@app.command()
 def inspect(source: SourceOrDirectory, as_json: Json = False) -> int:
     """Tell what is in exported tables.
 
@@ -222,21 +241,39 @@ def export(
     return export_command(source, form, output, AskedCode(prefix, self_test, split), as_json)
 
 
+TypeName = "[NAME]"
+"""Of an option that may stand without a name: `arguments.with_names`."""
+
+
 @app.command()
 def init(
-    retarder: Annotated[str | None, typer.Option(metavar="NAME", help="A retarder of the library.")] = None,
-    show_list: Annotated[bool, typer.Option("--list", help="Only list the retarders of the library.")] = False,
+    retarder: Annotated[
+        str | None,
+        typer.Option(metavar=TypeName, help="File of a retarder type. With the name of a position: its configuration."),
+    ] = None,
+    position: Annotated[str | None, typer.Option(metavar=TypeName, help="File of a position.")] = None,
+    car: Annotated[str | None, typer.Option(metavar=TypeName, help="File of a car type.")] = None,
+    sensor: Annotated[str | None, typer.Option(metavar=TypeName, help="File of a sensor.")] = None,
+    weight_categories: Annotated[
+        str | None, typer.Option(metavar=TypeName, help="File of a set of weight categories.")
+    ] = None,
+    show_list: Annotated[bool, typer.Option("--list", help="Only list what the library holds.")] = False,
     as_json: Json = False,
 ) -> int:
-    """Print a commented configuration to start from."""
+    """Print a commented configuration to start from, or the file of one type."""
     from synth.cli.init import init_command
 
-    return init_command(retarder, show_list, as_json)
+    types = {
+        "retarders": retarder,
+        "positions": position,
+        "cars": car,
+        "sensors": sensor,
+        "weight_categories": weight_categories,
+    }
+    return init_command(types, show_list, as_json)
 
 
-@app.command(
-    context_settings={"allow_extra_args": True, "ignore_unknown_options": True, "help_option_names": []},
-)
+@app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True, "help_option_names": []})
 def study(
     context: typer.Context,
     name: Annotated[str | None, typer.Argument(metavar="NAME", help="The study; --list tells all.")] = None,
@@ -244,25 +281,16 @@ def study(
         Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where its results go.")
     ] = Path("out/studies"),
     show_list: Annotated[bool, typer.Option("--list", help="Only tell all studies and how long they take.")] = False,
-    small: Annotated[
-        bool, typer.Option("--small", help="Its smallest form: seconds, and no figure to rely on.")
-    ] = False,
-    document: Annotated[
-        bool, typer.Option("--document", help="In a checkout: fill the tables of docs/ from the kept results.")
-    ] = False,
-    check: Annotated[bool, typer.Option("--check", help="With --document: write nothing, tell what is stale.")] = False,
+    small: Annotated[bool, typer.Option("--small", help="Its smallest form: seconds, no figure to rely on.")] = False,
+    document: Annotated[bool, typer.Option("--document", help="Fill the tables of a checkout's documents.")] = False,
+    check: Annotated[bool, typer.Option("--check", help="Tell which documents are stale.")] = False,
     as_json: Json = False,
-    show_help: Annotated[bool, typer.Option("-h", "--help", help="Show this, or with NAME the options of it.")] = False,
 ) -> int:
-    """Run a study that the figures of the documentation come from.
+    """Run a study that figures of the documentation come from; NAME --help tells its options.
 
-    Writes NAME.json, NAME.md and pictures. Options behind NAME are those of the study. Exit code 1 if a claim that the
-    study checks does not hold.
+    Writes NAME.json, NAME.md and pictures. Exit code 1 if a claim that the study checks does not hold.
     """
     from synth.cli.study import Wanted, study_command
 
-    if show_help and name is None:
-        typer.echo(context.get_help())
-        return 0
-    wanted = Wanted(output, show_list, small, document, check, as_json, show_help)
-    return study_command(name, context.args, wanted)
+    wanted = Wanted(output, show_list, small, document, check, as_json)
+    return study_command(name, context.args, wanted, context.get_help)
