@@ -18,12 +18,16 @@ def same_plant(plant: Plant) -> Plant:
 
 @dataclass(frozen=True)
 class Perturbation:
-    """`change` makes the true plant of the nominal one; `fault` acts on the readings; `note` says what was clipped."""
+    """`change` makes the true plant of the nominal one; `fault` acts on the readings; `note` says what was clipped.
+
+    `value`: that of the parameter where one alone is off, 0 elsewhere.
+    """
 
     name: str
     change: Callable[[Plant], Plant] = same_plant
     fault: SensorFault = no_fault
     note: str = ""
+    value: float = 0.0
 
 
 Ends = tuple[Perturbation, Perturbation]
@@ -34,7 +38,8 @@ def at_value(plant: Plant, parameter: Parameter, value: float, name: str, remark
     """`parameter` of the nominal `plant` at `value`, all else nominal."""
     values = {parameter.key: value}
     notes = [remark, reach_note(plant, values)]
-    return Perturbation(name, lambda nominal: with_values(nominal, values), note="; ".join(filter(None, notes)))
+    note = "; ".join(filter(None, notes))
+    return Perturbation(name, lambda nominal: with_values(nominal, values), note=note, value=value)
 
 
 def reach_note(plant: Plant, values: Mapping[str, float]) -> str:

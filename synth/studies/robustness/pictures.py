@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -25,27 +25,26 @@ from synth.present.plots.house_style import (
     new_figure,
     place,
 )
-from synth.studies.robustness.study import BothSigns, Sweep, Together
-from synth.studies.robustness.trial import Outcome
+from synth.studies.robustness.findings import CaseRow, EndsRow, OutcomeRow, without_mass
 
 SHOWN = 16
 """Parameters in a tornado."""
 
 
-def tornado(found: Mapping[str, Sequence[BothSigns]], nominal_m_s: Mapping[str, float], limit_m_s: float) -> Figure:
+def tornado(cases: Sequence[CaseRow], limit_m_s: float) -> Figure:
     """Rms at −50 % and +50 % of the strongest parameters, the strongest on top, on a logarithmic axis."""
     figure = new_figure(17.5, 6.6, "One parameter wrong by half, the table unchanged", "rms of the exit speed error")
     place(figure, left=2.75, right=0.3, bottom=1.0, top=0.85, w=1.0)
-    for axes, (label, rows) in zip(figure.subplots(1, len(found), squeeze=False)[0], found.items(), strict=True):
-        shown = list(rows[:SHOWN])
-        dress(axes, f"{label}; nominal {nominal_m_s[label]:.3f} m/s", "rms, m/s")
+    for axes, case in zip(figure.subplots(1, len(cases), squeeze=False)[0], cases, strict=True):
+        shown, nominal = list(case.halves[:SHOWN]), case.nominal.rms_m_s
+        dress(axes, f"{case.case}; nominal {nominal:.3f} m/s", "rms, m/s")
         for i, row in enumerate(shown):
             for outcome, place_y, colour in ((row.less, i - 0.19, BLUE), (row.more, i + 0.19, VERMILLION)):
-                bar(axes, place_y, outcome, nominal_m_s[label], colour)
+                bar(axes, place_y, outcome, nominal, colour)
         axes.set_yticks(range(len(shown)), [name_of(row) for row in shown], fontsize=8)
         axes.set_ylim(len(shown) - 0.4, -0.6)
-        marks(axes, nominal_m_s[label], limit_m_s)
-        ends = [x for row in shown for y in (row.less, row.more) for x in y.statistics.rms_ci95_m_s]
+        marks(axes, nominal, limit_m_s)
+        ends = [x for row in shown for y in (row.less, row.more) for x in y.rms_ci95_m_s]
         logarithmic_x(axes, [*ends, limit_m_s])
     legend_below(
         figure,
@@ -57,20 +56,16 @@ def tornado(found: Mapping[str, Sequence[BothSigns]], nominal_m_s: Mapping[str, 
     return figure
 
 
-def name_of(row: BothSigns) -> str:
+def name_of(row: EndsRow) -> str:
     """Label of a row; values with a source behind them are starred, clipped and zero values say what they became."""
-    parameter = row.parameter
-    name = parameter.name + ("" if parameter.assumed else " *")
-    if parameter.nominal == 0.0:
-        return f"{name}: 0, {parameter.largest:g}"
-    if row.less.note.startswith("clipped") or row.more.note.startswith("clipped"):
-        return f"{name}: {parameter.at(-0.5):g}, {parameter.at(0.5):g}"
-    return name
+    name = row.name + ("" if row.assumed else " *")
+    clipped = any(outcome.note.startswith("clipped") for outcome in (row.less, row.more))
+    return f"{name}: {row.values[0]:g}, {row.values[1]:g}" if clipped or row.nominal == 0.0 else name
 
 
-def bar(axes: Axes, y: float, outcome: Outcome, nominal_m_s: float, colour: str) -> None:
+def bar(axes: Axes, y: float, outcome: OutcomeRow, nominal_m_s: float, colour: str) -> None:
     """From the nominal rms to that of `outcome`, with its interval."""
-    rms, interval = outcome.statistics.rms_m_s, outcome.statistics.rms_ci95_m_s
+    rms, interval = outcome.rms_m_s, outcome.rms_ci95_m_s
     axes.barh(y, rms - nominal_m_s, left=nominal_m_s, height=0.36, color=colour, zorder=2)
     axes.plot(interval, [y, y], color=INK, lw=1.0, zorder=3)
 
@@ -89,50 +84,45 @@ def mark_handles(limit_m_s: float) -> list[Line2D]:
     ]
 
 
-def sweeps(
-    found: Mapping[str, Sequence[Sweep]], retuned: Mapping[str, Mapping[str, Sequence[tuple[float, float]]]],
-    limit_m_s: float,
-) -> Figure:  # fmt: skip
-    """Rms over the error of a parameter; hollow: (relative error, rms) of tables tuned for the true value, by key."""
+def sweeps(cases: Sequence[CaseRow], limit_m_s: float) -> Figure:
+    """Rms over the error of a parameter; hollow: tables tuned for the true value."""
     figure = new_figure(14.0, 5.4, "How fast accuracy goes when one parameter is wrong", "table unchanged")
     place(figure, left=0.75, right=0.2, bottom=1.25, top=0.85, w=0.22)
     handles: list[Line2D] = []
-    for axes, (label, mine) in zip(figure.subplots(1, len(found), squeeze=False)[0], found.items(), strict=True):
-        dress(axes, label, "true value against the assumed one, %", "rms, m/s")
-        for i, swept in enumerate(mine):
+    for axes, case in zip(figure.subplots(1, len(cases), squeeze=False)[0], cases, strict=True):
+        dress(axes, case.case, "true value against the assumed one, %", "rms, m/s")
+        for i, swept in enumerate(case.sweeps):
             style: dict[str, Any] = {"color": LINE_COLOURS[i], "marker": LINE_MARKERS[i], "ms": 3.5}
-            percent = [100.0 * x for x in swept.relative]
-            axes.plot(percent, swept.rms_m_s, lw=1.3, **style)
-            points = retuned[label].get(swept.parameter.key, ())
+            axes.plot([100.0 * x for x in swept.relative], swept.rms_m_s, lw=1.3, **style)
             hollow = {**style, "ms": 7, "ls": "", "mfc": "none"}
-            axes.plot([100.0 * x for x, _ in points], [rms for _, rms in points], **hollow)
+            axes.plot([100.0 * x for x, _ in swept.retuned], [rms for _, rms in swept.retuned], **hollow)
             if axes is figure.axes[0]:
-                handles.append(Line2D([], [], lw=1.3, label=swept.parameter.name, **style))
+                handles.append(Line2D([], [], lw=1.3, label=swept.name, **style))
         axes.axhline(limit_m_s, color=GREY, lw=1.0, ls="--", zorder=1)
-        known = [rms for points in retuned[label].values() for _, rms in points]
-        logarithmic_y(axes, [*known, *(rms for swept in mine for rms in swept.rms_m_s)])
+        known = [rms for swept in case.sweeps for _, rms in swept.retuned]
+        logarithmic_y(axes, [*known, *(rms for swept in case.sweeps for rms in swept.rms_m_s)])
     hollow_handle = Line2D([], [], color=INK, marker="o", ms=7, ls="", mfc="none", label="tuned for the true value")
     legend_below(figure, [*handles, hollow_handle, mark_handles(limit_m_s)[1]], 3)
     return figure
 
 
-def all_together(found: Mapping[str, Sequence[Together]], limit_m_s: float) -> Figure:
+def all_together(cases: Sequence[CaseRow], limit_m_s: float) -> Figure:
     """Distribution of the rms over the points of the Latin hypercubes."""
     figure = new_figure(10.2, 5.2, "All assumed parameters wrong at once, the table unchanged")
     place(figure, left=0.8, right=3.2, bottom=0.65, top=0.75)
     axes = figure.subplots()
     dress(
         axes,
-        f"Latin hypercube, uniform, {next(iter(found.values()))[0].passes} passes a point",
+        f"Latin hypercube, uniform, {cases[0].together[0].passes} passes a point",
         "rms of the exit speed error, m/s",
         "share of the points below",
     )
     every: list[float] = []
-    for i, (label, mine) in enumerate(found.items()):
-        for drawn, style in zip(mine, ("-", "--"), strict=False):
+    for i, case in enumerate(cases):
+        for drawn, style in zip(case.together, ("-", "--"), strict=False):
             rms = np.sort(drawn.rms_m_s)
             every += rms.tolist()
-            name = f"{label}, ±{100 * drawn.span:.0f} %, n = {len(rms)}"
+            name = f"{case.case}, ±{100 * drawn.span:.0f} %, n = {len(rms)}"
             axes.step(rms, np.arange(1, len(rms) + 1) / len(rms), where="post", color=LINE_COLOURS[i], ls=style,
                       lw=1.4, label=name)  # fmt: skip
     axes.axvline(limit_m_s, color=GREY, lw=1.0, ls=":", label=f"limit {limit_m_s:g} m/s")
@@ -142,25 +132,22 @@ def all_together(found: Mapping[str, Sequence[Together]], limit_m_s: float) -> F
     return figure
 
 
-def named_conditions(
-    found: Mapping[str, Sequence[Outcome]], retuned: Mapping[str, Mapping[str, float]], limit_m_s: float
-) -> Figure:
+def named_conditions(cases: Sequence[CaseRow], limit_m_s: float) -> Figure:
     """Rms under every named condition with its interval; hollow: a table tuned for that plant."""
-    names = [name_without_numbers(outcome.name) for outcome in next(iter(found.values()))]
+    names = [without_mass(outcome.name) for outcome in cases[0].conditions]
     figure = new_figure(10.0, 0.29 * len(names) + 2.0, "Named conditions, the table unchanged", "95 % intervals")
     place(figure, left=3.3, right=0.25, bottom=1.1, top=0.75)
     axes = figure.subplots()
     dress(axes, "", "rms of the exit speed error, m/s")
     every, handles = [limit_m_s], []
-    for i, (label, mine) in enumerate(found.items()):
+    for i, case in enumerate(cases):
         style: dict[str, Any] = {"color": LINE_COLOURS[i], "marker": LINE_MARKERS[i]}
-        handles.append(Line2D([], [], ls="", label=label, **style))
-        for row, outcome in enumerate(mine):
-            y, rms = row + 0.22 * (i - 0.5 * (len(found) - 1)), outcome.statistics.rms_m_s
-            axes.plot(outcome.statistics.rms_ci95_m_s, [y, y], lw=1.0, color=LINE_COLOURS[i])
-            axes.plot([rms], [y], ms=4.5, **style)
-            best = retuned[label].get(outcome.name)
-            every += [*outcome.statistics.rms_ci95_m_s, best or rms]
+        handles.append(Line2D([], [], ls="", label=case.case, **style))
+        for row, outcome in enumerate(case.conditions):
+            y, best = row + 0.22 * (i - 0.5 * (len(cases) - 1)), outcome.retuned_rms_m_s
+            axes.plot(outcome.rms_ci95_m_s, [y, y], lw=1.0, color=LINE_COLOURS[i])
+            axes.plot([outcome.rms_m_s], [y], ms=4.5, **style)
+            every += [*outcome.rms_ci95_m_s, best or outcome.rms_m_s]
             if best is not None:
                 axes.plot([best], [y], ms=6, mfc="none", **style)
     axes.axvline(limit_m_s, color=GREY, lw=1.0, ls="--", zorder=1)
@@ -170,8 +157,3 @@ def named_conditions(
     tuned = Line2D([], [], color=INK, marker="o", ms=6, ls="", mfc="none", label="tuned for this plant")
     legend_below(figure, [*handles, tuned, mark_handles(limit_m_s)[1]], 3)
     return figure
-
-
-def name_without_numbers(name: str) -> str:
-    """'lightest cut of the category, 22 t' without the mass, which differs from case to case."""
-    return name.partition(" category, ")[0] + " category" if " category, " in name else name

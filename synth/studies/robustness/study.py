@@ -1,162 +1,174 @@
-"""The experiments on one table: one parameter at a time, sweeps, all parameters together, named conditions."""
+"""What a table does on another plant than it was tuned for: wrong parameters, worn parts, faulty sensors.
+
+For each case: every assumed parameter at −50 % and +50 % and at the ends of its sensible range, the strongest swept in
+steps of 5 %, all assumed parameters together, named conditions of service; the same passes everywhere. The strongest
+parameters, the ends of sensible ranges that hurt, the named plants and points of the sweeps also with a table tuned for
+the true plant.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
-from itertools import pairwise
-from typing import TypeVar
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
+from synth.configuration.config_file import load_config
+from synth.configuration.resolved_config import ResolvedConfig
+from synth.simulation.stratified_passes import stratified_passes
+from synth.studies.cases import Case, named_cases
+from synth.studies.options import option
+from synth.studies.robustness.condition import conditions
+from synth.studies.robustness.experiments import one_at_a_time, sweep, together
+from synth.studies.robustness.findings import CaseRow, EndsRow, OutcomeRow, Robustness, SweepRow
+from synth.studies.robustness.parameter import LEFT_OUT, Parameter, parameters
+from synth.studies.robustness.perturbation import Perturbation, ends_by, one_off, sensible_ends
+from synth.studies.robustness.sensor_fault import no_fault
+from synth.studies.robustness.trial import Trial, trial_of
+from synth.studies.side_by_side import side_by_side
+from synth.studies.study import Method, Tell
+from synth.studies.tuned_table import tuned_table
 
-from plant_models import Plant
-from plant_models.frozen_arrays import frozen_arrays
-from synth.simulation.exit_statistics import clopper_pearson
-from synth.studies.robustness.parameter import Parameter
-from synth.studies.robustness.perturbation import Ends, Perturbation, all_off, one_off
-from synth.studies.robustness.trial import Outcome, Trial
+FRESH = 15485863
+"""Added to the configured seed: passes that no tuning has seen."""
 
-Item = TypeVar("Item")
-Found = TypeVar("Found")
+HALF, WORST_TUNED, TUNED_SWEEPS, RETUNED_AT = 0.5, 3, 2, (-0.5, -0.25, 0.25, 0.5)
 
-CLIFF = 2.0
-"""A step of a sweep that multiplies the rms by more than this is called a cliff."""
-
-
-@dataclass(frozen=True)
-class BothSigns:
-    """One parameter below and above its nominal value, all else nominal."""
-
-    parameter: Parameter
-    less: Outcome
-    more: Outcome
-
-    @property
-    def worst(self) -> Outcome:
-        """The one with the larger rms."""
-        return max(self.less, self.more, key=lambda outcome: outcome.statistics.rms_m_s)
+WORTH_TUNING = 1.1
+"""Ends of sensible ranges with a larger rms ratio are also tuned for."""
 
 
 @dataclass(frozen=True)
-class Sweep:
-    """One parameter over a range: `relative` (n,) ascending, with 0, and the outcomes."""
+class Options:
+    """What is studied."""
 
-    parameter: Parameter
-    relative: tuple[float, ...]
-    outcomes: tuple[Outcome, ...]
-
-    @property
-    def rms_m_s(self) -> tuple[float, ...]:
-        """Simulated rms at each point."""
-        return tuple(outcome.statistics.rms_m_s for outcome in self.outcomes)
-
-    @property
-    def steepest(self) -> float:
-        """The largest rms ratio between neighbouring points."""
-        return max(max(a, b) / min(a, b) for a, b in pairwise(self.rms_m_s))
-
-    def tolerated(self, limit_m_s: float) -> tuple[float | None, float | None]:
-        """How far the parameter may fall and rise before the rms passes the limit; None where it never does.
-
-        Linear between the points; (0, 0) where the nominal plant itself is beyond it.
-        """
-        centre = self.relative.index(0.0)
-        rms = np.array(self.rms_m_s)
-        if rms[centre] > limit_m_s:
-            return 0.0, 0.0
-        down = first_crossing(self.relative[centre::-1], rms[centre::-1], limit_m_s)
-        return down, first_crossing(self.relative[centre:], rms[centre:], limit_m_s)
+    config: Path | None = option(None, "configuration; the built-in default book without it")
+    cases: tuple[str, ...] = option(("22:2", "52:3", "85:4"), "mass, t : target, m/s")
+    passes: int = option(20_000, "passes on each plant", (200, 10**6))
+    swept: int = option(4, "strongest parameters that are swept", (1, 20))
+    steps: int = option(10, "steps of a sweep on either side of the nominal value, up to 50 %", (1, 50))
+    spans: tuple[float, ...] = option((0.2, 0.5), "of all parameters together", (0.01, 0.5))
+    points: int = option(400, "of each Latin hypercube", (10, 10**5))
+    point_passes: int = option(5000, "passes at a point of a Latin hypercube", (200, 10**6))
+    no_retuning: bool = option(False, "tune no table for a true plant")
 
 
-@frozen_arrays
-@dataclass(frozen=True, eq=False)
-class Together:
-    """All assumed parameters off at once, at n points of a Latin hypercube over ±`span`.
+@dataclass(frozen=True)
+class Bench:
+    """A case with its trial, its parameters, the named conditions, and one parameter at a time already off."""
 
-    `relative` (n, parameters), `rms_m_s` (n,), shares of over-speed and stalls (n,); `rank_correlation` (parameters,)
-    of the rms with the parameters (Spearman).
-    """
-
-    parameters: tuple[Parameter, ...]
-    span: float
-    passes: int
-    relative: NDArray[np.float64]
-    rms_m_s: NDArray[np.float64]
-    overspeed: NDArray[np.float64]
-    stalls: NDArray[np.float64]
-    rank_correlation: NDArray[np.float64]
-
-    def share_within(self, limit_m_s: float) -> tuple[float, tuple[float, float]]:
-        """Share of the points whose rms is within the limit, and its 95 % interval."""
-        hits, n = int(np.count_nonzero(self.rms_m_s <= limit_m_s)), len(self.rms_m_s)
-        return hits / n, clopper_pearson(hits, n)
-
-    def quantile_m_s(self, share: float) -> tuple[float, tuple[float, float]]:
-        """Quantile of the rms over the points, and its 95 % interval from order statistics."""
-        from scipy.stats import binom  # start-up: scipy only where it is needed
-
-        ordered, n = np.sort(self.rms_m_s), len(self.rms_m_s)
-        low, high = (int(binom.ppf(tail, n, share)) for tail in (0.025, 0.975))
-        return float(np.quantile(ordered, share)), (float(ordered[max(low - 1, 0)]), float(ordered[min(high, n - 1)]))
+    trial: Trial
+    parameters: Mapping[str, Parameter]
+    named: tuple[Perturbation, ...]
+    halves: tuple[EndsRow, ...]
+    sensible: tuple[EndsRow, ...]
 
 
-def one_at_a_time(
-    trial: Trial, parameters: Sequence[Parameter], ends: Callable[[Plant, Parameter], Ends], threads: int
-) -> tuple[BothSigns, ...]:
-    """Every parameter at both `ends` (of `perturbation.ends_by` or `sensible_ends`), the largest rms first."""
-
-    def both(parameter: Parameter) -> BothSigns:
-        less, more = (trial.outcome(perturbation) for perturbation in ends(trial.plant, parameter))
-        return BothSigns(parameter, less, more)
-
-    return tuple(sorted(spread(both, parameters, threads), key=lambda x: -x.worst.statistics.rms_m_s))
-
-
-def sweep(trial: Trial, parameter: Parameter, relative: Sequence[float], threads: int) -> Sweep:
-    """`parameter` at each of `relative`, which must contain 0."""
-    outcomes = spread(lambda x: trial.outcome(one_off(trial.plant, parameter, x)), relative, threads)
-    return Sweep(parameter, tuple(relative), tuple(outcomes))
+def run(options: Options, tell: Tell) -> Robustness:
+    """Tune the tables, then change what is under them."""
+    config = load_config(options.config)
+    seed = config.validation.seed + FRESH
+    benches = []
+    for case in named_cases(config, options.cases):
+        benches.append(bench_of(case, config, seed, options.passes))
+        tell(f"{case.name}: one parameter at a time")
+    keys = strongest([bench.halves for bench in benches])[: options.swept]
+    rows = []
+    for bench in benches:
+        rows.append(case_row(bench, keys, config, options))
+        tell(f"{bench.trial.label}: {len(rows[-1].conditions)} conditions, {len(rows[-1].sweeps)} sweeps, hypercubes")
+    return Robustness(config.sha256, seed, options.passes, config.acceptance.rms_m_s, dict(LEFT_OUT), tuple(rows))
 
 
-def together(
-    trial: Trial, parameters: Sequence[Parameter], span: float, points: int, seed: int, threads: int
-) -> Together:
-    """Latin hypercube over ±`span` in all assumed `parameters` that are not nominally zero."""
-    from scipy.stats import qmc, spearmanr  # start-up: scipy only where it is needed
-
-    varied = tuple(p for p in parameters if p.assumed and p.nominal != 0.0)
-    unit = qmc.LatinHypercube(len(varied), rng=np.random.default_rng(seed)).random(points)
-    relative = span * (2.0 * unit - 1.0)
-    outcomes = spread(lambda row: trial.outcome(all_off(varied, row)), [row.tolist() for row in relative], threads)
-    rms = np.array([outcome.statistics.rms_m_s for outcome in outcomes])
-    return Together(
-        parameters=varied,
-        span=span,
-        passes=len(trial.passes),
-        relative=relative,
-        rms_m_s=rms,
-        overspeed=np.array([outcome.statistics.overspeed for outcome in outcomes]),
-        stalls=np.array([outcome.statistics.stalled for outcome in outcomes]),
-        rank_correlation=np.array([spearmanr(column, rms).statistic for column in relative.T]),
-    )
+def bench_of(case: Case, config: ResolvedConfig, seed: int, passes: int) -> Bench:
+    """The table of a case on its nominal plant, and with one parameter at a time off."""
+    table = tuned_table(config, case.plant, case.target_m_s)
+    trial = trial_of(case.name, table, case.plant, stratified_passes(seed, 0, passes))
+    cut_class = next(each for each in config.cuts if each.label == case.label)
+    every = {p.key: p for p in parameters(config, cut_class, case.plant, case.target_m_s)}
+    named = conditions(case.plant, every["cut.mass_t"], seed)
+    ranged = [p for p in every.values() if p.sensible is not None]
+    halves = one_at_a_time(trial, list(every.values()), ends_by(HALF))
+    return Bench(trial, every, named, halves, one_at_a_time(trial, ranged, sensible_ends))
 
 
-def under_conditions(trial: Trial, named: Sequence[Perturbation], threads: int) -> tuple[Outcome, ...]:
-    """Every named condition, in their order."""
-    return tuple(spread(trial.outcome, named, threads))
+def strongest(cases: Sequence[Sequence[EndsRow]]) -> list[str]:
+    """Keys of the assumed parameters by the geometric mean over the cases of their worse rms ratio."""
+    effect: dict[str, float] = {}
+    for row in (row for case in cases for row in case):
+        if row.assumed and row.nominal != 0.0:
+            effect[row.key] = effect.get(row.key, 0.0) + math.log(row.worst.ratio)
+    return sorted(effect, key=lambda key: -effect[key])
 
 
-def first_crossing(relative: Sequence[float], rms_m_s: NDArray[np.float64], limit_m_s: float) -> float | None:
-    """Where the rms first passes the limit on the way from `relative[0]`; linear between points, None if nowhere."""
-    for (x, a), (y, b) in pairwise(zip(relative, rms_m_s.tolist(), strict=True)):
-        if b > limit_m_s:
-            return float(x + (y - x) * (limit_m_s - a) / (b - a))
-    return None
+def case_row(bench: Bench, keys: Sequence[str], config: ResolvedConfig, options: Options) -> CaseRow:
+    """All of one case."""
+    trial, plant = bench.trial, bench.trial.plant
+    swept = [bench.parameters[key] for key in keys]
+    points = {p.key: [(x, one_off(plant, p, x)) for x in RETUNED_AT] for p in swept[:TUNED_SWEEPS]}
+    hurt = list(worth_tuning(bench, points))
+    tuned = {} if options.no_retuning else tuned_for(config, trial, hurt)
+    steps = [round(HALF * i / options.steps, 6) for i in range(-options.steps, options.steps + 1)]
+    few = trial.first(min(options.passes, options.point_passes))
+    every = list(bench.parameters.values())
+    return CaseRow(
+        case=trial.label,
+        nominal=trial.outcome(Perturbation("nominal")),
+        halves=tuple(with_ends_tuned(row, tuned) for row in bench.halves),
+        sensible=tuple(with_ends_tuned(row, tuned) for row in bench.sensible),
+        conditions=tuple(with_tuned(outcome, tuned) for outcome in side_by_side(trial.outcome, bench.named)),
+        sweeps=tuple(
+            with_points(sweep(trial, p, steps, config.acceptance.rms_m_s), points.get(p.key, ()), tuned) for p in swept
+        ),
+        together=tuple(
+            together(few, every, span, options.points, config.validation.seed) for span in options.spans
+        ),
+    )  # fmt: skip
 
 
-def spread(work: Callable[[Item], Found], items: Iterable[Item], threads: int) -> list[Found]:
-    """`work` for all items, in their order, by `threads` threads; each result depends on its item alone."""
-    with ThreadPoolExecutor(max_workers=threads) as pool:
-        return list(pool.map(work, items))
+def worth_tuning(bench: Bench, points: Mapping[str, Sequence[tuple[float, Perturbation]]]) -> list[Perturbation]:
+    """The perturbations that tables are also tuned for, each once."""
+    plant, by_key = bench.trial.plant, bench.parameters
+    worst = [
+        one_off(plant, by_key[row.key], -HALF if row.worst is row.less else HALF) for row in bench.halves[:WORST_TUNED]
+    ]
+    plants = [p for p in bench.named if p.fault is no_fault]
+    ends = {p.name: p for row in bench.sensible for p in sensible_ends(plant, by_key[row.key])}
+    hurt = [ends[row.worst.name] for row in bench.sensible if row.worst.ratio > WORTH_TUNING]
+    swept = [p for each in points.values() for _, p in each]
+    return list({p.name: p for p in [*worst, *plants, *hurt, *swept]}.values())
+
+
+def tuned_for(config: ResolvedConfig, trial: Trial, wanted: Sequence[Perturbation]) -> dict[str, OutcomeRow]:
+    """What tables tuned for the true plants do there, by the name of the perturbation."""
+
+    def one(perturbation: Perturbation) -> OutcomeRow:
+        table = tuned_table(config, perturbation.change(trial.plant), trial.target_m_s)
+        return trial.outcome(perturbation, table)
+
+    return {p.name: outcome for p, outcome in zip(wanted, side_by_side(one, wanted), strict=True)}
+
+
+def with_tuned(outcome: OutcomeRow, tuned: Mapping[str, OutcomeRow]) -> OutcomeRow:
+    """`outcome` with the rms of the table tuned for its plant, if there is one."""
+    best = tuned.get(outcome.name)
+    if best is None:
+        return outcome
+    return replace(outcome, retuned_rms_m_s=best.rms_m_s, retuned_ci95_m_s=best.rms_ci95_m_s)
+
+
+def with_ends_tuned(row: EndsRow, tuned: Mapping[str, OutcomeRow]) -> EndsRow:
+    """`with_tuned` of both ends."""
+    return replace(row, less=with_tuned(row.less, tuned), more=with_tuned(row.more, tuned))
+
+
+def with_points(
+    row: SweepRow, points: Sequence[tuple[float, Perturbation]], tuned: Mapping[str, OutcomeRow]
+) -> SweepRow:
+    """`row` with the rms of tables tuned for some of its points."""
+    return replace(row, retuned=tuple((x, tuned[p.name].rms_m_s) for x, p in points if p.name in tuned))
+
+
+SMALLEST = Options(cases=("52:3",), passes=200, swept=1, steps=1, spans=(0.2,), points=10, point_passes=200,
+                   no_retuning=True)  # fmt: skip
+METHOD = Method(Options, SMALLEST, Robustness, run)

@@ -6,26 +6,12 @@ from dataclasses import dataclass
 
 from plant_models import Plant
 from synth.simulation.closed_loop import TableController, simulate
-from synth.simulation.exit_statistics import ExitStatistics, exit_statistics, rms_ratio
+from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
+from synth.studies.robustness.findings import OutcomeRow
 from synth.studies.robustness.perturbation import Perturbation
 from tuning_tables import ControllerTable
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What a table does under one perturbation.
-
-    `ratio`: rms / rms of the nominal plant on the same passes, with its 95 % interval (paired); `note` says where a
-    value was clipped.
-    """
-
-    name: str
-    note: str
-    statistics: ExitStatistics
-    ratio: float
-    ratio_ci95: tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -55,18 +41,15 @@ class Trial:
         passes = perturbation.fault(self.passes, plant, self.nominal.transit_time_s)
         return simulate(plant, TableController(table or self.table), passes)
 
-    def outcome(self, perturbation: Perturbation, table: ControllerTable | None = None) -> Outcome:
+    def outcome(self, perturbation: Perturbation, table: ControllerTable | None = None) -> OutcomeRow:
         """Figures of `sample`, compared with the nominal passes of the trial's table."""
         sample = self.sample(perturbation, table)
-        found = exit_statistics(sample, self.target_m_s)
-        ratio, interval = rms_ratio(sample, self.nominal, self.target_m_s)
-        return Outcome(
-            name=perturbation.name,
-            note=perturbation.note,
-            statistics=found,
-            ratio=ratio,
-            ratio_ci95=interval,
-        )
+        s = exit_statistics(sample, self.target_m_s)
+        ratio, ratio_ci95 = rms_ratio(sample, self.nominal, self.target_m_s)
+        return OutcomeRow(
+            perturbation.name, perturbation.note, s.rms_m_s, s.rms_ci95_m_s, ratio, ratio_ci95, s.bias_m_s,
+            s.bias_ci95_m_s, s.overspeed, s.overspeed_ci95, s.stalled, s.stalled_ci95, s.switchings,
+        )  # fmt: skip
 
 
 def trial_of(label: str, table: ControllerTable, plant: Plant, passes: RandomPasses) -> Trial:

@@ -1,0 +1,90 @@
+"""What the study `accuracy-grid` has found: all cases, and the verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from synth.studies.accuracy_grid.figures import Figures, GridCase
+from synth.studies.accuracy_grid.limits import NOMINAL_CV, Limit, limits
+from synth.studies.markdown_table import MarkdownTable, table
+from synth.studies.study import Findings
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+DEFAULT_BOOK = "knp-5-bunch gondola-4-"
+"""How names of cases begin that are of the position and cars of the default book."""
+
+
+@dataclass(frozen=True)
+class Grid(Findings):
+    """All cases, and the minutes that they took."""
+
+    seed: int
+    passes: int
+    minutes: float
+    cases: tuple[GridCase, ...]
+
+    @property
+    def known(self) -> tuple[tuple[GridCase, Figures], ...]:
+        """The feasible cases with their figures."""
+        return tuple((case, case.figures) for case in self.cases if case.figures is not None)
+
+    @property
+    def verdict(self) -> tuple[Limit, ...]:
+        """What is asked, found, met."""
+        return limits(self.cases, self.minutes)
+
+    def tables(self) -> Mapping[str, MarkdownTable]:
+        """`limits`: a row a limit; `reference`, `cases`: a row a feasible case."""
+        verdict = [(each.asked, each.found if each.met else f"**{each.found}: not met**") for each in self.verdict]
+        heads = ("case", "told", "with estimator", "table", "best baseline", "predicted / simulated: with, without",
+                 "switchings: with, without, baseline")  # fmt: skip
+        return {
+            "limits": table("limits", ("asked", "found"), verdict),
+            "reference": self.reference(),
+            "cases": table("rms of the feasible cases, m/s", heads, (cells(*each) for each in self.known)),
+        }
+
+    def reference(self) -> MarkdownTable:
+        """Cases like those of the default book: what is reached with the friction known, two ways."""
+        rows = [
+            (case.case, f"{figures.known.rms_m_s:.4f}", f"{figures.told.rms_m_s:.4f}", f"{figures.table.rms_m_s:.4f}")
+            for case, figures in self.known if case.cv == NOMINAL_CV and case.case.startswith(DEFAULT_BOOK)
+        ]  # fmt: skip
+        heads = ("case", "friction known, the solver's lines", "friction told, polished cubics", "table")
+        return table("rms with the friction of every cut known, m/s", heads, rows)
+
+    def sentences(self) -> tuple[str, ...]:
+        """How many cases."""
+        left_out = sum(not figures.estimator_used for _, figures in self.known)
+        return (
+            f"{len(self.known)} of {len(self.cases)} cases are feasible or too near to the limit to tell; "
+            f"{self.passes} passes each, seed {self.seed}",
+            f"in {left_out} cases the estimator gained nothing on the tuning passes and was left out",
+        )
+
+    def figures(self) -> Mapping[str, Figure]:
+        """All cases by their rms."""
+        from synth.studies.accuracy_grid.picture import picture
+
+        return {"": picture([figures for _, figures in self.known])}
+
+    def faults(self) -> tuple[str, ...]:
+        """Limits that are not met."""
+        return tuple(f"not met: {each.asked}; found {each.found}" for each in self.verdict if not each.met)
+
+
+def cells(case: GridCase, figures: Figures) -> tuple[str, ...]:
+    """The cells of one case."""
+    best = figures.best_baseline
+    rms = (figures.told, figures.estimated, figures.table)
+    switchings = (figures.estimated, figures.table, figures.baselines[best])
+    return (
+        case.case, *(f"{each.rms_m_s:.4f}" for each in rms), f"{best} {figures.baselines[best].rms_m_s:.4f}",
+        f"{figures.honesty_estimated:.2f}, {figures.honesty:.2f}",
+        ", ".join(f"{each.switchings:.1f}" for each in switchings),
+    )  # fmt: skip

@@ -1,0 +1,1 @@
+"""The study `criteria`: other criteria than the mean square."""

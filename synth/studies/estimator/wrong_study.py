@@ -1,0 +1,125 @@
+"""What the estimator costs where it is wrong: the tables that `tune` writes, on plants they were not made for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.book.class_setup import TRIM_PASSES
+from synth.configuration.config_file import load_config
+from synth.problem.aim import Aim
+from synth.problem.problem import Problem
+from synth.simulation.closed_loop import simulate
+from synth.simulation.stratified_passes import stratified_passes
+from synth.studies.cases import Case, class_cases
+from synth.studies.estimator.pair import FRESH, Both, Compared, as_tuned, compared
+from synth.studies.estimator.wrong import LOST, simulated, wrongs
+from synth.studies.markdown_table import MarkdownTable, span, table
+from synth.studies.options import option
+from synth.studies.side_by_side import side_by_side
+from synth.studies.study import Findings, Method, Tell
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True)
+class Options:
+    """What is studied."""
+
+    config: Path | None = option(None, "configuration; the built-in default book without it")
+    masses_t: tuple[float, ...] = option((36.0, 52.0), "only cuts of these masses, t")
+    targets_m_s: tuple[float, ...] = option((2.0, 3.0), "exit speeds, m/s", (0.1, 20.0))
+    passes: int = option(40_000, "fresh passes of each case", (200, 10**7))
+
+
+@dataclass(frozen=True)
+class CaseRow:
+    """One case: figures by what is wrong, and the ratio on the passes by which `tune` keeps an estimator or not."""
+
+    case: str
+    tuning_ratio: float
+    by_wrong: dict[str, Compared]
+
+
+@dataclass(frozen=True)
+class Misled(Findings):
+    """All cases."""
+
+    config_sha256: str
+    seed: int
+    passes: int
+    cases: tuple[CaseRow, ...]
+
+    def tables(self) -> Mapping[str, MarkdownTable]:
+        """`wrong`: a row for what is wrong, a column a case; `lost`: a row a case, the sensor lost for good."""
+        names = [name for name in self.cases[0].by_wrong if name != LOST]
+        rows = [(name, *(ratio_cell(case.by_wrong[name]) for case in self.cases)) for name in names]
+        heads = ("case", "rms, m/s, without → with", "stalled, %", "too fast by 0.3 m/s, %", "outside 0.3 m/s, %")
+        return {
+            "wrong": table(
+                "rms with / without estimator [95 %]; share outside 0.3 m/s, without → with, %",
+                ("plant", *(case.case for case in self.cases)), rows,
+            ),
+            "lost": table("A sensor that is lost for good", heads, map(lost_cells, self.cases)),
+        }  # fmt: skip
+
+    def sentences(self) -> tuple[str, ...]:
+        """How much was simulated, and what `tune` would do."""
+        kept = [
+            f"{case.case}: ratio {case.tuning_ratio:.3f} on the {TRIM_PASSES} tuning passes"
+            + (": tune leaves the estimator out" if case.tuning_ratio >= 1.0 else "")
+            for case in self.cases
+        ]
+        return (f"{self.passes} fresh stratified passes each, seed {self.seed}", *kept)
+
+    def figures(self) -> Mapping[str, Figure]:
+        """The ratios, wherever the estimator is wrong."""
+        from synth.studies.estimator.picture import picture
+
+        return {"": picture("What the estimator costs where it is wrong", {c.case: c.by_wrong for c in self.cases})}
+
+
+def ratio_cell(found: Compared) -> str:
+    """'**1.179** [1.173, 1.184]; 3.79 → 6.01': bold where worse beyond the interval."""
+    ratio = f"**{found.ratio:.3f}**" if found.ratio_ci95[0] > 1.0 else f"{found.ratio:.3f}"
+    return f"{ratio} {span(found.ratio_ci95, 3)}; {percent(found.outside, 2)}"
+
+
+def lost_cells(case: CaseRow) -> tuple[str, ...]:
+    """The cells of one case."""
+    found = case.by_wrong[LOST]
+    rms = f"{found.rms_m_s[0]:.2f} → {found.rms_m_s[1]:.2f}"
+    return case.case, rms, percent(found.stalled, 1), percent(found.overspeed, 1), percent(found.outside, 0)
+
+
+def percent(shares: Both, digits: int) -> str:
+    """'3.79 → 6.01'."""
+    return " → ".join(f"{100.0 * share:.{digits}f}" for share in shares)
+
+
+def run(options: Options, tell: Tell) -> Misled:
+    """Tune both tables, simulate both on every plant."""
+    config = load_config(options.config)
+    seed = config.validation.seed + FRESH
+    passes = stratified_passes(seed, 0, options.passes)
+
+    def row_of(case: Case) -> CaseRow:
+        pair = as_tuned(Problem(case.plant, Aim(case.target_m_s, config.criterion)), config)
+        transit_s = simulate(case.plant, pair.plain, passes).transit_time_s.astype(np.float64)
+        found = {}
+        for wrong in wrongs(case.plant, seed):
+            both = (simulated(wrong, each, passes, transit_s) for each in (pair.plain, pair.misled(wrong.gauge)))
+            found[wrong.name] = compared(case.target_m_s, *both)
+        tell(f"{case.name}: {len(found)} plants and faults")
+        return CaseRow(case.name, pair.tuning_ratio, found)
+
+    rows = side_by_side(row_of, class_cases(config, options.masses_t, options.targets_m_s))
+    return Misled(config.sha256, seed, options.passes, rows)
+
+
+METHOD = Method(Options, Options(masses_t=(52.0,), targets_m_s=(3.0,), passes=400), Misled, run)

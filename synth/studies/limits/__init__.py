@@ -1,0 +1,1 @@
+"""The study `limits`: what limits the accuracy."""

@@ -1,0 +1,168 @@
+"""What limits the accuracy: sources of error and of delay switched off or changed one at a time.
+
+For every change the lines are designed anew, knowing of it, and simulated on the same fresh passes: so what is told is
+what the source costs a controller that knows of it, not what a surprise does. One cut in a thousand runs out of brake
+and leaves far too fast, whatever the lines; so the rms of the others stands first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from synth.book.estimation.estimated_table import controller_of, estimated_table, estimator_design
+from synth.configuration.config_file import load_config
+from synth.configuration.resolved_config import ResolvedConfig
+from synth.problem.aim import Aim
+from synth.problem.criterion import Criterion
+from synth.problem.problem import Problem
+from synth.simulation.closed_loop import LineController, simulate
+from synth.simulation.random_passes import RandomPasses, random_passes
+from synth.simulation.replicates import rms_of
+from synth.simulation.stratified_passes import stratified_passes
+from synth.solver.chain.chain import persistent_chain
+from synth.solver.polynomial_fit import PolynomialLines
+from synth.solver.tuned_lines import tuned_lines
+from synth.studies.cases import Case, named_cases
+from synth.studies.limits.change import QUIET_M_S, Change, changes
+from synth.studies.markdown_table import MarkdownTable, span, table
+from synth.studies.near_target import NEAR_M_S, NearTarget, near_target
+from synth.studies.options import option
+from synth.studies.side_by_side import side_by_side
+from synth.studies.study import Findings, Method, Tell
+from synth.studies.told_friction import TO_THE_END, Effort, told_friction
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FRESH, TUNING, TUNING_PASSES = 49979687, 32452843, 3000
+LINE_NODES = 301
+
+
+@dataclass(frozen=True)
+class Options:
+    """What is studied."""
+
+    config: Path | None = option(None, "configuration; the built-in default book without it")
+    cases: tuple[str, ...] = option(("22:2", "22:3", "52:3", "85:4"), "mass, t : target, m/s")
+    passes: int = option(20_000, "passes of each change", (200, 10**7))
+    told_nodes: int = option(5, "factors of friction that the controller is told", (1, 31))
+    told_iterations: int = option(TO_THE_END.iterations, "of a polish with the friction told", (1, 10_000))
+
+
+@dataclass(frozen=True)
+class Row:
+    """One change in one case: rms of all passes, and of those near the target."""
+
+    case: str
+    change: str
+    rms_m_s: float
+    near: NearTarget
+
+
+@dataclass(frozen=True)
+class Limits(Findings):
+    """All changes of all cases."""
+
+    config_sha256: str
+    seed: int
+    passes: int
+    rows: tuple[Row, ...]
+
+    def tables(self) -> Mapping[str, MarkdownTable]:
+        """`changes`: a row a change, a column a case."""
+        cases = tuple(dict.fromkeys(row.case for row in self.rows))
+        names = tuple(dict.fromkeys(row.change for row in self.rows))
+        cells = {(row.case, row.change): cell(row) for row in self.rows}
+        rows = [(name, *(cells[case, name] for case in cases)) for name in names]
+        title = f"rms within {NEAR_M_S:g} m/s of the target [95 %], mm/s; rms of all, share outside"
+        return {"changes": table(title, ("change", *cases), rows)}
+
+    def sentences(self) -> tuple[str, ...]:
+        """How much was simulated."""
+        return (f"{self.passes} stratified passes each, seed {self.seed}",)
+
+    def figures(self) -> Mapping[str, Figure]:
+        """A panel a case."""
+        from synth.studies.limits.picture import picture
+
+        return {"": picture(self.rows)}
+
+
+def cell(row: Row) -> str:
+    """'31.9 [31.5, 32.4]; 41, 0.08 %'."""
+    ends = "(exact)" if row.near.ci95_m_s is None else span(row.near.ci95_m_s, 1, 1e3)
+    return f"{1e3 * row.near.rms_m_s:.1f} {ends}; {1e3 * row.rms_m_s:.0f}, {100.0 * row.near.outside:.2f} %"
+
+
+def run(options: Options, tell: Tell) -> Limits:
+    """Design anew for every change, and simulate."""
+    config = load_config(options.config)
+    seed = config.validation.seed + FRESH
+    passes = stratified_passes(seed, 0, options.passes)
+    effort = replace(TO_THE_END, iterations=options.told_iterations)
+
+    def rows_of(case: Case) -> list[Row]:
+        rows = [changed(case, change, config, passes) for change in changes(case.plant, config.fit.degree)]
+        rows.append(told(case, config, options.told_nodes, effort))
+        rows.append(estimated(case, config, passes))
+        tell(f"{case.name}: {len(rows)} changes")
+        return rows
+
+    found = side_by_side(rows_of, named_cases(config, options.cases))
+    return Limits(config.sha256, seed, options.passes, tuple(row for rows in found for row in rows))
+
+
+def free(config: ResolvedConfig) -> Criterion:
+    """The criterion of `config` without a price on switchings."""
+    return replace(config.criterion, switching_tolerance_m2_s2=0.0)
+
+
+def changed(case: Case, change: Change, config: ResolvedConfig, passes: RandomPasses) -> Row:
+    """Lines designed for the changed plant, simulated on it."""
+    resolution = config.resolution
+    if change.speed_step_m_s is not None:
+        resolution = replace(resolution, speed_step_m_s=min(resolution.speed_step_m_s, change.speed_step_m_s))
+    design = persistent_chain(change.plant, resolution)
+    lines = tuned_lines(design, Aim(case.target_m_s, free(config)), change.degree).lines
+    return simulated(case, change, controller_for(case, lines), passes)
+
+
+def controller_for(case: Case, lines: PolynomialLines) -> LineController:
+    """The regulator of these lines."""
+    return LineController(lines.at(np.linspace(0.0, case.plant.exit_m, LINE_NODES)))
+
+
+def simulated(case: Case, change: Change, controller: LineController, passes: RandomPasses) -> Row:
+    """Errors of simulated passes on the changed plant."""
+    sample = simulate(change.plant, controller, passes)
+    rms = rms_of(sample.exit_speed_m_s - case.target_m_s, sample.weight)[0]
+    return Row(case.name, change.name, rms, near_target(sample, case.target_m_s))
+
+
+def told(case: Case, config: ResolvedConfig, nodes: int, effort: Effort) -> Row:
+    """Exact errors where the regulator is told the friction of every cut."""
+    finer = replace(config.resolution, speed_step_m_s=min(config.resolution.speed_step_m_s, QUIET_M_S))
+    design = persistent_chain(case.plant, finer)
+    found = told_friction(design, Aim(case.target_m_s, free(config)), config.fit.degree, nodes, effort)
+    rms, share = found.near(case.target_m_s, NEAR_M_S)
+    near = NearTarget(rms, None, max(1.0 - share, 0.0))
+    return Row(case.name, "told the friction of every cut", found.rms_m_s(case.target_m_s), near)
+
+
+def estimated(case: Case, config: ResolvedConfig, passes: RandomPasses) -> Row:
+    """Lines for the estimated speed, with the estimator."""
+    tuning = random_passes(config.validation.seed + TUNING, 0, TUNING_PASSES)
+    aim = Aim(case.target_m_s, free(config))
+    lines = tuned_lines(persistent_chain(case.plant, config.resolution), aim, config.fit.degree).lines
+    design = estimator_design(case.plant, config.resolution, case.target_m_s)
+    made = estimated_table(Problem(case.plant, aim), design, lines, tuning)
+    change = Change("with the estimator", case.plant, config.fit.degree)
+    return simulated(case, change, controller_of(made.lines, made.estimator), passes)
+
+
+METHOD = Method(Options, Options(cases=("52:3",), passes=400, told_nodes=1, told_iterations=1), Limits, run)

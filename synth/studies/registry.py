@@ -1,0 +1,109 @@
+"""All studies, in the order of their names. Listing them imports none of them."""
+
+from __future__ import annotations
+
+from plant_models.library.near_miss import near_miss
+from synth.faults.input_error import InputError
+from synth.studies.study import Study
+
+STUDIES: tuple[Study, ...] = (
+    Study(
+        "accuracy-grid",
+        "How near are the tables to what physics leaves, over a whole grid of cases, and are all limits kept?",
+        200.0,
+        "estimator.md#the-whole-grid",
+        "synth.studies.accuracy_grid.study",
+    ),
+    Study(
+        "book",
+        "How accurate are the tables of the default book?",
+        8.0,
+        "results.md",
+        "synth.studies.book",
+    ),
+    Study(
+        "convergence",
+        "How do value, lines and prediction change as the steps of the grid are halved?",
+        17.0,
+        "method.md#11-convergence",
+        "synth.studies.convergence.study",
+    ),
+    Study(
+        "criteria",
+        "What do other criteria than the mean square make of the tables, and what does a price on switchings buy?",
+        41.0,
+        "method.md#12-criteria",
+        "synth.studies.criteria.study",
+    ),
+    Study(
+        "degree",
+        "Which degree do the polynomial lines need?",
+        46.0,
+        "degree.md",
+        "synth.studies.degree",
+    ),
+    Study(
+        "estimator",
+        "What is gained when the regulator compares an estimated speed with its lines?",
+        54.0,
+        "estimator.md#what-it-gains",
+        "synth.studies.estimator.study",
+    ),
+    Study(
+        "estimator-spreads",
+        "What does the estimator gain at other spreads of friction, and at another position?",
+        60.0,
+        "estimator.md#what-it-gains",
+        "synth.studies.estimator.spreads",
+    ),
+    Study(
+        "estimator-wrong",
+        "What does the estimator cost where it is wrong: another friction, mass or gauge, a lost sensor?",
+        18.0,
+        "estimator.md#where-it-is-wrong",
+        "synth.studies.estimator.wrong_study",
+    ),
+    Study(
+        "interpolation",
+        "What is lost by lines between two tables of a book, against a table tuned for the very speed commanded?",
+        6.0,
+        "controllers.md",
+        "synth.studies.interpolation",
+    ),
+    Study(
+        "limits",
+        "What limits the accuracy: what does each source of error or of delay cost a controller that knows of it?",
+        41.0,
+        "estimator.md",
+        "synth.studies.limits.study",
+    ),
+    Study(
+        "rare-events",
+        "How often does a cut leave far too fast, down to one in a million and below?",
+        126.0,
+        "rare-events.md",
+        "synth.studies.rare_events.study",
+    ),
+    Study(
+        "robustness",
+        "What does a table do on another plant than it was tuned for: wrong parameters, worn parts, faulty sensors?",
+        157.0,
+        "robustness.md",
+        "synth.studies.robustness.study",
+    ),
+    Study(
+        "unlocked",
+        "What is gained when a command may be given at every sample, also during a change of stage?",
+        1800.0,
+        "unlocked.md",
+        "synth.studies.unlocked.study",
+    ),
+)
+
+
+def study_named(name: str) -> Study:
+    """The study called `name`. Raises `InputError` with a hint for another word."""
+    known = {study.name: study for study in STUDIES}
+    if name not in known:
+        raise InputError(f"study: there is no study {name!r}; {near_miss(name, known)} ('study --list' tells all)")
+    return known[name]

@@ -1,0 +1,119 @@
+"""The JSON of a study holds all of its result; what another study, or another version of it, left is refused."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from synth.faults.input_error import InputError
+from synth.studies import study as study_module
+from synth.studies.markdown_table import MarkdownTable, around, plus_minus, table
+from synth.studies.options import option
+from synth.studies.result import Result, read_result
+from synth.studies.study import Findings, Method, Study
+
+
+@dataclass(frozen=True)
+class Options:
+    """Of a study that counts."""
+
+    passes: int = option(10, "how many")
+
+
+@dataclass(frozen=True)
+class Row:
+    """A case, an interval, something that may be absent."""
+
+    case: str
+    ends: tuple[float, float]
+    ratio: float | None
+
+
+@dataclass(frozen=True)
+class Counted(Findings):
+    """What counting finds."""
+
+    rows: tuple[Row, ...]
+    shares: dict[str, float]
+
+    def tables(self) -> Mapping[str, MarkdownTable]:
+        """One row a case."""
+        return {"rows": table("rows", ("case", "low"), ((row.case, f"{row.ends[0]:g}") for row in self.rows))}
+
+
+METHOD = Method(Options, Options(1), Counted, lambda options, tell: FOUND)
+FOUND = Counted((Row("a [b, c] ü", (0.1, 1e-17), None), Row("d", (-1.0, 2.0), 0.5)), {"rms": 1.0 / 3.0})
+
+
+@pytest.fixture
+def study(monkeypatch: pytest.MonkeyPatch) -> Study:
+    monkeypatch.setattr(study_module, "import_module", lambda name: __import__("types").SimpleNamespace(METHOD=METHOD))
+    return Study("counted", "How many?", 1.0, "", "nowhere")
+
+
+def left(study: Study, path: Path, changes: dict[str, Any]) -> Path:
+    document = json.loads(study.run().json()) | changes
+    (path / "counted.json").write_text(json.dumps(document), encoding="utf-8")
+    return path / "counted.json"
+
+
+def test_a_result_is_read_back_with_every_bit_and_type(study: Study, tmp_path: Path) -> None:
+    result = study.run(Options(7))
+    (tmp_path / "counted.json").write_text(result.json(), encoding="utf-8")
+    again = read_result(study, tmp_path / "counted.json")
+    assert again == result
+    assert again.options == Options(7)
+    assert isinstance(again.findings, Counted)
+    assert again.findings.rows[0].ends == (0.1, 1e-17)
+    assert again.markdown() == result.markdown()
+
+
+def test_numbers_of_a_list_stand_in_one_line(study: Study) -> None:
+    assert '"ends": [0.1, 1e-17],\n' in study.run().json()
+    assert '"case": "a [b, c] ü",\n' in study.run().json()
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"study": "other"},
+        {"version": 2},
+        {"findings": {"rows": [], "shares": {}, "more": 1}},
+        {"findings": {"rows": [{"case": "a", "ends": [1.0], "ratio": None}], "shares": {}}},
+        {"findings": {"rows": [{"case": "a", "ends": ["x", 1.0], "ratio": None}], "shares": {}}},
+        {"options": {"passes": 10, "more": 1}},
+        {"options": {}},
+    ],
+)
+def test_what_no_run_left_is_refused(study: Study, tmp_path: Path, changes: dict[str, Any]) -> None:
+    path = left(study, tmp_path, changes)
+    with pytest.raises(InputError, match=r"counted\.json: .*study counted' again"):
+        read_result(study, path)
+
+
+def test_a_missing_or_broken_file_is_told(study: Study, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="there is no such file; 'retarder-synth study counted' makes it"):
+        read_result(study, tmp_path / "counted.json")
+    (tmp_path / "counted.json").write_text("{", encoding="utf-8")
+    with pytest.raises(InputError, match="Expecting property name"):
+        read_result(study, tmp_path / "counted.json")
+
+
+def test_a_number_that_is_not_finite_is_no_result(study: Study) -> None:
+    broken = replace(FOUND, shares={"rms": math.nan})
+    with pytest.raises(ValueError, match="Out of range float"):
+        Result(study, "1", Options(), broken).json()
+
+
+def test_cells() -> None:
+    assert around(0.04191, (0.0414, 0.04249)) == "0.0419 [0.0414, 0.0425]"
+    assert around(0.0419, (0.0414, 0.0425), 1, 1e3) == "41.9 [41.4, 42.5]"
+    assert plus_minus(0.0419, (0.0414, 0.0425), 2, 1e3) == "41.90 ± 0.55"
+    with pytest.raises(ValueError, match="1 cells under 2 heads"):
+        table("t", ("a", "b"), [("c",)])

@@ -1,0 +1,60 @@
+"""`retarder-synth study`: a light list, one sentence for a wrong word, files and JSON of the same run."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from synth.cli import main
+from synth.studies.registry import STUDIES
+from synth.studies.result import read_result
+
+
+def test_the_list_names_question_and_time_of_every_study(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["study", "--list"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == len(STUDIES)
+    for line, study in zip(lines, STUDIES, strict=True):
+        assert line.split()[0] == study.name
+        assert line.endswith(study.question)
+        assert study.duration in line
+    assert main(["study", "--list", "--json"]) == 0
+    assert [each["name"] for each in json.loads(capsys.readouterr().out)["studies"]] == [s.name for s in STUDIES]
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["study"], "study: which one?"),
+        (["study", "interpolatoin"], "did you mean interpolation?"),
+        (["study", "interpolation", "--passes", "1"], "--passes: it is '1'; give a whole number from 200 to"),
+        (["study", "interpolation", "--masses-t", "23"], "no cut of the configuration has 23 t"),
+        (["study", "interpolation", "--config", "nowhere.toml"], "nowhere.toml: there is no such file"),
+        (["study", "interpolation", "--small", "--passes", "300"], "--small has options of its own"),
+        (["study", "interpolation", "--check"], "leave the name of a study out"),
+    ],
+)
+def test_a_wrong_word_is_told(words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(words) == 2
+    told = capsys.readouterr()
+    assert sentence in told.err
+    assert (told.out, told.err.count("\n")) == ("", 1)
+
+
+def test_the_help_of_a_study_tells_its_options(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["study", "interpolation", "--help"]) == 0
+    assert "--masses-t X [X ...]" in capsys.readouterr().out
+    assert main(["study", "--help"]) == 0
+    assert "Run a study" in capsys.readouterr().out
+
+
+def test_a_run_leaves_its_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["study", "interpolation", "--masses-t", "22", "--passes", "200", "--parts", "2", "--step-m-s", "2"]
+    assert main([*words, "-o", str(tmp_path), "--json"]) == 0
+    study = next(each for each in STUDIES if each.name == "interpolation")
+    result = read_result(study, tmp_path / "interpolation.json")
+    assert capsys.readouterr().out == result.json()
+    assert (tmp_path / "interpolation.md").read_text(encoding="utf-8") == result.markdown()
+    assert {path.suffix for path in tmp_path.iterdir()} == {".json", ".md", ".png", ".svg"}
