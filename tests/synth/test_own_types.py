@@ -163,6 +163,22 @@ def test_folders_and_files_that_are_not_there_are_all_told(tmp_path: Path) -> No
     assert third.endswith("'retarder-synth init --car' prints one to start from")
 
 
+def test_a_position_with_another_retarder_is_called_by_both_names(tmp_path: Path) -> None:
+    own(tmp_path / "my", RETARDERS, "mine")
+    config = config_in(tmp_path, 'library = ["my"]\nretarder.type = "mine"\n')
+    assert config.plants()[0][1].position.name == config.retarder.name == "knp-5-bunch-with-mine"
+    assert config_in(tmp_path, 'retarder.type = "knp-5"\n').retarder.name == "knp-5-bunch"
+    (sentence,) = sentences(tmp_path, 'retarder.type = "knp-6"\n')
+    assert sentence.endswith("retarder.type is 'knp-6', which the library does not hold; did you mean knp-5?")
+
+
+def test_a_categorys_table_that_would_write_on_a_terminal_is_refused_in_quotes(tmp_path: Path) -> None:
+    (tmp_path / "x.toml").write_text('title = "x"\n"\\u001b[31m" = 5\n', encoding="utf-8")
+    (sentence,) = sentences(tmp_path, 'weight_categories = "x.toml"\n')
+    assert "'\\x1b[31m' is no name of a category's table" in sentence
+    assert sentence.isprintable()
+
+
 def test_a_library_without_own_types_is_that_of_the_program() -> None:
     assert Library() == BUILT_IN
     assert load_car("gondola-4").name == "gondola-4"
