@@ -21,6 +21,16 @@ from synth.faults.input_error import InputError
 CUT = '[[cut]]\ncar = "gondola-4"\nmass_t = 22\n'
 
 
+USED = {
+    "positions": '[position]\nname = "mine"\n',
+    "retarders": '[retarder]\ntype = "mine"\n',
+    "cars": '[[cut]]\ncar = "mine"\nmass_t = 22\n',
+    "sensors": '[sensor]\ntype = "mine"\n',
+    "weight_categories": 'weight_categories = "mine"\n',
+}
+"""A configuration that uses the type "mine", by its kind."""
+
+
 def own(folder: Path, kind: Kind, name: str, **changes: str) -> Path:
     """A file as init prints it under another name; `changes`: lines by the key that they begin with."""
     lines = type_toml(kind, None).splitlines()
@@ -50,13 +60,7 @@ def sentences(folder: Path, text: str) -> tuple[str, ...]:
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.folder)
 def test_what_init_prints_reads_back_as_a_type_of_ones_own(kind: Kind, tmp_path: Path) -> None:
     own(tmp_path / "my", kind, "mine")
-    text = {
-        "positions": '[position]\nname = "mine"\n',
-        "retarders": '[retarder]\ntype = "mine"\n',
-        "cars": '[[cut]]\ncar = "mine"\nmass_t = 22\n',
-        "sensors": '[sensor]\ntype = "mine"\n',
-        "weight_categories": 'weight_categories = "mine"\n',
-    }[kind.folder]
+    text = USED[kind.folder]
     changed = config_in(tmp_path, f'library = ["my/"]\n{text}')
     same = config_in(tmp_path, text.replace("mine", START_FROM[kind]))
     assert changed.plants()[0][1].cut == same.plants()[0][1].cut
@@ -123,12 +127,7 @@ FAULTS = {
 def test_a_faulty_file_is_told_in_one_sentence_with_file_key_and_value(name: str, tmp_path: Path) -> None:
     kind, key, line, said = FAULTS[name]
     path = own(tmp_path / "my", kind, "mine", **{key: line})
-    text = {
-        "cars": CUT.replace("gondola-4", "mine"),
-        "retarders": '[retarder]\ntype = "mine"\n',
-        "positions": '[position]\nname = "mine"\n',
-    }[kind.folder]
-    (sentence,) = sentences(tmp_path, f'library = ["my/"]\n{text}')
+    (sentence,) = sentences(tmp_path, f'library = ["my/"]\n{USED[kind.folder]}')
     assert sentence.startswith(f"{path}: ")
     assert re.search(said if ".*" in said else re.escape(said), sentence), sentence
     assert "\n" not in sentence
