@@ -10,7 +10,7 @@ STUDIES: tuple[Study, ...] = (
     Study(
         "accuracy-grid",
         "How near are the tables to what physics leaves, over a whole grid of cases, and are all limits kept?",
-        200.0,
+        323.0,
         "estimator.md#the-whole-grid",
         "synth.studies.accuracy_grid.study",
     ),
@@ -45,14 +45,14 @@ STUDIES: tuple[Study, ...] = (
     Study(
         "estimator",
         "What is gained when the regulator compares an estimated speed with its lines?",
-        54.0,
+        76.0,
         "estimator.md#what-it-gains",
         "synth.studies.estimator.study",
     ),
     Study(
         "estimator-spreads",
         "What does the estimator gain at other spreads of friction, and at another position?",
-        60.0,
+        104.0,
         "estimator.md#what-it-gains",
         "synth.studies.estimator.spreads",
     ),
@@ -73,7 +73,7 @@ STUDIES: tuple[Study, ...] = (
     Study(
         "limits",
         "What limits the accuracy: what does each source of error or of delay cost a controller that knows of it?",
-        41.0,
+        28.0,
         "estimator.md",
         "synth.studies.limits.study",
     ),
@@ -94,7 +94,7 @@ STUDIES: tuple[Study, ...] = (
     Study(
         "unlocked",
         "What is gained when a command may be given at every sample, also during a change of stage?",
-        1800.0,
+        3480.0,
         "unlocked.md",
         "synth.studies.unlocked.study",
     ),
