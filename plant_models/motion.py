@@ -14,11 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.cut import Cut
+from plant_models.frozen_arrays import frozen_arrays
 from plant_models.retarder import RetarderPosition
 from plant_models.track_profile import TrackProfile
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class PathCoefficients:
     """Cell means along the path of the first axle.
 
@@ -30,10 +32,6 @@ class PathCoefficients:
     gravity_m_s2: NDArray[np.float64]
     brake_m_s2_per_kpa: NDArray[np.float64]
     resistance_m_s2_per_n_kn: float
-
-    def __post_init__(self) -> None:
-        for array in (self.edges_m, self.gravity_m_s2, self.brake_m_s2_per_kpa):
-            array.setflags(write=False)
 
 
 def braked_axles(position: RetarderPosition, cut: Cut, s_m: NDArray[np.float64]) -> NDArray[np.int64]:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.errors import PlantError, require, require_between
+from plant_models.frozen_arrays import frozen_arrays
 
 MAX_SWITCHINGS = 40
 """After so many valve openings within one command the regulator is said to hunt."""
@@ -103,7 +104,8 @@ class Pneumatics:
         )
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class PressureHistory:
     """P(t) after one command, as pieces P∞ + (P_start − P∞)·exp(−(t − t_start)/T).
 
@@ -115,10 +117,6 @@ class PressureHistory:
     pressures_kpa: NDArray[np.float64]
     asymptotes_kpa: NDArray[np.float64]
     time_constants_s: NDArray[np.float64]
-
-    def __post_init__(self) -> None:
-        for array in (self.starts_s, self.pressures_kpa, self.asymptotes_kpa, self.time_constants_s):
-            array.setflags(write=False)
 
     @property
     def duration_s(self) -> float:

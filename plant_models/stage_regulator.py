@@ -15,12 +15,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from plant_models.pneumatics import PressureHistory
 from plant_models.retarder import RetarderPosition
 from plant_models.speed_sensor import DopplerSensor
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Actuator:
     """Modes and commands of a position for a cut that may use stages 0 … K.
 
@@ -39,11 +41,6 @@ class Actuator:
     chain_samples: NDArray[np.int64]
     chain_overpressure_kpa: NDArray[np.float64]
     substeps: int
-
-    def __post_init__(self) -> None:
-        for array in vars(self).values():
-            if isinstance(array, np.ndarray):
-                array.setflags(write=False)
 
     @property
     def stages(self) -> int:

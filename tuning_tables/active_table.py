@@ -11,7 +11,7 @@ from tuning_tables.estimator import Estimator
 from tuning_tables.table import ControllerTable
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ActiveTable:
     """Lines ready for `rule.decide`; arrays are read-only, shapes and units those of `ControllerTable`.
 

@@ -41,7 +41,7 @@ STAGE_KPA: Final = (0.0, 0.0, 180.0, 390.0, 390.0, 240.0, 90.0, 0.0)
 """Overpressure in equal parts of a pass."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class GoldenTrack:
     """n samples of one cut from its first on, for table `number`, and the estimates: all float32 (n,), m, m/s, kPa.
 

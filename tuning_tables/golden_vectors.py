@@ -26,7 +26,7 @@ ASIDE_M_S: Final = np.float32(0.01)
 """Distance from a line that no rounding bridges."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class GoldenVectors:
     """n readings and their answers: stage int32, s_m and v_m_s float32, answer int8 (LOWER, HOLD, RAISE), all (n,)."""
 

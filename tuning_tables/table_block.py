@@ -56,7 +56,7 @@ class BlockSize:
         return slice(first, first + (ESTIMATOR_HEAD + 3 * self.breaks if self.breaks else 0))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class TableBlock:
     """One table as the controller holds it: its numbers, and the words of the block (uint32, checksum last)."""
 
@@ -65,6 +65,9 @@ class TableBlock:
     mass_t: np.float32
     table: ActiveTable
     words: npt.NDArray[np.uint32]
+
+    def __post_init__(self) -> None:
+        self.words.setflags(write=False)
 
     @property
     def crc32(self) -> int:
@@ -106,7 +109,6 @@ def block_of(
         ]
     )
     words = np.append(body, np.uint32(zlib.crc32(body.astype("<u4").tobytes())))
-    words.setflags(write=False)
     return TableBlock(category, axles, mass_t, table, words)
 
 

@@ -25,18 +25,24 @@ if TYPE_CHECKING:  # who draws or reports a case needs no kernels
     from synth.solver.polynomial_fit import Polish
 
 
+MOST_ESCAPED = 1e-4
+"""Probability that may leave the top of the speed grid before a prediction is called doubtful."""
+
+
 @dataclass(frozen=True)
 class PolicyMap:
     """Best command and indifferent region on the solver's grid, by stage.
 
     `path_m` (N,), `speed_m_s` (E,); `command` (K + 1, N, E) int8: −1 down, 0 hold, +1 up; `indifferent`
-    (K + 1, N, E): several commands cost the same within the tolerance.
+    (K + 1, N, E): several commands cost the same within the tolerance. `ties`: share of the states with a change at
+    hand where hold wins because the best change gains nothing.
     """
 
     path_m: NDArray[np.float64]
     speed_m_s: NDArray[np.float64]
     command: NDArray[np.int8]
     indifferent: NDArray[np.bool_]
+    ties: float
 
 
 @dataclass(frozen=True)
@@ -120,6 +126,22 @@ class CaseResult:
     def criterion(self) -> Criterion:
         """What a pass costs."""
         return self.problem.criterion
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What throws doubt on the figures of the case, a sentence each."""
+        found = []
+        if not self.polish.converged:
+            found.append(
+                f"the polish ended before it converged ({self.polish.status}): its lines are the best of "
+                f"{self.polish.evaluations} evaluations"
+            )
+        if self.predicted.escaped > MOST_ESCAPED:
+            found.append(
+                f"a probability of {self.predicted.escaped:.1e} left the top of the speed grid in the prediction, "
+                f"where {MOST_ESCAPED:g} is allowed: lower grid.speed_step_m_s"
+            )
+        return tuple(found)
 
     @property
     def left_out(self) -> str:

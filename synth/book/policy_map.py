@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.book.case_result import PolicyMap
-from synth.solver.backward_induction import Solution
+from synth.solver.backward_induction import TIE_M2_S2, Solution
 
 
 def policy_map(solution: Solution, tolerance_m2_s2: float) -> PolicyMap:
@@ -24,9 +24,11 @@ def policy_map(solution: Solution, tolerance_m2_s2: float) -> PolicyMap:
     command[(up > 0.0) & (up > down)] = 1
     near = np.stack([best - gain <= tolerance_m2_s2 for gain in (np.zeros_like(best), down, up)])
     indifferent = near.sum(axis=0) >= 2
+    changes = np.maximum(down, up)
+    tied = np.abs(changes[np.isfinite(changes)]) <= TIE_M2_S2
     for array in (command, indifferent):
         array.setflags(write=False)
-    return PolicyMap(grid.path_m[:-1], grid.speed_m_s, command, indifferent)
+    return PolicyMap(grid.path_m[:-1], grid.speed_m_s, command, indifferent, float(tied.mean()))
 
 
 def available(gain: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -52,6 +52,6 @@ def span(values: Sequence[float], form: str = ".2f") -> str:
     return low if low == high else f"from {low} to {high}"
 
 
-def counted(number: int, noun: str) -> str:
+def counted(number: int, noun: str, plural: str = "") -> str:
     """'1 case', '3 cases'."""
-    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+    return f"{number} {noun}" if number == 1 else f"{number} {plural or noun + 's'}"

@@ -17,11 +17,13 @@ import numpy as np
 
 from synth.book.acceptance import CaseVerdict, Verdict
 from synth.book.case_result import CaseResult, DegreeStudy
-from synth.book.comparison.limit_cycle import hunting_report, pressure_hunting
+from synth.book.comparison.limit_cycle import hunting_report
 from synth.book.comparison.measured import Measured
+from synth.book.comparison.pressure_cycle import pressure_hunting
 from synth.book.estimation.estimated_table import EstimatedTable
 from synth.book.tune import Book
 from synth.problem.requirement_found import Finding
+from synth.solver.polynomial_fit import Polish
 from tuning_tables.canonical import LARGEST_EXACT_INTEGER
 
 FORMAT = "retarder-summary"
@@ -105,6 +107,9 @@ def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
         "requirement": None if case.finding is None else requirement_of(case.finding),
         "indifference": asdict(case.study.indifference),
         "estimate": None if case.estimate is None else {**estimate_of(case.estimate), "left_out": case.left_out},
+        "warnings": case.warnings,
+        "polish": polish_of(case.polish),
+        "ties": case.study.policy_map.ties,
         "escaped_probability": case.predicted.escaped,
         "hunting": {
             "pressure": [{"stage": stage, **asdict(cycle)} for stage, cycle in pressure_hunting(case.plant)],
@@ -120,6 +125,17 @@ def measured_of(entry: Measured) -> Document:
         "predicted_rms_m_s": entry.predicted_rms_m_s,
         "table_ratio": entry.table_ratio,
         "table_ratio_ci95": entry.table_ratio_ci95,
+    }
+
+
+def polish_of(polish: Polish) -> Document:
+    """How the search for the lines of least cost ended."""
+    return {
+        "converged": polish.converged,
+        "status": polish.status,
+        "evaluations": polish.evaluations,
+        "cost_before_m2_s2": polish.cost_before,
+        "cost_after_m2_s2": polish.cost_after,
     }
 
 

@@ -157,6 +157,8 @@ def case_task(run: TuneRun, order: CaseOrder) -> CaseResult:
     rms = f"rms {figures.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s in {figures.passes} passes"
     told = f"{label} to {target:g} m/s: {rms}"
     run.progress(f"{told}; {result.left_out}" if result.left_out else told)
+    for warning in result.warnings:
+        run.progress(f"warning: {label} to {target:g} m/s: {warning}")
     if result.finding is not None:
         run.progress(f"{label} to {target:g} m/s: {result.finding.sentence}")
     return result

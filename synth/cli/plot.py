@@ -18,12 +18,11 @@ def plot_command(source: Path, output: Path, config_path: Path | None, as_json: 
     from synth.cli.interrupt import interruptible
     from synth.configuration.config_file import BUILT_IN, load_config
     from synth.faults.input_error import InputError
-    from synth.kernels.cache import guarded, use_kernel_cache
+    from synth.kernels.cache import guarded
 
     config = load_config(config_path)
     tables = [table for file in read_tables(source, directory_allowed=True) for table in file.tables]
     make_directory(output)
-    use_kernel_cache()
     from synth.book.validate_table import plant_for
     from synth.present.plots.figure_file import save_figure
     from synth.present.plots.table_picture import Passes, table_lines, table_passes, table_surfaces

@@ -33,13 +33,13 @@ def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, worker
     """The work itself, and what is said about it."""
     from synth.cli.interrupt import interruptible
     from synth.cli.progress import Progress
-    from synth.kernels.cache import guarded, use_kernel_cache
+    from synth.kernels.cache import cache_in_use, guarded
 
     started = time.monotonic()
-    cache = use_kernel_cache()
+    cache = cache_in_use()
     cases = len(config.cuts) * len(config.targets_m_s)
     with interruptible(directory), Progress(cases) as progress, ExitStack() as stack:
-        if next(cache.rglob("*.nbi"), None) is None:
+        if cache is None or next(cache.rglob("*.nbi"), None) is None:
             progress.note("compiling the kernels for this machine, once; this takes about a minute")
         from synth.present.draw_pictures import Studio
 

@@ -18,11 +18,10 @@ def validate_command(path: Path, config_path: Path | None, passes: int | None, s
     from synth.book.forms.table_file import is_infeasible, read_tables, summary_beside
     from synth.cli.interrupt import interruptible
     from synth.configuration.config_file import BUILT_IN, load_config
-    from synth.kernels.cache import guarded, use_kernel_cache
+    from synth.kernels.cache import guarded
 
     config, (file,) = load_config(config_path), read_tables(path)
     source, summary = str(config_path or BUILT_IN), summary_beside(path)
-    use_kernel_cache()
     from synth.book.validate_table import Rehearsal, plant_for, revalidate_all
 
     for table in file.tables:

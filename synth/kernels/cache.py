@@ -1,8 +1,9 @@
 """Where numba keeps compiled kernels, and how a stale or damaged cache is kept from being used.
 
 numba renews a cached kernel when the file that defines it changes, but not when a constant or helper that it took from
-another file does. The cache directory is therefore named by a fingerprint of every file that can hold kernels, of the
-versions that compile them, and of the machine: after any change the kernels are compiled anew, in a new directory.
+another file does. The cache directory is therefore named by a fingerprint of every file that kernels are compiled from,
+of the versions that compile them, and of the machine: after any change the kernels are compiled anew, in a new
+directory. `synth.kernels` sets it up when it is imported, so before any kernel is.
 
 This module imports no numba, so that the command line starts at once.
 """
@@ -28,11 +29,13 @@ _R = TypeVar("_R")
 
 _OWNER = "retarder-synth"
 _KERNEL_SOURCES = (
-    "plant_models/**/*.py",
+    "plant_models/valve_drive.py",
     "synth/**/kernels/**/*.py",
-    "tuning_tables/rule.py",
     "tuning_tables/estimator.py",
+    "tuning_tables/rule.py",
 )
+"""Patterns of the files that kernels are compiled from; tests/architecture finds these by itself and compares."""
+
 _COMPILERS = ("llvmlite", "numba", "numpy")
 _FINGERPRINT = re.compile(r"[0-9a-f]{16}")
 _UNUSED_AFTER_S = 30 * 24 * 3600.0
@@ -46,11 +49,11 @@ def use_kernel_cache() -> Path:
     $RETARDER_SYNTH_CACHE, $XDG_CACHE_HOME and ~/.cache; where none is, a private temporary directory that is removed
     when the process ends. A NUMBA_CACHE_DIR set by the user is replaced: it could hold stale kernels.
 
-    Call it before the first kernel module is imported, for a kernel keeps the directory it found on import. Calling it
+    A kernel keeps the directory that it found when it was imported: hence `synth.kernels` calls this first. Calling it
     again changes nothing. Directories of other fingerprints that were not used for 30 days are removed.
     """
     fingerprint = kernel_fingerprint()
-    current = _directory_in_use()
+    current = cache_in_use()
     if current is not None and current.name == fingerprint and _is_writable(current):
         directory = current
     else:
@@ -64,6 +67,18 @@ def use_kernel_cache() -> Path:
     return directory
 
 
+def cache_in_use() -> Path | None:
+    """The directory that `use_kernel_cache` has chosen, in this process or in the one that started it."""
+    directory = Path(os.environ.get("NUMBA_CACHE_DIR", ""))
+    ours = directory.parent.name == _OWNER and _FINGERPRINT.fullmatch(directory.name) is not None
+    return directory if ours else None
+
+
+def kernel_sources(root: Path) -> list[str]:
+    """The files below `root` that kernels are compiled from, sorted, as POSIX paths relative to it."""
+    return sorted({path.relative_to(root).as_posix() for pattern in _KERNEL_SOURCES for path in root.glob(pattern)})
+
+
 def kernel_fingerprint(root: Path | None = None) -> str:
     """Return 16 hexadecimal digits that change with any kernel source, compiler version or setting, and the processor.
 
@@ -74,9 +89,8 @@ def kernel_fingerprint(root: Path | None = None) -> str:
     facts += [platform.python_implementation(), platform.python_version(), sys.platform, _processor()]
     facts += sorted(f"{k}={v}" for k, v in os.environ.items() if k.startswith("NUMBA_") and k not in _HARMLESS_SETTINGS)
     digest = hashlib.sha256(repr(facts).encode())
-    sources = {path.relative_to(root).as_posix(): path for pattern in _KERNEL_SOURCES for path in root.glob(pattern)}
-    for name in sorted(sources):
-        content = sources[name].read_bytes()
+    for name in kernel_sources(root):
+        content = (root / name).read_bytes()
         digest.update(f"\0{name}\0{len(content)}\0".encode() + content)
     return digest.hexdigest()[:16]
 
@@ -91,7 +105,7 @@ def guarded(call: Callable[_P, _R], *args: _P.args, **kwargs: _P.kwargs) -> _R:
     try:
         return call(*args, **kwargs)
     except Exception as error:
-        directory = _directory_in_use()
+        directory = cache_in_use()
         if directory is None or isinstance(error, OSError) or not _raised_in_numba_cache(error.__traceback__):
             raise
         empty_kernel_cache(directory)
@@ -102,12 +116,6 @@ def empty_kernel_cache(directory: Path) -> None:
     """Remove every compiled kernel below `directory`, but no directory: another process may be writing there."""
     for path in [*directory.rglob("*.nbi"), *directory.rglob("*.nbc")]:
         path.unlink(missing_ok=True)
-
-
-def _directory_in_use() -> Path | None:
-    directory = Path(os.environ.get("NUMBA_CACHE_DIR", ""))
-    ours = directory.parent.name == _OWNER and _FINGERPRINT.fullmatch(directory.name) is not None
-    return directory if ours else None
 
 
 def _base_directory() -> Path:
@@ -147,8 +155,12 @@ def _processor() -> str:
 
 
 def _raised_in_numba_cache(traceback: TracebackType | None) -> bool:
+    from synth.kernels.vector.numba_internals import (
+        CACHE_READER,  # start-up: numba, which is there when a kernel failed
+    )
+
     while traceback is not None:
-        if traceback.tb_frame.f_globals.get("__name__") == "numba.core.caching":
+        if traceback.tb_frame.f_globals.get("__name__") == CACHE_READER:
             return True
         traceback = traceback.tb_next
     return False

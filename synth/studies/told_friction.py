@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import PlantError
+from plant_models.frozen_arrays import frozen_arrays
 from synth.problem.aim import Aim
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import Chain, with_known_friction
@@ -37,7 +38,8 @@ class Effort:
 TO_THE_END = Effort()
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class ToldFriction:
     """Lines and exact exit-speed densities for known factors (I,) that occur with probability `weight` (I,)."""
 

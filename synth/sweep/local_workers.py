@@ -20,7 +20,6 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnProcess
 from typing import Any
 
-from synth.kernels.cache import use_kernel_cache
 from synth.sweep.plan import UnitOrder
 from synth.sweep.work import Answer, Begun, Work, answer
 
@@ -48,7 +47,6 @@ class LocalWorkers:
         """As they are ready. A unit whose worker dies is given to another one once, then answered with the reason."""
         waiting = deque(orders)
         tries = dict.fromkeys((order.key for order in orders), 0)
-        use_kernel_cache()  # before they start: workers are killed, and would leave a private one of their own
         workers = [start(self.work) for _ in range(min(self.count, len(orders)))]
         try:
             while True:
@@ -77,7 +75,7 @@ class LocalWorkers:
 
 
 def start(work: Work) -> Worker:
-    """A new worker process."""
+    """A new worker process; the environment tells it where this process keeps its kernels."""
     context = multiprocessing.get_context("spawn")
     ours, theirs = context.Pipe()
     process = context.Process(target=serve, args=(theirs, work), daemon=True)

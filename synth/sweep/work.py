@@ -57,9 +57,7 @@ def computed(order: UnitOrder) -> UnitResult:
             f"the worker {worker_name()} has another version of retarder-synth or of its libraries, or another "
             "processor, than the run that asked; its tables might differ"
         )
-    from synth.kernels.cache import guarded, use_kernel_cache
-
-    use_kernel_cache()
+    from synth.kernels.cache import guarded
     from synth.sweep.tune_unit import tune_unit
 
     return guarded(tune_unit, order)

@@ -7,7 +7,7 @@ import signal
 from dataclasses import replace
 from pathlib import Path
 
-from synth.kernels.cache import use_kernel_cache
+from synth.kernels.cache import cache_in_use
 from synth.sweep.plan import UnitOrder
 from synth.sweep.work import Answer, answer
 
@@ -45,6 +45,7 @@ def strange(order: UnitOrder) -> Answer:
 
 def caching(order: UnitOrder) -> Answer:
     """A worker that only tells where its kernels are kept, and leaves one there."""
-    directory = use_kernel_cache()
+    directory = cache_in_use()
+    assert directory is not None
     (directory / f"{os.getpid()}.nbi").touch()
     return Answer(order.key, None, str(directory))

@@ -144,7 +144,7 @@ def make_policy_map(plant: Plant, target: float) -> PolicyMap:
     below = speed < lines.lower_m_s[:, :-1, None]
     above = speed > lines.upper_m_s[:, :-1, None]
     indifferent = np.broadcast_to(lines.nodes_m[:-1, None] < plant.exit_m / 3.0, below.shape).copy()
-    return PolicyMap(lines.nodes_m[:-1], speed, (above.astype(np.int8) - below.astype(np.int8)), indifferent)
+    return PolicyMap(lines.nodes_m[:-1], speed, (above.astype(np.int8) - below.astype(np.int8)), indifferent, 0.125)
 
 
 def make_density(mean: float, spread: float) -> ExitDensity:

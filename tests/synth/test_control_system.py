@@ -11,14 +11,8 @@ import pytest
 from plant_models import DopplerSensor, Friction, Plant, RollingResistance
 from synth.book.comparison.baselines import energy_rule, threshold_with_lead
 from synth.simulation.closed_loop import Controller, LineController, TableController, close_loop, trace
-from synth.simulation.control_system import (
-    SOLVER,
-    drive_system,
-    motion_system,
-    nominal_loop,
-    nominal_response,
-    regulator_system,
-)
+from synth.simulation.control_system import drive_system, motion_system, nominal_loop, regulator_system
+from synth.simulation.nominal_response import SOLVER, nominal_response
 from synth.simulation.passes import PassTrace
 from synth.simulation.random_passes import random_passes
 from synth.solver.switching_lines import SwitchingLines

@@ -15,32 +15,21 @@ from plant_models import (
     EntrySpeed,
     Friction,
     Plant,
-    PlantError,
-    Pneumatics,
     RollingResistance,
     TrackProfile,
 )
+from synth.book.comparison.cycle_wave import cycle_wave
+from synth.book.comparison.describing_function import describing_function_analysis
 from synth.book.comparison.limit_cycle import (
     StagePair,
     first_harmonic,
-    harmonic_pressure_cycle,
     hunting_report,
     limit_cycle,
-    pressure_hunting,
-    pressure_limit_cycle,
     relay_cycle,
 )
 from synth.simulation.closed_loop import LineController, trace
-from synth.simulation.control_system import describing_function_analysis
 from synth.simulation.random_passes import random_passes
 from synth.solver.switching_lines import SwitchingLines
-
-TOUCH_KPA = 50.0
-
-
-def drive(closing_delay_s: float, dead_band_kpa: float = 15.0) -> Pneumatics:
-    """The pilot plant's drive with valves that shut late; filling slower than exhausting."""
-    return Pneumatics(700.0, 0.0, 0.1, 0.2, 0.07, 0.4, 0.3, dead_band_kpa, closing_delay_s)
 
 
 def long_plant(plant: Plant, grade_permille: float, period_s: float, computing_s: float) -> Plant:
@@ -75,104 +64,6 @@ def simulated(plant: Plant, lower_stage: int, lines: SwitchingLines, from_m: flo
     relative = events.speed_m_s[raises[0] : raises[-1]] - np.interp(at, lines.nodes_m, middle)
     duration = float(events.time_s[raises[-1]] - events.time_s[raises[0]])
     return 0.5 * float(np.ptp(relative)), duration / (raises.size - 1)
-
-
-def stepped_pressure(air: Pneumatics, target: float, step: float = 1e-4) -> tuple[float, float, float]:
-    """(bottom, top, period) of the relay played in small time steps, by rules and without closed forms."""
-    pressure, time, valve, wait = 0.0, 0.0, 0, math.inf
-    shuts, tops, bottoms = math.inf, list[float](), list[tuple[float, float]]()
-    while len(bottoms) < 4 and time < 60.0:
-        if valve == 0:
-            wanted = int(pressure < target - air.dead_band_kpa) - int(pressure > target + air.dead_band_kpa)
-            touch = air.touch_delay_s if pressure <= TOUCH_KPA else 0.0
-            wait = (air.brake_delay_s + touch if wanted > 0 else air.release_delay_s) if wait == math.inf else wait
-            wait -= step
-            if wanted != 0 and wait <= 0.0:
-                valve, wait, shuts = wanted, math.inf, math.inf
-        elif valve > 0:
-            pressure += step * (air.supply_pressure_kpa - pressure) / air.fill_time_constant_s
-        else:
-            pressure += step * (air.exhaust_pressure_kpa - pressure) / air.exhaust_time_constant_s
-        reached = pressure * valve >= (target - valve * air.dead_band_kpa) * valve
-        if valve != 0 and reached and shuts == math.inf:
-            shuts = time + air.closing_delay_s
-        if valve != 0 and time >= shuts:
-            if valve > 0:
-                tops.append(pressure)
-            else:
-                bottoms.append((time, pressure))
-            valve = 0
-        time += step
-    return bottoms[-1][1], tops[-1], bottoms[-1][0] - bottoms[-2][0]
-
-
-@pytest.mark.parametrize(("target", "delay"), [(150.0, 0.08), (300.0, 0.08), (450.0, 0.08), (55.0, 0.2)])
-def test_pressure_cycle_is_the_relays(target: float, delay: float) -> None:
-    cycle = pressure_limit_cycle(drive(delay), target, TOUCH_KPA)
-    assert cycle is not None
-    bottom, top, period = stepped_pressure(drive(delay), target)
-    assert (cycle.bottom_kpa, cycle.top_kpa) == pytest.approx((bottom, top), abs=0.5)
-    assert cycle.period_s == pytest.approx(period, rel=0.01)
-
-
-def test_pressure_hunts_exactly_where_the_drive_finds_no_rest() -> None:
-    hunting = set()
-    for target in (0.0, 60.0, 150.0, 300.0, 450.0, 600.0):
-        for delay in np.arange(0.0, 0.2, 0.005):
-            air = drive(float(delay))
-            predicted = pressure_limit_cycle(air, target, TOUCH_KPA) is not None
-            hunting.add(predicted)
-            start = target - 100.0 if target >= 100.0 else target + 100.0
-            if predicted:
-                with pytest.raises(PlantError, match="hunts"):
-                    air.respond(start, target, TOUCH_KPA)
-            else:
-                air.respond(start, target, TOUCH_KPA)
-    assert hunting == {True, False}
-
-
-def test_pressure_threshold_is_two_dead_bands_and_the_harmonic_one_a_quarter_more() -> None:
-    """Equal rates r = 1000 kPa/s and a narrow band: exact at rτ = 2ε, describing function at π²ε/4."""
-
-    def air(reach: float) -> Pneumatics:
-        return Pneumatics(600.0, 0.0, 0.1, 0.2, 0.1, 0.3, 0.3, 0.5, reach * 0.5 / 1000.0)
-
-    assert pressure_limit_cycle(air(1.99), 300.0, TOUCH_KPA) is None
-    exact = pressure_limit_cycle(air(2.01), 300.0, TOUCH_KPA)
-    assert exact is not None
-    assert exact.top_kpa - exact.bottom_kpa == pytest.approx(2 * 0.5 * (2.01 - 1.0), rel=0.01)
-    assert harmonic_pressure_cycle(air(2.46), 300.0) is None
-    assert harmonic_pressure_cycle(air(2.48), 300.0) is not None
-    assert harmonic_pressure_cycle(air(50.0), 0.0) is None  # nothing to exhaust
-
-
-def test_pressure_harmonic_balances_in_python_control() -> None:
-    import control
-
-    air, target = drive(0.08), 300.0
-    cycle = harmonic_pressure_cycle(air, target)
-    exact = pressure_limit_cycle(air, target, TOUCH_KPA)
-    assert cycle is not None
-    assert exact is not None
-    rate = math.sqrt((700.0 - target) / 0.4 * (target / 0.3))
-    amplitude, omega = cycle.top_kpa - target, math.pi / (2 * 0.08)
-
-    def relay(error: float) -> float:
-        return rate * float(np.sign(error)) * (abs(error) > 15.0)
-
-    gain = control.describing_function(relay, amplitude, num_points=20_000)
-    assert gain * np.exp(-1j * omega * 0.08) / (1j * omega) == pytest.approx(-1.0, abs=1e-3)
-    assert cycle.top_kpa - cycle.bottom_kpa == pytest.approx(exact.top_kpa - exact.bottom_kpa, rel=0.25)
-    assert cycle.period_s == pytest.approx(exact.period_s, rel=0.25)
-
-
-def test_pilot_plant_hunts_in_pressure_only_with_late_valves(plant_52t: Plant) -> None:
-    assert pressure_hunting(plant_52t) == ()
-    late = replace(plant_52t.position.pneumatics, closing_delay_s=0.08)
-    plant = replace(plant_52t, position=replace(plant_52t.position, pneumatics=late))
-    assert [stage for stage, _ in pressure_hunting(plant)] == [1, 2, 3]  # at 0 and 600 kPa one rate is too small
-    with pytest.raises(PlantError, match="hunts"):
-        limit_cycle(plant, 0, 0.1)
 
 
 def test_symmetric_relay_by_hand() -> None:
@@ -319,3 +210,21 @@ def test_report_holds_on_the_pilot_position(plant_of: Callable[[float], Plant], 
 def test_a_pair_beyond_the_allowed_stages_is_refused(plant_22t: Plant) -> None:
     with pytest.raises(ValueError, match="stages 0 to 2"):
         limit_cycle(plant_22t, 2, 0.1)
+
+
+@pytest.mark.parametrize(("mass_t", "gap"), [(22.0, 0.02), (52.0, 0.1), (85.0, 0.1), (52.0, -0.03)])
+def test_the_wave_closes_and_reaches_the_extremes(
+    plant_of: Callable[[float], Plant], mass_t: float, gap: float
+) -> None:
+    """Stepped through its transients it comes back to where it began after one period, between bottom and top."""
+    plant = plant_of(mass_t)
+    cycle = limit_cycle(plant, 0, gap)
+    assert cycle is not None
+    wave = cycle_wave(plant, cycle)
+    assert wave.speed_m_s[-1] == pytest.approx(wave.speed_m_s[0], abs=1e-12)
+    assert wave.time_s[-1] == pytest.approx(cycle.period_s, abs=1e-9)
+    assert np.all(np.diff(wave.time_s) > -1e-12)
+    assert wave.speed_m_s.max() == pytest.approx(cycle.top_m_s, abs=1e-9)
+    assert wave.speed_m_s.min() == pytest.approx(cycle.bottom_m_s, abs=1e-9)
+    slope = np.diff(wave.speed_m_s) / np.maximum(np.diff(wave.time_s), 1e-12)
+    assert -cycle.fall_m_s2 - 1e-9 <= slope.min() < 0.0 < slope.max() <= cycle.rise_m_s2 + 1e-9

@@ -16,8 +16,6 @@ from synth.solver.one_blas_thread import one_blas_thread
 
 POLISHED = """
 import importlib.util, sys
-from synth.kernels.cache import use_kernel_cache
-use_kernel_cache()
 from synth.solver.tuned_lines import tuned_lines
 from synth.solver.chain.chain import persistent_chain
 from synth.problem.aim import Aim
@@ -32,8 +30,6 @@ for target_m_s in (1.5, 2.0, 2.5, 3.0):
 
 NOISE = """
 import importlib.util, sys
-from synth.kernels.cache import use_kernel_cache
-use_kernel_cache()
 from synth.solver.chain.chain import persistent_chain
 spec = importlib.util.spec_from_file_location("plants", sys.argv[1])
 plants = importlib.util.module_from_spec(spec)

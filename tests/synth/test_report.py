@@ -200,6 +200,20 @@ def test_tables_without_the_estimator_that_was_asked_for_are_told_and_not_counte
     assert "asks for an estimator" not in Page(report_page(book)).text
 
 
+def test_doubts_of_a_case_are_told(page: Page, book: BookReport) -> None:
+    assert f"{len(book.cases)} of {len(book.cases)} polishes converged" in page.text
+    assert "Warning for" not in page.text
+    case = book.cases[0]
+    doubtful = replace(
+        case,
+        polish=replace(case.polish, converged=False, status="Iteration limit reached"),
+        predicted=replace(case.predicted, escaped=2e-4),
+    )
+    told = Page(report_page(replace(book, cases=(doubtful, *book.cases[1:])))).text
+    assert "the polish ended before it converged (Iteration limit reached)" in told
+    assert "a probability of 2.0e-04 left the top of the speed grid" in told
+
+
 def as_honest(entry: Measured) -> Measured:
     """The same, but predicted as it was simulated."""
     return replace(entry, predicted_rms_m_s=entry.statistics.rms_m_s)

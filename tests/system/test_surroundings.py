@@ -193,8 +193,8 @@ def test_nothing_is_left_in_the_temporary_directory(two_classes: Path, tmp_path:
 
 def test_a_private_cache_goes_with_its_process(tmp_path: Path) -> None:
     source = (
-        "from synth.kernels.cache import use_kernel_cache; from synth.cli import leave; import sys; "
-        "d = use_kernel_cache(); (d / 'kernel.nbi').write_bytes(b'x'); print(d, flush=True); leave(5)"
+        "from synth.kernels.cache import cache_in_use; from synth.cli import leave; import sys; "
+        "d = cache_in_use(); (d / 'kernel.nbi').write_bytes(b'x'); print(d, flush=True); leave(5)"
     )
     nowhere = {"RETARDER_SYNTH_CACHE": "", "XDG_CACHE_HOME": "", "HOME": "/proc/none", "TMPDIR": str(tmp_path)}
     ran = subprocess.run(

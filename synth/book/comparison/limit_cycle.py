@@ -1,9 +1,9 @@
-"""Predicted limit cycles: the stage pressure regulator, and the speed loop between two neighbouring stages.
+"""Predicted limit cycles of the speed loop between two neighbouring stages.
 
-Both are relays with delays around something that integrates. Each cycle is predicted exactly, as between
-switchings there are only exponentials and straight lines, and by its first harmonic (describing function), as a
-control engineer would. The speed is nearly a triangle: with equal slopes the harmonic is up to a fifth smaller and
-its period up to a fourth longer, with slopes 1 : 2.5 we saw −40 % and −22 %. The exact prediction is right.
+It is a relay with delays around an integrator. Its cycle is predicted exactly, as between switchings there are only
+exponentials and straight lines, and by its first harmonic (describing function), as a control engineer would. The speed
+is nearly a triangle: with equal slopes the harmonic is up to a fifth smaller and its period up to a fourth longer, with
+slopes 1 : 2.5 we saw −40 % and −22 %. The exact prediction is right.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models import Plant, Pneumatics, path_coefficients
+from plant_models import Plant, path_coefficients
 from plant_models.stage_regulator import stage_locked_actuator
 from synth.solver.switching_lines import SwitchingLines
 
@@ -24,15 +24,6 @@ SUBSTEPS = 20
 
 ORBIT_CYCLES = 200
 """Cycles of the sampled orbit that count; as many go before."""
-
-
-@dataclass(frozen=True)
-class PressureCycle:
-    """A stage pressure regulator that hunts: pressure between `bottom_kpa` and `top_kpa` with `period_s`."""
-
-    bottom_kpa: float
-    top_kpa: float
-    period_s: float
 
 
 class StagePair(NamedTuple):
@@ -102,50 +93,6 @@ class Hunting:
     to_m: float
     periods: float
     cycle: LimitCycle
-
-
-def pressure_limit_cycle(air: Pneumatics, target_kpa: float, touch_kpa: float) -> PressureCycle | None:
-    """Limit cycle of the relay around `target_kpa`, or None if the pressure comes to rest. Exact.
-
-    A valve shuts `closing_delay_s` after the pressure has reached the near edge of the dead band; it hunts
-    if both overshoots cross the whole band, roughly closing delay · rate > 2ε. Opening delays lengthen the
-    period but do not decide: the pressure rests while a valve has not yet opened.
-    """
-    low, high = target_kpa - air.dead_band_kpa, target_kpa + air.dead_band_kpa
-    supply, exhaust, closing = air.supply_pressure_kpa, air.exhaust_pressure_kpa, air.closing_delay_s
-    top = supply - (supply - low) * math.exp(-closing / air.fill_time_constant_s)
-    bottom = exhaust + (high - exhaust) * math.exp(-closing / air.exhaust_time_constant_s)
-    if top <= high or bottom >= low:
-        return None
-    exhausting = air.exhaust_time_constant_s * math.log((top - exhaust) / (bottom - exhaust))
-    filling = air.fill_time_constant_s * math.log((supply - bottom) / (supply - top))
-    opening = air.release_delay_s + air.brake_delay_s + (air.touch_delay_s if bottom <= touch_kpa else 0.0)
-    return PressureCycle(bottom, top, exhausting + filling + opening)
-
-
-def harmonic_pressure_cycle(air: Pneumatics, target_kpa: float) -> PressureCycle | None:
-    """The same by the describing function of a relay with dead zone, N(A) = 4r/(πA)·sqrt(1 − (ε/A)²).
-
-    Loop: relay ±r outside ±ε, dead time τ = closing delay, integrator; r is the geometric mean of filling
-    and exhausting rate. The phase gives ω = π/2τ, and an amplitude exists if rτ > π²ε/4 ≈ 2.47ε: stricter
-    than the exact 2ε. Opening delays, during which the pressure rests, are added to the period.
-    """
-    filling = (air.supply_pressure_kpa - target_kpa) / air.fill_time_constant_s
-    exhausting = (target_kpa - air.exhaust_pressure_kpa) / air.exhaust_time_constant_s
-    reach = 8.0 * math.sqrt(max(0.0, filling * exhausting)) * air.closing_delay_s / math.pi**2
-    if reach <= 2.0 * air.dead_band_kpa:
-        return None
-    amplitude = math.sqrt(0.5 * reach * (reach + math.sqrt(reach**2 - 4.0 * air.dead_band_kpa**2)))
-    period = 4.0 * air.closing_delay_s + air.brake_delay_s + air.release_delay_s
-    return PressureCycle(target_kpa - amplitude, target_kpa + amplitude, period)
-
-
-def pressure_hunting(plant: Plant) -> tuple[tuple[int, PressureCycle], ...]:
-    """(stage, limit cycle) of every allowed stage around which the pressure regulator hunts."""
-    air, touch = plant.position.pneumatics, plant.position.force.touch_pressure_kpa
-    pressures = plant.position.stage_pressures_kpa[: plant.top_stage + 1]
-    cycles = [(stage, pressure_limit_cycle(air, pressure, touch)) for stage, pressure in enumerate(pressures)]
-    return tuple((stage, cycle) for stage, cycle in cycles if cycle is not None)
 
 
 def limit_cycle(
@@ -231,19 +178,14 @@ def change(pair: StagePair, braking: bool, free: float, brake: float) -> Change:
 def relay_cycle(pair: StagePair, gap_m_s: float, free: float, brake: float) -> LimitCycle | None:
     """Hunting of `pair` where the acceleration relative to the lines is `free` − `brake`·overpressure, m/s².
 
-    Closed form: above the lower line the raise is decided at gap + rise·T/2, the lowering at −fall·T/2 (mean
-    wait for a sample of period T), unless the lock ends later than that; between them, straight lines.
+    Closed form: straight lines between the decisions of `turning_speeds`, and the transients that these begin.
     """
     rise, fall = free - brake * pair.low_kpa, brake * pair.high_kpa - free
     if rise <= 0.0 or fall <= 0.0:
         return None
     up, down = change(pair, True, free, brake), change(pair, False, free, brake)
     wait = 0.5 * pair.sample_period_s
-    raised, lowered = gap_m_s + rise * wait, -fall * wait
-    if up.speed_m_s + down.speed_m_s <= 0.0:  # then only the lock after braking can end too late
-        lowered = min(lowered, raised + up.speed_m_s)
-    else:
-        raised = max(raised, lowered + down.speed_m_s)
+    raised, lowered = turning_speeds(gap_m_s, rise * wait, fall * wait, up, down)
     delays = up.dead_time_s + wait, down.dead_time_s + wait
     top, bottom = raised + up.overshoot_m_s - 0.5 * gap_m_s, lowered - down.overshoot_m_s - 0.5 * gap_m_s
     period = up.duration_s + (raised + up.speed_m_s - lowered) / fall
@@ -251,6 +193,18 @@ def relay_cycle(pair: StagePair, gap_m_s: float, free: float, brake: float) -> L
     sampled = sampled_orbit(gap_m_s, rise, fall, up, down, pair.sample_period_s)
     harmonic = first_harmonic(gap_m_s, rise, fall, *delays)
     return LimitCycle(pair.lower_stage, gap_m_s, rise, fall, *delays, top, bottom, period, *sampled, *harmonic)
+
+
+def turning_speeds(gap: float, risen: float, fallen: float, up: Change, down: Change) -> tuple[float, float]:
+    """Speeds above the lower line at which the raise and the lowering are decided.
+
+    `risen`, `fallen`: what the speed gains and loses in half a sampling period, the mean wait for a sample. A decision
+    comes later where the lock of the change before ends later.
+    """
+    raised, lowered = gap + risen, -fallen
+    if up.speed_m_s + down.speed_m_s <= 0.0:  # then only the lock after braking can end too late
+        return raised, min(lowered, raised + up.speed_m_s)
+    return max(raised, lowered + down.speed_m_s), lowered
 
 
 def sampled_orbit(gap: float, rise: float, fall: float, up: Change, down: Change, wait_s: float) -> tuple[float, float]:

@@ -6,10 +6,11 @@ from typing import Any
 
 from numba import njit
 
+from synth.kernels.vector.numba_internals import WITHOUT_REFERENCE_COUNTS
+
 # numba counts references to every array that it passes on or takes from a tuple, each time by an atomic operation; in
-# the closed loop that took a third of the time. A kernel that makes no array does not need it. The option has an
-# underscore in front in numba 0.68: where it should go, kernels raise at once, and without it they are only slower.
-OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "_nrt": False}
+# the closed loop that took a third of the time. A kernel that makes no array does not need it.
+OPTIONS: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", **WITHOUT_REFERENCE_COUNTS}
 
 borrowing: Any = njit(**OPTIONS)
 """A kernel of its own."""

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from llvmlite import ir
-from numba.core import types
+from numba import types
 
-from synth.kernels.vector.pack_code import intrinsic
+from synth.kernels.vector.numba_internals import intrinsic, ir
 
 WORD, BIT = ir.IntType(64), ir.IntType(1)
 

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import operator
-from typing import Any
 
-from llvmlite import ir
-from numba import extending
-from numba.core import cgutils, types
-from numba.core.typing.templates import AbstractTemplate, infer_global, signature
-from numba.extending import lower_builtin, models, register_model
+from numba import types
 
-intrinsic: Any = extending.intrinsic
-"""numba's own type for it counts the typing context among the arguments of a call."""
-
+from synth.kernels.vector.numba_internals import (
+    declared_function,
+    infer_operation,
+    intrinsic,
+    ir,
+    lower_operation,
+    register_vector,
+)
 
 MACHINE_TYPES = {
     types.boolean: ir.IntType(1),
@@ -31,17 +31,12 @@ class Pack(types.Type):
         super().__init__(name=f"Pack({element}, {lanes})")
 
 
-@register_model(Pack)
-class PackModel(models.PrimitiveModel):
-    """A pack is one vector of LLVM."""
-
-    def __init__(self, manager, pack):
-        super().__init__(manager, pack, ir.VectorType(machine_type(pack.element), pack.lanes))
-
-
 def machine_type(element):
     """LLVM's type of a lane."""
     return MACHINE_TYPES[element]
+
+
+register_vector(Pack, lambda pack: ir.VectorType(machine_type(pack.element), pack.lanes))
 
 
 def suffix(element, lanes):
@@ -85,13 +80,7 @@ COMPARISON = {operator.lt: "<", operator.le: "<=", operator.gt: ">", operator.ge
 
 def register_arithmetic(symbol, names):
     """Teach numba the operation `symbol` between packs, and between packs and numbers."""
-
-    @infer_global(symbol)
-    class Typed(AbstractTemplate):
-        def generic(self, args, kws):
-            if len(args) == 2 and (pack := common_pack(*args)) is not None:
-                return signature(pack, *args)
-            return None
+    infer_operation(symbol, common_pack)
 
     def lower(context, builder, sig, args):
         pack = sig.return_type
@@ -104,12 +93,11 @@ def register_arithmetic(symbol, names):
 def register_comparison(symbol, sign):
     """Teach numba a comparison, lane by lane."""
 
-    @infer_global(symbol)
-    class Typed(AbstractTemplate):
-        def generic(self, args, kws):
-            if len(args) == 2 and (pack := common_pack(*args)) is not None:
-                return signature(Pack(types.boolean, pack.lanes), *args)
-            return None
+    def mask(a, b):
+        pack = common_pack(a, b)
+        return None if pack is None else Pack(types.boolean, pack.lanes)
+
+    infer_operation(symbol, mask)
 
     def lower(context, builder, sig, args):
         pack = common_pack(*sig.args)
@@ -123,7 +111,7 @@ def register_comparison(symbol, sign):
 def register_lowering(symbol, lower):
     """Use `lower` for every combination of packs and numbers."""
     for pair in ((Pack, Pack), (Pack, types.Number), (types.Number, Pack)):
-        lower_builtin(symbol, *pair)(lower)
+        lower_operation(symbol, pair, lower)
 
 
 for each, instructions in ARITHMETIC.items():
@@ -191,9 +179,8 @@ def by_llvm(name):
     @intrinsic
     def apply(typing, pack):
         def code(context, builder, sig, args):
-            kind = ir.FunctionType(args[0].type, [args[0].type])
             called = f"llvm.{name}.{suffix(pack.element, pack.lanes)}"
-            return builder.call(cgutils.get_or_insert_function(builder.module, kind, called), args)
+            return builder.call(declared_function(builder, called, args[0].type, [args[0].type]), args)
 
         return pack(pack), code
 

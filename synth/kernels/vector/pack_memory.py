@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from llvmlite import ir
-from numba.core import cgutils, types
+from numba import types
 
-from synth.kernels.vector.pack_code import Pack, intrinsic, machine_type, suffix
+from synth.kernels.vector.numba_internals import array_data, declared_function, intrinsic, ir
+from synth.kernels.vector.pack_code import Pack, machine_type, suffix
 
 
 def addresses(context, builder, array_type, array, at):
     """Pointer to element `at` of a contiguous array, in flat order."""
-    return builder.gep(context.make_array(array_type)(context, builder, array).data, [at])
+    return builder.gep(array_data(context, builder, array_type, array), [at])
 
 
 def loading(lanes):
@@ -57,8 +57,8 @@ def fetch(typing, array, at):
     def code(context, builder, sig, args):
         place = addresses(context, builder, sig.args[0], *args)
         place = builder.bitcast(place, ir.IntType(8).as_pointer())
-        kind = ir.FunctionType(ir.VoidType(), [place.type, *[ir.IntType(32)] * 3])
-        function = cgutils.get_or_insert_function(builder.module, kind, "llvm.prefetch.p0")
+        kinds = [place.type, *[ir.IntType(32)] * 3]
+        function = declared_function(builder, "llvm.prefetch.p0", ir.VoidType(), kinds)
         builder.call(function, [place, *(ir.IntType(32)(number) for number in (0, 3, 1))])  # to read, to keep, data
         return context.get_dummy_value()
 
@@ -82,7 +82,7 @@ def store(typing, array, at, pack):
 
 def spread(context, builder, array_type, array, where, lanes):
     """Pointers to the elements of a contiguous array at a pack of flat indices, the machine type of what lies there."""
-    data = context.make_array(array_type)(context, builder, array).data
+    data = array_data(context, builder, array_type, array)
     element = machine_type(array_type.dtype)
     places = builder.gep(data, [where], source_etype=element)
     # llvmlite knows no vector of indices here. By other means the machine would work out every address by itself.
@@ -92,8 +92,8 @@ def spread(context, builder, array_type, array, where, lanes):
 
 def masked(builder, name, result, *arguments):
     """Call LLVM's function `masked.NAME`."""
-    kind = ir.FunctionType(result, [argument.type for argument in arguments])
-    return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"llvm.masked.{name}"), arguments)
+    kinds = [argument.type for argument in arguments]
+    return builder.call(declared_function(builder, f"llvm.masked.{name}", result, kinds), arguments)
 
 
 @intrinsic

@@ -1,13 +1,15 @@
-"""Two checks of the tables beside the figures: where the loop hunts, and whether probability left the grid."""
+"""Checks of the tables beside the figures: where the loop hunts, and what throws doubt on the numbers."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 from synth.book.case_names import case_name
 from synth.book.case_result import CaseResult
-from synth.book.comparison.limit_cycle import Hunting, hunting_report, pressure_hunting
-from synth.book.printed_numbers import ABSENT
+from synth.book.comparison.limit_cycle import Hunting, hunting_report
+from synth.book.comparison.pressure_cycle import pressure_hunting
+from synth.book.printed_numbers import ABSENT, counted, percent
 from synth.present.report.book_report import BookReport
 from synth.present.report.markup import Cell, Markup, element, head_row, joined, table
 
@@ -30,7 +32,9 @@ def checks_section(book: BookReport) -> Markup:
     cycles = (
         table("Predicted limit cycles", (head,), rows) if rows else element("p", "No limit cycle fits into the path.")
     )
-    return joined((element("p", HUNTING), cycles, element("p", pressure(book)), element("p", escaped(book))))
+    return joined(
+        (element("p", HUNTING), cycles, element("p", pressure(book)), element("p", escaped(book)), *doubts(book))
+    )
 
 
 def hunting_row(case: CaseResult, hunting: Hunting) -> list[str | Cell]:
@@ -58,6 +62,19 @@ def pressure(book: BookReport) -> str:
     if not stages:
         return "The regulator of the stage pressure does not hunt: no overshoot crosses its dead band."
     return f"The regulator of the stage pressure hunts at stage {', '.join(str(stage) for stage in stages)}."
+
+
+def doubts(book: BookReport) -> Iterator[Markup]:
+    """How the polishes ended, how often hold won a tie, and the warnings of single cases."""
+    converged = sum(case.polish.converged for case in book.cases)
+    ties = max((case.study.policy_map.ties for case in book.cases), default=0.0)
+    yield element(
+        "p",
+        f"{converged} of {counted(len(book.cases), 'polish', 'polishes')} converged. In at most {percent(ties)} % of "
+        "the states of the solver no change of stage gains anything, so that hold wins the tie.",
+    )
+    for case in book.cases:
+        yield from (element("p", f"Warning for {case_name(case)}: {warning}.") for warning in case.warnings)
 
 
 def escaped(book: BookReport) -> str:

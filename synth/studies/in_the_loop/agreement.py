@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.studies.in_the_loop.controller_process import Controller
 from synth.studies.in_the_loop.hard_readings import hard_commands, hard_readings
 from synth.studies.in_the_loop.hard_samples import hard_samples
@@ -16,7 +17,8 @@ from tuning_tables.table_block import LAYOUT, block_of, block_size
 from tuning_tables.table_book import Status, TableBook
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Questions:
     """Readings and commands, and what the Python rule answers: decisions (n,), statuses (m,), words (m, words)."""
 
@@ -28,7 +30,8 @@ class Questions:
     chosen: NDArray[np.uint32]
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Tracks:
     """Samples, dtype SAMPLE, (n,), and the bits of speed and estimate after each by the Python estimator, (n, 9)."""
 

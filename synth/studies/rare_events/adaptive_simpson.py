@@ -8,11 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
+
 Integrand = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """Points (n,) → values (n, M)."""
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Integral:
     """`value` (M,) and `error` (M,): the sum over panels of |one panel − its two halves|; `points` evaluated.
 

@@ -8,13 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.studies.rare_events.pass_coordinates import DIMENSIONS
 
 BROAD_STD = 2.0
 """Standard deviation of the component that reaches every corner; weights under it stay below 2⁴."""
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class GaussianComponent:
     """Normal law of coordinates: `mean` (4,), `factor` (4, 4) lower triangular, covariance = factor·factorᵀ."""
 
@@ -24,8 +26,6 @@ class GaussianComponent:
     def __post_init__(self) -> None:
         if not (np.diag(self.factor) > 0.0).all() or np.triu(self.factor, 1).any():
             raise ValueError("gaussian component: the factor must be lower triangular with a positive diagonal")
-        for array in (self.mean, self.factor):
-            array.setflags(write=False)
 
     def log_ratio(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """log(density of this law / density of the standard normal law) at `x` (n, 4)."""

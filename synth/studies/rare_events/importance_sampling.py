@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.simulation.closed_loop import CHUNK_PASSES
 from synth.simulation.exit_statistics import NORMAL_95, rms_interval
 from synth.simulation.random_passes import random_passes
@@ -18,7 +19,8 @@ from synth.studies.rare_events.pass_score import PassScore
 from synth.studies.rare_events.tail_probability import TailProbability, sampled_tail
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class WeightedPasses:
     """n passes of a mixture: `score` (n,), `weight` (n,), `coordinates` (n, 4), `ends` (K,) of the components."""
 
@@ -26,10 +28,6 @@ class WeightedPasses:
     weight: NDArray[np.float64]
     coordinates: NDArray[np.float64]
     ends: NDArray[np.int64]
-
-    def __post_init__(self) -> None:
-        for array in vars(self).values():
-            array.setflags(write=False)
 
     def __len__(self) -> int:
         return len(self.score)

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.simulation.closed_loop import ClosedLoop
 from synth.simulation.random_passes import RandomPasses
 
@@ -23,7 +24,8 @@ BELOW_ONE = 1.0 - 2.0**-53
 """The largest double below 1: uniform numbers stay in [0, 1)."""
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class PassCoordinates:
     """Coordinates (n, 4) of passes, standard normal and independent when the passes are.
 
@@ -35,7 +37,6 @@ class PassCoordinates:
     def __post_init__(self) -> None:
         if abs(float(self.direction @ self.direction) - 1.0) > 1e-9:
             raise ValueError("pass coordinates: the direction along the path must be a unit vector")
-        self.direction.setflags(write=False)
 
     def of(self, passes: RandomPasses) -> NDArray[np.float64]:
         """(n, 4) coordinates of `passes`; a uniform 0 counts as the smallest positive number."""

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.simulation.random_passes import NOISE_SAMPLES, RandomPasses
 from synth.studies.rare_events.pass_coordinates import BELOW_ONE
 from synth.studies.rare_events.pass_score import PassScore
@@ -87,7 +88,8 @@ def subset_tails(
     return SubsetEstimate(tails, levels, tuple(float(share) for share in accepted))
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Swarm:
     """Particles as standard normal numbers: `scalars` (n, 4), `path` (n, C) and `noise` (n, 256) float32."""
 

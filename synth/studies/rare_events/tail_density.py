@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant
+from plant_models.frozen_arrays import frozen_arrays
 from synth.problem.resolution import Resolution, finer_for_check
 from synth.solver.chain.chain import Chain, check_chain
 from synth.solver.chain.scenarios import Scenarios, resistance_scenarios
@@ -44,7 +45,8 @@ class TailGrid:
     resistance_nodes: int
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class TailIntegral:
     """`probability` (M,) over each limit; (M,) as well: error of the integration over ξ_cut, negative mass above.
 

@@ -8,12 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.studies.reference_problem.problem import Floats, ReferenceProblem
 
 Indices = NDArray[np.int64]
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Outcome:
     """Where one command leads in one outcome of the noise: lower grid neighbours and the share of the upper ones.
 

@@ -11,6 +11,7 @@ from types import TracebackType
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.studies.reference_problem.kernel_inputs import kernel_physics, kernel_sizes
 from synth.studies.reference_problem.kernels.operator_build import COLUMNS, Sizes, reserve
 from synth.studies.reference_problem.kernels.operator_sweep import MARGIN, OVERHANG, solve_share
@@ -21,7 +22,8 @@ from synth.studies.reference_problem.scratch import Scratch
 COUNTERS_PER_LINE = 8
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class ReferenceSolution:
     """Value at entry (P, V) float32, m²/s², and the best command (stages, P, V) uint8, entry first; read-only."""
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.kernels.loop.closed_loop import Draws
 from synth.problem.criterion import Criterion
 from synth.simulation.closed_loop import ClosedLoop, LineController
@@ -47,7 +48,8 @@ class Form:
         return sum(degree + 1 for degree in self.degrees)
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Compact:
     """Lines as a vector: Legendre coefficients in path for each power of the pressure, line after line."""
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from plant_models import Plant
 from plant_models.errors import require
+from plant_models.frozen_arrays import frozen_arrays
 from plant_models.stage_regulator import resting_modes
 from plant_models.valve_drive import ValveDrive, valve_drive
 from synth.studies.unlocked.kernels.unlocked_pressure import play_period
@@ -24,7 +25,8 @@ COMMANDS = (-1, 0, 1)
 """Stages by which the commands of a sample change the stage, in the order of the arrays' second axis."""
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class DriveModes:
     """M modes that can be reached from the released one, which is mode 0.
 
@@ -46,11 +48,6 @@ class DriveModes:
     weight: NDArray[np.float64]
     overpressure_kpa: NDArray[np.float64]
     end_overpressure_kpa: NDArray[np.float64]
-
-    def __post_init__(self) -> None:
-        for array in vars(self).values():
-            if isinstance(array, np.ndarray):
-                array.setflags(write=False)
 
     @property
     def stages(self) -> int:

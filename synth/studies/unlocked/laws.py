@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.simulation.controllers import fixed
 from synth.solver.switching_lines import SwitchingLines
 from synth.studies.unlocked.drive_modes import DriveModes
@@ -49,7 +50,8 @@ class SurfaceController:
         )
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class CompactController:
     """Lines V(s, P) = Σ_j ((P − P_k)/100 kPa)^j · Σ_i a_ij u^i with u = 2 s/S_exit − 1, one pair for each stage.
 
@@ -64,8 +66,6 @@ class CompactController:
     def __post_init__(self) -> None:
         if self.coefficients.shape[:3] != (*self.has_line.shape, PRESSURE_POWERS):
             raise ValueError(f"compact lines: coefficients of shape {self.coefficients.shape} do not fit")
-        self.coefficients.setflags(write=False)
-        self.has_line.setflags(write=False)
 
     @property
     def stages(self) -> int:

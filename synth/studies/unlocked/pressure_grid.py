@@ -10,12 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import RetarderPosition
+from plant_models.frozen_arrays import frozen_arrays
 
 STENCIL = 4
 """Nodes that interpolate one pressure, at most."""
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class PressureGrid:
     """`nodes_kpa` (B,) increasing; `breaks` (·,) indices of the nodes at which the cost has a kink, both ends included.
 
@@ -24,10 +26,6 @@ class PressureGrid:
 
     nodes_kpa: NDArray[np.float64]
     breaks: NDArray[np.int64]
-
-    def __post_init__(self) -> None:
-        self.nodes_kpa.setflags(write=False)
-        self.breaks.setflags(write=False)
 
     def weights(self, pressure_kpa: float) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """Nodes (≤ 4,) and Lagrange weights at `pressure_kpa`, from nodes of its own segment; one node if it is one."""

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant, path_coefficients
+from plant_models.frozen_arrays import frozen_arrays
 from plant_models.speed_sensor import measured_speed_std
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
@@ -29,7 +30,8 @@ DEFAULT_RESOLUTION = Resolution(path_step_m=0.25, speed_step_m_s=0.02)
 """Samples, not transients, are the steps: they want a finer grid than `Resolution`'s own default."""
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class UnlockedPlant:
     """One plant on one grid: everything that a sweep needs and that depends on neither policy nor target.
 

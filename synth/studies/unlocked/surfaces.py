@@ -7,10 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.studies.unlocked.drive_modes import DriveModes
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class SwitchingSurfaces:
     """Below `lower_m_s` go a stage down, above `upper_m_s` go a stage up, between them hold; at every sample.
 
@@ -27,8 +29,6 @@ class SwitchingSurfaces:
         shape = (len(self.modes.stage), len(self.nodes_m))
         if self.lower_m_s.shape != shape or self.upper_m_s.shape != shape:
             raise ValueError(f"switching surfaces: shape {self.lower_m_s.shape} does not fit {shape} modes and nodes")
-        for array in (self.nodes_m, self.lower_m_s, self.upper_m_s):
-            array.setflags(write=False)
 
     def of_stage(self, stage: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         """(pressures (·,), their modes (·,)) of one commanded stage, by rising pressure.

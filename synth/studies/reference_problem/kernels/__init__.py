@@ -1,1 +1,5 @@
-"""Kernels of the neutral problem that other programs solve too."""
+"""Kernels of this study alone; importing any of them first points numba at the cache of exactly these sources."""
+
+from synth.kernels.cache import use_kernel_cache
+
+use_kernel_cache()

@@ -10,17 +10,15 @@ machine the thread that one waits for may need this very processor.
 
 from __future__ import annotations
 
-from llvmlite import ir
 from numba import njit, types
-from numba.core import cgutils
 
-from synth.studies.reference_problem.kernels.vectors import intrinsic
+from synth.kernels.vector.numba_internals import array_data, declared_function, intrinsic, ir
 
 SPINS_BEFORE_YIELD = 2000
 
 
 def _place(context, builder, array_type, array, index):
-    return builder.gep(context.make_array(array_type)(context, builder, array).data, [index])
+    return builder.gep(array_data(context, builder, array_type, array), [index])
 
 
 @intrinsic
@@ -50,8 +48,7 @@ def yield_processor(typing_context):
     """POSIX sched_yield: let another thread run."""
 
     def generate(context, builder, signature, arguments):
-        kind = ir.FunctionType(ir.IntType(32), [])
-        return builder.call(cgutils.get_or_insert_function(builder.module, kind, "sched_yield"), [])
+        return builder.call(declared_function(builder, "sched_yield", ir.IntType(32), []), [])
 
     return types.int32(), generate
 

@@ -8,17 +8,13 @@ sixteen lanes. Nothing checks an index: the caller keeps `index … index + 15` 
 from __future__ import annotations
 
 import operator
-from typing import Any
 
-from llvmlite import ir
-from numba import extending, types
-from numba.core import cgutils
-from numba.extending import models, overload, register_model
+from numba import types
+from numba.extending import overload
+
+from synth.kernels.vector.numba_internals import array_data, declared_function, intrinsic, ir, register_vector
 
 LANES = 16
-
-intrinsic: Any = extending.intrinsic
-"""numba's decorator; its own types give the result the arguments of the code generator, not of the caller."""
 
 
 class Float32x16(types.Type):
@@ -33,15 +29,12 @@ FLOATS = ir.VectorType(ir.FloatType(), LANES)
 _BYTES = ir.VectorType(ir.IntType(8), LANES)
 
 
-@register_model(Float32x16)
-class _Float32x16Model(models.PrimitiveModel):
-    def __init__(self, dmm, fe_type):
-        super().__init__(dmm, fe_type, FLOATS)
+register_vector(Float32x16, lambda vector: FLOATS)
 
 
 def data_of(context, builder, kind, value):
     """Code for the address of the first element of an array, or of what a pointer points to; for code generators."""
-    return value if isinstance(kind, types.CPointer) else context.make_array(kind)(context, builder, value).data
+    return value if isinstance(kind, types.CPointer) else array_data(context, builder, kind, value)
 
 
 def _place(context, builder, kind, value, index, vector):
@@ -56,8 +49,8 @@ def load_at(builder, data, index, further):
 
 def call_vector(builder, name, *vectors):
     """Code that calls the LLVM intrinsic `name` of vectors; for code generators."""
-    kind = ir.FunctionType(FLOATS, [FLOATS] * len(vectors))
-    return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"llvm.{name}.v{LANES}f32"), vectors)
+    called = declared_function(builder, f"llvm.{name}.v{LANES}f32", FLOATS, [FLOATS] * len(vectors))
+    return builder.call(called, vectors)
 
 
 @intrinsic
@@ -177,8 +170,7 @@ def _to_number(name):
     @intrinsic
     def function(typing_context, vector):
         def generate(context, builder, signature, arguments):
-            kind = ir.FunctionType(ir.FloatType(), [FLOATS])
-            called = cgutils.get_or_insert_function(builder.module, kind, f"llvm.vector.reduce.{name}.v{LANES}f32")
+            called = declared_function(builder, f"llvm.vector.reduce.{name}.v{LANES}f32", ir.FloatType(), [FLOATS])
             return builder.call(called, arguments)
 
         return types.float32(VECTOR), generate

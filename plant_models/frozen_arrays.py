@@ -1,0 +1,43 @@
+"""Frozen values whose arrays are read-only too, which `dataclass(frozen=True)` alone does not see to."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from functools import wraps
+from typing import Any, TypeVar
+
+import numpy as np
+
+_T = TypeVar("_T")
+
+
+def frozen_arrays(cls: type[_T]) -> type[_T]:
+    """Make every array that is a field of the dataclass `cls` read-only: when it is made, unpickled or copied.
+
+    It stands above `@dataclass(frozen=True, eq=False)`. `eq=False` because `==` of two arrays is no truth value: such
+    values are equal if they are the same object, and can be keys. The array that the maker hands over becomes
+    read-only itself, no copy is made: hand over a copy of what you want to go on writing.
+    """
+    made = cls.__init__
+
+    @wraps(made)
+    def init(self: _T, *args: Any, **kwargs: Any) -> None:
+        made(self, *args, **kwargs)
+        freeze(self)
+
+    def restore(self: _T, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        freeze(self)
+
+    cls.__init__ = init  # type: ignore[method-assign, assignment]
+    cls.__setstate__ = restore  # type: ignore[attr-defined]
+    return cls
+
+
+def freeze(value: Any) -> None:
+    """Make the arrays among the fields of the dataclass instance `value` read-only, also those in a tuple."""
+    for field in fields(value):
+        held = getattr(value, field.name)
+        for array in held if isinstance(held, tuple) else (held,):
+            if isinstance(array, np.ndarray):
+                array.setflags(write=False)

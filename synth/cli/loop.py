@@ -1,0 +1,117 @@
+"""`retarder-synth loop`: exported tables in the loop as python-control sees it; nothing is solved."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from synth.cli import LIMITS_MISSED, OK, say
+
+if TYPE_CHECKING:
+    from synth.book.control_loop import ControlLoop
+
+DOCUMENT = "loops.json"
+
+
+def loop_command(source: Path, output: Path, config_path: Path | None, as_json: bool) -> int:
+    """Draw and tell the loops of the tables in `source`; 1 if python-control and the simulator do not agree on one."""
+    from synth.book.forms.table_file import file_stem, read_tables
+    from synth.book.output_directory import make_directory
+    from synth.book.validate_table import plant_for
+    from synth.cli.interrupt import interruptible
+    from synth.configuration.config_file import BUILT_IN, load_config
+    from synth.kernels.cache import guarded
+
+    config = load_config(config_path)
+    tables = [table for file in read_tables(source, directory_allowed=True) for table in file.tables]
+    plants = [plant_for(table, config, str(config_path or BUILT_IN)) for table in tables]
+    make_directory(output)
+    from synth.book.control_loop import control_loop, loop_document
+    from synth.book.summary import plain
+    from synth.present.plots.figure_file import save_figure
+    from synth.present.plots.loop_cycle import loop_cycle
+    from synth.present.plots.loop_portrait import loop_portrait
+    from synth.present.plots.loop_response import loop_response
+    from tuning_tables.atomic_file import write_atomically
+
+    loops: list[ControlLoop] = []
+    files: list[str] = []
+    with interruptible(output):
+        for table, (label, plant) in zip(tables, plants, strict=True):
+            loop = guarded(control_loop, table, label, plant)
+            figures = {"response": loop_response(loop), "portrait": loop_portrait(loop)}
+            for i, hunting in enumerate(loop.hunting):
+                figures["cycle" if i == 0 else f"cycle-{i + 1}"] = loop_cycle(loop, hunting)
+            for name, figure in figures.items():
+                files += map(str, save_figure(figure, output, f"{file_stem(table)}-{name}"))
+            loops.append(loop)
+            say(f"{table.id}: {sentence(loop)}")
+        document = plain({"loops": [loop_document(loop) for loop in loops], "files": files})
+        text = json.dumps(document, indent=1, ensure_ascii=False)
+        write_atomically(output / DOCUMENT, f"{text}\n".encode())
+    if as_json:
+        print(text)
+    else:
+        print_loops(loops)
+        print(f"{len(files)} pictures and {DOCUMENT} in {output}")
+    return OK if all(loop.agrees for loop in loops) else LIMITS_MISSED
+
+
+def sentence(loop: ControlLoop) -> str:
+    """How far response and trace are apart, in words."""
+    found = loop.difference
+    part = "" if found.parted_s is None else f" until {found.parted_s:.2f} s, when a sample on a line parts them"
+    word = "agree" if loop.agrees else "DO NOT agree"
+    return f"python-control and the simulator {word}: at most {1e3 * abs(found.largest_m_s):.3f} mm/s apart{part}"
+
+
+def print_loops(loops: Sequence[ControlLoop]) -> None:
+    """A table with one row for each loop, and what its columns mean."""
+    from rich import box
+    from rich.table import Table
+
+    from synth.book.control_loop import TOLERANCE_M_S
+    from synth.cli.book_table import stdout_console
+
+    shown = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for name in ("table", "exit m/s\npython-control", "exit m/s\nsimulator", "largest difference\nmm/s",
+                 "commands\nin a pass", "predicted limit cycle\nstages: path, amplitude, period"):  # fmt: skip
+        shown.add_column(name, justify="left" if name.startswith(("table", "predicted")) else "right", no_wrap=True)
+    for loop in loops:
+        found = loop.difference
+        mark = "" if found.parted_s is None else " *"
+        shown.add_row(
+            loop.table.id,
+            f"{loop.response.exit_speed_m_s:.4f}",
+            f"{loop.trace.exit_speed_m_s:.4f}",
+            f"{1e3 * abs(found.largest_m_s):.3f}{mark}",
+            str(len(loop.response.commands)),
+            cycles(loop),
+        )
+    console = stdout_console()
+    console.print(shown, markup=False)
+    console.print(
+        "Nominal pass: mean friction and resistance, median entry speed, no noise. Python-control and the simulator "
+        f"agree where the largest difference is {1e3 * TOLERANCE_M_S:g} mm/s or less.",
+        soft_wrap=True,
+    )
+    if any(loop.difference.parted_s is not None for loop in loops):
+        console.print(
+            "*: up to a sample whose speed lay on a line. Rounding decides there; from then on these are two passes.",
+            soft_wrap=True,
+        )
+
+
+def cycles(loop: ControlLoop) -> str:
+    """The predicted limit cycles in one line."""
+    if loop.pressure:
+        stages = ", ".join(str(stage) for stage, _ in loop.pressure)
+        return f"the pressure regulator itself hunts at stage {stages}"
+    found = [
+        f"{each.cycle.lower_stage}–{each.cycle.lower_stage + 1}: {each.from_m:.0f} to {each.to_m:.0f} m, "
+        f"±{100.0 * each.cycle.amplitude_m_s:.1f} cm/s, {each.cycle.period_s:.1f} s"
+        for each in loop.hunting
+    ]
+    return "; ".join(found) or "none"

@@ -1,0 +1,86 @@
+"""Everything that this program takes from the inside of numba and llvmlite, which may change without notice.
+
+No other file may import `llvmlite`, `numba.core` or the low-level part of `numba.extending`; tests/architecture holds
+that. The tests pass with numba 0.68.1 and llvmlite 0.50.0, which requirements.lock names, and pyproject.toml allows
+their minor releases alone.
+
+- `WITHOUT_REFERENCE_COUNTS`, an undocumented option of `njit`: without it kernels give the same bits, but slower;
+- `CACHE_READER`, the name of numba's module for cached kernels: without it `guarded` mends no damaged cache;
+- `ir`, llvmlite's builders of machine code, and `intrinsic`, `register_vector`, `infer_operation`, `lower_operation`,
+  `declared_function`, `array_data`, from numba's registries and code generator: without them there are no packs, and
+  hardly a kernel compiles.
+
+A new release of numba: read its list of changes, run `.ci/newest`, raise the cap in pyproject.toml, and lock anew.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from llvmlite import ir
+from numba import extending
+from numba.core import cgutils
+from numba.core.typing.templates import AbstractTemplate, infer_global, signature
+
+__all__ = [
+    "CACHE_READER",
+    "WITHOUT_REFERENCE_COUNTS",
+    "array_data",
+    "declared_function",
+    "infer_operation",
+    "intrinsic",
+    "ir",
+    "lower_operation",
+    "register_vector",
+]
+
+WITHOUT_REFERENCE_COUNTS: dict[str, Any] = {"_nrt": False}
+"""Option of `njit` for kernels that neither make an array nor keep one: numba's runtime is left out.
+
+An unknown option is refused when the kernel is decorated, so a numba without it cannot go unnoticed.
+"""
+
+CACHE_READER = "numba.core.caching"
+"""The module that reads cached kernels: an error raised in it means that the cache is damaged."""
+
+intrinsic: Any = extending.intrinsic
+"""Decorator of a function that gives the type of a call and the code for it.
+
+numba's own type of it counts the typing context among the arguments of a call, hence `Any`.
+"""
+
+
+def register_vector(kind: type, machine_type: Callable[[Any], Any]) -> None:
+    """Have values of the numba type `kind` live in one LLVM value of the type `machine_type(instance)`."""
+
+    class Model(extending.models.PrimitiveModel):
+        def __init__(self, manager: Any, instance: Any) -> None:
+            super().__init__(manager, instance, machine_type(instance))
+
+    extending.register_model(kind)(Model)
+
+
+def infer_operation(symbol: Callable[..., Any], result: Callable[[Any, Any], Any]) -> None:
+    """Have the binary operation `symbol` give the type `result(a, b)` of its operands' types; None: not ours."""
+
+    @infer_global(symbol)
+    class Typed(AbstractTemplate):
+        def generic(self, args: Any, kws: Any) -> Any:
+            found = result(*args) if len(args) == 2 else None
+            return None if found is None else signature(found, *args)
+
+
+def lower_operation(symbol: Callable[..., Any], kinds: tuple[type, type], code: Callable[..., Any]) -> None:
+    """Generate the binary operation `symbol` of operands of `kinds` by `code(context, builder, signature, values)`."""
+    extending.lower_builtin(symbol, *kinds)(code)
+
+
+def declared_function(builder: Any, name: str, result: Any, arguments: list[Any]) -> Any:
+    """The function `name` of LLVM or of the C library, declared in the module that is being built."""
+    return cgutils.get_or_insert_function(builder.module, ir.FunctionType(result, arguments), name)
+
+
+def array_data(context: Any, builder: Any, array_type: Any, array: Any) -> Any:
+    """Code for the address of the first element of an array."""
+    return context.make_array(array_type)(context, builder, array).data

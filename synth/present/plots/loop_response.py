@@ -1,0 +1,84 @@
+"""The nominal pass of a table by python-control and by the simulator, one over the other, and what lies between."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from synth.book.control_loop import TOLERANCE_M_S, ControlLoop
+from synth.present.plots.house_style import BLUE, GREY, INK, VERMILLION, dress, legend_below, new_figure, place
+from synth.present.plots.table_picture import subject
+
+TIME = "time since the first axle entered, s"
+
+
+def loop_response(loop: ControlLoop) -> Figure:
+    """Speed over path, the difference of speed, overpressure and stage over time."""
+    figure = new_figure(11.5, 6.2, "Nominal response: python-control and the simulator", subject(loop.table))
+    place(figure, left=0.65, right=0.2, bottom=0.95, top=0.85, w=0.17, h=0.42)
+    grid = figure.subplots(2, 2)
+    draw_speed(grid[0, 0], loop)
+    draw_difference(grid[0, 1], loop)
+    draw_pressure(grid[1, 0], loop)
+    draw_stage(grid[1, 1], loop)
+    last_s = float(max(loop.response.time_s[-1], loop.trace.time_s[-1]))
+    for axes in (grid[0, 1], grid[1, 0], grid[1, 1]):
+        axes.set_xlim(0.0, last_s)
+    handles = [
+        Line2D([], [], color=BLUE, linewidth=3.0, alpha=0.45, label="python-control"),
+        Line2D([], [], color=VERMILLION, linewidth=1.2, linestyle="--", label="the simulator"),
+        Line2D([], [], color=INK, linewidth=1.0, linestyle=(0, (4, 3)), label="commanded exit speed"),
+    ]
+    legend_below(figure, handles, columns=3)
+    return figure
+
+
+def draw_speed(axes: Axes, loop: ControlLoop) -> None:
+    """Speed in m/s over path in m, with the exit speeds in the title."""
+    response, trace, target = loop.response, loop.trace, loop.table.target_speed_m_s
+    axes.plot(response.path_m, response.speed_m_s, color=BLUE, linewidth=3.0, alpha=0.45)
+    axes.plot(trace.path_m, trace.speed_m_s, color=VERMILLION, linewidth=1.2, linestyle="--")
+    axes.axhline(target, color=INK, linewidth=1.0, linestyle=(0, (4, 3)), zorder=1)
+    title = f"leaves with {response.exit_speed_m_s:.4f} and {trace.exit_speed_m_s:.4f} m/s, commanded {target:g}"
+    dress(axes, title, "path of the first axle, m", "speed, m/s")
+    axes.set(xlim=(0.0, loop.plant.exit_m), ylim=(0.0, None))
+
+
+def draw_difference(axes: Axes, loop: ControlLoop) -> None:
+    """python-control less simulator in mm/s, at the events of the simulator."""
+    found, time = loop.difference, loop.trace.time_s
+    speed = np.interp(time, loop.response.time_s, loop.response.speed_m_s)
+    within = time <= loop.response.time_s[-1]
+    axes.plot(time[within], 1e3 * (speed - loop.trace.speed_m_s)[within], color=INK, linewidth=1.2, marker=".")
+    if found.parted_s is not None:
+        axes.axvline(found.parted_s, color=GREY, linewidth=1.0, linestyle=":")
+        parted = f"the commands part at {found.parted_s:.2f} s: a sample on a line"
+    else:
+        parted = "same commands at the same samples"
+    dress(axes, f"at most {1e3 * abs(found.largest_m_s):.3f} mm/s; {parted}", TIME, "difference of speed, mm/s")
+    reach = 1e3 * max(TOLERANCE_M_S, abs(found.largest_m_s)) * 1.1
+    axes.axhline(0.0, color=GREY, linewidth=0.8, zorder=1)
+    axes.set_ylim(-reach, reach)
+
+
+def draw_pressure(axes: Axes, loop: ControlLoop) -> None:
+    """Pressure above the touch of the pads over time: integrated by one, played in steps by the other."""
+    touch_kpa = loop.plant.position.force.touch_pressure_kpa
+    over = np.maximum(0.0, loop.response.pressure_kpa - touch_kpa)
+    axes.plot(loop.response.time_s, over, color=BLUE, linewidth=3.0, alpha=0.45)
+    axes.step(
+        loop.trace.time_s, loop.trace.overpressure_kpa, where="post", color=VERMILLION, linewidth=1.2, linestyle="--"
+    )
+    dress(axes, "", TIME, "pressure above touch, kPa")
+    axes.set_ylim(0.0, None)
+
+
+def draw_stage(axes: Axes, loop: ControlLoop) -> None:
+    """Commanded stage over time."""
+    axes.step(loop.response.time_s, loop.response.stage, where="post", color=BLUE, linewidth=3.0, alpha=0.45)
+    axes.step(loop.trace.time_s, loop.trace.stage, where="post", color=VERMILLION, linewidth=1.2, linestyle="--")
+    dress(axes, "", TIME, "commanded stage")
+    stages = len(loop.table.stages)
+    axes.set(yticks=range(stages), ylim=(-0.2, stages - 0.8))

@@ -1,0 +1,151 @@
+"""The nominal pass by python-control: a second computation of what the simulator does, by a general ODE solver.
+
+- At every sample the regulator is asked; between samples `input_output_response` integrates the loop.
+- python-control has no exact dead time, and its input is linear between time points. Valve and computing delays are
+  therefore instants at which the valve position changes, and each stretch of constant valve position is integrated by
+  itself: nothing is smeared, no short pulse is skipped.
+- Which valve opens when, the relay of the stage pressure decides; `Pneumatics.respond` states that law once, and its
+  instants are used. The pressure itself is integrated by python-control and not taken from there.
+
+The simulator of `synth.simulation.closed_loop` is the first computation. Both share the law of the regulator, the
+durations of its transients and the path coefficients.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models import Plant, PressureHistory
+from plant_models.frozen_arrays import frozen_arrays
+from synth.kernels.loop import closed_loop as kernel
+from synth.simulation.closed_loop import Controller
+from synth.simulation.control_system import nominal_loop, regulated_actuator, regulator_start, regulator_system
+
+if TYPE_CHECKING:
+    from control import InterconnectedSystem
+
+CLOSED = 0.0
+"""Valve position, the input of the drive, that holds the pressure; +1 supplies, −1 exhausts."""
+
+OUTPUT_STEP_S = 0.01
+"""Longest time between points of a response."""
+
+SOLVER = {"method": "RK45", "rtol": 1e-7, "atol": 1e-8, "max_step": 0.02}
+"""For `solve_ivp`; `max_step` keeps the solver from stepping over a change of N(s)."""
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class NominalResponse:
+    """One nominal pass, arrays of shape (points,), from the entrance to the exit or to the stall.
+
+    `stage` is the commanded stage, `pressure_kpa` the gauge pressure in the cylinders.
+    """
+
+    time_s: NDArray[np.float64]
+    path_m: NDArray[np.float64]
+    speed_m_s: NDArray[np.float64]
+    pressure_kpa: NDArray[np.float64]
+    stage: NDArray[np.int64]
+    stalled: bool
+
+    @property
+    def exit_speed_m_s(self) -> float:
+        """Speed at the exit; 0 after a stall."""
+        return 0.0 if self.stalled else float(self.speed_m_s[-1])
+
+    @property
+    def commands(self) -> tuple[tuple[float, int], ...]:
+        """(time of the sample in s, stage commanded) of every change of stage."""
+        changed = np.flatnonzero(np.diff(self.stage)) + 1
+        return tuple((float(self.time_s[i]), int(self.stage[i])) for i in changed)
+
+
+def nominal_response(plant: Plant, controller: Controller, entry_speed_m_s: float, phase_s: float) -> NominalResponse:
+    """The nominal pass of `plant` under `controller`, released at the entrance.
+
+    `phase_s`: time of the first sample after the entrance, 0 … sampling period. Friction is 1, resistance the
+    class's mean; the sensor quantises but has no noise.
+    """
+    loop, regulator = nominal_loop(plant), regulator_system(plant, controller)
+    rests_kpa = regulated_actuator(plant, controller).mode_pressure_kpa
+    position, sensor = plant.position, plant.sensor
+    memory, over_kpa = regulator_start(), 0.0
+    schedule = [(-np.inf, CLOSED)]
+    points = played(loop, np.array([0.0, entry_speed_m_s, rests_kpa[0]]), 0.0, phase_s, schedule)
+    stages = [np.zeros(points.shape[1])]
+    parts, sample = [points], 0
+    while points[1, -1] < plant.exit_m and points[2, -1] > 0.0 and points[0, -1] < kernel.LONGEST_PASS_S:
+        now, state = phase_s + sample * sensor.sample_period_s, points[1:, -1]
+        seen = [*state[:2], over_kpa]
+        wanted = int(regulator.output(now, memory, seen)[0])
+        if wanted != int(memory[0]):
+            history = position.pneumatics.respond(
+                rests_kpa[int(memory[1])], position.stage_pressures_kpa[wanted], position.force.touch_pressure_kpa
+            )
+            schedule = valve_schedule(history, now + sensor.computing_delay_s)
+        memory = regulator.dynamics(now, memory, seen)
+        sample += 1
+        points = played(loop, state, now, phase_s + sample * sensor.sample_period_s, schedule)
+        over_kpa = mean_overpressure_kpa(points, position.force.touch_pressure_kpa)
+        parts.append(points)
+        stages.append(np.full(points.shape[1], wanted))
+    return to_the_end(np.hstack(parts), np.concatenate(stages), plant.exit_m)
+
+
+def mean_overpressure_kpa(points: NDArray[np.float64], touch_kpa: float) -> float:
+    """Mean of max(0, P − P0) over the time that `points` (4, n) of a response cover."""
+    time, over = points[0], np.maximum(0.0, points[3] - touch_kpa)
+    return float(np.trapezoid(over, time) / (time[-1] - time[0]))
+
+
+def valve_schedule(history: PressureHistory, command_s: float) -> list[tuple[float, float]]:
+    """(instant in s, valve position from then on) after a command that reaches the valves at `command_s`."""
+    valves = np.sign(history.asymptotes_kpa - history.pressures_kpa)
+    return [(-np.inf, CLOSED), *zip(command_s + history.starts_s, valves, strict=True)]
+
+
+def played(
+    loop: InterconnectedSystem,
+    state: NDArray[np.float64],
+    start_s: float,
+    end_s: float,
+    schedule: list[tuple[float, float]],
+) -> NDArray[np.float64]:
+    """Response from `start_s` to `end_s`, columns (time, s, v, p), one stretch of constant valve position at a time."""
+    import control
+
+    cuts = [start_s, *(t for t, _ in schedule if start_s < t < end_s), end_s]
+    parts = [np.append(start_s, state)[:, None]]
+    for start, stop in pairwise(cuts):
+        if stop - start < 1e-12:
+            continue
+        valve = next(position for t, position in reversed(schedule) if t <= start)
+        times = np.linspace(start, stop, max(2, math.ceil((stop - start) / OUTPUT_STEP_S) + 1))
+        response = control.input_output_response(
+            loop, times, np.full((1, times.size), valve), state, solve_ivp_kwargs=SOLVER
+        )
+        state = response.states[:, -1]
+        parts.append(np.vstack([times, response.states])[:, 1:])
+    return np.hstack(parts)
+
+
+def to_the_end(points: NDArray[np.float64], stages: NDArray[np.float64], exit_m: float) -> NominalResponse:
+    """The response cut off at the exit, where v² is linear in s between two points, or at the stall."""
+    time, path, speed, pressure = points
+    stalled = bool(path[-1] < exit_m)
+    last = int(np.argmax(speed <= 0.0)) if stalled and speed[-1] <= 0.0 else len(path) - 1
+    if not stalled:
+        last = int(np.argmax(path >= exit_m))
+        share = (exit_m - path[last - 1]) / (path[last] - path[last - 1])
+        exit_speed = math.sqrt((1.0 - share) * speed[last - 1] ** 2 + share * speed[last] ** 2)
+        time[last] = time[last - 1] + 2.0 * (exit_m - path[last - 1]) / (speed[last - 1] + exit_speed)
+        path[last], speed[last] = exit_m, exit_speed
+    time, path, speed, pressure = points[:, : last + 1].copy()
+    return NominalResponse(time, path, speed, pressure, stages[: last + 1].astype(np.int64), stalled)

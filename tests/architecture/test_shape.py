@@ -1,0 +1,271 @@
+"""The shape of the house: few rooms, short files and functions, few arguments, and nothing that no command reaches.
+
+Every rule is a function from sources to offences, and a planted offence shows that it finds some. `KNOWN` names what
+still offends: it may only become shorter, for a name that no longer offends fails the test too.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PACKAGES = ("plant_models", "synth", "tuning_tables")
+SOURCES = {
+    path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8")
+    for package in PACKAGES
+    for path in sorted((ROOT / package).rglob("*.py"))
+}
+
+MOST_ROOMS = 14
+MOST_LINES, MOST_FUNCTION_LINES, MOST_ARGUMENTS = 300, 60, 8
+KERNEL_FUNCTION_LINES, KERNEL_ARGUMENTS = 90, 38
+"""What the longest kernel has; lower these when it becomes shorter."""
+
+KNOWN = {
+    "synth/book/tune.py: class_tasks has 11 arguments",
+    "synth/solver/polynomial_fit.py: polish has 61 lines",
+    "synth/studies/unlocked/pictures.py: slices has 9 arguments",
+}
+KNOWN_UNREACHED = {"synth.simulation.control_system", "synth.solver.posterior_weights"}
+KNOWN_WRITABLE = {
+    "synth/book/case_result.py: CaseResult",
+    "synth/book/case_result.py: DegreeStudy",
+    "synth/book/case_result.py: PolicyMap",
+    "synth/book/comparison/measured.py: Feasibility",
+    "synth/simulation/passes.py: ExitSample",
+    "synth/simulation/passes.py: PassTrace",
+    "synth/simulation/random_passes.py: RandomPasses",
+    "synth/solver/backward_induction.py: Solution",
+    "synth/solver/chain/grid.py: Grid",
+    "synth/solver/chain/path_noise.py: PathChain",
+    "synth/solver/chain/path_noise.py: TransientNoise",
+    "synth/solver/chain/transitions.py: Landings",
+    "synth/solver/chain/transitions.py: Scenarios",
+    "synth/solver/chain/transitions.py: Transitions",
+    "synth/solver/exit_density.py: ExitDensity",
+    "synth/solver/policy_evaluation.py: Commands",
+    "synth/solver/policy_evaluation.py: Occupancy",
+    "synth/solver/policy_evaluation.py: ScenarioCosts",
+    "synth/solver/polynomial_fit.py: Fit",
+    "synth/solver/polynomial_fit.py: PolynomialLines",
+    "synth/solver/switching_lines.py: SwitchingLines",
+}
+
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+def test_there_are_packages_to_judge() -> None:
+    assert {name.partition("/")[0] for name in SOURCES} == set(PACKAGES)
+    assert len(SOURCES) > 200
+
+
+def rooms(sources: Mapping[str, str]) -> set[str]:
+    """Packages and modules at the top of `synth`."""
+    parts = [name.split("/")[1].removesuffix(".py") for name in sources if name.startswith("synth/")]
+    return set(parts) - {"__init__"}
+
+
+def test_synth_has_few_rooms() -> None:
+    assert len(rooms(SOURCES)) <= MOST_ROOMS
+    assert rooms({"synth/__init__.py": "", "synth/a.py": "", "synth/b/c.py": "", "synth/b/d.py": ""}) == {"a", "b"}
+
+
+def long_files(sources: Mapping[str, str]) -> Iterator[str]:
+    """Files with more lines than a file may have."""
+    for name, text in sources.items():
+        if len(text.splitlines()) > MOST_LINES:
+            yield f"{name} has {len(text.splitlines())} lines: split it, one noun a file"
+
+
+def test_files_are_short() -> None:
+    assert list(long_files(SOURCES)) == []
+    assert len(list(long_files({"a.py": "x = 1\n" * (MOST_LINES + 1), "b.py": "x = 1\n" * MOST_LINES}))) == 1
+
+
+def measured(text: str) -> Iterator[tuple[str, int, int]]:
+    """(name, lines, arguments but `self` and `cls`) of every function in a source."""
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, Function):
+            given = node.args
+            names = [each.arg for each in (*given.posonlyargs, *given.args, *given.kwonlyargs)]
+            arguments = [name for name in names if name not in ("self", "cls")]
+            yield node.name, (node.end_lineno or node.lineno) - node.lineno + 1, len(arguments)
+
+
+def large_functions(sources: Mapping[str, str]) -> Iterator[str]:
+    """Functions with more lines or arguments than they may have; kernels may have more."""
+    for name, text in sources.items():
+        kernel = "/kernels/" in name
+        lines_allowed = KERNEL_FUNCTION_LINES if kernel else MOST_FUNCTION_LINES
+        arguments_allowed = KERNEL_ARGUMENTS if kernel else MOST_ARGUMENTS
+        for function, lines, arguments in measured(text):
+            if lines > lines_allowed:
+                yield f"{name}: {function} has {lines} lines"
+            if arguments > arguments_allowed:
+                yield f"{name}: {function} has {arguments} arguments"
+
+
+def test_functions_are_short_and_take_few_arguments() -> None:
+    assert set(large_functions(SOURCES)) == KNOWN
+
+
+def test_the_ceilings_of_kernels_are_no_higher_than_they_must_be() -> None:
+    kernels = [found for name, text in SOURCES.items() if "/kernels/" in name for found in measured(text)]
+    assert max(lines for _, lines, _ in kernels) == KERNEL_FUNCTION_LINES
+    assert max(arguments for _, _, arguments in kernels) == KERNEL_ARGUMENTS
+
+
+@pytest.mark.parametrize(
+    ("name", "source", "found"),
+    [
+        ("synth/a.py", "def f(a, b, c, d, e, f, g, *, h, i): ...", 1),
+        ("synth/a.py", "class A:\n    def f(self, a, b, c, d, e, f, g, h): ...", 0),
+        ("synth/a.py", "class A:\n    def f(self, a, b, c, d, e, f, g, h, i): ...", 1),
+        ("synth/kernels/a.py", "def f(a, b, c, d, e, f, g, h, i): ...", 0),
+        ("synth/kernels/a.py", f"def f({', '.join(f'a{i}' for i in range(KERNEL_ARGUMENTS + 1))}): ...", 1),
+        ("synth/a.py", "def f():\n" + "    x = 1\n" * MOST_FUNCTION_LINES, 1),
+        ("synth/a.py", "def f():\n" + "    x = 1\n" * (MOST_FUNCTION_LINES - 1), 0),
+        ("synth/kernels/a.py", "def f():\n" + "    x = 1\n" * KERNEL_FUNCTION_LINES, 1),
+    ],
+)
+def test_a_large_function_is_found(name: str, source: str, found: int) -> None:
+    assert len(list(large_functions({name: source}))) == found
+
+
+def module_of(name: str) -> str:
+    """The dotted name of a source file."""
+    return name.removesuffix(".py").replace("/", ".").removesuffix(".__init__")
+
+
+def imported(text: str) -> Iterator[str]:
+    """Every module, or name in a module, that a source imports, inside functions too."""
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+        elif isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+
+
+def reached(sources: Mapping[str, str], roots: set[str]) -> set[str]:
+    """The modules that importing `roots` and running all their functions would import."""
+    modules = {module_of(name): text for name, text in sources.items()}
+    waiting, seen = sorted(roots), set[str]()
+    while waiting:
+        module = waiting.pop()
+        if module in seen or module not in modules:
+            continue
+        seen.add(module)
+        waiting += [module.rpartition(".")[0], *imported(modules[module])]
+    return seen
+
+
+def unreached(sources: Mapping[str, str]) -> set[str]:
+    """Modules outside the studies that no command, no front door, and for physics no study, has a use for."""
+    modules = {module_of(name) for name in sources}
+    studies = {module for module in modules if module.startswith("synth.studies")}
+    used = reached(sources, {"synth.cli.commands", *PACKAGES}) | {
+        module for module in reached(sources, studies) if module.startswith("plant_models")
+    }
+    return modules - studies - used
+
+
+def test_a_command_or_the_front_door_reaches_every_module() -> None:
+    assert unreached(SOURCES) == KNOWN_UNREACHED
+
+
+def test_a_module_that_nobody_needs_is_found() -> None:
+    planted = {
+        **SOURCES,
+        "synth/book/intruder.py": "from synth.book import tune",
+        "synth/studies/intruder.py": "from synth.book import intruder\nfrom plant_models import intruder",
+        "plant_models/intruder.py": "",
+        "tuning_tables/intruder.py": "",
+    }
+    assert unreached(planted) - KNOWN_UNREACHED == {"synth.book.intruder", "tuning_tables.intruder"}
+
+
+def array_fields(node: ast.ClassDef, words: set[str]) -> list[ast.AnnAssign]:
+    """The fields of a class whose type names one of `words`, but not as what a callable takes or gives."""
+    fields = [part for part in node.body if isinstance(part, ast.AnnAssign)]
+    return [field for field in fields if words & set(type_names(field.annotation))]
+
+
+def type_names(annotation: ast.AST) -> Iterator[str]:
+    """The names in an annotation, those inside `Callable` left out."""
+    if isinstance(annotation, ast.Subscript) and ast.unparse(annotation.value) == "Callable":
+        return
+    if isinstance(annotation, ast.Name | ast.Attribute):
+        yield annotation.id if isinstance(annotation, ast.Name) else annotation.attr
+    for child in ast.iter_child_nodes(annotation):
+        yield from type_names(child)
+
+
+def array_words(sources: Mapping[str, str]) -> set[str]:
+    """The names that stand for the type of an array, aliases included."""
+    aliases = {
+        ast.unparse(node.targets[0])
+        for text in sources.values()
+        for node in ast.parse(text).body
+        if isinstance(node, ast.Assign) and "NDArray" in set(type_names(node.value))
+    }
+    return aliases | {"NDArray", "ndarray"}
+
+
+def with_arrays(sources: Mapping[str, str]) -> Iterator[tuple[str, ast.ClassDef, list[ast.AnnAssign]]]:
+    """(file, class, fields that are arrays) of every dataclass that has some."""
+    words = array_words(sources)
+    for name, text in sources.items():
+        for node in ast.walk(ast.parse(text)):
+            if not isinstance(node, ast.ClassDef) or not any(part.startswith("dataclass") for part in decorators(node)):
+                continue
+            if fields := array_fields(node, words):
+                yield name, node, fields
+
+
+def decorators(node: ast.ClassDef) -> list[str]:
+    """The decorators of a class, as text."""
+    return [ast.unparse(decorator) for decorator in node.decorator_list]
+
+
+def writable(sources: Mapping[str, str]) -> Iterator[str]:
+    """Dataclasses with arrays that can be written to, or that cannot be compared.
+
+    In `tuning_tables`, which knows no `plant_models`, a `__post_init__` must freeze them; there arrays that follow from
+    the other fields may be left out of the comparison instead.
+    """
+    for name, node, fields in with_arrays(sources):
+        given = decorators(node)
+        frozen = given == ["frozen_arrays", "dataclass(frozen=True, eq=False)"]
+        if name.startswith("tuning_tables/"):
+            left_out = all(field.value is not None and "compare=False" in ast.unparse(field.value) for field in fields)
+            frozen = given == ["dataclass(frozen=True, eq=False)"] or (given == ["dataclass(frozen=True)"] and left_out)
+            frozen = frozen and "setflags(write=False)" in ast.unparse(node)
+        if not frozen:
+            yield f"{name}: {node.name}"
+
+
+def test_arrays_of_frozen_values_are_read_only() -> None:
+    assert len(list(with_arrays(SOURCES))) > 40
+    assert set(writable(SOURCES)) == KNOWN_WRITABLE
+
+
+@pytest.mark.parametrize(
+    ("name", "decorated", "field", "found"),
+    [
+        ("synth/a.py", "@frozen_arrays\n@dataclass(frozen=True, eq=False)", "NDArray[np.float64]", 0),
+        ("synth/a.py", "@dataclass(frozen=True, eq=False)", "np.ndarray | None", 1),
+        ("synth/a.py", "@frozen_arrays\n@dataclass(frozen=True)", "tuple[npt.NDArray[np.float64], ...]", 1),
+        ("synth/a.py", "@frozen_arrays\n@dataclass", "Floats", 1),
+        ("synth/a.py", "@dataclass(frozen=True)", "Callable[[Floats], Floats]", 0),
+        ("tuning_tables/a.py", "@dataclass(frozen=True)", "Floats", 1),
+        ("tuning_tables/a.py", "@dataclass(frozen=True)", "Floats = field(compare=False)", 1),
+    ],
+)
+def test_a_writable_array_is_found(name: str, decorated: str, field: str, found: int) -> None:
+    source = f"Floats = NDArray[np.float64]\n{decorated}\nclass A:\n    x: {field}\n    y: float\n"
+    assert len(list(writable({name: source}))) == found

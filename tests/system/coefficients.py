@@ -1,0 +1,66 @@
+"""Hashes of the coefficients of many tables, by the one pipeline; run as a program, it prints them as JSON."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator
+
+from plant_models.library import retarder_names
+from synth.book.class_setup import class_setup, origin_of, validation_passes
+from synth.book.tuned_table import solutions, tuned_table
+from synth.configuration.config_file import parse_config
+from synth.configuration.resolved_config import ResolvedConfig
+from synth.problem.aim import Aim
+from synth.solver.one_blas_thread import one_blas_thread
+from synth.sweep.plan import plan_of
+from synth.sweep.sweep_file import parse_sweep
+from synth.sweep.tune_unit import tune_unit
+from tests.sweep.conftest import PLANT, SWEEP
+from tuning_tables import ControllerTable, to_json
+
+CREATED = "2026-11-22T00:00:00Z"
+FEW = "[validation]\npasses = 1000\n"
+GONDOLA = '[[cut]]\ncar = "gondola-4"\nmass_t = 36\n'
+CONFIGURATIONS = {
+    **{name: f'{FEW}[retarder]\nname = "{name}"\n' for name in retarder_names()},
+    "estimator": f"{FEW}[regulator]\nestimator = true\n{GONDOLA}",
+    "p_overspeed": f"{FEW}[criterion]\np_overspeed = 0.02\n[targets]\nexit_speeds_m_s = [2.0]\n{GONDOLA}",
+    "worst_friction": (
+        f"{FEW}[criterion]\nworst_friction_low = 0.8\nworst_friction_high = 1.2\n[targets]\nexit_speeds_m_s = [3.0]\n"
+        f"{GONDOLA}"
+    ),
+}
+
+
+def tuned(config: ResolvedConfig) -> Iterator[ControllerTable]:
+    """The tables of a configuration, not simulated."""
+    passes, origin = validation_passes(config), origin_of(config.sha256, CREATED)
+    for label, plant in config.plants():
+        setup = class_setup(config, label, plant, passes, origin)
+        aims = [Aim(target, config.criterion) for target in config.targets_m_s]
+        for solution in solutions(setup.design, aims):
+            yield tuned_table(setup, solution).table
+
+
+def swept() -> Iterator[ControllerTable]:
+    """The tables of a small sweep."""
+    for unit in plan_of(parse_sweep(PLANT + SWEEP, "sweep.toml"), CREATED).units:
+        yield from (row.table for row in tune_unit(unit.order).rows)
+
+
+def coefficients_sha256(table: ControllerTable) -> str:
+    """Of the stages with their lines, as the file writes them."""
+    stages = json.loads(to_json(table))["stages"]
+    return hashlib.sha256(json.dumps(stages, sort_keys=True).encode()).hexdigest()
+
+
+@one_blas_thread()
+def hashes() -> dict[str, dict[str, str]]:
+    """By configuration and table."""
+    tables = {name: tuned(parse_config(text, name)) for name, text in CONFIGURATIONS.items()} | {"sweep": swept()}
+    return {name: {table.id: coefficients_sha256(table) for table in each} for name, each in tables.items()}
+
+
+if __name__ == "__main__":
+    print(json.dumps(hashes(), indent=1, sort_keys=True))
