@@ -29,6 +29,13 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.convergence.study",
     ),
     Study(
+        "coverage",
+        "How often do the printed 95 % intervals hold the truth?",
+        1200.0,
+        "method.md#8-closed-loop",
+        "synth.studies.coverage",
+    ),
+    Study(
         "criteria",
         "What do other criteria than the mean square make of the tables, and what does a price on switchings buy?",
         60.0,
@@ -97,6 +104,13 @@ STUDIES: tuple[Study, ...] = (
         1800.0,
         "unlocked.md",
         "synth.studies.unlocked.study",
+    ),
+    Study(
+        "verification",
+        "What does `verify` doubt: tables whose claims are true, and tables that state another rms than theirs?",
+        120.0,
+        "verification.md",
+        "synth.studies.verification",
     ),
 )
 
