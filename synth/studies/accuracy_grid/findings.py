@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from synth.studies.accuracy_grid.figures import Figures, GridCase
-from synth.studies.accuracy_grid.limits import Limit, limits
+from synth.studies.accuracy_grid.limits import NOMINAL_CV, Limit, limits
 from synth.studies.markdown_table import MarkdownTable, table
 from synth.studies.study import Findings
 
@@ -35,14 +35,24 @@ class Grid(Findings):
         return limits(self.cases, self.minutes)
 
     def tables(self) -> Mapping[str, MarkdownTable]:
-        """`limits`: a row a limit; `ratios`: a row a spread of friction; `cases`: a row a feasible case."""
+        """`limits`: a row a limit; `reference`, `cases`: a row a feasible case."""
         verdict = [(each.asked, each.found if each.met else f"**{each.found}: not met**") for each in self.verdict]
         heads = ("case", "told", "with estimator", "table", "best baseline", "predicted / simulated: with, without",
                  "switchings: with, without, baseline")  # fmt: skip
         return {
             "limits": table("limits", ("asked", "found"), verdict),
+            "reference": self.reference(),
             "cases": table("rms of the feasible cases, m/s", heads, (cells(*each) for each in self.known)),
         }
+
+    def reference(self) -> MarkdownTable:
+        """Cases of the default spread of friction: what is reached with the friction known, two ways."""
+        rows = [
+            (case.case, f"{case.known_rms_m_s:.4f}", f"{figures.told.rms_m_s:.4f}", f"{figures.table.rms_m_s:.4f}")
+            for case, figures in self.known if case.cv == NOMINAL_CV
+        ]  # fmt: skip
+        heads = ("case", "friction known, the solver's lines", "friction told, polished cubics", "table")
+        return table("rms with the friction of every cut known, m/s", heads, rows)
 
     def sentences(self) -> tuple[str, ...]:
         """How many cases."""

@@ -15,6 +15,9 @@ from synth.studies.robustness.perturbation import Ends, all_off, one_off
 from synth.studies.robustness.trial import Trial
 from synth.studies.side_by_side import side_by_side
 
+DIGITS = 6
+"""Decimals of what is kept of hundreds of points."""
+
 
 def one_at_a_time(
     trial: Trial, parameters: Sequence[Parameter], ends: Callable[[Plant, Parameter], Ends]
@@ -87,8 +90,8 @@ def together(trial: Trial, parameters: Sequence[Parameter], span: float, points:
         span=span,
         passes=len(trial.passes),
         names=tuple(p.name for p in varied),
-        rank_correlation=tuple(float(spearmanr(column, rms).statistic) for column in relative.T),
-        rms_m_s=tuple(rms),
-        overspeed=tuple(outcome.overspeed for outcome in outcomes),
-        stalled=tuple(outcome.stalled for outcome in outcomes),
+        rank_correlation=tuple(round(float(spearmanr(column, rms).statistic), DIGITS) for column in relative.T),
+        rms_m_s=tuple(round(each, DIGITS) for each in rms),
+        overspeed=tuple(round(outcome.overspeed, DIGITS) for outcome in outcomes),
+        stalled=tuple(round(outcome.stalled, DIGITS) for outcome in outcomes),
     )

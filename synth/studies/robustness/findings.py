@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -173,25 +173,21 @@ class Robustness(Findings):
         return table(title, ("condition", *self.names, "over-speed"), rows)
 
     def ranges(self) -> MarkdownTable:
-        """A row a parameter whose sensible range matters, at its worse end, by the largest ratio in any case."""
-        by_key = {row.key: [of_key(case.sensible, row.key) for case in self.cases] for row in self.cases[0].sensible}
-        largest = {key: max(row.worst.ratio for row in found if row) for key, found in by_key.items()}
-        names = {row.key: row.name for row in self.cases[0].sensible}
+        """A row a parameter whose sensible range matters, at its worse end."""
         rows = [
-            (names[key], *(f"{row.worst_value:.3g}: {row.worst.cell}" if row else ABSENT for row in by_key[key]))
-            for key in sorted(by_key, key=lambda key: -largest[key])
-            if largest[key] > SHOWN_RATIO
+            (name, *(f"{row.worst_value:.3g}: {row.worst.cell}" if row else ABSENT for row in found))
+            for name, ratio, found in by_effect([case.sensible for case in self.cases])
+            if ratio > SHOWN_RATIO
         ]
         title = "worse end of the library's sensible range: value, rms, m/s [95 %] / of a table tuned for that plant"
         return table(title, ("parameter", *self.names), rows)
 
     def halves(self) -> MarkdownTable:
-        """A row a parameter at −50 % and +50 %, the strongest of the first case first."""
-        rows = []
-        for first in self.cases[0].halves[:SHOWN_HALVES]:
-            found = [of_key(case.halves, first.key) for case in self.cases]
-            cells = (f"{r.less.rms_m_s:.3f} / {r.more.rms_m_s:.3f}" if r else ABSENT for r in found)
-            rows.append((first.name, *cells))
+        """A row a parameter at −50 % and +50 %."""
+        rows = [
+            (name, *(f"{row.less.rms_m_s:.3f} / {row.more.rms_m_s:.3f}" if row else ABSENT for row in found))
+            for name, _, found in by_effect([case.halves for case in self.cases])[:SHOWN_HALVES]
+        ]
         return table("rms at −50 % / at +50 % of one parameter, m/s", ("parameter", *self.names), rows)
 
     def tolerated(self) -> MarkdownTable:
@@ -247,9 +243,16 @@ class Robustness(Findings):
         }
 
 
-def of_key(rows: tuple[EndsRow, ...], key: str) -> EndsRow | None:
-    """The row of a parameter; None where the plant of a case has none."""
-    return next((row for row in rows if row.key == key), None)
+def by_effect(cases: Sequence[Sequence[EndsRow]]) -> list[tuple[str, float, list[EndsRow | None]]]:
+    """(name, largest rms ratio in any case, its row in each case) of every parameter, by that ratio.
+
+    A row is None where the plant of a case has no such parameter.
+    """
+    found = []
+    for key, name in {row.key: row.name for rows in cases for row in rows}.items():
+        mine = [next((row for row in rows if row.key == key), None) for rows in cases]
+        found.append((name, max(row.worst.ratio for row in mine if row is not None), mine))
+    return sorted(found, key=lambda each: -each[1])
 
 
 def without_mass(name: str) -> str:
