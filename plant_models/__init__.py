@@ -1,10 +1,11 @@
 """The plant: cars, retarders, pneumatics, friction, sensors and motion, in SI, without solver words."""
 
 from plant_models.cut import Car, Cut, couple
+from plant_models.entry_speed import EntryLaw, EntrySpeed, HistogramEntrySpeed, NormalEntrySpeed
 from plant_models.errors import PlantError
 from plant_models.friction import Friction
 from plant_models.motion import PathCoefficients, braked_axles, mean_braked_axles, path_breaks_m, path_coefficients
-from plant_models.plant import EntrySpeed, Plant
+from plant_models.plant import Plant
 from plant_models.pneumatics import Pneumatics, PressureHistory
 from plant_models.retarder import PressingForce, RetarderPosition, WeightForce
 from plant_models.rolling_resistance import RollingResistance
@@ -15,8 +16,11 @@ __all__ = [
     "Car",
     "Cut",
     "DopplerSensor",
+    "EntryLaw",
     "EntrySpeed",
     "Friction",
+    "HistogramEntrySpeed",
+    "NormalEntrySpeed",
     "PathCoefficients",
     "Plant",
     "PlantError",

@@ -13,6 +13,9 @@ GRAVITY_M_S2 = 9.81
 ROTATING_MASS_PER_AXLE_T = 0.42
 """Equivalent mass of one rotating wheel set, J/r²; the usual figure for the design of humps, engineering judgement."""
 
+LONGEST_CAR_M = 200.0
+"""Over couplers: an articulated car of five units has 81 m."""
+
 
 @dataclass(frozen=True)
 class Car:
@@ -30,9 +33,9 @@ class Car:
 
     def __post_init__(self) -> None:
         require_offsets(f"car {self.name}: axle_offsets_m", self.axle_offsets_m)
-        require_between(f"car {self.name}: length_m", self.length_m, self.axle_offsets_m[-1], 60.0)
-        require_between(f"car {self.name}: tare_t", self.tare_t, 1.0, 200.0)
-        require_between(f"car {self.name}: gross_t", self.gross_t, self.tare_t, 400.0)
+        require_between(f"car {self.name}: length_m", self.length_m, self.axle_offsets_m[-1], LONGEST_CAR_M)
+        require_between(f"car {self.name}: tare_t", self.tare_t, 1.0, 600.0)
+        require_between(f"car {self.name}: gross_t", self.gross_t, self.tare_t, 1500.0)
 
 
 @dataclass(frozen=True)

@@ -4,36 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from plant_models.cut import Cut
-from plant_models.errors import require, require_between
+from plant_models.entry_speed import EntryLaw
+from plant_models.errors import require
 from plant_models.friction import Friction
 from plant_models.motion import mean_braked_axles
 from plant_models.retarder import RetarderPosition
 from plant_models.rolling_resistance import RollingResistance
 from plant_models.speed_sensor import DopplerSensor
 from plant_models.track_profile import TrackProfile
-
-
-@dataclass(frozen=True)
-class EntrySpeed:
-    """Speed of the first axle at the entrance, uniform in [low, high], m/s."""
-
-    low_m_s: float
-    high_m_s: float
-
-    def __post_init__(self) -> None:
-        require_between("entry: low_m_s", self.low_m_s, 0.3, 20.0)
-        require(
-            self.low_m_s <= self.high_m_s <= 20.0,
-            f"entry: high_m_s is {self.high_m_s!r}; it must be from low_m_s = {self.low_m_s:g} to 20",
-        )
-
-    def speed_m_s(self, u: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Entry speed for uniform `u` in [0, 1)."""
-        return self.low_m_s + (self.high_m_s - self.low_m_s) * u
 
 
 @dataclass(frozen=True)
@@ -46,12 +25,12 @@ class Plant:
     friction: Friction
     resistance: RollingResistance
     sensor: DopplerSensor
-    entry: EntrySpeed
+    entry: EntryLaw
 
     def __post_init__(self) -> None:
         require(
             self.entry.high_m_s <= self.position.max_entry_speed_m_s,
-            f"entry: high_m_s is {self.entry.high_m_s:g}; {self.position.name} takes at most "
+            f"entry: {self.entry.high_key} is {self.entry.high_m_s:g}; {self.position.name} takes at most "
             f"{self.position.max_entry_speed_m_s:g} m/s: lower it or choose another retarder",
         )
 

@@ -105,6 +105,12 @@ class RetarderPosition:
         """Highest stage K."""
         return len(self.stage_pressures_kpa) - 1
 
+    def require_settling(self) -> None:
+        """Raise unless the regulator comes to rest after every command between two stages: here, not in a solve."""
+        for start in self.stage_pressures_kpa:
+            for end in self.stage_pressures_kpa:
+                self.pneumatics.respond(start, end, self.force.touch_pressure_kpa)
+
     def exit_m(self, cut: Cut) -> float:
         """Path of the first axle at which the last axle leaves the last retarder, S_exit."""
         return self.zones_m[-1][1] + cut.axle_offsets_m[-1]

@@ -15,7 +15,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.category_number import category_numbers
+from tuning_tables.book_categories import category_numbers
 from tuning_tables.errors import InvalidTable
 from tuning_tables.estimator import Estimator
 from tuning_tables.figures import Predicted, Validated, ValidRange

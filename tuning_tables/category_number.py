@@ -6,14 +6,11 @@ from the order of a file.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from tuning_tables.errors import InvalidTable
-
-if TYPE_CHECKING:
-    from tuning_tables.table import ControllerTable
 
 KNOWN_NUMBERS: Final[Mapping[str, int]] = MappingProxyType({"Л": 1, "ЛС": 2, "С": 3, "СТ": 4, "Т": 5})
 """The categories of the yard by their names in tables."""
@@ -35,28 +32,3 @@ def require_category_number(category: str, number: object) -> None:
         raise InvalidTable(
             f"cut.category_number of the category {category} is {number!r:.60}, but it must be {wanted}."
         )
-
-
-def category_numbers(tables: Sequence[ControllerTable]) -> Mapping[str, int | None]:
-    """The number of every category, None for one without, in order of first appearance.
-
-    Raises `InvalidTable` where a category has two numbers, or a number two categories.
-    """
-    of_name: dict[str, tuple[str, int | None]] = {}
-    of_number: dict[int, tuple[str, str]] = {}
-    for table in tables:
-        name, number = table.cut.category, table.cut.number
-        first, known = of_name.setdefault(name, (table.id, number))
-        if known != number:
-            raise InvalidTable(
-                f"the category {name} has the number {known} in {first}, but {number} in {table.id}; in one book it "
-                "must have one: give both tables the same cut.category_number."
-            )
-        if number is not None:
-            first, other = of_number.setdefault(number, (table.id, name))
-            if other != name:
-                raise InvalidTable(
-                    f"the number {number} stands for the category {other} in {first}, but for {name} in {table.id}; "
-                    "in one book it must stand for one: give one of them another cut.category_number."
-                )
-    return MappingProxyType({name: number for name, (_, number) in of_name.items()})

@@ -33,7 +33,8 @@ from typing import Final
 import numpy as np
 
 from tuning_tables.active_table import ActiveTable, active, between, interpolable
-from tuning_tables.category_number import LARGEST_OWN, LEAST_OWN, category_numbers
+from tuning_tables.book_categories import category_numbers
+from tuning_tables.category_number import LARGEST_OWN, LEAST_OWN
 from tuning_tables.errors import InvalidTable
 from tuning_tables.line_order import UNIT_ROUNDOFF, rounding_bound, smallest_gap
 from tuning_tables.requirement import require_kind, require_tuple

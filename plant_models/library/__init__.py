@@ -1,31 +1,66 @@
-"""Retarders, cars and weight categories as data: every number with unit, range, source and confidence."""
+"""Retarders, cars, sensors, weight categories and positions as data: every number with unit, range and source."""
 
 from plant_models.library.car_entry import CarEntry
-from plant_models.library.catalogue import car_names, load_car, load_retarder, retarder_names
+from plant_models.library.catalogue import (
+    YARD_CATEGORIES,
+    car_names,
+    load_car,
+    load_position,
+    load_retarder,
+    load_sensor,
+    load_weight_categories,
+    position_names,
+    retarder_names,
+)
+from plant_models.library.library import BUILT_IN, Library
+from plant_models.library.position_entry import PositionEntry
 from plant_models.library.retarder_entry import RetarderEntry
+from plant_models.library.sensor_entry import SensorEntry
 from plant_models.library.source import Source, sources, sources_cited_in
 from plant_models.library.sourced_value import SourcedValue, Value
-from plant_models.library.weight_category import (
-    WeightCategory,
-    weight_categories,
-    weight_category,
-    weight_category_named,
+from plant_models.library.type_file import (
+    CARS,
+    KINDS,
+    POSITIONS,
+    RETARDERS,
+    SENSORS,
+    WEIGHT_CATEGORIES,
+    Kind,
+    TypeFile,
+    TypeFileError,
 )
+from plant_models.library.weight_category import WeightCategories, WeightCategory
 
 __all__ = [
+    "BUILT_IN",
+    "CARS",
+    "KINDS",
+    "POSITIONS",
+    "RETARDERS",
+    "SENSORS",
+    "WEIGHT_CATEGORIES",
+    "YARD_CATEGORIES",
     "CarEntry",
+    "Kind",
+    "Library",
+    "PositionEntry",
     "RetarderEntry",
+    "SensorEntry",
     "Source",
     "SourcedValue",
+    "TypeFile",
+    "TypeFileError",
     "Value",
+    "WeightCategories",
     "WeightCategory",
     "car_names",
     "load_car",
+    "load_position",
     "load_retarder",
+    "load_sensor",
+    "load_weight_categories",
+    "position_names",
     "retarder_names",
     "sources",
     "sources_cited_in",
-    "weight_categories",
-    "weight_category",
-    "weight_category_named",
 ]

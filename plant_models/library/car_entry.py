@@ -1,22 +1,35 @@
-"""A car type of the library: its axle pattern worked out of pivot base and bogie."""
+"""A car type of the library: its axle pattern, stated or worked out of pivots and bogie."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from plant_models.cut import Car
-from plant_models.errors import PlantError
-from plant_models.library.data_file import Quantity, number, numbers, parse_toml, sourced_table, take_string
-from plant_models.library.sourced_value import SourcedValue
+from plant_models.library.data_file import (
+    Quantity,
+    number,
+    numbers,
+    parse_toml,
+    sourced_table,
+    take_string,
+    telling,
+)
+from plant_models.library.sourced_value import SourcedTable, SourcedValue
+from plant_models.library.type_file import TypeFile
 
-CAR_SCHEMA = {
-    "length_m": Quantity("m", number),
-    "pivot_base_m": Quantity("m", number),
-    "bogie_axle_offsets_m": Quantity("m", numbers),
-    "tare_t": Quantity("t", number),
-    "gross_t": Quantity("t", number),
-}
-"""Every key of a car file."""
+LENGTH = {"length_m": Quantity("m", number)}
+BOGIE = {"bogie_axle_offsets_m": Quantity("m", numbers)}
+MASSES = {"tare_t": Quantity("t", number), "gross_t": Quantity("t", number)}
+
+TWO_BOGIES = {**LENGTH, "pivot_base_m": Quantity("m", number), **BOGIE, **MASSES}
+SHARED_BOGIES = {**LENGTH, "pivots_m": Quantity("m", numbers), **BOGIE, **MASSES}
+STATED_AXLES = {**LENGTH, "axle_offsets_m": Quantity("m", numbers), **MASSES}
+"""Every key of a car file in its three forms."""
+
+OF_MASS = frozenset(MASSES)
+"""Keys that limit the mass of a car; all others are its drawing."""
 
 
 @dataclass(frozen=True)
@@ -28,31 +41,44 @@ class CarEntry:
     car: Car
     provenance: tuple[SourcedValue, ...]
 
+    @property
+    def drawing(self) -> tuple[SourcedValue, ...]:
+        """The numbers of its length and axles."""
+        return tuple(value for value in self.provenance if value.key not in OF_MASS)
 
-def car_from_toml(text: str, name: str) -> CarEntry:
-    """The entry written in `text`, the content of cars/`name`.toml; `PlantError` names file and key."""
-    file = f"cars/{name}.toml"
-    tree = parse_toml(text, file)
-    title = take_string(tree, "title", file)
-    table = sourced_table(tree, CAR_SCHEMA, file)
-    try:
+
+def car_from(file: TypeFile) -> CarEntry:
+    """The entry written in `file`; `TypeFileError` names file and key."""
+    with telling(file.place, {f"car {file.name}: ": ""}):
+        tree = parse_toml(file.text)
+        title = take_string(tree, "title")
+        table = sourced_table(tree, schema_of(tree), file.origin)
         car = Car(
-            name=name,
-            axle_offsets_m=axle_offsets_m(table.numbers("bogie_axle_offsets_m"), table.number("pivot_base_m")),
+            name=file.name,
+            axle_offsets_m=axle_offsets_m(table),
             length_m=table.number("length_m"),
             tare_t=table.number("tare_t"),
             gross_t=table.number("gross_t"),
         )
-    except PlantError as error:
-        raise PlantError(f"{file}: {error}") from None
-    return CarEntry(name, title, car, table.values)
+    return CarEntry(file.name, title, car, table.values)
 
 
-def axle_offsets_m(bogie_axle_offsets_m: tuple[float, ...], pivot_base_m: float) -> tuple[float, ...]:
-    """Axles behind the first of a car on two equal, symmetric bogies whose pivots are `pivot_base_m` apart.
+def schema_of(tree: Mapping[str, Any]) -> dict[str, Quantity]:
+    """The form that a file has chosen: by all axles, by the pivots of several bogies, or by those of two."""
+    if "axle_offsets_m" in tree:
+        return STATED_AXLES
+    return SHARED_BOGIES if "pivots_m" in tree else TWO_BOGIES
 
-    `bogie_axle_offsets_m`: axles of one bogie behind its first. Equal bogies carry the pivot at the same
-    place, so the second bogie's axles are the first's, moved by the pivot base.
+
+def axle_offsets_m(table: SourcedTable) -> tuple[float, ...]:
+    """Axles behind the first: as stated, or those of equal bogies, each moved by its pivot.
+
+    `bogie_axle_offsets_m`: axles of one bogie behind its first. Equal bogies carry the pivot at the same place, so the
+    axles of another bogie are those of the first, moved by the distance of the two pivots.
     """
-    second = tuple(round(x + pivot_base_m, 6) for x in bogie_axle_offsets_m)
-    return bogie_axle_offsets_m + second
+    keys = {value.key for value in table.values}
+    if "axle_offsets_m" in keys:
+        return table.numbers("axle_offsets_m")
+    bogie = table.numbers("bogie_axle_offsets_m")
+    pivots = table.numbers("pivots_m") if "pivots_m" in keys else (0.0, table.number("pivot_base_m"))
+    return tuple(x if pivot == 0.0 else round(x + pivot, 6) for pivot in pivots for x in bogie)

@@ -1,27 +1,54 @@
-"""What the library holds, by name."""
+"""What a library holds, by name."""
 
 from __future__ import annotations
 
-from plant_models.library.car_entry import CarEntry, car_from_toml
-from plant_models.library.data_file import library_names, library_text
-from plant_models.library.retarder_entry import RetarderEntry, retarder_from_toml
+from plant_models.library.car_entry import CarEntry, car_from
+from plant_models.library.library import BUILT_IN, Library
+from plant_models.library.position_entry import PositionEntry, position_with_types
+from plant_models.library.retarder_entry import RetarderEntry, retarder_from
+from plant_models.library.sensor_entry import SensorEntry, sensor_from
+from plant_models.library.type_file import CARS, POSITIONS, RETARDERS, SENSORS, WEIGHT_CATEGORIES
+from plant_models.library.weight_category import WeightCategories, categories_from
+
+YARD_CATEGORIES = "hump-norm"
+"""The set of weight categories that counts where none is named."""
 
 
-def retarder_names() -> tuple[str, ...]:
+def position_names(library: Library = BUILT_IN) -> tuple[str, ...]:
     """Names of the retarder positions, sorted."""
-    return library_names("retarders")
+    return library.names(POSITIONS)
 
 
-def load_retarder(name: str) -> RetarderEntry:
-    """The retarder position `name`; `PlantError` with a hint if there is none."""
-    return retarder_from_toml(library_text("retarders", name), name)
+def load_position(name: str, library: Library = BUILT_IN) -> PositionEntry:
+    """The retarder position `name`; `PlantError` with a hint if there is none, or of a fault in its files."""
+    return position_with_types(name, library)
 
 
-def car_names() -> tuple[str, ...]:
+def retarder_names(library: Library = BUILT_IN) -> tuple[str, ...]:
+    """Names of the retarder types, sorted."""
+    return library.names(RETARDERS)
+
+
+def load_retarder(name: str, library: Library = BUILT_IN) -> RetarderEntry:
+    """The retarder type `name`; `PlantError` as `load_position`."""
+    return retarder_from(library.file(RETARDERS, name))
+
+
+def car_names(library: Library = BUILT_IN) -> tuple[str, ...]:
     """Names of the car types, sorted."""
-    return library_names("cars")
+    return library.names(CARS)
 
 
-def load_car(name: str) -> CarEntry:
-    """The car type `name`; `PlantError` with a hint if there is none."""
-    return car_from_toml(library_text("cars", name), name)
+def load_car(name: str, library: Library = BUILT_IN) -> CarEntry:
+    """The car type `name`; `PlantError` as `load_position`."""
+    return car_from(library.file(CARS, name))
+
+
+def load_sensor(name: str, library: Library = BUILT_IN) -> SensorEntry:
+    """The sensor `name`; `PlantError` as `load_position`."""
+    return sensor_from(library.file(SENSORS, name))
+
+
+def load_weight_categories(name: str = YARD_CATEGORIES, library: Library = BUILT_IN) -> WeightCategories:
+    """The set of weight categories `name`; `PlantError` as `load_position`."""
+    return categories_from(library.file(WEIGHT_CATEGORIES, name))

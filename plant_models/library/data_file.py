@@ -2,7 +2,8 @@
 
     brake_delay_s = { value = 0.10, range = [0.05, 0.20], source = "engineering judgement", confidence = "L" }
 
-A *form* turns the raw TOML value into a `Value` or returns None if it is of the wrong type.
+A *form* turns the raw TOML value into a `Value` or returns None if it is of the wrong type. The functions here raise
+`PlantError` that names the key; `telling` puts the file before it.
 """
 
 from __future__ import annotations
@@ -10,15 +11,19 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
-from importlib.resources import files
-from typing import Any
+from typing import Any, Final
 
 from plant_models.errors import PlantError, require
 from plant_models.library.near_miss import near_miss
 from plant_models.library.sourced_value import CONFIDENCES, SourcedTable, SourcedValue, Value
+from plant_models.library.type_file import TypeFileError
 
 Form = Callable[[object], Value | None]
+
+SHOWN: Final = 80
+"""Characters of a wrong value that a message shows."""
 
 
 @dataclass(frozen=True)
@@ -27,6 +32,28 @@ class Quantity:
 
     unit: str
     form: Form
+
+
+@contextmanager
+def telling(place: str, keys: Mapping[str, str] | None = None) -> Iterator[None]:
+    """Within, a `PlantError` becomes a `TypeFileError` that begins with the file `place`.
+
+    `keys`: how the plant's own messages begin, and the key of the file that this means.
+    """
+    try:
+        yield
+    except TypeFileError:
+        raise
+    except PlantError as error:
+        raise TypeFileError(f"{place}: {keyed(str(error), keys or {})}") from None
+
+
+def keyed(sentence: str, keys: Mapping[str, str]) -> str:
+    """The plant's sentence with a key in place of the plant's own name, the longest beginning first."""
+    for prefix in sorted(keys, key=len, reverse=True):
+        if sentence.startswith(prefix):
+            return keys[prefix] + sentence.removeprefix(prefix)
+    return sentence
 
 
 def number(raw: object) -> float | None:
@@ -59,58 +86,52 @@ def number_or_pairs(raw: object) -> Value | None:
     return pairs(raw) if one is None else one
 
 
-def library_names(folder: str) -> tuple[str, ...]:
-    """Names (without .toml) of the files in a folder of the library, sorted."""
-    entries = files("plant_models.library").joinpath(folder).iterdir()
-    return tuple(sorted(e.name.removesuffix(".toml") for e in entries if e.name.endswith(".toml")))
-
-
-def library_text(folder: str, name: str) -> str:
-    """Text of `folder`/`name`.toml; `PlantError` with a hint if the library has no such file."""
-    known = library_names(folder)
-    require(name in known, f"{folder.removesuffix('s')} {name!r} is not in the library; {near_miss(name, known)}")
-    return files("plant_models.library").joinpath(folder, f"{name}.toml").read_text(encoding="utf-8")
-
-
-def parse_toml(text: str, file: str) -> dict[str, Any]:
-    """The parsed text; `PlantError` names the file and the line of a syntax error."""
+def parse_toml(text: str) -> dict[str, Any]:
+    """The parsed text; `PlantError` names the line of a syntax error."""
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise PlantError(f"{file}: not valid TOML: {error}") from None
+        raise PlantError(f"not valid TOML: {error}") from None
+    except RecursionError:
+        raise PlantError("its lists or tables are nested too deeply; no type needs more than four levels") from None
+    except ValueError:  # Python turns no longer text into a whole number
+        raise PlantError("a number in it has thousands of digits; whole numbers have at most 19") from None
 
 
-def take_string(table: dict[str, Any], key: str, file: str) -> str:
-    """Remove and return the non-empty string under `key`."""
-    require(key in table, f"{file}: key {key} is missing")
+def take_string(table: dict[str, Any], key: str) -> str:
+    """Remove and return the non-empty string of printable characters under `key`."""
+    require(key in table, f"key {key} is missing")
     value = table.pop(key)
-    require(isinstance(value, str) and value != "", f"{file}: {key} is {value!r}; it must be a non-empty string")
+    require(
+        isinstance(value, str) and value != "" and value.isprintable(),
+        f"{key} is {shown(value)}; it must be a non-empty string of printable characters",
+    )
     return str(value)
 
 
-def take_strings(table: dict[str, Any], key: str, file: str) -> tuple[str, ...]:
-    """Remove and return the (possibly absent) list of strings under `key`."""
+def take_strings(table: dict[str, Any], key: str) -> tuple[str, ...]:
+    """Remove and return the (possibly absent) list of strings of printable characters under `key`."""
     value = table.pop(key, [])
     require(
-        isinstance(value, list) and all(isinstance(x, str) for x in value),
-        f"{file}: {key} is {value!r}; it must be a list of strings",
+        isinstance(value, list) and all(isinstance(x, str) and x.isprintable() for x in value),
+        f"{key} is {shown(value)}; it must be a list of strings of printable characters",
     )
     return tuple(value)
 
 
-def sourced_table(tree: Mapping[str, Any], schema: Mapping[str, Quantity], file: str) -> SourcedTable:
+def sourced_table(tree: Mapping[str, Any], schema: Mapping[str, Quantity], origin: str = "") -> SourcedTable:
     """All of `schema` and nothing else out of the nested `tree`, in the order of the schema.
 
-    Raises `PlantError`, one sentence with file and key: unknown or missing key, wrong type, value outside
-    its own range.
+    `origin`: the user's file, told behind the source of each number; '' for a file that comes with the program.
+    Raises `PlantError` with the key: unknown or missing key, wrong type, value outside its own range.
     """
-    cells = dict(walk(tree, "", schema, file))
+    cells = dict(walk(tree, "", schema))
     for key in schema:
-        require(key in cells, f"{file}: key {key} is missing")
-    return SourcedTable(tuple(sourced_value(cells[key], key, q, file) for key, q in schema.items()))
+        require(key in cells, f"key {key} is missing")
+    return SourcedTable(tuple(sourced_value(cells[key], key, q, origin) for key, q in schema.items()))
 
 
-def walk(tree: Mapping[str, Any], prefix: str, schema: Mapping[str, Quantity], file: str) -> Iterator[tuple[str, Any]]:
+def walk(tree: Mapping[str, Any], prefix: str, schema: Mapping[str, Quantity]) -> Iterator[tuple[str, Any]]:
     """(dotted key, cell) of every cell below `tree`."""
     for name, item in tree.items():
         key = prefix + name
@@ -118,33 +139,38 @@ def walk(tree: Mapping[str, Any], prefix: str, schema: Mapping[str, Quantity], f
             yield key, item
             continue
         inner = isinstance(item, dict) and any(known.startswith(key + ".") for known in schema)
-        require(inner, f"{file}: unknown key {key}; {near_miss(key, schema)}")
-        yield from walk(item, key + ".", schema, file)
+        require(inner, f"unknown key {shown_key(key)}; {near_miss(key, schema)}")
+        yield from walk(item, key + ".", schema)
 
 
-def sourced_value(cell: object, key: str, quantity: Quantity, file: str) -> SourcedValue:
+def sourced_value(cell: object, key: str, quantity: Quantity, origin: str = "") -> SourcedValue:
     """The checked cell under `key`."""
     if not isinstance(cell, dict):
-        raise PlantError(f"{file}: {key} is {cell!r}; it must be a table of value, range, source and confidence")
+        raise PlantError(f"{key} is {shown(cell)}; it must be a table of value, range, source and confidence")
     parts = {"value", "range", "source", "confidence"}
-    for part in cell.keys() - parts:
-        raise PlantError(f"{file}: unknown key {key}.{part}; {near_miss(part, parts)}")
+    for part in sorted(cell.keys() - parts):
+        raise PlantError(f"unknown key {key}.{shown_key(part)}; {near_miss(part, parts)}")
     for part in sorted(parts):
-        require(part in cell, f"{file}: key {key}.{part} is missing")
+        require(part in cell, f"key {key}.{part} is missing")
     value = quantity.form(cell["value"])
     if value is None:
-        raise PlantError(f"{file}: {key}.value is {cell['value']!r}; it must be {form_name(quantity.form)}")
+        raise PlantError(f"{key}.value is {shown(cell['value'])}; it must be {form_name(quantity.form)}")
     limits = numbers(cell["range"])
     if limits is None or len(limits) != 2 or limits[0] > limits[1]:
-        raise PlantError(f"{file}: {key}.range is {cell['range']!r}; it must be [low, high]")
-    source = take_string(cell, "source", f"{file}: {key}")
+        raise PlantError(f"{key}.range is {shown(cell['range'])}; it must be [low, high]")
+    source = cell["source"]
+    require(
+        isinstance(source, str) and source != "" and source.isprintable(),
+        f"{key}.source is {shown(source)}; it must be a non-empty string of printable characters",
+    )
     confidence = cell["confidence"]
     require(
         confidence in CONFIDENCES,
-        f"{file}: {key}.confidence is {confidence!r}; it must be one of {', '.join(CONFIDENCES)}",
+        f"{key}.confidence is {shown(confidence)}; it must be one of {', '.join(CONFIDENCES)}",
     )
-    result = SourcedValue(key, value, quantity.unit, (limits[0], limits[1]), source, confidence)
-    require(result.in_range, f"{file}: {key}.value is {cell['value']!r}; it is outside its own range {cell['range']!r}")
+    told = f"{source} ({origin})" if origin else source
+    result = SourcedValue(key, value, quantity.unit, (limits[0], limits[1]), told, confidence)
+    require(result.in_range, f"{key}.value is {shown(cell['value'])}; it is outside its own range {cell['range']!r}")
     return result
 
 
@@ -152,3 +178,15 @@ def form_name(form: Form) -> str:
     """How a message calls the form: the first sentence of its docstring."""
     sentence = (form.__doc__ or "").strip().rstrip(".")
     return sentence[:1].lower() + sentence[1:]
+
+
+def shown(value: object) -> str:
+    """A wrong value in a message, cut off if long."""
+    text = repr(value)
+    return text if len(text) <= SHOWN else f"{text[: SHOWN - 1]}…"
+
+
+def shown_key(key: str) -> str:
+    """A key in a message: as it is, or in quotes where it would break the line, cut off if long."""
+    text = key if key.isprintable() else repr(key)
+    return text if len(text) <= SHOWN else f"{text[: SHOWN - 1]}…"

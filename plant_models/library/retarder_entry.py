@@ -1,4 +1,4 @@
-"""A retarder position of the library: the plant values of its type and place, each number with its origin."""
+"""A retarder type of the library: length, pressures, force law and drive of one unit, each number with its origin."""
 
 from __future__ import annotations
 
@@ -6,28 +6,25 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from plant_models.errors import PlantError, require
-from plant_models.friction import Friction
+from plant_models.errors import require
 from plant_models.library.data_file import (
     Quantity,
     number,
-    number_or_pairs,
     numbers,
-    pairs,
     parse_toml,
     sourced_table,
     take_string,
     take_strings,
+    telling,
 )
 from plant_models.library.near_miss import near_miss
-from plant_models.library.sourced_value import SourcedTable, SourcedValue, Value
+from plant_models.library.sourced_value import SourcedTable, SourcedValue
+from plant_models.library.type_file import TypeFile
 from plant_models.pneumatics import Pneumatics
 from plant_models.retarder import ForceLaw, PressingForce, RetarderPosition, WeightForce
-from plant_models.speed_sensor import DopplerSensor
-from plant_models.track_profile import TrackProfile
 
-FORCE = "retarder.force."
-PNEUMATICS = "retarder.pneumatics."
+FORCE = "force."
+PNEUMATICS = "pneumatics."
 
 
 @dataclass(frozen=True)
@@ -46,14 +43,15 @@ FORCE_LAWS: Mapping[str, LawInLibrary] = MappingProxyType(
     }
 )
 
+LENGTH = {"length_m": Quantity("m", number)}
 
-def retarder_schema(law: str) -> dict[str, Quantity]:
-    """Every key of a retarder file with the force law `law`; the configuration uses the same keys."""
+
+def drive_schema(law: str) -> dict[str, Quantity]:
+    """Every key of a retarder file with the force law `law`, but its length."""
     force = FORCE_LAWS[law]
     return {
-        "retarder.zones_m": Quantity("m", pairs),
-        "retarder.stage_pressures_kpa": Quantity("kPa gauge", numbers),
-        "retarder.max_entry_speed_m_s": Quantity("m/s", number),
+        "stage_pressures_kpa": Quantity("kPa gauge", numbers),
+        "max_entry_speed_m_s": Quantity("m/s", number),
         force.slope_key: Quantity(force.slope_unit, number),
         FORCE + "touch_pressure_kpa": Quantity("kPa gauge", number),
         FORCE + "slope_factor_by_axles": Quantity("1", numbers),
@@ -66,126 +64,66 @@ def retarder_schema(law: str) -> dict[str, Quantity]:
         PNEUMATICS + "exhaust_time_constant_s": Quantity("s", number),
         PNEUMATICS + "dead_band_kpa": Quantity("kPa", number),
         PNEUMATICS + "closing_delay_s": Quantity("s", number),
-        "track.grade_permille": Quantity("permille, downhill positive", number_or_pairs),
-        "entry.low_m_s": Quantity("m/s", number),
-        "entry.high_m_s": Quantity("m/s", number),
-        "friction.common_cv": Quantity("1", number),
-        "friction.axle_cv": Quantity("1", number),
-        "friction.path_std": Quantity("1", number),
-        "friction.correlation_length_m": Quantity("m", number),
-        "friction.floor": Quantity("1", number),
-        "sensor.noise_m_s": Quantity("m/s", number),
-        "sensor.resolution_m_s": Quantity("m/s", number),
-        "sensor.sample_period_s": Quantity("s", number),
-        "sensor.computing_delay_s": Quantity("s", number),
-        "targets.exit_speeds_m_s": Quantity("m/s", numbers),
     }
 
 
 @dataclass(frozen=True)
 class RetarderEntry:
-    """A position, its usual surroundings (grade, entry speeds, friction, sensor, exit speeds) and their origin.
+    """A type: what one unit of it is like wherever it stands.
 
-    `entry_speed_m_s`: lowest and highest entry speed. `provenance`: every number behind the other fields.
+    `drive`: every number but the length, keys as in the file; with the zones of a site they make a position.
     """
 
     name: str
     title: str
     notes: tuple[str, ...]
     law: str
-    position: RetarderPosition
-    profile: TrackProfile
-    entry_speed_m_s: tuple[float, float]
-    friction: Friction
-    sensor: DopplerSensor
-    target_speeds_m_s: tuple[float, ...]
-    provenance: tuple[SourcedValue, ...]
+    length: SourcedValue
+    drive: SourcedTable
 
-    def with_values(self, overrides: Mapping[str, Value]) -> RetarderEntry:
-        """This entry with the values under some dotted keys replaced by the user's.
-
-        Raises `PlantError` for a key that the entry has not, and for a value that the plant refuses.
-        """
-        known = [v.key for v in self.provenance]
-        for key in overrides:
-            require(
-                key in known,
-                f"{key} is {overrides[key]!r}; the {self.law} force law of {self.name} has no such value: "
-                f"{near_miss(key, known)}",
-            )
-        table = SourcedTable(self.provenance).replaced(overrides)
-        return entry_of(self.name, self.title, self.notes, self.law, table)
+    @property
+    def length_m(self) -> float:
+        """Length over which one unit brakes."""
+        assert isinstance(self.length.value, float)
+        return self.length.value
 
 
-def retarder_from_toml(text: str, name: str) -> RetarderEntry:
-    """The entry written in `text`, the content of retarders/`name`.toml; `PlantError` names file and key."""
-    file = f"retarders/{name}.toml"
-    tree = parse_toml(text, file)
-    title, law = take_string(tree, "title", file), take_string(tree, "law", file)
-    notes = take_strings(tree, "notes", file)
-    require(law in FORCE_LAWS, f"{file}: law is {law!r}; {near_miss(law, FORCE_LAWS)}")
-    table = sourced_table(tree, retarder_schema(law), file)
-    try:
-        return entry_of(name, title, notes, law, table)
-    except PlantError as error:
-        raise PlantError(f"{file}: {error}") from None
+def retarder_from(file: TypeFile) -> RetarderEntry:
+    """The entry written in `file`; `TypeFileError` names file and key."""
+    with telling(file.place, {"retarder: ": "", "force: ": FORCE, "pneumatics: ": PNEUMATICS}):
+        tree = parse_toml(file.text)
+        title, law = take_string(tree, "title"), take_string(tree, "law")
+        notes = take_strings(tree, "notes")
+        require(law in FORCE_LAWS, f"law is {law!r}; {near_miss(law, FORCE_LAWS)}")
+        table = sourced_table(tree, {**LENGTH, **drive_schema(law)}, file.origin)
+        length, *drive = table.values
+        length_m = table.number("length_m")
+        require(0.5 <= length_m <= 100.0, f"length_m.value is {length_m:g}; it must be from 0.5 to 100")
+        entry = RetarderEntry(file.name, title, notes, law, length, SourcedTable(tuple(drive)))
+        unit = position_of(file.name, ((0.0, length_m),), law, entry.drive, "")  # a type must make sense by itself
+        unit.require_settling()
+    return entry
 
 
-def entry_of(name: str, title: str, notes: tuple[str, ...], law: str, table: SourcedTable) -> RetarderEntry:
-    """The plant values that the table's numbers make."""
+def position_of(
+    name: str, zones_m: tuple[tuple[float, float], ...], law: str, table: SourcedTable, prefix: str
+) -> RetarderPosition:
+    """The position `name` of retarders in `zones_m` whose other numbers stand in `table` under `prefix`."""
     force = FORCE_LAWS[law]
-    position = RetarderPosition(
+    pneumatics = {
+        key.removeprefix(PNEUMATICS): table.number(prefix + key)
+        for key in drive_schema(law)
+        if key.startswith(PNEUMATICS)
+    }
+    return RetarderPosition(
         name=name,
-        zones_m=table.pairs("retarder.zones_m"),
-        stage_pressures_kpa=table.numbers("retarder.stage_pressures_kpa"),
+        zones_m=zones_m,
+        stage_pressures_kpa=table.numbers(prefix + "stage_pressures_kpa"),
         force=force.build(
-            table.number(force.slope_key),
-            table.number(FORCE + "touch_pressure_kpa"),
-            table.numbers(FORCE + "slope_factor_by_axles"),
+            table.number(prefix + force.slope_key),
+            table.number(prefix + FORCE + "touch_pressure_kpa"),
+            table.numbers(prefix + FORCE + "slope_factor_by_axles"),
         ),
-        pneumatics=Pneumatics(
-            supply_pressure_kpa=table.number(PNEUMATICS + "supply_pressure_kpa"),
-            exhaust_pressure_kpa=table.number(PNEUMATICS + "exhaust_pressure_kpa"),
-            brake_delay_s=table.number(PNEUMATICS + "brake_delay_s"),
-            touch_delay_s=table.number(PNEUMATICS + "touch_delay_s"),
-            release_delay_s=table.number(PNEUMATICS + "release_delay_s"),
-            fill_time_constant_s=table.number(PNEUMATICS + "fill_time_constant_s"),
-            exhaust_time_constant_s=table.number(PNEUMATICS + "exhaust_time_constant_s"),
-            dead_band_kpa=table.number(PNEUMATICS + "dead_band_kpa"),
-            closing_delay_s=table.number(PNEUMATICS + "closing_delay_s"),
-        ),
-        max_entry_speed_m_s=table.number("retarder.max_entry_speed_m_s"),
+        pneumatics=Pneumatics(**pneumatics),
+        max_entry_speed_m_s=table.number(prefix + "max_entry_speed_m_s"),
     )
-    return RetarderEntry(
-        name=name,
-        title=title,
-        notes=notes,
-        law=law,
-        position=position,
-        profile=profile_of(table),
-        entry_speed_m_s=(table.number("entry.low_m_s"), table.number("entry.high_m_s")),
-        friction=Friction(
-            common_cv=table.number("friction.common_cv"),
-            axle_cv=table.number("friction.axle_cv"),
-            path_std=table.number("friction.path_std"),
-            correlation_length_m=table.number("friction.correlation_length_m"),
-            floor=table.number("friction.floor"),
-        ),
-        sensor=DopplerSensor(
-            noise_m_s=table.number("sensor.noise_m_s"),
-            resolution_m_s=table.number("sensor.resolution_m_s"),
-            sample_period_s=table.number("sensor.sample_period_s"),
-            computing_delay_s=table.number("sensor.computing_delay_s"),
-        ),
-        target_speeds_m_s=table.numbers("targets.exit_speeds_m_s"),
-        provenance=table.values,
-    )
-
-
-def profile_of(table: SourcedTable) -> TrackProfile:
-    """One grade, or pieces given as pairs (start in m, grade in permille)."""
-    grade = table["track.grade_permille"].value
-    if isinstance(grade, float):
-        return TrackProfile.uniform(grade)
-    pieces = table.pairs("track.grade_permille")
-    return TrackProfile(tuple(start for start, _ in pieces), tuple(permille for _, permille in pieces))

@@ -9,7 +9,7 @@ from functools import cache
 from importlib.resources import files
 
 from plant_models.errors import require
-from plant_models.library.data_file import parse_toml, take_string
+from plant_models.library.data_file import parse_toml, take_string, telling
 
 FILE = "sources.toml"
 
@@ -51,10 +51,11 @@ def sources_cited_in(texts: Iterable[str]) -> tuple[Source, ...]:
 def sources_from_toml(text: str) -> tuple[Source, ...]:
     """The sources written in `text`, one table each; `PlantError` names file and key."""
     found = []
-    for name, tree in parse_toml(text, FILE).items():
-        place = f"{FILE}: {name}"
-        require(isinstance(tree, dict), f"{place} is {tree!r}; it must be a table")
-        author, title, year, where = (take_string(tree, key, place) for key in ("author", "title", "year", "where"))
-        require(not tree, f"{place}: unknown key {min(tree, default='')}; known: author, title, year, where")
-        found.append(Source(name, author, title, year, where))
+    with telling(FILE):
+        for name, tree in parse_toml(text).items():
+            require(isinstance(tree, dict), f"{name} is {tree!r}; it must be a table")
+            with telling(f"{FILE}: {name}"):
+                author, title, year, where = (take_string(tree, key) for key in ("author", "title", "year", "where"))
+                require(not tree, f"unknown key {min(tree, default='')}; known: author, title, year, where")
+            found.append(Source(name, author, title, year, where))
     return tuple(found)

@@ -3,27 +3,33 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
-from importlib.resources import files
+from types import MappingProxyType
+from typing import Any, Final
 
 from plant_models.errors import PlantError, require
-from plant_models.library.data_file import Quantity, number, parse_toml, sourced_table, take_string
+from plant_models.library.data_file import Quantity, number, parse_toml, sourced_table, take_string, telling
 from plant_models.library.near_miss import near_miss
 from plant_models.library.sourced_value import SourcedValue
+from plant_models.library.type_file import TypeFile
 from plant_models.rolling_resistance import RollingResistance
 
-FILE = "weight_categories.toml"
-
-CATEGORY_SCHEMA = {
-    "mass_above_t": Quantity("t", number),
+OF_CATEGORY = {
     "rolling_resistance.mean_n_per_kn": Quantity("N/kN", number),
     "rolling_resistance.std_n_per_kn": Quantity("N/kN", number),
     "allowed_stage": Quantity("1", number),
 }
-"""Every key of a category."""
+BY_MASS = {"mass_above_t": Quantity("t", number), **OF_CATEGORY}
+BY_AXLE_LOAD = {"axle_load_above_t": Quantity("t", number), **OF_CATEGORY}
+"""Every key of a category: its limit is the mass of a 4-axle car, or the load of an axle."""
 
-YARD_NUMBERS, OWN_NUMBERS = range(1, 6), range(16, 256)
+LIMITS: Final = ("mass_above_t", "axle_load_above_t")
+
+YARD_NUMBERS: Final = MappingProxyType({"Л": 1, "ЛС": 2, "С": 3, "СТ": 4, "Т": 5})
+OWN_NUMBERS: Final = range(16, 256)
 """Of the five categories of the yard, and of a user's own."""
+
+HIGHEST_STAGE: Final = 31
+"""More stages than any retarder has; a table holds no more."""
 
 LOOK_ALIKES = str.maketrans("CT", "СТ")
 """Latin letters that a keyboard puts in place of the Cyrillic ones."""
@@ -33,7 +39,7 @@ LOOK_ALIKES = str.maketrans("CT", "СТ")
 class WeightCategory:
     """A category of 4-axle cars heavier than `mass_above_t`, up to the limit of the next category.
 
-    `name` is the Cyrillic name of the sources, `latin` its transcription; `number` stands for it in tables and
+    `name` is the name in tables, `latin` a second one for keyboards; `number` stands for it in tables and
     controllers and is fixed for good, wherever the category stands in a file.
     """
 
@@ -46,60 +52,84 @@ class WeightCategory:
     provenance: tuple[SourcedValue, ...]
 
 
-@cache
-def weight_categories() -> tuple[WeightCategory, ...]:
-    """All categories of the library, the lightest first."""
-    return categories_from_toml(files("plant_models.library").joinpath(FILE).read_text(encoding="utf-8"))
+@dataclass(frozen=True)
+class WeightCategories:
+    """All categories of a yard, the lightest first."""
+
+    name: str
+    title: str
+    members: tuple[WeightCategory, ...]
+
+    def of(self, mass_t: float, axles: int = 4) -> WeightCategory:
+        """The category of a cut of `mass_t` tonnes on `axles` axles.
+
+        Categories are limits of mass of a 4-axle car; other axle numbers, and cuts of several cars, are
+        compared by axle load, as the rail weigher does: the category of 4·`mass_t`/`axles`.
+        """
+        four_axle_mass_t = 4.0 * mass_t / axles
+        return [c for c in self.members if c.mass_above_t < four_axle_mass_t or c.mass_above_t == 0.0][-1]
+
+    def named(self, name: str) -> WeightCategory:
+        """The category with this name or second name (Л or L, ЛС or LS, С or S, СТ or ST, Т or T)."""
+        for category in self.members:
+            if name in (category.name, category.latin) or name.translate(LOOK_ALIKES) == category.name:
+                return category
+        names = [c.name for c in self.members] + [c.latin for c in self.members]
+        raise PlantError(f"weight category {name!r} is not in the library; {near_miss(name, names)}")
 
 
-def weight_category(mass_t: float, axles: int = 4) -> WeightCategory:
-    """The category of a cut of `mass_t` tonnes on `axles` axles.
-
-    Categories are limits of mass of a 4-axle car; other axle numbers, and cuts of several cars, are
-    compared by axle load, as the rail weigher does: the category of 4·`mass_t`/`axles`.
-    """
-    four_axle_mass_t = 4.0 * mass_t / axles
-    return [c for c in weight_categories() if c.mass_above_t < four_axle_mass_t or c.mass_above_t == 0.0][-1]
-
-
-def weight_category_named(name: str) -> WeightCategory:
-    """The category with this Cyrillic or Latin name (Л or L, ЛС or LS, С or S, СТ or ST, Т or T)."""
-    for category in weight_categories():
-        if name in (category.name, category.latin) or name.translate(LOOK_ALIKES) == category.name:
-            return category
-    names = [c.name for c in weight_categories()] + [c.latin for c in weight_categories()]
-    raise PlantError(f"weight category {name!r} is not in the library; {near_miss(name, names)}")
+def categories_from(file: TypeFile) -> WeightCategories:
+    """The categories written in `file`, one table each; `TypeFileError` names file and key."""
+    members: list[WeightCategory] = []
+    with telling(file.place):
+        tree = parse_toml(file.text)
+        title = take_string(tree, "title")
+        for latin, below in tree.items():
+            require(isinstance(below, dict), f"{latin} is {below!r}; it must be a table")
+            with telling(f"{file.place}: {latin}", {"rolling resistance: ": "rolling_resistance."}):
+                members.append(category_of(latin, below, tuple(members), file.origin))
+        require(len(members) > 0, "it holds no category")
+    return WeightCategories(file.name, title, tuple(members))
 
 
-def categories_from_toml(text: str) -> tuple[WeightCategory, ...]:
-    """The categories written in `text`, one table each; `PlantError` names file and key."""
-    categories: list[WeightCategory] = []
-    for latin, tree in parse_toml(text, FILE).items():
-        place = f"{FILE}: {latin}"
-        require(isinstance(tree, dict), f"{place} is {tree!r}; it must be a table")
-        name = take_string(tree, "name", place)
-        its_number = tree.pop("number", None)
+def category_of(latin: str, tree: dict[str, Any], lighter: tuple[WeightCategory, ...], origin: str) -> WeightCategory:
+    """The category in the table `latin`; `lighter`: those before it in the file."""
+    name, its_number = take_string(tree, "name"), tree.pop("number", None)
+    require(len(name) <= 40, f"name is {name[:40]!r}…; it must have at most 40 characters")
+    require_number(name, its_number)
+    same = [c.latin for c in lighter if its_number == c.number or {name, latin} & {c.name, c.latin}]
+    require(not same, f"its name {name} or number {its_number} is that of {', '.join(same)}, too")
+    table = sourced_table(tree, BY_AXLE_LOAD if "axle_load_above_t" in tree else BY_MASS, origin)
+    by_axle = "axle_load_above_t" in tree
+    key = "axle_load_above_t" if by_axle else "mass_above_t"
+    limit = table.number(key) * (4.0 if by_axle else 1.0)  # exact: the limits of a 4-axle car
+    resistance = RollingResistance(
+        table.number("rolling_resistance.mean_n_per_kn"), table.number("rolling_resistance.std_n_per_kn")
+    )
+    stage = table.number("allowed_stage")
+    require(
+        stage.is_integer() and 1 <= stage <= HIGHEST_STAGE,
+        f"allowed_stage is {stage:g}; it must be a whole number from 1 to {HIGHEST_STAGE}",
+    )
+    lowest = lighter[-1].mass_above_t if lighter else None
+    require(
+        limit == 0.0 if lowest is None else limit > lowest,
+        f"{key} is {table.number(key):g}; the limits must start at 0 and increase",
+    )
+    return WeightCategory(name, its_number, latin, limit, resistance, int(stage), table.values)
+
+
+def require_number(name: str, number_of_category: object) -> None:
+    """Raise unless the number may stand for the category `name`: the yard's five have theirs for good."""
+    yard = YARD_NUMBERS.get(name)
+    if yard is not None:
         require(
-            type(its_number) is int and its_number in (*YARD_NUMBERS, *OWN_NUMBERS),
-            f"{place}: number is {its_number!r}; it must be a whole number from 1 to 5 for a category of the yard, "
-            "from 16 to 255 for another one",
+            type(number_of_category) is int and number_of_category == yard,
+            f"number is {number_of_category!r}; it must be {yard}, the number of {name} in every table",
         )
-        same = [c.latin for c in categories if c.number == its_number or c.name == name]
-        require(not same, f"{place}: its name {name} or number {its_number} is that of {', '.join(same)}, too")
-        table = sourced_table(tree, CATEGORY_SCHEMA, place)
-        try:
-            resistance = RollingResistance(
-                table.number("rolling_resistance.mean_n_per_kn"), table.number("rolling_resistance.std_n_per_kn")
-            )
-        except PlantError as error:
-            raise PlantError(f"{place}: {error}") from None
-        limit, stage = table.number("mass_above_t"), table.number("allowed_stage")
-        require(stage.is_integer() and stage >= 1, f"{place}: allowed_stage is {stage:g}; it must be 1, 2, 3 …")
-        lowest = categories[-1].mass_above_t if categories else None
-        require(
-            limit == 0.0 if lowest is None else limit > lowest,
-            f"{place}: mass_above_t is {limit:g}; the limits must start at 0 and increase",
-        )
-        categories.append(WeightCategory(name, its_number, latin, limit, resistance, int(stage), table.values))
-    require(len(categories) > 0, f"{FILE}: it holds no category")
-    return tuple(categories)
+        return
+    require(
+        type(number_of_category) is int and number_of_category in OWN_NUMBERS,
+        f"number is {number_of_category!r}; it must be a whole number from {OWN_NUMBERS[0]} to {OWN_NUMBERS[-1]}, as "
+        "this is no category of the yard",
+    )

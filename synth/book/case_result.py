@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant
+from plant_models.frozen_arrays import frozen_arrays
 from synth.book.comparison.comparison import Comparison
 from synth.book.comparison.measured import Feasibility
 from synth.problem.criterion import Criterion
@@ -29,7 +30,8 @@ MOST_ESCAPED = 1e-4
 """Probability that may leave the top of the speed grid before a prediction is called doubtful."""
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class PolicyMap:
     """Best command and indifferent region on the solver's grid, by stage.
 
@@ -56,7 +58,8 @@ class Indifference:
     rms_with_m_s: float
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class DegreeStudy:
     """Exit error against the degree of the polynomials; arrays by `degrees`, rms in m/s.
 
@@ -72,7 +75,8 @@ class DegreeStudy:
     lines_rms_m_s: float
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class CaseStudy:
     """What a case shows besides its figures.
 
@@ -88,7 +92,8 @@ class CaseStudy:
     trace_factors: tuple[float, ...]
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class CaseResult:
     """One cut class and target: the table with its prediction, its closed loop, and the comparison.
 

@@ -84,7 +84,7 @@ def estimator_setup(config: ResolvedConfig, label: str, compared: CommonPasses) 
     """Grid and passes to design for the estimator of a plant; the passes are not those `compared`, nor anybody's."""
     seed = config.validation.seed
     return EstimatorSetup(
-        design=estimator_design(compared.plant, config.resolution, min(config.targets_m_s)),
+        design=estimator_design(compared.plant, config.resolution, min(config.targets_of(label))),
         tuning=random_passes(seed + 1, TUNING_PASSES, TUNING_PASSES + TRIM_PASSES),
         prediction=compared.of_others(prediction_passes(seed + 2, label)),
     )

@@ -26,8 +26,6 @@ def policy_map(solution: Solution, tolerance_m2_s2: float) -> PolicyMap:
     indifferent = near.sum(axis=0) >= 2
     changes = np.maximum(down, up)
     tied = np.abs(changes[np.isfinite(changes)]) <= TIE_M2_S2
-    for array in (command, indifferent):
-        array.setflags(write=False)
     return PolicyMap(grid.path_m[:-1], grid.speed_m_s, command, indifferent, float(tied.mean()))
 
 

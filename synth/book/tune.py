@@ -122,7 +122,7 @@ def class_tasks(run: TuneRun, label: str, plant: Plant, studied: bool) -> list[T
     """
     config = run.config
     setup = class_setup(config, label, plant, run.passes, run.origin)
-    aims = [Aim(target, config.criterion) for target in config.targets_m_s]
+    aims = [Aim(target, config.criterion) for target in config.targets_of(label)]
     free = [replace(aim, criterion=replace(aim.criterion, switching_tolerance_m2_s2=0.0)) for aim in aims]
     both = solutions(setup.design, [*aims, *free])
     published = solutions(as_published(setup.design, PUBLISHED_LEVELS), aims)

@@ -129,8 +129,7 @@ def one_pass(
     w = random.gammavariate((mean / std) ** 2, std * std / mean) if std > 0.0 else mean
     drag = w * ground.drag_m_s2_per_n_kn
     drive = BrakeDrive(plant.drive, rest_kpa)
-    low, high = plant.entry_m_s
-    s, v, stage, switchings = 0.0, low + (high - low) * random.random(), 0, 0
+    s, v, stage, switchings = 0.0, plant.entry.draw(random), 0, 0
     period = plant.period_s
     steps = max(STEPS_A_PERIOD, math.ceil(period / LONGEST_STEP_S))
     # The first sample comes at a random time after the entrance: until then one short row of steps.

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Final
 
 from synth.checker import c_export, csv_export, golden_export, st_export, track_export
-from synth.checker.category_number import without_number
+from synth.checker.book_categories import without_number
 from synth.checker.code_file import CodeFile, OtherLayoutError, c_files, require_layout, st_files
 from synth.checker.finding import DamagedError, Finding, Kind
 from synth.checker.source import Source, named

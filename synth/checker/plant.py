@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from synth.checker.canonical import canonical_form
+from synth.checker.entry import Entry, entry_of
 from synth.checker.finding import shown
 
 GRAVITY_M_S2: Final = 9.81
@@ -61,7 +62,7 @@ class Plant:
     resolution_m_s: float
     period_s: float
     computing_s: float
-    entry_m_s: tuple[float, float]
+    entry: Entry
 
     @property
     def exit_m(self) -> float:
@@ -161,8 +162,22 @@ def plant_of(config: Mapping[str, Any], cut: Mapping[str, Any]) -> Plant:
         resolution_m_s=at.number("sensor.resolution_m_s", 0.0, 10.0),
         period_s=at.number("sensor.sample_period_s", 1e-3, 10.0),
         computing_s=at.number("sensor.computing_delay_s", 0.0, 10.0),
-        entry_m_s=(at.number("entry.low_m_s", 0.01, 50.0), at.number("entry.high_m_s", 0.01, 50.0)),
+        entry=entry_speeds(of if "entry" in cut else at),
     )
+
+
+def entry_speeds(of: Reader) -> Entry:
+    """The law of the entry speeds of a class that has its own, or of the configuration."""
+    table = of.value("entry")
+    keys = set(table) if isinstance(table, dict) else set()
+    found = entry_of(
+        keys,
+        lambda key, low, high: of.number(f"entry.{key}", low, high),
+        lambda key, low, high: of.numbers(f"entry.{key}", low, high),
+    )
+    if found is None:
+        raise UnusableConfigError(f"entry of its configuration is {shown(table)}, no law of entry speeds")
+    return found
 
 
 def drive_of(at: Reader) -> Drive:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from synth.checker.book_categories import contradictions
 from synth.checker.book_reading import SIGNATURE, read_documents
 from synth.checker.canonical import canonical_form
-from synth.checker.category_number import contradictions
 from synth.checker.document_shape import require_document
 from synth.checker.finding import DamagedError, Finding, Kind, NothingToVerifyError, shown
 from synth.checker.source_file import content_of

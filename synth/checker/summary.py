@@ -113,7 +113,7 @@ def require_fit(plant: Plant, table: Table) -> None:
     ):
         if one != other:
             raise UnusableConfigError(f"the configuration beside it has other {name}: {shown(one)}, not {shown(other)}")
-    low, high = plant.entry_m_s
+    low, high = plant.entry.low_m_s, plant.entry.high_m_s
     flat = [edge for zone in plant.zones_m for edge in zone]
     if low > high or sorted(flat) != flat or sorted(plant.axle_offsets_m) != list(plant.axle_offsets_m):
         raise UnusableConfigError("the configuration beside it describes no possible plant")

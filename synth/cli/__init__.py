@@ -19,6 +19,9 @@ OK, LIMITS_MISSED, INPUT_FAULT, DAMAGED, INTERRUPTED, PIPE_CLOSED = 0, 1, 2, 3, 
 UNFORESEEN, MACHINE_FAULT = 70, 74
 """EX_SOFTWARE and EX_IOERR of sysexits.h."""
 
+MOST_FAULTS = 50
+"""Of one configuration, that are told."""
+
 TRACEBACK = "RETARDER_SYNTH_TRACEBACK"
 """Name of the environment variable that has the traceback of an unforeseen fault printed."""
 
@@ -88,7 +91,7 @@ def told(call: Callable[[], int]) -> int:
 
         if not isinstance(fault, InputError | PlantError | TableError):
             return told_of_unforeseen(fault)
-        say(str(fault))
+        say_each(fault.sentences if isinstance(fault, InputError) else (str(fault),))
         return DAMAGED if isinstance(fault, TableError) else INPUT_FAULT
     except Exception as fault:
         return told_of_unforeseen(fault)
@@ -119,6 +122,14 @@ def told_of_unforeseen(fault: Exception) -> int:
         f"its input ({TRACEBACK}=1 shows where it comes from)"
     )
     return UNFORESEEN
+
+
+def say_each(sentences: Sequence[str]) -> None:
+    """One line on stderr for each of the first sentences, and how many are left."""
+    for sentence in sentences[:MOST_FAULTS]:
+        say(sentence)
+    if len(sentences) > MOST_FAULTS:
+        say(f"and {len(sentences) - MOST_FAULTS} more faults")
 
 
 def say(sentence: str) -> None:

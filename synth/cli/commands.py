@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from synth.cli.arguments import directory, whole_number
+from synth.cli.arguments import directory, whole_number, with_names
 
 app = typer.Typer(
     name="retarder-synth",
@@ -33,7 +33,7 @@ def run(arguments: list[str]) -> int:
     from synth.cli import INPUT_FAULT, say
 
     try:
-        code = app(arguments, prog_name="retarder-synth", standalone_mode=False)
+        code = app(with_names(arguments), prog_name="retarder-synth", standalone_mode=False)
     except typer.TyperException as fault:
         if not arguments:
             typer.echo(fault.format_message(), err=True)
@@ -241,16 +241,36 @@ def export(
     return export_command(source, form, output, AskedCode(prefix, self_test, split), as_json)
 
 
+TypeName = "[NAME]"
+"""Of an option that may stand without a name: `arguments.with_names`."""
+
+
 @app.command()
 def init(
-    retarder: Annotated[str | None, typer.Option(metavar="NAME", help="A retarder of the library.")] = None,
-    show_list: Annotated[bool, typer.Option("--list", help="Only list the retarders of the library.")] = False,
+    retarder: Annotated[
+        str | None,
+        typer.Option(metavar=TypeName, help="File of a retarder type. With the name of a position: its configuration."),
+    ] = None,
+    position: Annotated[str | None, typer.Option(metavar=TypeName, help="File of a position.")] = None,
+    car: Annotated[str | None, typer.Option(metavar=TypeName, help="File of a car type.")] = None,
+    sensor: Annotated[str | None, typer.Option(metavar=TypeName, help="File of a sensor.")] = None,
+    weight_categories: Annotated[
+        str | None, typer.Option(metavar=TypeName, help="File of a set of weight categories.")
+    ] = None,
+    show_list: Annotated[bool, typer.Option("--list", help="Only list what the library holds.")] = False,
     as_json: Json = False,
 ) -> int:
-    """Print a commented configuration to start from."""
+    """Print a commented configuration to start from, or the file of one type."""
     from synth.cli.init import init_command
 
-    return init_command(retarder, show_list, as_json)
+    types = {
+        "retarders": retarder,
+        "positions": position,
+        "cars": car,
+        "sensors": sensor,
+        "weight_categories": weight_categories,
+    }
+    return init_command(types, show_list, as_json)
 
 
 @app.command(

@@ -1,22 +1,68 @@
-"""`retarder-synth init`: a configuration to start from, and what the library holds."""
+"""`retarder-synth init`: a configuration or a type to start from, and what the library holds."""
 
 from __future__ import annotations
 
 import json
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from plant_models.library import Kind
 
 
-def init_command(retarder: str | None, show_list: bool, as_json: bool) -> int:
-    """Print the commented configuration of `retarder` (the default one for None), or the list of retarders."""
-    from plant_models.library import load_retarder, retarder_names
-    from synth.configuration.config_template import default_config_toml
-    from synth.configuration.settings import DEFAULT_RETARDER
+def init_command(types: dict[str, str | None], show_list: bool, as_json: bool) -> int:
+    """Print a commented configuration, the file of one type, or the library's list.
 
+    `types`: by folder of the library, the type that is asked for; '' for a usual one, None for none. A position under
+    "retarders" asks for a configuration with it: so the option --retarder was, before there were files of types.
+    """
     if show_list:
-        titles = {name: load_retarder(name).title for name in retarder_names()}
-        width = max(map(len, titles))
-        text = "\n".join(f"{name:<{width}}  {title}" for name, title in titles.items())
-        print(json.dumps({"retarders": titles}, indent=1, ensure_ascii=False) if as_json else text)
-        return 0
-    text = default_config_toml(retarder or DEFAULT_RETARDER)
-    print(json.dumps({"configuration": text}, ensure_ascii=False) if as_json else text, end="\n" if as_json else "")
+        return print_list(as_json)
+    key, text = asked_for(types)
+    print(json.dumps({key: text}, ensure_ascii=False) if as_json else text, end="\n" if as_json else "")
     return 0
+
+
+def asked_for(types: dict[str, str | None]) -> tuple[str, str]:
+    """(key in JSON, text) of what is to be printed; `InputError` where two files are asked for at once."""
+    from plant_models.library import BUILT_IN, KINDS, POSITIONS, RETARDERS
+    from synth.configuration.config_template import default_config_toml
+    from synth.configuration.position_choice import require_held
+    from synth.configuration.type_template import type_toml
+    from synth.faults.input_error import InputError
+
+    asked = [kind for kind in KINDS if types.get(kind.folder) is not None]
+    if len(asked) > 1:
+        raise InputError("init prints one file at a time; give one of its options")
+    if not asked:
+        return "configuration", default_config_toml()
+    (kind,) = asked
+    name = types[kind.folder]
+    if kind == RETARDERS and name and name not in BUILT_IN.names(RETARDERS):
+        require_held("retarder-synth init: --retarder", POSITIONS, name, BUILT_IN)
+        return "configuration", default_config_toml(name)
+    return "type", type_toml(kind, name or None)
+
+
+def print_list(as_json: bool) -> int:
+    """What the library holds."""
+    from plant_models.library import KINDS
+
+    titles = {kind.folder: titles_of(kind) for kind in KINDS}
+    if as_json:
+        document = {"retarders": titles["positions"], "library": titles}
+        print(json.dumps(document, indent=1, ensure_ascii=False))
+        return 0
+    width = max(len(name) for found in titles.values() for name in found)
+    for kind in KINDS:
+        print(f"{kind.folder}:")
+        for name, title in titles[kind.folder].items():
+            print(f"  {name:<{width}}  {title}")
+    return 0
+
+
+def titles_of(kind: Kind) -> dict[str, str]:
+    """Titles of the types of a kind by name."""
+    from plant_models.library import BUILT_IN
+    from plant_models.library.data_file import parse_toml
+
+    return {name: parse_toml(BUILT_IN.file(kind, name).text)["title"] for name in BUILT_IN.names(kind)}

@@ -37,7 +37,7 @@ def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, worker
 
     started = time.monotonic()
     cache = cache_in_use()
-    cases = len(config.cuts) * len(config.targets_m_s)
+    cases = len(config.problems())
     with interruptible(directory), Progress(cases) as progress, ExitStack() as stack:
         if cache is None or next(cache.rglob("*.nbi"), None) is None:
             progress.note("compiling the kernels for this machine, once; this takes about a minute")

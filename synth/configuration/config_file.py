@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, get_args
 
@@ -11,9 +11,11 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from plant_models.library.near_miss import near_miss
+from synth.configuration.own_types import with_own_types
 from synth.configuration.resolved_config import ResolvedConfig, resolve, setting_limits
-from synth.configuration.settings import Section, Settings
-from synth.configuration.toml_file import read_text, toml_tree
+from synth.configuration.section import Section
+from synth.configuration.settings import Settings
+from synth.configuration.toml_file import Tree, read_text, toml_tree
 from synth.faults.input_error import InputError
 from tuning_tables.excerpt import excerpt
 
@@ -31,6 +33,12 @@ ALLOWED = {
 }
 """What a value must be, by pydantic's error type."""
 
+LENGTHS = {
+    "consist": "a list of 1 to 60 tables {car = …, cars = …, mass_per_car_t = …}",
+    "library": "a list of at most 20 folders",
+}
+"""What a list that is too long or too short must be, by its key."""
+
 Location = Sequence[str | int]
 
 
@@ -42,23 +50,24 @@ def load_config(path: Path | None) -> ResolvedConfig:
 
 
 def parse_config(text: str, file: str) -> ResolvedConfig:
-    """The configuration written in `text`; `file` is what messages call it."""
-    tree = toml_tree(text, file)
+    """The configuration written in `text`; `file`: what messages call it, and where paths in it begin."""
+    tree, library = with_own_types(toml_tree(text, file), file)
+    return resolve(valid_settings(tree, file), file, library)
+
+
+def valid_settings(tree: Tree, where: str) -> Settings:
+    """The settings in `tree`; `InputError` with a sentence for each fault, which begins with `where`."""
     try:
-        settings = Settings.model_validate(tree)
+        return Settings.model_validate(tree)
     except ValidationError as error:
-        raise InputError(f"{file}: {first_fault(error)}") from None
-    return resolve(settings, file)
+        raise InputError(*(f"{where}: {sentence}" for sentence in faults_in(error))) from None
 
 
-def first_fault(error: ValidationError) -> str:
-    """The first fault as a sentence, and how many others there are; a mistyped key comes before a missing one."""
+def faults_in(error: ValidationError) -> list[str]:
+    """Every fault as a sentence; mistyped keys come before missing ones."""
     found = error.errors(include_url=False)
     own = [fault for fault in found if fault["type"] != "too_short" or not fault["input"]]  # else a sequel of another
-    faults = sorted(own, key=lambda fault: fault["type"] != "extra_forbidden")
-    others = len(faults) - 1
-    more = f" (and {others} other fault{'s' if others > 1 else ''})" if others else ""
-    return fault_sentence(faults[0]) + more
+    return [fault_sentence(fault) for fault in sorted(own, key=lambda fault: fault["type"] != "extra_forbidden")]
 
 
 def fault_sentence(fault: ErrorDetails) -> str:
@@ -83,7 +92,7 @@ def allowed(fault: ErrorDetails) -> str:
     if kind == "literal_error":
         return str(context["expected"])
     if kind in ("too_short", "too_long"):
-        return "a list of 1 to 1000 [[cut]] tables"
+        return LENGTHS.get(str(fault["loc"][-1]), "a list of 1 to 1000 [[cut]] tables")
     if fault["loc"] == ("cut",):
         return "a list of tables: write [[cut]], not [cut]"
     return ALLOWED.get(kind, fault["msg"])
@@ -114,8 +123,14 @@ def field_at(location: Location) -> FieldInfo:
 
 def sections_in(field: FieldInfo) -> list[type[Section]]:
     """The section that a field holds, or a list of; empty for a plain value."""
-    candidates = (field.annotation, *get_args(field.annotation))
-    return [c for c in candidates if isinstance(c, type) and issubclass(c, Section)]
+    return [c for c in parts_of(field.annotation) if isinstance(c, type) and issubclass(c, Section)]
+
+
+def parts_of(annotation: Any) -> Iterator[Any]:
+    """A type, and all that it is made of."""
+    yield annotation
+    for part in get_args(annotation):
+        yield from parts_of(part)
 
 
 def dotted_keys(section: type[BaseModel], prefix: str) -> list[str]:

@@ -6,15 +6,14 @@ import json
 from collections.abc import Iterable, Iterator
 from itertools import groupby
 
-from plant_models.library import SourcedValue, Value, car_names, retarder_names, sources_cited_in
+from plant_models.library import SourcedValue, Value, car_names, position_names, sources_cited_in
 from synth.configuration.cut_class import CutClass
+from synth.configuration.plant_settings import DEFAULT_POSITION, PositionSettings
 from synth.configuration.resolved_config import ResolvedConfig, resolve, setting_limits, setting_unit
 from synth.configuration.settings import (
-    DEFAULT_RETARDER,
     NUMERICAL_SECTIONS,
     OutputSettings,
     RegulatorSettings,
-    RetarderSettings,
     Settings,
 )
 
@@ -24,12 +23,12 @@ HEAD = """\
 # ASSUMED: no citable source stands behind the number; replace it by that of your retarder."""
 
 
-def default_config_toml(retarder_name: str = DEFAULT_RETARDER) -> str:
-    """The defaults for a retarder of the library as TOML; it reads back to the same configuration.
+def default_config_toml(position_name: str = DEFAULT_POSITION) -> str:
+    """The defaults for a position of the library as TOML; it reads back to the same configuration.
 
-    `InputError` if the library has no such retarder.
+    `InputError` if the library has no such position.
     """
-    config = resolve(Settings(retarder=RetarderSettings(name=retarder_name)), "retarder-synth init")
+    config = resolve(Settings(position=PositionSettings(name=position_name)), "retarder-synth init")
     text = tuple(lines(config))
     return "\n".join((*text, *source_lines(text))) + "\n"
 
@@ -39,11 +38,10 @@ def lines(config: ResolvedConfig) -> Iterator[str]:
     yield HEAD
     yield from (f"# Note: {note}" for note in config.retarder.notes)
     yield f"title = {quoted(config.title)}"
-    yield from ("", "[retarder]", f"# one of the library: {', '.join(retarder_names())}")
+    yield from ("", "[position]", f"# one of the library: {', '.join(position_names())}; or the path of your own file")
     yield f"name = {quoted(config.retarder.name)}"
     for section, values in groupby(config.retarder.provenance, key=lambda value: value.key.rpartition(".")[0]):
-        if section != "retarder":
-            yield from ("", f"[{section}]")
+        yield from ("", f"[{section}]")
         for value in values:
             yield from (f"# {origin(value)}", f"{value.key.rpartition('.')[2]} = {toml_value(value.value)}")
             if value.key == "track.grade_permille":
@@ -73,9 +71,10 @@ def cut_lines(cut_class: CutClass) -> Iterator[str]:
     """The [[cut]] table of a class; what follows from its mass stands as a comment."""
     by_name = {value.key.partition(".")[2]: value for value in cut_class.provenance}
     mean, std = by_name["rolling_resistance.mean_n_per_kn"], by_name["rolling_resistance.std_n_per_kn"]
-    yield from ("", "[[cut]]", f"# one of the library: {', '.join(car_names())}")
-    yield f"car = {quoted(cut_class.car)}"
-    yield from ("# 1; 1 to 60; number of such cars coupled", f"cars = {cut_class.cars}")
+    (cars,) = cut_class.consist.parts
+    yield from ("", "[[cut]]", f"# one of the library: {', '.join(car_names())}; or the path of your own file")
+    yield f"car = {quoted(cars.entry.name)}"
+    yield from ("# 1; 1 to 60; number of such cars coupled", f"cars = {cars.count}")
     yield from (f"# {origin(by_name['mass_t'])}; of the whole cut", f"mass_t = {cut_class.cut.mass_t!r}")
     yield "# From the mass per axle follow (remove the leading # to change one):"
     yield f"# category = {quoted(cut_class.cut.category)}  # or L, LS, S, ST, T"

@@ -10,12 +10,21 @@ from typing import Any
 from annotated_types import Ge, Le
 from pydantic.fields import FieldInfo
 
-from plant_models import EntrySpeed, Plant, PlantError
-from plant_models.library import RetarderEntry, SourcedValue, load_retarder, retarder_names
-from plant_models.library.near_miss import near_miss
+from plant_models import EntryLaw, Plant
+from plant_models.library import (
+    BUILT_IN,
+    WEIGHT_CATEGORIES,
+    Library,
+    PositionEntry,
+    SourcedValue,
+    load_weight_categories,
+)
 from plant_models.library.sourced_value import SET_BY_USER
-from synth.configuration.cut_class import CutClass, category_warnings, resolve_cut
+from synth.configuration.cut_class import CutClass, Surroundings, category_warnings, resolve_cut
 from synth.configuration.grid_warnings import grid_warnings
+from synth.configuration.plant_fault import in_file
+from synth.configuration.position_choice import require_held, resolve_position
+from synth.configuration.section import Section
 from synth.configuration.settings import (
     NUMERICAL_SECTIONS,
     AcceptanceSettings,
@@ -24,10 +33,10 @@ from synth.configuration.settings import (
     GridSettings,
     OutputSettings,
     RegulatorSettings,
-    Section,
     Settings,
     ValidationSettings,
 )
+from synth.configuration.targets import resolve_targets
 from synth.faults.input_error import InputError
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
@@ -35,28 +44,8 @@ from synth.problem.estimator_resolution import estimator_resolution
 from synth.problem.problem import Problem
 from synth.problem.resolution import Resolution
 from tuning_tables.canonical import canonical_json
-from tuning_tables.excerpt import excerpt
 
 TOOL_DEFAULT = "default of the tool"
-
-LONGEST_SENTENCE = 400
-"""Characters of what the plant says of a value, which it repeats."""
-
-KEY_OF_PLANT_MESSAGE = {
-    "pneumatics: ": "retarder.pneumatics.",
-    "force: ": "retarder.force.",
-    "retarder: ": "retarder.",
-    "retarder: stages ": "retarder.pneumatics.dead_band_kpa: stages ",
-    "track profile: grades_permille": "track.grade_permille",
-    "track profile: starts_m": "track.grade_permille: starts_m",
-    "entry: ": "entry.",
-    "friction: ": "friction.",
-    "sensor: ": "sensor.",
-    "criterion: ": "criterion.",
-    "targets: target_speed_m_s": "targets.exit_speeds_m_s",
-    "targets: ": "targets.exit_speeds_m_s: ",
-}
-"""How the plant's messages begin, and the key path in a configuration file that this means."""
 
 
 @dataclass(frozen=True)
@@ -64,13 +53,13 @@ class ResolvedConfig:
     """Everything that a tune depends on.
 
     `parameters`: every number with unit, range, source, confidence and whether it is assumed; source
-    'configuration' marks what the user changed. `warnings`: sentences about values outside their sensible
-    range.
+    'configuration' marks what the user changed. `retarder`: the position. `entry`, `targets_m_s`: of the classes that
+    have none of their own. `warnings`: sentences about values outside their sensible range.
     """
 
     title: str
-    retarder: RetarderEntry
-    entry: EntrySpeed
+    retarder: PositionEntry
+    entry: EntryLaw
     cuts: tuple[CutClass, ...]
     targets_m_s: tuple[float, ...]
     criterion_settings: CriterionSettings
@@ -87,14 +76,27 @@ class ResolvedConfig:
         """(label, plant) of every cut class."""
         at = self.retarder
         return tuple(
-            (c.label, Plant(at.position, c.cut, at.profile, at.friction, c.resistance, at.sensor, self.entry))
+            (
+                c.label,
+                Plant(at.position, c.cut, at.profile, at.friction, c.resistance, at.sensor, c.entry or self.entry),
+            )
             for c in self.cuts
         )
+
+    def targets_of(self, label: str) -> tuple[float, ...]:
+        """Commanded exit speeds of the class `label`."""
+        (own,) = (c.targets_m_s for c in self.cuts if c.label == label)
+        return self.targets_m_s if own is None else own
+
+    @property
+    def lowest_target_m_s(self) -> float:
+        """Of all classes."""
+        return min(target for c in self.cuts for target in self.targets_of(c.label))
 
     def problems(self) -> tuple[tuple[str, Problem], ...]:
         """(label, problem) of every cut class and target, targets innermost."""
         return tuple(
-            (label, Problem(p, Aim(v, self.criterion))) for label, p in self.plants() for v in self.targets_m_s
+            (label, Problem(p, Aim(v, self.criterion))) for label, p in self.plants() for v in self.targets_of(label)
         )
 
     @property
@@ -112,7 +114,7 @@ class ResolvedConfig:
         """Every grid that lines of a class are designed on: one more where the regulator has an estimator."""
         if not self.regulator.estimator:
             return (self.resolution,)
-        finer = estimator_resolution(self.resolution, self.retarder.sensor, min(self.targets_m_s))
+        finer = estimator_resolution(self.resolution, self.retarder.sensor, self.lowest_target_m_s)
         return self.resolution, finer
 
     def canonical_json(self) -> str:
@@ -143,98 +145,77 @@ class ResolvedConfig:
         return hashlib.sha256(self.canonical_json().encode()).hexdigest()
 
 
-def resolve(settings: Settings, file: str) -> ResolvedConfig:
+def resolve(settings: Settings, file: str, library: Library = BUILT_IN) -> ResolvedConfig:
     """Fill in the library's values; `InputError` names `file`, key and value of whatever does not fit."""
-    retarder = resolve_retarder(settings, file)
-    cuts = tuple(resolve_cut(cut, i, retarder, file) for i, cut in enumerate(settings.cut))
-    labels = [c.label for c in cuts]
-    for i, label in enumerate(labels):
-        if label in labels[:i]:
-            raise InputError(
-                f"{file}: cut[{i}].label is {label!r}, as is that of cut[{labels.index(label)}]; "
-                "give one of the two another label"
-            )
-    low, high = retarder.entry_speed_m_s
-    targets = resolve_targets(retarder.target_speeds_m_s, high, file)
+    position = resolve_position(settings, file, library)
+    require_held(f"{file}: weight_categories", WEIGHT_CATEGORIES, settings.weight_categories, library)
+    with in_file(file):
+        categories = load_weight_categories(settings.weight_categories, library)
+    cuts = resolve_cuts(settings, Surroundings(position, categories, library, file))
     parameters = (
-        *retarder.provenance,
+        *position.provenance,
         *(value for c in cuts for value in c.provenance),
         *(value for name in NUMERICAL_SECTIONS for value in setting_values(name, getattr(settings, name))),
     )
+    config = ResolvedConfig(
+        title=position.title if settings.title is None else settings.title,
+        retarder=position,
+        entry=position.entry,
+        cuts=cuts,
+        targets_m_s=position.target_speeds_m_s,
+        criterion_settings=settings.criterion,
+        grid=settings.grid,
+        fit=settings.fit,
+        regulator=settings.regulator,
+        validation=settings.validation,
+        acceptance=settings.acceptance,
+        output=settings.output,
+        parameters=parameters,
+        warnings=tuple(range_warnings(parameters)) + tuple(category_warnings(cuts, categories)),
+    )
+    with in_file(file):
+        return with_grid_warnings(config, file)
+
+
+def resolve_cuts(settings: Settings, at: Surroundings) -> tuple[CutClass, ...]:
+    """The classes; `InputError` with the first fault of each of them, and of the targets."""
+    cuts: list[CutClass] = []
+    faults: list[str] = []
+    for i, cut in enumerate(settings.cut):
+        try:
+            cuts.append(resolve_cut(cut, i, at))
+        except InputError as fault:
+            faults += fault.sentences
+    places: dict[str, int] = {}
+    for i, label in enumerate(c.label for c in cuts if len(cuts) == len(settings.cut)):
+        if label in places:
+            faults.append(
+                f"{at.file}: cut[{i}].label is {label!r}, as is that of cut[{places[label]}]; give one of the two "
+                "another label"
+            )
+        places.setdefault(label, i)
     try:
-        config = ResolvedConfig(
-            title=retarder.title if settings.title is None else settings.title,
-            retarder=retarder,
-            entry=EntrySpeed(low, high),
-            cuts=cuts,
-            targets_m_s=targets,
-            criterion_settings=settings.criterion,
-            grid=settings.grid,
-            fit=settings.fit,
-            regulator=settings.regulator,
-            validation=settings.validation,
-            acceptance=settings.acceptance,
-            output=settings.output,
-            parameters=parameters,
-            warnings=tuple(range_warnings(parameters)) + tuple(category_warnings(cuts)),
-        )
-        config.problems()
-        coarse = tuple(grid_warnings(config.resolution, retarder.sensor, targets))
-        config = replace(config, warnings=config.warnings + coarse)
-        if config.regulator.estimator and config.criterion.requirement is not None:
-            raise InputError(
-                f"{file}: regulator.estimator is true, but criterion.p_overspeed and criterion.worst_friction_* can be "
-                "kept only without an estimator; leave one of the two out"
-            )
-        if config.regulator.estimator:
-            estimator_resolution(config.resolution, retarder.sensor, min(targets))
-    except PlantError as error:
-        raise InputError(f"{file}: {excerpt(with_key_path(str(error)), LONGEST_SENTENCE)}") from None
-    return config
+        resolve_targets("targets.exit_speeds_m_s", at.position.target_speeds_m_s, at.position.entry, at.file)
+    except InputError as fault:
+        faults += fault.sentences
+    if faults:
+        raise InputError(*faults)
+    return tuple(cuts)
 
 
-def resolve_retarder(settings: Settings, file: str) -> RetarderEntry:
-    """The library's position with the user's values in it."""
-    name = settings.retarder.name
-    if name not in retarder_names():
+def with_grid_warnings(config: ResolvedConfig, file: str) -> ResolvedConfig:
+    """`config` with a warning where its grid is too coarse; refused where problems or estimator make no sense."""
+    config.problems()  # refuses what makes no sense
+    lowest = config.lowest_target_m_s
+    coarse = tuple(grid_warnings(config.resolution, config.retarder.sensor, (lowest,)))
+    if config.regulator.estimator and config.criterion.requirement is not None:
         raise InputError(
-            f"{file}: retarder.name is {excerpt(name)!r}, which the library does not hold; "
-            f"{near_miss(name, retarder_names())}"
+            f"{file}: regulator.estimator is true, but criterion.p_overspeed and criterion.worst_friction_* can be "
+            "kept only without an estimator; leave one of the two out"
         )
-    zones = settings.retarder.zones_m
-    if zones is not None and zones[0][0] != 0.0:
-        raise InputError(
-            f"{file}: retarder.zones_m begins with {zones[0]}; the first zone must start at 0, the entrance"
-        )
-    try:
-        retarder = load_retarder(name).with_values(settings.library_overrides())
-        pressures = retarder.position.stage_pressures_kpa
-        for start in pressures:
-            for end in pressures:  # a regulator that hunts is found here, not in the middle of a solve
-                retarder.position.pneumatics.respond(start, end, retarder.position.force.touch_pressure_kpa)
-    except PlantError as error:
-        raise InputError(f"{file}: {excerpt(with_key_path(str(error)), LONGEST_SENTENCE)}") from None
-    return retarder
-
-
-def resolve_targets(speeds_m_s: tuple[float, ...], highest_entry_m_s: float, file: str) -> tuple[float, ...]:
-    """The targets, which must be different and below the highest entry speed."""
-    for speed in speeds_m_s:
-        if not 0.3 <= speed < highest_entry_m_s:
-            raise InputError(
-                f"{file}: targets.exit_speeds_m_s holds {speed!r}; a target must be at least 0.3 m/s and below the "
-                f"highest entry speed, entry.high_m_s = {highest_entry_m_s:g}"
-            )
-    named: dict[str, float] = {}
-    for speed in speeds_m_s:
-        name = f"{speed:g}"
-        if name in named:
-            raise InputError(
-                f"{file}: targets.exit_speeds_m_s holds {named[name]!r} and {speed!r}, but tables are named by six "
-                "digits of their target; give each only once"
-            )
-        named[name] = speed
-    return speeds_m_s
+    if config.regulator.estimator:
+        estimator_resolution(config.resolution, config.retarder.sensor, lowest)
+    return replace(config, warnings=config.warnings + coarse)
 
 
 def setting_values(name: str, section: Section) -> Iterator[SourcedValue]:
@@ -263,11 +244,3 @@ def range_warnings(parameters: tuple[SourcedValue, ...]) -> Iterator[str]:
     for p in parameters:
         if p.range is not None and not p.in_range:
             yield f"{p.key} is {p.value!r}; its sensible range is {p.range[0]:g} to {p.range[1]:g} {p.unit}"
-
-
-def with_key_path(sentence: str) -> str:
-    """The plant's sentence with the key path of the configuration in place of the plant's own name."""
-    for prefix in sorted(KEY_OF_PLANT_MESSAGE, key=len, reverse=True):
-        if sentence.startswith(prefix):
-            return KEY_OF_PLANT_MESSAGE[prefix] + sentence.removeprefix(prefix)
-    return sentence

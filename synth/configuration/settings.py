@@ -1,8 +1,7 @@
 """What a configuration file may contain: one frozen model a section, units in the key names.
 
-Only the keys that a file sets replace the library's values, so everything that the library knows is
-optional here. Physical limits are the plant's own (`PlantError`); limits of the numerical settings are
-here. `synth.configuration.config_file` turns every fault into one sentence.
+What it says of the plant is in `plant_settings`; limits of the numerical settings are here.
+`synth.configuration.config_file` turns every fault into one sentence.
 """
 
 from __future__ import annotations
@@ -10,123 +9,27 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from plant_models.errors import require
-from plant_models.library import Value
-from synth.configuration.value_forms import Grade, Numbers, Pairs, Title
+from plant_models.library import YARD_CATEGORIES, Value
+from synth.configuration.plant_settings import (
+    DEFAULT_CUTS,
+    CutSettings,
+    EntrySettings,
+    FrictionSettings,
+    PositionSettings,
+    RetarderSettings,
+    SensorSettings,
+    TargetSettings,
+    TrackSettings,
+)
+from synth.configuration.section import Section, setting
+from synth.configuration.value_forms import Title
 from synth.problem.criterion import Criterion
 from synth.problem.requirement import FrictionRange, OverspeedLimit, Requirement
 from synth.problem.resolution import Resolution
 from synth.problem.terminal_cost import AsymmetricSquare, SquaredError
-
-DEFAULT_RETARDER = "knp-5-bunch"
-
-
-def setting(default: float, unit: str, low: float, high: float, meaning: str) -> Any:
-    """A numerical setting with its unit, its limits (both allowed) and what it means."""
-    return Field(default, ge=low, le=high, description=meaning, json_schema_extra={"unit": unit})
-
-
-class Section(BaseModel):
-    """A table of the file: unknown keys, wrong types, inf and nan are refused."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
-
-
-class ForceSettings(Section):
-    """Replaces values of the library's force law; the slope's key depends on the law."""
-
-    slope_kn_per_kpa: float | None = None
-    slope_kn_per_kpa_per_t: float | None = None
-    touch_pressure_kpa: float | None = None
-    slope_factor_by_axles: Numbers | None = None
-
-
-class PneumaticsSettings(Section):
-    """Replaces values of the library's pneumatics."""
-
-    supply_pressure_kpa: float | None = None
-    exhaust_pressure_kpa: float | None = None
-    brake_delay_s: float | None = None
-    touch_delay_s: float | None = None
-    release_delay_s: float | None = None
-    fill_time_constant_s: float | None = None
-    exhaust_time_constant_s: float | None = None
-    dead_band_kpa: float | None = None
-    closing_delay_s: float | None = None
-
-
-class RetarderSettings(Section):
-    """The library's retarder position, and what is different here."""
-
-    name: str = DEFAULT_RETARDER
-    zones_m: Pairs | None = None
-    stage_pressures_kpa: Numbers | None = None
-    max_entry_speed_m_s: float | None = None
-    force: ForceSettings = ForceSettings()
-    pneumatics: PneumaticsSettings = PneumaticsSettings()
-
-
-class TrackSettings(Section):
-    """One grade, or pairs (start in m, grade in permille); downhill positive."""
-
-    grade_permille: Grade | None = None
-
-
-class EntrySettings(Section):
-    """Entry speeds are uniform between the two."""
-
-    low_m_s: float | None = None
-    high_m_s: float | None = None
-
-
-class FrictionSettings(Section):
-    """Replaces values of the library's friction model."""
-
-    common_cv: float | None = None
-    axle_cv: float | None = None
-    path_std: float | None = None
-    correlation_length_m: float | None = None
-    floor: float | None = None
-
-
-class SensorSettings(Section):
-    """Replaces values of the library's Doppler sensor."""
-
-    noise_m_s: float | None = None
-    resolution_m_s: float | None = None
-    sample_period_s: float | None = None
-    computing_delay_s: float | None = None
-
-
-class TargetSettings(Section):
-    """Commanded exit speeds; every cut class is tuned for each."""
-
-    exit_speeds_m_s: Numbers | None = None
-
-
-class RollingResistanceSettings(Section):
-    """Replaces values of the weight category."""
-
-    mean_n_per_kn: float | None = None
-    std_n_per_kn: float | None = None
-
-
-class CutSettings(Section):
-    """A cut class: `cars` equal cars of the library that together weigh `mass_t`."""
-
-    label: str | None = Field(None, pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]{0,60}$")
-    car: str
-    cars: int = Field(1, ge=1, le=60)
-    mass_t: float
-    category: str | None = None
-    allowed_stage: int | None = None
-    rolling_resistance: RollingResistanceSettings = RollingResistanceSettings()
-
-
-DEFAULT_CUTS = tuple(CutSettings(car="gondola-4", mass_t=mass_t) for mass_t in (22.0, 36.0, 52.0, 66.0, 85.0))
-"""One gondola for each weight category."""
 
 
 class GridSettings(Section):
@@ -246,6 +149,9 @@ class Settings(Section):
     """A whole configuration file; an empty one is the built-in default."""
 
     title: Title | None = None
+    library: tuple[str, ...] = Field((), max_length=20, strict=False)
+    weight_categories: str = YARD_CATEGORIES
+    position: PositionSettings = PositionSettings()
     retarder: RetarderSettings = RetarderSettings()
     track: TrackSettings = TrackSettings()
     entry: EntrySettings = EntrySettings()
@@ -262,9 +168,10 @@ class Settings(Section):
     output: OutputSettings = OutputSettings()
 
     def library_overrides(self) -> dict[str, Value]:
-        """Set values by the dotted keys of the library's retarder files."""
+        """Set values by the dotted keys of the library's positions."""
         sections = {"retarder", "track", "entry", "friction", "sensor", "targets"}
-        tree = self.model_dump(include=sections, exclude={"retarder": {"name"}}, exclude_none=True)
+        not_numbers = {"retarder": {"name", "type"}, "sensor": {"type"}}
+        tree = self.model_dump(include=sections, exclude=not_numbers, exclude_none=True)
         return dict(dotted(tree, ""))
 
 

@@ -1,7 +1,7 @@
 """What an exit speed costs: the one place that the sweep, the exact evaluation and the polish take it from.
 
 A cost is a vector over the speeds of the grid. The expected cost is linear in it, so the gradient by the switching
-lines (`policy_evaluation.cost_and_gradient`) is exact for each of them, and none has to be smooth for its sake.
+lines (`solver.evaluation.Evaluation.gradient`) is exact for each of them, and none has to be smooth for its sake.
 """
 
 from __future__ import annotations

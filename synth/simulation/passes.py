@@ -7,8 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 
-@dataclass(frozen=True)
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class ExitSample:
     """How n passes ended, arrays of shape (n,); a stalled pass has exit speed 0.
 
@@ -21,15 +24,12 @@ class ExitSample:
     transit_time_s: NDArray[np.float64]
     weight: NDArray[np.float64]
 
-    def __post_init__(self) -> None:
-        for array in vars(self).values():
-            array.setflags(write=False)
-
     def __len__(self) -> int:
         return len(self.exit_speed_m_s)
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class PassTrace:
     """One pass, event by event, arrays of shape (events,); the last event is the end of the pass.
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.kernels.loop.normal_numbers import normal_rows
 
 BLOCK_PASSES = 1000
@@ -23,7 +24,8 @@ NOISE_SAMPLES = 256
 """Random numbers of the speed sensor in one pass; after that many samples they come again (25 s at 0.1 s)."""
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class RandomPasses:
     """Standard random numbers of n passes; what they mean physically is decided by the plant.
 
@@ -45,7 +47,6 @@ class RandomPasses:
         for array in vars(self).values():
             if len(array) != len(self.cut_z):
                 raise ValueError("random passes: all arrays must have one entry a pass")
-            array.setflags(write=False)
 
     def __len__(self) -> int:
         return len(self.cut_z)

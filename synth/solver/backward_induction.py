@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.kernels.sweep.bellman import sweep
 from synth.kernels.vector.packs import EIGHT
 from synth.problem.aim import Aim
@@ -23,7 +24,8 @@ ROUNDINGS = 16
 is beyond help, at 26 nodes of the default book where switchings have no price."""
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Solution:
     """Result of a sweep.
 

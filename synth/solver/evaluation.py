@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.kernels.sweep.policy_value import backward
 from synth.problem.aim import Aim
 from synth.solver.chain.chain import Chain
@@ -22,7 +23,8 @@ Gradient = tuple[float, NDArray[np.float64], NDArray[np.float64]]
 """A cost, and its derivatives by the lower and by the upper lines at the path nodes, (K + 1, N) each."""
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class ScenarioCosts:
     """Cost of a policy in every hidden scenario (I,), and its derivatives by the line values (I, K + 1, N)."""
 

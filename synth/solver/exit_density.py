@@ -7,10 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.problem.terminal_cost import share_above
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class ExitDensity:
     """Distribution at the exit: `probability` (E,) at `speed_m_s` (E,), the rest as probabilities or means.
 

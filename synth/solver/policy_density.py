@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.kernels.sweep.commands import command_probabilities
 from synth.kernels.sweep.policy_density import forward
 from synth.solver.chain.chain import Chain
@@ -18,7 +19,8 @@ from synth.solver.exit_density import ExitDensity
 from synth.solver.switching_lines import SwitchingLines
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Commands:
     """P(down), P(up) at every node, stage and true speed (N, K + 1, E), and their slopes by the line value."""
 
@@ -38,7 +40,8 @@ def commands(chain: Chain, lines: SwitchingLines) -> Commands:
     return Commands(*arrays)
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Occupancy:
     """Where a policy takes the cut: `samples` (I, N, H, L, E) expected samples in every hidden state, weighted
     by the scenarios; `band` (I, N, 2) range of energies met at a node."""

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.errors import require
+from plant_models.frozen_arrays import frozen_arrays
 from synth.solver.backward_induction import Solution
 from synth.solver.one_blas_thread import one_blas_thread
 from synth.solver.switching_lines import SwitchingLines
@@ -25,7 +26,8 @@ LOOSE_M_S = 0.3
 """See `whitening`."""
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class PolynomialLines:
     """Lines as Legendre series in x = 2 s/S_exit − 1 (well conditioned; the table holds powers of s).
 
@@ -65,7 +67,8 @@ def basis(nodes_m: NDArray[np.float64], exit_m: float, degree: int) -> NDArray[n
     return np.asarray(np.polynomial.legendre.legvander(2.0 * nodes_m / exit_m - 1.0, degree), dtype=np.float64)
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Fit:
     """Fitted lines and `curvature` (K + 1, 2, N): second derivative of the cost by every line value."""
 
@@ -171,8 +174,7 @@ def polish(
     """
     from scipy.optimize import minimize  # start-up: scipy only where it is needed
 
-    free = np.nonzero(start.has_line)
-    width = start.degree + 1
+    free, width = np.nonzero(start.has_line), start.degree + 1
     matrix = basis(nodes_m, start.exit_m, start.degree)[: curvature.shape[2]]
     first = evaluate(start.at(nodes_m))
     before = first[0]
@@ -205,13 +207,13 @@ def polish(
     constraints: Any = [gap_constraint(start, free, scale)]
     y0 = np.zeros(len(free[0]) * width)
     result = minimize(objective, y0, jac=True, method="SLSQP", constraints=constraints, options=options)
-    cost, lines = best[0]
-    found = opened(lines)
-    if found is not lines:
-        cost = evaluate(found.at(nodes_m))[0]
-        if not 0.0 < cost < before:
-            cost, found = before, start
-    return Polish(found, before, cost, calls, bool(result.success), str(result.message))
+    cost, found = best[0]
+    lines = opened(found)
+    if lines is not found:
+        cost = evaluate(lines.at(nodes_m))[0]
+    if not 0.0 < cost <= before:
+        cost, lines = before, start
+    return Polish(lines, before, cost, calls, bool(result.success), str(result.message))
 
 
 def whitening(curvature: NDArray[np.float64], matrix: NDArray[np.float64], cost: float) -> NDArray[np.float64]:

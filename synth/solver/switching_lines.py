@@ -7,8 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 
-@dataclass(frozen=True)
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class SwitchingLines:
     """Below `lower_m_s[k]` go a stage down, above `upper_m_s[k]` go a stage up, between them hold.
 
@@ -26,8 +29,6 @@ class SwitchingLines:
                 f"switching lines: shapes {self.lower_m_s.shape} and {self.upper_m_s.shape} do not fit "
                 f"{self.nodes_m.shape[0]} path nodes"
             )
-        for array in (self.nodes_m, self.lower_m_s, self.upper_m_s):
-            array.setflags(write=False)
 
     @property
     def stages(self) -> int:

@@ -21,6 +21,9 @@ from tuning_tables.json_file import write_json
 
 BOOK, CONFIG, PICTURE = "book.h5", SWEPT_CONFIG, "rms-by-mass-and-target"
 
+TYPES = "types"
+"""Folder of the user's types beside the configuration of a swept book."""
+
 Say = Callable[[str], None]
 
 __all__ = ["Failure", "Outcome", "bind"]
@@ -95,8 +98,7 @@ def bind_one(
     files: list[Path] = []
     if tables:
         write_book(tables, folder / BOOK)
-        write_atomically(folder / CONFIG, toml_text(condition.tree).encode("utf-8"))
-        files += [folder / BOOK, folder / CONFIG]
+        files += [folder / BOOK, *write_configuration(condition, folder)]
         figures.shadowed, figures.no_code = choice_of(tables)
     else:
         (folder / BOOK).unlink(missing_ok=True)
@@ -117,6 +119,20 @@ def bind_one(
     figures.files |= dict(hashes(folder, files))
     write_atomically(folder / SUMMARY, canonical_json(book_summary(figures, created)) + b"\n")
     return figures
+
+
+def write_configuration(condition: Condition, folder: Path) -> list[Path]:
+    """Write the configuration of a condition, and beside it the user's types that it names; the files."""
+    written = [folder / CONFIG]
+    tree = {**condition.tree, "library": [f"{TYPES}/"]} if condition.library.own else condition.tree
+    for file in condition.library.own:
+        make_directory(folder / TYPES / file.kind.folder)
+        written.append(folder / TYPES / file.kind.folder / f"{file.name}.toml")
+        write_atomically(written[-1], file.text.encode("utf-8"))
+    for left in set((folder / TYPES).glob("*/*.toml")).difference(written):
+        left.unlink()
+    write_atomically(folder / CONFIG, toml_text(tree).encode("utf-8"))
+    return written
 
 
 def choice_of(tables: list[ControllerTable]) -> tuple[int, str]:

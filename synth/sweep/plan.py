@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from plant_models import Plant
+from plant_models.library import BUILT_IN, Library
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.resolution import finer_for_check
 from synth.solver.chain.grid import make_grid, memory_estimate_bytes
@@ -35,7 +36,8 @@ class Refinement:
 class UnitOrder:
     """All that a worker must know to compute one unit; made of plain values, to be sent to another process or machine.
 
-    `key`: SHA-256 of what the result depends on; `tree`: the configuration with one [[cut]], as TOML would give it.
+    `key`: SHA-256 of what the result depends on; `tree`: the configuration with one [[cut]], as TOML would give it;
+    `library` has the user's own types that it names.
     """
 
     key: str
@@ -46,6 +48,7 @@ class UnitOrder:
     created: str
     software: str
     refinement: Refinement | None
+    library: Library = BUILT_IN
 
     @property
     def name(self) -> str:
@@ -95,8 +98,9 @@ def units_of(condition: Condition, file: SweepFile, created: str) -> Iterator[Un
             created=created,
             software=software,
             refinement=refinement,
+            library=condition.library,
         )
-        yield Unit(order, unit_memory_bytes(plant, config), unit_work(plant, config))
+        yield Unit(order, unit_memory_bytes(plant, one), unit_work(plant, one))
 
 
 def unit_key(config: ResolvedConfig, condition: str, refinement: Refinement | None, software: str) -> str:
@@ -112,11 +116,11 @@ def unit_key(config: ResolvedConfig, condition: str, refinement: Refinement | No
 
 
 def unit_memory_bytes(plant: Plant, config: ResolvedConfig) -> int:
-    """What a worker holds at its peak, from the sizes of the largest arrays."""
+    """What a worker holds at its peak, from the sizes of the largest arrays; `config` has one class."""
     resolution = config.resolution
     grid = make_grid(plant, resolution)
     nodes, points, stages = len(grid.path_m), len(grid.speed_m_s), plant.top_stage + 1
-    width = min(len(config.targets_m_s), TARGETS_AT_ONCE)
+    width = min(len(config.problems()), TARGETS_AT_ONCE)
     solved = 8 * width * nodes * points * 4 * stages
     return PROCESS_BYTES + memory_estimate_bytes(plant, config.design_resolutions) + solved
 
@@ -129,4 +133,4 @@ def unit_work(plant: Plant, config: ResolvedConfig) -> float:
         for resolution in (config.resolution, check)
         for grid in (make_grid(plant, resolution),)
     ]
-    return float(sum(points) * plant.top_stage * (2 + len(config.targets_m_s)))
+    return float(sum(points) * plant.top_stage * (2 + len(config.problems())))

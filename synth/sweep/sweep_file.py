@@ -10,10 +10,13 @@ from pathlib import Path
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
+from plant_models.library import BUILT_IN, Library
 from plant_models.library.near_miss import near_miss
-from synth.configuration.config_file import ALLOWED, first_fault, key_path, shown
+from synth.configuration.config_file import ALLOWED, key_path, shown, valid_settings
+from synth.configuration.own_types import with_own_types
+from synth.configuration.plant_settings import DEFAULT_CUTS, CutSettings
 from synth.configuration.resolved_config import ResolvedConfig, resolve, setting_limits
-from synth.configuration.settings import DEFAULT_CUTS, CutSettings, Settings
+from synth.configuration.settings import Settings
 from synth.configuration.toml_file import Tree, read_text, toml_tree
 from synth.faults.input_error import InputError
 from synth.sweep.sweep_settings import CONDITION_SECTIONS, SweepSettings, SweptCuts
@@ -30,11 +33,15 @@ TAKEN = re.compile(r"sweep|(?:con|prn|aux|nul|com[0-9]|lpt[0-9])(?:\..*)?", re.I
 
 @dataclass(frozen=True)
 class Condition:
-    """A condition: `tree` is its whole configuration as TOML would give it, `config` the same resolved."""
+    """A condition: `tree` is its whole configuration as TOML would give it, `config` the same resolved.
+
+    The tree names types, of which `library` has the user's own.
+    """
 
     name: str
     tree: Tree
     config: ResolvedConfig
+    library: Library = BUILT_IN
 
 
 @dataclass(frozen=True)
@@ -52,40 +59,32 @@ def load_sweep(path: Path) -> SweepFile:
 
 def parse_sweep(text: str, file: str) -> SweepFile:
     """The sweep written in `text`; `file` is what messages call it."""
-    tree = toml_tree(text, file)
+    tree, library = with_own_types(toml_tree(text, file), file)
     raw = tree.pop("sweep", {})
     if not isinstance(raw, dict):
         raise InputError(f"{file}: sweep is {shown(raw)}; it must be a table, [sweep]")
     try:
         settings = SweepSettings.model_validate(raw)
     except ValidationError as error:
-        raise InputError(f"{file}: {sweep_fault(error)}") from None
+        raise InputError(*(f"{file}: {sentence}" for sentence in sweep_faults(error))) from None
     base = valid_settings(tree, file)
     names = condition_names(settings, file)
     swept = swept_tree(tree, base, settings)
-    resolve(valid_settings(swept, file), file)  # a fault of the file itself is told before one of a condition
+    resolve(valid_settings(swept, file), file, library)  # a fault of the file itself is told before one of a condition
     conditions = []
     for place, name in enumerate(names):
         changed = {key: value for key, value in settings.condition[place].items() if key != "name"} if name else {}
         where = f'{file}: in sweep.condition[{place}], "{name}"' if name else file
         merged = overlaid(swept, changed)
-        config = resolve(valid_settings(merged, where), where)
+        config = resolve(valid_settings(merged, where), where, library)
         if config.regulator.estimator and settings.interpolation_loss_m_s is not None:
             raise InputError(
                 f"{file}: regulator.estimator is true and sweep.interpolation_loss_m_s is "
                 f"{settings.interpolation_loss_m_s:g}, but lines for the estimated speed have no exact prediction to "
                 "measure that loss by; leave out one of the two"
             )
-        conditions.append(Condition(name, merged, config))
+        conditions.append(Condition(name, merged, config, library))
     return SweepFile(settings, tuple(conditions))
-
-
-def valid_settings(tree: Tree, where: str) -> Settings:
-    """The settings in `tree`; `InputError` for the first fault."""
-    try:
-        return Settings.model_validate(tree)
-    except ValidationError as error:
-        raise InputError(f"{where}: {first_fault(error)}") from None
 
 
 def swept_tree(tree: Tree, base: Settings, settings: SweepSettings) -> Tree:
@@ -143,12 +142,10 @@ def overlaid(tree: Tree, changes: Tree) -> Tree:
     return merged
 
 
-def sweep_fault(error: ValidationError) -> str:
-    """The first fault within [sweep] as a sentence; a mistyped key comes before the others."""
-    faults = sorted(error.errors(include_url=False), key=lambda fault: fault["type"] != "extra_forbidden")
-    others = len(faults) - 1
-    more = f" (and {others} other fault{'s' if others > 1 else ''})" if others else ""
-    return fault_sentence(faults[0]) + more
+def sweep_faults(error: ValidationError) -> list[str]:
+    """Every fault within [sweep] as a sentence; mistyped keys come before the others."""
+    found = error.errors(include_url=False)
+    return [fault_sentence(fault) for fault in sorted(found, key=lambda fault: fault["type"] != "extra_forbidden")]
 
 
 def fault_sentence(fault: ErrorDetails) -> str:

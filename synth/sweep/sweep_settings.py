@@ -7,14 +7,14 @@ from typing import Annotated, Any
 
 from pydantic import Field, PlainValidator
 
-from synth.configuration.settings import Section
+from synth.configuration.section import Section
 
 MOST_VALUES = 1000
 """Values of one range."""
 
 RANGE_KEYS = {"from", "to", "step"}
 
-CONDITION_SECTIONS = ("retarder", "track", "entry", "friction", "sensor")
+CONDITION_SECTIONS = ("position", "retarder", "track", "entry", "friction", "sensor")
 """Sections of the file that a condition may change: what the weather and the wear of a position change."""
 
 SMALLEST_STEP_M_S = 0.125

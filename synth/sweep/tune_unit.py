@@ -36,7 +36,7 @@ def tune_unit(order: UnitOrder) -> UnitResult:
     refused: tuple[Refused, ...] = ()
     gaps: tuple[Gap, ...] = ()
     if order.refinement is None:
-        tables, refused = tuned_tables(config, setup, config.targets_m_s)
+        tables, refused = tuned_tables(config, setup, config.targets_of(order.label))
         if not tables:
             raise PlantError(refused[0].reason)
     else:
@@ -47,7 +47,7 @@ def tune_unit(order: UnitOrder) -> UnitResult:
 
 def setup_of(order: UnitOrder) -> tuple[ResolvedConfig, ClassSetup]:
     """The configuration of a unit, and what its targets share."""
-    config = resolve(Settings.model_validate(order.tree), order.name)
+    config = resolve(Settings.model_validate(order.tree), order.name, order.library)
     ((_, plant),) = config.plants()
     stem = f"{order.condition}-{order.label}" if order.condition else order.label
     origin = origin_of(order.config_sha256, order.created)
@@ -70,7 +70,7 @@ def refined_tables(
         own_rms_m_s=lambda table: table.predicted.rms_m_s,
         between_rms_m_s=lambda slower, faster, target: between_rms_m_s(setup.check, slower, faster, target),
     )
-    return refined(config.targets_m_s, bench, wanted)
+    return refined(config.targets_of(setup.label), bench, wanted)
 
 
 def tuned_tables(

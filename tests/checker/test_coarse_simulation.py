@@ -13,6 +13,7 @@ from plant_models import Pneumatics
 from synth.checker.brake_drive import BrakeDrive
 from synth.checker.claims import Honesty, simulated_faults
 from synth.checker.coarse_simulation import Passes, friction_row, ground_of, simulate
+from synth.checker.entry import Uniform
 from synth.checker.plant import Drive, Plant, config_sha256
 from synth.checker.statistics import FALSE_ALARM, binomial_tail, figures_of
 from synth.checker.summary import Summary, read_summary
@@ -71,7 +72,7 @@ def deterministic(plant: Plant) -> Plant:
         path_std=0.0,
         noise_m_s=0.0,
         resistance_n_kn=(plant.resistance_n_kn[0], 0.0),
-        entry_m_s=(3.0, 3.0),
+        entry=Uniform(3.0, 3.0),
     )
 
 

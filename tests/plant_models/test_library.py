@@ -1,43 +1,60 @@
 """The library: it loads, says where each number is from, and refuses what is not as it should be."""
 
-from importlib.resources import files
-
 import numpy as np
 import pytest
 
 from plant_models import PlantError, WeightForce
 from plant_models.library import (
+    BUILT_IN,
+    CARS,
+    RETARDERS,
+    WEIGHT_CATEGORIES,
+    YARD_CATEGORIES,
+    Kind,
+    TypeFile,
+    WeightCategories,
     car_names,
     load_car,
-    load_retarder,
+    load_position,
+    load_weight_categories,
+    position_names,
     retarder_names,
-    weight_categories,
-    weight_category,
-    weight_category_named,
 )
-from plant_models.library.car_entry import car_from_toml
-from plant_models.library.data_file import library_text
-from plant_models.library.retarder_entry import retarder_from_toml
-from plant_models.library.weight_category import categories_from_toml
+from plant_models.library.car_entry import car_from
+from plant_models.library.retarder_entry import retarder_from
+from plant_models.library.weight_category import categories_from
 
-GOOD = library_text("retarders", "knp-5-bunch")
-CATEGORIES = files("plant_models.library").joinpath("weight_categories.toml").read_text(encoding="utf-8")
+GOOD = BUILT_IN.file(RETARDERS, "knp-5").text
+CATEGORIES = BUILT_IN.file(WEIGHT_CATEGORIES, YARD_CATEGORIES).text
+YARD = load_weight_categories()
 DELAY = next(line for line in GOOD.splitlines() if line.startswith("brake_delay_s"))
 
 
+def bad(kind: Kind, text: str) -> TypeFile:
+    """A file of the library with this text."""
+    return TypeFile(kind, "bad", text, f"{kind.folder}/bad.toml")
+
+
+def categories_in(text: str) -> WeightCategories:
+    """The categories written in `text`."""
+    return categories_from(TypeFile(WEIGHT_CATEGORIES, "x", text, "weight_categories.toml"))
+
+
 def test_holds_the_promised_types() -> None:
-    assert {"knp-5-bunch", "vzpg-5-bunch", "rnz-2m-park", "t-50-bunch", "kv-3-bunch"} <= set(retarder_names())
+    assert {"knp-5-bunch", "vzpg-5-bunch", "rnz-2m-park", "t-50-bunch", "kv-3-bunch"} <= set(position_names())
+    assert {"knp-5", "vzpg-5", "rnz-2m", "t-50", "kv-3"} <= set(retarder_names())
+    assert not set(position_names()) & set(retarder_names())  # init --retarder takes both
     assert {"gondola-4", "box-4", "flat-4", "tank-4", "hopper-4", "tank-8", "gondola-6"} <= set(car_names())
 
 
-@pytest.mark.parametrize("name", retarder_names())
-def test_every_number_of_a_retarder_has_an_origin(name: str) -> None:
-    entry = load_retarder(name)
+@pytest.mark.parametrize("name", position_names())
+def test_every_number_of_a_position_has_an_origin(name: str) -> None:
+    entry = load_position(name)
     assert entry.position.name == name
     assert all(v.source and v.confidence and v.range is not None and v.in_range for v in entry.provenance)
     assert any(v.assumed for v in entry.provenance)
-    assert entry.entry_speed_m_s[1] <= entry.position.max_entry_speed_m_s
-    assert max(entry.target_speeds_m_s) < entry.entry_speed_m_s[1]
+    assert entry.entry.high_m_s <= entry.position.max_entry_speed_m_s
+    assert max(entry.target_speeds_m_s) < entry.entry.high_m_s
 
 
 @pytest.mark.parametrize("name", car_names())
@@ -48,14 +65,14 @@ def test_every_car_loads_with_equal_overhangs_left_over(name: str) -> None:
 
 
 def test_full_stage_force_is_that_of_the_facts() -> None:
-    position = load_retarder("knp-5-bunch").position
+    position = load_position("knp-5-bunch").position
     cut_free_slope = position.force.slope_kn_per_kpa(None, 1)  # type: ignore[arg-type]  # a pressing force asks no cut
     assert cut_free_slope * (600 - 50) == pytest.approx(20.0)
     assert position.zones_m == ((0.0, 12.475), (14.475, 26.95))
 
 
 def test_weight_force_gives_the_energy_head_whatever_the_mass() -> None:
-    position = load_retarder("kv-3-bunch").position
+    position = load_position("kv-3-bunch").position
     assert isinstance(position.force, WeightForce)
     over = position.stage_pressures_kpa[-1] - position.force.touch_pressure_kpa
     head_m = position.force.slope_kn_per_kpa_per_t * over * 12.475 / 9.81
@@ -86,39 +103,40 @@ def test_axle_patterns() -> None:
     ],
 )
 def test_weight_category_goes_by_axle_load(mass_t: float, axles: int, name: str) -> None:
-    assert weight_category(mass_t, axles).name == name
+    assert YARD.of(mass_t, axles).name == name
 
 
 def test_weight_categories_keep_their_numbers_wherever_they_stand() -> None:
-    assert {c.name: c.number for c in weight_categories()} == {"Л": 1, "ЛС": 2, "С": 3, "СТ": 4, "Т": 5}
+    assert {c.name: c.number for c in YARD.members} == {"Л": 1, "ЛС": 2, "С": 3, "СТ": 4, "Т": 5}
     first, *others = CATEGORIES.split("\n[")
     heaviest = f"{first}\n[{others[-1]}".replace(
         "value = 72.0, range = [72.0, 72.0]", "value = 0.0, range = [0.0, 0.0]"
     )
-    assert [(c.name, c.number) for c in categories_from_toml(heaviest)] == [("Т", 5)]
+    assert [(c.name, c.number) for c in categories_in(heaviest).members] == [("Т", 5)]
 
 
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("number = 3\n", "", "S: number is None; it must be a whole number from 1 to 5 for a category"),
+        ("number = 3\n", "", "S: number is None; it must be 3, the number of С in every table"),
         ("number = 3\n", "number = 6\n", "S: number is 6"),
         ("number = 3\n", "number = 256\n", "S: number is 256"),
         ("number = 3\n", "number = true\n", "S: number is True"),
-        ("number = 3\n", "number = 1\n", "S: its name С or number 1 is that of L, too"),
-        ('name = "С"', 'name = "Л"', "S: its name Л or number 3 is that of L, too"),
+        ("number = 3\n", "number = 1\n", "S: number is 1"),
+        ('name = "С"', 'name = "Л"', "S: number is 3; it must be 1, the number of Л"),
+        ('name = "С"', 'name = "X"', "S: number is 3; it must be a whole number from 16 to 255"),
     ],
 )
 def test_a_category_without_a_number_of_its_own_is_refused(old: str, new: str, message: str) -> None:
     assert CATEGORIES.count(old) == 1
     with pytest.raises(PlantError, match=f"weight_categories.toml: {message}"):
-        categories_from_toml(CATEGORIES.replace(old, new))
+        categories_in(CATEGORIES.replace(old, new))
 
 
 def test_weight_categories_are_those_of_the_facts() -> None:
-    assert [c.name for c in weight_categories()] == ["Л", "ЛС", "С", "СТ", "Т"]
-    assert [c.allowed_stage for c in weight_categories()] == [2, 3, 4, 4, 4]
-    shapes = [c.resistance.shape for c in weight_categories()]
+    assert [c.name for c in YARD.members] == ["Л", "ЛС", "С", "СТ", "Т"]
+    assert [c.allowed_stage for c in YARD.members] == [2, 3, 4, 4, 4]
+    shapes = [c.resistance.shape for c in YARD.members]
     np.testing.assert_allclose(shapes, [6.82, 6.81, 7.84, 10.82, 12.35], atol=0.005)
 
 
@@ -126,16 +144,16 @@ def test_weight_categories_are_those_of_the_facts() -> None:
     ("typed", "name"), [("Л", "Л"), ("LS", "ЛС"), ("CT", "СТ"), ("T", "Т"), ("S", "С"), ("C", "С")]
 )
 def test_categories_answer_to_latin_letters(typed: str, name: str) -> None:
-    assert weight_category_named(typed).name == name
+    assert YARD.named(typed).name == name
 
 
 def test_unknown_names_get_a_hint() -> None:
     with pytest.raises(PlantError, match="did you mean knp-5-bunch"):
-        load_retarder("knp5-bunch")
+        load_position("knp5-bunch")
     with pytest.raises(PlantError, match="known: box-4"):
         load_car("zzz")
     with pytest.raises(PlantError, match="weight category 'XX' is not in the library"):
-        weight_category_named("XX")
+        YARD.named("XX")
 
 
 @pytest.mark.parametrize(
@@ -144,10 +162,10 @@ def test_unknown_names_get_a_hint() -> None:
         (
             "brake_delay_s",
             "brake_dela_s",
-            r"unknown key retarder.pneumatics.brake_dela_s; did you mean .*brake_delay_s",
+            r"unknown key pneumatics.brake_dela_s; did you mean .*brake_delay_s",
         ),
-        (DELAY, "", r"key retarder.pneumatics.brake_delay_s is missing"),
-        (DELAY, "brake_delay_s = 0.1", r"retarder.pneumatics.brake_delay_s is 0.1; it must be a table"),
+        (DELAY, "", r"key pneumatics.brake_delay_s is missing"),
+        (DELAY, "brake_delay_s = 0.1", r"pneumatics.brake_delay_s is 0.1; it must be a table"),
         (
             DELAY,
             DELAY.replace("value = 0.1", "value = '0.1'"),
@@ -165,38 +183,42 @@ def test_unknown_names_get_a_hint() -> None:
         (
             DELAY,
             DELAY.replace("source", "sauce"),
-            r"unknown key retarder.pneumatics.brake_delay_s.sauce; did you mean source",
+            r"unknown key pneumatics.brake_delay_s.sauce; did you mean source",
         ),
         (
             DELAY,
             DELAY.replace(', confidence = "L"', ""),
-            r"key retarder.pneumatics.brake_delay_s.confidence is missing",
+            r"key pneumatics.brake_delay_s.confidence is missing",
         ),
         ('law = "pressing"', 'law = "presing"', r"law is 'presing'; did you mean pressing"),
-        ('law = "pressing"', 'law = "weight"', r"unknown key retarder.force.slope_kn_per_kpa; did you mean"),
-        ("[[0.0, 12.475], [14.475, 26.95]]", "[[0.0, 12.475], [10.0, 26.95]]", r"zones must be ordered"),
-        ("[[0.0, 12.475], [14.475, 26.95]]", "[[0.0, 12.475], [10.0]]", r"zones_m.value .*at least one pair"),
-        ("[track]", "[track", r"not valid TOML: .*line"),
+        ('law = "pressing"', 'law = "weight"', r"unknown key force.slope_kn_per_kpa; did you mean"),
+        ("value = 12.475", "value = [12.475]", r"length_m.value is \[12.475\]; it must be a finite number"),
+        (
+            "value = 700.0, range = [600.0, 800.0]",
+            "value = 500.0, range = [400.0, 800.0]",
+            r"stage_pressures_kpa ends at 600; the supply of 500 kPa cannot reach it",
+        ),
+        ("[force]", "[force", r"not valid TOML: .*line"),
     ],
 )
 def test_damaged_retarder_file_is_refused_by_name_and_key(old: str, new: str, message: str) -> None:
     assert GOOD.count(old) >= 1
     with pytest.raises(PlantError, match=r"retarders/bad.toml: .*" + message):
-        retarder_from_toml(GOOD.replace(old, new, 1), "bad")
+        retarder_from(bad(RETARDERS, GOOD.replace(old, new, 1)))
 
 
 def test_damaged_car_and_category_files_are_refused() -> None:
     with pytest.raises(PlantError, match=r"cars/bad.toml: key title is missing"):
-        car_from_toml("", "bad")
+        car_from(bad(CARS, ""))
     swapped = CATEGORIES.replace("value = 28.0, range = [28.0, 28.0]", "value = 70.0, range = [0.0, 90.0]")
     with pytest.raises(PlantError, match=r"weight_categories.toml: S: mass_above_t is 44"):
-        categories_from_toml(swapped)
+        categories_in(swapped)
     with pytest.raises(PlantError, match="holds no category"):
-        categories_from_toml("")
+        categories_in('title = "none"')
 
 
 def test_with_values_marks_what_changed_and_only_that() -> None:
-    entry = load_retarder("knp-5-bunch")
+    entry = load_position("knp-5-bunch")
     changed = entry.with_values({"retarder.pneumatics.brake_delay_s": 0.12, "sensor.noise_m_s": 0.05})
     assert changed.position.pneumatics.brake_delay_s == 0.12
     sources = {v.key: v.source for v in changed.provenance}

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from plant_models.library import retarder_names
+from plant_models.library import position_names
 from synth.configuration.config_file import load_config, parse_config
 from synth.configuration.config_template import default_config_toml
 from synth.faults.input_error import InputError
@@ -38,7 +38,7 @@ def test_an_empty_file_is_the_default_book() -> None:
     assert parse_config("", "x.toml") == load_config(None)
 
 
-@pytest.mark.parametrize("name", retarder_names())
+@pytest.mark.parametrize("name", position_names())
 def test_template_reads_back_to_the_defaults(name: str) -> None:
     text = default_config_toml(name)
     config = parse_config(text, "template")
@@ -224,13 +224,21 @@ def test_numbers_beyond_floats_are_input_faults(key: str, value: str) -> None:
         parse_config(f"{key} = {value}", "my.toml")
 
 
-def test_first_fault_is_told_and_the_others_are_counted() -> None:
-    text = "[[cut]]\ncar = 'gondola-4'\nmas_t = 22\n[grid]\npath_step_m = 'x'\n"
+def test_every_fault_is_told_in_a_line_of_its_own() -> None:
+    text = "[[cut]]\ncar = 'gondola-4'\nmas_t = 22\n[grid]\npath_step_m = 'x'\npath_levels = 99\n"
     with pytest.raises(InputError) as caught:
         parse_config(text, "my.toml")
-    assert (
-        str(caught.value) == "my.toml: cut[0].mas_t = 22 is an unknown key; did you mean mass_t? (and 2 other faults)"
+    assert caught.value.sentences == (
+        "my.toml: cut[0].mas_t = 22 is an unknown key; did you mean mass_t?",
+        "my.toml: grid.path_step_m is 'x'; it must be a number",
+        "my.toml: grid.path_levels is 99; it must be from 1 to 9",
     )
+    wrong = "targets.exit_speeds_m_s = [9]\n" + CUT.replace("22", "99") + CUT + CUT.replace("gondola", "gondla")
+    with pytest.raises(InputError) as caught:
+        parse_config(wrong, "my.toml")
+    assert [sentence.split(" ")[1] for sentence in caught.value.sentences] == [
+        "cut[0].mass_t", "cut[2].car", "targets.exit_speeds_m_s",
+    ]  # fmt: skip
 
 
 def test_bad_syntax_names_the_line() -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from plant_models import PlantError
-from plant_models.library import load_car, load_retarder, retarder_names, sources, sources_cited_in
+from plant_models.library import load_car, load_position, position_names, sources, sources_cited_in
 from plant_models.library.source import CITATION, sources_from_toml
 from synth.configuration.config_template import default_config_toml
 
@@ -26,7 +26,7 @@ NOBODY_CAN_OPEN = re.compile(
 def test_every_citation_is_an_entry_and_every_entry_is_cited() -> None:
     entries = {source.name for source in sources()}
     in_library = {name for path in LIBRARY for name in CITATION.findall(path.read_text(encoding="utf-8"))}
-    in_init = {name for r in retarder_names() for name in CITATION.findall(default_config_toml(r))}
+    in_init = {name for r in position_names() for name in CITATION.findall(default_config_toml(r))}
     linked = {name for text in PAGES.values() for name in re.findall(r"sources\.md#([\w-]+)", text)}
     assert len(in_library) > 5
     assert in_library | in_init | linked == entries
@@ -48,7 +48,7 @@ def test_a_link_in_a_page_that_looks_like_a_citation_leads_to_an_entry() -> None
 
 
 def test_init_tells_every_source_that_it_cites() -> None:
-    for retarder in retarder_names():
+    for retarder in position_names():
         text, listed = default_config_toml(retarder).split("# Sources, by the names in [brackets]:\n")
         cited = sources_cited_in([text])
         assert cited
@@ -70,8 +70,8 @@ def test_a_range_that_leaves_nothing_open_is_called_fixed() -> None:
     car = {value.key: value for value in load_car("gondola-4").provenance}
     assert (car["length_m"].span, car["bogie_axle_offsets_m"].span) == ("fixed", "fixed")
     assert car["tare_t"].span == "22 to 23.5"
-    for name in retarder_names():
-        assert not any(value.fixed for value in load_retarder(name).provenance)
+    for name in position_names():
+        assert not any(value.fixed for value in load_position(name).provenance)
         for comment in re.findall(r"^#.*$", default_config_toml(name), re.MULTILINE):
             same = re.search(r"; (\S+) to (\S+);", comment)
             assert same is None or same[1] != same[2], comment

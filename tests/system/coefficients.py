@@ -6,7 +6,7 @@ import hashlib
 import json
 from collections.abc import Iterator
 
-from plant_models.library import retarder_names
+from plant_models.library import position_names
 from synth.book.class_setup import class_setup, origin_of, validation_passes
 from synth.book.tuned_table import solutions, tuned_table
 from synth.configuration.config_file import parse_config
@@ -23,7 +23,7 @@ CREATED = "2026-11-22T00:00:00Z"
 FEW = "[validation]\npasses = 1000\n"
 GONDOLA = '[[cut]]\ncar = "gondola-4"\nmass_t = 36\n'
 CONFIGURATIONS = {
-    **{name: f'{FEW}[retarder]\nname = "{name}"\n' for name in retarder_names()},
+    **{name: f'{FEW}[retarder]\nname = "{name}"\n' for name in position_names()},
     "estimator": f"{FEW}[regulator]\nestimator = true\n{GONDOLA}",
     "p_overspeed": f"{FEW}[criterion]\np_overspeed = 0.02\n[targets]\nexit_speeds_m_s = [2.0]\n{GONDOLA}",
     "worst_friction": (

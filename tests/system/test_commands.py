@@ -283,4 +283,4 @@ def test_init_prints_what_tune_reads(command: Command) -> None:
     assert parse_config(ran.out, "out").retarder.name == "t-50-bunch"
     assert json.loads(command("init", "--json").out)["configuration"] == command("init").out
     assert "knp-5-bunch" in command("init", "--list").out
-    assert "did you mean t-50-bunch?" in command("init", "--retarder", "t-50").sentence
+    assert "did you mean t-50-bunch?" in command("init", "--retarder", "t-50-bu").sentence

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.simulation.exit_statistics import ExitStatistics
 from synth.simulation.replicates import Interval
 
@@ -73,7 +74,8 @@ def log_half_width(found: ExitStatistics) -> float:
     return 0.5 * math.log(high / low)
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Feasibility:
     """Entry speeds that the position can serve when the friction is known.
 

@@ -51,7 +51,7 @@ class Path(NamedTuple):
 
 
 class Drive(NamedTuple):
-    """Resting modes and chains of the actuator (`markov_chain.actuator.Actuator`, same names); mode 0 is released."""
+    """Resting modes and chains of the actuator (`stage_regulator.Actuator`, same names); mode 0 is released."""
 
     mode_overpressure_kpa: Floats
     command: Ints

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant, path_coefficients
+from plant_models.frozen_arrays import frozen_arrays
 from plant_models.stage_regulator import Actuator, stage_locked_actuator
 from synth.problem.resolution import Resolution
 from synth.solver.chain.entry import entry_distribution
@@ -25,7 +26,8 @@ from synth.solver.chain.scenarios import Scenarios, check_scenarios, persistent_
 from synth.solver.chain.speed_measurement import SpeedMeasurement, quantised_measurement, smooth_measurement
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Chain:
     """One plant on the grid of one resolution; everything but policy and aim.
 

@@ -12,13 +12,15 @@ from numpy.typing import NDArray
 
 from plant_models import Plant
 from plant_models.errors import require
+from plant_models.frozen_arrays import frozen_arrays
 from synth.problem.resolution import Resolution, finer_for_check
 
 MARGIN_CELLS = 10
 """Cells of the energy grid above the fastest pass: interpolation there must not ripple into it."""
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Grid:
     """Nodes of the state space.
 
@@ -29,10 +31,6 @@ class Grid:
     path_m: NDArray[np.float64]
     energy_m2_s2: NDArray[np.float64]
     speed_m_s: NDArray[np.float64]
-
-    def __post_init__(self) -> None:
-        for array in (self.path_m, self.energy_m2_s2, self.speed_m_s):
-            array.setflags(write=False)
 
     @property
     def path_step_m(self) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant, path_coefficients
+from plant_models.frozen_arrays import frozen_arrays
 from plant_models.stage_regulator import Actuator
 from synth.kernels.sweep.landing import land
 from synth.kernels.vector.packs import EIGHT, SIXTEEN
@@ -22,7 +23,8 @@ Halving it changes no predicted rms in the sixth digit."""
 FINE_CELLS_PER_QUANTUM = 4
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Landings:
     """End of every neighbouring stage change from every grid node, for friction `factors` (F,).
 

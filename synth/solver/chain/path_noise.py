@@ -9,19 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Friction
+from plant_models.frozen_arrays import frozen_arrays
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class PathNoise:
     """η, constant in each path quantum: `levels` (L,), `transition` (L, L) rows from, `stationary` (L,)."""
 
     levels: NDArray[np.float64]
     transition: NDArray[np.float64]
     stationary: NDArray[np.float64]
-
-    def __post_init__(self) -> None:
-        for array in (self.levels, self.transition, self.stationary):
-            array.setflags(write=False)
 
 
 def correlated_noise(friction: Friction, quantum_m: float, levels: int) -> PathNoise:
@@ -54,7 +52,8 @@ def independent_noise(std: float, levels: int) -> PathNoise:
     return PathNoise(np.maximum(std * x, -1.0), np.tile(weights, (levels, 1)), weights)
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class TransientNoise:
     """Force-weighted mean of η over a transient that crosses r quantum boundaries, given both end levels.
 
@@ -65,10 +64,6 @@ class TransientNoise:
     probability: NDArray[np.float64]
     mean: NDArray[np.float64]
     std: NDArray[np.float64]
-
-    def __post_init__(self) -> None:
-        for array in (self.probability, self.mean, self.std):
-            array.setflags(write=False)
 
 
 def transient_noise(

@@ -8,9 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant
+from plant_models.frozen_arrays import frozen_arrays
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Scenarios:
     """Hidden constants of a pass: friction factor ξ_cut, added acceleration by w − E w, weights; shape (I,)."""
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from plant_models import Plant, PressingForce
-from plant_models.library import SourcedValue, load_car, weight_categories
+from plant_models.library import SourcedValue
 from synth.configuration.cut_class import CutClass
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.studies.robustness.plant_values import (
@@ -30,6 +30,8 @@ LEFT_OUT: Final = {
     "cut.car.length_m": "drawing of the car",
     "cut.car.pivot_base_m": "drawing of the car; a table is refused for other axles",
     "cut.car.bogie_axle_offsets_m": "drawing of the car; a table is refused for other axles",
+    "cut.car.pivots_m": "drawing of the car; a table is refused for other axles",
+    "cut.car.axle_offsets_m": "drawing of the car; a table is refused for other axles",
     "cut.allowed_stage": "a rule of the yard; a table is refused for another",
 }
 """Assumed values that are not changed, and why."""
@@ -164,17 +166,11 @@ def nominal_value(plant: Plant, key: str) -> float | None:
 
 def limits_of(cut_class: CutClass, plant: Plant, target_m_s: float) -> dict[str, tuple[float, float, str]]:
     """(low, high, reason) of the parameters that cannot go anywhere."""
-    entry, cut = plant.entry, plant.cut
-    car, heavier = load_car(cut_class.car).car, cut.axles / 4.0
-    at_least = [c.mass_above_t * heavier for c in weight_categories() if c.name == cut.category]
-    at_most = [c.mass_above_t * heavier for c in weight_categories() if c.mass_above_t * heavier >= cut.mass_t]
+    entry = plant.entry
     return {
         "entry.low_m_s": (target_m_s, entry.high_m_s, "from the target to the highest entry speed"),
         "entry.high_m_s": (
             entry.low_m_s, plant.position.max_entry_speed_m_s, "from the lowest entry speed to the limit of the type",
         ),
-        "cut.mass_t": (
-            max([cut_class.cars * car.tare_t, *at_least]), min([cut_class.cars * car.gross_t, *at_most]),
-            "the category, tare and gross mass",
-        ),
+        "cut.mass_t": (*cut_class.mass_limits_t, "the category, tare and gross mass"),
     }  # fmt: skip

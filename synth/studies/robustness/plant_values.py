@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, Final
 
-from plant_models import EntrySpeed, Plant, Pneumatics, PressingForce, RetarderPosition, TrackProfile, WeightForce
+from plant_models import EntryLaw, Plant, Pneumatics, PressingForce, RetarderPosition, TrackProfile, WeightForce
 
 STAGE_PRESSURES: Final = "retarder.stage_pressures_kpa"
 GRADE: Final = "track.grade_permille"
@@ -110,8 +110,10 @@ def changed_profile(profile: TrackProfile, factor: float) -> TrackProfile:
     return replace(profile, grades_permille=tuple(factor * grade for grade in profile.grades_permille))
 
 
-def changed_entry(entry: EntrySpeed, values: Mapping[str, float]) -> EntrySpeed:
-    """Entry speeds; low and high may be moved at once, and must not cross."""
+def changed_entry(entry: EntryLaw, values: Mapping[str, float]) -> EntryLaw:
+    """Entry speeds; low and high may be moved at once, and must not cross. Other laws than uniform are stretched."""
     fields = fields_in("entry", values)
+    if not fields:
+        return entry
     low = fields.get("low_m_s", entry.low_m_s)
-    return EntrySpeed(low, max(low, fields.get("high_m_s", entry.high_m_s)))
+    return entry.stretched(low, max(low, fields.get("high_m_s", entry.high_m_s)))

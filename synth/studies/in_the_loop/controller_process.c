@@ -1,0 +1,174 @@
+/* An exported table book as a process that answers through its standard input and output; words in the machine's order.
+ *
+ *   decide          for {uint32 table, int32 stage, float s_m, float v_m_s}: int32 answer; all of a stream
+ *   observe         for {uint32 table, uint32 start, float s_m, float v_m_s, float overpressure_kpa, 8 words}: the
+ *                   estimated speed and the 8 words of the estimate; all of a stream. start 0: the estimate goes on,
+ *                   1: it begins, 2: it is the 8 words, whatever they are
+ *   serve N         for {int32 what, float s_m, float v_m_s, float overpressure_kpa}, at once: what OBSERVE, or BEGIN
+ *                   and observe: float estimated speed of table N; else its int32 decision, `what` being the stage
+ *   select          for {uint32 layout, uint32 category, uint32 axles, float speed}: int32 status, the table (zeros if none)
+ *   intact          for a table: int32, whether its checksum is right
+ *   dump            all tables
+ *   self-test       nothing; the exit code is the fault
+ */
+#include "retarder_self_test.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { OBSERVE = -1, BEGIN = -2 }; /* no stages of a closed loop */
+
+typedef struct reading {
+    int32_t stage;
+    float s_m;
+    float v_m_s;
+} reading;
+
+typedef struct request {
+    int32_t what;
+    float s_m;
+    float v_m_s;
+    float overpressure_kpa;
+} request;
+
+typedef struct sample {
+    uint32_t table;
+    uint32_t start;
+    float s_m;
+    float v_m_s;
+    float overpressure_kpa;
+    retarder_estimate given;
+} sample;
+
+typedef char estimate_has_eight_words[(sizeof(retarder_estimate) == 32u) ? 1 : -1];
+
+static void answer(int value)
+{
+    const int32_t word = value;
+    if (fwrite(&word, sizeof word, 1, stdout) != 1) {
+        exit(9);
+    }
+}
+
+static int decide(void)
+{
+    uint32_t number;
+    reading now;
+    while (fread(&number, sizeof number, 1, stdin) == 1 && fread(&now, sizeof now, 1, stdin) == 1) {
+        answer(retarder_decide(number < retarder_table_count ? &retarder_tables[number] : 0, now.stage, now.s_m,
+                               now.v_m_s));
+    }
+    return 0;
+}
+
+static void answer_speed(float value)
+{
+    if (fwrite(&value, sizeof value, 1, stdout) != 1) {
+        exit(9);
+    }
+}
+
+static int observe(void)
+{
+    sample now;
+    retarder_estimate estimate;
+    retarder_begin(&estimate);
+    while (fread(&now, sizeof now, 1, stdin) == 1) {
+        if (now.start == 1u) {
+            retarder_begin(&estimate);
+        } else if (now.start == 2u) {
+            estimate = now.given;
+        }
+        answer_speed(retarder_observe(now.table < retarder_table_count ? &retarder_tables[now.table] : 0, &estimate,
+                                      now.s_m, now.v_m_s, now.overpressure_kpa));
+        if (fwrite(&estimate, sizeof estimate, 1, stdout) != 1) {
+            return 9;
+        }
+    }
+    return 0;
+}
+
+static int serve(unsigned number)
+{
+    request now;
+    retarder_estimate estimate;
+    retarder_begin(&estimate);
+    if (number >= retarder_table_count) {
+        return 8;
+    }
+    setvbuf(stdin, 0, _IONBF, 0);
+    setvbuf(stdout, 0, _IONBF, 0);
+    while (fread(&now, sizeof now, 1, stdin) == 1) {
+        const retarder_table *table = &retarder_tables[number];
+        if (now.what == BEGIN) {
+            retarder_begin(&estimate);
+        }
+        if (now.what == BEGIN || now.what == OBSERVE) {
+            answer_speed(retarder_observe(table, &estimate, now.s_m, now.v_m_s, now.overpressure_kpa));
+        } else {
+            answer(retarder_decide(table, now.what, now.s_m, now.v_m_s));
+        }
+    }
+    return 0;
+}
+
+static int choose(void)
+{
+    struct {
+        uint32_t layout;
+        uint32_t category;
+        uint32_t axles;
+        float speed_m_s;
+    } command;
+    while (fread(&command, sizeof command, 1, stdin) == 1) {
+        retarder_table chosen;
+        memset(&chosen, 0, sizeof chosen);
+        answer(retarder_select(command.layout, command.category, command.axles, command.speed_m_s, &chosen));
+        if (fwrite(&chosen, sizeof chosen, 1, stdout) != 1) {
+            return 9;
+        }
+    }
+    return 0;
+}
+
+static int intact(void)
+{
+    retarder_table table;
+    while (fread(&table, sizeof table, 1, stdin) == 1) {
+        answer(retarder_table_intact(&table));
+    }
+    return 0;
+}
+
+int main(int count, char **arguments)
+{
+    const char *mode = count > 1 ? arguments[1] : "";
+    if (strcmp(mode, "decide") == 0) {
+        return decide();
+    }
+    if (strcmp(mode, "observe") == 0) {
+        return observe();
+    }
+    if (strcmp(mode, "serve") == 0 && count > 2) {
+        return serve((unsigned)strtoul(arguments[2], 0, 10));
+    }
+    if (strcmp(mode, "select") == 0) {
+        return choose();
+    }
+    if (strcmp(mode, "intact") == 0) {
+        return intact();
+    }
+    if (strcmp(mode, "dump") == 0) {
+        return fwrite(retarder_tables, sizeof retarder_tables[0], retarder_table_count, stdout) == retarder_table_count
+            ? 0 : 9;
+    }
+    if (strcmp(mode, "self-test") == 0) {
+        uint32_t where = 0u;
+        const int fault = retarder_self_test(&where);
+        printf("fault %d at %lu\n", fault, (unsigned long)where);
+        return fault;
+    }
+    fprintf(stderr, "unknown mode; see the head of this file\n");
+    return 7;
+}

@@ -1,0 +1,34 @@
+"""The weight categories of a book: every name with one number, every number with one name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+
+from tuning_tables.errors import InvalidTable
+from tuning_tables.table import ControllerTable
+
+
+def category_numbers(tables: Sequence[ControllerTable]) -> Mapping[str, int | None]:
+    """The number of every category, None for one without, in order of first appearance.
+
+    Raises `InvalidTable` where a category has two numbers, or a number two categories.
+    """
+    of_name: dict[str, tuple[str, int | None]] = {}
+    of_number: dict[int, tuple[str, str]] = {}
+    for table in tables:
+        name, number = table.cut.category, table.cut.number
+        first, known = of_name.setdefault(name, (table.id, number))
+        if known != number:
+            raise InvalidTable(
+                f"the category {name} has the number {known} in {first}, but {number} in {table.id}; in one book it "
+                "must have one: give both tables the same cut.category_number."
+            )
+        if number is not None:
+            first, other = of_number.setdefault(number, (table.id, name))
+            if other != name:
+                raise InvalidTable(
+                    f"the number {number} stands for the category {other} in {first}, but for {name} in {table.id}; "
+                    "in one book it must stand for one: give one of them another cut.category_number."
+                )
+    return MappingProxyType({name: number for name, (_, number) in of_name.items()})
