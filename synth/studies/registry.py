@@ -15,6 +15,13 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.accuracy_grid.study",
     ),
     Study(
+        "benchmark",
+        "How fast do the kernels of a tune solve its problem, beside numpy and the limit of the machine?",
+        30.0,
+        "speed.md",
+        "synth.studies.benchmark.study",
+    ),
+    Study(
         "book",
         "How accurate are the tables of the default book?",
         10.0,
