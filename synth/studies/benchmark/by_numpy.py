@@ -27,7 +27,7 @@ SIX_SIGMA = 6.0
 class Swept:
     """Values at entry (I, H, L, E, T), lines (N, K + 1, T).
 
-    `landings` of changes that were possible and no stalls, and `groups` of four neighbouring values that they were interpolated of.
+    `landings` of changes that were possible and no stalls; `groups` of four values that they were interpolated from.
     """
 
     values: Floats

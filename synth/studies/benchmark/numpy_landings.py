@@ -50,7 +50,7 @@ class Outcome:
     @property
     def weighty(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
         """Where the four values of either node have a weight at all."""
-        return self.back.weights.any(axis=-1), self.forth.weights.any(axis=-1)
+        return (self.back.weights != 0.0).any(axis=-1), (self.forth.weights != 0.0).any(axis=-1)
 
     @property
     def landings(self) -> int:
