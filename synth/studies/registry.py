@@ -99,6 +99,13 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.rare_events.study",
     ),
     Study(
+        "reference-problem",
+        "How fast is a neutral, published problem solved, beside scipy, QuantEcon, plain numba and numpy?",
+        120.0,
+        "benchmark.md",
+        "synth.studies.reference_problem.study",
+    ),
+    Study(
         "robustness",
         "What does a table do on another plant than it was tuned for: wrong parameters, worn parts, faulty sensors?",
         600.0,
