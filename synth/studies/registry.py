@@ -29,6 +29,20 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.book",
     ),
     Study(
+        "controller-agreement",
+        "Does the exported C decide, choose and estimate as Python does, however it is compiled?",
+        600.0,
+        "controllers.md#how-it-was-shown",
+        "synth.studies.in_the_loop.agreement_study",
+    ),
+    Study(
+        "controller-cost",
+        "What does the exported C cost: instructions of the dearest call, bytes of code and data?",
+        300.0,
+        "controllers.md#what-it-costs",
+        "synth.studies.in_the_loop.cost_study",
+    ),
+    Study(
         "convergence",
         "How do value, lines and prediction change as the steps of the grid are halved?",
         120.0,
@@ -111,6 +125,13 @@ STUDIES: tuple[Study, ...] = (
         600.0,
         "robustness.md",
         "synth.studies.robustness.study",
+    ),
+    Study(
+        "software-in-the-loop",
+        "Does the compiled controller, as a process of its own, control a pass to the same bits as the simulator's?",
+        120.0,
+        "controllers.md#how-it-was-shown",
+        "synth.studies.in_the_loop.loop_study",
     ),
     Study(
         "unlocked",
