@@ -92,6 +92,13 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.estimator.wrong_study",
     ),
     Study(
+        "integration-error",
+        "What do the time steps of the closed loop cost in accuracy?",
+        15.0,
+        "method.md#8-closed-loop",
+        "synth.studies.integration_error",
+    ),
+    Study(
         "interpolation",
         "What is lost by lines between two tables of a book, against a table tuned for the very speed commanded?",
         6.0,
@@ -132,6 +139,20 @@ STUDIES: tuple[Study, ...] = (
         120.0,
         "controllers.md#how-it-was-shown",
         "synth.studies.in_the_loop.loop_study",
+    ),
+    Study(
+        "solver-scaling",
+        "What does a solve cost against each size of the problem, on more threads and in float32; what a prediction?",
+        60.0,
+        "speed.md#solving-and-predicting",
+        "synth.studies.solver_scaling.study",
+    ),
+    Study(
+        "times",
+        "How long does a user wait: start-up, a tune with and without compiled kernels, the closed loop?",
+        360.0,
+        "speed.md",
+        "synth.studies.times.study",
     ),
     Study(
         "unlocked",
