@@ -148,6 +148,13 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.solver_scaling.study",
     ),
     Study(
+        "sweep-speed",
+        "How fast does a sweep make tables, what memory does it take, and what would 10 000 tables need?",
+        150.0,
+        "sweep.md#measured",
+        "synth.studies.sweep_speed.study",
+    ),
+    Study(
         "times",
         "How long does a user wait: start-up, a tune with and without compiled kernels, the closed loop?",
         360.0,
