@@ -16,7 +16,8 @@ def frozen_arrays(cls: type[_T]) -> type[_T]:
 
     It stands above `@dataclass(frozen=True, eq=False)`. `eq=False` because `==` of two arrays is no truth value: such
     values are equal if they are the same object, and can be keys. The array that the maker hands over becomes
-    read-only itself, no copy is made: hand over a copy of what you want to go on writing.
+    read-only itself, no copy is made: hand over a copy of what you want to go on writing. `repr` tells type and shape
+    of an array, not its numbers.
     """
     made = cls.__init__
 
@@ -29,9 +30,19 @@ def frozen_arrays(cls: type[_T]) -> type[_T]:
         vars(self).update(state)
         freeze(self)
 
+    def shown(self: _T) -> str:
+        parts = [f"{field.name}={brief(getattr(self, field.name))}" for field in fields(self) if field.repr]  # type: ignore[arg-type]
+        return f"{type(self).__name__}({', '.join(parts)})"
+
     cls.__init__ = init  # type: ignore[method-assign, assignment]
+    cls.__repr__ = shown  # type: ignore[method-assign, assignment]
     cls.__setstate__ = restore  # type: ignore[attr-defined]
     return cls
+
+
+def brief(value: Any) -> str:
+    """`float64 (210,)` for an array, the `repr` of anything else."""
+    return f"{value.dtype} {value.shape}" if isinstance(value, np.ndarray) else repr(value)
 
 
 def freeze(value: Any) -> None:

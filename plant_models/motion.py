@@ -33,6 +33,10 @@ class PathCoefficients:
     brake_m_s2_per_kpa: NDArray[np.float64]
     resistance_m_s2_per_n_kn: float
 
+    def free_m_s2(self, resistance_n_per_kn: float) -> NDArray[np.float64]:
+        """Acceleration of a cut of this specific resistance with the brake released, (n,)."""
+        return self.gravity_m_s2 - self.resistance_m_s2_per_n_kn * resistance_n_per_kn
+
 
 def braked_axles(position: RetarderPosition, cut: Cut, s_m: NDArray[np.float64]) -> NDArray[np.int64]:
     """N(s): wheel pairs inside any retarder of the position when the first axle stands at `s_m`."""

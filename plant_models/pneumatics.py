@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from plant_models.errors import PlantError, require, require_between
 from plant_models.frozen_arrays import frozen_arrays
+from plant_models.valve_drive import ValveDrive, wait_after_command
 
 MAX_SWITCHINGS = 40
 """After so many valve openings within one command the regulator is said to hunt."""
@@ -71,26 +72,31 @@ class Pneumatics:
                 "make it less than half their distance",
             )
 
+    def valves(self, touch_kpa: float) -> ValveDrive:
+        """The constants as plain numbers, with the pressure at which the pads touch."""
+        return ValveDrive(
+            self.supply_pressure_kpa, self.exhaust_pressure_kpa,
+            self.brake_delay_s, self.touch_delay_s, self.release_delay_s,
+            self.fill_time_constant_s, self.exhaust_time_constant_s, self.dead_band_kpa, touch_kpa,
+        )  # fmt: skip
+
     def respond(self, start_kpa: float, target_kpa: float, touch_kpa: float) -> PressureHistory:
         """Pressure after the command `target_kpa`, given at t = 0 while the pressure rests at `start_kpa`.
 
         Raises `PlantError` if the regulator hunts (closing delay too long for the dead band).
         """
         pieces: list[tuple[float, float, float, float]] = []
-        time, pressure = 0.0, start_kpa
+        time, pressure, drive = 0.0, start_kpa, self.valves(touch_kpa)
         for _ in range(MAX_SWITCHINGS):
             error = target_kpa - pressure
             if abs(error) <= self.dead_band_kpa * (1 + 1e-12):
                 pieces.append((time, pressure, pressure, 1.0))
                 return PressureHistory(*(np.array(column) for column in zip(*pieces, strict=True)))
+            delay = wait_after_command(pressure, 0.0, pressure, target_kpa, drive)
             if error > 0:
-                delay = self.brake_delay_s + (self.touch_delay_s if pressure <= touch_kpa else 0.0)
-                asymptote, constant = self.supply_pressure_kpa, self.fill_time_constant_s
-                until = target_kpa - self.dead_band_kpa
+                asymptote, constant, until = drive.supply_kpa, drive.fill_s, target_kpa - drive.band_kpa
             else:
-                delay = self.release_delay_s
-                asymptote, constant = self.exhaust_pressure_kpa, self.exhaust_time_constant_s
-                until = target_kpa + self.dead_band_kpa
+                asymptote, constant, until = drive.exhaust_kpa, drive.exhaust_s, target_kpa + drive.band_kpa
             pieces.append((time, pressure, pressure, 1.0))
             pieces.append((time + delay, pressure, asymptote, constant))
             open_s = constant * np.log((asymptote - pressure) / (asymptote - until)) + self.closing_delay_s

@@ -35,6 +35,16 @@ class DopplerSensor:
         require_between("sensor: sample_period_s", self.sample_period_s, 0.005, 2.0)
         require_between("sensor: computing_delay_s", self.computing_delay_s, 0.0, 2.0)
 
+    @property
+    def exact(self) -> bool:
+        """Neither noisy nor quantised."""
+        return self.noise_m_s == 0.0 and self.resolution_m_s == 0.0
+
+    @property
+    def reading_std_m_s(self) -> float:
+        """Std of one reading: `measured_speed_std` of noise and quantisation together."""
+        return measured_speed_std(self.noise_m_s, self.resolution_m_s)
+
 
 def measured_speed_std(noise_m_s: float, resolution_m_s: float) -> float:
     """Std of the measured speed, m/s: noise and the equivalent of quantisation, resolution/√12; 1e-4 at least."""

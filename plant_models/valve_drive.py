@@ -7,16 +7,22 @@ changes only where the flow ends: an open valve stays open, a valve that is abou
 command that asks for the other direction shuts the open valve at once and pays the whole delay of the other one;
 between the two the pressure stands still.
 
+When a valve opens is said here alone: `Pneumatics.respond` asks `wait_after_command`. How the pressure flows then is
+written twice, as one step of numbers here and as the pieces of a whole history there, because a kernel cannot compile
+the history and its numpy would round the step otherwise; the tests hold the two to 1e-9 of each other.
+
 The functions are plain arithmetic on numbers, so that a kernel can compile them as they are.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from plant_models.errors import require
-from plant_models.pneumatics import Pneumatics
+
+if TYPE_CHECKING:
+    from plant_models.pneumatics import Pneumatics
 
 
 class ValveDrive(NamedTuple):
@@ -40,11 +46,7 @@ def valve_drive(pneumatics: Pneumatics, touch_kpa: float) -> ValveDrive:
         f"pneumatics: closing_delay_s is {pneumatics.closing_delay_s:g}; commands during a transient are modelled for "
         "valves that close at once: set it to 0",
     )
-    p = pneumatics
-    return ValveDrive(
-        p.supply_pressure_kpa, p.exhaust_pressure_kpa, p.brake_delay_s, p.touch_delay_s, p.release_delay_s,
-        p.fill_time_constant_s, p.exhaust_time_constant_s, p.dead_band_kpa, touch_kpa,
-    )  # fmt: skip
+    return pneumatics.valves(touch_kpa)
 
 
 def wait_after_command(pressure_kpa: float, wait_s: float, old_kpa: float, new_kpa: float, drive: ValveDrive) -> float:

@@ -1,0 +1,73 @@
+"""retarder-synth from Python: from a problem to a validated table. See docs/python.md.
+
+Importing this package is instant: what a name stands for is imported when it is first used.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from plant_models import EntrySpeed, Plant
+    from synth.api import (
+        FittedLines,
+        Simulated,
+        fit,
+        load_config,
+        load_problem,
+        plot_passes,
+        plot_table,
+        predict,
+        simulate,
+        solve,
+        tabulate,
+        trace,
+    )
+    from synth.problem.aim import Aim
+    from synth.problem.criterion import Criterion
+    from synth.problem.problem import Problem
+    from synth.problem.resolution import Resolution
+
+__all__ = [
+    "Aim",
+    "Criterion",
+    "EntrySpeed",
+    "FittedLines",
+    "Plant",
+    "Problem",
+    "Resolution",
+    "Simulated",
+    "fit",
+    "load_config",
+    "load_problem",
+    "plot_passes",
+    "plot_table",
+    "predict",
+    "simulate",
+    "solve",
+    "tabulate",
+    "trace",
+]
+
+_HOMES = {
+    "Aim": "synth.problem.aim",
+    "Criterion": "synth.problem.criterion",
+    "EntrySpeed": "plant_models",
+    "Plant": "plant_models",
+    "Problem": "synth.problem.problem",
+    "Resolution": "synth.problem.resolution",
+}
+"""Where a public name is defined, if not in `synth.api`."""
+
+
+def __getattr__(name: str) -> Any:
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(_HOMES.get(name, "synth.api")), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

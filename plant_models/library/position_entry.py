@@ -146,6 +146,7 @@ def position_with_types(
 ) -> PositionEntry:
     """The position `name`; `retarder` and `sensor`, where given, stand in place of its own types.
 
+    With another retarder than its own it is called by both names, for it is another position.
     `PlantError` with a hint where the library has no such type, `TypeFileError` for a fault in one of the files.
     """
     here = position_file(library.file(POSITIONS, name))
@@ -155,7 +156,8 @@ def position_with_types(
     unit, radar = retarder_from(of_type), sensor_from(of_sensor)
     with telling(here.file.place, KEYS_OF_PLANT):
         table = SourcedTable(tuple(composed(here.site, unit, radar.provenance)))
-        entry = entry_of(name, here.title, (*unit.notes, *here.notes), unit.law, table)
+        called = name if unit.name == here.retarder else f"{name}-with-{unit.name}"
+        entry = entry_of(called, here.title, (*unit.notes, *here.notes), unit.law, table)
         require(
             entry.entry.high_m_s <= entry.position.max_entry_speed_m_s,
             f"entry: the highest speed is {entry.entry.high_m_s:g} m/s; a retarder {unit.name} takes at most "

@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Final
 
 from plant_models.errors import PlantError, require
-from plant_models.library.data_file import Quantity, number, parse_toml, sourced_table, take_string, telling
+from plant_models.library.data_file import (
+    Quantity,
+    number,
+    parse_toml,
+    shown,
+    shown_key,
+    sourced_table,
+    take_string,
+    telling,
+)
 from plant_models.library.near_miss import near_miss
 from plant_models.library.sourced_value import SourcedValue
 from plant_models.library.type_file import TypeFile
@@ -30,6 +40,9 @@ OWN_NUMBERS: Final = range(16, 256)
 
 HIGHEST_STAGE: Final = 31
 """More stages than any retarder has; a table holds no more."""
+
+LATIN: Final = re.compile(r"[A-Za-z0-9_-]{1,20}")
+"""Of the second name of a category."""
 
 LOOK_ALIKES = str.maketrans("CT", "СТ")
 """Latin letters that a keyboard puts in place of the Cyrillic ones."""
@@ -85,7 +98,12 @@ def categories_from(file: TypeFile) -> WeightCategories:
         tree = parse_toml(file.text)
         title = take_string(tree, "title")
         for latin, below in tree.items():
-            require(isinstance(below, dict), f"{latin} is {below!r}; it must be a table")
+            require(
+                LATIN.fullmatch(latin) is not None,
+                f"{shown_key(latin)} is no name of a category's table; it must have at most 20 Latin letters, digits, "
+                "hyphens and underscores",
+            )
+            require(isinstance(below, dict), f"{latin} is {shown(below)}; it must be a table")
             with telling(f"{file.place}: {latin}", {"rolling resistance: ": "rolling_resistance."}):
                 members.append(category_of(latin, below, tuple(members), file.origin))
         require(len(members) > 0, "it holds no category")

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import accumulate, pairwise
 from random import Random
 
-MOST_TRIES = 100_000
+MOST_TRIES = 10_000
 """Draws of a normal number until one falls between the limits."""
 
 

@@ -273,9 +273,7 @@ def init(
     return init_command(types, show_list, as_json)
 
 
-@app.command(
-    context_settings={"allow_extra_args": True, "ignore_unknown_options": True, "help_option_names": []},
-)
+@app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True, "help_option_names": []})
 def study(
     context: typer.Context,
     name: Annotated[str | None, typer.Argument(metavar="NAME", help="The study; --list tells all.")] = None,
@@ -283,25 +281,16 @@ def study(
         Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where its results go.")
     ] = Path("out/studies"),
     show_list: Annotated[bool, typer.Option("--list", help="Only tell all studies and how long they take.")] = False,
-    small: Annotated[
-        bool, typer.Option("--small", help="Its smallest form: seconds, and no figure to rely on.")
-    ] = False,
-    document: Annotated[
-        bool, typer.Option("--document", help="In a checkout: fill the tables of docs/ from the kept results.")
-    ] = False,
-    check: Annotated[bool, typer.Option("--check", help="With --document: write nothing, tell what is stale.")] = False,
+    small: Annotated[bool, typer.Option("--small", help="Its smallest form: seconds, no figure to rely on.")] = False,
+    document: Annotated[bool, typer.Option("--document", help="Fill the tables of a checkout's documents.")] = False,
+    check: Annotated[bool, typer.Option("--check", help="Tell which documents are stale.")] = False,
     as_json: Json = False,
-    show_help: Annotated[bool, typer.Option("-h", "--help", help="Show this, or with NAME the options of it.")] = False,
 ) -> int:
-    """Run a study that the figures of the documentation come from.
+    """Run a study that figures of the documentation come from; NAME --help tells its options.
 
-    Writes NAME.json, NAME.md and pictures. Options behind NAME are those of the study. Exit code 1 if a claim that the
-    study checks does not hold.
+    Writes NAME.json, NAME.md and pictures. Exit code 1 if a claim that the study checks does not hold.
     """
     from synth.cli.study import Wanted, study_command
 
-    if show_help and name is None:
-        typer.echo(context.get_help())
-        return 0
-    wanted = Wanted(output, show_list, small, document, check, as_json, show_help)
-    return study_command(name, context.args, wanted)
+    wanted = Wanted(output, show_list, small, document, check, as_json)
+    return study_command(name, context.args, wanted, context.get_help)

@@ -7,9 +7,6 @@ from pathlib import Path
 
 from synth.cli import say
 
-FACTORS = (0.8, 1.0, 1.2)
-PASSES = 5000
-
 
 def plot_command(source: Path, output: Path, config_path: Path | None, as_json: bool) -> int:
     """Draw the tables in `source` into `output`; passes only for tables that a class of the configuration fits."""
@@ -25,17 +22,12 @@ def plot_command(source: Path, output: Path, config_path: Path | None, as_json: 
     make_directory(output)
     from synth.book.validate_table import plant_for
     from synth.present.plots.figure_file import save_figure
-    from synth.present.plots.table_picture import Passes, table_lines, table_passes, table_surfaces
+    from synth.present.plots.table_picture import Passes, drawn_passes, table_lines, table_passes, table_surfaces
     from tuning_tables import ControllerTable
 
     def passes_of(table: ControllerTable) -> Passes:
-        from synth.simulation.closed_loop import TableController, simulate, trace
-        from synth.simulation.stratified_passes import stratified_passes
-
         plant = plant_for(table, config, str(config_path or BUILT_IN))[1]
-        passes, law = stratified_passes(config.validation.seed, 0, PASSES), TableController(table)
-        traces = tuple(trace(plant, law, passes, i, cut_factor=factor) for i, factor in enumerate(FACTORS))
-        return Passes(simulate(plant, law, passes), traces, FACTORS)
+        return drawn_passes(table, plant, config.validation.seed)
 
     written: list[str] = []
     with interruptible(output):

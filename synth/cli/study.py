@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,6 +17,9 @@ if TYPE_CHECKING:
     from synth.studies.study import Study
 
 
+HELP = {"-h", "--help"}
+
+
 @dataclass(frozen=True)
 class Wanted:
     """The switches of the command: where results go, and what else is asked for."""
@@ -26,26 +30,28 @@ class Wanted:
     document: bool
     check: bool
     as_json: bool
-    show_help: bool
 
 
-def study_command(name: str | None, words: list[str], wanted: Wanted) -> int:
-    """Run the study `name` with the options in `words`; the exit code."""
+def study_command(name: str | None, words: list[str], wanted: Wanted, general_help: Callable[[], str]) -> int:
+    """Run the study `name` with the options in `words`, or tell what is asked; the exit code."""
     from synth.studies.registry import STUDIES, study_named
 
-    if wanted.check and (name or not wanted.document):
-        raise InputError("study: --check goes with --document alone; it compares documents with kept results")
     if wanted.show_list:
         print(listing(STUDIES, wanted.as_json))
         return OK
-    if name is None:
-        if wanted.document:
+    if name is None or name in HELP:
+        if name in HELP or HELP.intersection(words):
+            print(general_help())
+            return OK
+        if wanted.check or wanted.document:
             return document_command(wanted.check)
         raise InputError("study: which one? 'retarder-synth study --list' tells all")
     study = study_named(name)
-    if wanted.show_help:
+    if HELP.intersection(words):
         print(help_of(study))
         return OK
+    if wanted.check:
+        raise InputError("study: --check compares documents with kept results; leave the name of a study out")
     return run_command(study, words, wanted)
 
 
@@ -60,10 +66,8 @@ def listing(studies: tuple[Study, ...], as_json: bool) -> str:
 
 def help_of(study: Study) -> str:
     """The question of a study and its options."""
-    from synth.kernels.cache import use_kernel_cache
     from synth.studies.options import parser_of
 
-    use_kernel_cache()
     parser = parser_of(study.method.options, study.name)
     parser.description = f"{study.question} Takes {study.duration} on two cores."
     return parser.format_help()
@@ -71,7 +75,7 @@ def help_of(study: Study) -> str:
 
 def run_command(study: Study, words: list[str], wanted: Wanted) -> int:
     """Run one study, write what it leaves, and tell it."""
-    from synth.kernels.cache import guarded, use_kernel_cache
+    from synth.kernels.cache import guarded
     from synth.studies.documents import documents, kept, written
     from synth.studies.options import options_from
 
@@ -79,7 +83,6 @@ def run_command(study: Study, words: list[str], wanted: Wanted) -> int:
         list(documents(Path()))  # a checkout, or a fault before anything is computed
         if words or wanted.small:
             raise InputError("study: --document keeps the result of the study as it is; leave its other options out")
-    use_kernel_cache()
     method = study.method
     options = method.smallest if wanted.small else options_from(words, method.options, study.name)
     if wanted.small and words:
@@ -110,10 +113,8 @@ def write(result: Result, directory: Path) -> list[Path]:
 
 def document_command(check: bool) -> int:
     """Fill the tables of the documentation in this directory, or with `check` tell which are stale."""
-    from synth.kernels.cache import use_kernel_cache
     from synth.studies.documents import stale, written
 
-    use_kernel_cache()
     if check:
         sentences = stale(Path())
         print("\n".join(sentences) if sentences else "every table is that of its study")

@@ -6,7 +6,16 @@ import json
 from collections.abc import Iterable, Iterator
 from itertools import groupby
 
-from plant_models.library import SourcedValue, Value, car_names, position_names, sources_cited_in
+from plant_models.library import (
+    BUILT_IN,
+    WEIGHT_CATEGORIES,
+    YARD_CATEGORIES,
+    SourcedValue,
+    Value,
+    car_names,
+    position_names,
+    sources_cited_in,
+)
 from synth.configuration.cut_class import CutClass
 from synth.configuration.plant_settings import DEFAULT_POSITION, PositionSettings
 from synth.configuration.resolved_config import ResolvedConfig, resolve, setting_limits, setting_unit
@@ -38,6 +47,9 @@ def lines(config: ResolvedConfig) -> Iterator[str]:
     yield HEAD
     yield from (f"# Note: {note}" for note in config.retarder.notes)
     yield f"title = {quoted(config.title)}"
+    yield '# Your own types (docs/own-types.md) are found in folders: library = ["my-types/"]'
+    yield f"# one of the library: {', '.join(BUILT_IN.names(WEIGHT_CATEGORIES))}; or the path of your own file"
+    yield f"weight_categories = {quoted(YARD_CATEGORIES)}"
     yield from ("", "[position]", f"# one of the library: {', '.join(position_names())}; or the path of your own file")
     yield f"name = {quoted(config.retarder.name)}"
     for section, values in groupby(config.retarder.provenance, key=lambda value: value.key.rpartition(".")[0]):
@@ -46,6 +58,8 @@ def lines(config: ResolvedConfig) -> Iterator[str]:
             yield from (f"# {origin(value)}", f"{value.key.rpartition('.')[2]} = {toml_value(value.value)}")
             if value.key == "track.grade_permille":
                 yield "# or pieces, each (start in m, permille): grade_permille = [[0.0, 8.0], [12.0, 5.0]]"
+            if value.key == "entry.high_m_s":
+                yield "# or, with mean_m_s and std_m_s: normal between the two; or edges_m_s and shares: a histogram"
     for name in NUMERICAL_SECTIONS:
         yield from ("", f"[{name}]")
         section_model = Settings.model_fields[name].default
@@ -81,6 +95,8 @@ def cut_lines(cut_class: CutClass) -> Iterator[str]:
     yield f"# allowed_stage = {cut_class.cut.allowed_stage}  # {origin(by_name['allowed_stage'])}"
     yield f"# rolling_resistance.mean_n_per_kn = {mean.value!r}  # {origin(mean)}"
     yield f"# rolling_resistance.std_n_per_kn = {std.value!r}  # {origin(std)}"
+    yield "# Of the class alone: targets_m_s = [3.0], entry = { low_m_s = 5.0, high_m_s = 6.0 }; of several types of"
+    yield '# cars, in place of car and cars: consist = [{ car = "gondola-4", cars = 2 }, { car = "tank-8" }]'
 
 
 def origin(value: SourcedValue) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
 from plant_models import DopplerSensor
@@ -16,9 +15,9 @@ lines that are good on the grid alone: 36 t to 1.5 m/s at CV 0.05, predicted 0.6
 def grid_warnings(resolution: Resolution, sensor: DopplerSensor, targets_m_s: tuple[float, ...]) -> Iterator[str]:
     """A sentence if the cells at the lowest target are too wide; they are even in v²/2, so widest there."""
     lowest = min(targets_m_s)
-    std = math.hypot(sensor.noise_m_s, sensor.resolution_m_s / math.sqrt(12.0))
+    std = sensor.reading_std_m_s
     cell = resolution.speed_step_m_s * resolution.reference_speed_m_s / lowest
-    if std > 0.0 and cell > WIDEST_CELL * std:
+    if not sensor.exact and cell > WIDEST_CELL * std:
         advised = ADVISED_CELL * std * lowest / resolution.reference_speed_m_s
         yield (
             f"grid.speed_step_m_s is {resolution.speed_step_m_s:g}, which makes cells of {cell:.3f} m/s at the target "

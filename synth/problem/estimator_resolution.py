@@ -7,7 +7,6 @@ from dataclasses import replace
 
 from plant_models import DopplerSensor
 from plant_models.errors import require
-from plant_models.speed_sensor import measured_speed_std
 from synth.problem.resolution import LEAST_SPEED_STEP_M_S, Resolution
 
 FIRST_SHARE = 0.45
@@ -19,7 +18,7 @@ STEP_SHARE = 0.65
 
 def guessed_error_m_s(sensor: DopplerSensor) -> float:
     """Of the estimated speed, before any pass was simulated."""
-    return FIRST_SHARE * measured_speed_std(sensor.noise_m_s, sensor.resolution_m_s)
+    return FIRST_SHARE * sensor.reading_std_m_s
 
 
 def estimator_resolution(resolution: Resolution, sensor: DopplerSensor, lowest_target_m_s: float) -> Resolution:

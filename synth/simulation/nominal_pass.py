@@ -29,8 +29,13 @@ def nominal_entry_m_s(plant: Plant, entry_u: float) -> float:
 
 def nominal_pass(plant: Plant, controller: Controller, entry_u: float, phase_u: float) -> PassTrace:
     """The nominal pass event by event; entry as in `nominal_entry_m_s`, first sample after `phase_u` of a period."""
+    return trace(nominal_plant(plant), controller, one_pass(entry_u, phase_u), 0)
+
+
+def one_pass(entry_u: float, phase_u: float) -> RandomPasses:
+    """A single pass with entry speed and phase as given, and the mean of everything else."""
     one = np.ones(1)
-    passes = RandomPasses(
+    return RandomPasses(
         cut_z=np.zeros(1),
         entry_u=entry_u * one,
         phase_u=phase_u * one,
@@ -39,4 +44,3 @@ def nominal_pass(plant: Plant, controller: Controller, entry_u: float, phase_u: 
         noise_z=np.zeros((1, NOISE_SAMPLES), dtype=np.float32),
         weight=one,
     )
-    return trace(nominal_plant(plant), controller, passes, 0)

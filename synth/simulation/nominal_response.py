@@ -36,7 +36,7 @@ CLOSED = 0.0
 OUTPUT_STEP_S = 0.01
 """Longest time between points of a response."""
 
-SOLVER = {"method": "RK45", "rtol": 1e-7, "atol": 1e-8, "max_step": 0.02}
+SOLVER = {"method": "RK45", "rtol": 1e-9, "atol": 1e-10, "max_step": 0.02}
 """For `solve_ivp`; `max_step` keeps the solver from stepping over a change of N(s)."""
 
 

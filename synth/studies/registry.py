@@ -24,7 +24,7 @@ STUDIES: tuple[Study, ...] = (
     Study(
         "book",
         "How accurate are the tables of the default book?",
-        10.0,
+        8.0,
         "results.md",
         "synth.studies.book",
     ),
@@ -45,7 +45,7 @@ STUDIES: tuple[Study, ...] = (
     Study(
         "convergence",
         "How do value, lines and prediction change as the steps of the grid are halved?",
-        120.0,
+        17.0,
         "method.md#11-convergence",
         "synth.studies.convergence.study",
     ),
@@ -59,21 +59,21 @@ STUDIES: tuple[Study, ...] = (
     Study(
         "criteria",
         "What do other criteria than the mean square make of the tables, and what does a price on switchings buy?",
-        60.0,
+        41.0,
         "method.md#12-criteria",
         "synth.studies.criteria.study",
     ),
     Study(
         "degree",
         "Which degree do the polynomial lines need?",
-        60.0,
+        46.0,
         "degree.md",
         "synth.studies.degree",
     ),
     Study(
         "estimator",
         "What is gained when the regulator compares an estimated speed with its lines?",
-        60.0,
+        54.0,
         "estimator.md#what-it-gains",
         "synth.studies.estimator.study",
     ),
@@ -87,7 +87,7 @@ STUDIES: tuple[Study, ...] = (
     Study(
         "estimator-wrong",
         "What does the estimator cost where it is wrong: another friction, mass or gauge, a lost sensor?",
-        60.0,
+        18.0,
         "estimator.md#where-it-is-wrong",
         "synth.studies.estimator.wrong_study",
     ),
@@ -108,14 +108,14 @@ STUDIES: tuple[Study, ...] = (
     Study(
         "limits",
         "What limits the accuracy: what does each source of error or of delay cost a controller that knows of it?",
-        60.0,
+        41.0,
         "estimator.md",
         "synth.studies.limits.study",
     ),
     Study(
         "rare-events",
         "How often does a cut leave far too fast, down to one in a million and below?",
-        300.0,
+        126.0,
         "rare-events.md",
         "synth.studies.rare_events.study",
     ),
@@ -129,7 +129,7 @@ STUDIES: tuple[Study, ...] = (
     Study(
         "robustness",
         "What does a table do on another plant than it was tuned for: wrong parameters, worn parts, faulty sensors?",
-        600.0,
+        157.0,
         "robustness.md",
         "synth.studies.robustness.study",
     ),

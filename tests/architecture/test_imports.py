@@ -55,6 +55,8 @@ def test_import_contracts_are_kept() -> None:
         ("synth/kernels/intruder.py", "from synth.solver import tabulate", "kernels-are-bare"),
         ("synth/solver/tabulate.py", "from synth.book import case_result", "steps-go-one-way"),
         ("synth/intruder.py", "import math", "steps-go-one-way"),
+        ("synth/book/tune.py", "from synth.studies import cases", "steps-go-one-way"),
+        ("synth/cli/tune.py", "from synth.studies import cases", "studies-are-apart"),
         ("synth/checker/claims.py", "from tuning_tables import rule", "checker-is-independent"),
     ],
 )

@@ -25,7 +25,7 @@ MOST_LINES, MOST_FUNCTION_LINES, MOST_ARGUMENTS = 300, 60, 8
 KERNEL_FUNCTION_LINES, KERNEL_ARGUMENTS = 90, 38
 """What the longest kernel has; lower these when it becomes shorter."""
 
-KNOWN = {"synth/studies/unlocked/pictures.py: slices has 9 arguments"}
+KNOWN: set[str] = set()
 KNOWN_UNREACHED: set[str] = set()
 KNOWN_WRITABLE: set[str] = set()
 

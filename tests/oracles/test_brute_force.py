@@ -17,7 +17,6 @@ import pytest
 from numpy.typing import NDArray
 
 from plant_models import DopplerSensor, Friction, Plant, RollingResistance
-from plant_models.speed_sensor import measured_speed_std
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
@@ -200,7 +199,7 @@ class BruteForce:
                 row = [row[0], *(self.changing(i, n, c, u, j) for j in range(1, self.points))]
             change[side, i, h, u] = row
         sensor = t.plant.sensor
-        sigma = measured_speed_std(sensor.noise_m_s, sensor.resolution_m_s)
+        sigma = sensor.reading_std_m_s
         start, smear = true_speed_weights(t.grid.speed_m_s, sigma)
         for k in range(t.actuator.stages):
             gains = []

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from scipy.stats import norm
 
 from plant_models import DopplerSensor, Friction, Plant
-from plant_models.speed_sensor import measured_speed_std
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
@@ -65,7 +64,7 @@ class Published:
         self.slope = t.drive_m_s2[:, None, None] - (1.0 + self.eta) * braking[:, :, None]  # d(v²/2)/ds, (N, H, 5)
         self.lower = np.full((self.nodes, t.actuator.stages), -math.inf)
         self.upper = np.full((self.nodes, t.actuator.stages), math.inf)
-        self.sigma = measured_speed_std(sensor.noise_m_s, sensor.resolution_m_s)
+        self.sigma = sensor.reading_std_m_s
         furthest = len(t.entry) - 1
         waiting = [self.V[-1]] * (furthest + 1)  # waiting[r]: the next sample is r nodes further on
         for n in reversed(range(self.nodes)):

@@ -68,6 +68,11 @@ def test_equality_and_hash_do_not_raise() -> None:
     assert len({one, other, one}) == 2
 
 
+def test_repr_tells_the_shape_of_an_array_and_not_its_numbers() -> None:
+    shown = repr(replace(made(), parts=(), x=np.zeros(10_000), y=np.ones(10_000)))
+    assert shown == "Curve(x=float64 (10000,), y=float64 (10000,), parts=(), scale=1.0, sums=float64 (10000,))"
+
+
 def test_without_it_an_unpickled_array_can_be_written_to() -> None:
     """Why `__setstate__` is needed: numpy forgets the flag."""
     array = np.zeros(2)

@@ -23,6 +23,7 @@ GOOD = Figures(
     estimated=errors(RMS),
     lines=errors(RMS),
     baselines={"worse": errors(4.0 * RMS, 9.0), "best": errors(3.0 * RMS)},
+    known=errors(RMS),
     told=errors(RMS),
     predicted_rms_m_s=RMS,
     estimated_predicted_rms_m_s=RMS,

@@ -21,6 +21,16 @@ from synth.faults.input_error import InputError
 CUT = '[[cut]]\ncar = "gondola-4"\nmass_t = 22\n'
 
 
+USED = {
+    "positions": '[position]\nname = "mine"\n',
+    "retarders": '[retarder]\ntype = "mine"\n',
+    "cars": '[[cut]]\ncar = "mine"\nmass_t = 22\n',
+    "sensors": '[sensor]\ntype = "mine"\n',
+    "weight_categories": 'weight_categories = "mine"\n',
+}
+"""A configuration that uses the type "mine", by its kind."""
+
+
 def own(folder: Path, kind: Kind, name: str, **changes: str) -> Path:
     """A file as init prints it under another name; `changes`: lines by the key that they begin with."""
     lines = type_toml(kind, None).splitlines()
@@ -50,13 +60,7 @@ def sentences(folder: Path, text: str) -> tuple[str, ...]:
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.folder)
 def test_what_init_prints_reads_back_as_a_type_of_ones_own(kind: Kind, tmp_path: Path) -> None:
     own(tmp_path / "my", kind, "mine")
-    text = {
-        "positions": '[position]\nname = "mine"\n',
-        "retarders": '[retarder]\ntype = "mine"\n',
-        "cars": '[[cut]]\ncar = "mine"\nmass_t = 22\n',
-        "sensors": '[sensor]\ntype = "mine"\n',
-        "weight_categories": 'weight_categories = "mine"\n',
-    }[kind.folder]
+    text = USED[kind.folder]
     changed = config_in(tmp_path, f'library = ["my/"]\n{text}')
     same = config_in(tmp_path, text.replace("mine", START_FROM[kind]))
     assert changed.plants()[0][1].cut == same.plants()[0][1].cut
@@ -123,12 +127,7 @@ FAULTS = {
 def test_a_faulty_file_is_told_in_one_sentence_with_file_key_and_value(name: str, tmp_path: Path) -> None:
     kind, key, line, said = FAULTS[name]
     path = own(tmp_path / "my", kind, "mine", **{key: line})
-    text = {
-        "cars": CUT.replace("gondola-4", "mine"),
-        "retarders": '[retarder]\ntype = "mine"\n',
-        "positions": '[position]\nname = "mine"\n',
-    }[kind.folder]
-    (sentence,) = sentences(tmp_path, f'library = ["my/"]\n{text}')
+    (sentence,) = sentences(tmp_path, f'library = ["my/"]\n{USED[kind.folder]}')
     assert sentence.startswith(f"{path}: ")
     assert re.search(said if ".*" in said else re.escape(said), sentence), sentence
     assert "\n" not in sentence
@@ -161,6 +160,22 @@ def test_folders_and_files_that_are_not_there_are_all_told(tmp_path: Path) -> No
     assert "library[1] is 'nowhere/', and there is no such folder; give one that holds positions/" in second
     assert "cut[0].car names the file" in third
     assert third.endswith("'retarder-synth init --car' prints one to start from")
+
+
+def test_a_position_with_another_retarder_is_called_by_both_names(tmp_path: Path) -> None:
+    own(tmp_path / "my", RETARDERS, "mine")
+    config = config_in(tmp_path, 'library = ["my"]\nretarder.type = "mine"\n')
+    assert config.plants()[0][1].position.name == config.retarder.name == "knp-5-bunch-with-mine"
+    assert config_in(tmp_path, 'retarder.type = "knp-5"\n').retarder.name == "knp-5-bunch"
+    (sentence,) = sentences(tmp_path, 'retarder.type = "knp-6"\n')
+    assert sentence.endswith("retarder.type is 'knp-6', which the library does not hold; did you mean knp-5?")
+
+
+def test_a_categorys_table_that_would_write_on_a_terminal_is_refused_in_quotes(tmp_path: Path) -> None:
+    (tmp_path / "x.toml").write_text('title = "x"\n"\\u001b[31m" = 5\n', encoding="utf-8")
+    (sentence,) = sentences(tmp_path, 'weight_categories = "x.toml"\n')
+    assert "'\\x1b[31m' is no name of a category's table" in sentence
+    assert sentence.isprintable()
 
 
 def test_a_library_without_own_types_is_that_of_the_program() -> None:

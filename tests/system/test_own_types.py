@@ -14,13 +14,12 @@ from synth.cli import main
 from synth.studies.in_the_loop.agreement import ask, differences, follow
 from synth.studies.in_the_loop.controller_process import build_controller
 from tests.controller_code.conftest import tool as tool
+from tests.synth.test_own_types import FAULTS, USED, own
 from tests.system.conftest import EPOCH, Command
 from tuning_tables import TableBook, read_book
 
 EXAMPLE = Path(__file__).parents[2] / "docs" / "examples" / "us-group"
 COARSE = """
-[grid]
-path_step_m = 1.0
 speed_step_m_s = 0.05
 friction_scenarios = 3
 [validation]
@@ -122,3 +121,30 @@ def test_structured_text_is_exported(example: Path, command: Command, tmp_path: 
     text = (tmp_path / "st" / "retarder_table.st").read_text(encoding="utf-8")
     assert "us-group-1" in text
     assert "US_L" in text
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_faulty_type_file_ends_a_tune_with_one_line_and_code_2(name: str, tmp_path: Path, command: Command) -> None:
+    kind, key, line, _ = FAULTS[name]
+    path = own(tmp_path / "my", kind, "mine", **{key: line})
+    config = tmp_path / "my.toml"
+    config.write_text(f'library = ["my/"]\n{USED[kind.folder]}', encoding="utf-8")
+    ran = command("tune", config, "-o", tmp_path / "out")
+    assert (ran.code, ran.out) == (2, "")
+    assert ran.sentence.startswith(f"{path}: ")
+    assert not (tmp_path / "out").exists()
+
+
+def test_init_prints_every_kind_of_type(command: Command, tmp_path: Path) -> None:
+    """With a name, without one, and what cannot be."""
+    for option, name in (("--car", "tank-8"), ("--retarder", "t-50"), ("--position", "kv-3-bunch")):
+        assert command("init", option, name).out.count(f" {name} of the library") == 1
+        assert f"my-types/{option[2:]}s/my-" in command("init", option).out
+    assert json.loads(command("init", "--sensor", "--json").out)["type"] == command("init", "--sensor").out
+    assert "number = 5" in command("init", "--weight-categories").out
+    assert "[position]" in command("init", "--retarder", "t-50-bunch").out
+    assert "did you mean gondola-4?" in command("init", "--car", "gondola").sentence
+    assert "one file at a time" in command("init", "--car", "--sensor").sentence
+    assert set(json.loads(command("init", "--list", "--json").out)["library"]) == {
+        "positions", "retarders", "cars", "sensors", "weight_categories",
+    }  # fmt: skip

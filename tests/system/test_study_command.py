@@ -33,7 +33,7 @@ def test_the_list_names_question_and_time_of_every_study(capsys: pytest.CaptureF
         (["study", "interpolation", "--masses-t", "23"], "no cut of the configuration has 23 t"),
         (["study", "interpolation", "--config", "nowhere.toml"], "nowhere.toml: there is no such file"),
         (["study", "interpolation", "--small", "--passes", "300"], "--small has options of its own"),
-        (["study", "--check"], "--check goes with --document"),
+        (["study", "interpolation", "--check"], "leave the name of a study out"),
     ],
 )
 def test_a_wrong_word_is_told(words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -145,8 +145,7 @@ def hunting_report(plant: Plant, lines: SwitchingLines) -> tuple[Hunting, ...]:
 def accelerations(plant: Plant, edges_m: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Means over the path cells: acceleration without brake (m/s²), deceleration by one kPa (m/s² per kPa)."""
     path = path_coefficients(plant.position, plant.cut, plant.profile, edges_m)
-    drag = path.resistance_m_s2_per_n_kn * plant.resistance.mean_n_per_kn
-    return path.gravity_m_s2 - drag, path.brake_m_s2_per_kpa
+    return path.free_m_s2(plant.resistance.mean_n_per_kn), path.brake_m_s2_per_kpa
 
 
 def stage_pair(plant: Plant, lower_stage: int) -> StagePair:

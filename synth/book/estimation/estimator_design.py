@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from plant_models import Plant, path_breaks_m, path_coefficients
-from plant_models.speed_sensor import measured_speed_std
 from synth.kernels.loop.closed_loop import Draws
 from synth.simulation.closed_loop import ClosedLoop
 from synth.simulation.controllers import Controller
@@ -30,11 +29,11 @@ def estimator_of(plant: Plant) -> Estimator:
     if len(edges) > MOST_BREAKS:
         edges = np.linspace(0.0, plant.exit_m, MOST_BREAKS)
     cells = path_coefficients(plant.position, plant.cut, plant.profile, edges)
-    drive = cells.gravity_m_s2 - cells.resistance_m_s2_per_n_kn * plant.resistance.mean_n_per_kn
+    drive = cells.free_m_s2(plant.resistance.mean_n_per_kn)
     length = np.diff(edges)
     sensor, friction = plant.sensor, plant.friction
     return Estimator(
-        speed_noise_m_s=measured_speed_std(sensor.noise_m_s, sensor.resolution_m_s),
+        speed_noise_m_s=sensor.reading_std_m_s,
         friction_cv=plant.friction_cv,
         path_std=friction.path_std,
         correlation_length_m=friction.correlation_length_m,

@@ -40,12 +40,13 @@ def feasibility(cases: Sequence[CaseResult]) -> Figure:
         above, below = figure.add_subplot(grid[0, column]), figure.add_subplot(grid[1, column])
         above.sharex(below)
         here = [case for case in cases if case.target_speed_m_s == target]
+        asked_m_s = (min(c.plant.entry.low_m_s for c in here), max(c.plant.entry.high_m_s for c in here))
         draw_rms(above, here, labels)
         logarithmic_y(above, values)
         draw_served(below, here, labels)
         below.set_xlim(min(entry) - margin, max(entry) + margin)
         for axes in (above, below):
-            axes.axvspan(here[0].plant.entry.low_m_s, here[0].plant.entry.high_m_s, color=PALE_GREY, zorder=0)
+            axes.axvspan(*asked_m_s, color=PALE_GREY, zorder=0)
             axes.tick_params(labelleft=column == 0)
         if column == 0:
             above.set_ylabel("rms of exit speed − target, m/s", fontsize=9)

@@ -87,7 +87,7 @@ def entries(loop: ControlLoop) -> list[Line2D | Patch]:
         Line2D(
             [], [], color=STAGE_COLOURS[stage.k], linewidth=2.0, label=f"stage {stage.k}: {stage.pressure_kpa:g} kPa"
         )
-        for stage in loop.table.stages
+        for stage in loop.table.stages[: stages_in_use(loop.table)]
     ]
     shown += [
         Line2D([], [], color=INK, linewidth=0.9, label="line of a stage: one up above it"),

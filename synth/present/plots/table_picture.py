@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from plant_models import Plant
 from synth.present.plots.house_style import (
     BLUE,
     GREY,
@@ -33,6 +34,9 @@ from synth.solver.tabulate import lines_of
 from tuning_tables import ControllerTable
 
 LINE_POINTS = 201
+FACTORS = (0.8, 1.0, 1.2)
+PASSES = 5000
+"""Exits that are drawn."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +46,16 @@ class Passes:
     sample: ExitSample
     traces: tuple[PassTrace, ...]
     factors: tuple[float, ...]
+
+
+def drawn_passes(table: ControllerTable, plant: Plant, seed: int) -> Passes:
+    """`PASSES` stratified passes of `plant` under `table`, and the first three of them at the friction of `FACTORS`."""
+    from synth.simulation.closed_loop import TableController, simulate, trace  # a picture of lines needs no kernel
+    from synth.simulation.stratified_passes import stratified_passes
+
+    passes, law = stratified_passes(seed, 0, PASSES), TableController(table)
+    traces = tuple(trace(plant, law, passes, i, cut_factor=factor) for i, factor in enumerate(FACTORS))
+    return Passes(simulate(plant, law, passes), traces, FACTORS)
 
 
 def table_lines(table: ControllerTable, passes: Passes | None) -> Figure:

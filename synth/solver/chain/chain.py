@@ -70,7 +70,6 @@ def chain_of(plant: Plant, resolution: Resolution, scenarios: Scenarios) -> Chai
     grid = make_grid(plant, resolution)
     actuator = stage_locked_actuator(plant.position, plant.sensor, plant.top_stage, resolution.transient_substeps)
     coefficients = path_coefficients(plant.position, plant.cut, plant.profile, grid.path_m)
-    resistance = coefficients.resistance_m_s2_per_n_kn * plant.resistance.mean_n_per_kn
     path_noise = correlated_noise(plant.friction, grid.path_step_m, resolution.path_levels)
     landings = make_landings(plant, grid, actuator)
     return Chain(
@@ -79,7 +78,7 @@ def chain_of(plant: Plant, resolution: Resolution, scenarios: Scenarios) -> Chai
         measurement=smooth_measurement(plant.sensor),
         grid=grid,
         actuator=actuator,
-        drive_m_s2=coefficients.gravity_m_s2 - resistance,
+        drive_m_s2=coefficients.free_m_s2(plant.resistance.mean_n_per_kn),
         brake_m_s2_per_kpa=coefficients.brake_m_s2_per_kpa,
         landings=landings,
         path_noise=path_noise,

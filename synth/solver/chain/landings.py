@@ -65,7 +65,7 @@ def make_landings(plant: Plant, grid: Grid, actuator: Actuator) -> Landings:
     fine = np.linspace(0.0, plant.exit_m, FINE_CELLS_PER_QUANTUM * (len(grid.path_m) - 1) + 1)
     cells = path_coefficients(plant.position, plant.cut, plant.profile, fine)
     work = np.concatenate([[0.0], np.cumsum(cells.brake_m_s2_per_kpa * np.diff(fine))])
-    drive = cells.gravity_m_s2 - cells.resistance_m_s2_per_n_kn * plant.resistance.mean_n_per_kn
+    drive = cells.free_m_s2(plant.resistance.mean_n_per_kn)
     factors = friction_factors(plant)
     samples = actuator.chain_samples[used]
     overpressure = np.ascontiguousarray(actuator.chain_overpressure_kpa[used, : samples.max() * actuator.substeps])

@@ -59,7 +59,7 @@ class QuantisedMeasurement:
 
 def smooth_measurement(sensor: DopplerSensor) -> SmoothMeasurement:
     """What lines are designed on."""
-    return SmoothMeasurement(measured_speed_std(sensor.noise_m_s, sensor.resolution_m_s))
+    return SmoothMeasurement(sensor.reading_std_m_s)
 
 
 def quantised_measurement(sensor: DopplerSensor) -> SpeedMeasurement:

@@ -20,14 +20,15 @@ class Errors:
 class Figures:
     """All controllers of a feasible case on the same passes; seconds to make a table, shared work in proportion.
 
-    `told`: lines for each known friction; `ratio`: rms with estimator / without, paired; `finer`: the speed grid had to
-    be halved, as `tune` advises.
+    `known`: the solver's lines for each known friction; `told`: polished cubics for each; `ratio`: rms with estimator /
+    without, paired; `finer`: the speed grid had to be halved, as `tune` advises.
     """
 
     table: Errors
     estimated: Errors
     lines: Errors
     baselines: dict[str, Errors]
+    known: Errors
     told: Errors
     predicted_rms_m_s: float
     estimated_predicted_rms_m_s: float
@@ -68,7 +69,10 @@ class Figures:
 
 @dataclass(frozen=True)
 class GridCase:
-    """One case of the grid; no figures where the position cannot serve it. `known_rms_m_s`: friction known."""
+    """One case of the grid; no figures where the position cannot serve it.
+
+    `known_rms_m_s`: with the friction known, on the passes that feasibility is judged by.
+    """
 
     case: str
     cv: float

@@ -198,6 +198,7 @@ def figures_of(shared: Class, target: float, design: Chain, resolution: Resoluti
         estimated=errors(by_estimated, target),
         lines=errors(used.run(LineController(solution.lines), draws), target),
         baselines={each.name: errors(used.run(each.controller, draws), target) for each in tuned},
+        known=known(shared, target, design),
         told=told(shared, target, design, used),
         predicted_rms_m_s=predicted,
         estimated_predicted_rms_m_s=promised,
@@ -207,6 +208,14 @@ def figures_of(shared: Class, target: float, design: Chain, resolution: Resoluti
         table_s=shared.seconds + turned - started,
         estimated_s=shared.seconds + ended - turned,
     )
+
+
+def known(shared: Class, target: float, design: Chain) -> Errors:
+    """The solver's lines for each known friction."""
+    config, aims = shared.config, [Aim(target, shared.config.criterion)]
+    ((found, _),) = friction_known_bounds(design, aims, shared.passes.fresh, config.acceptance.rms_m_s)
+    statistics = found.statistics
+    return Errors(statistics.rms_m_s, statistics.rms_ci95_m_s, statistics.switchings)
 
 
 def told(shared: Class, target: float, design: Chain, loop: ClosedLoop) -> Errors:

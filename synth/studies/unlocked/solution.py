@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from plant_models import Plant, path_coefficients
 from plant_models.frozen_arrays import frozen_arrays
-from plant_models.speed_sensor import measured_speed_std
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import TIE_M2_S2, true_speed_weights
@@ -70,7 +69,7 @@ def unlocked_plant(
     chain = correlated_noise(plant.friction, grid.path_step_m, resolution.path_levels)
     fine = np.linspace(0.0, plant.exit_m, FINE_CELLS_PER_QUANTUM * (len(grid.path_m) - 1) + 1)
     cells = path_coefficients(plant.position, plant.cut, plant.profile, fine)
-    free = cells.gravity_m_s2 - cells.resistance_m_s2_per_n_kn * plant.resistance.mean_n_per_kn
+    free = cells.free_m_s2(plant.resistance.mean_n_per_kn)
     entry = entry_distribution(plant, grid)
     ahead = math.ceil(grid.speed_m_s[-1] * plant.sensor.sample_period_s / grid.path_step_m) + 2
     reach = max(ahead, len(entry) - 1)
@@ -125,7 +124,7 @@ def swept(
     """Run the sweep; `lower`, `upper` (N, M) are filled if `extract`; the expected cost of a pass."""
     t, m, sensor = p.grid, p.modes, p.plant.sensor
     terminal, stalled = criterion.exit_costs(t.speed_m_s, target_speed_m_s)
-    noise = measured_speed_std(sensor.noise_m_s, sensor.resolution_m_s)
+    noise = sensor.reading_std_m_s
     first = np.empty((len(p.level_steps), len(p.scenarios.weight), len(p.chain.levels), len(t.speed_m_s)))
     arguments: tuple[Any, ...] = (
         terminal, stalled, criterion.switching_tolerance_m2_s2, TIE_M2_S2,

@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 
 from plant_models import Plant, RollingResistance
-from plant_models.speed_sensor import measured_speed_std
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import true_speed_weights
@@ -123,7 +122,7 @@ class BruteForce:
     def decide(self, n: int, m: int) -> None:
         """Lines and values at one node and mode."""
         p, v = self.p, [float(x) for x in self.p.grid.speed_m_s]
-        noise = measured_speed_std(p.plant.sensor.noise_m_s, p.plant.sensor.resolution_m_s)
+        noise = p.plant.sensor.reading_std_m_s
         hidden = [(i, q) for i in range(len(p.scenarios.weight)) for q in range(len(p.chain.levels))]
         value = {(i, q, a): self.command(i, n, m, q, a) for i, q in hidden for a in range(3) if p.modes.allowed[m, a]}
         start, weights = true_speed_weights(p.grid.speed_m_s, noise)

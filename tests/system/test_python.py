@@ -1,0 +1,181 @@
+"""From Python: the numbers of the command line, the examples of the documentation, names, faults, start-up."""
+
+from __future__ import annotations
+
+import ast
+import dataclasses
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import synth
+from plant_models import Plant
+from synth.faults.input_error import InputError
+from tests.system.coefficients import coefficients_sha256
+from tuning_tables import ControllerTable, read_json
+
+ROOT = Path(__file__).parents[2]
+LABEL, TARGET = "gondola-4-22t", 1.5
+
+
+@pytest.fixture(scope="module")
+def problem(two_classes: Path) -> synth.Problem:
+    """One of the cases that `tuned` holds."""
+    return synth.load_problem(LABEL, TARGET, two_classes)
+
+
+@pytest.fixture(scope="module")
+def table(problem: synth.Problem, two_classes: Path) -> ControllerTable:
+    """Its table, step by step from Python."""
+    config = synth.load_config(two_classes)
+    lines = synth.fit(synth.solve(problem, config.resolution), config.fit.degree)
+    return synth.tabulate(lines, f"{LABEL}-to-{TARGET:g}-m-s", config)
+
+
+@pytest.fixture
+def tuned_table(tuned: Path) -> ControllerTable:
+    """The same table as the command `tune` has left it."""
+    return read_json(tuned / "tables" / f"{LABEL}-to-{TARGET:g}-m-s.json")
+
+
+def test_a_table_is_that_of_the_command(table: ControllerTable, tuned_table: ControllerTable) -> None:
+    """Bit for bit, prediction, name and origin included; the command has simulated it besides."""
+    assert table.stages == tuned_table.stages
+    assert dataclasses.replace(table, created=tuned_table.created, validated=tuned_table.validated) == tuned_table
+
+
+def test_a_simulation_is_that_of_the_command(
+    table: ControllerTable, tuned_table: ControllerTable, problem: synth.Problem, two_classes: Path
+) -> None:
+    validation = synth.load_config(two_classes).validation
+    found = synth.simulate(table, problem, validation.passes, validation.seed)
+    assert tuned_table.validated is not None
+    assert found.statistics.passes == tuned_table.validated.passes
+    assert found.statistics.rms_m_s == tuned_table.validated.rms_m_s
+    assert found.statistics.rms_ci95_m_s == tuned_table.validated.rms_ci95_m_s
+
+
+def test_a_prediction_is_that_of_the_table(table: ControllerTable, problem: synth.Problem, two_classes: Path) -> None:
+    assert synth.predict(table, problem, synth.load_config(two_classes).resolution) == table.predicted
+
+
+def test_columns_and_trace_are_of_the_same_passes(table: ControllerTable, problem: synth.Problem) -> None:
+    passes = synth.simulate(table, problem, passes=1000, seed=5)
+    columns = passes.columns()
+    assert {len(column) for column in columns.values()} == {1000}
+    for index in (0, 17, 999):
+        one = synth.trace(table, problem, seed=5, index=index)
+        assert one.exit_speed_m_s == columns["exit_speed_m_s"][index]
+    slow, fast = (synth.trace(table, problem, friction=factor).exit_speed_m_s for factor in (1.3, 0.7))
+    assert slow < fast
+
+
+def test_what_is_printed_is_short(table: ControllerTable, problem: synth.Problem) -> None:
+    passes = synth.simulate(table, problem, passes=1000, seed=5)
+    low, _ = passes.statistics.rms_ci95_m_s
+    assert repr(passes).startswith(f"Simulated(1000 passes, seed 5: rms {passes.statistics.rms_m_s:.4f} [{low:.4f}, ")
+    assert len(repr(passes)) < 120
+    assert len(repr(synth.trace(table, problem))) < 400
+
+
+def numbers(plant: Plant) -> list[Plant]:
+    """Copies of a plant, each with one number changed."""
+    return [
+        dataclasses.replace(plant, friction=dataclasses.replace(plant.friction, common_cv=0.2123)),
+        dataclasses.replace(plant, sensor=dataclasses.replace(plant.sensor, noise_m_s=0.0512)),
+        dataclasses.replace(plant, cut=dataclasses.replace(plant.cut, mass_t=22.5)),
+    ]
+
+
+def test_a_problem_of_ones_own_has_a_hash_of_its_own(problem: synth.Problem) -> None:
+    from synth.api import problem_sha256
+
+    others = [synth.Problem(plant, problem.aim) for plant in numbers(problem.plant)]
+    others.append(synth.Problem(problem.plant, synth.Aim(TARGET, synth.Criterion(stall_cost_m2_s2=2.0))))
+    hashes = [problem_sha256(each) for each in (problem, *others)]
+    assert len(set(hashes)) == len(hashes)
+    assert problem_sha256(dataclasses.replace(problem)) == hashes[0]
+    assert re.fullmatch(r"[0-9a-f]{64}", hashes[0])
+
+
+@pytest.mark.parametrize(
+    ("fault", "words"),
+    [
+        (lambda t, p: synth.load_problem("gondola-4-22", 1.5, None), "did you mean gondola-4-22t?"),
+        (lambda t, p: synth.load_problem("gondola-4-22t", 9.0, None), "there is nothing to brake"),
+        (lambda t, p: synth.load_config("nowhere.toml"), "nowhere.toml"),
+        (lambda t, p: synth.simulate(t, p, passes=10), "passes is 10; intervals need 1000"),
+        (lambda t, p: synth.Aim(0.0), "target_speed_m_s is 0"),
+    ],
+)
+def test_a_fault_is_one_sentence(table: ControllerTable, problem: synth.Problem, fault: Any, words: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(words)) as raised:
+        fault(table, problem)
+    assert "\n" not in str(raised.value)
+
+
+def test_a_table_with_estimator_is_simulated_and_not_predicted(table: ControllerTable, problem: synth.Problem) -> None:
+    from tuning_tables import Estimator
+
+    estimator = Estimator(0.05, 0.15, 0.1, 2.0, 50.0, (0.0, 5.0), (0.0, 1.0), (0.0, 0.01))
+    with pytest.raises(InputError, match="simulate it"):
+        synth.predict(dataclasses.replace(table, estimator=estimator), problem)
+
+
+def blocks(page: str) -> str:
+    """All Python of a page of the documentation, in order."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    return "\n".join(re.findall(r"^```python\n(.*?)^```$", text, flags=re.S | re.M))
+
+
+def run(program: str, directory: Path) -> str:
+    """What `program` prints, run in `directory` by itself; a warning is an error."""
+    ran = subprocess.run(
+        [sys.executable, "-W", "error", "-c", program], cwd=directory, capture_output=True, text=True, timeout=300,
+        env={**os.environ, "OPENBLAS_CORETYPE": "Haswell"}, check=False,
+    )  # fmt: skip
+    assert ran.returncode == 0, ran.stderr
+    return ran.stdout
+
+
+def test_the_example_of_the_readme_runs_and_makes_the_table_of_the_default_book(tmp_path: Path) -> None:
+    example = blocks("README.md")
+    assert example.startswith("import synth\n")
+    assert len(example.splitlines()) <= 10
+    store = "\nfrom tuning_tables import write_json; write_json(table, 'table.json')\n"
+    printed = run(example + store, tmp_path)
+    assert re.fullmatch(r"predicted 0\.0\d+ m/s, Simulated\(20000 passes, seed 1: rms .* m/s\)\n", printed)
+    assert (tmp_path / "table.png").read_bytes().startswith(b"\x89PNG")
+    kept = json.loads((ROOT / "tests/system/coefficients.json").read_text())["knp-5-bunch"]
+    assert coefficients_sha256(read_json(tmp_path / "table.json")) == kept["gondola-4-52t-to-3-m-s"]
+
+
+def test_the_examples_of_the_page_run(tmp_path: Path) -> None:
+    printed = run(blocks("docs/python.md"), tmp_path)
+    assert "within ±" in printed
+    assert {path.name for path in tmp_path.iterdir()} == {"lines.png", "passes.png", "table.json"}
+
+
+def test_every_public_name_is_there_and_typed() -> None:
+    """What editors and mypy read (the imports under TYPE_CHECKING) is what `__all__` and `__getattr__` give."""
+    assert all(getattr(synth, name) is not None for name in synth.__all__)
+    assert set(synth.__all__) <= set(dir(synth))
+    tree = ast.parse((ROOT / "synth/__init__.py").read_text())
+    [typed] = [node for node in tree.body if isinstance(node, ast.If)]
+    named = [alias.name for node in typed.body if isinstance(node, ast.ImportFrom) for alias in node.names]
+    assert sorted(named) == sorted(synth.__all__) == synth.__all__
+    with pytest.raises(AttributeError, match="has no attribute 'nothing'"):
+        synth.nothing  # noqa: B018
+
+
+def test_the_import_is_instant_and_values_need_no_kernel() -> None:
+    program = "import synth; {}; import sys; print(*{{name.partition('.')[0] for name in sys.modules}})"
+    for statement, absent in (("pass", {"numpy", "numba"}), ("synth.Problem, synth.Criterion", {"numba", "scipy"})):
+        loaded = set(run(program.format(statement), ROOT).split())
+        assert loaded.isdisjoint({*absent, "control", "h5py", "matplotlib"})
