@@ -55,9 +55,9 @@ def of_masses(config: ResolvedConfig, masses_t: Sequence[float]) -> ResolvedConf
 
 
 def class_cases(config: ResolvedConfig, masses_t: Sequence[float], targets_m_s: Sequence[float]) -> tuple[Case, ...]:
-    """The cuts of these masses (all for none) to each of these speeds (the targets for none). Raises `InputError`."""
+    """The cuts of these masses (all for none) to each of these speeds (their targets for none). Raises `InputError`."""
     return tuple(
         Case(label, plant, target)
         for label, plant in of_masses(config, masses_t).plants()
-        for target in targets_m_s or config.targets_m_s
+        for target in targets_m_s or config.targets_of(label)
     )

@@ -160,10 +160,11 @@ def run(options: Options, tell: Tell) -> Degrees:
     config = load_config(options.config)
     degrees = tuple(sorted({*options.degrees, COMPARED}))
 
-    def rows_of(plant: Plant) -> list[CaseRow]:
+    def rows_of(item: tuple[str, Plant]) -> list[CaseRow]:
+        label, plant = item
         check = check_chain(plant, finer_for_check(config.resolution))
         design = persistent_chain(plant, config.resolution)
-        aims = [Aim(target, config.criterion) for target in options.targets_m_s or config.targets_m_s]
+        aims = [Aim(target, config.criterion) for target in options.targets_m_s or config.targets_of(label)]
         rows = []
         for solution in solve_all(design, aims):
             tables = tuple(tables_by_degree(solution, degrees, origin(config)))
@@ -172,7 +173,7 @@ def run(options: Options, tell: Tell) -> Degrees:
             tell(f"{rows[-1].case}: {len(degrees)} degrees")
         return rows
 
-    found = side_by_side(rows_of, [plant for _, plant in of_masses(config, options.masses_t).plants()])
+    found = side_by_side(rows_of, of_masses(config, options.masses_t).plants())
     every = tuple(row for rows in found for row in rows)
     return Degrees(config.sha256, config.validation.seed, options.passes, degrees, every)
 

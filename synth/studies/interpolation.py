@@ -132,12 +132,12 @@ def worst_of(rows: Sequence[Row]) -> tuple[str, ...]:
 def run(options: Options, tell: Tell) -> Interpolated:
     """Tune, choose between tables, simulate."""
     config = of_masses(load_config(options.config), options.masses_t)
-    targets = parted(config.targets_m_s, options.step_m_s, options.parts)
     seed = config.validation.seed + FRESH
     passes = stratified_passes(seed, 0, options.passes)
 
     def rows_of(item: tuple[str, Plant]) -> list[Row]:
         label, plant = item
+        targets = parted(config.targets_of(label), options.step_m_s, options.parts)
         rows = compared(label, plant, tuned_tables(config, plant, targets), options.parts, passes)
         tell(f"{label}: {len(rows)} speeds")
         return rows

@@ -20,10 +20,10 @@ NEAR_M_S = 0.3
 
 @dataclass(frozen=True)
 class NearTarget:
-    """rms of the passes within `NEAR_M_S` of the target, its 95 % interval (None where exact); share of all others."""
+    """rms of the passes within `NEAR_M_S` of the target, its 95 % interval; share of all others."""
 
     rms_m_s: float
-    ci95_m_s: Interval | None
+    ci95_m_s: Interval
     outside: float
 
 

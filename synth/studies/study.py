@@ -88,11 +88,13 @@ class Study:
 
     def run(self, options: Any = None, tell: Tell = silent) -> Result:
         """The result with `options` (the defaults for None). Raises `InputError` for options that make no sense."""
+        from synth.solver.one_blas_thread import one_blas_thread
         from synth.studies.result import Result
 
         method = self.method
         chosen = method.options() if options is None else options
-        return Result(self, version("retarder-synth"), chosen, method.run(chosen, tell))
+        with one_blas_thread():  # with two the polish ends in other last bits
+            return Result(self, version("retarder-synth"), chosen, method.run(chosen, tell))
 
     @property
     def duration(self) -> str:

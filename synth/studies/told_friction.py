@@ -16,14 +16,18 @@ from numpy.typing import NDArray
 
 from plant_models import PlantError
 from plant_models.frozen_arrays import frozen_arrays
+from synth.book.comparison.friction_bound import interleaved
 from synth.problem.aim import Aim
+from synth.simulation.closed_loop import ClosedLoop, LineController
+from synth.simulation.passes import ExitSample
+from synth.simulation.random_passes import RandomPasses
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import Chain, with_known_friction
 from synth.solver.evaluation import Evaluation
-from synth.solver.exit_density import ExitDensity
-from synth.solver.policy_density import exit_density
 from synth.solver.polynomial_fit import Fit, Polish, PolynomialLines, polish
 from synth.solver.tuned_lines import fitted
+
+LINE_NODES = 301
 
 
 @dataclass(frozen=True)
@@ -41,27 +45,27 @@ TO_THE_END = Effort()
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class ToldFriction:
-    """Lines and exact exit-speed densities for known factors (I,) that occur with probability `weight` (I,)."""
+    """Lines for known factors (I,) that occur with probability `weight` (I,).
+
+    They are designed for the mean running resistance (`with_known_friction`), so only passes tell what they reach.
+    """
 
     factor: NDArray[np.float64]
     weight: NDArray[np.float64]
     lines: tuple[PolynomialLines, ...]
-    densities: tuple[ExitDensity, ...]
 
-    def rms_m_s(self, target_speed_m_s: float) -> float:
-        """Rms error over all cuts."""
-        squares = [density.rms_m_s(target_speed_m_s) ** 2 for density in self.densities]
-        return float(np.sqrt(self.weight @ np.array(squares)))
+    def sample(self, loop: ClosedLoop, passes: RandomPasses) -> ExitSample:
+        """Closed loop of cuts whose friction is told: pass j has the factor j modulo I, and the weight of that factor.
 
-    def near(self, target_speed_m_s: float, within_m_s: float) -> tuple[float, float]:
-        """(rms error of the cuts that end within a distance of the target, their share)."""
-        square, share = 0.0, 0.0
-        for weight, density in zip(self.weight, self.densities, strict=True):
-            error = density.speed_m_s - target_speed_m_s
-            inside = np.abs(error) <= within_m_s
-            square += weight * float((density.probability * error**2)[inside].sum())
-            share += weight * float(density.probability[inside].sum())
-        return float(np.sqrt(square / share)), share
+        Passes that make no whole round of the factors are left out.
+        """
+        count = len(self.factor)
+        whole = passes.part(0, len(passes) - len(passes) % count)
+        strata = []
+        for i, (factor, lines) in enumerate(zip(self.factor, self.lines, strict=True)):
+            nodes = np.linspace(0.0, lines.exit_m, LINE_NODES)
+            strata.append(loop.run(LineController(lines.at(nodes)), loop.draws(whole.every(count, i), float(factor))))
+        return interleaved(strata, self.weight)
 
 
 def told_friction(design: Chain, aim: Aim, degree: int, nodes: int, effort: Effort = TO_THE_END) -> ToldFriction:
@@ -71,15 +75,13 @@ def told_friction(design: Chain, aim: Aim, degree: int, nodes: int, effort: Effo
     factors = plant.friction.cut_factor(z, plant.friction_cv)
     unknown = fitted(solve(design, aim), degree)
     common = best_polished(Evaluation(design, aim), [(unknown.lines, unknown)], effort)
-    best, densities = [], []
+    best = []
     for factor in factors:
         known = with_known_friction(design, float(factor))
         own = fitted(solve(known, aim), degree)
         begins = [(own.lines, own), (common, own), (common, unknown)]
-        lines = best_polished(Evaluation(known, aim), begins, effort)
-        best.append(lines)
-        densities.append(exit_density(known, lines.at(known.grid.path_m)))
-    return ToldFriction(factors, weight / weight.sum(), tuple(best), tuple(densities))
+        best.append(best_polished(Evaluation(known, aim), begins, effort))
+    return ToldFriction(factors, weight / weight.sum(), tuple(best))
 
 
 def best_polished(

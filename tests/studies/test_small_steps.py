@@ -92,7 +92,7 @@ def test_a_row_of_the_book_is_that_of_its_summary() -> None:
 def test_a_wrong_gauge_scales_the_brake_work_and_nothing_else() -> None:
     config = load_config(None)
     (case,) = named_cases(config, ("22:3",))
-    pair = as_tuned(Problem(case.plant, Aim(case.target_m_s, config.criterion)), config)
+    pair = as_tuned(Problem(case.plant, Aim(case.target_m_s, config.criterion)), config, case.label)
     wrong = pair.misled(1.15)
     assert isinstance(wrong, TableController)
     assert isinstance(pair.estimated, TableController)

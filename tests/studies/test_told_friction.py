@@ -1,4 +1,4 @@
-"""The reference that is told the friction: never worse than lines that are not, and an exact mixture."""
+"""The reference that is told the friction: better than lines that are not, on the same passes."""
 
 from __future__ import annotations
 
@@ -11,10 +11,12 @@ from plant_models import Plant
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
+from synth.simulation.closed_loop import LineController, close_loop
+from synth.simulation.exit_statistics import exit_statistics
+from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.evaluation import Evaluation
-from synth.solver.policy_density import exit_density
 from synth.solver.tuned_lines import fitted
 from synth.studies.told_friction import best_polished, told_friction
 
@@ -23,19 +25,23 @@ CRITERION = Criterion(switching_tolerance_m2_s2=0.0)
 
 
 def test_knowing_more_is_never_worse(plant_of: Callable[[float], Plant]) -> None:
-    design = persistent_chain(plant_of(22.0), COARSE)
-    told = told_friction(design, Aim(3.0, CRITERION), 3, 3)
-    fit = fitted(solve(design, Aim(3.0, CRITERION)), 3)
-    common = best_polished(Evaluation(design, Aim(3.0, CRITERION)), [(fit.lines, fit)])
-    unknown = exit_density(design, common.at(design.grid.path_m))
-    assert told.rms_m_s(3.0) < unknown.rms_m_s(3.0)
+    """On the same passes, running resistance and all; and a pass has the friction that is told."""
+    plant = plant_of(22.0)
+    design, aim = persistent_chain(plant, COARSE), Aim(3.0, CRITERION)
+    told = told_friction(design, aim, 3, 3)
     assert told.weight.sum() == pytest.approx(1.0)
-    # The mixture's rms is that of the parts, and the passes near the target are most of them.
-    parts = [density.rms_m_s(3.0) ** 2 for density in told.densities]
-    assert told.rms_m_s(3.0) ** 2 == pytest.approx(float(told.weight @ np.array(parts)))
-    core, share = told.near(3.0, 0.3)
-    assert core <= told.rms_m_s(3.0)
-    assert 0.95 < share <= 1.0 + 1e-6
+    fit = fitted(solve(design, aim), 3)
+    common = best_polished(Evaluation(design, aim), [(fit.lines, fit)])
+    loop, passes = close_loop(plant, plant.top_stage + 1), stratified_passes(1, 0, 6001)
+    nodes = np.linspace(0.0, plant.exit_m, 301)
+    unknown = loop.run(LineController(common.at(nodes)), loop.draws(passes))
+    found = told.sample(loop, passes)
+    assert len(found.weight) == 6000
+    assert exit_statistics(found, 3.0).rms_ci95_m_s[1] < exit_statistics(unknown, 3.0).rms_ci95_m_s[0]
+    middle = loop.run(
+        LineController(told.lines[1].at(nodes)), loop.draws(passes.part(0, 6000).every(3, 1), told.factor[1])
+    )
+    assert np.array_equal(found.exit_speed_m_s[1::3], middle.exit_speed_m_s)
 
 
 def test_the_best_beginning_is_kept(plant_of: Callable[[float], Plant]) -> None:

@@ -12,11 +12,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
-import numpy as np
-
 from plant_models import Plant, PlantError
 from synth.book.comparison.baselines import tune_baselines
-from synth.book.comparison.friction_bound import friction_known_bounds, interleaved
+from synth.book.comparison.friction_bound import friction_known_bounds
 from synth.book.estimation.estimated_table import estimated_table, estimator_design
 from synth.book.estimation.simulated_prediction import simulated_prediction
 from synth.book.tuned_table import predict
@@ -48,7 +46,6 @@ GRID_STEP_M_S = 0.015
 """As fine as the tool advises for the lowest target."""
 
 TOLD_EFFORT = Effort(iterations=40, tolerance=1e-3, rounds=1)
-LINE_NODES = 301
 LONG_CUTS = (("gondola-4", 3, 156.0), ("tank-8", 1, 120.0))
 
 
@@ -223,12 +220,7 @@ def told(shared: Class, target: float, design: Chain, loop: ClosedLoop) -> Error
     config, nodes = shared.config, shared.told_nodes
     free = replace(config.criterion, switching_tolerance_m2_s2=0.0)
     found = told_friction(design, Aim(target, free), config.fit.degree, nodes, TOLD_EFFORT)
-    path_m = np.linspace(0.0, shared.plant.exit_m, LINE_NODES)
-    strata = []
-    for i, (factor, lines) in enumerate(zip(found.factor, found.lines, strict=True)):
-        draws = loop.draws(shared.passes.fresh.every(nodes, i), float(factor))
-        strata.append(loop.run(LineController(lines.at(path_m)), draws))
-    return errors(interleaved(strata, found.weight), target)
+    return errors(found.sample(loop, shared.passes.fresh), target)
 
 
 def errors(sample: ExitSample, target_m_s: float) -> Errors:

@@ -68,10 +68,10 @@ class Compared:
     stalled: Both
 
 
-def as_tuned(problem: Problem, config: ResolvedConfig) -> Pair:
-    """The tables that `tune` writes, rounded."""
+def as_tuned(problem: Problem, config: ResolvedConfig, label: str) -> Pair:
+    """The tables that `tune` writes for the class `label` of `config`, rounded."""
     tuning = random_passes(config.validation.seed + 1, TUNING_PASSES, TUNING_PASSES + TRIM_PASSES)
-    pair, lines, estimated = designed(problem, config, min(config.targets_m_s), tuning)
+    pair, lines, estimated = designed(problem, config, min(config.targets_of(label)), tuning)
 
     plant, target = problem.plant, problem.target_speed_m_s
     plain = TableController(rounded(config, plant, lines, target))

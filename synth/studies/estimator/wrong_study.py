@@ -109,7 +109,7 @@ def run(options: Options, tell: Tell) -> Misled:
     passes = stratified_passes(seed, 0, options.passes)
 
     def row_of(case: Case) -> CaseRow:
-        pair = as_tuned(Problem(case.plant, Aim(case.target_m_s, config.criterion)), config)
+        pair = as_tuned(Problem(case.plant, Aim(case.target_m_s, config.criterion)), config, case.label)
         transit_s = simulate(case.plant, pair.plain, passes).transit_time_s.astype(np.float64)
         found = {}
         for wrong in wrongs(case.plant, seed):

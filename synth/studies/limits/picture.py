@@ -38,7 +38,6 @@ def draw(axes: Axes, case: str, rows: Sequence[Row]) -> None:
     axes.barh(places, [1e3 * row.near.rms_m_s for row in rows], height=0.6, color=SKY)
     axes.plot([1e3 * row.rms_m_s for row in rows], places, "o", color=BLACK, markersize=4, fillstyle="none")
     for at, row in zip(places, rows, strict=True):
-        if row.near.ci95_m_s is not None:
-            axes.plot([1e3 * end for end in row.near.ci95_m_s], [at, at], color=BLACK, linewidth=1.5)
+        axes.plot([1e3 * end for end in row.near.ci95_m_s], [at, at], color=BLACK, linewidth=1.5)
     axes.axvline(1e3 * rows[0].near.rms_m_s, color=BLACK, linewidth=0.8, linestyle=":")
     axes.set_yticks(places, [row.change for row in rows], fontsize=8)

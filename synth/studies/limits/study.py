@@ -20,7 +20,8 @@ from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.problem import Problem
-from synth.simulation.closed_loop import LineController, simulate
+from synth.simulation.closed_loop import LineController, close_loop, simulate
+from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.replicates import rms_of
 from synth.simulation.stratified_passes import stratified_passes
@@ -29,7 +30,7 @@ from synth.solver.polynomial_fit import PolynomialLines
 from synth.solver.tuned_lines import tuned_lines
 from synth.studies.cases import Case, named_cases
 from synth.studies.limits.change import QUIET_M_S, Change, changes
-from synth.studies.markdown_table import MarkdownTable, span, table
+from synth.studies.markdown_table import MarkdownTable, around, table
 from synth.studies.near_target import NEAR_M_S, NearTarget, near_target
 from synth.studies.options import option
 from synth.studies.side_by_side import side_by_side
@@ -95,8 +96,8 @@ class Limits(Findings):
 
 def cell(row: Row) -> str:
     """'31.9 [31.5, 32.4]; 41, 0.08 %'."""
-    ends = "(exact)" if row.near.ci95_m_s is None else span(row.near.ci95_m_s, 1, 1e3)
-    return f"{1e3 * row.near.rms_m_s:.1f} {ends}; {1e3 * row.rms_m_s:.0f}, {100.0 * row.near.outside:.2f} %"
+    near = around(row.near.rms_m_s, row.near.ci95_m_s, 1, 1e3)
+    return f"{near}; {1e3 * row.rms_m_s:.0f}, {100.0 * row.near.outside:.2f} %"
 
 
 def run(options: Options, tell: Tell) -> Limits:
@@ -108,7 +109,7 @@ def run(options: Options, tell: Tell) -> Limits:
 
     def rows_of(case: Case) -> list[Row]:
         rows = [changed(case, change, config, passes) for change in changes(case.plant, config.fit.degree)]
-        rows.append(told(case, config, options.told_nodes, effort))
+        rows.append(told(case, config, passes, options.told_nodes, effort))
         rows.append(estimated(case, config, passes))
         tell(f"{case.name}: {len(rows)} changes")
         return rows
@@ -139,19 +140,22 @@ def controller_for(case: Case, lines: PolynomialLines) -> LineController:
 
 def simulated(case: Case, change: Change, controller: LineController, passes: RandomPasses) -> Row:
     """Errors of simulated passes on the changed plant."""
-    sample = simulate(change.plant, controller, passes)
+    return row_of(case, change.name, simulate(change.plant, controller, passes))
+
+
+def row_of(case: Case, change: str, sample: ExitSample) -> Row:
+    """Errors of a sample."""
     rms = rms_of(sample.exit_speed_m_s - case.target_m_s, sample.weight)[0]
-    return Row(case.name, change.name, rms, near_target(sample, case.target_m_s))
+    return Row(case.name, change, rms, near_target(sample, case.target_m_s))
 
 
-def told(case: Case, config: ResolvedConfig, nodes: int, effort: Effort) -> Row:
-    """Exact errors where the regulator is told the friction of every cut."""
+def told(case: Case, config: ResolvedConfig, passes: RandomPasses, nodes: int, effort: Effort) -> Row:
+    """The regulator is told the friction of every cut."""
     finer = replace(config.resolution, speed_step_m_s=min(config.resolution.speed_step_m_s, QUIET_M_S))
     design = persistent_chain(case.plant, finer)
     found = told_friction(design, Aim(case.target_m_s, free(config)), config.fit.degree, nodes, effort)
-    rms, share = found.near(case.target_m_s, NEAR_M_S)
-    near = NearTarget(rms, None, max(1.0 - share, 0.0))
-    return Row(case.name, "told the friction of every cut", found.rms_m_s(case.target_m_s), near)
+    sample = found.sample(close_loop(case.plant, case.plant.top_stage + 1), passes)
+    return row_of(case, "told the friction of every cut", sample)
 
 
 def estimated(case: Case, config: ResolvedConfig, passes: RandomPasses) -> Row:
