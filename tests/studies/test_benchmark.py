@@ -73,7 +73,7 @@ def test_vectors_are_rounded_up() -> None:
 
 
 def test_a_limit_scales_with_what_is_needed() -> None:
-    limit = Limit("loads", operations=1000, needed=250, times=Times((2.0, 4.0), (2.0, 4.0)))
+    limit = Limit("loads", operations=1000, needed=250, times=Times((3.0, 9.0), (2.0, 4.0)))
     assert limit.per_s == 500.0
     assert limit.sweep.wall_s == (0.5, 1.0)
 

@@ -32,7 +32,7 @@ def chain(plant_with: Callable[..., Plant]) -> Chain:
 
 def test_the_slope_of_a_power_is_its_exponent() -> None:
     assert Growth("nodes", (1, 2, 4, 8), (3.0, 12.0, 48.0, 192.0)).slope == pytest.approx(2.0)
-    assert Growth("nodes", (1, 2, 4), (3.0, 6.0, 12.0)).note == "1.00"
+    assert Growth("nodes", (1, 2, 4), (3.0, 6.0, 12.0)).note == "slope 1.00"
 
 
 def test_an_extra_target_is_told_over_the_first() -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from statistics import median
 from typing import TYPE_CHECKING
 
 from synth.studies.benchmark.work import SweepWork
@@ -42,18 +41,18 @@ class Limit:
     @property
     def per_s(self) -> float:
         """Operations a second at best."""
-        return self.operations / min(self.times.wall_s)
+        return self.operations / min(self.times.processor_s)
 
     @property
     def sweep(self) -> Times:
-        """How long the sweep would take by it, by round."""
-        scale = self.needed / self.operations
-        return Times(tuple(scale * s for s in self.times.wall_s), tuple(scale * s for s in self.times.processor_s))
+        """Processor time that the sweep would take by it, by round."""
+        taken = tuple(self.needed / self.operations * seconds for seconds in self.times.processor_s)
+        return Times(taken, taken)
 
 
 @dataclass(frozen=True)
 class Benchmark(Findings):
-    """All ways, in turns with the loops of the machine's limits.
+    """All ways, in turns with the loops of the machine's limits; each is one thread, so ratios are of processor times.
 
     `ways`: the first is what a tune does, the last is numpy. `largest_value_difference` over the largest value and
     `largest_line_difference_m_s`: kernels against numpy, both in float64.
@@ -73,14 +72,14 @@ class Benchmark(Findings):
         """`speed`: a row a way of solving; `limit`: a row a limit of the machine."""
         first, last = self.ways[0], self.ways[-1]
         rows = [
-            (way.name, way.times.milliseconds, three_digits(1e3 * way.times.median_processor_s),
+            (way.name, way.times.of_processor.milliseconds, three_digits(1e3 * way.times.median_s),
              f"{self.rate(way):.2e}", self.against(last, way))
             for way in self.ways
         ]  # fmt: skip
-        heads = ("", "wall ms", "processor ms", "transitions a second", "speed against numpy")
+        heads = ("", "processor ms", "wall ms", "transitions a second", "speed against numpy")
         found = [
-            (each.name, f"{each.per_s:.2e}", f"{each.needed:.2e}", three_digits(1e3 * median(each.sweep.wall_s)),
-             speed_against(first.times, each.sweep).cell)
+            (each.name, f"{each.per_s:.2e}", f"{each.needed:.2e}", three_digits(1e3 * each.sweep.median_s),
+             speed_against(first.times.of_processor, each.sweep).cell)
             for each in self.limits
         ]  # fmt: skip
         limits = ("on one core", "a second", "needed", "takes at least, ms", f"{first.name}: times that")
@@ -93,11 +92,11 @@ class Benchmark(Findings):
         """The speed of `way` against `base`, where both do the same work."""
         if way is base or way.targets != base.targets:
             return "1" if way is base else ABSENT
-        return speed_against(base.times, way.times).cell
+        return speed_against(base.times.of_processor, way.times.of_processor).cell
 
     def rate(self, way: Way) -> float:
-        """Transitions a second."""
-        return self.work.transitions * way.targets / way.times.median_s
+        """Transitions a second of processor time."""
+        return self.work.transitions * way.targets / way.times.median_processor_s
 
     def sentences(self) -> tuple[str, ...]:
         """The problem, the machine, the agreement."""

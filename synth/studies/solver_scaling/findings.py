@@ -45,7 +45,7 @@ class Growth:
         """What is told of it."""
         if self.name == TARGETS:
             return f"an extra one costs {100.0 * self.extra_over_first:.0f} % of the first"
-        return f"{self.slope:.2f}"
+        return f"slope {self.slope:.2f}"
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ class SolverScaling(Findings):
         book = [(name, times.milliseconds) for name, times in (("1", self.book.one), ("2", self.book.two))]
         predictions = [(p.label, three_digits(1e3 * p.processor_s)) for p in self.predictions]
         return {
-            "sizes": table("One solve", ("size", "processor time", "slope on logarithmic axes"), sizes),
+            "sizes": table("One solve", ("size", "processor time", "on logarithmic axes"), sizes),
             "book": table(self.book_title, ("threads", "wall time, ms"), book),
             "types": table(
                 "One solve, processor time", ("targets", "float32, ms", "float64, ms", "float32 over float64, wall"),

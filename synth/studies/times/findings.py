@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from synth.studies.markdown_table import MarkdownTable, table
@@ -72,4 +72,5 @@ class WaitingTimes(Findings):
         """Bars of the medians."""
         from synth.studies.times.picture import picture
 
-        return {"": picture([*self.commands, *self.simulated], self.machine.processor)}
+        named = [replace(each, name=f"{self.passes} passes, {each.name}") for each in self.simulated]
+        return {"": picture([*self.commands, *named], self.machine.processor)}

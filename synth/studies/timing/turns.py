@@ -28,6 +28,11 @@ class Times:
         return median(self.processor_s)
 
     @property
+    def of_processor(self) -> Times:
+        """The processor times alone: work of one thread, whatever else the machine did meanwhile."""
+        return Times(self.processor_s, self.processor_s)
+
+    @property
     def milliseconds(self) -> str:
         """'8.18 (8.10 to 8.30, n = 15)': median, least and greatest wall time."""
         low, high = 1e3 * min(self.wall_s), 1e3 * max(self.wall_s)
