@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from plant_models import EntrySpeed, Plant
+    from plant_models.library import car_names, load_car, load_position, load_weight_categories, position_names
     from synth.api import (
         FittedLines,
         Simulated,
@@ -38,11 +39,16 @@ __all__ = [
     "Problem",
     "Resolution",
     "Simulated",
+    "car_names",
     "fit",
+    "load_car",
     "load_config",
+    "load_position",
     "load_problem",
+    "load_weight_categories",
     "plot_passes",
     "plot_table",
+    "position_names",
     "predict",
     "simulate",
     "solve",
@@ -50,7 +56,10 @@ __all__ = [
     "trace",
 ]
 
+_LIBRARY = ("car_names", "load_car", "load_position", "load_weight_categories", "position_names")
+
 _HOMES = {
+    **dict.fromkeys(_LIBRARY, "plant_models.library"),
     "Aim": "synth.problem.aim",
     "Criterion": "synth.problem.criterion",
     "EntrySpeed": "plant_models",

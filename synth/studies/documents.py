@@ -69,10 +69,11 @@ def result_of(root: Path, name: str) -> Result:
 
 def listed() -> str:
     """All studies: name, question, time, page."""
-    rows = (
-        (f"`{s.name}`", s.question, s.duration, f"[{s.page.partition('.')[0]}]({s.page})" if s.page else "")
-        for s in STUDIES
-    )
+
+    def link(page: str) -> str:
+        return f"[{page.partition('.')[0].replace('-', ' ')}]({page})" if page else ""
+
+    rows = ((f"`{s.name}`", s.question, s.duration, link(s.page)) for s in STUDIES)
     return table("studies", ("study", "answers", "takes", "stands in"), rows).markdown()
 
 

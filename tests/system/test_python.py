@@ -9,9 +9,11 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import synth
@@ -126,6 +128,38 @@ def test_a_table_with_estimator_is_simulated_and_not_predicted(table: Controller
     estimator = Estimator(0.05, 0.15, 0.1, 2.0, 50.0, (0.0, 5.0), (0.0, 1.0), (0.0, 0.01))
     with pytest.raises(InputError, match="simulate it"):
         synth.predict(dataclasses.replace(table, estimator=estimator), problem)
+
+
+def arrays_in(value: Any, path: str, seen: set[int]) -> Iterator[tuple[str, np.ndarray]]:
+    """(where, array) of every array that can be reached from `value` by fields and items."""
+    if isinstance(value, np.ndarray):
+        yield path, value
+    elif id(value) not in seen:
+        seen.add(id(value))
+        if dataclasses.is_dataclass(value):
+            for name, part in vars(value).items():
+                yield from arrays_in(part, f"{path}.{name}", seen)
+        elif isinstance(value, tuple | list):
+            for i, part in enumerate(value):
+                yield from arrays_in(part, f"{path}[{i}]", seen)
+
+
+def test_nothing_on_the_way_can_be_written_to(table: ControllerTable, problem: synth.Problem) -> None:
+    """However deep: the values of a solve, a fit, a table, a simulation and a pass."""
+    solution = synth.solve(problem, synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2))
+    found = {
+        "solution": solution,
+        "lines": synth.fit(solution, 2),
+        "table": table,
+        "simulated": synth.simulate(table, problem, passes=1000),
+        "trace": synth.trace(table, problem),
+    }
+    arrays = [each for name, value in found.items() for each in arrays_in(value, name, set())]
+    assert len(arrays) > 60
+    assert [where for where, array in arrays if array.flags.writeable] == []
+    planted = dataclasses.replace(solution.lines)
+    vars(planted)["nodes_m"] = np.zeros(3)
+    assert [where for where, array in arrays_in(planted, "lines", set()) if array.flags.writeable] == ["lines.nodes_m"]
 
 
 def blocks(page: str) -> str:

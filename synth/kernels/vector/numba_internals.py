@@ -1,8 +1,9 @@
 """Everything that this program takes from the inside of numba and llvmlite, which may change without notice.
 
 No other file may import `llvmlite`, `numba.core` or the low-level part of `numba.extending`; tests/architecture holds
-that. The tests pass with numba 0.68.1 and llvmlite 0.50.0, which requirements.lock names, and pyproject.toml allows
-their minor releases alone.
+that. The tests pass with numba 0.68.1 and llvmlite 0.50.0, which requirements.lock names. With numba 0.68.0 the tests
+of packs and closed loop pass, and the coefficients of 86 tables are the same. pyproject.toml allows these minor
+releases alone.
 
 - `WITHOUT_REFERENCE_COUNTS`, an undocumented option of `njit`: without it kernels give the same bits, but slower;
 - `CACHE_READER`, the name of numba's module for cached kernels: without it `guarded` mends no damaged cache;

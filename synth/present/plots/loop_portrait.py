@@ -30,7 +30,7 @@ from synth.simulation.nominal_response import NominalResponse
 from synth.solver.tabulate import lines_of
 
 STAGE_COLOURS = (GREY, BLUE, GREEN, ORANGE, VERMILLION, PURPLE, SKY, INK)
-"""Of the stages from 0 on."""
+"""Of the stages from 0 on; they come again where there are more."""
 
 SHADE = "#f3f1e7"
 
@@ -47,9 +47,10 @@ def loop_portrait(loop: ControlLoop) -> Figure:
     target, exit_m = loop.table.target_speed_m_s, loop.plant.exit_m
     for axes in (whole, near):
         draw(axes, loop)
-    highest = max(float(response.speed_m_s.max()) for response in loop.portrait)
+    speeds = np.concatenate([response.speed_m_s for response in loop.portrait])
+    lowest, highest = min(float(speeds.min()), target - 0.8), float(speeds.max())
     dress(whole, f"{len(loop.portrait)} passes of mean friction", "path of the first axle, m", "speed, m/s")
-    whole.set(xlim=(0.0, exit_m), ylim=(max(0.0, target - 1.0), highest + 0.3))
+    whole.set(xlim=(0.0, exit_m), ylim=(max(0.0, lowest - 0.2), highest + 0.3))
     dress(near, "the same, around the commanded speed", "path of the first axle, m", "speed, m/s")
     near.set(xlim=(0.0, exit_m), ylim=(target - NEAR_M_S, target + NEAR_M_S))
     legend_below(figure, entries(loop), columns=5)
@@ -61,17 +62,22 @@ def draw(axes: Axes, loop: ControlLoop) -> None:
     path = np.linspace(*loop.table.valid.s_m, LINE_NODES)
     lines = lines_of(loop.table, path)
     for stage in range(stages_in_use(loop.table)):
-        colour = STAGE_COLOURS[stage]
+        colour = colour_of(stage)
         axes.plot(path, finite(lines.upper_m_s[stage]), "-", color=colour, linewidth=0.9, zorder=3)
         axes.plot(path, finite(lines.lower_m_s[stage]), "--", color=colour, linewidth=0.9, zorder=3)
     for response in loop.portrait:
         for stage in range(len(loop.table.stages)):
-            axes.plot(*while_in(response, stage), color=STAGE_COLOURS[stage], linewidth=2.0, alpha=0.75, zorder=4)
+            axes.plot(*while_in(response, stage), color=colour_of(stage), linewidth=2.0, alpha=0.75, zorder=4)
     for hunting in loop.hunting:
         axes.axvspan(hunting.from_m, hunting.to_m, color=SHADE, linewidth=0, zorder=0)
     axes.axhline(loop.table.target_speed_m_s, color=INK, linewidth=1.0, linestyle=(0, (4, 3)), zorder=2)
     bars = [(start, end - start) for start, end in loop.table.retarder.zones_m]
     axes.broken_barh(bars, (0.0, 0.02), transform=axes.get_xaxis_transform(), facecolor=INK, zorder=5)
+
+
+def colour_of(stage: int) -> str:
+    """The colour of passes and lines of a stage."""
+    return STAGE_COLOURS[stage % len(STAGE_COLOURS)]
 
 
 def while_in(response: NominalResponse, stage: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -84,9 +90,7 @@ def while_in(response: NominalResponse, stage: int) -> tuple[NDArray[np.float64]
 def entries(loop: ControlLoop) -> list[Line2D | Patch]:
     """What colours and strokes mean."""
     shown: list[Line2D | Patch] = [
-        Line2D(
-            [], [], color=STAGE_COLOURS[stage.k], linewidth=2.0, label=f"stage {stage.k}: {stage.pressure_kpa:g} kPa"
-        )
+        Line2D([], [], color=colour_of(stage.k), linewidth=2.0, label=f"stage {stage.k}: {stage.pressure_kpa:g} kPa")
         for stage in loop.table.stages[: stages_in_use(loop.table)]
     ]
     shown += [
