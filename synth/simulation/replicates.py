@@ -3,7 +3,7 @@
 Consecutive `REPLICATE_PASSES` passes are one replicate: independent of all others, and alike. So the spread between
 replicates is the error of the mean, whatever the strata within them and however heavy the tail, and a quantile of
 Student's law bounds it. Plain passes are replicates too. How often these intervals hold the truth is tested
-(`scripts/coverage_study`).
+(`retarder-synth study coverage`).
 """
 
 from __future__ import annotations

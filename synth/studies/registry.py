@@ -15,6 +15,13 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.accuracy_grid.study",
     ),
     Study(
+        "benchmark",
+        "How fast do the kernels of a tune solve its problem, beside numpy and the limit of the machine?",
+        30.0,
+        "speed.md",
+        "synth.studies.benchmark.study",
+    ),
+    Study(
         "book",
         "How accurate are the tables of the default book?",
         8.0,
@@ -22,11 +29,32 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.book",
     ),
     Study(
+        "controller-agreement",
+        "Does the exported C decide, choose and estimate as Python does, however it is compiled?",
+        600.0,
+        "controllers.md#how-it-was-shown",
+        "synth.studies.in_the_loop.agreement_study",
+    ),
+    Study(
+        "controller-cost",
+        "What does the exported C cost: instructions of the dearest call, bytes of code and data?",
+        300.0,
+        "controllers.md#what-it-costs",
+        "synth.studies.in_the_loop.cost_study",
+    ),
+    Study(
         "convergence",
         "How do value, lines and prediction change as the steps of the grid are halved?",
         17.0,
         "method.md#11-convergence",
         "synth.studies.convergence.study",
+    ),
+    Study(
+        "coverage",
+        "How often do the printed 95 % intervals hold the truth?",
+        1200.0,
+        "method.md#8-closed-loop",
+        "synth.studies.coverage",
     ),
     Study(
         "criteria",
@@ -64,6 +92,13 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.estimator.wrong_study",
     ),
     Study(
+        "integration-error",
+        "What do the time steps of the closed loop cost in accuracy?",
+        15.0,
+        "method.md#8-closed-loop",
+        "synth.studies.integration_error",
+    ),
+    Study(
         "interpolation",
         "What is lost by lines between two tables of a book, against a table tuned for the very speed commanded?",
         6.0,
@@ -85,6 +120,13 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.rare_events.study",
     ),
     Study(
+        "reference-problem",
+        "How fast is a neutral, published problem solved, beside scipy, QuantEcon, plain numba and numpy?",
+        120.0,
+        "benchmark.md",
+        "synth.studies.reference_problem.study",
+    ),
+    Study(
         "robustness",
         "What does a table do on another plant than it was tuned for: wrong parameters, worn parts, faulty sensors?",
         157.0,
@@ -92,11 +134,46 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.robustness.study",
     ),
     Study(
+        "software-in-the-loop",
+        "Does the compiled controller, as a process of its own, control a pass to the same bits as the simulator's?",
+        120.0,
+        "controllers.md#how-it-was-shown",
+        "synth.studies.in_the_loop.loop_study",
+    ),
+    Study(
+        "solver-scaling",
+        "What does a solve cost against each size of the problem, on more threads and in float32; what a prediction?",
+        60.0,
+        "speed.md#solving-and-predicting",
+        "synth.studies.solver_scaling.study",
+    ),
+    Study(
+        "sweep-speed",
+        "How fast does a sweep make tables, what memory does it take, and what would 10 000 tables need?",
+        150.0,
+        "sweep.md#measured",
+        "synth.studies.sweep_speed.study",
+    ),
+    Study(
+        "times",
+        "How long does a user wait: start-up, a tune with and without compiled kernels, the closed loop?",
+        360.0,
+        "speed.md",
+        "synth.studies.times.study",
+    ),
+    Study(
         "unlocked",
         "What is gained when a command may be given at every sample, also during a change of stage?",
         3480.0,
         "unlocked.md",
         "synth.studies.unlocked.study",
+    ),
+    Study(
+        "verification",
+        "What does `verify` doubt: tables whose claims are true, and tables that state another rms than theirs?",
+        120.0,
+        "verification.md",
+        "synth.studies.verification",
     ),
 )
 

@@ -1,5 +1,9 @@
-"""A slice of what scripts/fuzz_loader does at length: nearly right inputs are refused in order or read exactly."""
+"""Nearly right inputs are refused in order or read exactly.
 
+At length: FUZZ_COUNT=100000 FUZZ_SEED=7 ./scripts/test --quick tests/tuning_tables/test_fuzzed_inputs.py
+"""
+
+import os
 import warnings
 from collections import Counter
 from itertools import islice
@@ -10,16 +14,18 @@ from tests.tuning_tables.damaged_inputs import Attempt, attempts
 from tests.tuning_tables.reader_trial import Finding, outcome_of
 from tuning_tables import from_json, to_json
 
+COUNT, FIRST_SEED = int(os.environ.get("FUZZ_COUNT", "2500")), int(os.environ.get("FUZZ_SEED", "0"))
 
-@pytest.mark.parametrize("seed", range(2))
+
+@pytest.mark.parametrize("seed", range(FIRST_SEED, FIRST_SEED + 2))
 def test_nearly_right_inputs_are_refused_in_order_or_read_exactly(table, linear_table, tmp_path, seed):
     outcomes = Counter()
-    for attempt in islice(attempts(seed, [table, linear_table], tmp_path), 2500):
+    for attempt in islice(attempts(seed, [table, linear_table], tmp_path), COUNT):
         try:
             outcomes[attempt.reader, attempt.kind, outcome_of(attempt, tmp_path)] += 1
         except Finding as finding:
             pytest.fail(f"{finding}: {attempt}")
-    assert outcomes.total() == 2500
+    assert outcomes.total() == COUNT
     # The deep kinds reach beyond the checksum: some of them are tables of their own, most are not.
     for deep in (("json", "altered"), ("book", "forged")):
         assert outcomes[*deep, "read"] > 0

@@ -1,4 +1,4 @@
-"""The neutral reference problem by which the speed of the kernels is compared with other software.
+"""A neutral problem, small and published in full, by which a way of computing is compared with other software.
 
-Not part of a tune: `scripts/benchmark` and the tests use it. `docs/benchmark.md` tells what was measured.
+It is not the tool's problem, and its kernels are its own: what a tune runs is timed by the study `benchmark`.
 """

@@ -25,17 +25,24 @@ def multiply_adds(turns, factor, result):
     store(result, 0, ((a + b) + (c + d)) + ((e + g) + (h + i)) + ((j + k) + (m + n)))
 
 
+@njit(cache=True, error_model="numpy")
+def loads_a_turn(floats, shift):
+    """How many loads one turn of `loads` makes in so many floats: whole rounds of its eight chains."""
+    return (floats - shift - LANES) // (8 * LANES) * 8
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def loads(turns, shift, data, result):
-    """`turns` × 128 loads, each `shift` floats off a cache line; `data` (2080 + shift,) float32.
+    """`turns` × `loads_a_turn` loads, each `shift` floats off a cache line, through all of `data` float32.
 
     The place changes with the turn, or LLVM would keep copies of all that is loaded, on cache lines.
     """
+    length = loads_a_turn(data.shape[0], shift) * LANES
     a, b, c, d = splat(0.0), splat(0.0), splat(0.0), splat(0.0)
     e, f, g, h = splat(0.0), splat(0.0), splat(0.0), splat(0.0)
     for turn in range(turns):
         begin = shift + turn % 2 * LANES
-        for at in range(begin, begin + 128 * LANES, 8 * LANES):
+        for at in range(begin, begin + length, 8 * LANES):
             a = a + load(data, at)
             b = b + load(data, at + 1 * LANES)
             c = c + load(data, at + 2 * LANES)

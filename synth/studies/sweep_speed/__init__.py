@@ -1,0 +1,1 @@
+"""How fast a sweep makes tables, and in what memory."""

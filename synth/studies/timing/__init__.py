@@ -1,0 +1,1 @@
+"""Times of calls that are compared, and the machine that they were taken on."""

@@ -1,0 +1,92 @@
+"""The benchmark: the recursion in numpy is that of the kernels, and work is counted as by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from plant_models import Friction, Plant, RollingResistance
+from synth.problem.aim import Aim
+from synth.problem.criterion import Criterion
+from synth.problem.resolution import Resolution
+from synth.solver.backward_induction import solve_all
+from synth.solver.chain.chain import Chain, persistent_chain
+from synth.studies.benchmark.by_numpy import sweep_by_numpy
+from synth.studies.benchmark.findings import Limit
+from synth.studies.benchmark.study import apart, line_difference, value_difference, vectors_needed
+from synth.studies.benchmark.work import SweepWork, sweep_work
+from synth.studies.reference_problem.kernels.roofline import loads_a_turn
+from synth.studies.reference_problem.machine_rates import load_loop, multiply_add_loop
+from synth.studies.timing.turns import Times
+from tests.oracles.conftest import plant_with
+
+__all__ = ["plant_with"]
+
+AIMS = [Aim(1.5, Criterion()), Aim(2.5, Criterion(switching_tolerance_m2_s2=1e-4))]
+
+
+@pytest.fixture
+def chain(plant_with: Callable[..., Plant]) -> Chain:
+    """Scenarios of friction and of resistance, two noise levels, three stages."""
+    plant = plant_with(
+        stages_kpa=(0.0, 200.0, 400.0), friction=Friction(0.12, 0.05, 0.10, 1.5), resistance=RollingResistance(2.0, 0.8)
+    )
+    return persistent_chain(plant, Resolution(1.0, 0.1, friction_nodes=2, resistance_nodes=2))
+
+
+def test_numpy_and_kernels_find_the_same_values_and_lines(chain: Chain) -> None:
+    swept, exact = sweep_by_numpy(chain, AIMS), solve_all(chain, AIMS, value_type=np.float64)
+    assert np.isfinite(swept.lower_m_s).any()
+    assert np.isfinite(swept.upper_m_s).any()
+    assert value_difference(swept, exact) < 1e-12
+    assert line_difference(swept, exact) < 1e-10
+
+
+def test_a_different_recursion_is_noticed(chain: Chain) -> None:
+    """Lines for another target, and a line that is not there."""
+    swept, exact = sweep_by_numpy(chain, AIMS[::-1]), solve_all(chain, AIMS, value_type=np.float64)
+    assert value_difference(swept, exact) > 1e-3
+    assert apart(np.array([1.0, np.inf]), np.array([1.5, np.inf])) == 0.5
+    assert apart(np.array([1.0, np.inf]), np.array([1.0, -np.inf])) > 1e300
+
+
+def test_work_is_counted_as_by_hand(chain: Chain) -> None:
+    swept = sweep_by_numpy(chain, AIMS)
+    work = sweep_work(chain, swept)
+    nodes, points, reach = len(chain.drive_m_s2), len(chain.grid.speed_m_s), len(chain.entry)
+    modes, changes = len(chain.actuator.mode_stage), len(chain.landings.end_mode)
+    assert work.states == nodes * 4 * modes * 2 * (points - 1)
+    most = nodes * changes * 4 * 2 * points * 4
+    stalls = np.count_nonzero((chain.landings.travel_m < 0.0).all(axis=2))
+    assert stalls > 0
+    assert 0.5 * most < swept.landings <= most - stalls * 4 * 2 * 2, "of two levels at least one is possible"
+    assert swept.landings <= swept.groups <= 2 * swept.landings
+    assert work.transitions == swept.landings + 2 * work.states * (reach - 1)
+    assert work.products == 4 * swept.groups + work.states * (6 * (reach - 1) + 2)
+
+
+def test_vectors_are_rounded_up() -> None:
+    assert vectors_needed(SweepWork(1, 1, 5, 1), 3) == 1
+    assert vectors_needed(SweepWork(1, 1, 5, 1), 4) == 2
+
+
+def test_a_limit_scales_with_what_is_needed() -> None:
+    limit = Limit("loads", operations=1000, needed=250, times=Times((3.0, 9.0), (2.0, 4.0)))
+    assert limit.per_s == 500.0
+    assert limit.sweep.wall_s == (0.5, 1.0)
+
+
+def test_loops_of_the_machine_do_what_they_count() -> None:
+    """Ones are loaded: the sum in each lane is the number of loads over all lanes' turns."""
+    from synth.studies.reference_problem.kernels.roofline import loads
+    from synth.studies.reference_problem.scratch import Scratch
+
+    data, result = Scratch().singles("data", 1024), Scratch().singles("result", 16)
+    data[:] = 1.0
+    loads(3, 5, data, result)
+    assert result.tolist() == [3.0 * loads_a_turn(1024, 5)] * 16
+    assert loads_a_turn(1024, 5) == 56
+    assert load_loop(1024).operations % loads_a_turn(1024, 0) == 0
+    assert multiply_add_loop(2).operations == 2 * multiply_add_loop(1).operations
