@@ -94,7 +94,7 @@ STUDIES: tuple[Study, ...] = (
     Study(
         "integration-error",
         "What do the time steps of the closed loop cost in accuracy?",
-        15.0,
+        8.0,
         "method.md#8-closed-loop",
         "synth.studies.integration_error",
     ),
