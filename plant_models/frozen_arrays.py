@@ -31,12 +31,14 @@ def frozen_arrays(cls: type[_T]) -> type[_T]:
         freeze(self)
 
     def shown(self: _T) -> str:
-        parts = [f"{field.name}={brief(getattr(self, field.name))}" for field in fields(self) if field.repr]  # type: ignore[arg-type]
+        shown_fields = [field.name for field in fields(self) if field.repr]  # type: ignore[arg-type]  # a dataclass
+        parts = [f"{name}={brief(getattr(self, name))}" for name in shown_fields]
         return f"{type(self).__name__}({', '.join(parts)})"
 
-    cls.__init__ = init  # type: ignore[method-assign, assignment]
-    cls.__repr__ = shown  # type: ignore[method-assign, assignment]
-    cls.__setstate__ = restore  # type: ignore[attr-defined]
+    # A decorator changes the class; mypy forbids this to everybody.
+    cls.__init__ = init  # type: ignore[method-assign, assignment]  # see above
+    cls.__repr__ = shown  # type: ignore[method-assign, assignment]  # see above
+    cls.__setstate__ = restore  # type: ignore[attr-defined]  # see above
     return cls
 
 

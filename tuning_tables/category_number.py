@@ -26,7 +26,7 @@ def require_category_number(category: str, number: object) -> None:
         wanted = f"{KNOWN_NUMBERS[category]}, its number in every table"
     else:
         whole = isinstance(number, int) and not isinstance(number, bool)
-        allowed = whole and LEAST_OWN <= number <= LARGEST_OWN  # type: ignore[operator]
+        allowed = whole and LEAST_OWN <= number <= LARGEST_OWN  # type: ignore[operator]  # `whole`: an int
         wanted = f"a whole number in [{LEAST_OWN}, {LARGEST_OWN}], as it is a category of your own"
     if not allowed:
         raise InvalidTable(

@@ -44,14 +44,14 @@ def require_finite(value: object, key: str) -> None:
 def require_between(value: object, key: str, smallest: float, largest: float = math.inf) -> None:
     """`value` is finite and smallest <= value <= largest."""
     require_finite(value, key)
-    if not smallest <= value <= largest:  # type: ignore[operator]
+    if not smallest <= value <= largest:  # type: ignore[operator]  # a number, as it is finite
         raise InvalidTable(f"{key} is {value!r}, but it must lie in [{smallest!r}, {largest!r}].")
 
 
 def require_positive(value: object, key: str) -> None:
     """`value` is finite and > 0."""
     require_finite(value, key)
-    if not value > 0:  # type: ignore[operator]
+    if not value > 0:  # type: ignore[operator]  # a number, as it is finite
         raise InvalidTable(f"{key} is {value!r}, but it must be greater than 0.")
 
 
@@ -89,6 +89,6 @@ def _is_number(value: object) -> bool:
 
 def _is_finite(value: object) -> bool:
     try:
-        return _is_number(value) and math.isfinite(value)  # type: ignore[arg-type]
+        return _is_number(value) and math.isfinite(value)  # type: ignore[arg-type]  # a number
     except OverflowError:  # a whole number beyond the doubles
         return False

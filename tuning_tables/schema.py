@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Final
+from typing import Any, Final
 
 from tuning_tables.atomic_file import write_atomically
 from tuning_tables.category_number import KNOWN_NUMBERS, LARGEST_OWN, LEAST_OWN
@@ -82,15 +82,14 @@ def write_schema(path: str | os.PathLike[str]) -> None:
     write_atomically(path, (json.dumps(table_schema(), indent=1) + "\n").encode("utf-8"))
 
 
-def _object(**properties: object) -> dict[str, dict[str, object]]:
+def _object(**properties: object) -> dict[str, Any]:
     """All `properties` and no others; all are required."""
-    members: dict[str, object] = {
+    return {
         "type": "object",
         "properties": dict(properties),
         "required": list(properties),
         "additionalProperties": False,
     }
-    return members  # type: ignore[return-value]
 
 
 def _array(items: object, fewest: int, most: int | None = None) -> dict[str, object]:

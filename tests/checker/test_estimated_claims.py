@@ -58,10 +58,10 @@ def honest_by_chance(pool: Passes, table: Table, validated: int, predicted: int)
     for _ in range(2000):
         one, other = (rng.choice(squares, count, p=law) for count in (validated, predicted))
         rms, half = math.sqrt(one.mean()), 1.96 * one.std() / one.mean() / 2.0 / math.sqrt(validated)
-        figures = {"validated_rms_m_s": rms, "passes": validated, "predicted_rms_m_s": math.sqrt(other.mean())}
         interval = (rms * math.exp(-half), rms * math.exp(half))
         tables.append(dataclasses.replace(
-            table, **figures, validated_ci95_m_s=interval, predicted_passes=predicted, bias_m_s=0.0
+            table, validated_rms_m_s=rms, passes=validated, validated_ci95_m_s=interval,
+            predicted_rms_m_s=math.sqrt(other.mean()), predicted_passes=predicted, bias_m_s=0.0,
         ))  # fmt: skip
     return tables
 

@@ -49,8 +49,9 @@ def random_samples(chance: Random, length_m: float) -> list[tuple[float, float, 
     odd = [math.nan, math.inf, -math.inf, -0.0, -1.0, 5e-324, 1e-40, 39.99, 40.0, 40.01, 2000.5, 1e39, 1e300]
     wild, s, v, samples = chance.choice([0.0, 0.05, 0.4]), chance.choice([0.0, -2.0]), chance.uniform(0.0, 9.0), []
     for _ in range(100):
-        sample = [s, v + chance.gauss(0.0, 0.1), chance.uniform(0.0, 600.0)]
-        samples.append(tuple(chance.choice(odd) if chance.random() < wild else x for x in sample))
+        sample = (s, v + chance.gauss(0.0, 0.1), chance.uniform(0.0, 600.0))
+        path, speed, kpa = (chance.choice(odd) if chance.random() < wild else x for x in sample)
+        samples.append((path, speed, kpa))
         s, v = s + chance.choice([0.0, length_m / 90.0, 1e-4, -0.1, 19.0]), max(0.0, v + chance.gauss(0.0, 0.3))
     return samples
 
@@ -69,8 +70,8 @@ def test_it_is_that_of_the_controller_bit_for_bit() -> None:
         for s, v, p in random_samples(chance, estimator.s_m[-1]):
             with np.errstate(all="ignore"):
                 expected = observe(estimator.parameters, estimator.work, state, s, v, p)
-            numbers = (own.observe(s, v, p), float(own.begun), own.s, own.v, own.factor)
-            numbers += (own.speed_variance, own.covariance, own.factor_variance, own.unseen)
+            numbers = [own.observe(s, v, p), float(own.begun), own.s, own.v, own.factor]
+            numbers += [own.speed_variance, own.covariance, own.factor_variance, own.unseen]
             wanted = [np.float32(expected), *state]
             assert [word_of(x) for x in numbers] == [word_of(float(x)) for x in wanted]
             clamped += own.factor in (float(np.float32(0.3)), float(np.float32(1.9)))

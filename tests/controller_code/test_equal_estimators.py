@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -33,7 +34,8 @@ def with_entry(key: str, place: int, value: float) -> Estimator:
     """The usual estimator with one entry of a row changed."""
     row = list(getattr(USUAL, key))
     row[place] = value
-    return replace(USUAL, **{key: tuple(row)})
+    changes: dict[str, Any] = {key: tuple(row)}  # which field, `key` alone tells
+    return replace(USUAL, **changes)
 
 
 UNLIKE: dict[str, Estimator | None] = {
@@ -101,6 +103,7 @@ def test_structured_text_agrees_in_every_case(pairs: TableBook) -> None:
                      Commanded_m_s=np.float32(BETWEEN_M_S), Table=table)  # fmt: skip
         choice = pairs.choose("Л", axles_of(name), BETWEEN_M_S)
         assert selector["STATUS"].value == choice.status, name
+        assert choice.table is not None
         estimator = choice.table.estimator
         assert estimator is not None
         assert table["TOUCH_KPA"].value == np.float32(estimator.touch_pressure_kpa)

@@ -21,7 +21,8 @@ from synth.studies.in_the_loop.controller_process import (
 )
 from tests.controller_code.conftest import Tool
 from tuning_tables import InvalidTable, decide_for, from_json, read_book, to_json, write_book
-from tuning_tables.c_source import c_files, hex_float
+from tuning_tables.c_literals import hex_float
+from tuning_tables.c_source import c_files
 from tuning_tables.export_prefix import RETARDER
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 from tuning_tables.table_block import block_of, block_size

@@ -59,7 +59,7 @@ def new(same_book: TableBook, tmp_path: Path) -> Path:
     """The same book exported today."""
     folder = tmp_path / "new"
     folder.mkdir()
-    for name, content in (c_files(same_book) | st_files(same_book)).items():
+    for name, content in {**c_files(same_book), **st_files(same_book)}.items():
         (folder / name).write_bytes(content)
     return folder
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
@@ -81,13 +82,13 @@ def test_every_name_that_the_linker_sees_has_the_prefix(tmp_path: Path, tool: To
 
 
 @pytest.mark.parametrize("export", [c_files, st_files, st_unit_files])
-def test_the_default_prefix_changes_no_byte(export) -> None:
+def test_the_default_prefix_changes_no_byte(export: Callable[..., Mapping[str, bytes]]) -> None:
     for book in POSITIONS.values():
         assert export(book, ExportPrefix("retarder")) == export(book)
 
 
 @pytest.mark.parametrize("export", [c_files, st_files, st_unit_files])
-def test_every_name_has_the_prefix_and_no_comment_loses_an_id(export) -> None:
+def test_every_name_has_the_prefix_and_no_comment_loses_an_id(export: Callable[..., Mapping[str, bytes]]) -> None:
     book = sample_book()
     odd = replace(book.tables[0], id="RETARDER_LOAD retarder_x")
     plain, named = (export(TableBook((odd, *book.tables[1:])), prefix) for prefix in (ExportPrefix(), PARK))

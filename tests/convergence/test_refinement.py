@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,7 +45,8 @@ def solved(t: Chain) -> float:
 def series(plant: Plant, **levels: tuple[float, ...]) -> list[Chain]:
     """Chain for several values of one field of the resolution."""
     ((name, values),) = levels.items()
-    return [persistent_chain(plant, replace(BASE, **{name: value})) for value in values]
+    changes: list[dict[str, Any]] = [{name: value} for value in values]  # float or int, as the field is
+    return [persistent_chain(plant, replace(BASE, **change)) for change in changes]
 
 
 def orders(name: str, rms: list[float]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

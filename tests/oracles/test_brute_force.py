@@ -176,7 +176,11 @@ class BruteForce:
                 total += 0.5 * p * interpolate(self.value[i, self.nodes, h, m], energy / cell_e)
                 continue
             slope = self.slope(i, at, h, m)
-            ahead = self.after_mixing(i, at + 1, h, m, lambda q, at=at: self.value[i, at + 1, h, q])
+
+            def behind(q: int, n: int = at + 1) -> Row:
+                return self.value[i, n, h, q]
+
+            ahead = self.after_mixing(i, at + 1, h, m, behind)
             forth = interpolate(ahead, (energy + slope * (1.0 - x) * step) / cell_e)
             if at == n:
                 total += 0.5 * p * forth

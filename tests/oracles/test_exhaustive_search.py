@@ -72,7 +72,11 @@ class Search:
             samples = math.ceil((self.delay + history.duration_s) / self.period - 1e-9)
             fine = np.maximum((np.arange(samples * round(self.period / SUBSTEP_S)) + 0.5) * SUBSTEP_S - self.delay, 0.0)
             row = history.pressure_kpa(fine)
-            end = self.run(s, v, lambda t, row=row: float(row[int(t / SUBSTEP_S)]), samples * self.period)
+
+            def sampled_kpa(t: float, row: NDArray[np.float64] = row) -> float:
+                return float(row[int(t / SUBSTEP_S)])
+
+            end = self.run(s, v, sampled_kpa, samples * self.period)
             costs.append(self.cost(*end, wanted, history.end_kpa))
         return min(costs)
 

@@ -9,11 +9,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from plant_models import Plant, PressingForce
 from synth.problem.resolution import Resolution
 from synth.solver.chain.chain import Chain, persistent_chain
+
+Array = NDArray[np.float64]
 
 STALLED = -1.0
 
@@ -62,21 +65,22 @@ def ride(
             axles = sum(zone[0] <= s + 1e-9 - x < zone[1] for x in cut.axle_offsets_m)
             k = axles * force.slope_kn_per_kpa(cut, axles) / cut.inertia_t if axles else 0.0
 
-            def slope(t: float, y: list[float], k: float = k) -> list[float]:
-                return [y[1], free - factor * k * max(0.0, kpa(t) - force.touch_pressure_kpa)]
+            def slope(t: float, y: Array, k: float = k) -> list[float]:
+                return [float(y[1]), free - factor * k * max(0.0, kpa(t) - force.touch_pressure_kpa)]
 
-            def at_break(t: float, y: list[float], ahead: float = ahead) -> float:
-                return y[0] - ahead
+            def at_break(t: float, y: Array, ahead: float = ahead) -> float:
+                return float(y[0]) - ahead
 
-            def at_rest(t: float, y: list[float]) -> float:
-                return y[1]
+            def at_rest(t: float, y: Array) -> float:
+                return float(y[1])
 
-            at_break.terminal = at_rest.terminal = True  # type: ignore[attr-defined]
+            at_break.terminal = at_rest.terminal = True  # type: ignore[attr-defined]  # as scipy wants it
             part = solve_ivp(
                 slope, (time, min(end, duration_s)), [s, v], events=[at_break, at_rest], rtol=1e-9, atol=1e-11,
                 max_step=0.02,
             )  # fmt: skip
             time, (s, v) = float(part.t[-1]), (float(y) for y in part.y[:, -1])
+            assert part.t_events is not None
             if part.t_events[1].size:
                 return STALLED, 0.0
             if part.t_events[0].size:

@@ -42,7 +42,8 @@ def sampled(rows: Array, position: Array) -> Array:
     linear = take(0) + x * (take(1) - take(0))
     cubic = -x * (x - 1) * (x - 2) / 6 * take(-1) + (x + 1) * (x - 1) * (x - 2) / 2 * take(0)
     cubic += -(x + 1) * x * (x - 2) / 2 * take(1) + (x + 1) * x * (x - 1) / 6 * take(2)
-    return np.where((i < 2) | (i == last - 1), linear, cubic)
+    found: Array = np.where((i < 2) | (i == last - 1), linear, cubic)
+    return found
 
 
 class Published:
@@ -174,12 +175,15 @@ class Published:
 def work_shares(profile: Array, quanta: int) -> Array:
     """Share of the brake work in each of `quanta` equal parts of the time of `profile`."""
     work = np.concatenate([[0.0], np.cumsum(profile if profile.sum() > 0 else np.ones_like(profile))])
-    return np.diff(np.interp(np.linspace(0, len(profile), quanta + 1), np.arange(len(profile) + 1), work)) / work[-1]
+    at_ends = np.interp(np.linspace(0, len(profile), quanta + 1), np.arange(len(profile) + 1), work)
+    shares: Array = np.diff(at_ends) / work[-1]
+    return shares
 
 
 def chance(z: Array) -> Array:
     """Φ(z), 0 or 1 beyond six standard deviations."""
-    return np.where(np.abs(z) > 6.0, (z > 0).astype(float), norm.cdf(z))
+    shares: Array = np.where(np.abs(z) > 6.0, (z > 0).astype(float), norm.cdf(z))
+    return shares
 
 
 def threshold(gain: Array, v: Array, upwards: bool) -> float:
@@ -197,7 +201,7 @@ def threshold(gain: Array, v: Array, upwards: bool) -> float:
     j = best + first
     low, high = gain[j - 1] - ROUNDING, gain[j] - ROUNDING
     if (low < 0) == (high < 0):
-        return 0.5 * (v[j - 1] + v[j])
+        return 0.5 * float(v[j - 1] + v[j])
     return float(v[j - 1] + (v[j] - v[j - 1]) * low / (low - high))
 
 

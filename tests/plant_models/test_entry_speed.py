@@ -1,6 +1,7 @@
 """Entry speeds: each law against its distribution function, its limits, and what it refuses."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -74,6 +75,6 @@ def test_one_bin_is_the_uniform_law() -> None:
         (lambda: HistogramEntrySpeed((4.0, 25.0), (1.0,)), "entry: edges_m_s is 25.0; .*from 0.3 to 20"),
     ],
 )
-def test_impossible_laws_are_refused(build, said: str) -> None:  # type: ignore[no-untyped-def]
+def test_impossible_laws_are_refused(build: Callable[[], object], said: str) -> None:
     with pytest.raises(PlantError, match=said):
         build()

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numba import njit
+from numpy.typing import NDArray
 
 from plant_models import Plant
 from synth.kernels.vector import packs
@@ -23,10 +24,22 @@ from synth.solver.chain.chain import Chain, persistent_chain
 from synth.solver.evaluation import Evaluation
 from synth.solver.policy_density import exit_density
 
+Doubles = NDArray[np.float64]
+Singles = NDArray[np.float32]
+Integers = NDArray[np.int64]
+
 CRITERION = Criterion(1.0, 1e-5)
 
 
-def everything(numbers, singles, places, apart, kept, kept_singles, out):  # type: ignore[no-untyped-def]  # numba infers the types
+def everything(
+    numbers: Doubles,
+    singles: Singles,
+    places: Integers,
+    apart: Integers,
+    kept: Integers,
+    kept_singles: Singles,
+    out: Doubles,
+) -> None:
     """Every function and operator of `packs` once; the results in `out`."""
     a, b = packs.load8(numbers, 3), packs.load8(numbers, 17)
     where = packs.load8(places, 1)
@@ -66,7 +79,8 @@ def test_compiled_packs_are_the_plain_ones_to_the_bit(seed: int) -> None:
     singles, apart = rng.uniform(-2.0, 2.0, 40).astype(np.float32), rng.permutation(16)
     compiled, plain, kept, plainly = np.zeros(151), np.zeros(151), np.zeros(9, np.int64), np.zeros(9, np.int64)
     rounded, plainly_rounded = np.zeros(18, np.float32), np.zeros(18, np.float32)
-    njit(everything)(numbers, singles, places, apart, kept, rounded, compiled)
+    compiled_everything: Any = njit(everything)
+    compiled_everything(numbers, singles, places, apart, kept, rounded, compiled)
     everything(numbers, singles, places, apart, plainly, plainly_rounded, plain)
     np.testing.assert_array_equal(compiled, plain)
     np.testing.assert_array_equal(kept, plainly)

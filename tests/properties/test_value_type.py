@@ -31,7 +31,7 @@ def pairs(
 
 def test_values_are_those_of_float64_but_for_some_roundings(pairs: list[tuple[Solution, Solution]]) -> None:
     for single, double in pairs:
-        assert (single.values.dtype, double.values.dtype) == (np.float32, np.float64)
+        assert (single.values.dtype, double.values.dtype) == (np.dtype(np.float32), np.dtype(np.float64))
         error = np.abs(single.values - double.values)
         assert 0.0 < error.max() < 2e-6 * double.values.max()
 

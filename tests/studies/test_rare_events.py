@@ -26,12 +26,15 @@ TOY = PassCoordinates(np.full(TOY_CELLS, 0.5))
 TOY_DIRECTION = np.array([-0.6, -0.4, 0.6, -math.sqrt(1.0 - 0.88)])
 """Unit vector: the toy score is standard normal, so P(score > x) = Φ(−x)."""
 
-TILTED = GaussianComponent(np.array([-1.0, 0.5, 0.3, 0.0]), np.linalg.cholesky(0.5 * np.eye(4) + 0.2))
+TILTED = GaussianComponent(
+    np.array([-1.0, 0.5, 0.3, 0.0]), np.asarray(np.linalg.cholesky(0.5 * np.eye(4) + 0.2), float)
+)
 
 
 def toy_score(passes: RandomPasses) -> NDArray[np.float64]:
     """A linear limit state in the four coordinates."""
-    return TOY.of(passes) @ TOY_DIRECTION
+    score: NDArray[np.float64] = TOY.of(passes) @ TOY_DIRECTION
+    return score
 
 
 @pytest.fixture(scope="module")

@@ -47,8 +47,8 @@ class Counted(Findings):
         return {"rows": table("rows", ("case", "low"), ((row.case, f"{row.ends[0]:g}") for row in self.rows))}
 
 
-METHOD = Method(Options, Options(1), Counted, lambda options, tell: FOUND)
 FOUND = Counted((Row("a [b, c] ü", (0.1, 1e-17), None), Row("d", (-1.0, 2.0), 0.5)), {"rms": 1.0 / 3.0})
+METHOD = Method(Options, Options(1), Counted, lambda options, tell: FOUND)
 
 
 @pytest.fixture

@@ -7,11 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from plant_models import Plant
 from synth.book.comparison.baselines import energy_rule
 from synth.simulation.closed_loop import LineController, TableController, close_loop, simulate, trace
 from synth.simulation.exit_statistics import clopper_pearson
+from synth.simulation.passes import PassTrace
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.studies.robustness.sensor_fault import (
     Bias,
@@ -60,14 +62,15 @@ def test_no_command_is_given_in_a_drop_out(plant: Plant, controller: TableContro
     for i in range(20):
         healthy, faulty = trace(plant, controller, passes, i), trace(plant, controller, blind, i)
 
-        def commands_s(found: object) -> np.ndarray:
-            return found.time_s[1:][np.diff(found.stage) != 0]  # type: ignore[attr-defined]
+        def commands_s(found: PassTrace) -> NDArray[np.float64]:
+            changes: NDArray[np.bool_] = np.diff(found.stage) != 0
+            return found.time_s[1:][changes]
 
         times = commands_s(faulty)
         assert not np.any((times >= start) & (times < start + length))
         assert np.array_equal(times[times < start], commands_s(healthy)[commands_s(healthy) < start])
-        commanded += np.count_nonzero((commands_s(healthy) >= start) & (commands_s(healthy) < start + length))
-        later += np.count_nonzero(times >= start + length)
+        commanded += int(np.count_nonzero((commands_s(healthy) >= start) & (commands_s(healthy) < start + length)))
+        later += int(np.count_nonzero(times >= start + length))
     assert commanded > 10  # the fault had something to hide
     assert later > 10  # and the controller comes back
 

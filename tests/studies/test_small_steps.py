@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -63,7 +64,7 @@ def test_every_criterion_differs_from_the_default_in_one_thing() -> None:
         assert changed == {"default": [], "over-speed ×4": ["terminal"]}.get(name, ["requirement"])
 
 
-CASE = {
+CASE: dict[str, Any] = {
     "label": "gondola-4-66t",
     "target_speed_m_s": 2.0,
     "feasible": False,
@@ -86,7 +87,7 @@ def test_a_row_of_the_book_is_that_of_its_summary() -> None:
     assert short_cell(row) == "0.1382 [0.1354, 0.1412]°; 182"
     assert short_cell(replace(row, feasible=True)) == "0.1382 [0.1354, 0.1412]; 182"
     assert (row.honesty.value, row.honesty.ci95) == (1.01, (0.99, 1.03))
-    assert row.baseline_rms == measure(CASE["comparison"]["energy rule"], "rms_m_s")  # type: ignore[index]
+    assert row.baseline_rms == measure(CASE["comparison"]["energy rule"], "rms_m_s")
 
 
 def test_a_wrong_gauge_scales_the_brake_work_and_nothing_else() -> None:

@@ -21,7 +21,7 @@ def test_rates_are_those_of_the_whole_time() -> None:
     assert FOUND.made == 32
     assert FOUND.busy == 0.5
     assert FOUND.minutes_for_many == pytest.approx(2500.0 / 60.0)
-    told = dict(FOUND.tables()["sweep"].rows)
+    told = {row[0]: row[1] for row in FOUND.tables()["sweep"].rows}
     assert told["rate"] == "240 tables a minute; 10000 would take 42 minutes"
     assert told["memory of a worker"] == "300 MiB at most; 0.50 to 0.75 of the estimate"
 

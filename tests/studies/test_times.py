@@ -58,8 +58,8 @@ def test_a_time_is_told_with_its_extremes() -> None:
 def trace(exit_m_s: float, stages: list[int]) -> PassTrace:
     n = len(stages)
     return PassTrace(
-        time_s=np.arange(n) * 0.1,
-        path_m=np.arange(n) * 1.0,
+        time_s=np.arange(float(n)) * 0.1,
+        path_m=np.arange(float(n)),
         speed_m_s=np.full(n, exit_m_s),
         overpressure_kpa=np.zeros(n),
         stage=np.array(stages),

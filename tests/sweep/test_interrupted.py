@@ -19,7 +19,11 @@ def test_a_killed_sweep_resumes_to_the_same_bytes(config: Path, serial: Path, tm
     out, rng = tmp_path / "out", random.Random(20261121)
     for done in (0, 1, 2):
         sweep = begin("sweep", config, "-o", out, "--workers", "1")
-        wait_until(lambda done=done: len(events(out, DONE)) >= done and len(events(out, STARTED)) > done, sweep)
+
+        def under_way(done: int = done) -> bool:
+            return len(events(out, DONE)) >= done and len(events(out, STARTED)) > done
+
+        wait_until(under_way, sweep)
         time.sleep(rng.uniform(0.0, 0.3))
         kill_and_reap(sweep)
     before = {event["unit"] for event in events(out, DONE)}

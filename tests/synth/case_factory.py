@@ -169,7 +169,7 @@ def make_trace(plant: Plant, target: float, factor: float) -> PassTrace:
     speed = np.maximum(6.0 - 0.25 * factor * s, target)
     time = np.concatenate([[0.0], np.cumsum(np.diff(s) / speed[1:])])
     stage: NDArray[np.int64] = np.where(speed > target, plant.top_stage, 0).astype(np.int64)
-    return PassTrace(time, s, speed, 120.0 * stage, stage, speed + 0.01, False)
+    return PassTrace(time, s, speed, 120.0 * stage.astype(float), stage, speed + 0.01, False)
 
 
 def make_table(label: str, plant: Plant, target: float) -> ControllerTable:

@@ -176,9 +176,9 @@ def oracle_exit_speed(plant: Plant, loop: ClosedLoop, draws: Draws, followed: Pa
             return y[1], free[cell] - brake[cell] * overpressure(t)
 
         def edge(t: float, y: NDArray[np.float64], cell: int = cell) -> float:
-            return y[0] - edges[cell + 1]
+            return float(y[0] - edges[cell + 1])
 
-        edge.terminal, edge.direction = True, 1.0  # type: ignore[attr-defined]
+        edge.terminal, edge.direction = True, 1.0  # type: ignore[attr-defined]  # as scipy wants it
         # Short first steps: an event that a step jumps over twice is not seen.
         first = min(1e-3, 0.5 * (until - time))
         solved = solve_ivp(

@@ -15,7 +15,7 @@ from plant_models import Plant, RollingResistance, TrackProfile
 from synth.book.comparison.baselines import energy_rule, threshold_with_lead
 from synth.configuration.config_file import load_config
 from synth.kernels.loop import closed_loop as kernel
-from synth.kernels.loop.closed_loop_lanes import LANES
+from synth.kernels.loop.lane_places import LANES
 from synth.simulation.closed_loop import ClosedLoop, Controller, LineController, TableController, close_loop
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses, random_passes
@@ -145,9 +145,10 @@ def exits_of_a_few_passes() -> str:
     """Bytes of what twelve passes of the default book do under three laws."""
     _, plant = load_config(None).plants()[-1]  # all five stages
     loop, rng, n = close_loop(plant, plant.top_stage + 1), np.random.default_rng(5), 12
-    uniform = {name: rng.random(n) for name in ("entry_u", "phase_u", "resistance_u")}
-    normal = {name: rng.standard_normal((n, 512), dtype=np.float32) for name in ("path_z", "noise_z")}
-    draws = loop.draws(RandomPasses(cut_z=rng.standard_normal(n), weight=np.ones(n), **uniform, **normal))
+    entry_u, phase_u, resistance_u = (rng.random(n) for _ in range(3))
+    path_z, noise_z = (rng.standard_normal((n, 512), dtype=np.float32) for _ in range(2))
+    cut_z = rng.standard_normal(n)
+    draws = loop.draws(RandomPasses(cut_z, entry_u, phase_u, resistance_u, path_z, noise_z, np.ones(n)))
     table = TableController(wavy_table(plant, 3.0))
     laws = (table, threshold_with_lead(loop, 3.0, 3, 0.1, 0.0), energy_rule(loop, 3.0, 4, 0.8, 0.15, 0.3, 0.15))
     return "".join(array.tobytes().hex() for law in laws for array in vars(loop.run(law, draws)).values())

@@ -82,7 +82,7 @@ def test_an_id_is_no_path() -> None:
 def test_only_the_summary_of_the_same_configuration_counts() -> None:
     table = make_case().table
     cases = [{"id": table.id, "feasible": False}]
-    summary = {"generator": {"config_sha256": table.generator.config_sha256}, "cases": cases}
+    summary: dict[str, object] = {"generator": {"config_sha256": table.generator.config_sha256}, "cases": cases}
     assert is_infeasible(table, summary)
     assert not is_infeasible(table, {**summary, "generator": {"config_sha256": "0"}})
     assert not is_infeasible(table, {**summary, "cases": [{"id": "other", "feasible": False}]})

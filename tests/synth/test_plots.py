@@ -160,7 +160,9 @@ def test_bins_and_limits_are_the_same_in_every_panel(cases: list[CaseResult]) ->
     assert edges[-1] > 6.6
     assert np.abs(edges - 3.0).min() == 0.0
     for axes in exit_density(cases[:2]).axes:
-        dashed = sorted(float(line.get_xdata()[0]) for line in axes.get_lines() if line.get_linestyle() == "--")
+        dashed = sorted(
+            float(np.asarray(line.get_xdata())[0]) for line in axes.get_lines() if line.get_linestyle() == "--"
+        )
         assert len(dashed) == 2
         assert dashed[1] - dashed[0] == pytest.approx(0.6)
         assert axes.get_xlim()[0] < dashed[0] < dashed[1] < axes.get_xlim()[1]

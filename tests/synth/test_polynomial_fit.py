@@ -113,8 +113,8 @@ def test_a_polish_that_opening_spoils_leaves_the_lines_as_they_were(
     at_moved = moved.at(nodes).upper_m_s
 
     def evaluate(lines: SwitchingLines) -> tuple[float, np.ndarray, np.ndarray]:
-        cost, *gradient = exact(lines)
-        return (error if np.array_equal(lines.upper_m_s, at_moved) else cost, *gradient)
+        cost, by_lower, by_upper = exact(lines)
+        return error if np.array_equal(lines.upper_m_s, at_moved) else cost, by_lower, by_upper
 
     monkeypatch.setattr(polynomial_fit, "opened", lambda lines: moved)
     result = polish(fit.lines, fit.curvature, nodes, evaluate, 25)
@@ -129,7 +129,7 @@ def test_polish_ends_where_the_projected_gradient_is_small(design: Chain, fit: F
     gains = []
     for lines in (fit.lines, best):
         cost, by_lower, by_upper = evaluate(lines.at(design.grid.path_m))
-        matrix = np.polynomial.legendre.legvander(2 * design.grid.path_m[:-1] / lines.exit_m - 1, 3)
+        matrix = np.asarray(np.polynomial.legendre.legvander(2 * design.grid.path_m[:-1] / lines.exit_m - 1, 3), float)
         free = np.nonzero(lines.has_line)
         gradient = np.stack([by_lower @ matrix, by_upper @ matrix], axis=1)[free] / cost
         scale = whitening(fit.curvature[free], matrix, cost)

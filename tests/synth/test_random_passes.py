@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from synth.kernels.loop.normal_numbers import normal_pairs
 from synth.simulation.random_passes import NOISE_SAMPLES, PATH_CELLS, RandomPasses, random_passes
@@ -46,7 +47,14 @@ def test_shapes_laws_and_read_only(row: RandomPasses) -> None:
 
 
 def test_arrays_are_independent_of_each_other(row: RandomPasses) -> None:
-    columns = [row.cut_z, row.entry_u, row.phase_u, row.resistance_u, row.path_z[:, 0], row.noise_z[:, 0]]
+    columns: list[NDArray[np.floating]] = [
+        row.cut_z,
+        row.entry_u,
+        row.phase_u,
+        row.resistance_u,
+        row.path_z[:, 0],
+        row.noise_z[:, 0],
+    ]
     correlation = np.corrcoef(columns)
     assert np.abs(correlation - np.eye(len(columns))).max() < 0.08
 

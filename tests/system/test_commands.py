@@ -6,6 +6,7 @@ import hashlib
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -22,8 +23,9 @@ C_FILES = {
 }  # fmt: skip
 
 
-def summary_of(directory: Path) -> dict:
-    return json.loads((directory / "summary.json").read_bytes())
+def summary_of(directory: Path) -> dict[str, Any]:
+    summary: dict[str, Any] = json.loads((directory / "summary.json").read_bytes())
+    return summary
 
 
 def test_tune_leaves_what_the_contract_says(tuned_once: tuple[Path, int]) -> None:

@@ -32,8 +32,8 @@ def tables() -> list[ControllerTable]:
 
 def interval(found: object, name: str) -> tuple[float, tuple[float, float]]:
     """Figure `name` of statistics, and its interval."""
-    value = vars(found).get(name, vars(found).get(f"{name}_m_s"))
-    return value, vars(found).get(f"{name}_ci95", vars(found).get(f"{name}_ci95_m_s"))
+    figures = {key.removesuffix("_m_s"): value for key, value in vars(found).items()}
+    return figures[name], figures[f"{name}_ci95"]
 
 
 @pytest.mark.parametrize("path", [TABLES[0], TABLES[3]], ids=["22 t to 2 m/s", "52 t to 2 m/s"])

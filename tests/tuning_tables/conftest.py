@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import pytest
 
@@ -18,8 +17,7 @@ from tuning_tables import (
     ValidRange,
     round_coefficients,
 )
-
-MakeTable = Callable[..., ControllerTable]
+from tuning_tables.table_book import Line
 
 
 @pytest.fixture(scope="session")
@@ -71,10 +69,10 @@ def estimated_table(linear_table: ControllerTable) -> ControllerTable:
 
 
 @pytest.fixture(scope="session")
-def crossing(table: ControllerTable) -> Callable[[tuple[float, ...], tuple[float, ...], tuple[float, float]], Any]:
+def crossing(table: ControllerTable) -> Callable[[Line, Line, tuple[float, float]], ControllerTable]:
     """A function that builds a three-stage table whose middle stage has the given lower and upper line."""
 
-    def make(lower: tuple[float, ...], upper: tuple[float, ...], s_m: tuple[float, float]) -> ControllerTable:
+    def make(lower: Line, upper: Line, s_m: tuple[float, float]) -> ControllerTable:
         return replace(
             table,
             degree=len(lower) - 1,

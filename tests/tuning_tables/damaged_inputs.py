@@ -11,7 +11,7 @@ import json
 import random
 import re
 import struct
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -154,7 +154,7 @@ def _places(value: Any) -> Iterator[tuple[Any, Any]]:
 
 
 def _value(rng: random.Random, depth: int) -> Any:
-    makers = [
+    makers: list[Callable[[], Any]] = [
         lambda: rng.choice((None, True, False)),
         lambda: rng.choice(NUMBERS),
         lambda: rng.choice(TEXTS),

@@ -1,15 +1,21 @@
 """Books that are wrong although every sum in them is right: what a careless or hostile writer might leave."""
 
+from collections.abc import Callable
+from pathlib import Path
+
 import h5py
 import numpy as np
+import numpy.typing as npt
 
 from tuning_tables.book_columns import PLAIN, WITH_ESTIMATORS
 from tuning_tables.canonical import canonical_json
 from tuning_tables.payload import payload_sha256
 from tuning_tables.seal import seal_of
 
+Edit = Callable[[h5py.File], None]
 
-def forge(path, edit):
+
+def forge(path: Path, edit: Edit) -> None:
     """Apply `edit` to the open file of the book at `path`, then make payload_sha256 and seal right again."""
     with h5py.File(path, "r+") as file:
         edit(file)
@@ -17,13 +23,13 @@ def forge(path, edit):
     reseal(path)
 
 
-def reseal(path):
+def reseal(path: Path) -> None:
     """End the file at `path` with a seal that fits all before it, whatever stands there."""
     body = path.read_bytes()
     path.write_bytes(body + seal_of(body))
 
 
-def put(file, name, values):
+def put(file: h5py.File, name: str, values: npt.ArrayLike) -> None:
     """Replace the dataset `name` by one that holds `values` and is stored, named and measured as the export does it."""
     values = np.asarray(values)
     attributes = dict(file[name].attrs)
@@ -36,7 +42,7 @@ def put(file, name, values):
         dataset.attrs[key] = attributes[key]
 
 
-def _correct_payload(file):
+def _correct_payload(file: h5py.File) -> None:
     """Only where there is a payload to speak of: all columns, and attributes that JSON can hold."""
     attributes = {name: value.item() if isinstance(value, np.generic) else value for name, value in file.attrs.items()}
     attributes.pop("payload_sha256", None)

@@ -26,21 +26,23 @@ instants = st.datetimes().map(lambda instant: instant.isoformat(timespec="micros
 probabilities = st.floats(0.0, 1.0)
 
 
-def numbers(smallest=None, largest=None):
+def numbers(smallest: float | None = None, largest: float | None = None) -> st.SearchStrategy[float]:
     """Finite doubles, the denormal ones too, without -0.0, which no format takes."""
     return st.floats(smallest, largest, allow_nan=False, allow_infinity=False).map(lambda value: value + 0.0)
 
 
-def above_zero():
+def above_zero() -> st.SearchStrategy[float]:
     return numbers(5e-324)
 
 
-def rising(entries, **sizes):
-    return st.lists(entries, unique=True, **sizes).map(sorted).map(tuple)
+def rising(
+    entries: st.SearchStrategy[float], min_size: int = 0, max_size: int | None = None
+) -> st.SearchStrategy[tuple[float, ...]]:
+    return st.lists(entries, unique=True, min_size=min_size, max_size=max_size).map(sorted).map(tuple)
 
 
 @st.composite
-def retarders(draw):
+def retarders(draw: st.DrawFn) -> RetarderId:
     """One to three zones, and an exit at or behind the last."""
     ends = draw(rising(numbers(-1e3, 1e3), min_size=2, max_size=6).filter(lambda ends: len(ends) % 2 == 0))
     exit_m = draw(numbers(ends[-1], 2e3))
@@ -48,7 +50,7 @@ def retarders(draw):
 
 
 @st.composite
-def stage_lists(draw, degree, s_m):
+def stage_lists(draw: st.DrawFn, degree: int, s_m: tuple[float, float]) -> tuple[Stage, ...]:
     """2 to 32 stages; both lines where they keep their order."""
     pressures = draw(rising(numbers(0.0, 1e4), min_size=2, max_size=MOST_STAGES))
     coefficients = st.lists(
@@ -69,7 +71,7 @@ def stage_lists(draw, degree, s_m):
 
 
 @st.composite
-def estimators(draw):
+def estimators(draw: st.DrawFn) -> Estimator:
     """An estimator with two to six breaks."""
     steps = draw(st.lists(st.floats(0.5, 50.0), min_size=1, max_size=5))
     breaks = [draw(numbers(-50.0, 50.0))]
@@ -89,7 +91,7 @@ def estimators(draw):
 
 
 @st.composite
-def cuts(draw):
+def cuts(draw: st.DrawFn) -> CutId:
     """A category with no number, with its own, or one of the yard; each name and number stands for the other alone."""
     sizes = draw(above_zero()), (0.0, *draw(rising(above_zero(), max_size=4)))
     number = draw(st.integers(16, 255))
@@ -100,7 +102,9 @@ def cuts(draw):
 
 
 @st.composite
-def tables(draw, names=texts, generators=None):
+def tables(
+    draw: st.DrawFn, names: st.SearchStrategy[str] = texts, generators: st.SearchStrategy[Generator] | None = None
+) -> ControllerTable:
     """A table whose id is one of `names`; its path range is a few hundred metres at most."""
     degree = draw(st.integers(0, HIGHEST_DEGREE))
     begin_m = draw(numbers(-50.0, 50.0))

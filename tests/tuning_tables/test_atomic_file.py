@@ -3,13 +3,14 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 from tuning_tables.atomic_file import replacing, write_atomically
 
 
-def test_content_arrives_and_replaces_what_was_there(tmp_path):
+def test_content_arrives_and_replaces_what_was_there(tmp_path: Path) -> None:
     path = tmp_path / "table.json"
     write_atomically(path, b"old")
     write_atomically(str(path), b"new")
@@ -17,7 +18,7 @@ def test_content_arrives_and_replaces_what_was_there(tmp_path):
     assert os.listdir(tmp_path) == ["table.json"]
 
 
-def test_the_part_is_a_recognisable_sibling(tmp_path):
+def test_the_part_is_a_recognisable_sibling(tmp_path: Path) -> None:
     with replacing(tmp_path / "table.json") as part:
         assert part.parent == tmp_path
         assert part.name.startswith(".table.json.")
@@ -27,11 +28,11 @@ def test_the_part_is_a_recognisable_sibling(tmp_path):
 
 
 @pytest.mark.parametrize("fault", [ValueError, KeyboardInterrupt, SystemExit])
-def test_an_interrupted_writer_leaves_the_old_file(tmp_path, fault):
+def test_an_interrupted_writer_leaves_the_old_file(tmp_path: Path, fault: type[BaseException]) -> None:
     path = tmp_path / "table.json"
     path.write_bytes(b"old")
 
-    def write_half():
+    def write_half() -> None:
         with replacing(path) as part:
             part.write_bytes(b"ne")
             raise fault
@@ -43,11 +44,11 @@ def test_an_interrupted_writer_leaves_the_old_file(tmp_path, fault):
 
 
 @pytest.mark.parametrize("step", ["replace", "fsync"])
-def test_a_failing_disk_leaves_the_old_file(tmp_path, monkeypatch, step):
+def test_a_failing_disk_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: str) -> None:
     path = tmp_path / "table.json"
     path.write_bytes(b"old")
 
-    def fail(*_):
+    def fail(*_: object) -> None:
         raise OSError("no space left on device")
 
     with monkeypatch.context() as patched:
@@ -58,16 +59,27 @@ def test_a_failing_disk_leaves_the_old_file(tmp_path, monkeypatch, step):
     assert os.listdir(tmp_path) == ["table.json"]
 
 
-def test_content_is_on_the_disk_before_the_name_and_the_name_before_the_return(tmp_path, monkeypatch):
-    steps = []
+def test_content_is_on_the_disk_before_the_name_and_the_name_before_the_return(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    steps: list[str] = []
     fsync, replace = os.fsync, os.replace
-    monkeypatch.setattr(os, "fsync", lambda fd: (steps.append("fsync"), fsync(fd)))
-    monkeypatch.setattr(os, "replace", lambda a, b: (steps.append("replace"), replace(a, b)))
+
+    def counted_fsync(fd: int) -> None:
+        steps.append("fsync")
+        fsync(fd)
+
+    def counted_replace(source: Path, target: Path) -> None:
+        steps.append("replace")
+        replace(source, target)
+
+    monkeypatch.setattr(os, "fsync", counted_fsync)
+    monkeypatch.setattr(os, "replace", counted_replace)
     write_atomically(tmp_path / "a", b"x")
     assert steps == ["fsync", "replace", "fsync"]
 
 
-def test_a_killed_writer_leaves_the_old_file(tmp_path):
+def test_a_killed_writer_leaves_the_old_file(tmp_path: Path) -> None:
     path = tmp_path / "table.json"
     path.write_bytes(b"old")
     program = (
@@ -86,12 +98,12 @@ def test_a_killed_writer_leaves_the_old_file(tmp_path):
 
 
 @pytest.mark.skipif(os.name != "posix", reason="permissions of a new file are those of POSIX")
-def test_permissions_are_those_of_any_new_file(tmp_path):
+def test_permissions_are_those_of_any_new_file(tmp_path: Path) -> None:
     (tmp_path / "plain").write_bytes(b"")
     write_atomically(tmp_path / "atomic", b"")
     assert (tmp_path / "atomic").stat().st_mode == (tmp_path / "plain").stat().st_mode
 
 
-def test_a_missing_directory_is_an_os_error(tmp_path):
+def test_a_missing_directory_is_an_os_error(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         write_atomically(tmp_path / "nowhere" / "table.json", b"")

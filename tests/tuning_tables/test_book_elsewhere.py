@@ -1,12 +1,20 @@
 """A book is understood by h5py and by xarray without a line of this project: names, units, coordinates, text."""
 
+from __future__ import annotations
+
 import subprocess
 import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
-from tuning_tables import decide_many, write_book
+from tuning_tables import ControllerTable, decide_many, write_book
+
+if TYPE_CHECKING:
+    import xarray
 
 WITHOUT_THE_PROJECT = """
 import sys
@@ -22,27 +30,27 @@ with h5py.File(sys.argv[1], "r") as book:
 
 
 @pytest.fixture
-def book(table, linear_table, tmp_path):
+def book(table: ControllerTable, linear_table: ControllerTable, tmp_path: Path) -> Path:
     path = tmp_path / "book.h5"
     write_book([table, linear_table], path)
     return path
 
 
-def test_bare_h5py_reads_a_line(book):
+def test_bare_h5py_reads_a_line(book: Path) -> None:
     command = [sys.executable, "-c", WITHOUT_THE_PROJECT, str(book)]
     ended = subprocess.run(command, capture_output=True, text=True, check=True, cwd=book.parent)
     assert ended.stdout == "['table', 'stage', 'line', 'power'] m/s per m^power Talbremse Süd 5.0\n"
 
 
 @pytest.fixture
-def dataset(book):
+def dataset(book: Path) -> Iterator[xarray.Dataset]:
     xarray = pytest.importorskip("xarray")
     pytest.importorskip("h5netcdf")
     with xarray.open_dataset(book, engine="h5netcdf") as opened:
         yield opened.load()
 
 
-def test_xarray_knows_axes_and_coordinates(dataset, table):
+def test_xarray_knows_axes_and_coordinates(dataset: xarray.Dataset, table: ControllerTable) -> None:
     assert dict(dataset.sizes) == {"table": 2, "stage": 4, "line": 2, "power": 4, "zone": 2, "axle": 4, "end": 2}
     assert dataset.coefficients.dims == ("table", "stage", "line", "power")
     for axis, length in dataset.sizes.items():
@@ -55,7 +63,7 @@ def test_xarray_knows_axes_and_coordinates(dataset, table):
     assert lines.dtype == np.float32
 
 
-def test_xarray_knows_units_and_text(dataset):
+def test_xarray_knows_units_and_text(dataset: xarray.Dataset) -> None:
     assert {name: dataset[name].attrs["units"] for name in ("mass_t", "pressure_kpa", "valid_s_m", "degree")} == {
         "mass_t": "t",
         "pressure_kpa": "kPa",
@@ -68,7 +76,7 @@ def test_xarray_knows_units_and_text(dataset):
     assert dataset.attrs["format"] == "retarder-book"
 
 
-def test_what_a_table_does_not_have_is_nan_or_0(dataset):
+def test_what_a_table_does_not_have_is_nan_or_0(dataset: xarray.Dataset) -> None:
     linear = dataset.isel(table=1)
     assert linear.pressure_kpa.isnull().values.tolist() == [False, False, True, True]
     assert linear.coefficients.isel(stage=0).notnull().values.tolist() == [[False] * 4, [True, True, False, False]]
@@ -76,7 +84,9 @@ def test_what_a_table_does_not_have_is_nan_or_0(dataset):
     assert linear.has_line.dtype == np.uint8
 
 
-def test_a_decision_with_xarray_is_the_decision_of_the_rule(dataset, linear_table):
+def test_a_decision_with_xarray_is_the_decision_of_the_rule(
+    dataset: xarray.Dataset, linear_table: ControllerTable
+) -> None:
     linear = dataset.isel(table=1)
     upper = linear.coefficients.isel(stage=0, line=1, power=slice(0, int(linear.degree) + 1))
     speeds = np.linspace(3.0, 7.0, 401).astype(np.float32)
@@ -84,7 +94,7 @@ def test_a_decision_with_xarray_is_the_decision_of_the_rule(dataset, linear_tabl
     assert np.array_equal(raises, decide_many(linear_table, 0, 4.0, speeds) == 1)
 
 
-def test_xarray_can_write_it_on(dataset, tmp_path):
+def test_xarray_can_write_it_on(dataset: xarray.Dataset, tmp_path: Path) -> None:
     xarray = pytest.importorskip("xarray")
     dataset.drop_encoding().to_netcdf(tmp_path / "again.nc", engine="h5netcdf")
     with xarray.open_dataset(tmp_path / "again.nc", engine="h5netcdf") as again:

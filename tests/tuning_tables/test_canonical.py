@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 from tuning_tables.canonical import canonical_json, crc32_hex, document_checksum
 
 
-def test_checksum_has_its_published_check_value():
+def test_checksum_has_its_published_check_value() -> None:
     assert crc32_hex(b"123456789") == "cbf43926"
     assert crc32_hex(b"") == "00000000"
 
 
-def test_checksum_of_the_worked_example_leaves_out_its_own_key():
+def test_checksum_of_the_worked_example_leaves_out_its_own_key() -> None:
     document = {"b": 1.0, "a": [0.5, None]}
     assert canonical_json(document) == b'{"a":[0.5,null],"b":1}'
     assert document_checksum(document) == document_checksum({**document, "crc32": "?"}) == "3f95c3d3"
@@ -48,12 +48,12 @@ def test_checksum_of_the_worked_example_leaves_out_its_own_key():
         ("43143ff3c1cb0959", "1424953923781206.2"),
     ],
 )
-def test_numbers_are_written_as_the_standard_shows(bits, text):
+def test_numbers_are_written_as_the_standard_shows(bits: str, text: str) -> None:
     (number,) = struct.unpack(">d", bytes.fromhex(bits))
     assert canonical_json(number) == text.encode()
 
 
-def test_strings_and_key_order_are_written_as_the_standard_shows():
+def test_strings_and_key_order_are_written_as_the_standard_shows() -> None:
     # RFC 8785, sections 3.2.2 and 3.2.3
     assert canonical_json('\u20ac$\x0f\nA\'B"\\\\"/') == '"\u20ac$\\u000f\\nA\'B\\"\\\\\\\\\\"/"'.encode()
     keys = ["\u20ac", "\r", "\ufb33", "1", "\U0001f600", "\x80", "\u00f6"]
@@ -63,7 +63,7 @@ def test_strings_and_key_order_are_written_as_the_standard_shows():
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
 @settings(derandomize=True)
-def test_every_number_reads_back_exactly(number):
+def test_every_number_reads_back_exactly(number: float) -> None:
     assert float(canonical_json(number)) == number
 
 
@@ -81,6 +81,6 @@ def test_every_number_reads_back_exactly(number):
     ],
     ids=repr,
 )
-def test_what_json_cannot_hold_is_refused(value, reason):
+def test_what_json_cannot_hold_is_refused(value: object, reason: str) -> None:
     with pytest.raises(ValueError, match=reason):
         canonical_json(value)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import h5py
 import jsonschema
@@ -15,6 +17,7 @@ from synth.checker.book_reading import read_documents
 from synth.checker.category_number import YARD
 from synth.checker.table_reading import read_table
 from tuning_tables import (
+    ControllerTable,
     CutId,
     DamagedTable,
     InvalidTable,
@@ -35,11 +38,11 @@ OLD = Path(__file__).parent / "st" / "default_book"
 AXLES = (0.0, 1.85, 8.65, 10.5)
 
 
-def test_library_tables_and_checker_number_the_same():
+def test_library_tables_and_checker_number_the_same() -> None:
     assert {c.name: c.number for c in load_weight_categories().members} == dict(KNOWN_NUMBERS) == YARD
 
 
-def test_old_tables_keep_their_bytes_and_are_numbered_by_name(tmp_path):
+def test_old_tables_keep_their_bytes_and_are_numbered_by_name(tmp_path: Path) -> None:
     tables = []
     for file in sorted(OLD.glob("*.json")):
         content = file.read_bytes()
@@ -54,12 +57,12 @@ def test_old_tables_keep_their_bytes_and_are_numbered_by_name(tmp_path):
     assert read_book(tmp_path / "book.h5") == tuple(tables)
 
 
-def numbered(table, category, number, **changes):
+def numbered(table: ControllerTable, category: str, number: int | None, **changes: Any) -> ControllerTable:
     return replace(table, cut=replace(table.cut, category=category, category_number=number), **changes)
 
 
 @pytest.mark.parametrize(("category", "number"), [("Л", 1), ("Т", 5), ("own", 16), ("T", 255)])
-def test_a_number_survives_every_form(table, tmp_path, category, number):
+def test_a_number_survives_every_form(table: ControllerTable, tmp_path: Path, category: str, number: int) -> None:
     made = numbered(table, category, number)
     document = json.loads(to_json(made))
     assert list(document["cut"]) == ["category", "category_number", "mass_t", "axle_offsets_m"]
@@ -87,9 +90,11 @@ def test_a_number_survives_every_form(table, tmp_path, category, number):
         ("own", 16.0, "own is 16.0"),
     ],
 )
-def test_a_number_that_is_another_one_s_is_refused(table, category, number, reason):
+def test_a_number_that_is_another_one_s_is_refused(
+    table: ControllerTable, category: str, number: float, reason: str
+) -> None:
     with pytest.raises(InvalidTable, match=f"cut.category_number of the category {reason}"):
-        CutId(category, 22.0, AXLES, number)
+        CutId(category, 22.0, AXLES, number)  # type: ignore[arg-type]  # 16.0 is refused too
     if number == 16.0:  # in JSON it is the whole number
         return
     document = json.loads(to_json(table))
@@ -100,7 +105,7 @@ def test_a_number_that_is_another_one_s_is_refused(table, category, number, reas
     assert not jsonschema.Draft202012Validator(table_schema()).is_valid(document)
 
 
-def test_in_one_book_a_name_has_one_number_and_a_number_one_name(table, tmp_path):
+def test_in_one_book_a_name_has_one_number_and_a_number_one_name(table: ControllerTable, tmp_path: Path) -> None:
     first = numbered(table, "own", 16)
     for second, reason in (
         (numbered(table, "own", 17, id="b"), "the category own has the number 16 in leer-22t-4.0, but 17 in b"),
@@ -117,7 +122,9 @@ def test_in_one_book_a_name_has_one_number_and_a_number_one_name(table, tmp_path
 
 
 @pytest.mark.parametrize("export", [c_files, st_files])
-def test_controller_code_of_a_category_without_number_is_refused(table, export):
+def test_controller_code_of_a_category_without_number_is_refused(
+    table: ControllerTable, export: Callable[[TableBook], Mapping[str, bytes]]
+) -> None:
     with pytest.raises(InvalidTable, match=r"leer-22t-4.0 is for the category medium, which has no number, .* give "):
         export(TableBook((table,)))
     assert export(TableBook((numbered(table, "medium", 16),)))

@@ -1,6 +1,7 @@
 """No change of a single byte of a JSON table goes unnoticed, at any position, in either of its two layouts."""
 
 import json
+from collections.abc import Callable, Iterable, Iterator
 
 import pytest
 
@@ -22,15 +23,15 @@ from tuning_tables.canonical import canonical_json
 TELLING_BYTES = b"\x00\t\n\r \"'+,-./0123456789:E[\\]_aefx{}\x7f\x80\xc3\xff"
 
 
-def export_layout(table):
+def export_layout(table: ControllerTable) -> bytes:
     return to_json(table)
 
 
-def canonical_layout(table):
+def canonical_layout(table: ControllerTable) -> bytes:
     return canonical_json(json.loads(to_json(table)))
 
 
-def smallest_table():
+def smallest_table() -> ControllerTable:
     """Two stages with constant lines; numbers of every form that the two layouts write differently."""
     return ControllerTable(
         id="t",
@@ -47,7 +48,7 @@ def smallest_table():
     )
 
 
-def survivors(content, changed_texts):
+def survivors(content: bytes, changed_texts: Iterable[bytes]) -> tuple[int, list[bytes]]:
     """Those of `changed_texts` that are read although they are not `content`, and how many were tried."""
     tried, read = 0, []
     for changed in changed_texts:
@@ -62,7 +63,7 @@ def survivors(content, changed_texts):
     return tried, read
 
 
-def replacements(content, values):
+def replacements(content: bytes, values: Iterable[int]) -> Iterator[bytes]:
     for position in range(len(content)):
         before, after = content[:position], content[position + 1 :]
         for value in values:
@@ -70,7 +71,7 @@ def replacements(content, values):
 
 
 @pytest.mark.parametrize("layout", [export_layout, canonical_layout])
-def test_no_replaced_byte_gets_through_whatever_the_value(layout):
+def test_no_replaced_byte_gets_through_whatever_the_value(layout: Callable[[ControllerTable], bytes]) -> None:
     content = layout(smallest_table())
     assert from_json(content) == smallest_table()
     tried, read = survivors(content, replacements(content, range(256)))
@@ -79,7 +80,7 @@ def test_no_replaced_byte_gets_through_whatever_the_value(layout):
 
 
 @pytest.mark.parametrize("layout", [export_layout, canonical_layout])
-def test_no_inserted_byte_gets_through(layout):
+def test_no_inserted_byte_gets_through(layout: Callable[[ControllerTable], bytes]) -> None:
     content = layout(smallest_table())
     inserted = (
         content[:position] + bytes([value]) + content[position:]
@@ -92,7 +93,9 @@ def test_no_inserted_byte_gets_through(layout):
 
 
 @pytest.mark.parametrize("layout", [export_layout, canonical_layout])
-def test_no_flipped_lost_doubled_or_transposed_byte_of_a_usual_table_gets_through(layout, table):
+def test_no_flipped_lost_doubled_or_transposed_byte_of_a_usual_table_gets_through(
+    layout: Callable[[ControllerTable], bytes], table: ControllerTable
+) -> None:
     content = layout(table)
     assert from_json(content) == table
     places = range(len(content))

@@ -3,14 +3,17 @@
 import csv
 import io
 import json
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import pytest
 
-from tuning_tables import InvalidTable, to_csv, to_json, write_csv
+from tuning_tables import ControllerTable, InvalidTable, to_csv, to_json, write_csv
 
 
-def test_every_value_reads_back_exactly(table, linear_table):
+def test_every_value_reads_back_exactly(table: ControllerTable, linear_table: ControllerTable) -> None:
     for exported in (table, linear_table):
         rows = list(csv.DictReader(io.StringIO(to_csv(exported).decode("utf-8"), newline="")))
         document = json.loads(to_json(exported))
@@ -28,7 +31,7 @@ def test_every_value_reads_back_exactly(table, linear_table):
         assert leaves == ({} if exported.validated else {"validated": None})
 
 
-def test_rows_form_a_rectangle_and_equal_tables_give_equal_bytes(table, tmp_path):
+def test_rows_form_a_rectangle_and_equal_tables_give_equal_bytes(table: ControllerTable, tmp_path: Path) -> None:
     write_csv(table, tmp_path / "table.csv")
     content = (tmp_path / "table.csv").read_bytes()
     assert content == to_csv(table)
@@ -37,15 +40,15 @@ def test_rows_form_a_rectangle_and_equal_tables_give_equal_bytes(table, tmp_path
     assert widths == {2 + 4}
 
 
-def numbers(row):
+def numbers(row: Mapping[str, str]) -> tuple[float, ...]:
     return tuple(float(value) for name, value in row.items() if name.startswith("value") and value)
 
 
-def without_lines(stage):
+def without_lines(stage: dict[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in stage.items() if key not in ("lower", "upper")}
 
 
-def flattened(value, key=""):
+def flattened(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
     """(dotted key, string or tuple of numbers) of each leaf; an array of numbers is one leaf."""
     if isinstance(value, dict):
         for name, member in value.items():
@@ -60,7 +63,7 @@ def flattened(value, key=""):
 
 
 @pytest.mark.parametrize("mark", ["=", "+", "-", "@"])
-def test_no_cell_is_a_formula(table, tmp_path, mark):
+def test_no_cell_is_a_formula(table: ControllerTable, tmp_path: Path, mark: str) -> None:
     for forged in (
         replace(table, id=f"{mark}cmd|' /C calc'!A0"),
         replace(table, cut=replace(table.cut, category=f"{mark}1")),

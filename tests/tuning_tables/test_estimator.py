@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -37,7 +39,9 @@ def passes_of(seed: int, factor: float, noise_m_s: float, kpa: float = 250.0) ->
     return np.array(rows)
 
 
-def run(estimator: Estimator, samples: np.ndarray, step=observe) -> tuple[np.ndarray, np.ndarray]:
+def run(
+    estimator: Estimator, samples: np.ndarray, step: Callable[..., float] = observe
+) -> tuple[np.ndarray, np.ndarray]:
     """Estimates and states after every sample; the overpressure before the first counts for nothing."""
     state, speeds, states = begin(), [], []
     for s, _, v, p in samples:
@@ -179,7 +183,7 @@ def test_compiled_it_gives_the_same_bits(estimator: Estimator) -> None:
         ({"brake_m2_s2_per_kpa": (0.0, 0.1, 0.05, 0.2, 0.3, 0.4)}, "only takes energy away"),
     ],
 )
-def test_what_makes_no_estimator_is_refused(estimator: Estimator, changes: dict, said: str) -> None:
+def test_what_makes_no_estimator_is_refused(estimator: Estimator, changes: dict[str, Any], said: str) -> None:
     with pytest.raises(InvalidTable, match=said):
         replace(estimator, **changes)
 
@@ -187,6 +191,7 @@ def test_what_makes_no_estimator_is_refused(estimator: Estimator, changes: dict,
 def test_the_rule_is_asked_with_the_estimated_speed(estimated_table: ControllerTable) -> None:
     """Through the table, sample by sample, as a controller does it; without an estimator nothing is changed."""
     rng, estimator = np.random.default_rng(8), estimated_table.estimator
+    assert estimator is not None
     state, direct = begin(), begin()
     for s in np.linspace(0.0, 9.0, 40):
         reading = (float(s), 5.0 + 0.05 * rng.standard_normal(), 120.0)
@@ -201,11 +206,13 @@ def test_the_rule_is_asked_with_the_estimated_speed(estimated_table: ControllerT
 
 def test_lines_are_taken_between_tables_of_one_estimator_only(estimated_table: ControllerTable) -> None:
     faster = replace(estimated_table, id="faster", target_speed_m_s=estimated_table.target_speed_m_s + 1.0)
+    assert estimated_table.estimator is not None
     other = replace(faster, estimator=replace(estimated_table.estimator, friction_cv=0.2))
     plain = replace(faster, estimator=None, predicted=Predicted(0.0, 0.0, 0.0, 0.0))
     asked = ("medium", 4, estimated_table.target_speed_m_s + 0.5)
     choice = TableBook((estimated_table, faster)).choose(*asked)
     assert choice.status is Status.BETWEEN
+    assert choice.table is not None
     assert choice.table.estimator == estimated_table.estimator
     touching = replace(faster, estimator=replace(estimated_table.estimator, touch_pressure_kpa=75.0))
     for unlike in (other, plain, touching):

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tuning_tables import hdf5_file, read_book, write_book
+from tuning_tables import ControllerTable, hdf5_file, read_book, write_book
 from tuning_tables.atomic_file import replacing
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="the limit of a file's size is that of POSIX")
@@ -47,20 +47,20 @@ for limit in map(int, sys.argv[3:]):
 """
 
 
-def run(program, *arguments):
+def run(program: str, *arguments: object) -> subprocess.CompletedProcess[str]:
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     command = [sys.executable, "-c", program, *map(str, arguments)]
     return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60, check=False)
 
 
 @pytest.fixture
-def book(table, linear_table, tmp_path):
+def book(table: ControllerTable, linear_table: ControllerTable, tmp_path: Path) -> Path:
     path = tmp_path / "whole.h5"
     write_book([table, linear_table], path)
     return path
 
 
-def test_a_write_that_fails_for_a_moment_leaves_no_damaged_book(book, tmp_path):
+def test_a_write_that_fails_for_a_moment_leaves_no_damaged_book(book: Path, tmp_path: Path) -> None:
     path = tmp_path / "book.h5"
     ran = run(LOST_FOR_A_MOMENT, book, path)
     if ran.returncode == 0:
@@ -70,7 +70,7 @@ def test_a_write_that_fails_for_a_moment_leaves_no_damaged_book(book, tmp_path):
         assert not path.exists()
 
 
-def test_a_full_disk_is_an_os_error_that_names_the_book(book, tmp_path):
+def test_a_full_disk_is_an_os_error_that_names_the_book(book: Path, tmp_path: Path) -> None:
     path = tmp_path / "book.h5"
     path.write_bytes(b"old")
     size = len(book.read_bytes())
@@ -82,14 +82,16 @@ def test_a_full_disk_is_an_os_error_that_names_the_book(book, tmp_path):
     assert sorted(os.listdir(tmp_path)) == ["book.h5", "whole.h5"]
 
 
-def with_a_gap(content):
+def with_a_gap(content: bytes) -> bytes:
     """`content` with nothing in its second quarter, as where a write was lost."""
     quarter = len(content) // 4
     return content[:quarter] + bytes(quarter) + content[2 * quarter :]
 
 
 @pytest.mark.parametrize("lost_before_the_seal", [True, False])
-def test_what_was_written_is_read_back_before_it_takes_the_name(table, tmp_path, monkeypatch, lost_before_the_seal):
+def test_what_was_written_is_read_back_before_it_takes_the_name(
+    table: ControllerTable, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, lost_before_the_seal: bool
+) -> None:
     path = tmp_path / "book.h5"
     path.write_bytes(b"old")
     body, write = hdf5_file._body, Path.write_bytes
@@ -106,10 +108,12 @@ def test_what_was_written_is_read_back_before_it_takes_the_name(table, tmp_path,
 
 
 @pytest.mark.parametrize("step", ["open", "fsync", "replace"])
-def test_a_failing_step_names_the_file_that_was_asked_for(tmp_path, monkeypatch, step):
+def test_a_failing_step_names_the_file_that_was_asked_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: str
+) -> None:
     path = tmp_path / "table.json"
 
-    def fail(*_):
+    def fail(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patched:
@@ -120,7 +124,7 @@ def test_a_failing_step_names_the_file_that_was_asked_for(tmp_path, monkeypatch,
     assert os.listdir(tmp_path) == []
 
 
-def test_a_fault_that_concerns_another_file_keeps_its_name(tmp_path):
+def test_a_fault_that_concerns_another_file_keeps_its_name(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError) as caught, replacing(tmp_path / "table.json"):
         (tmp_path / "other").read_bytes()
     assert caught.value.filename == str(tmp_path / "other")

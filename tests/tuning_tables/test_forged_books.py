@@ -1,14 +1,30 @@
 """A book whose sums are right but whose content is not: each key, type, length and value is looked at by itself."""
 
 import random
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
+import numpy.typing as npt
 import pytest
 
-from tests.tuning_tables.forged_book import forge, put, reseal
-from tuning_tables import DamagedTable, NewerVersion, OlderVersion, TableError, UnknownFormat, read_book, write_book
+from tests.tuning_tables.forged_book import Edit, forge, put, reseal
+from tuning_tables import (
+    ControllerTable,
+    DamagedTable,
+    NewerVersion,
+    OlderVersion,
+    TableError,
+    UnknownFormat,
+    read_book,
+    write_book,
+)
 from tuning_tables.book_columns import WITH_ESTIMATORS
+
+Refuse = Callable[[Edit], TableError]
+Index = int | tuple[int, ...]
 
 COLUMNS, AXES = WITH_ESTIMATORS.columns, WITH_ESTIMATORS.axes
 NAMES = [column.name for column in COLUMNS]
@@ -21,7 +37,9 @@ NAN, INF = float("nan"), float("inf")
 
 
 @pytest.fixture(scope="module")
-def original(table, estimated_table, tmp_path_factory):
+def original(
+    table: ControllerTable, estimated_table: ControllerTable, tmp_path_factory: pytest.TempPathFactory
+) -> bytes:
     """The bytes of a book of two tables that differ in every length, one with an estimator."""
     path = tmp_path_factory.mktemp("original") / "book.h5"
     write_book([table, estimated_table], path)
@@ -29,10 +47,10 @@ def original(table, estimated_table, tmp_path_factory):
 
 
 @pytest.fixture
-def refuse(original, tmp_path):
+def refuse(original: bytes, tmp_path: Path) -> Refuse:
     """A function that forges the book by an edit, reads it, and gives the error, which must be a `TableError`."""
 
-    def refused(edit):
+    def refused(edit: Edit) -> TableError:
         path = tmp_path / "book.h5"
         path.write_bytes(original)
         forge(path, edit)
@@ -47,7 +65,9 @@ def refuse(original, tmp_path):
     return refused
 
 
-def test_a_book_that_is_forged_without_a_change_is_read(original, table, estimated_table, tmp_path):
+def test_a_book_that_is_forged_without_a_change_is_read(
+    original: bytes, table: ControllerTable, estimated_table: ControllerTable, tmp_path: Path
+) -> None:
     path = tmp_path / "book.h5"
     path.write_bytes(original)
     forge(path, lambda file: put(file, "mass_t", file["mass_t"][()]))
@@ -55,8 +75,8 @@ def test_a_book_that_is_forged_without_a_change_is_read(original, table, estimat
 
 
 @pytest.mark.parametrize("name", [*NAMES, *AXES])
-def test_every_dataset_is_required(refuse, name):
-    def remove(file):
+def test_every_dataset_is_required(refuse: Refuse, name: str) -> None:
+    def remove(file: h5py.File) -> None:
         del file[name]
 
     error = refuse(remove)
@@ -67,8 +87,8 @@ def test_every_dataset_is_required(refuse, name):
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("attribute", ["units", "meaning"])
 @pytest.mark.parametrize("value", [None, ["m", "m"]], ids=repr)
-def test_every_dataset_tells_its_unit_and_meaning(refuse, name, attribute, value):
-    def edit(file):
+def test_every_dataset_tells_its_unit_and_meaning(refuse: Refuse, name: str, attribute: str, value: object) -> None:
+    def edit(file: h5py.File) -> None:
         del file[name].attrs[attribute]
         if value is not None:
             file[name].attrs[attribute] = value
@@ -115,8 +135,10 @@ def test_every_dataset_tells_its_unit_and_meaning(refuse, name, attribute, value
     ],
     ids=lambda value: repr(value)[:20],
 )
-def test_every_root_attribute_is_required_as_it_is(refuse, name, value, error):
-    def edit(file):
+def test_every_root_attribute_is_required_as_it_is(
+    refuse: Refuse, name: str, value: object, error: type[TableError]
+) -> None:
+    def edit(file: h5py.File) -> None:
         if name in file.attrs:
             del file.attrs[name]
         if value is not None:
@@ -126,7 +148,7 @@ def test_every_root_attribute_is_required_as_it_is(refuse, name, value, error):
 
 
 @pytest.mark.parametrize("sha256", [None, "", "0" * 64, 0])
-def test_the_payload_has_its_checksum(original, tmp_path, sha256):
+def test_the_payload_has_its_checksum(original: bytes, tmp_path: Path, sha256: str | int | None) -> None:
     path = tmp_path / "book.h5"
     path.write_bytes(original)
     with h5py.File(path, "r+") as file:
@@ -140,12 +162,12 @@ def test_the_payload_has_its_checksum(original, tmp_path, sha256):
 
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("dtype", ["<f4", "<f8", ">f8", "<i4", "<i8", "|u1", "S70", "object", "reference"])
-def test_every_column_has_its_type(refuse, name, dtype):
+def test_every_column_has_its_type(refuse: Refuse, name: str, dtype: str) -> None:
     column = COLUMNS[NAMES.index(name)]
     if dtype == column.dtype or (dtype == "S70" and column.dtype == "S"):
         return
 
-    def edit(file):
+    def edit(file: h5py.File) -> None:
         values = file[name][()]
         if dtype == "object":
             put(file, name, np.full(values.shape, "x", dtype=h5py.string_dtype()))
@@ -167,29 +189,31 @@ def test_every_column_has_its_type(refuse, name, dtype):
         if (column.name, axis, change) not in SOUND
     ],
 )
-def test_every_array_has_its_shape(refuse, name, axis, change):
-    def edit(file):
+def test_every_array_has_its_shape(refuse: Refuse, name: str, axis: int, change: str) -> None:
+    def edit(file: h5py.File) -> None:
         values = file[name][()]
-        changed = {
+        changes: dict[str, Callable[[], npt.NDArray[Any]]] = {
             "emptied": lambda: np.take(values, [], axis=axis),
             "shortened": lambda: np.take(values, range(values.shape[axis] - 1), axis=axis),
             "lengthened": lambda: np.concatenate([values, np.take(values, [-1], axis=axis)], axis=axis),
             "removed": lambda: np.take(values, 0, axis=axis),
             "added": lambda: np.expand_dims(values, axis),
-        }[change]()
-        put(file, name, changed)
+        }
+        put(file, name, changes[change]())
 
     assert type(refuse(edit)) is DamagedTable
 
 
 @pytest.mark.parametrize("name", FLOATS)
 @pytest.mark.parametrize("value", [NAN, INF, -INF, -0.0, 1e30], ids=repr)
-def test_no_number_gets_through_that_the_tables_do_not_give_back(original, tmp_path, name, value):
+def test_no_number_gets_through_that_the_tables_do_not_give_back(
+    original: bytes, tmp_path: Path, name: str, value: object
+) -> None:
     path = tmp_path / "book.h5"
     indices = list(np.ndindex(shape_of(original, tmp_path, name)))
     for index in random.Random(name).sample(indices, min(len(indices), 12)):
 
-        def edit(file, index=index):
+        def edit(file: h5py.File, index: Index = index) -> None:
             file[name][index] = value
 
         path.write_bytes(original)
@@ -206,8 +230,8 @@ def test_no_number_gets_through_that_the_tables_do_not_give_back(original, tmp_p
 
 @pytest.mark.parametrize("name", TEXTS)
 @pytest.mark.parametrize("value", [b"", b"\xff", b"a\nb", b"\xed\xa0\x80"], ids=repr)
-def test_no_text_gets_through_that_is_none(refuse, name, value):
-    def edit(file):
+def test_no_text_gets_through_that_is_none(refuse: Refuse, name: str, value: object) -> None:
+    def edit(file: h5py.File) -> None:
         file[name][0] = value
 
     assert type(refuse(edit)) is DamagedTable
@@ -239,8 +263,8 @@ def test_no_text_gets_through_that_is_none(refuse, name, value):
         ("id", 1, b"leer-22t-4.0", "2 tables of the book have the id"),
     ],
 )
-def test_nothing_stands_beside_the_tables(refuse, name, index, value, reason):
-    def edit(file):
+def test_nothing_stands_beside_the_tables(refuse: Refuse, name: str, index: Index, value: object, reason: str) -> None:
+    def edit(file: h5py.File) -> None:
         file[name][index] = value
 
     assert reason in str(refuse(edit))
@@ -255,8 +279,8 @@ def test_nothing_stands_beside_the_tables(refuse, name, index, value, reason):
         lambda n: np.arange(float(n)),
     ],
 )
-def test_every_axis_is_numbered_from_0(refuse, axis, make):
-    def edit(file):
+def test_every_axis_is_numbered_from_0(refuse: Refuse, axis: str, make: Callable[[int], npt.NDArray[Any]]) -> None:
+    def edit(file: h5py.File) -> None:
         length = file[axis].shape[0]
         del file[axis]
         file.create_dataset(axis, data=make(length))
@@ -264,14 +288,13 @@ def test_every_axis_is_numbered_from_0(refuse, axis, make):
     assert f"{axis} does not number" in str(refuse(edit))
 
 
-def test_text_that_is_padded_otherwise_is_refused(refuse):
-    assert "category holds values beside" in str(
-        refuse(lambda file: put(file, "category", file["category"][()].astype("S70")))
-    )
+def test_text_that_is_padded_otherwise_is_refused(refuse: Refuse) -> None:
+    error = refuse(lambda file: put(file, "category", file["category"][()].astype("S70")))
+    assert "category holds values beside" in str(error)
 
 
-def shape_of(original, tmp_path, name):
+def shape_of(original: bytes, tmp_path: Path, name: str) -> tuple[int, ...]:
     path = tmp_path / "shape.h5"
     path.write_bytes(original)
     with h5py.File(path) as file:
-        return file[name].shape
+        return tuple(file[name].shape)

@@ -7,19 +7,22 @@ import os
 import warnings
 from collections import Counter
 from itertools import islice
+from pathlib import Path
 
 import pytest
 
 from tests.tuning_tables.damaged_inputs import Attempt, attempts
 from tests.tuning_tables.reader_trial import Finding, outcome_of
-from tuning_tables import from_json, to_json
+from tuning_tables import ControllerTable, from_json, to_json
 
 COUNT, FIRST_SEED = int(os.environ.get("FUZZ_COUNT", "2500")), int(os.environ.get("FUZZ_SEED", "0"))
 
 
 @pytest.mark.parametrize("seed", range(FIRST_SEED, FIRST_SEED + 2))
-def test_nearly_right_inputs_are_refused_in_order_or_read_exactly(table, linear_table, tmp_path, seed):
-    outcomes = Counter()
+def test_nearly_right_inputs_are_refused_in_order_or_read_exactly(
+    table: ControllerTable, linear_table: ControllerTable, tmp_path: Path, seed: int
+) -> None:
+    outcomes: Counter[tuple[str, str, str]] = Counter()
     for attempt in islice(attempts(seed, [table, linear_table], tmp_path), COUNT):
         try:
             outcomes[attempt.reader, attempt.kind, outcome_of(attempt, tmp_path)] += 1
@@ -32,7 +35,9 @@ def test_nearly_right_inputs_are_refused_in_order_or_read_exactly(table, linear_
         assert outcomes[*deep, "DamagedTable"] > outcomes[*deep, "read"]
 
 
-def test_the_trial_finds_what_it_is_there_to_find(table, tmp_path, monkeypatch):
+def test_the_trial_finds_what_it_is_there_to_find(
+    table: ControllerTable, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     text = Attempt("bytes", "json", to_json(table))
     assert outcome_of(text, tmp_path) == "read"
     monkeypatch.setattr(
@@ -41,7 +46,7 @@ def test_the_trial_finds_what_it_is_there_to_find(table, tmp_path, monkeypatch):
     with pytest.raises(Finding, match="none of the two"):
         outcome_of(Attempt("bytes", "json", text.content + b"\n"), tmp_path)
 
-    def fails(_):
+    def fails(_: object) -> None:
         raise KeyError("zones_m")
 
     monkeypatch.setattr("tests.tuning_tables.reader_trial.from_json", fails)

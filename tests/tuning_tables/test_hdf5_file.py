@@ -5,12 +5,15 @@ import shutil
 import subprocess
 import sys
 from dataclasses import replace
+from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
 
+from tests.tuning_tables.forged_book import Edit
 from tuning_tables import (
+    ControllerTable,
     DamagedTable,
     Generator,
     InvalidTable,
@@ -26,14 +29,14 @@ from tuning_tables.seal import seal_of
 
 
 @pytest.fixture
-def book(table, linear_table, tmp_path):
+def book(table: ControllerTable, linear_table: ControllerTable, tmp_path: Path) -> Path:
     """A file with two tables that differ in every length."""
     path = tmp_path / "book.h5"
     write_book([table, linear_table], path)
     return path
 
 
-def test_tables_survive_the_book(book, table, linear_table):
+def test_tables_survive_the_book(book: Path, table: ControllerTable, linear_table: ControllerTable) -> None:
     tables = read_book(book)
     assert tables == (table, linear_table)
     assert np.array_equal(tables[0].coefficients, table.coefficients, equal_nan=True)
@@ -42,7 +45,7 @@ def test_tables_survive_the_book(book, table, linear_table):
     assert os.listdir(book.parent) == ["book.h5"]
 
 
-def test_equal_books_have_equal_bytes_whatever_the_process_name_and_hour(book, tmp_path):
+def test_equal_books_have_equal_bytes_whatever_the_process_name_and_hour(book: Path, tmp_path: Path) -> None:
     program = "import sys; from tuning_tables import *; write_book(read_book(sys.argv[1]), sys.argv[2])"
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "MALLOC_PERTURB_": "165"}
     other = tmp_path / "another_name.h5"
@@ -50,7 +53,7 @@ def test_equal_books_have_equal_bytes_whatever_the_process_name_and_hour(book, t
     assert other.read_bytes() == book.read_bytes()
 
 
-def test_the_book_explains_itself_to_h5py(book, table):
+def test_the_book_explains_itself_to_h5py(book: Path, table: ControllerTable) -> None:
     with h5py.File(book) as file:
         assert file.attrs["format"] == "retarder-book"
         assert file.attrs["complete"] == 1
@@ -73,7 +76,7 @@ def test_the_book_explains_itself_to_h5py(book, table):
             assert dataset.is_scale or (dataset.fletcher32 and dataset.attrs["units"]), name
 
 
-def test_what_makes_no_book_is_refused_before_a_file_is_made(table, tmp_path):
+def test_what_makes_no_book_is_refused_before_a_file_is_made(table: ControllerTable, tmp_path: Path) -> None:
     path = tmp_path / "book.h5"
     other = replace(table, id="other", generator=Generator("other", "2", "f" * 64))
     for tables in ([], [table, table], [table, other]):
@@ -86,10 +89,12 @@ def test_what_makes_no_book_is_refused_before_a_file_is_made(table, tmp_path):
         assert file.attrs["config_sha256"] == "f" * 64
 
 
-def test_a_failing_writer_leaves_the_old_book(book, table, monkeypatch):
+def test_a_failing_writer_leaves_the_old_book(
+    book: Path, table: ControllerTable, monkeypatch: pytest.MonkeyPatch
+) -> None:
     before = book.read_bytes()
 
-    def fail(*_args, **_kwargs):
+    def fail(*_args: object, **_kwargs: object) -> None:
         raise OSError("no space left on device")
 
     with monkeypatch.context() as patched:
@@ -100,43 +105,43 @@ def test_a_failing_writer_leaves_the_old_book(book, table, monkeypatch):
     assert os.listdir(book.parent) == ["book.h5"]
 
 
-def edit_attribute(name, value):
-    def edit(file):
+def edit_attribute(name: str, value: object) -> Edit:
+    def edit(file: h5py.File) -> None:
         file.attrs[name] = value
 
     return edit
 
 
-def edit_value(name, index, value):
-    def edit(file):
+def edit_value(name: str, index: int | tuple[int, ...], value: object) -> Edit:
+    def edit(file: h5py.File) -> None:
         file[name][index] = value
 
     return edit
 
 
-def edit_dataset_attribute(file):
+def edit_dataset_attribute(file: h5py.File) -> None:
     file["mass_t"].attrs["units"] = "kg"
 
 
-def delete_dataset(file):
+def delete_dataset(file: h5py.File) -> None:
     del file["mass_t"]
 
 
-def add_dataset(file):
+def add_dataset(file: h5py.File) -> None:
     file["surplus"] = 1.0
 
 
-def delete_attribute(file):
+def delete_attribute(file: h5py.File) -> None:
     del file.attrs["complete"]
 
 
-def change_type(file):
+def change_type(file: h5py.File) -> None:
     values = file["mass_t"][()]
     del file["mass_t"]
     file.create_dataset("mass_t", data=values.astype(np.float32), chunks=values.shape, fletcher32=True)
 
 
-def change_shape(file):
+def change_shape(file: h5py.File) -> None:
     values = file["mass_t"][()]
     del file["mass_t"]
     file.create_dataset("mass_t", data=values[:, np.newaxis], chunks=(2, 1), fletcher32=True)
@@ -165,7 +170,9 @@ def change_shape(file):
         (change_shape, DamagedTable, r"mass_t is float64 \(2, 1\)"),
     ],
 )
-def test_an_edited_book_is_refused_even_when_sealed_anew(book, edit, error, reason):
+def test_an_edited_book_is_refused_even_when_sealed_anew(
+    book: Path, edit: Edit, error: type[TableError], reason: str
+) -> None:
     with h5py.File(book, "r+") as file:
         edit(file)
     with pytest.raises(DamagedTable, match="no seal"):
@@ -177,7 +184,9 @@ def test_an_edited_book_is_refused_even_when_sealed_anew(book, edit, error, reas
     assert str(caught.value).startswith(str(book))
 
 
-def test_values_that_make_no_table_are_refused_even_under_a_right_checksum(linear_table, tmp_path):
+def test_values_that_make_no_table_are_refused_even_under_a_right_checksum(
+    linear_table: ControllerTable, tmp_path: Path
+) -> None:
     path = tmp_path / "book.h5"
     forged = replace(linear_table)
     object.__setattr__(forged, "target_speed_m_s", -4.0)
@@ -186,7 +195,7 @@ def test_values_that_make_no_table_are_refused_even_under_a_right_checksum(linea
         read_book(path)
 
 
-def test_no_truncated_book_gets_through(book, tmp_path):
+def test_no_truncated_book_gets_through(book: Path, tmp_path: Path) -> None:
     content = book.read_bytes()
     short = tmp_path / "short.h5"
     for length in [*range(0, len(content), 211), len(content) - 1]:
@@ -195,7 +204,7 @@ def test_no_truncated_book_gets_through(book, tmp_path):
             read_book(short)
 
 
-def test_no_flipped_bit_gets_through(book, tmp_path):
+def test_no_flipped_bit_gets_through(book: Path, tmp_path: Path) -> None:
     content = book.read_bytes()
     changed_book = tmp_path / "changed.h5"
     # The flip at 4697, a length in the heap of strings, holds HDF5 2.0 in an endless loop where it is given the file.
@@ -207,7 +216,7 @@ def test_no_flipped_bit_gets_through(book, tmp_path):
             read_book(changed_book)
 
 
-def test_other_files_are_refused(tmp_path, table):
+def test_other_files_are_refused(tmp_path: Path, table: ControllerTable) -> None:
     path = tmp_path / "other.h5"
     for content, error in [
         (b"", DamagedTable),

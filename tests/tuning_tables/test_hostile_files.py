@@ -9,13 +9,23 @@ import resource
 import subprocess
 import sys
 import zipfile
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
 import pytest
 
 from tests.tuning_tables.forged_book import reseal
-from tuning_tables import to_json, write_book
+from tuning_tables import ControllerTable, to_json, write_book
+
+Told = dict[str, dict[str, Any]]
+"""What a reader says of each path: {"error", "text", "seconds"}."""
+
+Forging = Callable[[h5py.File, Path], None]
+Make = Callable[[h5py.File, str, Path], None]
+"""Puts something under a name; the folder holds a pipe."""
 
 LARGEST_ADDRESS_SPACE = 3 * 2**29
 LONGEST_SECONDS = 5.0  # for one file; it takes a fraction of that, but a machine may be busy
@@ -39,7 +49,7 @@ for path in sys.argv[3:]:
 """
 
 
-def read_in_bounds(reader, paths):
+def read_in_bounds(reader: str, paths: Iterable[Path]) -> Told:
     """What `reader` says of each path: {name: {"error", "text", "seconds"}}."""
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), "OMP_NUM_THREADS": "1"}
     command = [sys.executable, "-c", PROGRAM, reader, str(LARGEST_ADDRESS_SPACE), *map(str, paths)]
@@ -72,7 +82,7 @@ FOREIGN = {  # name: (error of read_json, error of read_book)
 
 
 @pytest.fixture(scope="module")
-def foreign(table, tmp_path_factory):
+def foreign(table: ControllerTable, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Told]:
     """{reader: what it says of every file of FOREIGN}."""
     folder = tmp_path_factory.mktemp("foreign")
     contents = {
@@ -107,15 +117,15 @@ def foreign(table, tmp_path_factory):
 
 @pytest.mark.parametrize("name", FOREIGN)
 @pytest.mark.parametrize("reader", ["read_json", "read_book"])
-def test_foreign_files_are_refused_in_bounds(foreign, name, reader):
+def test_foreign_files_are_refused_in_bounds(foreign: dict[str, Told], name: str, reader: str) -> None:
     said = foreign[reader][name]
     assert said["error"] == FOREIGN[name][reader == "read_book"], said["text"]
     assert name in said["text"]
     assert said["seconds"] < LONGEST_SECONDS
 
 
-def replace_by(name, make):
-    def edit(file, folder):
+def replace_by(name: str, make: Make) -> Forging:
+    def edit(file: h5py.File, folder: Path) -> None:
         attributes = dict(file[name].attrs)
         del file[name]
         make(file, name, folder)
@@ -127,34 +137,34 @@ def replace_by(name, make):
     return edit
 
 
-def claim(shape, **storage):
-    def make(file, name, folder):
+def claim(shape: tuple[int, ...], **storage: Any) -> Make:
+    def make(file: h5py.File, name: str, folder: Path) -> None:
         file.create_dataset(name, shape=shape, dtype="<f8", **storage)
 
     return make
 
 
-def soft_link(file, name, folder):
+def soft_link(file: h5py.File, name: str, folder: Path) -> None:
     file[name] = h5py.SoftLink("/exit_m")
 
 
-def dangling_link(file, name, folder):
+def dangling_link(file: h5py.File, name: str, folder: Path) -> None:
     file[name] = h5py.SoftLink("/nowhere")
 
 
-def circular_link(file, name, folder):
+def circular_link(file: h5py.File, name: str, folder: Path) -> None:
     file[name] = h5py.SoftLink(f"/{name}")
 
 
-def external_link(target):
-    def make(file, name, folder):
+def external_link(target: str | None) -> Make:
+    def make(file: h5py.File, name: str, folder: Path) -> None:
         file[name] = h5py.ExternalLink(str(target or folder / "pipe"), "/x")
 
     return make
 
 
-def virtual(target, unlimited):
-    def make(file, name, folder):
+def virtual(target: str | None, unlimited: bool) -> Make:
+    def make(file: h5py.File, name: str, folder: Path) -> None:
         source = str(target or folder / "pipe")
         length = h5py.h5s.UNLIMITED if unlimited else 2
         layout = h5py.VirtualLayout(shape=(2,), maxshape=(length,), dtype="<f8")
@@ -165,48 +175,48 @@ def virtual(target, unlimited):
     return make
 
 
-def foreign_storage(target):
-    def make(file, name, folder):
+def foreign_storage(target: str | None) -> Make:
+    def make(file: h5py.File, name: str, folder: Path) -> None:
         file.create_dataset(name, shape=(2,), dtype="<f8", external=[(str(target or folder / "pipe"), 0, 16)])
 
     return make
 
 
-def bomb(file, name, folder):
+def bomb(file: h5py.File, name: str, folder: Path) -> None:
     zeros = file.create_dataset(name, shape=(2**23,), dtype="<f8", chunks=(2**20,), compression="gzip")
     zeros[:] = 0.0
 
 
-def filler(file, name, folder):
+def filler(file: h5py.File, name: str, folder: Path) -> None:
     file.create_dataset(name, shape=(2**27,), dtype="<f8", chunks=(2**20,), fletcher32=True, fillvalue=22.0)
 
 
-def group(file, name, folder):
+def group(file: h5py.File, name: str, folder: Path) -> None:
     file.create_group(name)
 
 
-def named_type(file, name, folder):
+def named_type(file: h5py.File, name: str, folder: Path) -> None:
     file[name] = np.dtype("<f8")
 
 
-def alias(file, name, folder):
+def alias(file: h5py.File, name: str, folder: Path) -> None:
     file[name] = file["exit_m"]
 
 
-def reference_attribute(file, folder):
+def reference_attribute(file: h5py.File, folder: Path) -> None:
     file.attrs["tool_version"] = file["mass_t"].ref
 
 
-def long_attribute(file, folder):
+def long_attribute(file: h5py.File, folder: Path) -> None:
     file.attrs.create("tool_version", ["x" * 1000] * 5000)
 
 
-def surplus(file, folder):
+def surplus(file: h5py.File, folder: Path) -> None:
     for index in range(5000):
         file.create_group(f"surplus-{index}")
 
 
-HOSTILE = {
+HOSTILE: dict[str, Forging] = {
     "1-tib-contiguous": replace_by("mass_t", claim((2**37,))),
     "1-tib-chunked": replace_by("mass_t", claim((2**37,), chunks=(2**10,), fletcher32=True)),
     "overflowing": replace_by("valid_s_m", claim((2**62, 2**62), chunks=(1, 2), fletcher32=True)),
@@ -234,7 +244,7 @@ HOSTILE = {
 
 
 @pytest.fixture(scope="module")
-def hostile(table, linear_table, tmp_path_factory):
+def hostile(table: ControllerTable, linear_table: ControllerTable, tmp_path_factory: pytest.TempPathFactory) -> Told:
     """What read_book says of every book of HOSTILE, each under a right seal."""
     folder = tmp_path_factory.mktemp("hostile")
     os.mkfifo(folder / "pipe")
@@ -251,7 +261,7 @@ def hostile(table, linear_table, tmp_path_factory):
 
 
 @pytest.mark.parametrize("name", HOSTILE)
-def test_hostile_books_are_refused_in_bounds(hostile, name):
+def test_hostile_books_are_refused_in_bounds(hostile: Told, name: str) -> None:
     said = hostile[name]
     assert said["error"] == "DamagedTable", said["text"]
     assert said["seconds"] < LONGEST_SECONDS
@@ -259,7 +269,7 @@ def test_hostile_books_are_refused_in_bounds(hostile, name):
     assert said["text"].isprintable()
 
 
-def test_the_limit_of_the_address_space_is_one(tmp_path):
+def test_the_limit_of_the_address_space_is_one(tmp_path: Path) -> None:
     # Otherwise the tests above would say nothing of memory.
     allocate = "import resource, sys; resource.setrlimit(resource.RLIMIT_AS, (int(sys.argv[1]),) * 2); bytes(2**31)"
     ended = subprocess.run(

@@ -3,7 +3,10 @@
 import copy
 import json
 import os
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tuning_tables import (
+    ControllerTable,
     DamagedTable,
     NewerVersion,
     OlderVersion,
@@ -25,32 +29,41 @@ from tuning_tables import (
 from tuning_tables.canonical import canonical_json, document_checksum
 from tuning_tables.json_file import LARGEST_FILE_BYTES
 
+Document = dict[str, Any]
+JsonPath = tuple[str | int, ...]
+KeyPath = tuple[*tuple[str | int, ...], str]
+"""Ends in a key of an object."""
 
-def document_of(table):
-    return json.loads(to_json(table))
+
+def document_of(table: ControllerTable) -> Document:
+    document: Document = json.loads(to_json(table))
+    return document
 
 
-def sealed(document):
+def sealed(document: Document) -> bytes:
     """The text of `document` with a checksum and a layout that are right for it, so that only its content is judged."""
     return canonical_json({**document, "crc32": document_checksum(document)})
 
 
-def key_paths(value, path=()):
+def key_paths(value: Any, path: JsonPath = ()) -> Iterator[KeyPath]:
     """Every key of every object in the document, as a path of keys and indices."""
-    members = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
-    for key, member in members:
-        if isinstance(value, dict):
-            yield (*path, key)
-        yield from key_paths(member, (*path, key))
+    if isinstance(value, dict):
+        for name, member in value.items():
+            yield (*path, name)
+            yield from key_paths(member, (*path, name))
+    elif isinstance(value, list):
+        for index, member in enumerate(value):
+            yield from key_paths(member, (*path, index))
 
 
-def parent_of(document, path):
+def parent_of(document: Document, path: JsonPath) -> Any:
+    parent: Any = document
     for key in path[:-1]:
-        document = document[key]
-    return document
+        parent = parent[key]
+    return parent
 
 
-def test_a_table_survives_the_file(table, linear_table, tmp_path):
+def test_a_table_survives_the_file(table: ControllerTable, linear_table: ControllerTable, tmp_path: Path) -> None:
     for original in (table, linear_table):
         write_json(original, tmp_path / "table.json")
         read = read_json(tmp_path / "table.json")
@@ -59,7 +72,7 @@ def test_a_table_survives_the_file(table, linear_table, tmp_path):
     assert os.listdir(tmp_path) == ["table.json"]
 
 
-def test_equal_tables_give_equal_bytes_and_their_order_is_the_contract(table):
+def test_equal_tables_give_equal_bytes_and_their_order_is_the_contract(table: ControllerTable) -> None:
     assert to_json(table) == to_json(from_json(to_json(table)))
     assert list(document_of(table)) == [
         "format",
@@ -80,7 +93,7 @@ def test_equal_tables_give_equal_bytes_and_their_order_is_the_contract(table):
     assert sum(line.startswith(b'  {"k": ') for line in to_json(table).splitlines()) == len(table.stages)
 
 
-def test_the_canonical_form_is_the_one_other_layout(table, linear_table):
+def test_the_canonical_form_is_the_one_other_layout(table: ControllerTable, linear_table: ControllerTable) -> None:
     for original in (table, linear_table):
         document = document_of(original)
         assert sealed(document) != to_json(original)
@@ -104,14 +117,16 @@ def test_the_canonical_form_is_the_one_other_layout(table, linear_table):
         lambda document, content: canonical_json(document).replace(b'"k":0', b'"k":-0'),
     ],
 )
-def test_any_other_layout_of_the_same_content_is_refused(table, laid_out):
+def test_any_other_layout_of_the_same_content_is_refused(
+    table: ControllerTable, laid_out: Callable[[Document, bytes], bytes]
+) -> None:
     content = laid_out(document_of(table), to_json(table))
     assert json.loads(content) == document_of(table)
     with pytest.raises(DamagedTable, match=r"laid out otherwise|without a sign"):
         from_json(content)
 
 
-def test_large_whole_numbers_keep_their_value_in_both_layouts(table):
+def test_large_whole_numbers_keep_their_value_in_both_layouts(table: ControllerTable) -> None:
     # The canonical form writes them without a point, and beyond 2^53 they still are numbers, but no counts.
     large = replace(table, predicted=replace(table.predicted, switchings=3e20, rms_m_s=2.0**60))
     document = document_of(large)
@@ -121,20 +136,20 @@ def test_large_whole_numbers_keep_their_value_in_both_layouts(table):
         from_json(sealed({**document, "validated": {**document["validated"], "passes": 3e20}}))
 
 
-def test_a_zero_has_no_sign(linear_table):
+def test_a_zero_has_no_sign(linear_table: ControllerTable) -> None:
     content = to_json(replace(linear_table, valid=ValidRange((0.0, 8.0), (0.0, 9.0))))
     with pytest.raises(DamagedTable, match=r"valid\.s_m\[0\] is -0\.0, but"):
         from_json(content.replace(b'"s_m": [0.0', b'"s_m": [-0.0'))
 
 
-def test_no_truncated_file_gets_through(table):
+def test_no_truncated_file_gets_through(table: ControllerTable) -> None:
     for content in (to_json(table), sealed(document_of(table))):
         for length in range(len(content)):
             with pytest.raises(DamagedTable):
                 from_json(content[:length])
 
 
-def test_every_key_is_required_even_under_a_right_checksum(table):
+def test_every_key_is_required_even_under_a_right_checksum(table: ControllerTable) -> None:
     paths = list(key_paths(document_of(table)))
     assert len(paths) > 40
     for path in paths:
@@ -145,7 +160,7 @@ def test_every_key_is_required_even_under_a_right_checksum(table):
             from_json(content)
 
 
-def test_no_key_is_allowed_that_is_not_known(table):
+def test_no_key_is_allowed_that_is_not_known(table: ControllerTable) -> None:
     for place in [(), ("cut",), ("predicted",), ("validated",), ("stages", 1)]:
         document = document_of(table)
         parent_of(document, (*place, "surplus"))["surplus"] = 1
@@ -154,7 +169,7 @@ def test_no_key_is_allowed_that_is_not_known(table):
 
 
 @pytest.mark.parametrize("wrong", [None, True, "4", [], {}, [None], -1, 0.5], ids=repr)
-def test_no_value_of_another_type_gets_through(table, wrong):
+def test_no_value_of_another_type_gets_through(table: ControllerTable, wrong: object) -> None:
     refused = 0
     for path in key_paths(document_of(table)):
         document = document_of(table)
@@ -184,14 +199,16 @@ def test_no_value_of_another_type_gets_through(table, wrong):
         ({"valid": {"s_m": [1.0, 0.0], "v_m_s": [0.0, 1.0]}}, DamagedTable),
     ],
 )
-def test_formats_versions_and_values_have_their_own_errors(table, change, error):
+def test_formats_versions_and_values_have_their_own_errors(
+    table: ControllerTable, change: Document, error: type[TableError]
+) -> None:
     with pytest.raises(TableError) as caught:
         from_json(sealed({**document_of(table), **change}), source="t.json")
     assert type(caught.value) is error
     assert str(caught.value).startswith("t.json: ")
 
 
-def test_a_version_with_a_point_is_refused(table):
+def test_a_version_with_a_point_is_refused(table: ControllerTable) -> None:
     for content in (to_json(table), json.dumps(document_of(table)).encode()):
         with pytest.raises(DamagedTable, match=r"version is 1\.0"):
             from_json(content.replace(b'"version": 1,', b'"version": 1.0,'))
@@ -217,7 +234,7 @@ def test_a_version_with_a_point_is_refused(table):
     ],
     ids=lambda value: repr(value)[:24],
 )
-def test_foreign_files_are_refused(content, error):
+def test_foreign_files_are_refused(content: bytes, error: type[TableError]) -> None:
     with pytest.raises(TableError) as caught:
         from_json(content)
     assert type(caught.value) is error
@@ -237,46 +254,46 @@ def test_foreign_files_are_refused(content, error):
     ],
     ids=lambda value: str(value[:20]),
 )
-def test_numbers_that_are_none_are_refused(table, token, reason):
+def test_numbers_that_are_none_are_refused(table: ControllerTable, token: bytes, reason: str) -> None:
     content = to_json(table)
     assert content.count(b'"mass_t": 22.0') == 1
     with pytest.raises(DamagedTable, match=reason):
         from_json(content.replace(b'"mass_t": 22.0', b'"mass_t": ' + token))
 
 
-def test_a_key_given_twice_is_refused_though_the_last_one_is_right(table):
+def test_a_key_given_twice_is_refused_though_the_last_one_is_right(table: ControllerTable) -> None:
     content = to_json(table).replace(b'"mass_t": 22.0', b'"mass_t": 85.0, "mass_t": 22.0')
     with pytest.raises(DamagedTable, match="'mass_t' is given twice"):
         from_json(content)
 
 
-def test_a_document_nested_in_a_known_key_is_refused(table):
+def test_a_document_nested_in_a_known_key_is_refused(table: ControllerTable) -> None:
     deep = "[" * 400 + "]" * 400
     document = {**document_of(table), "id": json.loads(deep)}
     with pytest.raises(DamagedTable):
         from_json(sealed(document))
 
 
-def test_a_lone_surrogate_is_refused(table):
+def test_a_lone_surrogate_is_refused(table: ControllerTable) -> None:
     content = to_json(table).replace(b'"medium"', b'"\\ud800"')
     with pytest.raises(DamagedTable):
         from_json(content)
 
 
-def test_a_file_that_is_too_long_is_refused_unread(table, tmp_path):
+def test_a_file_that_is_too_long_is_refused_unread(table: ControllerTable, tmp_path: Path) -> None:
     path = tmp_path / "long.json"
     path.write_bytes(to_json(table) + b" " * LARGEST_FILE_BYTES)
     with pytest.raises(DamagedTable, match=r"long\.json"):
         read_json(path)
 
 
-def test_an_absent_file_is_an_os_error(tmp_path):
+def test_an_absent_file_is_an_os_error(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         read_json(tmp_path / "absent.json")
 
 
 @given(content=st.binary(max_size=200) | st.text(alphabet='{}[]",:0123eE+-.truefalsn', max_size=80).map(str.encode))
 @settings(derandomize=True)
-def test_noise_is_refused_in_order(content):
+def test_noise_is_refused_in_order(content: bytes) -> None:
     with pytest.raises(TableError):
         from_json(content)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import tuning_tables
-from tuning_tables import write_json
+from tuning_tables import ControllerTable, write_json
 
 LONGEST_SECONDS = 0.2
 ATTEMPTS = 20  # a busy machine may be slow again and again, but a heavy import is slow every time
@@ -26,7 +26,7 @@ print(sorted({name.partition(".")[0] for name in sys.modules} - known))
 
 
 @pytest.fixture(scope="module")
-def only_numpy(tmp_path_factory):
+def only_numpy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A directory of packages in which there is numpy and tuning_tables, and nothing else."""
     folder = tmp_path_factory.mktemp("packages")
     numpy = Path(np.__file__).parent
@@ -36,7 +36,7 @@ def only_numpy(tmp_path_factory):
     return folder
 
 
-def asked_in_a_new_process(packages, table):
+def asked_in_a_new_process(packages: Path, table: Path) -> tuple[str, float]:
     """What PROGRAM prints with these packages only, and the seconds from the start to the end of its process."""
     environment = {"PYTHONPATH": str(packages), "PATH": os.environ["PATH"]}
     started = time.perf_counter()
@@ -50,21 +50,25 @@ def asked_in_a_new_process(packages, table):
     return ended.stdout.strip(), time.perf_counter() - started
 
 
-def test_loading_and_asking_a_table_needs_numpy_alone(only_numpy, linear_table, tmp_path):
+def test_loading_and_asking_a_table_needs_numpy_alone(
+    only_numpy: Path, linear_table: ControllerTable, tmp_path: Path
+) -> None:
     write_json(linear_table, tmp_path / "table.json")
     foreign, _ = asked_in_a_new_process(only_numpy, tmp_path / "table.json")
     assert foreign == "[]"
 
 
-def test_a_new_process_loads_and_asks_a_table_at_once(only_numpy, linear_table, tmp_path):
+def test_a_new_process_loads_and_asks_a_table_at_once(
+    only_numpy: Path, linear_table: ControllerTable, tmp_path: Path
+) -> None:
     write_json(linear_table, tmp_path / "table.json")
-    seconds = []
+    seconds: list[float] = []
     while len(seconds) < ATTEMPTS and min(seconds, default=LONGEST_SECONDS) >= LONGEST_SECONDS:
         seconds.append(asked_in_a_new_process(only_numpy, tmp_path / "table.json")[1])
     assert min(seconds) < LONGEST_SECONDS
 
 
-def test_books_are_told_apart_from_what_needs_h5py(only_numpy, tmp_path):
+def test_books_are_told_apart_from_what_needs_h5py(only_numpy: Path, tmp_path: Path) -> None:
     program = "from tuning_tables import read_book; read_book('absent.h5')"
     ended = subprocess.run(
         [sys.executable, "-S", "-s", "-P", "-c", program],

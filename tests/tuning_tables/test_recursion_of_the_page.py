@@ -85,7 +85,7 @@ class Filter:
 
 def number_of(bits: str) -> np.float32:
     """The float32 number of these bits."""
-    return np.array([int(bits, 16)], np.uint32).view(np.float32)[0]
+    return np.float32(np.array([int(bits, 16)], np.uint32).view(np.float32)[0])
 
 
 def tracks_of(book: TableBook) -> Iterator[tuple[int, list[Row]]]:

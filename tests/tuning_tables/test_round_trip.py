@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from hypothesis import strategies as st
 
 from tests.tuning_tables.random_tables import tables
 from tuning_tables import (
+    ControllerTable,
     Generator,
     InvalidTable,
     Stage,
@@ -33,7 +35,7 @@ slowly = settings(
 )
 
 
-def bits(table):
+def bits(table: ControllerTable) -> tuple[bytes | str, ...]:
     """Every bit that a decision or a reader of the table depends on."""
     arrays = (table.coefficients, table.has_line, table.valid_range)
     return to_json(table), *(array.tobytes() for array in arrays), *(array.dtype.str for array in arrays)
@@ -41,7 +43,7 @@ def bits(table):
 
 @given(st.lists(tables(), min_size=1, max_size=3, unique_by=lambda table: table.id))
 @slowly
-def test_json_and_book_hold_the_same_bits(tmp_path, originals):
+def test_json_and_book_hold_the_same_bits(tmp_path: Path, originals: list[ControllerTable]) -> None:
     path = tmp_path / "book.h5"
     from_texts = [from_json(to_json(table)) for table in originals]
     assert from_texts == originals
@@ -56,12 +58,12 @@ def test_json_and_book_hold_the_same_bits(tmp_path, originals):
 
 @given(tables())
 @settings(slowly, max_examples=100)
-def test_both_layouts_of_a_table_are_read(original):
+def test_both_layouts_of_a_table_are_read(original: ControllerTable) -> None:
     canonical = canonical_json(json.loads(to_json(original)))
     assert bits(from_json(canonical)) == bits(from_json(to_json(original))) == bits(original)
 
 
-def test_a_table_written_twice_has_the_same_bytes_in_every_format(table, tmp_path):
+def test_a_table_written_twice_has_the_same_bytes_in_every_format(table: ControllerTable, tmp_path: Path) -> None:
     twin = read_back(table, tmp_path)
     assert twin is not table
     for write, name in ((write_json, "json"), (write_csv, "csv"), (lambda t, p: write_book([t], p), "h5")):
@@ -70,25 +72,25 @@ def test_a_table_written_twice_has_the_same_bytes_in_every_format(table, tmp_pat
         assert (tmp_path / f"first.{name}").read_bytes() == (tmp_path / f"second.{name}").read_bytes()
 
 
-def read_back(table, folder):
+def read_back(table: ControllerTable, folder: Path) -> ControllerTable:
     write_json(table, folder / "table.json")
     return read_json(folder / "table.json")
 
 
-def line_changed(table, k, **lines):
-    return replace(table, stages=tuple(replace(s, **lines) if s.k == k else s for s in table.stages))
+def with_stage(table: ControllerTable, stage: Stage) -> ControllerTable:
+    return replace(table, stages=tuple(stage if s.k == stage.k else s for s in table.stages))
 
 
 SIGNED_ZEROS = (
-    lambda table: line_changed(table, 0, upper=(6.0, 0.0, -0.0, 0.0)),
-    lambda table: line_changed(table, 2, lower=(-0.0, 0.0, 0.0, 0.0)),
+    lambda table: with_stage(table, replace(table.stages[0], upper=(6.0, 0.0, -0.0, 0.0))),
+    lambda table: with_stage(table, replace(table.stages[2], lower=(-0.0, 0.0, 0.0, 0.0))),
     lambda table: replace(table, cut=replace(table.cut, axle_offsets_m=(-0.0, 1.0))),
     lambda table: table.with_validated(replace(table.validated, rms_ci95_m_s=(-0.0, 1.0))),
     lambda table: replace(table, predicted=replace(table.predicted, bias_m_s=-0.0)),
 )
 
 
-def test_no_format_takes_a_zero_with_a_sign(table, tmp_path):
+def test_no_format_takes_a_zero_with_a_sign(table: ControllerTable, tmp_path: Path) -> None:
     # Were they written, JSON's checksum would not cover the sign, and the book's would.
     exports = (to_json, to_csv, lambda signed: write_book([signed], tmp_path / "book.h5"))
     for change in SIGNED_ZEROS:
@@ -98,7 +100,7 @@ def test_no_format_takes_a_zero_with_a_sign(table, tmp_path):
     assert not (tmp_path / "book.h5").exists()
 
 
-def test_a_coefficient_keeps_its_last_bit(table, tmp_path):
+def test_a_coefficient_keeps_its_last_bit(table: ControllerTable, tmp_path: Path) -> None:
     last_bits = [1e-45, 1.1754942e-38, np.nextafter(np.float32(4.0), np.float32(5.0)), 3.0e-39]
     line = tuple(float(np.float32(value)) for value in last_bits)
     original = replace(table, stages=(Stage(0, 0.0, None, line), *table.stages[1:]))

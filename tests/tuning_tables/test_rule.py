@@ -2,17 +2,20 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numba
 import numpy as np
+import numpy.typing as npt
 import pytest
 
-from tuning_tables import HOLD, LOWER, RAISE, Stage, ValidRange, decide, decide_for, decide_many
+from tuning_tables import HOLD, LOWER, RAISE, ControllerTable, Stage, ValidRange, decide, decide_for, decide_many
+from tuning_tables.table_book import Line
 
 NAN, INF = float("nan"), float("inf")
 
 
-def exact_horner(line, s):
+def exact_horner(line: Line, s: np.float32) -> np.float32:
     """The line in float32, each step in double precision and then rounded: an independent way to the same number."""
     value = np.float32(line[-1])
     for coefficient in reversed(line[:-1]):
@@ -22,39 +25,51 @@ def exact_horner(line, s):
     return value
 
 
-def adversarial_readings(table, rng, count):
+def adversarial_readings(
+    table: ControllerTable, rng: np.random.Generator, count: int
+) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float32], npt.NDArray[np.float32]]:
     """Readings on the lines, one float32 step beside them, at the ends, absurd ones; stages in and out of range."""
     stages = rng.integers(-2, len(table.stages) + 2, count)
     s = rng.uniform(-10.0, 60.0, count).astype(np.float32)
-    s[::7] = rng.choice(np.float32([0.0, -0.0, 37.45, 1e-45, 1e-39, 3.4e38, -3.4e38, NAN, INF, -INF]), s[::7].size)
+    s[::7] = rng.choice(
+        np.array([0.0, -0.0, 37.45, 1e-45, 1e-39, 3.4e38, -3.4e38, NAN, INF, -INF], np.float32), s[::7].size
+    )
     v = rng.uniform(-1.0, 10.0, count).astype(np.float32)
-    v[::11] = rng.choice(np.float32([0.0, -0.0, 1e-45, 1e-39, 3.4e38, NAN, INF, -INF]), v[::11].size)
+    v[::11] = rng.choice(np.array([0.0, -0.0, 1e-45, 1e-39, 3.4e38, NAN, INF, -INF], np.float32), v[::11].size)
     for index in range(0, count, 3):
         stage = table.stages[rng.integers(len(table.stages))]
         line = stage.lower or stage.upper if rng.random() < 0.5 else stage.upper or stage.lower
         clamped = np.clip(s[index], *table.valid_range[:2])
         if np.isfinite(clamped):
+            assert line is not None
             stages[index] = stage.k
             on_line = exact_horner(line, clamped)
-            just_below, just_above = np.nextafter(on_line, np.float32([0.0, INF]))
+            just_below, just_above = np.nextafter(on_line, np.array([0.0, INF], np.float32))
             v[index] = (on_line, just_below, just_above)[index % 9 // 3]
     return stages, s, v
 
 
-def test_the_three_ways_agree_everywhere(table):
+def test_the_three_ways_agree_everywhere(table: ControllerTable) -> None:
     stages, s, v = adversarial_readings(table, np.random.default_rng(20261120), 100_000)
-    compiled = numba.njit(decide)
+    compiled: Any = numba.njit(decide)
 
-    @numba.njit
-    def run(coefficients, has_line, valid_range, stages, s, v):
+    def run(
+        coefficients: npt.NDArray[np.float32],
+        has_line: npt.NDArray[np.bool_],
+        valid_range: npt.NDArray[np.float32],
+        stages: npt.NDArray[np.int64],
+        s: npt.NDArray[np.float32],
+        v: npt.NDArray[np.float32],
+    ) -> npt.NDArray[np.int8]:
         answers = np.empty(stages.size, dtype=np.int8)
         for index in range(stages.size):
             answers[index] = compiled(coefficients, has_line, valid_range, stages[index], s[index], v[index])
         return answers
 
+    compiled_run: Any = numba.njit(run)
     arrays = (table.coefficients, table.has_line, table.valid_range)
     many = decide_many(table, stages, s, v)
-    jitted = run(*arrays, stages, s, v)
+    jitted = compiled_run(*arrays, stages, s, v)
     plain = np.array([decide(*arrays, *reading) for reading in zip(stages.tolist(), s, v, strict=True)])
     assert np.count_nonzero(many != plain) == 0
     assert np.count_nonzero(jitted != plain) == 0
@@ -62,7 +77,7 @@ def test_the_three_ways_agree_everywhere(table):
     assert np.all(np.bincount(plain + 1) > 5_000)
 
 
-def test_answers_agree_with_an_independent_float32_evaluation(table):
+def test_answers_agree_with_an_independent_float32_evaluation(table: ControllerTable) -> None:
     stages, s, v = adversarial_readings(table, np.random.default_rng(1), 20_000)
     credible = np.isfinite(s) & np.isfinite(v) & (v >= 0) & (stages >= 0) & (stages < len(table.stages))
     ties = 0
@@ -76,8 +91,8 @@ def test_answers_agree_with_an_independent_float32_evaluation(table):
     assert ties > 500
 
 
-def test_both_float_widths_of_a_reading_agree_in_compiled_code(table):
-    compiled = numba.njit(decide)
+def test_both_float_widths_of_a_reading_agree_in_compiled_code(table: ControllerTable) -> None:
+    compiled: Any = numba.njit(decide)
     arrays = (table.coefficients, table.has_line, table.valid_range)
     for s in np.linspace(0.0, 37.0, 50):
         for v in np.linspace(4.0, 7.0, 50):
@@ -103,7 +118,9 @@ def test_both_float_widths_of_a_reading_agree_in_compiled_code(table):
         (0, 4.0, 3.4e38, RAISE),  # beyond the valid speeds, but a number
     ],
 )
-def test_the_rule_on_a_table_that_can_be_checked_by_hand(linear_table, stage, s_m, v_m_s, answer):
+def test_the_rule_on_a_table_that_can_be_checked_by_hand(
+    linear_table: ControllerTable, stage: int, s_m: float, v_m_s: float, answer: int
+) -> None:
     assert decide_for(linear_table, stage, s_m, v_m_s) == answer
     assert decide_many(linear_table, stage, s_m, v_m_s) == answer
 
@@ -124,7 +141,9 @@ def test_the_rule_on_a_table_that_can_be_checked_by_hand(linear_table, stage, s_
         (0, NAN, NAN),
     ],
 )
-def test_an_incredible_reading_moves_no_valve(linear_table, stage, s_m, v_m_s):
+def test_an_incredible_reading_moves_no_valve(
+    linear_table: ControllerTable, stage: int, s_m: float, v_m_s: float
+) -> None:
     # The same reading with credible numbers does ask for a change, so that HOLD is an answer to what is incredible.
     assert decide_for(linear_table, 1, 4.0, 0.0) == LOWER
     assert decide_for(linear_table, 0, 4.0, 9.0) == RAISE
@@ -132,20 +151,20 @@ def test_an_incredible_reading_moves_no_valve(linear_table, stage, s_m, v_m_s):
     assert decide_many(linear_table, stage, s_m, v_m_s) == HOLD
 
 
-def test_subnormal_coefficients_are_not_flushed_to_zero(linear_table):
+def test_subnormal_coefficients_are_not_flushed_to_zero(linear_table: ControllerTable) -> None:
     tiny = float(np.float32(1e-44))
     table = replace(
         linear_table,
         stages=(Stage(0, 0.0, None, (tiny, 0.0)), Stage(1, 1.0, None, None)),
         valid=ValidRange((0.0, 1.0), (0.0, 1.0)),
     )
-    compiled = numba.njit(decide)
+    compiled: Any = numba.njit(decide)
     arrays = (table.coefficients, table.has_line, table.valid_range)
     for v, answer in ((tiny, HOLD), (float(np.nextafter(np.float32(tiny), np.float32(1))), RAISE)):
         assert decide(*arrays, 0, 0.5, v) == compiled(*arrays, 0, 0.5, v) == decide_many(table, 0, 0.5, v) == answer
 
 
-def test_many_broadcasts_and_refuses_stages_that_are_no_integers(linear_table):
+def test_many_broadcasts_and_refuses_stages_that_are_no_integers(linear_table: ControllerTable) -> None:
     answers = decide_many(linear_table, [[0], [1]], 4.0, [0.0, 4.0, 9.0])
     assert answers.tolist() == [[HOLD, HOLD, RAISE], [LOWER, HOLD, HOLD]]
     assert answers.dtype == np.int8

@@ -2,35 +2,46 @@
 
 import copy
 import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
 
 import jsonschema
 import pytest
 
-from tuning_tables import DamagedTable, from_json, table_schema, to_json, write_schema
+from tuning_tables import ControllerTable, DamagedTable, from_json, table_schema, to_json, write_schema
 from tuning_tables.canonical import canonical_json, document_checksum
+
+Document = dict[str, Any]
+JsonPath = tuple[str | int, ...]
 
 
 @pytest.fixture(scope="module")
-def validator():
+def validator() -> jsonschema.Draft202012Validator:
     jsonschema.Draft202012Validator.check_schema(table_schema())
     return jsonschema.Draft202012Validator(table_schema())
 
 
-def test_exported_tables_conform(validator, table, linear_table, estimated_table):
+def test_exported_tables_conform(
+    validator: jsonschema.Draft202012Validator,
+    table: ControllerTable,
+    linear_table: ControllerTable,
+    estimated_table: ControllerTable,
+) -> None:
     for exported in (table, linear_table, estimated_table):
         assert list(validator.iter_errors(json.loads(to_json(exported)))) == []
 
 
-def places(value, path=()):
+def places(value: Any, path: JsonPath = ()) -> Iterator[JsonPath]:
     yield path
     members = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
     for key, member in members:
         yield from places(member, (*path, key))
 
 
-def altered(document, path, value):
+def altered(document: Document, path: JsonPath, value: object) -> Document:
     document = copy.deepcopy(document)
-    parent = document
+    parent: Any = document
     for key in path[:-1]:
         parent = parent[key]
     parent[path[-1]] = value
@@ -39,7 +50,13 @@ def altered(document, path, value):
 
 @pytest.mark.parametrize("wrong", [None, True, "", [], {}, -1], ids=repr)
 @pytest.mark.parametrize("version", [1, 2])
-def test_what_the_schema_refuses_the_reader_refuses_too(validator, table, estimated_table, version, wrong):
+def test_what_the_schema_refuses_the_reader_refuses_too(
+    validator: jsonschema.Draft202012Validator,
+    table: ControllerTable,
+    estimated_table: ControllerTable,
+    version: int,
+    wrong: object,
+) -> None:
     document = json.loads(to_json(table if version == 1 else estimated_table))
     refused = 0
     for path in places(document):
@@ -54,7 +71,9 @@ def test_what_the_schema_refuses_the_reader_refuses_too(validator, table, estima
     assert refused >= 30
 
 
-def test_missing_and_unknown_keys_do_not_conform(validator, table):
+def test_missing_and_unknown_keys_do_not_conform(
+    validator: jsonschema.Draft202012Validator, table: ControllerTable
+) -> None:
     document = json.loads(to_json(table))
     objects = [path for path in places(document) if path and isinstance(value_at(document, path), dict)]
     assert len(objects) >= 9
@@ -67,18 +86,21 @@ def test_missing_and_unknown_keys_do_not_conform(validator, table):
             assert not validator.is_valid(altered(document, path, {k: v for k, v in content.items() if k != key}))
 
 
-def value_at(document, path):
+def value_at(document: Document, path: JsonPath) -> Any:
+    value: Any = document
     for key in path:
-        document = document[key]
-    return document
+        value = value[key]
+    return value
 
 
-def test_the_schema_file_is_the_schema(tmp_path):
+def test_the_schema_file_is_the_schema(tmp_path: Path) -> None:
     write_schema(tmp_path / "schema.json")
     assert json.loads((tmp_path / "schema.json").read_bytes()) == table_schema()
 
 
-def test_an_estimator_and_its_version_belong_together(validator, table, estimated_table):
+def test_an_estimator_and_its_version_belong_together(
+    validator: jsonschema.Draft202012Validator, table: ControllerTable, estimated_table: ControllerTable
+) -> None:
     plain, extended = json.loads(to_json(table)), json.loads(to_json(estimated_table))
     assert (plain["version"], extended["version"]) == (1, 2)
     without = {key: value for key, value in extended.items() if key != "estimator"}

@@ -1,6 +1,7 @@
 """A controller table is complete and consistent, or it does not exist."""
 
 import pickle
+from collections.abc import Callable
 from dataclasses import FrozenInstanceError, replace
 
 import numpy as np
@@ -9,6 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from tuning_tables import (
+    ControllerTable,
     CutId,
     Generator,
     InvalidTable,
@@ -19,16 +21,19 @@ from tuning_tables import (
     ValidRange,
     round_coefficients,
 )
+from tuning_tables.table_book import Line
+
+Crossing = Callable[[Line, Line, tuple[float, float]], ControllerTable]
 
 NAN, INF = float("nan"), float("inf")
 
 
-def test_arrays_hold_the_lines_and_are_read_only(table):
+def test_arrays_hold_the_lines_and_are_read_only(table: ControllerTable) -> None:
     assert table.coefficients.shape == (4, 2, 4)
     assert table.coefficients.dtype == np.float32
     assert table.has_line.tolist() == [[False, True], [True, True], [True, False], [True, False]]
-    assert table.coefficients[1, 0].tolist() == list(table.stages[1].lower)
-    assert table.coefficients[1, 1].tolist() == list(table.stages[1].upper)
+    assert tuple(table.coefficients[1, 0].tolist()) == table.stages[1].lower
+    assert tuple(table.coefficients[1, 1].tolist()) == table.stages[1].upper
     assert np.array_equal(np.isnan(table.coefficients).all(axis=2), ~table.has_line)
     assert table.valid_range.tolist() == [0.0, float(np.float32(37.45)), float(np.float32(0.3)), 9.0]
     for array in (table.coefficients, table.has_line, table.valid_range):
@@ -36,7 +41,7 @@ def test_arrays_hold_the_lines_and_are_read_only(table):
             array[...] = 1
 
 
-def test_a_table_is_a_value(table):
+def test_a_table_is_a_value(table: ControllerTable) -> None:
     twin = replace(table)
     assert twin == table
     assert hash(twin) == hash(table)
@@ -44,10 +49,10 @@ def test_a_table_is_a_value(table):
     assert copy == table
     assert np.array_equal(copy.coefficients, table.coefficients, equal_nan=True)
     with pytest.raises(FrozenInstanceError):
-        table.id = "other"
+        table.id = "other"  # type: ignore[misc]  # the very thing that is refused
 
 
-def test_validated_is_filled_in_on_a_copy(linear_table):
+def test_validated_is_filled_in_on_a_copy(linear_table: ControllerTable) -> None:
     validated = Validated(100, 0.1, (0.08, 0.12))
     assert linear_table.with_validated(validated).validated == validated
     assert linear_table.validated is None
@@ -77,10 +82,10 @@ def test_validated_is_filled_in_on_a_copy(linear_table):
     ],
     ids=repr,
 )
-def test_a_wrong_field_is_refused_by_name(table, change):
+def test_a_wrong_field_is_refused_by_name(table: ControllerTable, change: dict[str, object]) -> None:
     key = {"degree": "(polynomial.degree|coefficients)"}.get(next(iter(change)), next(iter(change)))
     with pytest.raises(InvalidTable, match=key):
-        replace(table, **change)
+        replace(table, **change)  # type: ignore[arg-type]  # one of the values has a wrong type
 
 
 @pytest.mark.parametrize(
@@ -99,9 +104,9 @@ def test_a_wrong_field_is_refused_by_name(table, change):
         (None, None),
     ],
 )
-def test_wrong_stages_are_refused(linear_table, stages):
+def test_wrong_stages_are_refused(linear_table: ControllerTable, stages: tuple[Stage | None, ...]) -> None:
     with pytest.raises(InvalidTable, match="stage"):
-        replace(linear_table, degree=0, stages=stages)
+        replace(linear_table, degree=0, stages=stages)  # type: ignore[arg-type]  # None is no stage
 
 
 @pytest.mark.parametrize(
@@ -110,7 +115,7 @@ def test_wrong_stages_are_refused(linear_table, stages):
         (lambda: Stage(-1, 0.0, None, None), "stages.k"),
         (lambda: Stage(0, -1.0, None, None), "pressure_kpa"),
         (lambda: Stage(0, INF, None, None), "pressure_kpa"),
-        (lambda: Stage(0, 0.0, None, [4.0]), "upper"),
+        (lambda: Stage(0, 0.0, None, [4.0]), "upper"),  # type: ignore[arg-type]  # a list
         (lambda: Stage(0, 0.0, None, (NAN,)), "upper"),
         (lambda: Stage(0, 0.0, None, (0.1,)), "round_coefficients"),
         (lambda: Stage(0, 0.0, None, (1e39,)), "float32"),
@@ -142,19 +147,19 @@ def test_wrong_stages_are_refused(linear_table, stages):
         (lambda: Predicted(0.1, 0.0, 0.0, -1.0), "switchings"),
         (lambda: Predicted(0.1, 0.0, 0.0, 1.0, -0.1), "p_stall"),
         (lambda: Validated(0, 0.1, (0.0, 0.2)), "passes"),
-        (lambda: Validated(1.0, 0.1, (0.0, 0.2)), "passes"),
+        (lambda: Validated(1.0, 0.1, (0.0, 0.2)), "passes"),  # type: ignore[arg-type]  # not a whole number
         (lambda: Validated(1, 0.1, (0.2, 0.1)), "ci95"),
-        (lambda: Validated(1, 0.1, (0.1,)), "ci95"),
+        (lambda: Validated(1, 0.1, (0.1,)), "ci95"),  # type: ignore[arg-type]  # half an interval
     ],
 )
-def test_wrong_parts_are_refused_by_name(make, key):
+def test_wrong_parts_are_refused_by_name(make: Callable[[], object], key: str) -> None:
     with pytest.raises(InvalidTable, match=key):
         make()
 
 
 @given(st.floats(width=64, allow_nan=False, min_value=-3e38, max_value=3e38))
 @settings(derandomize=True)
-def test_rounding_gives_the_nearest_float32(value):
+def test_rounding_gives_the_nearest_float32(value: float) -> None:
     (rounded,) = round_coefficients([value])
     error = abs(rounded - value)
     neighbours = [np.nextafter(np.float32(rounded), np.float32(side)) for side in (-np.inf, np.inf)]
@@ -182,7 +187,9 @@ def test_rounding_gives_the_nearest_float32(value):
         ((1000.0, 0.0), (1000.0 + 2.0**-7, 0.0), (0.0, 10.0), True),
     ],
 )
-def test_lines_must_keep_their_order_on_the_whole_range(crossing, lower, upper, s_m, accepted):
+def test_lines_must_keep_their_order_on_the_whole_range(
+    crossing: Crossing, lower: Line, upper: Line, s_m: tuple[float, float], accepted: bool
+) -> None:
     if accepted:
         assert crossing(lower, upper, s_m).stages[1].lower == lower
     else:
@@ -199,7 +206,9 @@ coefficients = st.floats(-8, 8, width=32).map(lambda c: c + 0.0)  # no -0.0
     s_m=st.tuples(st.floats(-4, 0, width=32).map(lambda s: s + 0.0), st.floats(0.5, 4, width=32)),
 )
 @settings(derandomize=True, max_examples=300, deadline=None)
-def test_order_as_sampled_agrees_with_order_as_decided(crossing, lower, gap, s_m):
+def test_order_as_sampled_agrees_with_order_as_decided(
+    crossing: Crossing, lower: list[float], gap: list[float], s_m: tuple[float, float]
+) -> None:
     upper = round_coefficients(a + b for a, b in zip(lower, gap, strict=True))
     s = np.linspace(*s_m, 2001)
     sampled = np.polynomial.polynomial.polyval(s, np.array(upper) - np.array(lower)).min()
@@ -219,7 +228,9 @@ def test_order_as_sampled_agrees_with_order_as_decided(crossing, lower, gap, s_m
     seed=st.integers(0, 2**32 - 1),
 )
 @settings(derandomize=True, max_examples=200, deadline=None)
-def test_accepted_lines_never_cross_in_float32(crossing, lower, offset, seed):
+def test_accepted_lines_never_cross_in_float32(
+    crossing: Crossing, lower: list[float], offset: float, seed: int
+) -> None:
     upper = round_coefficients([lower[0] + offset, *lower[1:]])
     try:
         table = crossing(tuple(lower), upper, (-1.5, 2.0))

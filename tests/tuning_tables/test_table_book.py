@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,13 +18,13 @@ from tuning_tables.table_book import Choice, Status, TableBook
 EIGHT = tuple(float(x) for x in range(8))
 
 
-def moved(table: ControllerTable, target: float, by: float = 0.0, **changes: object) -> ControllerTable:
+def moved(table: ControllerTable, target: float, by: float = 0.0, **changes: Any) -> ControllerTable:
     """`table` for another target, its lines moved by the difference, and by `by` in every power."""
     stages = tuple(
         replace(stage, lower=_moved(stage.lower, target - 4.0, by), upper=_moved(stage.upper, target - 4.0, by))
         for stage in table.stages
     )
-    return replace(table, id=f"to-{target}", target_speed_m_s=target, stages=stages, **changes)  # type: ignore[arg-type]
+    return replace(table, id=f"to-{target}", target_speed_m_s=target, stages=stages, **changes)
 
 
 def _moved(line: tuple[float, ...] | None, up: float, by: float) -> tuple[float, ...] | None:

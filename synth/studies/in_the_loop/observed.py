@@ -46,7 +46,7 @@ def _following() -> Any:
     estimated_speed = njit(error_model="numpy")(observe)
 
     @njit(error_model="numpy")
-    def follow(parameters, work, start, s_m, v_m_s, kpa, given, answers):  # type: ignore[no-untyped-def]
+    def follow(parameters, work, start, s_m, v_m_s, kpa, given, answers):  # type: ignore[no-untyped-def]  # numba infers the types
         state = np.zeros(ESTIMATE_WORDS, np.float32)
         speed = np.zeros(1, np.float32)
         for i in range(start.shape[0]):
@@ -66,7 +66,7 @@ def _passing_on() -> Any:
     counted = njit(error_model="numpy")(hand_on)
 
     @njit(error_model="numpy")
-    def pass_on(start, v_m_s, given, answers):  # type: ignore[no-untyped-def]
+    def pass_on(start, v_m_s, given, answers):  # type: ignore[no-untyped-def]  # numba infers the types
         state = np.zeros(ESTIMATE_WORDS, np.float32)
         for i in range(start.shape[0]):
             if start[i] == BEGIN:

@@ -124,7 +124,7 @@ def _controller_through(ask: int, hear: int) -> tuple[Any, Any]:
         call.restype = ctypes.c_ssize_t
 
     @njit
-    def answered(what, s, v, kpa):  # type: ignore[no-untyped-def]
+    def answered(what, s, v, kpa):  # type: ignore[no-untyped-def]  # numba infers the types
         request = np.empty(4, np.int32)
         reading = request.view(np.float32)
         request[0], reading[1], reading[2], reading[3] = what, s, v, kpa
@@ -135,11 +135,11 @@ def _controller_through(ask: int, hear: int) -> tuple[Any, Any]:
         return answer
 
     @njit
-    def decide(coefficients, has_line, valid, stage, s, v):  # type: ignore[no-untyped-def]
+    def decide(coefficients, has_line, valid, stage, s, v):  # type: ignore[no-untyped-def]  # numba infers the types
         return answered(stage, s, v, 0.0)[0]
 
     @njit
-    def observe(parameters, work, state, s, v, kpa):  # type: ignore[no-untyped-def]
+    def observe(parameters, work, state, s, v, kpa):  # type: ignore[no-untyped-def]  # numba infers the types
         # The process has the state; what the kernel holds only tells whether a pass begins.
         what = OBSERVE if state[0] != 0.0 else BEGIN
         state[0] = 1.0

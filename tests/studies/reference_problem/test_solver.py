@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
+from typing import Any
 
 import numba
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from synth.studies.reference_problem.by_numpy import backward, largest_regret, solve_by_numpy
 from synth.studies.reference_problem.by_plain_loops import solve_by_plain_loops
@@ -19,7 +21,10 @@ from synth.studies.reference_problem.operator_work import operator_work
 from synth.studies.reference_problem.problem import ReferenceProblem, batch_of_16
 from synth.studies.reference_problem.solver import ReferenceSolution, ReferenceSolver
 
-pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="LLVM vectors exist only in compiled kernels")
+Words = NDArray[np.int64]
+INTERPRETED = bool(numba.config.DISABLE_JIT)  # type: ignore[attr-defined]  # numba sets it when it is loaded
+
+pytestmark = pytest.mark.skipif(INTERPRETED, reason="LLVM vectors exist only in compiled kernels")
 
 EXCERPT = np.load(Path(__file__).with_name("reference_excerpt.npz"))
 """Every fourth pressure and every tenth speed of the solution that was published with the problem (float64)."""
@@ -145,8 +150,7 @@ def test_helpers_that_never_come_hang_nobody() -> None:
 
 
 def test_every_chunk_is_taken_once() -> None:
-    @numba.njit
-    def takers(taken, done, order):
+    def takers(taken: Words, done: Words, order: Words) -> tuple[int, int]:
         for turn in range(order.shape[0]):
             order[turn] = take(taken, 1, turn % 2, 3, order.shape[0])
             finish(done, 1)
@@ -154,7 +158,8 @@ def test_every_chunk_is_taken_once() -> None:
         return take(taken, 1, 2, 3, order.shape[0]), fetch_add(done, 8, 5)
 
     taken, done, order = np.zeros(2 * 3 * 8, np.int64), np.zeros(2 * 8, np.int64), np.empty(10, np.int64)
-    assert takers(taken, done, order) == (-1, 10)
+    compiled: Any = numba.njit(takers)
+    assert compiled(taken, done, order) == (-1, 10)
     assert sorted(order) == list(range(10))
     assert list(order[:2]) == [0, 1], "own chunks come first"
     assert done[8] == 15
@@ -190,6 +195,6 @@ def test_work_is_what_the_landings_need() -> None:
      {"friction_std": 0.4}],
     ids=str,
 )  # fmt: skip
-def test_impossible_problems_are_refused(wrong: dict[str, float]) -> None:
+def test_impossible_problems_are_refused(wrong: dict[str, Any]) -> None:
     with pytest.raises(ValueError, match=r"must|needs|at most"):
-        ReferenceProblem(**wrong)  # type: ignore[arg-type]
+        ReferenceProblem(**wrong)

@@ -41,10 +41,12 @@ def test_where_a_time_is_cut_does_not_matter(orders: list[tuple[float, float]], 
         once = (once[0], wait_after_command(*once, stage, wanted, DRIVE))
         twice = (twice[0], wait_after_command(*twice, stage, wanted, DRIVE))
         stage = wanted
-        *once, whole = drive_on(*once, stage, duration, DRIVE)
-        *twice, first = drive_on(*twice, stage, cut * duration, DRIVE)
-        *twice, second = drive_on(*twice, stage, duration - cut * duration, DRIVE)
-        assert list(once) == pytest.approx(list(twice), abs=1e-8)
+        pressure, wait, whole = drive_on(*once, stage, duration, DRIVE)
+        once = (pressure, wait)
+        pressure, wait, first = drive_on(*twice, stage, cut * duration, DRIVE)
+        pressure, wait, second = drive_on(pressure, wait, stage, duration - cut * duration, DRIVE)
+        twice = (pressure, wait)
+        assert once == pytest.approx(twice, abs=1e-8)
         assert whole == pytest.approx(first + second, abs=1e-8)
 
 

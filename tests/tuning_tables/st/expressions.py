@@ -9,11 +9,24 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Any, TypeAlias
 
 import numpy as np
 
-from tests.tuning_tables.st.storage import INT_LIMITS, Array, Fault, Record, Scalar, somewhere
-from tests.tuning_tables.st.syntax import parts, word
+from tests.tuning_tables.st.storage import (
+    INT_LIMITS,
+    Array,
+    Fault,
+    Frame,
+    Kind,
+    Mask,
+    Real,
+    Record,
+    Scalar,
+    Value,
+    somewhere,
+)
+from tests.tuning_tables.st.syntax import Node, part, parts, word
 
 COMPARISONS = {
     "<": np.less,
@@ -27,29 +40,34 @@ LOGIC = {"AND": np.logical_and, "OR": np.logical_or, "XOR": np.logical_xor}
 ARITHMETIC = {"+": np.add, "-": np.subtract, "*": np.multiply, "/": np.divide}
 
 
+Evaluate: TypeAlias = Callable[[Frame, Mask], Value]
+Find: TypeAlias = Callable[[Frame], Any]
+"""Finds a variable in a frame: a `Cell`, `Row` or `Frame`, as its declaration says."""
+
+
 @dataclass(frozen=True)
 class Expression:
     """What an expression is (REAL, INT, BOOL) and how its value follows from the variables."""
 
     kind: str
-    run: Callable
+    run: Evaluate
 
 
 @dataclass
 class Arithmetic:
     """How REAL is computed between two assignments, and how often what was done: float32, or float64 to be rounded."""
 
-    real: type = np.float32
-    done: Counter = field(default_factory=Counter)
+    real: Real = np.float32
+    done: Counter[str] = field(default_factory=Counter)
 
 
-Scope = Mapping[str, object]
+Scope: TypeAlias = Mapping[str, Kind]
 
 
-def compile_expression(node, scope: Scope, arithmetic: Arithmetic) -> Expression:
+def compile_expression(node: Node, scope: Scope, arithmetic: Arithmetic) -> Expression:
     """The expression at `node` of the parse tree, with the types of `scope`."""
     if node.type == "parenthesized_expression":
-        return compile_expression(node.named_child(0), scope, arithmetic)
+        return compile_expression(node.named_children[0], scope, arithmetic)
     if node.type in ("integer_literal", "real_literal", "boolean_literal"):
         return _literal(node, arithmetic)
     if node.type == "unary_expression":
@@ -67,7 +85,7 @@ def compile_expression(node, scope: Scope, arithmetic: Arithmetic) -> Expression
     return Expression("REAL", lambda frame, mask: widened(find(frame).value, arithmetic))
 
 
-def resolve(node, scope: Scope):
+def resolve(node: Node, scope: Scope) -> tuple[Kind, Find]:
     """Type of a variable, member of a record or variable of a block, and a function from the frame to the variable."""
     if node.type == "identifier":
         name = word(node)
@@ -75,8 +93,8 @@ def resolve(node, scope: Scope):
             raise Fault(f"{name} is not declared")
         return scope[name], lambda frame: frame[name]
     if node.type == "member_access_expression":
-        kind, find = resolve(node.child_by_field_name("object"), scope)
-        member = word(node.child_by_field_name("member"))
+        kind, find = resolve(part(node, "object"), scope)
+        member = word(part(node, "member"))
         if not isinstance(kind, Record) or kind.members.get(member) is None:
             raise Fault(f"{node.text!r} does not exist")
         return kind.members[member][0], lambda frame: find(frame)[member]
@@ -88,12 +106,12 @@ class Element:
     """Where an array is found, and what is in it."""
 
     kind: str
-    find: Callable
+    find: Find
 
 
-def compile_element(node, scope: Scope, arithmetic: Arithmetic) -> tuple[Element, Callable]:
+def compile_element(node: Node, scope: Scope, arithmetic: Arithmetic) -> tuple[Element, Evaluate]:
     """An indexed variable: its array, and its index."""
-    kind, find = resolve(node.child_by_field_name("object"), scope)
+    kind, find = resolve(part(node, "object"), scope)
     (index_node,) = parts(node, "index")
     index = compile_expression(index_node, scope, arithmetic)
     if not isinstance(kind, Array) or index.kind != "INT":
@@ -101,13 +119,13 @@ def compile_element(node, scope: Scope, arithmetic: Arithmetic) -> tuple[Element
     return Element(kind.element.kind, find), index.run
 
 
-def widened(value, arithmetic: Arithmetic):
+def widened(value: Value, arithmetic: Arithmetic) -> Value:
     """A stored REAL in the width that is calculated in."""
     return value if value.dtype == arithmetic.real else arithmetic.real(value)
 
 
-def _reader(row: Element, index: Callable, arithmetic: Arithmetic) -> Callable:
-    def run(frame, mask):
+def _reader(row: Element, index: Evaluate, arithmetic: Arithmetic) -> Evaluate:
+    def run(frame: Frame, mask: Mask) -> Value:
         arithmetic.done["element"] += 1
         value = row.find(frame).load(index(frame, mask), mask)
         return widened(value, arithmetic) if row.kind == "REAL" else value
@@ -115,7 +133,7 @@ def _reader(row: Element, index: Callable, arithmetic: Arithmetic) -> Callable:
     return run
 
 
-def _literal(node, arithmetic: Arithmetic) -> Expression:
+def _literal(node: Node, arithmetic: Arithmetic) -> Expression:
     text = word(node).replace("_", "")
     if node.type == "boolean_literal":
         value = np.bool_(text == "TRUE")
@@ -129,18 +147,18 @@ def _literal(node, arithmetic: Arithmetic) -> Expression:
     return Expression("INT", lambda frame, mask: whole)
 
 
-def _unary(node, scope: Scope, arithmetic: Arithmetic) -> Expression:
-    operand = compile_expression(node.child_by_field_name("operand"), scope, arithmetic)
-    operator = word(node.child_by_field_name("operator"))
+def _unary(node: Node, scope: Scope, arithmetic: Arithmetic) -> Expression:
+    operand = compile_expression(part(node, "operand"), scope, arithmetic)
+    operator = word(part(node, "operator"))
     if (operator, operand.kind) == ("NOT", "BOOL"):
         return Expression("BOOL", lambda frame, mask: np.logical_not(operand.run(frame, mask)))
     raise Fault(f"{operator} {operand.kind} is not understood")
 
 
-def _binary(node, scope: Scope, arithmetic: Arithmetic) -> Expression:
-    left = compile_expression(node.child_by_field_name("left"), scope, arithmetic)
-    right = compile_expression(node.child_by_field_name("right"), scope, arithmetic)
-    operator = word(node.child_by_field_name("operator"))
+def _binary(node: Node, scope: Scope, arithmetic: Arithmetic) -> Expression:
+    left = compile_expression(part(node, "left"), scope, arithmetic)
+    right = compile_expression(part(node, "right"), scope, arithmetic)
+    operator = word(part(node, "operator"))
     if left.kind != right.kind:
         raise Fault(f"{node.text!r} mixes {left.kind} and {right.kind}")
     kind = left.kind
@@ -153,18 +171,18 @@ def _binary(node, scope: Scope, arithmetic: Arithmetic) -> Expression:
     raise Fault(f"{kind} {operator} {kind} is not understood")
 
 
-def _counted(operation, name: str, left: Callable, right: Callable, arithmetic: Arithmetic) -> Callable:
-    def run(frame, mask):
+def _counted(operation: np.ufunc, name: str, left: Evaluate, right: Evaluate, arithmetic: Arithmetic) -> Evaluate:
+    def run(frame: Frame, mask: Mask) -> Value:
         arithmetic.done[name] += 1
         return operation(left(frame, mask), right(frame, mask))
 
     return run
 
 
-def _calculation(operator: str, kind: str, left: Callable, right: Callable, arithmetic: Arithmetic) -> Callable:
+def _calculation(operator: str, kind: str, left: Evaluate, right: Evaluate, arithmetic: Arithmetic) -> Evaluate:
     operation = ARITHMETIC[operator]
 
-    def run(frame, mask):
+    def run(frame: Frame, mask: Mask) -> Value:
         arithmetic.done[f"{kind} {operator}"] += 1
         value = operation(left(frame, mask), right(frame, mask))
         low, high = INT_LIMITS

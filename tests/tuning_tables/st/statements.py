@@ -2,25 +2,49 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
+from enum import Enum
+from typing import Final, Protocol, TypeAlias
 
 import numpy as np
 
 from tests.tuning_tables.st.expressions import (
     Arithmetic,
+    Evaluate,
     Scope,
     compile_element,
     compile_expression,
     resolve,
 )
-from tests.tuning_tables.st.storage import Fault, Record, Scalar
-from tests.tuning_tables.st.syntax import parts, word
+from tests.tuning_tables.st.storage import Fault, Frame, Kind, Mask, Record, Scalar, Value
+from tests.tuning_tables.st.syntax import Node, part, parts, word
 
-NOWHERE = object()
-"""The mask without any lane; None is the one with all."""
+Execute: TypeAlias = Callable[[Frame, Mask], None]
 
 
-def narrowed(mask, condition):
+class Nowhere(Enum):
+    """The mask without any lane."""
+
+    NOWHERE = 0
+
+
+NOWHERE: Final = Nowhere.NOWHERE
+
+
+class Callee(Protocol):
+    """What a call needs to know of a function block."""
+
+    @property
+    def inputs(self) -> Mapping[str, Scalar]: ...
+
+    @property
+    def references(self) -> Mapping[str, Kind]: ...
+
+    @property
+    def run(self) -> Execute: ...
+
+
+def narrowed(mask: Mask, condition: Value) -> Mask | Nowhere:
     """`mask` where `condition` (one for all lanes, or one each) is true too."""
     if np.ndim(condition) == 0:
         return mask if condition else NOWHERE
@@ -31,23 +55,25 @@ def narrowed(mask, condition):
 class StatementCompiler:
     """Statements in one scope; `blocks` finds the function (frame, mask) and inputs of a function block by its name."""
 
-    def __init__(self, scope: Scope, constants: frozenset[str], arithmetic: Arithmetic, blocks: Callable):
+    def __init__(
+        self, scope: Scope, constants: frozenset[str], arithmetic: Arithmetic, blocks: Callable[[str], Callee]
+    ) -> None:
         self.scope = scope
         self.constants = constants
         self.arithmetic = arithmetic
         self.blocks = blocks
 
-    def sequence(self, nodes: Iterable) -> Callable:
+    def sequence(self, nodes: Iterable[Node]) -> Execute:
         """The statements `nodes` one after the other."""
         steps = [self.statement(node) for node in nodes]
 
-        def run(frame, mask):
+        def run(frame: Frame, mask: Mask) -> None:
             for step in steps:
                 step(frame, mask)
 
         return run
 
-    def statement(self, node) -> Callable:
+    def statement(self, node: Node) -> Execute:
         """The statement at `node` of the parse tree."""
         compilers = {
             "assignment_statement": self.assignment,
@@ -60,23 +86,23 @@ class StatementCompiler:
             raise Fault(f"{node.type} is not understood")
         return compilers[node.type](node)
 
-    def expression(self, node, kind: str) -> Callable:
+    def expression(self, node: Node, kind: str) -> Evaluate:
         """The expression at `node`, which must be of `kind`."""
         compiled = compile_expression(node, self.scope, self.arithmetic)
         if compiled.kind != kind:
             raise Fault(f"{node.text!r} is {compiled.kind}, not {kind}")
         return compiled.run
 
-    def assignment(self, node) -> Callable:
+    def assignment(self, node: Node) -> Execute:
         """variable := expression"""
-        target = node.child_by_field_name("left")
+        target = part(node, "left")
         done = self.arithmetic.done
         self._require_variable(target)
         if target.type == "index_expression":
             row, index = compile_element(target, self.scope, self.arithmetic)
-            value = self.expression(node.child_by_field_name("right"), row.kind)
+            value = self.expression(part(node, "right"), row.kind)
 
-            def store(frame, mask):
+            def store(frame: Frame, mask: Mask) -> None:
                 done["assignment"] += 1
                 row.find(frame).store(index(frame, mask), value(frame, mask), mask)
 
@@ -84,39 +110,40 @@ class StatementCompiler:
         kind, find = resolve(target, self.scope)
         if not isinstance(kind, Scalar):
             raise Fault(f"{target.text!r} is assigned as a whole")
-        value = self.expression(node.child_by_field_name("right"), kind.kind)
+        value = self.expression(part(node, "right"), kind.kind)
 
-        def assign(frame, mask):
+        def assign(frame: Frame, mask: Mask) -> None:
             done["assignment"] += 1
             find(frame).store(value(frame, mask), mask)
 
         return assign
 
-    def branches(self, node) -> Callable:
+    def branches(self, node: Node) -> Execute:
         """IF, ELSIF, ELSE"""
         arms = [(node, "consequence")] + [(child, "body") for child in node.children if child.type == "elsif_clause"]
         compiled = [
-            (self.expression(arm.child_by_field_name("condition"), "BOOL"), self.sequence(parts(arm, body)))
-            for arm, body in arms
+            (self.expression(part(arm, "condition"), "BOOL"), self.sequence(parts(arm, body))) for arm, body in arms
         ]
         otherwise = self._otherwise(node)
 
-        def run(frame, mask):
+        def run(frame: Frame, mask: Mask) -> None:
+            rest = mask
             for condition, body in compiled:
-                value = condition(frame, mask)
-                chosen = narrowed(mask, value)
+                value = condition(frame, rest)
+                chosen = narrowed(rest, value)
                 if chosen is not NOWHERE:
                     body(frame, chosen)
-                mask = narrowed(mask, np.logical_not(value))
-                if mask is NOWHERE:
+                remaining = narrowed(rest, np.logical_not(value))
+                if remaining is NOWHERE:
                     return
-            otherwise(frame, mask)
+                rest = remaining
+            otherwise(frame, rest)
 
         return run
 
-    def cases(self, node) -> Callable:
+    def cases(self, node: Node) -> Execute:
         """CASE of whole numbers and ranges, with ELSE"""
-        subject = self.expression(node.child_by_field_name("subject"), "INT")
+        subject = self.expression(part(node, "subject"), "INT")
         clauses = [
             ([_range(value) for value in clause.children if value.type == "case_value"], parts(clause, "body"))
             for clause in node.children
@@ -125,55 +152,57 @@ class StatementCompiler:
         compiled = [(ranges, self.sequence(body)) for ranges, body in clauses]
         otherwise = self._otherwise(node)
 
-        def run(frame, mask):
-            value = subject(frame, mask)
+        def run(frame: Frame, mask: Mask) -> None:
+            value, rest = subject(frame, mask), mask
             for ranges, body in compiled:
                 chosen = np.any([(low <= value) & (value <= high) for low, high in ranges], axis=0)
-                here = narrowed(mask, chosen)
+                here = narrowed(rest, chosen)
                 if here is not NOWHERE:
                     body(frame, here)
-                mask = narrowed(mask, np.logical_not(chosen))
-                if mask is NOWHERE:
+                remaining = narrowed(rest, np.logical_not(chosen))
+                if remaining is NOWHERE:
                     return
-            otherwise(frame, mask)
+                rest = remaining
+            otherwise(frame, rest)
 
         return run
 
-    def loop(self, node) -> Callable:
+    def loop(self, node: Node) -> Execute:
         """FOR ... TO ... BY ... DO"""
-        kind, control = resolve(node.child_by_field_name("control"), self.scope)
-        self._require_variable(node.child_by_field_name("control"))
+        kind, control = resolve(part(node, "control"), self.scope)
+        self._require_variable(part(node, "control"))
         if kind != Scalar("INT"):
             raise Fault("a FOR loop counts an INT")
-        start, end = (self.expression(node.child_by_field_name(field), "INT") for field in ("start", "end"))
+        start, end = (self.expression(part(node, field), "INT") for field in ("start", "end"))
         step_node = node.child_by_field_name("step")
         step = 1 if step_node is None else int(word(step_node))
         body = self.sequence(parts(node, "body"))
         done = self.arithmetic.done
 
-        def run(frame, mask):
-            count, last = start(frame, mask), end(frame, mask)
+        def run(frame: Frame, mask: Mask) -> None:
+            count, last, rest = start(frame, mask), end(frame, mask), mask
             while True:
                 done["turn"] += 1
-                mask = narrowed(mask, count <= last if step > 0 else count >= last)
-                if mask is NOWHERE:
+                here = narrowed(rest, count <= last if step > 0 else count >= last)
+                if here is NOWHERE:
                     return
-                control(frame).store(count, mask)
-                body(frame, mask)
+                rest = here
+                control(frame).store(count, rest)
+                body(frame, rest)
                 count = count + step
 
         return run
 
-    def invocation(self, node) -> Callable:
+    def invocation(self, node: Node) -> Execute:
         """instance(Input := expression, InOut := variable); an input that is not given keeps its value, 0 at first."""
         call = next(child for child in node.children if child.type == "call_expression")
-        kind, find = resolve(call.child_by_field_name("function"), self.scope)
+        kind, find = resolve(part(call, "function"), self.scope)
         if not isinstance(kind, Record) or not kind.is_block:
             raise Fault(f"{call.text!r} calls no function block")
         block = self.blocks(kind.name)
         given = {
-            word(child.child_by_field_name("name")): child.child_by_field_name("value")
-            for child in call.child_by_field_name("arguments").named_children
+            word(part(child, "name")): part(child, "value")
+            for child in part(call, "arguments").named_children
             if child.type == "named_argument"
         }
         if not set(block.references) <= set(given) <= set(block.inputs) | set(block.references):
@@ -184,7 +213,7 @@ class StatementCompiler:
             raise Fault(f"{call.text!r} hands over a variable of another type")
         done = self.arithmetic.done
 
-        def run(frame, mask):
+        def run(frame: Frame, mask: Mask) -> None:
             done["call"] += 1
             inner = find(frame)
             values = {name: value(frame, mask) for name, value in inputs.items()}
@@ -194,18 +223,18 @@ class StatementCompiler:
 
         return run
 
-    def _otherwise(self, node) -> Callable:
+    def _otherwise(self, node: Node) -> Execute:
         clauses = [child for child in node.children if child.type == "else_clause"]
         return self.sequence(parts(clauses[0], "body") if clauses else [])
 
-    def _require_variable(self, target) -> None:
+    def _require_variable(self, target: Node) -> None:
         name = word(target).partition("[")[0].partition(".")[0].strip()
         if name in self.constants:
             raise Fault(f"{name} is a constant or an input, and assigned to")
 
 
-def _range(node) -> tuple[int, int]:
-    value = node.named_child(0)
+def _range(node: Node) -> tuple[int, int]:
+    value = node.named_children[0]
     if value.type == "subrange":
-        return tuple(int(word(value.child_by_field_name(end))) for end in ("lower", "upper"))
+        return int(word(part(value, "lower"))), int(word(part(value, "upper")))
     return int(word(value)), int(word(value))

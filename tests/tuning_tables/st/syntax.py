@@ -3,10 +3,30 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from importlib import import_module
+from typing import Protocol
 
 import pytest
+
+
+class Node(Protocol):
+    """What of a tree-sitter node is used here; the parser is no dependency, so that its own types may be absent."""
+
+    type: str
+    text: bytes
+    start_point: tuple[int, int]
+    is_error: bool
+    is_missing: bool
+    is_named: bool
+    has_error: bool
+    children: Sequence[Node]
+    named_children: Sequence[Node]
+
+    def child_by_field_name(self, name: str, /) -> Node | None: ...
+
+    def children_by_field_name(self, name: str, /) -> Sequence[Node]: ...
+
 
 # Where all tools are said to be there, a missing one is a failure.
 _find = import_module if os.environ.get("RETARDER_SYNTH_TOOLCHAIN") == "complete" else pytest.importorskip
@@ -16,12 +36,13 @@ grammar = _find("tree_sitter_iec61131_3_st")
 _PARSER = tree_sitter.Parser(tree_sitter.Language(grammar.language()))
 
 
-def parse(text: bytes):
+def parse(text: bytes) -> Node:
     """The root node of the tree, errors included."""
-    return _PARSER.parse(text).root_node
+    root: Node = _PARSER.parse(text).root_node
+    return root
 
 
-def faults(node) -> list[str]:
+def faults(node: Node) -> list[str]:
     """Where the text is no Structured Text: line and what stands there, from ERROR and MISSING nodes."""
     if node.is_error or node.is_missing:
         return [f"line {node.start_point[0] + 1}: {node.text[:60]!r}"]
@@ -30,14 +51,14 @@ def faults(node) -> list[str]:
     return [fault for child in node.children for fault in faults(child)] or ["a fault without a node"]
 
 
-def walk(node) -> Iterator:
+def walk(node: Node) -> Iterator[Node]:
     """`node` and all below it."""
     yield node
     for child in node.children:
         yield from walk(child)
 
 
-def parts(node, field: str) -> list:
+def parts(node: Node, field: str) -> list[Node]:
     """The nodes in a field without comments, empty statements, commas and brackets."""
     return [
         child
@@ -46,6 +67,13 @@ def parts(node, field: str) -> list:
     ]
 
 
-def word(node) -> str:
+def part(node: Node, field: str) -> Node:
+    """The node in a field that the grammar always fills."""
+    found = node.child_by_field_name(field)
+    assert found is not None, f"{node.type} without {field}"
+    return found
+
+
+def word(node: Node) -> str:
     """The text of a name in the one spelling that counts: Structured Text knows no capitals."""
     return node.text.decode("ascii").upper()

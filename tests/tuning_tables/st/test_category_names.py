@@ -12,7 +12,7 @@ from tuning_tables.category_names import category_macros, comment_text
 from tuning_tables.category_number import KNOWN_NUMBERS
 
 
-def test_the_categories_of_the_field():
+def test_the_categories_of_the_field() -> None:
     assert category_macros(KNOWN_NUMBERS) == ("L", "LS", "S", "ST", "T")
 
 
@@ -30,26 +30,26 @@ def test_the_categories_of_the_field():
         ({"x" * 40: 16}, ("X" * 8,)),
     ],
 )
-def test_names_differ_and_are_plain(categories, names):
+def test_names_differ_and_are_plain(categories: dict[str, int], names: tuple[str, ...]) -> None:
     assert category_macros(categories) == names
 
 
 @given(st.lists(st.text(st.sampled_from("aAАтТ126_ -?"), max_size=5), unique=True, max_size=12))
-def test_names_always_differ(categories):
+def test_names_always_differ(categories: list[str]) -> None:
     names = category_macros({**KNOWN_NUMBERS, **{name: 16 + place for place, name in enumerate(categories)}})
     assert len(set(names)) == len({*KNOWN_NUMBERS, *categories})
     assert names[:5] == ("L", "LS", "S", "ST", "T")
     assert all(re.fullmatch(r"[A-Z0-9]+(_[A-Z0-9]+)*", name) for name in names)
 
 
-def test_comments_show_what_they_cannot_hold():
+def test_comments_show_what_they_cannot_hold() -> None:
     assert comment_text("gondola-4 22 t, (a+b).c_d") == "gondola-4 22 t, (a+b).c_d"
     assert comment_text("Л*/\n😀") == "<U+041B><U+002A><U+002F><U+000A><U+1F600>"
     assert comment_text("RETARDER_LOAD retarder_ _") == "RETARDER<U+005F>LOAD retarder<U+005F> _"
 
 
 @given(st.text())
-def test_no_comment_ends_early(text):
+def test_no_comment_ends_early(text: str) -> None:
     shown = comment_text(text)
     assert shown.isascii()
     assert not set("*/\\?\n\r{}'\"$") & set(shown)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,7 +12,7 @@ import pytest
 
 from tests.controller_code.sample_book import estimator_of
 from tests.tuning_tables.st.evaluator import Program
-from tests.tuning_tables.st.storage import Array, Record, Scalar
+from tests.tuning_tables.st.storage import Array, Kind, Record, Scalar, Value
 from tuning_tables.export_prefix import RETARDER
 from tuning_tables.golden_tracks import golden_tracks
 from tuning_tables.self_test_size import FULL, SMALL
@@ -22,13 +23,13 @@ PAGE = Path(__file__).parents[3] / "docs" / "structured-text.md"
 BYTES = {"REAL": 4, "INT": 2, "BOOL": 1}
 
 
-def stated(label):
+def stated(label: str) -> list[int]:
     """The numbers in the row of the page that begins with `label`."""
     (row,) = re.findall(rf"^\| {re.escape(label)}[^|]*\|(.*)\|$", PAGE.read_text("utf-8"), re.MULTILINE)
     return [int(number.replace(" ", "")) for number in re.findall(r"\d[\d ]*", row)]
 
 
-def executed(program, name, **arguments):
+def executed(program: Program, name: str, **arguments: Value) -> tuple[int, int]:
     """Operations of one call in all, and those on REAL among them."""
     instance = program.new(name)
     program.done.clear()
@@ -36,12 +37,12 @@ def executed(program, name, **arguments):
     return counted(program.done)
 
 
-def counted(done):
+def counted(done: Counter[str]) -> tuple[int, int]:
     """Operations in all, and those on REAL."""
     return sum(done.values()), sum(count for kind, count in done.items() if kind.startswith("REAL"))
 
 
-def size(kind):
+def size(kind: Kind) -> int:
     """Bytes of a variable without gaps."""
     if isinstance(kind, Scalar):
         return BYTES[kind.kind]
@@ -52,18 +53,18 @@ def size(kind):
 
 
 @pytest.fixture(scope="module")
-def program(default_book):
+def program(default_book: TableBook) -> Program:
     return Program(st_files(default_book)[TABLE_FILE])
 
 
-def test_operations_of_a_decision(program, default_book):
+def test_operations_of_a_decision(program: Program, default_book: TableBook) -> None:
     worst = (0, 0)
     for number in range(len(default_book.tables)):
         table = program.new("RETARDER_TABLE")
         executed(program, "RETARDER_LOAD", TableNo=number, Table=table)
         for stage in range(5):
             for s in (-1.0, 10.0, 40.0):
-                for v in np.float32([0.0, 2.0, 3.0, 4.0, 5.0, 9.0]):
+                for v in np.array([0.0, 2.0, 3.0, 4.0, 5.0, 9.0], np.float32):
                     worst = max(
                         worst, executed(program, "RETARDER_DECIDE", Stage=stage, Path_m=s, Speed_m_s=v, Table=table)
                     )
@@ -71,7 +72,7 @@ def test_operations_of_a_decision(program, default_book):
 
 
 @pytest.fixture(scope="module")
-def estimating(default_book):
+def estimating(default_book: TableBook) -> TableBook:
     """The default book with an estimator of 16 breaks for each class."""
     made = estimator_of(16, 37.45)
     return TableBook(
@@ -82,7 +83,7 @@ def estimating(default_book):
     )
 
 
-def test_operations_of_an_estimate(estimating):
+def test_operations_of_an_estimate(estimating: TableBook) -> None:
     program = Program(st_files(estimating)[TABLE_FILE])
     table, estimate, observer = (program.new(f"RETARDER_{name}") for name in ("TABLE", "ESTIMATE", "OBSERVE"))
     executed(program, "RETARDER_LOAD", TableNo=0, Table=table)
@@ -99,7 +100,7 @@ def test_operations_of_an_estimate(estimating):
     assert stated("`RETARDER_LOAD`, table with an estimator") == list(twice)
 
 
-def test_bytes_of_an_estimator(estimating, default_book):
+def test_bytes_of_an_estimator(estimating: TableBook, default_book: TableBook) -> None:
     program, plain = (Program(st_files(book)[TABLE_FILE]) for book in (estimating, default_book))
     assert stated("one `RETARDER_ESTIMATE`") == [size(program.types["RETARDER_ESTIMATE"])]
     assert stated("one `RETARDER_TABLE` with estimator") == [size(program.types["RETARDER_TABLE"])]
@@ -114,8 +115,8 @@ def test_bytes_of_an_estimator(estimating, default_book):
     assert plain.blocks["RETARDER_DECIDE"].inputs == program.blocks["RETARDER_DECIDE"].inputs
 
 
-def test_operations_of_a_choice(program, default_book):
-    def choice(book, speed):
+def test_operations_of_a_choice(program: Program, default_book: TableBook) -> None:
+    def choice(book: TableBook, speed: float) -> tuple[int, int]:
         each = Program(st_files(book)[TABLE_FILE])
         table = each.new("RETARDER_TABLE")
         return executed(each, "RETARDER_SELECT", Layout=2, Category=1, Axles=4, Commanded_m_s=speed, Table=table)
@@ -135,7 +136,7 @@ def test_operations_of_a_choice(program, default_book):
     assert stated("`RETARDER_LOAD`, table without") == list(executed(program, "RETARDER_LOAD", TableNo=0, Table=table))
 
 
-def test_operations_of_the_self_test(default_book):
+def test_operations_of_the_self_test(default_book: TableBook) -> None:
     for label, self_test in (("`RETARDER_SELF_TEST`, 6", FULL), ("`RETARDER_SELF_TEST`, small", SMALL)):
         program = Program(b"".join(st_files(default_book, RETARDER, self_test).values()))
         instance, worst = program.new("RETARDER_SELF_TEST"), (0, 0)
@@ -146,7 +147,7 @@ def test_operations_of_the_self_test(default_book):
         assert stated(label) == list(worst)
 
 
-def test_bytes(default_book):
+def test_bytes(default_book: TableBook) -> None:
     files = st_files(default_book)
     program = Program(files[TABLE_FILE])
     few = Program(st_files(TableBook(default_book.tables[:5]))[TABLE_FILE])

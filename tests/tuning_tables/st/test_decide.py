@@ -3,25 +3,28 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from synth.studies.in_the_loop.agreement import ask
 from tests.tuning_tables.st.evaluator import Program
-from tests.tuning_tables.st.storage import Fault
+from tests.tuning_tables.st.storage import Fault, Frame, Real
 from tuning_tables import decide_many
 from tuning_tables.golden_vectors import golden_vectors
 from tuning_tables.st_source import TABLE_FILE, st_files
+from tuning_tables.table_book import TableBook
 
 READINGS = 1_000_000
 
 
 @pytest.fixture(scope="module", params=[np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
-def real(request):
+def real(request: pytest.FixtureRequest) -> Real:
     """How the controller calculates with REAL between two assignments."""
-    return request.param
+    kind: Real = request.param
+    return kind
 
 
-def loaded(program, number):
+def loaded(program: Program, number: int) -> Frame:
     """Table `number` as RETARDER_LOAD gives it."""
     loader, table = program.new("RETARDER_LOAD"), program.new("RETARDER_TABLE")
     program.call("RETARDER_LOAD", loader, TableNo=number, Table=table)
@@ -29,14 +32,17 @@ def loaded(program, number):
     return table
 
 
-def answers(program, table, stage, s_m, v_m_s):
+def answers(
+    program: Program, table: Frame, stage: npt.ArrayLike, s_m: npt.ArrayLike, v_m_s: npt.ArrayLike
+) -> npt.NDArray[np.int64]:
     """What RETARDER_DECIDE answers with `table`."""
     decider = program.new("RETARDER_DECIDE")
     program.call("RETARDER_DECIDE", decider, Stage=stage, Path_m=s_m, Speed_m_s=v_m_s, Table=table)
-    return decider["COMMAND"].value
+    commands: npt.NDArray[np.int64] = decider["COMMAND"].value
+    return commands
 
 
-def decisions(book, readings, real):
+def decisions(book: TableBook, readings: npt.NDArray[np.void], real: Real) -> npt.NDArray[np.int64]:
     """What the Structured Text of the book answers to readings with the fields table, stage, s_m, v_m_s."""
     program = Program(st_files(book)[TABLE_FILE], real)
     found = np.full(len(readings), 99)
@@ -48,19 +54,19 @@ def decisions(book, readings, real):
     return found
 
 
-def test_a_million_hard_readings_are_decided_alike(book, real):
+def test_a_million_hard_readings_are_decided_alike(book: TableBook, real: Real) -> None:
     questions = ask(book, READINGS, 10, 20261121)
     found = decisions(book, questions.readings, real)
     assert np.count_nonzero(found != questions.decisions) == 0
     assert min(np.bincount(found + 1)) > 50_000
 
 
-def test_the_default_book_is_decided_alike(default_book, real):
+def test_the_default_book_is_decided_alike(default_book: TableBook, real: Real) -> None:
     questions = ask(default_book, 200_000, 10, 5)
     assert np.count_nonzero(decisions(default_book, questions.readings, real) != questions.decisions) == 0
 
 
-def test_every_golden_vector_is_answered(default_book):
+def test_every_golden_vector_is_answered(default_book: TableBook) -> None:
     program = Program(st_files(default_book)[TABLE_FILE])
     for number, source in enumerate(default_book.tables):
         vectors = golden_vectors(source)
@@ -81,7 +87,7 @@ def test_every_golden_vector_is_answered(default_book):
         ("Command := -1;", "Command := 1;"),
     ],
 )
-def test_a_wrong_rule_is_found(default_book, right, wrong):
+def test_a_wrong_rule_is_found(default_book: TableBook, right: str, wrong: str) -> None:
     questions = ask(default_book, 60_000, 10, 6)
     text = st_files(default_book)[TABLE_FILE].decode("ascii")
     assert right in text
@@ -99,7 +105,7 @@ def test_a_wrong_rule_is_found(default_book, right, wrong):
 
 @pytest.mark.parametrize("stages", [-32768, -1, 0, 6, 32767])
 @pytest.mark.parametrize("powers", [-32768, 0, 5, 32767])
-def test_a_table_that_was_never_loaded_or_is_spoilt_holds(default_book, stages, powers):
+def test_a_table_that_was_never_loaded_or_is_spoilt_holds(default_book: TableBook, stages: int, powers: int) -> None:
     program = Program(st_files(default_book)[TABLE_FILE])
     table = program.new("RETARDER_TABLE")
     for key, value in (("STAGES", stages), ("POWERS", powers)):
@@ -110,7 +116,7 @@ def test_a_table_that_was_never_loaded_or_is_spoilt_holds(default_book, stages, 
     assert not answers(program, table, stage, 10.0, 100.0).any()
 
 
-def test_no_such_table_leaves_none_behind(default_book):
+def test_no_such_table_leaves_none_behind(default_book: TableBook) -> None:
     program = Program(st_files(default_book)[TABLE_FILE])
     for number in (-32768, -1, 6, 32767):
         loader, table = program.new("RETARDER_LOAD"), loaded(program, 0)

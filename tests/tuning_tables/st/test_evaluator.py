@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from tests.tuning_tables.st.evaluator import Program
-from tests.tuning_tables.st.storage import Fault
+from tests.tuning_tables.st.storage import Fault, Frame, Real
 
 HEAD = "FUNCTION_BLOCK Probe VAR_INPUT I : INT; X : REAL; END_VAR VAR_OUTPUT J : INT; Y : REAL; B : BOOL; END_VAR VAR "
 
 
-def run(body, i=0, x=0.0, variables="", real=np.float32):
+def run(body: str, i: npt.ArrayLike = 0, x: npt.ArrayLike = 0.0, variables: str = "", real: Real = np.float32) -> Frame:
     """The instance after one call of a block with inputs I, X and outputs J, Y, B."""
     program = Program(f"{HEAD}{variables} END_VAR {body} END_FUNCTION_BLOCK".encode("ascii"), real)
     instance = program.new("Probe")
@@ -19,7 +20,7 @@ def run(body, i=0, x=0.0, variables="", real=np.float32):
     return instance
 
 
-def test_capitals_do_not_count_and_outputs_start_at_zero():
+def test_capitals_do_not_count_and_outputs_start_at_zero() -> None:
     instance = run("j := I;", i=7)
     assert (instance["J"].value, instance["Y"].value, instance["B"].value) == (7, 0.0, False)
 
@@ -28,7 +29,7 @@ def test_capitals_do_not_count_and_outputs_start_at_zero():
     ("expression", "result"),
     [("2 + 3 * 4", 14), ("(2 + 3) * 4", 20), ("10 - 3 - 2", 5), ("-7 + 2", -5), ("32767 - 1", 32766)],
 )
-def test_whole_numbers(expression, result):
+def test_whole_numbers(expression: str, result: int) -> None:
     assert run(f"J := {expression};")["J"].value == result
 
 
@@ -42,11 +43,11 @@ def test_whole_numbers(expression, result):
         ("(1.5 <> 1.5) OR (2 = 3)", False),
     ],
 )
-def test_logic_and_precedence(expression, result):
+def test_logic_and_precedence(expression: str, result: bool) -> None:
     assert run(f"B := {expression};")["B"].value == result
 
 
-def test_real_is_rounded_after_every_operation_or_at_the_assignment():
+def test_real_is_rounded_after_every_operation_or_at_the_assignment() -> None:
     # 1 + 2^-24 rounds to 1 in float32; in double precision the sum stays, and minus 1 leaves 2^-24.
     body = "Y := X + 5.960464478E-08 - 1.0;"
     assert run(body, x=1.0)["Y"].value == 0.0
@@ -56,35 +57,35 @@ def test_real_is_rounded_after_every_operation_or_at_the_assignment():
     assert run("Y := X / 3.0;", x=1.0)["Y"].value.dtype == np.float32
 
 
-def test_if_takes_the_first_branch_that_holds_lane_by_lane():
+def test_if_takes_the_first_branch_that_holds_lane_by_lane() -> None:
     body = "IF I < 0 THEN J := 1; ELSIF I < 10 THEN J := 2; Y := 1.0; ELSE J := 3; END_IF;"
     instance = run(body, i=np.array([-5, 5, 50, 9, 10]))
     assert instance["J"].value.tolist() == [1, 2, 3, 2, 3]
     assert instance["Y"].value.tolist() == [0.0, 1.0, 0.0, 1.0, 0.0]
 
 
-def test_case_with_lists_ranges_and_else():
+def test_case_with_lists_ranges_and_else() -> None:
     body = "CASE I OF 0: J := 10; 1, 3: J := 11; 5..7: J := 12; ELSE J := 13; END_CASE;"
     assert run(body, i=np.array([0, 1, 2, 3, 5, 7, 8]))["J"].value.tolist() == [10, 11, 13, 11, 12, 12, 13]
 
 
-def test_case_without_a_match_does_nothing():
+def test_case_without_a_match_does_nothing() -> None:
     assert run("J := 4; CASE I OF 1: J := 5; END_CASE;")["J"].value == 4
 
 
 @pytest.mark.parametrize(
     ("loop", "total"), [("0 TO 4", 10), ("4 TO 0 BY -1", 10), ("0 TO 5 BY 2", 6), ("1 TO 0", 0), ("0 TO 1 BY -1", 0)]
 )
-def test_for_counts_up_and_down(loop, total):
+def test_for_counts_up_and_down(loop: str, total: int) -> None:
     assert run(f"FOR K := {loop} DO J := J + K; END_FOR;", variables="K : INT;")["J"].value == total
 
 
-def test_for_may_end_elsewhere_in_every_lane():
+def test_for_may_end_elsewhere_in_every_lane() -> None:
     instance = run("FOR K := 1 TO I DO J := J + K; END_FOR;", i=np.array([0, 1, 3, -2]), variables="K : INT;")
     assert instance["J"].value.tolist() == [0, 1, 6, 0]
 
 
-def test_arrays_have_initial_values_bounds_and_a_value_a_lane():
+def test_arrays_have_initial_values_bounds_and_a_value_a_lane() -> None:
     variables = "A : ARRAY[-1..2] OF REAL := [1.5, -2.5, 3.0, 4.0]; N : ARRAY[0..1] OF INT;"
     instance = run("Y := A[I]; N[1] := I; A[I] := 9.0; J := N[1] + N[0];", i=np.array([-1, 2, 0]), variables=variables)
     assert instance["Y"].value.tolist() == [1.5, 4.0, -2.5]
@@ -92,7 +93,7 @@ def test_arrays_have_initial_values_bounds_and_a_value_a_lane():
     assert instance["A"].data.tolist() == [[9.0, -2.5, 3.0, 4.0], [1.5, -2.5, 3.0, 9.0], [1.5, 9.0, 3.0, 4.0]]
 
 
-def test_a_block_keeps_its_variables_and_writes_to_what_it_is_handed():
+def test_a_block_keeps_its_variables_and_writes_to_what_it_is_handed() -> None:
     text = b"""
     TYPE Pair : STRUCT First : INT; Twice : ARRAY[0..1] OF INT; END_STRUCT; END_TYPE
     FUNCTION_BLOCK Adder
@@ -112,7 +113,7 @@ def test_a_block_keeps_its_variables_and_writes_to_what_it_is_handed():
     assert user["CALLS"].value.tolist() == [2, 3]
 
 
-def test_nan_fails_every_comparison_but_one():
+def test_nan_fails_every_comparison_but_one() -> None:
     body = "IF X >= 0.0 THEN J := J + 1; END_IF; IF X <= 0.0 THEN J := J + 2; END_IF; B := X <> X;"
     instance = run(body, x=np.array([np.nan, 1.0, -np.inf]))
     assert instance["J"].value.tolist() == [0, 1, 2]
@@ -143,18 +144,18 @@ def test_nan_fails_every_comparison_but_one():
         ("J := 1", "", "no Structured Text"),
     ],
 )
-def test_what_a_controller_would_trap_or_refuse_is_a_fault(body, variables, reason):
+def test_what_a_controller_would_trap_or_refuse_is_a_fault(body: str, variables: str, reason: str) -> None:
     with pytest.raises(Fault, match=reason):
         run(body, i=1, variables=variables)
 
 
-def test_a_constant_cannot_be_assigned():
+def test_a_constant_cannot_be_assigned() -> None:
     text = b"FUNCTION_BLOCK F VAR CONSTANT A : ARRAY[0..1] OF INT := [1, 2]; END_VAR A[0] := 3; END_FUNCTION_BLOCK"
     with pytest.raises(Fault, match="A is a constant"):
         Program(text)
 
 
-def test_a_fault_in_a_lane_that_is_not_executed_is_none():
+def test_a_fault_in_a_lane_that_is_not_executed_is_none() -> None:
     body = "IF I < 4 THEN J := A[I]; END_IF; IF X > 0.0 THEN Y := 1.0 / X; END_IF;"
     instance = run(
         body, i=np.array([0, 9]), x=np.array([0.0, 2.0]), variables="A : ARRAY[0..3] OF INT := [5, 6, 7, 8];"
@@ -163,6 +164,6 @@ def test_a_fault_in_a_lane_that_is_not_executed_is_none():
     assert instance["Y"].value.tolist() == [0.0, 0.5]
 
 
-def test_both_sides_of_and_are_evaluated():
+def test_both_sides_of_and_are_evaluated() -> None:
     with pytest.raises(Fault, match="leaves"):
         run("B := (I < 4) AND (A[I] > 0);", i=9, variables="A : ARRAY[0..3] OF INT;")

@@ -2,23 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import TypeAlias
+
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from synth.studies.in_the_loop.hard_samples import TRACK_SAMPLES, hard_samples
 from synth.studies.in_the_loop.observed import observed
 from tests.tuning_tables.st.evaluator import Program
+from tests.tuning_tables.st.storage import Real
 from tests.tuning_tables.st.test_decide import loaded
 from tuning_tables.golden_tracks import golden_tracks
 from tuning_tables.st_source import TABLE_FILE, st_files
 from tuning_tables.table_book import TableBook
+
+Followed: TypeAlias = tuple[npt.NDArray[np.void], npt.NDArray[np.uint32]]
+"""Samples in tracks, and the bits of speed and estimate after each."""
 
 SAMPLES = 200_000
 MEMBERS = ("PATH_M", "SPEED_M_S", "FACTOR", "SPEEDVARIANCE", "COVARIANCE", "FACTORVARIANCE", "UNSEEN")
 
 
 @pytest.fixture(scope="module")
-def tracks(estimating_book):
+def tracks(estimating_book: TableBook) -> Followed:
     """Samples in tracks of 100, (tracks, 100), and the bits of speed and estimate after each, (tracks, 100, 9)."""
     samples = hard_samples(estimating_book, SAMPLES, 20261123)
     samples["start"] = np.where(samples["start"] == 2, 0, samples["start"])
@@ -28,7 +36,7 @@ def tracks(estimating_book):
     return samples.reshape(-1, TRACK_SAMPLES), answers.reshape(-1, TRACK_SAMPLES, 9)
 
 
-def follow(program, number, samples):
+def follow(program: Program, number: int, samples: npt.NDArray[np.void]) -> npt.NDArray[np.float32]:
     """Speeds and estimates after every sample of tracks of table `number`, a lane a track: float32 (9, tracks, n)."""
     table, estimate = loaded(program, number), program.new("RETARDER_ESTIMATE")
     observer, beginner = program.new("RETARDER_OBSERVE"), program.new("RETARDER_BEGIN")
@@ -45,7 +53,7 @@ def follow(program, number, samples):
     return np.moveaxis(np.array(found), 0, 2)
 
 
-def differing(program, tracks, numbers):
+def differing(program: Program, tracks: Followed, numbers: Iterable[int]) -> int:
     """How many samples of the tables `numbers` have another bit in speed or estimate; 0 has no sign."""
     samples, answers = tracks
     count = 0
@@ -53,12 +61,12 @@ def differing(program, tracks, numbers):
         here = samples["table"][:, 0] == number
         right = np.moveaxis(answers[here].view(np.float32), 2, 0)
         found = follow(program, number, samples[here])
-        count += np.count_nonzero(~((found == right) | (np.isnan(found) & np.isnan(right))).all(axis=0))
+        count += int(np.count_nonzero(~((found == right) | (np.isnan(found) & np.isnan(right))).all(axis=0)))
     return count
 
 
 @pytest.mark.parametrize("real", [np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
-def test_hard_samples_are_estimated_alike(estimating_book, tracks, real):
+def test_hard_samples_are_estimated_alike(estimating_book: TableBook, tracks: Followed, real: Real) -> None:
     program = Program(st_files(estimating_book)[TABLE_FILE], real)
     numbers = np.unique(tracks[0]["table"]).tolist()
     assert len(numbers) == len(estimating_book.tables)
@@ -82,14 +90,14 @@ def test_hard_samples_are_estimated_alike(estimating_book, tracks, real):
         ("Unseen := Estimate.Unseen + 1.0;", "Unseen := 1.0;"),
     ],
 )
-def test_a_wrong_estimator_is_found(estimating_book, tracks, right, wrong):
+def test_a_wrong_estimator_is_found(estimating_book: TableBook, tracks: Followed, right: str, wrong: str) -> None:
     text = st_files(estimating_book)[TABLE_FILE].decode("ascii")
     assert right in text
     program = Program(text.replace(right, wrong).encode("ascii"))
     assert differing(program, tracks, [0]) > 0
 
 
-def test_every_golden_track_is_estimated(estimating_book):
+def test_every_golden_track_is_estimated(estimating_book: TableBook) -> None:
     program = Program(st_files(estimating_book)[TABLE_FILE])
     for track in golden_tracks(estimating_book):
         samples = np.empty((1, len(track)), [(name, "f4") for name in ("s_m", "v_m_s", "overpressure_kpa")])
@@ -99,7 +107,7 @@ def test_every_golden_track_is_estimated(estimating_book):
         assert np.array_equal(found[-1], track.unseen)
 
 
-def test_a_book_without_estimators_hands_the_speed_on(small_book, estimating_book):
+def test_a_book_without_estimators_hands_the_speed_on(small_book: TableBook, estimating_book: TableBook) -> None:
     """The blocks have the same inputs and outputs, so that one program fits both."""
     plain, full = (Program(st_files(book)[TABLE_FILE]) for book in (small_book, estimating_book))
     for name in ("RETARDER_OBSERVE", "RETARDER_BEGIN", "RETARDER_DECIDE", "RETARDER_SELECT", "RETARDER_LOAD"):
@@ -116,7 +124,7 @@ def test_a_book_without_estimators_hands_the_speed_on(small_book, estimating_boo
     assert loaded(plain, 0)["TOUCH_KPA"].value == 0.0
 
 
-def test_every_table_is_loaded_with_its_estimator(estimating_book):
+def test_every_table_is_loaded_with_its_estimator(estimating_book: TableBook) -> None:
     program = Program(st_files(estimating_book)[TABLE_FILE])
     for number, table in enumerate(estimating_book.tables):
         held, estimator = loaded(program, number), table.estimator
@@ -133,7 +141,7 @@ def test_every_table_is_loaded_with_its_estimator(estimating_book):
 
 
 @pytest.mark.parametrize("breaks", [-32768, -1, 1, 41, 32767])
-def test_a_spoilt_number_of_breaks_is_not_followed(estimating_book, breaks):
+def test_a_spoilt_number_of_breaks_is_not_followed(estimating_book: TableBook, breaks: int) -> None:
     program = Program(st_files(estimating_book)[TABLE_FILE])
     table, worker = loaded(program, 0), program.new("RETARDER_WORK")
     table["BREAKS"].store(breaks, None)
@@ -145,7 +153,7 @@ def test_a_spoilt_number_of_breaks_is_not_followed(estimating_book, breaks):
     assert (worker["DRIVE"].value, worker["BRAKE"].value) == (0.0, 0.0)
 
 
-def test_lines_between_tables_of_two_estimators_are_not_taken(estimating_book):
+def test_lines_between_tables_of_two_estimators_are_not_taken(estimating_book: TableBook) -> None:
     """By `TableBook.choose`; the first two targets of the class share an estimator, the third has another."""
     program = Program(st_files(estimating_book)[TABLE_FILE])
     for book in (estimating_book, TableBook(estimating_book.tables[::-1])):
@@ -157,5 +165,6 @@ def test_lines_between_tables_of_two_estimators_are_not_taken(estimating_book):
             choice = book.choose("Л", 4, speed)
             assert selector["STATUS"].value == choice.status
             assert book is not estimating_book or choice.status == (1 if speed < 3.3 else 2)
+            assert choice.table is not None
             estimator = choice.table.estimator
             assert table["TOUCH_KPA"].value == np.float32(0.0 if estimator is None else estimator.touch_pressure_kpa)

@@ -12,7 +12,7 @@ from tuning_tables.st_source import TABLE_FILE, st_files
 
 
 @pytest.mark.parametrize("after", AFTER, ids="-".join)
-def test_the_same_commands_choose_the_same_tables(after):
+def test_the_same_commands_choose_the_same_tables(after: tuple[str, ...]) -> None:
     asked = commands()
     status, table = select(book(*BEFORE), asked)
     status_now, table_now = select(book(*after), asked)
@@ -25,7 +25,7 @@ def test_the_same_commands_choose_the_same_tables(after):
     assert (status_now[~np.isin(asked["category"], [FIXED[each] for each in after])] == -1).all()
 
 
-def test_the_names_have_the_same_numbers_in_every_export():
+def test_the_names_have_the_same_numbers_in_every_export() -> None:
     for categories in (BEFORE, *AFTER):
         program = Program(st_files(book(*categories))[TABLE_FILE])
         names = program.new("RETARDER_CATEGORIES")

@@ -3,21 +3,33 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
-from synth.studies.in_the_loop.agreement import ask
+from synth.studies.in_the_loop.agreement import Questions, ask
 from tests.tuning_tables.st.evaluator import Program
-from tuning_tables import decide_many
+from tests.tuning_tables.st.storage import Real
+from tuning_tables import ControllerTable, Stage, decide_many
 from tuning_tables.st_source import TABLE_FILE, st_files
 from tuning_tables.table_block import HAS_LOWER, HAS_UPPER, block_size
 from tuning_tables.table_book import Status, TableBook
 
+Chosen: TypeAlias = dict[str, npt.NDArray[Any]]
+"""Arrays with a row a command, by the name of the variable."""
+
 COMMANDS = 8_000
 
 
-def select(book, commands, real=np.float32, text=None, prefix="RETARDER"):
+def select(
+    book: TableBook,
+    commands: npt.NDArray[np.void],
+    real: Real = np.float32,
+    text: bytes | None = None,
+    prefix: str = "RETARDER",
+) -> tuple[npt.NDArray[np.int64], Chosen]:
     """Statuses of the commands, and the tables chosen, as a dictionary of arrays with a row a command."""
     program = Program(text or st_files(book)[TABLE_FILE], real)
     selector, table = program.new(f"{prefix}_SELECT"), program.new(f"{prefix}_TABLE")
@@ -37,7 +49,7 @@ def select(book, commands, real=np.float32, text=None, prefix="RETARDER"):
     }
 
 
-def require_equal(book, questions, statuses, table):
+def require_equal(book: TableBook, questions: Questions, statuses: npt.NDArray[np.int64], table: Chosen) -> None:
     """Statuses as in `questions`, and where a table was chosen every number of it; bits, except the sign of 0."""
     assert np.count_nonzero(statuses != questions.statuses) == 0
     size, chosen = block_size(book), statuses >= 0
@@ -54,21 +66,21 @@ def require_equal(book, questions, statuses, table):
 
 
 @pytest.mark.parametrize("real", [np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
-def test_the_choice_is_that_of_python(book, default_book, real):
+def test_the_choice_is_that_of_python(book: TableBook, default_book: TableBook, real: Real) -> None:
     for each in (book, default_book):
         questions = ask(each, 60_000, COMMANDS, 20261122)
         require_equal(each, questions, *select(each, questions.commands, real))
 
 
-def test_every_status_occurs(book):
+def test_every_status_occurs(book: TableBook) -> None:
     questions = ask(book, 60_000, COMMANDS, 20261122)
     assert {int(status) for status in Status} == set(questions.statuses.tolist())
     assert np.count_nonzero(questions.statuses == Status.BETWEEN) > 100
 
 
-def test_the_chosen_lines_between_two_tables_decide_as_python(default_book):
+def test_the_chosen_lines_between_two_tables_decide_as_python(default_book: TableBook) -> None:
     program = Program(st_files(default_book)[TABLE_FILE])
-    speeds = np.float32([2.25, 2.5, 3.1, 3.75])
+    speeds = np.array([2.25, 2.5, 3.1, 3.75], np.float32)
     rng = np.random.default_rng(3)
     for speed in speeds:
         selector, table, decider = (
@@ -76,6 +88,7 @@ def test_the_chosen_lines_between_two_tables_decide_as_python(default_book):
         )
         program.call("RETARDER_SELECT", selector, Layout=2, Category=3, Axles=4, Commanded_m_s=speed, Table=table)
         chosen = default_book.choose("С", 4, float(speed)).table
+        assert chosen is not None
         stage, s = rng.integers(0, 5, 20_000), rng.uniform(-1.0, 39.0, 20_000).astype(np.float32)
         v = rng.uniform(0.0, 9.0, 20_000).astype(np.float32)
         program.call("RETARDER_DECIDE", decider, Stage=stage, Path_m=s, Speed_m_s=v, Table=table)
@@ -83,7 +96,9 @@ def test_the_chosen_lines_between_two_tables_decide_as_python(default_book):
 
 
 @pytest.mark.parametrize("order", [(1, 0), (0, 1)])
-def test_the_order_of_the_book_does_not_count_for_different_targets(small_book, order):
+def test_the_order_of_the_book_does_not_count_for_different_targets(
+    small_book: TableBook, order: tuple[int, int]
+) -> None:
     turned = TableBook(tuple(small_book.tables[index] for index in order))
     questions = ask(turned, 20_000, 500, 4)
     require_equal(turned, questions, *select(turned, questions.commands))
@@ -106,7 +121,7 @@ def test_the_order_of_the_book_does_not_count_for_different_targets(small_book, 
         ("Status := -2;", "Status := -1;"),
     ],
 )
-def test_a_wrong_choice_is_found(hard_questions, right, wrong):
+def test_a_wrong_choice_is_found(hard_questions: Questions, right: str, wrong: str) -> None:
     book = hard_questions.book
     text = st_files(book)[TABLE_FILE].decode("ascii")
     assert right in text
@@ -115,12 +130,12 @@ def test_a_wrong_choice_is_found(hard_questions, right, wrong):
         require_equal(book, hard_questions, statuses, table)
 
 
-def test_the_right_choice_passes_where_wrong_ones_are_found(hard_questions):
+def test_the_right_choice_passes_where_wrong_ones_are_found(hard_questions: Questions) -> None:
     require_equal(hard_questions.book, hard_questions, *select(hard_questions.book, hard_questions.commands))
 
 
 @pytest.fixture(scope="module")
-def hard_questions(book):
+def hard_questions(book: TableBook) -> Questions:
     """Besides the usual tables one of equal target and other lines, and a neighbour of equal size and other lines."""
     stages = _without_last_upper(book.tables[2])
     twin = replace(book.tables[2], id="twin", stages=stages)
@@ -128,6 +143,6 @@ def hard_questions(book):
     return ask(TableBook((*book.tables, twin, neighbour)), 60_000, 3_000, 7)
 
 
-def _without_last_upper(table):
+def _without_last_upper(table: ControllerTable) -> tuple[Stage, ...]:
     last = max(stage.k for stage in table.stages if stage.upper is not None)
     return tuple(replace(stage, upper=None) if stage.k == last else stage for stage in table.stages)

@@ -3,29 +3,39 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Iterator, Mapping
+from typing import TypeAlias
 
 import numpy as np
 import pytest
 
 from tests.tuning_tables.st.conftest import shaped_book
 from tests.tuning_tables.st.evaluator import Program
-from tests.tuning_tables.st.storage import Fault
+from tests.tuning_tables.st.storage import Fault, Real
 from tuning_tables.distinct_estimators import distinct_estimators
 from tuning_tables.export_prefix import RETARDER
 from tuning_tables.golden_vectors import FEW, few_golden_vectors, golden_vectors
-from tuning_tables.self_test_size import FULL, SMALL
+from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 from tuning_tables.st_source import SELF_TEST_FILE, TABLE_FILE, st_files
 from tuning_tables.table_book import TableBook
+
+Change: TypeAlias = Callable[[str, str], tuple[str, str]]
+"""Changes the texts of the tables and of the self-test."""
 
 OUTPUTS = ("DONE", "FAILED", "FIRSTFAILED", "FIRSTFAULT")
 
 
-def calls_of(book):
+def calls_of(book: TableBook) -> int:
     """Of the self-test: one a table, one for the choice, one an estimator, and one for the tables without any."""
     return len(book.tables) + 1 + len(distinct_estimators(book).first_tables)
 
 
-def run_all(files, calls, change=lambda tables, test: (tables, test), real=np.float32):
+def run_all(
+    files: Mapping[str, bytes],
+    calls: int,
+    change: Change = lambda tables, test: (tables, test),
+    real: Real = np.float32,
+) -> dict[str, int]:
     """The outputs after that many calls of RETARDER_SELF_TEST, with the two texts changed."""
     texts = change(files[TABLE_FILE].decode("ascii"), files[SELF_TEST_FILE].decode("ascii"))
     program = Program("".join(texts).encode("ascii"), real)
@@ -36,13 +46,13 @@ def run_all(files, calls, change=lambda tables, test: (tables, test), real=np.fl
 
 
 @pytest.mark.parametrize("real", [np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
-def test_nothing_is_wrong_with_the_export(default_book, estimating_book, real):
+def test_nothing_is_wrong_with_the_export(default_book: TableBook, estimating_book: TableBook, real: Real) -> None:
     sound = {"DONE": True, "FAILED": 0, "FIRSTFAILED": -1, "FIRSTFAULT": -1}
     for book in (default_book, estimating_book):
         assert run_all(st_files(book), calls_of(book), real=real) == sound
 
 
-def test_nothing_is_wrong_with_other_shapes(book):
+def test_nothing_is_wrong_with_other_shapes(book: TableBook) -> None:
     assert run_all(st_files(book), calls_of(book))["FAILED"] == 0
     large = shaped_book(32, 1)
     files = st_files(large)
@@ -50,7 +60,7 @@ def test_nothing_is_wrong_with_other_shapes(book):
     assert run_all(files, calls_of(large)) == {"DONE": True, "FAILED": 0, "FIRSTFAILED": -1, "FIRSTFAULT": -1}
 
 
-def test_it_takes_a_call_a_part_and_can_be_repeated(small_book):
+def test_it_takes_a_call_a_part_and_can_be_repeated(small_book: TableBook) -> None:
     program = Program(b"".join(st_files(small_book).values()))
     instance = program.new("RETARDER_SELF_TEST")
     seen = []
@@ -60,7 +70,7 @@ def test_it_takes_a_call_a_part_and_can_be_repeated(small_book):
     assert seen == [False, False, False, True, True, False, False, False, True]
 
 
-def test_the_vectors_left_out_are_those_without_a_portable_literal(default_book):
+def test_the_vectors_left_out_are_those_without_a_portable_literal(default_book: TableBook) -> None:
     text = st_files(default_book)[SELF_TEST_FILE].decode("ascii")
     numbers = [int(count) for count in re.findall(r"constants and (\d+) readings", text)]
     for source, count in zip(default_book.tables, numbers, strict=True):
@@ -73,7 +83,9 @@ def test_the_vectors_left_out_are_those_without_a_portable_literal(default_book)
     assert not re.search(r"(?i)\bnan\b|\binf\b|E-(39|4\d)", re.sub(r"\(\*.*?\*\)", "", text, flags=re.DOTALL))
 
 
-def test_a_small_self_test_has_few_readings_a_line_and_finds_nothing_wrong(book, default_book, estimating_book):
+def test_a_small_self_test_has_few_readings_a_line_and_finds_nothing_wrong(
+    book: TableBook, default_book: TableBook, estimating_book: TableBook
+) -> None:
     for each in (book, default_book, estimating_book, shaped_book(2, 0), shaped_book(32, 9)):
         for table in each.tables:
             vectors = few_golden_vectors(table)
@@ -82,26 +94,26 @@ def test_a_small_self_test_has_few_readings_a_line_and_finds_nothing_wrong(book,
         assert run_all(st_files(each, RETARDER, SMALL), calls_of(each))["FAILED"] == 0
 
 
-def constants_in(text):
+def constants_in(text: str) -> Iterator[tuple[int, int]]:
     """Spans of all numbers in constant arrays."""
     number = re.compile(r"-?\d+\.\d+(?:E[+-]\d+)?|-?\d+|TRUE|FALSE")
     for array in re.finditer(r"^    \w+ : ARRAY\[.*?:= \[(.*?)\];", text, re.MULTILINE | re.DOTALL):
         yield from (found.span() for found in number.finditer(text, *array.span(1)))
 
 
-def test_a_small_self_test_finds_every_changed_constant(small_book):
+def test_a_small_self_test_finds_every_changed_constant(small_book: TableBook) -> None:
     files, calls = st_files(small_book, RETARDER, SMALL), calls_of(small_book)
     spans = list(constants_in(files[TABLE_FILE].decode("ascii")))
     assert len(spans) == 54
     for begin, end in spans:
 
-        def change(tables, test, begin=begin, end=end):
+        def change(tables: str, test: str, begin: int = begin, end: int = end) -> tuple[str, str]:
             return tables[:begin] + another(tables[begin:end]) + tables[end:], test
 
         assert run_all(files, calls, change)["FAILED"] > 0
 
 
-def next_number(text, after, place):
+def next_number(text: str, after: str, place: int) -> tuple[int, int]:
     """Span of the number at `place` in the array declared by `after`."""
     start = text.index(after) + len(after)
     found = re.compile(r"-?\d+\.\d+(E[+-]\d+)?|-?\d+|TRUE|FALSE")
@@ -109,7 +121,7 @@ def next_number(text, after, place):
     return matches[place].span()
 
 
-def another(literal):
+def another(literal: str) -> str:
     """A literal of the same kind, and another value."""
     if literal in ("TRUE", "FALSE"):
         return "FALSE" if literal == "TRUE" else "TRUE"
@@ -140,8 +152,10 @@ def another(literal):
     ],
 )
 @pytest.mark.parametrize("self_test", [FULL, SMALL], ids=["full", "small"])
-def test_one_changed_constant_is_found(small_book, array, place, block, self_test):
-    def change(tables, test):
+def test_one_changed_constant_is_found(
+    small_book: TableBook, array: str, place: int, block: int, self_test: SelfTestSize
+) -> None:
+    def change(tables: str, test: str) -> tuple[str, str]:
         head, _, name = array.rpartition("\n")
         offset = tables.index(f"FUNCTION_BLOCK {head}") if head else 0
         begin, end = (offset + index for index in next_number(tables[offset:], name, place))
@@ -170,18 +184,18 @@ def test_one_changed_constant_is_found(small_book, array, place, block, self_tes
     ],
 )
 @pytest.mark.parametrize("self_test", [FULL, SMALL], ids=["full", "small"])
-def test_one_changed_statement_is_found(small_book, right, wrong, self_test):
-    def change(tables, test):
+def test_one_changed_statement_is_found(small_book: TableBook, right: str, wrong: str, self_test: SelfTestSize) -> None:
+    def change(tables: str, test: str) -> tuple[str, str]:
         assert right in tables
         return tables.replace(right, wrong), test
 
     assert run_all(st_files(small_book, RETARDER, self_test), calls_of(small_book), change)["FAILED"] > 0
 
 
-def test_a_fused_multiplication_and_addition_is_found(default_book):
+def test_a_fused_multiplication_and_addition_is_found(default_book: TableBook) -> None:
     """One statement instead of two, and one rounding: what a compiler makes of both when it fuses them."""
 
-    def change(tables, test):
+    def change(tables: str, test: str) -> tuple[str, str]:
         fused = re.sub(r"Line := Line \* Path;\s+Line := Line \+ (Table.*?\]);", r"Line := Line * Path + \1;", tables)
         assert fused.count("Line * Path +") == 2
         return fused, test
@@ -202,7 +216,7 @@ SAME = {
 """Comparisons where what happens to equal numbers changes nothing, or which only a spoilt table can fail."""
 
 
-def swapped_operators(code):
+def swapped_operators(code: str) -> Iterator[tuple[str, str]]:
     """(line, code) with one operator of an assignment or comparison turned into another, each in its turn."""
     swapped = {"+": "-", "-": "+", "*": "/", "/": "*", "<": "<=", ">": ">=", "<=": "<", ">=": ">"}
     for match in re.finditer(r" ([-+*/<>]|[<>]=) ", code):
@@ -214,7 +228,7 @@ def swapped_operators(code):
 
 
 @pytest.mark.slow
-def test_every_wrong_operation_of_the_estimator_is_found(estimating_book):
+def test_every_wrong_operation_of_the_estimator_is_found(estimating_book: TableBook) -> None:
     """By the golden tracks in the self-test, or by an operation that has no result."""
     book = TableBook(estimating_book.tables[:1])
     files = st_files(book)
@@ -222,13 +236,13 @@ def test_every_wrong_operation_of_the_estimator_is_found(estimating_book):
     begin, end = (text.index(f"FUNCTION_BLOCK RETARDER_{name}") for name in ("WORK", "DECIDE"))
     test = tests[tests.index("FUNCTION_BLOCK RETARDER_TEST_ESTIMATOR_0") : tests.index("FUNCTION_BLOCK RETARDER_SELF")]
 
-    def failed(code):
+    def failed(code: str) -> bool:
         try:
             program = Program((text[:begin] + code + text[end:] + test).encode("ascii"))
             loader, table, tester = (program.new(f"RETARDER_{name}") for name in ("LOAD", "TABLE", "TEST_ESTIMATOR_0"))
             program.call("RETARDER_LOAD", loader, TableNo=0, Table=table)
             program.call("RETARDER_TEST_ESTIMATOR_0", tester, Table=table)
-            return tester["FAILED"].value > 0
+            return bool(tester["FAILED"].value > 0)
         except Fault:
             return True
 
@@ -243,10 +257,10 @@ def test_every_wrong_operation_of_the_estimator_is_found(estimating_book):
     [("TouchOf", 0), ("EstimatorOf", 1), ("BreaksOf", 0), ("SpeedVarianceOf", 0), ("FactorVarianceOf", 1),
      ("PathVarianceOf", 0), ("BreakPath_0", 3), ("Drive_0", 15), ("Brake_1", 2)],
 )  # fmt: skip
-def test_one_changed_constant_of_an_estimator_is_found(estimating_book, array, place):
+def test_one_changed_constant_of_an_estimator_is_found(estimating_book: TableBook, array: str, place: int) -> None:
     tables = estimating_book.tables[:3]  # the third has the second estimator
 
-    def change(tables, test):
+    def change(tables: str, test: str) -> tuple[str, str]:
         begin, finish = next_number(tables, f"    {array} ", place)
         return tables[:begin] + another(tables[begin:finish]) + tables[finish:], test
 

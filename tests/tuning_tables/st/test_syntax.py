@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
@@ -47,11 +48,13 @@ def require_structured_text(book: TableBook) -> None:
 
 
 @pytest.mark.parametrize("make", BOOKS.values(), ids=BOOKS)
-def test_every_book_gives_structured_text(make):
+def test_every_book_gives_structured_text(make: Callable[[], TableBook]) -> None:
     require_structured_text(make())
 
 
-def test_the_usual_books_give_structured_text(book, default_book, estimating_book):
+def test_the_usual_books_give_structured_text(
+    book: TableBook, default_book: TableBook, estimating_book: TableBook
+) -> None:
     for each in (book, default_book, estimating_book):
         require_structured_text(each)
 
@@ -79,7 +82,7 @@ def test_the_usual_books_give_structured_text(book, default_book, estimating_boo
         ("Line * Path", "Line * * Path"),
     ],
 )
-def test_a_broken_text_is_found(small_book, right, wrong):
+def test_a_broken_text_is_found(small_book: TableBook, right: str, wrong: str) -> None:
     text = st_files(small_book)[TABLE_FILE].decode("ascii")
     before, found, after = text.rpartition(right)
     assert found, right
@@ -90,13 +93,13 @@ def test_a_broken_text_is_found(small_book, right, wrong):
     ("right", "wrong"),
     [("Table.Powers - 1]", "Table.Power - 1]"), ("Path : REAL;", "Path : INT;"), ("Stage_0[Index]", "Stage_9[Index]")],
 )
-def test_a_wrong_name_or_type_is_found(small_book, right, wrong):
+def test_a_wrong_name_or_type_is_found(small_book: TableBook, right: str, wrong: str) -> None:
     text = b"".join(st_files(small_book).values()).decode("ascii")
     with pytest.raises(Exception, match=r"Power|INT|STAGE_9"):
         Program(text.replace(right, wrong, 1).encode("ascii"))
 
 
-def test_the_text_is_plain(book, default_book, estimating_book):
+def test_the_text_is_plain(book: TableBook, default_book: TableBook, estimating_book: TableBook) -> None:
     for files in map(st_files, (book, default_book, oddly_named_book(), estimating_book)):
         for text in files.values():
             lines = text.decode("ascii").split("\n")
@@ -109,7 +112,7 @@ def test_the_text_is_plain(book, default_book, estimating_book):
             assert all(comment.count(b"(*") == comment.count(b"*)") == 1 for comment in comments)
 
 
-def test_names_are_no_keywords_anywhere(default_book, estimating_book):
+def test_names_are_no_keywords_anywhere(default_book: TableBook, estimating_book: TableBook) -> None:
     text = b"".join([*st_files(default_book).values(), *st_files(estimating_book).values()])
     names = {node.text.decode("ascii").upper() for node in walk(parse(text)) if node.type == "identifier"}
     assert {"STAGE", "PATH_M", "SPEED_M_S", "TABLE"} < names
@@ -117,19 +120,19 @@ def test_names_are_no_keywords_anywhere(default_book, estimating_book):
     assert all(len(name) <= 32 and "__" not in name and not name.endswith("_") for name in names)
 
 
-def test_no_array_is_long(default_book, estimating_book):
+def test_no_array_is_long(default_book: TableBook, estimating_book: TableBook) -> None:
     for book in (default_book, shaped_book(32, 9), estimating_book):
         for text in st_files(book).values():
             lengths = [int(end) + 1 for end in re.findall(rb"ARRAY\[0\.\.(\d+)\]", text)]
             assert max(lengths) <= 999
 
 
-def test_equal_books_give_equal_bytes(book, small_book):
+def test_equal_books_give_equal_bytes(book: TableBook, small_book: TableBook) -> None:
     assert st_files(book) == st_files(TableBook(tuple(replace(table) for table in book.tables)))
     assert st_files(book) != st_files(small_book)
 
 
-def test_too_many_tables_are_refused(small_book):
+def test_too_many_tables_are_refused(small_book: TableBook) -> None:
     table = small_book.tables[0]
     tables = [
         replace(

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Mapping
+from typing import TypeAlias
 
 import numpy as np
 import pytest
@@ -16,31 +18,34 @@ from tests.tuning_tables.st.test_self_test import calls_of
 from tuning_tables.export_prefix import ExportPrefix
 from tuning_tables.golden_tracks import golden_tracks
 from tuning_tables.golden_vectors import golden_vectors
-from tuning_tables.self_test_size import FULL, SMALL
+from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 from tuning_tables.st_literals import is_portable
 from tuning_tables.st_source import st_files, st_unit_files
+from tuning_tables.table_book import TableBook
+
+Export: TypeAlias = Callable[[TableBook, ExportPrefix, SelfTestSize], Mapping[str, bytes]]
 
 POSITIONS = {"BUNCH": estimating_book(), "PARK": park_book()}
 
 
-def project(self_test, export=st_files):
+def project(self_test: SelfTestSize, export: Export = st_files) -> bytes:
     """The files of both, one after the other."""
     return b"\n".join(
         text for name, book in POSITIONS.items() for text in export(book, ExportPrefix(name), self_test).values()
     )
 
 
-def units_in(text):
+def units_in(text: bytes) -> list[bytes]:
     """The names of all blocks and types."""
     return [b"".join(found) for found in re.findall(rb"^FUNCTION_BLOCK (\w+)$|^ +(\w+) : STRUCT$", text, re.MULTILINE)]
 
 
 @pytest.fixture(scope="module")
-def text():
+def text() -> bytes:
     return project(SMALL)
 
 
-def test_it_is_one_text_without_a_name_twice(text):
+def test_it_is_one_text_without_a_name_twice(text: bytes) -> None:
     assert faults(parse(text)) == []
     names = units_in(text)
     assert len(names) == len(set(names)) > 40
@@ -49,7 +54,7 @@ def test_it_is_one_text_without_a_name_twice(text):
 
 
 @pytest.mark.parametrize("self_test", [FULL, SMALL], ids=["full", "small"])
-def test_both_self_tests_find_nothing(self_test):
+def test_both_self_tests_find_nothing(self_test: SelfTestSize) -> None:
     program = Program(project(self_test))
     for name, book in POSITIONS.items():
         instance = program.new(f"{name}_SELF_TEST")
@@ -58,13 +63,13 @@ def test_both_self_tests_find_nothing(self_test):
         assert (instance["DONE"].value, instance["FAILED"].value) == (True, 0)
 
 
-def test_both_choose_as_alone(text):
+def test_both_choose_as_alone(text: bytes) -> None:
     for name, book in POSITIONS.items():
         questions = ask(book, 60_000, 3_000, 20261122)
         require_equal(book, questions, *select(book, questions.commands, text=text, prefix=name))
 
 
-def test_both_answer_their_golden_vectors_and_tracks(text):
+def test_both_answer_their_golden_vectors_and_tracks(text: bytes) -> None:
     program = Program(text)
     for name, book in POSITIONS.items():
         table, observer, estimate = (program.new(f"{name}_{kind}") for kind in ("TABLE", "OBSERVE", "ESTIMATE"))
@@ -87,7 +92,7 @@ def test_both_answer_their_golden_vectors_and_tracks(text):
                 assert observer["UNSEEN"].value == unseen
 
 
-def test_split_files_in_the_order_of_their_names_are_the_same_program():
+def test_split_files_in_the_order_of_their_names_are_the_same_program() -> None:
     for name, book in POSITIONS.items():
         whole, units = (export(book, ExportPrefix(name)) for export in (st_files, st_unit_files))
         assert list(units) == sorted(units)
@@ -101,6 +106,6 @@ def test_split_files_in_the_order_of_their_names_are_the_same_program():
     Program(project(FULL, st_unit_files))
 
 
-def test_the_longest_names_stay_within_32_characters():
+def test_the_longest_names_stay_within_32_characters() -> None:
     for text in st_files(POSITIONS["BUNCH"], ExportPrefix("ABCDEFGHIJ")).values():
         assert max(map(len, re.findall(rb"\bABCDEFGHIJ_\w+", text))) <= 32
