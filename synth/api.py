@@ -37,7 +37,8 @@ from synth.solver.backward_induction import Solution
 from synth.solver.backward_induction import solve as solve_chain
 from synth.solver.chain.chain import Chain, check_chain, persistent_chain
 from synth.solver.one_blas_thread import one_blas_thread
-from synth.solver.polynomial_fit import Polish, PolynomialLines
+from synth.solver.polish import Polish
+from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.required_lines import required_lines
 from synth.solver.tabulate import UNPREDICTED
 from synth.solver.tabulate import tabulate as tabulate_lines

@@ -23,7 +23,7 @@ from tuning_tables import ControllerTable
 
 if TYPE_CHECKING:  # who draws or reports a case needs no kernels
     from synth.book.estimation.estimated_table import EstimatedTable
-    from synth.solver.polynomial_fit import Polish
+    from synth.solver.polish import Polish
 
 
 MOST_ESCAPED = 1e-4

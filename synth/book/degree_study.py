@@ -15,7 +15,8 @@ from synth.solver.backward_induction import Solution
 from synth.solver.chain.chain import Chain
 from synth.solver.evaluation import Evaluation
 from synth.solver.policy_density import density_and_occupancy
-from synth.solver.polynomial_fit import PolynomialLines, fit_lines
+from synth.solver.polynomial_fit import fit_lines
+from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.tabulate import UNPREDICTED, tabulate
 from synth.solver.tuned_lines import polished
 from tuning_tables import ControllerTable, InvalidTable

@@ -23,7 +23,7 @@ from synth.book.comparison.pressure_cycle import pressure_hunting
 from synth.book.estimation.estimated_table import EstimatedTable
 from synth.book.tune import Book
 from synth.problem.requirement_found import Finding
-from synth.solver.polynomial_fit import Polish
+from synth.solver.polish import Polish
 from tuning_tables.canonical import LARGEST_EXACT_INTEGER
 
 FORMAT = "retarder-summary"

@@ -21,7 +21,9 @@ from synth.solver.backward_induction import Solution, solve_all
 from synth.solver.chain.chain import Chain
 from synth.solver.exit_density import ExitDensity
 from synth.solver.policy_density import density_and_occupancy, exit_density
-from synth.solver.polynomial_fit import Polish, PolynomialLines, fit_lines
+from synth.solver.polish import Polish
+from synth.solver.polynomial_fit import fit_lines
+from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.required_lines import required_lines
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tabulate import UNPREDICTED, lines_of, prediction_of, tabulate

@@ -1,6 +1,7 @@
-"""The commands, their arguments and their help; what they do is in the modules that they import."""
+"""The commands, their arguments and their help; what they do is in the modules that they import.
 
-from __future__ import annotations
+Annotations are not postponed here: typer would compile every one of them anew at each start.
+"""
 
 from pathlib import Path
 from typing import Annotated

@@ -22,7 +22,9 @@ from synth.solver.evaluation import Evaluation
 from synth.solver.exit_density import ExitDensity
 from synth.solver.finer_speed import finer_in_speed
 from synth.solver.policy_density import exit_density
-from synth.solver.polynomial_fit import Fit, PolynomialLines, polish
+from synth.solver.polish import polish
+from synth.solver.polynomial_fit import Fit
+from synth.solver.polynomial_lines import PolynomialLines
 
 PRICE_GROWTH = 4.0
 MOST_GROWTHS = 8

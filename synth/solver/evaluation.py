@@ -76,7 +76,7 @@ class Evaluation:
         return float(sum(weight * self._backward(policy, i, nothing, no_band)[0] for i, weight in weights))
 
     def gradient(self, lines: SwitchingLines) -> Gradient:
-        """Cost, and its exact derivatives by every line value; what `polynomial_fit.polish` minimises."""
+        """Cost, and its exact derivatives by every line value; what `polish.polish` minimises."""
         return self.scenario_costs(lines).weighted(self.chain.scenarios.weight)
 
     def scenario_costs(self, lines: SwitchingLines) -> ScenarioCosts:

@@ -9,7 +9,9 @@ from synth.problem.requirement_found import Finding
 from synth.solver.backward_induction import Solution
 from synth.solver.chain.chain import Chain
 from synth.solver.chance_constraint import keep_overspeed_limit
-from synth.solver.polynomial_fit import Fit, Polish, PolynomialLines
+from synth.solver.polish import Polish
+from synth.solver.polynomial_fit import Fit
+from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.tuned_lines import polished
 from synth.solver.worst_case import guard_worst_case
 

@@ -22,7 +22,7 @@ from tuning_tables import (
 )
 
 if TYPE_CHECKING:  # who asks a table for its lines needs no kernels
-    from synth.solver.polynomial_fit import PolynomialLines
+    from synth.solver.polynomial_lines import PolynomialLines
 
 OVERSPEED_M_S = 0.3
 """Over-speed counted in `predicted`: exit faster than the target by more than this."""

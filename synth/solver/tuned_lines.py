@@ -9,7 +9,8 @@ from synth.solver.backward_induction import Solution, solve
 from synth.solver.chain.chain import Chain
 from synth.solver.evaluation import Evaluation
 from synth.solver.policy_density import density_and_occupancy
-from synth.solver.polynomial_fit import Fit, Polish, fit_lines, polish
+from synth.solver.polish import Polish, polish
+from synth.solver.polynomial_fit import Fit, fit_lines
 
 POLISH_ITERATIONS = 25
 

@@ -24,7 +24,9 @@ from synth.solver.chance_constraint import predicted_density
 from synth.solver.evaluation import Evaluation, ScenarioCosts
 from synth.solver.finer_speed import finer_in_speed, known_factors
 from synth.solver.policy_density import scenario_densities
-from synth.solver.polynomial_fit import Evaluate, Fit, PolynomialLines, polish
+from synth.solver.polish import Evaluate, polish
+from synth.solver.polynomial_fit import Fit
+from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.switching_lines import SwitchingLines
 
 POLISH_FINER = 2.0

@@ -24,7 +24,9 @@ from synth.simulation.random_passes import RandomPasses
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import Chain, with_known_friction
 from synth.solver.evaluation import Evaluation
-from synth.solver.polynomial_fit import Fit, Polish, PolynomialLines, polish
+from synth.solver.polish import Polish, polish
+from synth.solver.polynomial_fit import Fit
+from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.tuned_lines import fitted
 
 LINE_NODES = 301

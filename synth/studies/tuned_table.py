@@ -7,7 +7,7 @@ from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.solver.backward_induction import Solution
 from synth.solver.chain.chain import persistent_chain
-from synth.solver.polynomial_fit import PolynomialLines
+from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.tabulate import UNPREDICTED, tabulate
 from synth.solver.tuned_lines import fitted, polished, tuned_lines
 from tuning_tables import ControllerTable, Estimator, Generator

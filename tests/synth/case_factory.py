@@ -27,7 +27,8 @@ from synth.problem.problem import Problem
 from synth.simulation.exit_statistics import brake_power, exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample, PassTrace
 from synth.solver.exit_density import ExitDensity
-from synth.solver.polynomial_fit import Polish, PolynomialLines
+from synth.solver.polish import Polish
+from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.switching_lines import SwitchingLines
 from tuning_tables import (
     ControllerTable,

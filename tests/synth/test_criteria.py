@@ -29,7 +29,9 @@ from synth.solver.chance_constraint import keep_overspeed_limit, predicted_densi
 from synth.solver.evaluation import Evaluation
 from synth.solver.finer_speed import finer_in_speed, known_factors
 from synth.solver.policy_density import exit_density, scenario_densities
-from synth.solver.polynomial_fit import Fit, PolynomialLines, basis, whitening
+from synth.solver.polish import whitening
+from synth.solver.polynomial_fit import Fit
+from synth.solver.polynomial_lines import PolynomialLines, basis
 from synth.solver.required_lines import required_lines
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tuned_lines import fitted, polished

@@ -19,7 +19,7 @@ from synth.simulation.closed_loop import LineController, close_loop, simulate, t
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.chain.speed_measurement import SmoothMeasurement
-from synth.solver.polynomial_fit import PolynomialLines
+from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tuned_lines import tuned_lines
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import subprocess
 import sys
 from collections.abc import Callable
@@ -184,9 +185,13 @@ def test_a_stalled_pass_is_called_so(cases: list[CaseResult]) -> None:
     assert outcome(replace(cases[0].study.traces[0], stalled=True)) == "stopped in the position"
 
 
-def test_drawing_needs_neither_pyplot_nor_kernels() -> None:
+def test_drawing_needs_neither_pyplot_nor_kernels(cases: list[CaseResult], tmp_path: Path) -> None:
+    """Not even a case that is handed to the process that draws it."""
     heavy = ("matplotlib.pyplot", "numba", "scipy", "pydantic", "control", "h5py")
+    (tmp_path / "case").write_bytes(pickle.dumps(cases[0]))
+    loaded = f"any(each in sys.modules for each in {heavy})"
+    taken = f"pickle.loads(pathlib.Path({str(tmp_path / 'case')!r}).read_bytes())"
     command = (
-        f"import synth.present.plots.picture_book, sys; raise SystemExit(any(each in sys.modules for each in {heavy}))"
+        f"import pathlib, pickle, sys; import synth.present.plots.picture_book; {taken}; raise SystemExit({loaded})"
     )
     assert subprocess.run([sys.executable, "-c", command], cwd=ROOT, timeout=60, check=False).returncode == 0

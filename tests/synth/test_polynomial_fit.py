@@ -12,21 +12,13 @@ from plant_models import Plant
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
-from synth.solver import polynomial_fit
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import Chain, persistent_chain
 from synth.solver.evaluation import Evaluation
 from synth.solver.policy_density import density_and_occupancy
-from synth.solver.polynomial_fit import (
-    MINIMUM_GAP_M_S,
-    Fit,
-    PolynomialLines,
-    fit_lines,
-    gap_of,
-    opened,
-    polish,
-    whitening,
-)
+from synth.solver.polish import polish, whitening
+from synth.solver.polynomial_fit import Fit, fit_lines
+from synth.solver.polynomial_lines import MINIMUM_GAP_M_S, PolynomialLines, gap_of, opened
 from synth.solver.switching_lines import SwitchingLines
 
 COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=3)
@@ -116,7 +108,7 @@ def test_a_polish_that_opening_spoils_leaves_the_lines_as_they_were(
         cost, by_lower, by_upper = exact(lines)
         return error if np.array_equal(lines.upper_m_s, at_moved) else cost, by_lower, by_upper
 
-    monkeypatch.setattr(polynomial_fit, "opened", lambda lines: moved)
+    monkeypatch.setattr("synth.solver.polish.opened", lambda lines: moved)
     result = polish(fit.lines, fit.curvature, nodes, evaluate, 25)
     assert result.lines is fit.lines
     assert result.cost_after == result.cost_before > 0.0

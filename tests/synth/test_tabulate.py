@@ -12,7 +12,7 @@ from synth.problem.resolution import Resolution
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.exit_density import ExitDensity
 from synth.solver.policy_density import commands, exit_density
-from synth.solver.polynomial_fit import PolynomialLines
+from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tabulate import lines_of, prediction_of, tabulate
 from tuning_tables import HOLD, LOWER, ControllerTable, Generator, InvalidTable, Predicted, decide_for

@@ -26,7 +26,7 @@ from synth.simulation.closed_loop import ClosedLoop, LineController, close_loop
 from synth.simulation.random_passes import RandomPasses
 from synth.solver.chain.chain import Chain, persistent_chain
 from synth.solver.chain.speed_measurement import SmoothMeasurement
-from synth.solver.polynomial_fit import PolynomialLines, opened
+from synth.solver.polynomial_lines import PolynomialLines, opened
 from synth.solver.tuned_lines import tuned_lines
 from tuning_tables.estimator import Estimator
 

@@ -17,7 +17,7 @@ from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.replicates import Interval, share_of
 from synth.solver.chain.chain import persistent_chain
-from synth.solver.polynomial_fit import PolynomialLines
+from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.tuned_lines import tuned_lines
 from synth.studies.tuned_table import rounded
 from tuning_tables import Estimator

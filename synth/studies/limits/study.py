@@ -26,7 +26,7 @@ from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.replicates import rms_of
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.chain.chain import persistent_chain
-from synth.solver.polynomial_fit import PolynomialLines
+from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.tuned_lines import tuned_lines
 from synth.studies.cases import Case, named_cases
 from synth.studies.limits.change import QUIET_M_S, Change, changes

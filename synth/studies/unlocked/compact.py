@@ -18,7 +18,7 @@ from synth.problem.criterion import Criterion
 from synth.simulation.closed_loop import ClosedLoop, LineController
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
-from synth.solver.polynomial_fit import PolynomialLines, basis
+from synth.solver.polynomial_lines import PolynomialLines, basis
 from synth.studies.unlocked.evolution import Vector, evolve
 from synth.studies.unlocked.laws import PRESSURE_POWERS, CompactController, SurfaceController
 from synth.studies.unlocked.loop import UnlockedLoop

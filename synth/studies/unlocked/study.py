@@ -28,7 +28,7 @@ from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import persistent_chain
-from synth.solver.polynomial_fit import PolynomialLines
+from synth.solver.polynomial_lines import PolynomialLines
 from synth.studies.cases import Case, named_cases
 from synth.studies.near_target import near_ratio, near_target
 from synth.studies.options import option

@@ -1,0 +1,132 @@
+"""The polish: the exactly evaluated cost of the polynomial policy itself, minimised over all coefficients at once.
+
+Its gradient comes from one forward and one backward pass (`evaluation.Evaluation.gradient`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.errors import require
+from synth.solver.one_blas_thread import one_blas_thread
+from synth.solver.polynomial_lines import MINIMUM_GAP_M_S, PolynomialLines, basis, gap_of, opened
+from synth.solver.switching_lines import SwitchingLines
+
+LOOSE_M_S = 0.3
+"""See `whitening`."""
+
+Evaluate = Callable[[SwitchingLines], tuple[float, NDArray[np.float64], NDArray[np.float64]]]
+"""Lines at path nodes → (cost, its derivatives by lower (K + 1, N) and by upper (K + 1, N))."""
+
+
+@dataclass(frozen=True)
+class Polish:
+    """Result of `polish`: the lines, cost before and after, evaluations used, whether and why the search ended well."""
+
+    lines: PolynomialLines
+    cost_before: float
+    cost_after: float
+    evaluations: int
+    converged: bool
+    status: str
+
+
+@one_blas_thread()
+def polish(
+    start: PolynomialLines,
+    curvature: NDArray[np.float64],
+    nodes_m: NDArray[np.float64],
+    evaluate: Evaluate,
+    max_iterations: int,
+    tolerance: float = 5e-3,
+) -> Polish:
+    """Minimise `evaluate` over all coefficients, keeping V_hi − V_lo ≥ `MINIMUM_GAP_M_S` on the path.
+
+    It ends when a step changes the cost by less than `tolerance` of the first cost. The cost of the result is positive
+    and no higher than the start's. A negative cost can only come from a grid that is too coarse.
+
+    Raises `PlantError` if the cost to start from is not positive: the grid is too coarse.
+
+    Sequential quadratic programming in coordinates in which the `curvature` (K + 1, 2, N) of `fit_lines` is
+    the unit matrix, so that the first steps are Newton steps.
+    """
+    from scipy.optimize import minimize  # start-up: scipy only where it is needed
+
+    free, width = np.nonzero(start.has_line), start.degree + 1
+    matrix = basis(nodes_m, start.exit_m, start.degree)[: curvature.shape[2]]
+    first = evaluate(start.at(nodes_m))
+    before = first[0]
+    require(
+        before > 0.0,
+        "the grid is too coarse for these lines (an expected square came out negative): make path_step_m and "
+        "speed_step_m_s smaller",
+    )
+    scale = whitening(curvature[free], matrix, before)
+    best: list[tuple[float, PolynomialLines]] = [(before, start)]
+    calls = 0
+
+    def unpack(y: NDArray[np.float64]) -> PolynomialLines:
+        coefficients = start.coefficients.copy()
+        coefficients[free] += np.einsum("lab,lb->la", scale, y.reshape(-1, width))
+        return PolynomialLines(start.exit_m, coefficients, start.has_line)
+
+    def objective(y: Any) -> Any:
+        nonlocal calls
+        calls += 1
+        lines = unpack(y)
+        cost, by_lower, by_upper = evaluate(lines.at(nodes_m)) if y.any() else first
+        # Below 0 the grid is too coarse for these lines, and its error would be what is minimised.
+        if 0.0 < cost < best[0][0] and gap_of(lines) >= 0.5 * MINIMUM_GAP_M_S:
+            best[0] = (cost, lines)
+        gradient = np.stack([by_lower @ matrix, by_upper @ matrix], axis=1)[free]
+        return cost / before, np.einsum("lab,la->lb", scale, gradient).ravel() / before
+
+    options: Any = {"maxiter": max_iterations, "ftol": tolerance}
+    constraints: Any = [gap_constraint(start, free, scale)]
+    y0 = np.zeros(len(free[0]) * width)
+    result = minimize(objective, y0, jac=True, method="SLSQP", constraints=constraints, options=options)
+    cost, found = best[0]
+    lines = opened(found)
+    if lines is not found:
+        cost = evaluate(lines.at(nodes_m))[0]
+    if not 0.0 < cost <= before:
+        cost, lines = before, start
+    return Polish(lines, before, cost, calls, bool(result.success), str(result.message))
+
+
+def whitening(curvature: NDArray[np.float64], matrix: NDArray[np.float64], cost: float) -> NDArray[np.float64]:
+    """Per line the matrix T with Tᵀ·H·T = 1, H the Hessian of cost/`cost` by the line's coefficients.
+
+    `curvature` (lines, N), `matrix` (N, r + 1). A line that nothing depends on is held as if moving it by
+    `LOOSE_M_S` everywhere doubled the cost.
+    """
+    loose = matrix.T @ matrix / (len(matrix) * LOOSE_M_S**2)
+    hessian = np.einsum("na,ln,nb->lab", matrix, curvature / cost, matrix) + loose
+    lower = np.linalg.cholesky(hessian)
+    whitened: NDArray[np.float64] = np.linalg.inv(lower).transpose(0, 2, 1)
+    return whitened
+
+
+def gap_constraint(
+    lines: PolynomialLines, free: tuple[NDArray[np.int64], ...], scale: NDArray[np.float64]
+) -> dict[str, Any]:
+    """Linear inequality V_hi,k(s) − V_lo,k(s) − gap ≥ 0 at points along the path, for SLSQP."""
+    points = np.linspace(0.0, lines.exit_m, 13)
+    matrix = basis(points, lines.exit_m, lines.degree)
+    index = {(int(k), int(side)): i for i, (k, side) in enumerate(zip(*free, strict=True))}
+    both = [k for k in range(len(lines.has_line)) if lines.has_line[k].all()]
+    width = lines.degree + 1
+    jacobian = np.zeros((len(both) * len(points), len(index) * width))
+    for row, k in enumerate(both):
+        rows = slice(row * len(points), (row + 1) * len(points))
+        for side, sign in ((0, -1.0), (1, 1.0)):
+            at = index[k, side] * width
+            jacobian[rows, at : at + width] = sign * matrix @ scale[index[k, side]]
+    at_start = lines.at(points)
+    gap = (at_start.upper_m_s - at_start.lower_m_s)[both].ravel() - MINIMUM_GAP_M_S
+    return {"type": "ineq", "fun": lambda y: jacobian @ y + gap, "jac": lambda y: jacobian}

@@ -1,0 +1,77 @@
+"""Polynomial switching lines: what a polish moves and a table rounds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.frozen_arrays import frozen_arrays
+from synth.solver.switching_lines import SwitchingLines
+
+MINIMUM_GAP_M_S = 0.04
+"""Smallest distance V_hi − V_lo of a fitted pair of lines."""
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class PolynomialLines:
+    """Lines as Legendre series in x = 2 s/S_exit − 1 (well conditioned; the table holds powers of s).
+
+    `coefficients` (K + 1, 2, r + 1): lower, upper; `has_line` (K + 1, 2).
+    """
+
+    exit_m: float
+    coefficients: NDArray[np.float64]
+    has_line: NDArray[np.bool_]
+
+    @property
+    def degree(self) -> int:
+        """r."""
+        return int(self.coefficients.shape[2]) - 1
+
+    def at(self, nodes_m: NDArray[np.float64]) -> SwitchingLines:
+        """The lines at path nodes, ±inf where there is none."""
+        values: NDArray[np.float64] = self.coefficients @ basis(nodes_m, self.exit_m, self.degree).T
+        lower = np.where(self.has_line[:, 0, None], values[:, 0], -np.inf)
+        upper = np.where(self.has_line[:, 1, None], values[:, 1], np.inf)
+        return SwitchingLines(np.array(nodes_m), lower, upper)
+
+    def powers_of_s(self) -> NDArray[np.float64]:
+        """Ascending coefficients in powers of s in metres, (K + 1, 2, r + 1)."""
+        series = np.polynomial.legendre.Legendre
+        converted = np.zeros_like(self.coefficients)
+        for index in np.ndindex(*self.has_line.shape):
+            power = series(self.coefficients[index], domain=[0.0, self.exit_m]).convert(
+                kind=np.polynomial.Polynomial, domain=[-1.0, 1.0]
+            )
+            converted[index][: len(power.coef)] = power.coef
+        return converted
+
+
+def basis(nodes_m: NDArray[np.float64], exit_m: float, degree: int) -> NDArray[np.float64]:
+    """Legendre polynomials at the nodes, (nodes, r + 1)."""
+    return np.asarray(np.polynomial.legendre.legvander(2.0 * nodes_m / exit_m - 1.0, degree), dtype=np.float64)
+
+
+def gap_of(lines: PolynomialLines) -> float:
+    """Smallest V_hi − V_lo over stages and a fine path mesh."""
+    at = lines.at(np.linspace(0.0, lines.exit_m, 201))
+    return float((at.upper_m_s - at.lower_m_s).min())
+
+
+def opened(lines: PolynomialLines) -> PolynomialLines:
+    """The lines with every pair moved apart, symmetrically, until its gap is at least the minimum.
+
+    The same object where nothing need be moved.
+    """
+    at = lines.at(np.linspace(0.0, lines.exit_m, 201))
+    short = MINIMUM_GAP_M_S - (at.upper_m_s - at.lower_m_s).min(axis=1)
+    if not (short > 0.0).any():
+        return lines
+    coefficients = lines.coefficients.copy()
+    for k in np.nonzero(short > 0.0)[0]:
+        coefficients[k, 0, 0] -= 0.5 * short[k]
+        coefficients[k, 1, 0] += 0.5 * short[k]
+    return PolynomialLines(lines.exit_m, coefficients, lines.has_line)
