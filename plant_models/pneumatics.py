@@ -80,6 +80,15 @@ class Pneumatics:
             self.fill_time_constant_s, self.exhaust_time_constant_s, self.dead_band_kpa, touch_kpa,
         )  # fmt: skip
 
+    def valves_shutting_at_once(self, touch_kpa: float) -> ValveDrive:
+        """The same for commands during a transient; raises `PlantError` for a closing delay, not modelled there."""
+        require(
+            self.closing_delay_s == 0.0,
+            f"pneumatics: closing_delay_s is {self.closing_delay_s:g}; commands during a transient are modelled for "
+            "valves that close at once: set it to 0",
+        )
+        return self.valves(touch_kpa)
+
     def respond(self, start_kpa: float, target_kpa: float, touch_kpa: float) -> PressureHistory:
         """Pressure after the command `target_kpa`, given at t = 0 while the pressure rests at `start_kpa`.
 

@@ -17,12 +17,7 @@ The functions are plain arithmetic on numbers, so that a kernel can compile them
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
-
-from plant_models.errors import require
-
-if TYPE_CHECKING:
-    from plant_models.pneumatics import Pneumatics
+from typing import NamedTuple
 
 
 class ValveDrive(NamedTuple):
@@ -37,16 +32,6 @@ class ValveDrive(NamedTuple):
     exhaust_s: float
     band_kpa: float
     touch_kpa: float
-
-
-def valve_drive(pneumatics: Pneumatics, touch_kpa: float) -> ValveDrive:
-    """The constants of `pneumatics`; raises `PlantError` where a closing delay is given, which is not modelled here."""
-    require(
-        pneumatics.closing_delay_s == 0.0,
-        f"pneumatics: closing_delay_s is {pneumatics.closing_delay_s:g}; commands during a transient are modelled for "
-        "valves that close at once: set it to 0",
-    )
-    return pneumatics.valves(touch_kpa)
 
 
 def wait_after_command(pressure_kpa: float, wait_s: float, old_kpa: float, new_kpa: float, drive: ValveDrive) -> float:

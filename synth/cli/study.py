@@ -78,6 +78,7 @@ def run_command(study: Study, words: list[str], wanted: Wanted) -> int:
     from synth.kernels.cache import guarded
     from synth.studies.documents import documents, kept, written
     from synth.studies.options import options_from
+    from synth.studies.result import run_study
 
     if wanted.document:
         list(documents(Path()))  # a checkout, or a fault before anything is computed
@@ -87,7 +88,7 @@ def run_command(study: Study, words: list[str], wanted: Wanted) -> int:
     options = method.smallest if wanted.small else options_from(words, method.options, study.name)
     if wanted.small and words:
         raise InputError("study: --small has options of its own; leave the others out")
-    result = guarded(study.run, options, lambda sentence: print(sentence, file=sys.stderr, flush=True))
+    result = guarded(run_study, study, options, lambda sentence: print(sentence, file=sys.stderr, flush=True))
     files = write(result, wanted.output)
     print(result.json() if wanted.as_json else result.markdown(), end="")
     if wanted.document:

@@ -123,12 +123,6 @@ class Degrees(Findings):
             f"{min(cubic):.3f} to {max(cubic):.3f} over the {len(cubic)} of degree {COMPARED}",
         )
 
-    def figures(self) -> Mapping[str, Figure]:
-        """Predicted rms over degree, a panel a case."""
-        from synth.present.plots.degree_study import degree_study as draw
-
-        return {"": draw([as_study(case) for case in self.cases])}
-
 
 def rms_cell(row: Row) -> str:
     """'41.4 / 41.50 ± 0.28'."""
@@ -210,6 +204,13 @@ def case_row(
             )
         )  # fmt: skip
     return CaseRow(f"{plant.cut.mass_t:g} t to {target:g} m/s", tuple(rows))
+
+
+def figures(found: Degrees) -> Mapping[str, Figure]:
+    """Predicted rms over degree, a panel a case."""
+    from synth.present.plots.degree_study import degree_study as draw
+
+    return {"": draw([as_study(case) for case in found.cases])}
 
 
 METHOD = Method(Options, Options(None, (52.0,), (3.0,), (1, 3), 200), Degrees, run)

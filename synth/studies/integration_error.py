@@ -76,23 +76,6 @@ class IntegrationError(Findings):
             f"of a period of {self.period_s:g} s",
         )
 
-    def figures(self) -> Mapping[str, Figure]:
-        """Error over sub-steps."""
-        from synth.present.plots.house_style import BLUE, ORANGE, dress, logarithmic_y, new_figure, place
-
-        figure = new_figure(6.0, 4.0, "Integration error of the exit speed", self.case)
-        place(figure, left=0.9, right=0.3, bottom=0.7, top=0.75)
-        axes = figure.subplots()
-        dress(axes, "", "sub-steps of a sampling period", "mm/s")
-        steps = [row.substeps for row in self.rows]
-        axes.plot(steps, [1e3 * row.rms_m_s for row in self.rows], "-o", color=BLUE, label="rms")
-        axes.plot(steps, [1e3 * row.largest_m_s for row in self.rows], "--s", color=ORANGE, label="largest")
-        axes.set_xscale("log", base=2)
-        logarithmic_y(axes, [1e3 * x for row in self.rows for x in (row.rms_m_s, row.largest_m_s)])
-        axes.set_xticks(steps, [str(step) for step in steps])
-        axes.legend(fontsize=8)
-        return {"": figure}
-
 
 def run(options: Options, tell: Tell) -> IntegrationError:
     """Follow the same passes with every number of sub-steps."""
@@ -128,6 +111,24 @@ def compared(substeps: int, mine: list[PassTrace], truth: list[PassTrace]) -> Ro
     apart = apart[same]
     rms = float(np.sqrt(np.mean(apart**2))) if same.any() else 0.0
     return Row(substeps, rms, float(apart.max(initial=0.0)), float(same.mean()))
+
+
+def figures(found: IntegrationError) -> Mapping[str, Figure]:
+    """Error over sub-steps."""
+    from synth.present.plots.house_style import BLUE, ORANGE, dress, logarithmic_y, new_figure, place
+
+    figure = new_figure(6.0, 4.0, "Integration error of the exit speed", found.case)
+    place(figure, left=0.9, right=0.3, bottom=0.7, top=0.75)
+    axes = figure.subplots()
+    dress(axes, "", "sub-steps of a sampling period", "mm/s")
+    steps = [row.substeps for row in found.rows]
+    axes.plot(steps, [1e3 * row.rms_m_s for row in found.rows], "-o", color=BLUE, label="rms")
+    axes.plot(steps, [1e3 * row.largest_m_s for row in found.rows], "--s", color=ORANGE, label="largest")
+    axes.set_xscale("log", base=2)
+    logarithmic_y(axes, [1e3 * x for row in found.rows for x in (row.rms_m_s, row.largest_m_s)])
+    axes.set_xticks(steps, [str(step) for step in steps])
+    axes.legend(fontsize=8)
+    return {"": figure}
 
 
 METHOD = Method(Options, Options(substeps=(2, 10), reference=40, passes=30), IntegrationError, run)

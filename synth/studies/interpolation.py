@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -31,9 +30,6 @@ from synth.studies.study import Findings, Method, Tell
 from synth.studies.tuned_table import lines_of_solution, rounded
 from tuning_tables import ControllerTable
 from tuning_tables.table_book import Status, TableBook
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 FRESH = 104729
 """Added to the configured seed: passes that no tuning has seen."""
@@ -112,12 +108,6 @@ class Interpolated(Findings):
     def sentences(self) -> tuple[str, ...]:
         """How much was simulated."""
         return (f"{self.passes} stratified passes each, seed {self.seed}; {len(self.between)} speeds between tables",)
-
-    def figures(self) -> Mapping[str, Figure]:
-        """rms over the commanded speed."""
-        from synth.studies.interpolation_picture import picture
-
-        return {"": picture(self.rows)}
 
 
 def worst_of(rows: Sequence[Row]) -> tuple[str, ...]:

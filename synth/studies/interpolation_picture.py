@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from synth.present.plots.house_style import LINE_COLOURS, LINE_MARKERS, dress, logarithmic_y, new_figure, place
 
 if TYPE_CHECKING:
-    from synth.studies.interpolation import Row
+    from synth.studies.interpolation import Interpolated, Row
 
 
 def picture(rows: Sequence[Row]) -> Figure:
@@ -33,3 +33,8 @@ def picture(rows: Sequence[Row]) -> Figure:
     logarithmic_y(axes, [1e3 * row.book_rms_m_s for row in rows])
     axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1.01, 0.5))
     return figure
+
+
+def figures(found: Interpolated) -> Mapping[str, Figure]:
+    """rms over the commanded speed."""
+    return {"": picture(found.rows)}

@@ -13,6 +13,7 @@ STUDIES: tuple[Study, ...] = (
         323.0,
         "estimator.md#the-whole-grid",
         "synth.studies.accuracy_grid.study",
+        "synth.studies.accuracy_grid.picture",
     ),
     Study(
         "benchmark",
@@ -20,6 +21,7 @@ STUDIES: tuple[Study, ...] = (
         34.0,
         "speed.md",
         "synth.studies.benchmark.study",
+        "synth.studies.benchmark.picture",
     ),
     Study(
         "book",
@@ -48,6 +50,7 @@ STUDIES: tuple[Study, ...] = (
         17.0,
         "method.md#11-convergence",
         "synth.studies.convergence.study",
+        "synth.studies.convergence.picture",
     ),
     Study(
         "coverage",
@@ -62,6 +65,7 @@ STUDIES: tuple[Study, ...] = (
         41.0,
         "method.md#12-criteria",
         "synth.studies.criteria.study",
+        "synth.studies.criteria.picture",
     ),
     Study(
         "degree",
@@ -69,12 +73,14 @@ STUDIES: tuple[Study, ...] = (
         46.0,
         "degree.md",
         "synth.studies.degree",
+        "synth.studies.degree",
     ),
     Study(
         "estimator",
         "What is gained when the regulator compares an estimated speed with its lines?",
         76.0,
         "estimator.md#what-it-gains",
+        "synth.studies.estimator.study",
         "synth.studies.estimator.study",
     ),
     Study(
@@ -90,12 +96,14 @@ STUDIES: tuple[Study, ...] = (
         18.0,
         "estimator.md#where-it-is-wrong",
         "synth.studies.estimator.wrong_study",
+        "synth.studies.estimator.wrong_study",
     ),
     Study(
         "integration-error",
         "What do the time steps of the closed loop cost in accuracy?",
         8.0,
         "method.md#8-closed-loop",
+        "synth.studies.integration_error",
         "synth.studies.integration_error",
     ),
     Study(
@@ -104,6 +112,7 @@ STUDIES: tuple[Study, ...] = (
         6.0,
         "controllers.md",
         "synth.studies.interpolation",
+        "synth.studies.interpolation_picture",
     ),
     Study(
         "limits",
@@ -111,6 +120,7 @@ STUDIES: tuple[Study, ...] = (
         28.0,
         "estimator.md",
         "synth.studies.limits.study",
+        "synth.studies.limits.picture",
     ),
     Study(
         "rare-events",
@@ -118,6 +128,7 @@ STUDIES: tuple[Study, ...] = (
         126.0,
         "rare-events.md",
         "synth.studies.rare_events.study",
+        "synth.studies.rare_events.picture",
     ),
     Study(
         "reference-problem",
@@ -125,6 +136,7 @@ STUDIES: tuple[Study, ...] = (
         56.0,
         "benchmark.md",
         "synth.studies.reference_problem.study",
+        "synth.studies.reference_problem.picture",
     ),
     Study(
         "robustness",
@@ -132,6 +144,7 @@ STUDIES: tuple[Study, ...] = (
         157.0,
         "robustness.md",
         "synth.studies.robustness.study",
+        "synth.studies.robustness.pictures",
     ),
     Study(
         "software-in-the-loop",
@@ -146,6 +159,7 @@ STUDIES: tuple[Study, ...] = (
         44.0,
         "speed.md#solving-and-predicting",
         "synth.studies.solver_scaling.study",
+        "synth.studies.solver_scaling.picture",
     ),
     Study(
         "sweep-speed",
@@ -153,6 +167,7 @@ STUDIES: tuple[Study, ...] = (
         104.0,
         "sweep.md#measured",
         "synth.studies.sweep_speed.study",
+        "synth.studies.sweep_speed.picture",
     ),
     Study(
         "times",
@@ -160,6 +175,7 @@ STUDIES: tuple[Study, ...] = (
         278.0,
         "speed.md",
         "synth.studies.times.study",
+        "synth.studies.times.picture",
     ),
     Study(
         "unlocked",
@@ -167,6 +183,7 @@ STUDIES: tuple[Study, ...] = (
         3480.0,
         "unlocked.md",
         "synth.studies.unlocked.study",
+        "synth.studies.unlocked.pictures",
     ),
     Study(
         "verification",

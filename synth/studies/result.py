@@ -6,11 +6,12 @@ import json
 import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from synth.faults.input_error import InputError
-from synth.studies.study import Findings, Study
+from synth.studies.study import Findings, Study, Tell, silent
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -53,7 +54,17 @@ class Result:
     def figures(self) -> Mapping[str, Figure]:
         """The pictures by the name of their file, without suffix."""
         name = self.study.name
-        return {f"{name}-{key}" if key else name: figure for key, figure in self.findings.figures().items()}
+        return {f"{name}-{key}" if key else name: figure for key, figure in self.study.figures(self.findings).items()}
+
+
+def run_study(study: Study, options: Any = None, tell: Tell = silent) -> Result:
+    """The result with `options` (the defaults for None). Raises `InputError` for options that make no sense."""
+    from synth.solver.one_blas_thread import one_blas_thread
+
+    method = study.method
+    chosen = method.options() if options is None else options
+    with one_blas_thread():  # with two the polish ends in other last bits
+        return Result(study, version("retarder-synth"), chosen, method.run(chosen, tell))
 
 
 def read_result(study: Study, path: Path) -> Result:

@@ -10,14 +10,12 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from synth.studies.markdown_table import MarkdownTable
-    from synth.studies.result import Result
 
 Tell = Callable[[str], None]
 """Is called with a sentence whenever a part of a study is done; any thread may call it."""
@@ -41,10 +39,6 @@ class Findings(ABC):
     def sentences(self) -> tuple[str, ...]:
         """What is told besides the tables."""
         return ()
-
-    def figures(self) -> Mapping[str, Figure]:
-        """Pictures by name, in the house style; the name '' stands for the one picture of a study."""
-        return {}
 
     def faults(self) -> tuple[str, ...]:
         """A sentence for every claim that the study was to check and that does not hold."""
@@ -71,13 +65,18 @@ class Method(Generic[_Options, _Findings]):
 
 @dataclass(frozen=True)
 class Study:
-    """Name, the question that it answers (one sentence), seconds on two cores, page of docs/, module."""
+    """Name, the question that it answers (one sentence), seconds on two cores, page of docs/, module.
+
+    `pictures`: the module whose `figures` draws the findings, '' where nothing is drawn. It knows the findings, and
+    they do not know it.
+    """
 
     name: str
     question: str
     seconds: float
     page: str
     module: str
+    pictures: str = ""
 
     @property
     def method(self) -> Method[Any, Findings]:
@@ -86,15 +85,12 @@ class Study:
         assert isinstance(found, Method)
         return found
 
-    def run(self, options: Any = None, tell: Tell = silent) -> Result:
-        """The result with `options` (the defaults for None). Raises `InputError` for options that make no sense."""
-        from synth.solver.one_blas_thread import one_blas_thread
-        from synth.studies.result import Result
-
-        method = self.method
-        chosen = method.options() if options is None else options
-        with one_blas_thread():  # with two the polish ends in other last bits
-            return Result(self, version("retarder-synth"), chosen, method.run(chosen, tell))
+    def figures(self, findings: Findings) -> Mapping[str, Figure]:
+        """Pictures by name, in the house style; the name '' stands for the one picture of a study."""
+        if not self.pictures:
+            return {}
+        drawn: Mapping[str, Figure] = import_module(self.pictures).figures(findings)
+        return drawn
 
     @property
     def duration(self) -> str:

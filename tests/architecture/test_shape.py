@@ -138,6 +138,29 @@ def reached(sources: Mapping[str, str], roots: set[str]) -> set[str]:
     return seen
 
 
+def circles(sources: Mapping[str, str]) -> list[list[str]]:
+    """Groups of modules that import each other, be it inside functions or for types alone."""
+    modules = {module_of(name): set(imported(text)) for name, text in sources.items()}
+    graph = {module: known & modules.keys() - {module} for module, known in modules.items()}
+    while leaves := [module for module, known in graph.items() if not known]:
+        for module in leaves:
+            del graph[module]
+        graph = {module: known - set(leaves) for module, known in graph.items()}
+    return [[module, *sorted(known)] for module, known in sorted(graph.items())]
+
+
+def test_no_two_modules_import_each_other() -> None:
+    packages = {name for name in SOURCES if name.endswith("__init__.py")}
+    plain = {name: text for name, text in SOURCES.items() if name not in packages}
+    assert circles(plain) == []
+    planted = {
+        "synth/a.py": "def f():\n    import synth.b",
+        "synth/b.py": "from synth import c",
+        "synth/c.py": "import synth.a",
+    }
+    assert [group[0] for group in circles(planted)] == ["synth.a", "synth.b", "synth.c"]
+
+
 def unreached(sources: Mapping[str, str]) -> set[str]:
     """Modules outside the studies that no command, no front door, and for physics no study, has a use for."""
     modules = {module_of(name) for name in sources}

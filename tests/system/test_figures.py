@@ -15,7 +15,7 @@ from synth.simulation.exit_statistics import brake_power, exit_statistics
 from synth.simulation.passes import ExitSample
 from synth.studies.documents import KEPT
 from synth.studies.registry import study_named
-from synth.studies.result import read_result
+from synth.studies.result import read_result, run_study
 from tuning_tables import ControllerTable, read_json
 
 ROOT = Path(__file__).parents[2]
@@ -87,4 +87,4 @@ def require_agreement(one: Revalidation, other: Revalidation, name: str) -> None
 def test_the_documents_tell_the_figures_of_the_default_book() -> None:
     """README and the page of results show what is kept (tests/studies); what is kept is what a tune gives now."""
     book = study_named("book")
-    assert book.run().findings.tables() == read_result(book, ROOT / KEPT / "book.json").findings.tables()
+    assert run_study(book).findings.tables() == read_result(book, ROOT / KEPT / "book.json").findings.tables()

@@ -4,16 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from synth.studies.accuracy_grid.figures import Figures, GridCase
 from synth.studies.accuracy_grid.limits import NOMINAL_CV, Limit, limits
 from synth.studies.markdown_table import MarkdownTable, table
 from synth.studies.study import Findings
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 
 DEFAULT_BOOK = "knp-5-bunch gondola-4-"
 """How names of cases begin that are of the position and cars of the default book."""
@@ -66,12 +61,6 @@ class Grid(Findings):
             f"{self.passes} passes each, seed {self.seed}",
             f"in {left_out} cases the estimator gained nothing on the tuning passes and was left out",
         )
-
-    def figures(self) -> Mapping[str, Figure]:
-        """All cases by their rms."""
-        from synth.studies.accuracy_grid.picture import picture
-
-        return {"": picture([figures for _, figures in self.known])}
 
     def faults(self) -> tuple[str, ...]:
         """Limits that are not met."""

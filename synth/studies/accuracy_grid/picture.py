@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
@@ -22,6 +22,7 @@ from synth.present.plots.house_style import (
 
 if TYPE_CHECKING:
     from synth.studies.accuracy_grid.figures import Figures
+    from synth.studies.accuracy_grid.findings import Grid
 
 LIMIT_M_S = 0.1
 
@@ -48,3 +49,8 @@ def picture(figures: Sequence[Figures]) -> Figure:
     logarithmic_y(axes, [LIMIT_M_S, *(value for *_, values in every for value in values)])
     legend_below(figure, handles, len(handles))
     return figure
+
+
+def figures(found: Grid) -> Mapping[str, Figure]:
+    """All cases by their rms."""
+    return {"": picture([figures for _, figures in found.known])}

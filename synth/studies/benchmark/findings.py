@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from synth.studies.benchmark.work import SweepWork
 from synth.studies.markdown_table import ABSENT, MarkdownTable, table
 from synth.studies.study import Findings
 from synth.studies.timing.machine import Machine
 from synth.studies.timing.turns import Times, speed_against, three_digits
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 LANES = 16
 ROUNDING = 1e-9
@@ -107,12 +103,6 @@ class Benchmark(Findings):
             f"kernels and numpy, both in float64: values within {self.largest_value_difference:.0e} of the largest, "
             f"lines within {self.largest_line_difference_m_s:.0e} m/s",
         )
-
-    def figures(self) -> Mapping[str, Figure]:
-        """Times of all ways on a logarithmic axis."""
-        from synth.studies.benchmark.picture import picture
-
-        return {"": picture(self)}
 
     def faults(self) -> tuple[str, ...]:
         """The two recursions must be one."""

@@ -6,13 +6,9 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 from synth.studies.markdown_table import MarkdownTable, table
 from synth.studies.study import Findings
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -78,12 +74,6 @@ class Convergence(Findings):
                 ("case", "step", "own lines: orders", "default", "fixed cubic: orders", "default"), orders,
             ),
         }  # fmt: skip
-
-    def figures(self) -> Mapping[str, Figure]:
-        """A row a case, a column a kind of step."""
-        from synth.studies.convergence.picture import picture
-
-        return {"": picture(self.cases)}
 
 
 def mm(value_m_s: float | None, digits: int) -> str:

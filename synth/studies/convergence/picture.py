@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from synth.present.plots.house_style import LINE_COLOURS, LINE_MARKERS, LINE_STYLES, dress, new_figure, place
 
 if TYPE_CHECKING:
-    from synth.studies.convergence.findings import CaseRow
+    from synth.studies.convergence.findings import CaseRow, Convergence
 
 
 def picture(cases: Sequence[CaseRow]) -> Figure:
@@ -31,3 +31,8 @@ def picture(cases: Sequence[CaseRow]) -> Figure:
             axes.set_yscale("log")
     panels[0, 0].legend(fontsize=8)
     return figure
+
+
+def figures(found: Convergence) -> Mapping[str, Figure]:
+    """A row a case, a column a kind of step."""
+    return {"": picture(found.cases)}

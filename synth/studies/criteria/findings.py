@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from synth.simulation.replicates import Interval
 from synth.studies.markdown_table import MarkdownTable, around, table
 from synth.studies.study import Findings
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -96,12 +92,6 @@ class Criteria(Findings):
             if r.figures.stalled
         ]
         return (f"{self.passes} stratified passes a table, seed {self.seed}", *took, *stalls)
-
-    def figures(self) -> Mapping[str, Figure]:
-        """Price on switchings, and error by criterion, a column a case."""
-        from synth.studies.criteria.picture import picture
-
-        return {"": picture(self)}
 
 
 def cells_of(row: CriterionRow) -> tuple[str, ...]:

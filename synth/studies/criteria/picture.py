@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -65,3 +66,8 @@ def draw_errors(axes: Axes, found: Criteria, case: str) -> list[Line2D]:
         handles.append(line)
     logarithmic_y(axes, [value for row in rows for value in row.density if value > 0.0])
     return handles
+
+
+def figures(found: Criteria) -> Mapping[str, Figure]:
+    """Price on switchings, and error by criterion, a column a case."""
+    return {"": picture(found)}

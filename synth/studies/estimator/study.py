@@ -91,13 +91,6 @@ class Gains(Findings):
             f"ratio: median {median(ratios):.3f}, {min(ratios):.3f} to {max(ratios):.3f}",
         )
 
-    def figures(self) -> Mapping[str, Figure]:
-        """The ratios with their intervals."""
-        from synth.studies.estimator.picture import picture
-
-        shown = {row.case: {"as it is": row.figures} for row in self.rows}
-        return {"": picture("What the estimator gains", shown)}
-
     def faults(self) -> tuple[str, ...]:
         """Cases in which the estimator is worse beyond the interval."""
         return tuple(
@@ -143,6 +136,14 @@ def told_rms_m_s(case: Case, config: ResolvedConfig, passes: RandomPasses, nodes
     found = told_friction(persistent_chain(case.plant, finer), aim, config.fit.degree, nodes, effort)
     sample = found.sample(close_loop(case.plant, case.plant.top_stage + 1), passes)
     return exit_statistics(sample, case.target_m_s).rms_m_s
+
+
+def figures(found: Gains) -> Mapping[str, Figure]:
+    """The ratios with their intervals."""
+    from synth.studies.estimator.picture import picture
+
+    shown = {row.case: {"as it is": row.figures} for row in found.rows}
+    return {"": picture("What the estimator gains", shown)}
 
 
 METHOD = Method(

@@ -77,12 +77,6 @@ class Misled(Findings):
         ]
         return (f"{self.passes} fresh stratified passes each, seed {self.seed}", *kept)
 
-    def figures(self) -> Mapping[str, Figure]:
-        """The ratios, wherever the estimator is wrong."""
-        from synth.studies.estimator.picture import picture
-
-        return {"": picture("What the estimator costs where it is wrong", {c.case: c.by_wrong for c in self.cases})}
-
 
 def ratio_cell(found: Compared) -> str:
     """'**1.179** [1.173, 1.184]; 3.79 → 6.01': bold where worse beyond the interval."""
@@ -120,6 +114,13 @@ def run(options: Options, tell: Tell) -> Misled:
 
     rows = side_by_side(row_of, class_cases(config, options.masses_t, options.targets_m_s))
     return Misled(config.sha256, seed, options.passes, rows)
+
+
+def figures(found: Misled) -> Mapping[str, Figure]:
+    """The ratios, wherever the estimator is wrong."""
+    from synth.studies.estimator.picture import picture
+
+    return {"": picture("What the estimator costs where it is wrong", {c.case: c.by_wrong for c in found.cases})}
 
 
 METHOD = Method(Options, Options(masses_t=(52.0,), targets_m_s=(3.0,), passes=400), Misled, run)

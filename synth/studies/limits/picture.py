@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from synth.present.plots.house_style import BLACK, SKY, dress, new_figure, place
 
 if TYPE_CHECKING:
-    from synth.studies.limits.study import Row
+    from synth.studies.limits.study import Limits, Row
 
 
 def picture(rows: Sequence[Row]) -> Figure:
@@ -41,3 +41,8 @@ def draw(axes: Axes, case: str, rows: Sequence[Row]) -> None:
         axes.plot([1e3 * end for end in row.near.ci95_m_s], [at, at], color=BLACK, linewidth=1.5)
     axes.axvline(1e3 * rows[0].near.rms_m_s, color=BLACK, linewidth=0.8, linestyle=":")
     axes.set_yticks(places, [row.change for row in rows], fontsize=8)
+
+
+def figures(found: Limits) -> Mapping[str, Figure]:
+    """A panel a case."""
+    return {"": picture(found.rows)}

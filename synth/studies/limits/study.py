@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -36,9 +35,6 @@ from synth.studies.options import option
 from synth.studies.side_by_side import side_by_side
 from synth.studies.study import Findings, Method, Tell
 from synth.studies.told_friction import TO_THE_END, Effort, told_friction
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 FRESH, TUNING, TUNING_PASSES = 49979687, 32452843, 3000
 LINE_NODES = 301
@@ -86,12 +82,6 @@ class Limits(Findings):
     def sentences(self) -> tuple[str, ...]:
         """How much was simulated."""
         return (f"{self.passes} stratified passes each, seed {self.seed}",)
-
-    def figures(self) -> Mapping[str, Figure]:
-        """A panel a case."""
-        from synth.studies.limits.picture import picture
-
-        return {"": picture(self.rows)}
 
 
 def cell(row: Row) -> str:

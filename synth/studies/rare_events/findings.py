@@ -5,15 +5,11 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from synth.simulation.replicates import Interval
 from synth.studies.markdown_table import MarkdownTable, around, table
 from synth.studies.rare_events.tail_probability import TailProbability
 from synth.studies.study import Findings
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 PLAIN, IMPORTANCE, SUBSET, DENSITY = (
     "plain simulation", "importance sampling", "subset simulation", "forward density",
@@ -109,12 +105,6 @@ class RareEvents(Findings):
     def sentences(self) -> tuple[str, ...]:
         """The seeds."""
         return ("seeds: " + ", ".join(f"{name} {seed}" for name, seed in self.seeds.items()),)
-
-    def figures(self) -> Mapping[str, Figure]:
-        """A panel a case."""
-        from synth.studies.rare_events.picture import picture
-
-        return {"": picture(self)}
 
     def faults(self) -> tuple[str, ...]:
         """Pairs of methods that differ at a margin by more than chance allows."""

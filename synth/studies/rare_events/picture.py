@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -60,3 +61,8 @@ def curve(axes: Axes, curve_m_s: tuple[float, ...], method: MethodTails) -> Line
     (line,) = axes.plot(x, [tail[0] for _, tail in seen], linestyle=style, color=colour, linewidth=width,
                         label=method.method)  # fmt: skip
     return line
+
+
+def figures(found: RareEvents) -> Mapping[str, Figure]:
+    """A panel a case."""
+    return {"": picture(found)}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from synth.studies.markdown_table import MarkdownTable, table
 from synth.studies.reference_problem.fresh_process import Fresh
@@ -12,9 +11,6 @@ from synth.studies.reference_problem.operator_work import OperatorWork
 from synth.studies.study import Findings
 from synth.studies.timing.machine import Machine
 from synth.studies.timing.turns import Times, speed_against, three_digits
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 TOLERANCE_M2_S2 = 1e-5
 """Of values up to 16 m²/s² in float32, against float64."""
@@ -116,12 +112,6 @@ class Comparison(Findings):
             f"{kernels}: value within {found.value_m2_s2[kernels]:.1e} m²/s² of numpy in float64, one-step regret at "
             f"most {found.regret_m2_s2:.1e}",
         )
-
-    def figures(self) -> Mapping[str, Figure]:
-        """Bars of one problem and of the batch."""
-        from synth.studies.reference_problem.picture import picture
-
-        return {"": picture(self)}
 
     def faults(self) -> tuple[str, ...]:
         """Everybody must solve the same problem, and threads must not be seen in the bytes."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
@@ -37,3 +38,8 @@ def picture(found: Comparison) -> Figure:
         if single:
             axes.axvline(limit, color=VERMILLION, ls="--", lw=1.2)
     return figure
+
+
+def figures(found: Comparison) -> Mapping[str, Figure]:
+    """Bars of one problem and of the batch."""
+    return {"": picture(found)}

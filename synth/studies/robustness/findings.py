@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,9 +11,6 @@ from synth.simulation.exit_statistics import clopper_pearson
 from synth.simulation.replicates import Interval
 from synth.studies.markdown_table import ABSENT, MarkdownTable, around, table
 from synth.studies.study import Findings
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 SHOWN_RATIO = 1.25
 """A parameter stands in the table of sensible ranges where it multiplies the rms of a case by more than this."""
@@ -230,17 +226,6 @@ class Robustness(Findings):
             + ("a cliff" if steepest > CLIFF else "no cliff"),
             *(stalls or ["no cut stalls under a named condition"]),
         )
-
-    def figures(self) -> Mapping[str, Figure]:
-        """`tornado`, `sweeps`, `together`, `conditions`."""
-        from synth.studies.robustness.pictures import all_together, named_conditions, sweeps, tornado
-
-        return {
-            "tornado": tornado(self.cases, self.limit_m_s),
-            "sweeps": sweeps(self.cases, self.limit_m_s),
-            "together": all_together(self.cases, self.limit_m_s),
-            "conditions": named_conditions(self.cases, self.limit_m_s),
-        }
 
 
 def by_effect(cases: Sequence[Sequence[EndsRow]]) -> list[tuple[str, float, list[EndsRow | None]]]:

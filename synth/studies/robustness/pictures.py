@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -25,7 +25,7 @@ from synth.present.plots.house_style import (
     new_figure,
     place,
 )
-from synth.studies.robustness.findings import CaseRow, EndsRow, OutcomeRow, without_mass
+from synth.studies.robustness.findings import CaseRow, EndsRow, OutcomeRow, Robustness, without_mass
 
 SHOWN = 16
 """Parameters in a tornado."""
@@ -157,3 +157,13 @@ def named_conditions(cases: Sequence[CaseRow], limit_m_s: float) -> Figure:
     tuned = Line2D([], [], color=INK, marker="o", ms=6, ls="", mfc="none", label="tuned for this plant")
     legend_below(figure, [*handles, tuned, mark_handles(limit_m_s)[1]], 3)
     return figure
+
+
+def figures(found: Robustness) -> Mapping[str, Figure]:
+    """`tornado`, `sweeps`, `together`, `conditions`."""
+    return {
+        "tornado": tornado(found.cases, found.limit_m_s),
+        "sweeps": sweeps(found.cases, found.limit_m_s),
+        "together": all_together(found.cases, found.limit_m_s),
+        "conditions": named_conditions(found.cases, found.limit_m_s),
+    }

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,9 +13,6 @@ from synth.studies.solver_scaling.whole_book import BookTimes
 from synth.studies.study import Findings
 from synth.studies.timing.machine import Machine
 from synth.studies.timing.turns import Times, speed_against, three_digits
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 TARGETS = "targets"
 
@@ -108,12 +104,6 @@ class SolverScaling(Findings):
             f"m/s, the exact cost of the solver's lines by {change.cost:.0e} and of the polished by "
             f"{change.polished_cost:.0e} of it",
         )
-
-    def figures(self) -> Mapping[str, Figure]:
-        """A panel a size."""
-        from synth.studies.solver_scaling.picture import picture
-
-        return {"": picture(self.growths, f"{self.label}, {self.grid}")}
 
     def faults(self) -> tuple[str, ...]:
         """Threads must not be seen in the bytes."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from synth.present.plots import house_style as house
 
 if TYPE_CHECKING:
-    from synth.studies.solver_scaling.findings import Growth
+    from synth.studies.solver_scaling.findings import Growth, SolverScaling
 
 
 def picture(growths: Sequence[Growth], subject: str) -> Figure:
@@ -29,3 +29,8 @@ def picture(growths: Sequence[Growth], subject: str) -> Figure:
         house.logarithmic_y(axes, [*every, *proportion])
         axes.legend(fontsize=8, loc="upper left", frameon=False)
     return figure
+
+
+def figures(found: SolverScaling) -> Mapping[str, Figure]:
+    """A panel a size."""
+    return {"": picture(found.growths, f"{found.label}, {found.grid}")}

@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from synth.studies.markdown_table import MarkdownTable, table
 from synth.studies.study import Findings
 from synth.studies.sweep_speed.binding import Binding
 from synth.studies.timing.machine import Machine
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 MANY = 10_000
 
@@ -80,12 +76,6 @@ class SweepSpeed(Findings):
     def sentences(self) -> tuple[str, ...]:
         """The machine."""
         return (self.machine.sentence,)
-
-    def figures(self) -> Mapping[str, Figure]:
-        """Tables over time, time over mass, memory over its estimate."""
-        from synth.studies.sweep_speed.picture import picture
-
-        return {"": picture(self)}
 
     def faults(self) -> tuple[str, ...]:
         """No class may fail, and none may take more memory than is reckoned with."""

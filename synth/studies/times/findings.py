@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
 
 from synth.studies.markdown_table import MarkdownTable, table
 from synth.studies.study import Findings
 from synth.studies.timing.machine import Machine
 from synth.studies.timing.turns import Times, speed_against
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -67,10 +63,3 @@ class WaitingTimes(Findings):
             self.machine.sentence,
             f"passes side by side are {gain.cell} times as fast as the same passes one by one",
         )
-
-    def figures(self) -> Mapping[str, Figure]:
-        """Bars of the medians."""
-        from synth.studies.times.picture import picture
-
-        named = [replace(each, name=f"{self.passes} passes, {each.name}") for each in self.simulated]
-        return {"": picture([*self.commands, *named], self.machine.processor)}

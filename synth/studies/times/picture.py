@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
@@ -10,7 +11,7 @@ from matplotlib.figure import Figure
 from synth.present.plots.house_style import BLUE, dress, logarithmic_x, new_figure, place
 
 if TYPE_CHECKING:
-    from synth.studies.times.findings import Waited
+    from synth.studies.times.findings import Waited, WaitingTimes
 
 
 def picture(waited: Sequence[Waited], processor: str) -> Figure:
@@ -26,3 +27,9 @@ def picture(waited: Sequence[Waited], processor: str) -> Figure:
     axes.invert_yaxis()
     axes.grid(False, axis="y")
     return figure
+
+
+def figures(found: WaitingTimes) -> Mapping[str, Figure]:
+    """Bars of the medians."""
+    named = [replace(each, name=f"{found.passes} passes, {each.name}") for each in found.simulated]
+    return {"": picture([*found.commands, *named], found.machine.processor)}

@@ -17,7 +17,7 @@ from plant_models import Plant
 from plant_models.errors import require
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.stage_regulator import resting_modes
-from plant_models.valve_drive import ValveDrive, valve_drive
+from plant_models.valve_drive import ValveDrive
 from synth.studies.unlocked.kernels.unlocked_pressure import play_period
 from synth.studies.unlocked.pressure_grid import STENCIL, PressureGrid, pressure_grid
 
@@ -88,7 +88,7 @@ def drive_modes(plant: Plant, step_kpa: float, parts: int) -> DriveModes:
         f"sensor: computing_delay_s is {sensor.computing_delay_s:g}; commands at every sample are modelled for delays "
         "shorter than sample_period_s",
     )
-    drive = valve_drive(position.pneumatics, position.force.touch_pressure_kpa)
+    drive = position.pneumatics.valves_shutting_at_once(position.force.touch_pressure_kpa)
     grid = pressure_grid(position, top, step_kpa)
     stages = position.stage_pressures_kpa
     start = resting_modes(position, top)[0][1]

@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from synth.simulation.replicates import Interval
 from synth.studies.markdown_table import MarkdownTable, around, table
 from synth.studies.near_target import NEAR_M_S, NearTarget
 from synth.studies.study import Findings
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 LINES, CUBIC, SEARCHED = "locked lines", "locked cubic, polished", "locked cubic, searched"
 SURFACES, FITTED, COMPACT = "unlocked surfaces", "unlocked fit", "unlocked compact"
@@ -113,16 +109,6 @@ class Unlocked(Findings):
             f"{self.passes} stratified passes a controller, seed {self.seed}; {self.evaluations} evaluations a search",
             f"the longest case took {longest:.0f} s, two at a time",
         )
-
-    def figures(self) -> Mapping[str, Figure]:
-        """`gains`, `gains-near`, and `surfaces` where they were kept."""
-        from synth.studies.unlocked.pictures import gain_picture, surface_picture
-
-        found = {"gains": gain_picture(self.rows, SHOWN, CUBIC, near=False)}
-        found["gains-near"] = gain_picture(self.rows, SHOWN, CUBIC, near=True)
-        if self.surface is not None:
-            found["surfaces"] = surface_picture(self.surface)
-        return found
 
 
 def gain_cells(row: CaseRow) -> tuple[str, ...]:

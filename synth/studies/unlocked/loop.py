@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from plant_models import Plant
 from plant_models.stage_regulator import resting_modes
-from plant_models.valve_drive import valve_drive
 from synth.kernels.loop import closed_loop as kernel
 from synth.simulation.closed_loop import ClosedLoop, close_loop, empty_exits, sample_of, trace_of
 from synth.simulation.controllers import fixed
@@ -56,7 +55,7 @@ def unlocked_loop(plant: Plant) -> UnlockedLoop:
     position, top = plant.position, plant.top_stage
     locked = close_loop(plant, top + 1)
     drive = SampledDrive(
-        valve_drive(position.pneumatics, position.force.touch_pressure_kpa),
+        position.pneumatics.valves_shutting_at_once(position.force.touch_pressure_kpa),
         fixed(np.asarray(position.stage_pressures_kpa[: top + 1]), np.float64),
         resting_modes(position, top)[0][1],
         plant.sensor.computing_delay_s,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,9 +22,10 @@ from synth.present.plots.house_style import (
     new_figure,
     place,
 )
+from synth.studies.unlocked.findings import CUBIC, SHOWN
 
 if TYPE_CHECKING:
-    from synth.studies.unlocked.findings import CaseRow, SurfaceMap
+    from synth.studies.unlocked.findings import CaseRow, SurfaceMap, Unlocked
 
 SLICES = 4
 """Places of the path at which the lines are drawn over pressure."""
@@ -127,3 +128,12 @@ def gain_picture(rows: Sequence[CaseRow], names: Sequence[str], reference: str, 
     ]
     legend_below(figure, handles, columns=3)
     return figure
+
+
+def figures(found: Unlocked) -> Mapping[str, Figure]:
+    """`gains`, `gains-near`, and `surfaces` where they were kept."""
+    drawn = {"gains": gain_picture(found.rows, SHOWN, CUBIC, near=False)}
+    drawn["gains-near"] = gain_picture(found.rows, SHOWN, CUBIC, near=True)
+    if found.surface is not None:
+        drawn["surfaces"] = surface_picture(found.surface)
+    return drawn

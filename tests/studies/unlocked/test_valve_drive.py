@@ -11,12 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from plant_models import PlantError, Pneumatics
-from plant_models.valve_drive import drive_on, valve_drive, wait_after_command
+from plant_models.valve_drive import drive_on, wait_after_command
 
 VALVES = Pneumatics(700.0, 5.0, 0.11, 0.2, 0.07, 0.31, 0.4, 15.0)
 TOUCH_KPA = 50.0
 STAGES_KPA = (0.0, 150.0, 300.0, 450.0, 600.0)
-DRIVE = valve_drive(VALVES, TOUCH_KPA)
+DRIVE = VALVES.valves_shutting_at_once(TOUCH_KPA)
 
 
 @pytest.mark.parametrize(("begin", "end"), list(permutations((0.0, 150.0, 600.0), 2)))
@@ -98,4 +98,4 @@ def test_commands_in_a_transient_as_two_valves_would_take_them(orders: list[tupl
 
 def test_valves_that_close_late_are_refused() -> None:
     with pytest.raises(PlantError, match="closing_delay_s"):
-        valve_drive(replace(VALVES, closing_delay_s=0.01), TOUCH_KPA)
+        replace(VALVES, closing_delay_s=0.01).valves_shutting_at_once(TOUCH_KPA)
