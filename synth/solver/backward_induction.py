@@ -76,7 +76,7 @@ def solve_all(
     arguments = (
         *(in_packs_of_targets(each, value_type).ravel() for each in costs),
         TIE_M2_S2, ROUNDINGS * float(np.finfo(value_type).eps), noise_m_s, smear_start, smear.astype(value_type),
-        hidden_prior(c)[None, ..., None].astype(value_type), *sweep_arguments(c),
+        hidden_prior(c).astype(value_type), *sweep_arguments(c),
         c.scenarios.factor, c.scenarios.extra_m_s2,
         c.grid.path_step_m, c.grid.energy_step_m2_s2, c.plant.sensor.sample_period_s, len(c.entry),
         values, lower, upper, gain_down, gain_up,

@@ -1,4 +1,4 @@
-"""A plant's transitions on a finer speed grid, for criteria that live in the tails of the exit speed."""
+"""A plant's chain on a finer speed grid, for criteria that live in the tails of the exit speed."""
 
 from __future__ import annotations
 

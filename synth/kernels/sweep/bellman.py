@@ -35,7 +35,7 @@ def sweep(
     `terminal` (E·T',) cost by exit energy and target, `stalled` (T',) cost of a stall, `change_cost` (T',) of a
     command, where T' ≥ T are whole packs of eight; values are computed in the type of `terminal`. `tolerance`: an
     averaged gain of less is none; `rounding`: so is one of less than this part of the cost. I scenarios: `factor`,
-    `extra` (I,); `prior` (1 or N, I, H, L, 1 or E) weights of what is hidden; `smear_start` (E,), `smear` (E, W):
+    `extra` (I,); `prior` (I, H, L) weights of what is hidden; `smear_start` (E,), `smear` (E, W):
     probability of true speeds given a measured one. Outputs: `values` (I, N + 1, H, L, E, T), or of the first nodes
     only, `lower`, `upper` (N, K + 1, T), `gain_down`, `gain_up` (N, K + 1, T, E): averaged cost saved by the change,
     by measured speed.
@@ -65,7 +65,6 @@ def sweep(
     copy_out(recent[:, nodes % ring], values, nodes, points)
     for n in range(nodes - 1, -1, -1):
         gains[:] = 0.0
-        weights = prior[min(n, prior.shape[0] - 1)]
         for i in range(count):
             shifts(n, factor[i], levels, drive, brake, pressure, extra[i], path_step, energy_step, shift[i])
             for r in range(reach - 2, 0, -1):
@@ -92,7 +91,7 @@ def sweep(
                             extra[i], path_step, energy_step,
                             recent[i], mixed[i], stalled, place, weight, changed,
                         )  # fmt: skip
-                        add_gains(holds[i, h, q], changed, weights[i, h, q], rounding, width, gains[side, stage[h]])
+                        add_gains(holds[i, h, q], changed, prior[i, h, q], rounding, width, gains[side, stage[h]])
         for k in range(lower.shape[1]):
             for side, each in ((0, gain_down), (1, gain_up)):
                 spread(gains[side, k], smear_start, smear, width, scratch)
@@ -146,18 +145,16 @@ def in_every_cell(numbers, out):
 
 
 @borrowing
-def add_gains(hold, changed, prior, rounding, width, gain):
-    """Add the cost saved by a change, weighted by `prior` (1 or E,), to `gain` (E·T,).
+def add_gains(hold, changed, weight, rounding, width, gain):
+    """Add the cost saved by a change, times `weight`, to `gain` (E·T,).
 
     What is less than the part `rounding` of the cost itself may be saved by rounding alone, and is not added.
     """
-    for j in range(1, gain.shape[0] // width):
-        weight = prior[j] if prior.shape[0] > 1 else prior[0]
-        for at in range(j * width, (j + 1) * width, EIGHT):
-            cost = load8(hold, at)
-            saved = cost - load8(changed, at)
-            counted = choose(magnitude(saved) > cost * rounding, saved, 0.0)
-            store(gain, at, load8(gain, at) + counted * weight)
+    for at in range(width, gain.shape[0], EIGHT):
+        cost = load8(hold, at)
+        saved = cost - load8(changed, at)
+        counted = choose(magnitude(saved) > cost * rounding, saved, 0.0)
+        store(gain, at, load8(gain, at) + counted * weight)
 
 
 @borrowing
