@@ -116,7 +116,8 @@ def regulator_system(plant: Plant, controller: Controller) -> NonlinearIOSystem:
         measured = regulator.measure(float(u[1]), 0.0, sensor)
         if law.coefficients.shape[0] > 0:
             speed, _ = estimated(x, u, measured)
-            step = regulator.table_decision(law.coefficients, law.has_line, law.valid, stage, float(u[0]), speed)
+            tabled = law.coefficients, law.has_line, law.valid, law.entrance_stage
+            step = regulator.table_decision(*tabled, stage, float(u[0]), speed)
             return [min(max(stage + step, 0), top)]
         ahead = measured + law.lead_s * filtered_slope(x, measured)
         lines = (law.lower, law.upper, law.spacing_m, law.multi_step)
