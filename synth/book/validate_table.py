@@ -69,7 +69,7 @@ def revalidate_all(
     @cache
     def at_full_brake(label: str) -> ExitSample:
         plant = plants[label]
-        return rehearsal.run(plant, full_brake(plant.top_stage + 1, plant.exit_m))
+        return rehearsal.run(plant, full_brake(plant.top_stage + 1, plant.start_m, plant.exit_m))
 
     found = []
     for table, known in zip(tables, infeasible, strict=True):

@@ -67,7 +67,7 @@ def tabulate(
         target_speed_m_s=float(target_speed_m_s),
         degree=lines.degree,
         stages=tuple(stages),
-        valid=ValidRange((0.0, float(plant.exit_m)), (LOWEST_VALID_SPEED_M_S, highest)),
+        valid=ValidRange((float(plant.start_m), float(plant.exit_m)), (LOWEST_VALID_SPEED_M_S, highest)),
         predicted=predicted,
         estimator=estimator,
     )
