@@ -4,6 +4,7 @@ A controller needs `read_json` and `decide_for`; numpy is all they use. Books in
 """
 
 from tuning_tables.active_table import ActiveTable
+from tuning_tables.approach import Approach
 from tuning_tables.atomic_file import replacing, write_atomically
 from tuning_tables.csv_file import to_csv, write_csv
 from tuning_tables.errors import (
@@ -30,6 +31,7 @@ __all__ = [
     "LOWER",
     "RAISE",
     "ActiveTable",
+    "Approach",
     "Choice",
     "ControllerTable",
     "CutId",

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from tuning_tables.approach import Approach, entrance_stage, same_approach
 from tuning_tables.estimator import Estimator
 from tuning_tables.table import ControllerTable
 
@@ -20,6 +21,7 @@ class ActiveTable:
     has_line          bool (K+1, 2)
     valid_range       float32 (4,): s_min, s_max in m, v_min, v_max in m/s
     estimator         of the speed that the lines are for; None: for the measured speed
+    approach          on which the regulator already acts; None: it acts from the entrance on
     """
 
     target_speed_m_s: np.float32
@@ -27,10 +29,16 @@ class ActiveTable:
     has_line: npt.NDArray[np.bool_]
     valid_range: npt.NDArray[np.float32]
     estimator: Estimator | None = None
+    approach: Approach | None = None
 
     def __post_init__(self) -> None:
         for array in (self.coefficients, self.has_line, self.valid_range):
             array.setflags(write=False)
+
+    @property
+    def entrance_stage(self) -> int:
+        """The highest stage that may be commanded at s < 0, for `rule.decide`: stage K without approach."""
+        return entrance_stage(self.approach, len(self.coefficients))
 
 
 def active(table: ControllerTable) -> ActiveTable:
@@ -41,16 +49,18 @@ def active(table: ControllerTable) -> ActiveTable:
         table.has_line.view(),
         table.valid_range.view(),
         table.estimator,
+        table.approach,
     )
 
 
 def interpolable(slower: ControllerTable, faster: ControllerTable) -> bool:
-    """Whether stages, degree, lines, path range and estimator are the same, so that lines between have a meaning."""
+    """Whether lines between have a meaning: stages, degree, lines, path range, estimator and approach are the same."""
     return (
         slower.coefficients.shape == faster.coefficients.shape
         and np.array_equal(slower.has_line, faster.has_line)
         and np.array_equal(slower.valid_range[:2], faster.valid_range[:2])
         and same_estimator(slower.estimator, faster.estimator)
+        and same_approach(slower.approach, faster.approach)
     )
 
 
@@ -78,5 +88,10 @@ def between(slower: ControllerTable, faster: ControllerTable, target_speed_m_s: 
     weight = (target_speed_m_s - below) / (above - below)
     coefficients = slower.coefficients + weight * (faster.coefficients - slower.coefficients)
     return ActiveTable(
-        target_speed_m_s, coefficients, slower.has_line.view(), slower.valid_range.view(), slower.estimator
+        target_speed_m_s,
+        coefficients,
+        slower.has_line.view(),
+        slower.valid_range.view(),
+        slower.estimator,
+        slower.approach,
     )

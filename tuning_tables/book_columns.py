@@ -2,13 +2,13 @@
 
 Tables of one book may differ in stages, degree, zones and axles: shorter ones are filled up with NaN (float columns) or
 0 (the rest). A `Layout` states every array with its axes, type, unit and meaning, as "book.h5" holds it: `PLAIN`, or
-`WITH_ESTIMATORS` where a table has one.
+`WITH_ESTIMATORS` where a table has one; either of them `with_approaches` where a table has one.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
@@ -17,10 +17,6 @@ import numpy.typing as npt
 
 from tuning_tables.book_categories import category_numbers
 from tuning_tables.errors import InvalidTable
-from tuning_tables.estimator import Estimator
-from tuning_tables.figures import Predicted, Validated, ValidRange
-from tuning_tables.provenance import CutId, Generator, RetarderId
-from tuning_tables.stage import Stage
 from tuning_tables.table import ControllerTable
 
 Columns = Mapping[str, npt.NDArray[Any]]
@@ -123,6 +119,16 @@ ESTIMATOR_COLUMNS: Final[tuple[Column, ...]] = (
 )  # fmt: skip
 
 
+APPROACH_COLUMNS: Final[tuple[Column, ...]] = (
+    Column("approach_length_m", ("table",), "<f8", "m", "path before the entrance with regulation, NaN: no approach",
+           lambda t: np.nan if t.approach is None else t.approach.length_m),
+    Column("approach_entrance_stage", ("table",), "<i4", "1", "highest stage before the entrance, -1: no approach",
+           lambda t: -1 if t.approach is None else t.approach.entrance_stage),
+)  # fmt: skip
+
+APPROACH_VERSION: Final = 3
+
+
 @dataclass(frozen=True)
 class Layout:
     """What a book consists of: its schema version, its columns, and the meaning of their axes."""
@@ -135,6 +141,10 @@ class Layout:
         """This layout with the numbers of the categories."""
         return replace(self, columns=(*self.columns, NUMBER))
 
+    def with_approaches(self) -> Layout:
+        """This layout with approaches."""
+        return replace(self, version=APPROACH_VERSION, columns=(*self.columns, *APPROACH_COLUMNS))
+
     def length(self, axis: str, arrays: Columns) -> int:
         """The length of `axis` in the arrays of a book of this layout."""
         column = next(column for column in self.columns if axis in column.axes)
@@ -143,13 +153,27 @@ class Layout:
 
 PLAIN: Final = Layout(1, COLUMNS, AXES)
 WITH_ESTIMATORS: Final = Layout(2, COLUMNS + ESTIMATOR_COLUMNS, {**AXES, **ESTIMATOR_AXES})
-LAYOUTS: Final[Mapping[int, Layout]] = {layout.version: layout for layout in (PLAIN, WITH_ESTIMATORS)}
+VERSIONS: Final = (PLAIN.version, WITH_ESTIMATORS.version, APPROACH_VERSION)
 
 
 def layout_of(tables: Sequence[ControllerTable]) -> Layout:
     """The oldest layout that can hold the tables."""
     layout = WITH_ESTIMATORS if any(table.estimator is not None for table in tables) else PLAIN
+    layout = layout.with_approaches() if any(table.approach is not None for table in tables) else layout
     return layout.numbered() if any(table.cut.category_number is not None for table in tables) else layout
+
+
+def layout_stored(version: int, names: Set[str]) -> Layout:
+    """The layout of a book of this schema version, one of `VERSIONS`, that has datasets of these names.
+
+    Only books with approaches have the columns of estimators or not; where those of numbers are, they belong to it.
+    """
+    estimating = version == WITH_ESTIMATORS.version
+    if version == APPROACH_VERSION:
+        estimating = not names.isdisjoint(column.name for column in ESTIMATOR_COLUMNS)
+    layout = WITH_ESTIMATORS if estimating else PLAIN
+    layout = layout.with_approaches() if version == APPROACH_VERSION else layout
+    return layout.numbered() if NUMBER.name in names else layout
 
 
 def columns_of(tables: Sequence[ControllerTable]) -> dict[str, npt.NDArray[Any]]:
@@ -167,14 +191,6 @@ def columns_of(tables: Sequence[ControllerTable]) -> dict[str, npt.NDArray[Any]]
     return {column.name: _stacked(column, tables) for column in layout_of(tables).columns}
 
 
-def tables_of(columns: Columns) -> tuple[ControllerTable, ...]:
-    """The tables in the arrays of a book, which must have the names, types and numbers of axes of a layout.
-
-    Raises `InvalidTable` for values that make no table, `UnicodeDecodeError` for text that is no UTF-8.
-    """
-    return tuple(_table({name: column[row] for name, column in columns.items()}) for row in range(len(columns["id"])))
-
-
 def _stacked(column: Column, tables: Sequence[ControllerTable]) -> npt.NDArray[Any]:
     if column.dtype == "S":
         return np.array([column.content(table).encode("utf-8") for table in tables])
@@ -186,91 +202,3 @@ def _stacked(column: Column, tables: Sequence[ControllerTable]) -> npt.NDArray[A
         region: tuple[slice, ...] = tuple(map(slice, content.shape))
         stacked[index, ...][region] = content  # the dots keep a view even of a single number
     return stacked
-
-
-def _table(row: Mapping[str, Any]) -> ControllerTable:
-    """The table in one row of every column."""
-    p_stall = float(row["predicted_p_stall"])
-    return ControllerTable(
-        id=_text(row["id"]),
-        created=_text(row["created"]),
-        generator=Generator(_text(row["generator_name"]), _text(row["generator_version"]), _text(row["config_sha256"])),
-        retarder=RetarderId(
-            _text(row["retarder"]),
-            tuple((float(begin), float(end)) for begin, end in row["zones_m"] if not np.isnan(begin)),
-            float(row["exit_m"]),
-            float(row["dead_band_kpa"]),
-        ),
-        cut=CutId(
-            _text(row["category"]),
-            float(row["mass_t"]),
-            _present(row["axle_offsets_m"]),
-            int(row.get("category_number", 0)) or None,
-        ),
-        target_speed_m_s=float(row["target_speed_m_s"]),
-        degree=int(row["degree"]),
-        stages=_stages(row),
-        valid=ValidRange(_pair(row["valid_s_m"]), _pair(row["valid_v_m_s"])),
-        predicted=Predicted(
-            float(row["predicted_rms_m_s"]),
-            float(row["predicted_bias_m_s"]),
-            float(row["predicted_p_overspeed"]),
-            float(row["predicted_switchings"]),
-            None if np.isnan(p_stall) else p_stall,
-            int(row.get("predicted_passes", 0)) or None,
-        ),
-        validated=_validated(row),
-        estimator=_estimator(row),
-    )
-
-
-def _estimator(row: Mapping[str, Any]) -> Estimator | None:
-    breaks = int(row.get("estimator_breaks", 0))
-    if breaks == 0:
-        return None
-    if not 0 < breaks <= len(row["estimator_s_m"]):
-        raise InvalidTable(f"estimator_breaks is {breaks}, but the book has room for {len(row['estimator_s_m'])}.")
-    work = (row[f"estimator_{name}"][:breaks].tolist() for name in ("s_m", "drive_m2_s2", "brake_m2_s2_per_kpa"))
-    s_m, drive, brake = map(tuple, work)
-    return Estimator(
-        float(row["estimator_speed_noise_m_s"]),
-        float(row["estimator_friction_cv"]),
-        float(row["estimator_path_std"]),
-        float(row["estimator_correlation_length_m"]),
-        float(row["estimator_touch_pressure_kpa"]),
-        s_m,
-        drive,
-        brake,
-    )
-
-
-def _stages(row: Mapping[str, Any]) -> tuple[Stage, ...]:
-    n_stages, degree = int(row["n_stages"]), int(row["degree"])
-    most_stages, _, most_powers = row["coefficients"].shape
-    if not (2 <= n_stages <= most_stages and 0 <= degree < most_powers):
-        raise InvalidTable(f"n_stages {n_stages} or degree {degree} exceeds the coefficients of the book.")
-    coefficients = row["coefficients"][:, :, : degree + 1].astype(np.float64)
-    lines = [
-        [tuple(coefficients[k, line].tolist()) if row["has_line"][k, line] else None for line in (0, 1)]
-        for k in range(n_stages)
-    ]
-    return tuple(Stage(k, float(row["pressure_kpa"][k]), lower, upper) for k, (lower, upper) in enumerate(lines))
-
-
-def _validated(row: Mapping[str, Any]) -> Validated | None:
-    passes = int(row["validated_passes"])
-    if passes == 0:
-        return None
-    return Validated(passes, float(row["validated_rms_m_s"]), _pair(row["validated_rms_ci95_m_s"]))
-
-
-def _present(values: npt.NDArray[np.float64]) -> tuple[float, ...]:
-    return tuple(values[~np.isnan(values)].tolist())
-
-
-def _pair(values: npt.NDArray[np.float64]) -> tuple[float, float]:
-    return float(values[0]), float(values[1])
-
-
-def _text(value: bytes) -> str:
-    return value.decode("utf-8")

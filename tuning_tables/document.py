@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from tuning_tables.approach import INTERLOCK, Approach
 from tuning_tables.canonical import CHECKSUM_KEY, document_checksum
 from tuning_tables.errors import DamagedTable, InvalidTable, NewerVersion, OlderVersion, UnknownFormat
 from tuning_tables.estimator import Estimator
@@ -18,6 +19,9 @@ FORMAT: Final = "retarder-table"
 VERSION: Final = 1
 ESTIMATOR_VERSION: Final = 2
 """Of tables with an estimator, so that readers who do not know of it refuse them: their lines are for another speed."""
+APPROACH_VERSION: Final = 3
+"""Of tables with an approach, with or without estimator: an older reader neither acts before the entrance nor knows the
+gate and the interlock there."""
 VARIABLE: Final = "s_m"
 LONGEST_REASON: Final = 400
 
@@ -37,6 +41,13 @@ _KEYS: Final = (
     "validated",
     CHECKSUM_KEY,
 )
+_VERSION_KEYS: Final = {
+    VERSION: ((), ()),
+    ESTIMATOR_VERSION: (("estimator",), ()),
+    APPROACH_VERSION: (("approach",), ("estimator",)),
+}
+"""By version: the keys that it must have besides, and those that it may have."""
+_APPROACH_KEYS: Final = ("length_m", "entrance_stage", "interlock")
 _ESTIMATOR_KEYS: Final = (
     "speed_noise_m_s",
     "friction_cv",
@@ -85,6 +96,8 @@ def to_document(table: ControllerTable) -> dict[str, object]:
     }
     if table.estimator is not None:
         document |= {"version": ESTIMATOR_VERSION, "estimator": _estimator_document(table.estimator)}
+    if table.approach is not None:
+        document |= {"version": APPROACH_VERSION, "approach": _approach_document(table.approach)}
     return {**document, CHECKSUM_KEY: document_checksum(document)}
 
 
@@ -94,9 +107,8 @@ def from_document(document: object, source: str) -> ControllerTable:
     Raises `UnknownFormat`, `NewerVersion`, `OlderVersion` for another format or version, and `DamagedTable` for a wrong
     checksum, a missing or unknown key, a wrong type, and values that make no table. Checked in this order.
     """
-    members = _versioned(document, source)
-    extended = members["version"] == ESTIMATOR_VERSION
-    top = Section(members, source, "", (*_KEYS, "estimator") if extended else _KEYS)
+    members, (required, optional) = _versioned(document, source)
+    top = Section(members, source, "", _KEYS + required, optional)
     _require_checksum(members, top.text(CHECKSUM_KEY), source)
     polynomial = top.section("polynomial", ("variable", "degree"))
     if polynomial.text("variable") != VARIABLE:
@@ -113,31 +125,32 @@ def from_document(document: object, source: str) -> ControllerTable:
             degree=polynomial.count("degree"),
             stages=tuple(map(_stage, top.sections("stages", ("k", "pressure_kpa", "lower", "upper")))),
             valid=_valid_range(top.section("valid", ("s_m", "v_m_s"))),
-            predicted=_predicted(top, ("p_stall", "passes") if extended else ("p_stall",)),
+            predicted=_predicted(top, ("p_stall", "passes") if "estimator" in top else ("p_stall",)),
             validated=_validated(top),
-            estimator=_estimator(top.section("estimator", _ESTIMATOR_KEYS)) if extended else None,
+            estimator=_estimator(top.section("estimator", _ESTIMATOR_KEYS)) if "estimator" in top else None,
+            approach=_approach(top.section("approach", _APPROACH_KEYS)) if "approach" in top else None,
         )
     except InvalidTable as invalid:
         # The reason may quote a value, and a file may hold one of any length.
         raise DamagedTable(f"{source}: {excerpt(str(invalid), LONGEST_REASON)}") from invalid
 
 
-def _versioned(document: object, source: str) -> dict[str, object]:
-    """The document, now known to be an object of a format and version that the rest can read."""
+def _versioned(document: object, source: str) -> tuple[dict[str, object], tuple[tuple[str, ...], tuple[str, ...]]]:
+    """The document, now known to be an object of a format and version that the rest can read; and `_VERSION_KEYS`."""
     if not isinstance(document, dict) or document.get("format") != FORMAT:
         found = document.get("format") if isinstance(document, dict) else type(document).__name__
         raise UnknownFormat(f'{source}: format is {found!r:.60}, but it must be "{FORMAT}"; give a controller table.')
     version = document.get("version")
     if not isinstance(version, int) or isinstance(version, bool):
         raise DamagedTable(
-            f"{source}: version is {version!r:.60}, but it must be the whole number {VERSION} or {ESTIMATOR_VERSION}."
+            f"{source}: version is {version!r:.60}, but it must be a whole number from {VERSION} to {APPROACH_VERSION}."
         )
-    known = f"this reader knows only {VERSION} and {ESTIMATOR_VERSION}"
-    if version > ESTIMATOR_VERSION:
+    known = f"this reader knows only {VERSION} to {APPROACH_VERSION}"
+    if version > APPROACH_VERSION:
         raise NewerVersion(f"{source}: version is {version}, {known}; update retarder-synth.")
     if version < VERSION:
         raise OlderVersion(f"{source}: version is {version}, {known}; export it again.")
-    return document
+    return document, _VERSION_KEYS[version]
 
 
 def _require_checksum(members: dict[str, object], stored: str, source: str) -> None:
@@ -182,6 +195,14 @@ def _predicted_document(predicted: Predicted) -> dict[str, object]:
 def _estimator_document(estimator: Estimator) -> dict[str, object]:
     values = {key: getattr(estimator, key) for key in _ESTIMATOR_KEYS}
     return {key: _floats(value) if isinstance(value, tuple) else float(value) for key, value in values.items()}
+
+
+def _approach_document(approach: Approach) -> dict[str, object]:
+    return {
+        "length_m": float(approach.length_m),
+        "entrance_stage": approach.entrance_stage,
+        "interlock": INTERLOCK,
+    }
 
 
 def _validated_document(validated: Validated) -> dict[str, object]:
@@ -247,6 +268,13 @@ def _estimator(section: Section) -> Estimator:
         section.numbers("drive_m2_s2"),
         section.numbers("brake_m2_s2_per_kpa"),
     )
+
+
+def _approach(section: Section) -> Approach:
+    interlock = section.text("interlock")
+    if interlock != INTERLOCK:
+        raise InvalidTable(f'approach.interlock is {interlock!r}, but only "{INTERLOCK}" is allowed.')
+    return Approach(section.number("length_m"), section.count("entrance_stage"))
 
 
 def _validated(top: Section) -> Validated | None:

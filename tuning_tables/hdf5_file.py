@@ -1,8 +1,9 @@
 """A book of tables as an HDF5 file, readable by h5py and xarray without this project. Needs h5py, and only when called.
 
 Root attributes: format "retarder-book", schema_version, tool_version, config_sha256, payload_sha256 (see `payload`),
-complete = 1. The schema version is 2 where a table has an estimator, else 1. Datasets: the columns of that version
-(`book_columns.LAYOUTS`), each with attributes `units` and `meaning`, chunked in one piece with a fletcher32 checksum.
+complete = 1. The schema version is 3 where a table has an approach, else 2 where one has an estimator, else 1.
+Datasets: the columns of that version (`book_columns`), each with attributes `units` and `meaning`, chunked in one piece
+with a fletcher32 checksum.
 Each axis is a dimension scale of its own name, numbered from 0.
 
 Two attributes are for xarray: `_Encoding` has it decode text (fixed-length UTF-8), `coordinates` names what tells the
@@ -27,7 +28,8 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.atomic_file import replacing
-from tuning_tables.book_columns import LAYOUTS, NUMBER, Column, Columns, Layout, columns_of, layout_of, tables_of
+from tuning_tables.book_columns import VERSIONS, Column, Columns, Layout, columns_of, layout_of, layout_stored
+from tuning_tables.book_rows import tables_of
 from tuning_tables.errors import DamagedTable, InvalidTable, NewerVersion, OlderVersion, TableError, UnknownFormat
 from tuning_tables.excerpt import excerpt
 from tuning_tables.payload import payload_sha256
@@ -41,7 +43,7 @@ if TYPE_CHECKING:
     import h5py
 
 FORMAT: Final = "retarder-book"
-KNOWN: Final = " or ".join(map(str, LAYOUTS))
+KNOWN: Final = f"{VERSIONS[0]} to {VERSIONS[-1]}"
 SIGNATURE: Final = b"\x89HDF\r\n\x1a\n"
 # The oldest file version whose metadata carry checksums, for readers that know nothing of the seal.
 FILE_VERSION: Final = ("v108", "v108")
@@ -186,7 +188,7 @@ def _checked_arrays(file: h5py.File, most_bytes: int, source: str) -> dict[str, 
     from tuning_tables.stored_array import require_axis, scalar_attribute, stored_array
 
     attributes = {name: scalar_attribute(file, name) for name in _ATTRIBUTES}
-    layout = _layout(attributes["format"], attributes["schema_version"], source)
+    layout = _layout(file, attributes["format"], attributes["schema_version"], source)
     if tuple(sorted(file.attrs)) != _ATTRIBUTES:
         found = excerpt(str(sorted(file.attrs)), LONGEST_REASON)
         raise DamagedTable(f"{source}: root attributes are {found}, but must be {list(_ATTRIBUTES)}.")
@@ -194,7 +196,6 @@ def _checked_arrays(file: h5py.File, most_bytes: int, source: str) -> dict[str, 
         raise DamagedTable(f"{source}: complete is {attributes['complete']!r}, but must be 1; export the book again.")
     require_match(attributes["config_sha256"], "config_sha256", SHA256_HEX, "of 64 lower-case hex digits")
     require_text(attributes["tool_version"], "tool_version")
-    layout = layout.numbered() if NUMBER.name in file else layout
     expected = {column.name for column in layout.columns} | set(layout.axes)
     if set(file) != expected:
         found = excerpt(str(sorted(set(file) ^ expected)), LONGEST_REASON)
@@ -239,13 +240,13 @@ def _require_as_written(found: Columns, written: Columns, source: str) -> None:
             )
 
 
-def _layout(found: str | int | None, version: str | int | None, source: str) -> Layout:
+def _layout(file: h5py.File, found: str | int | None, version: str | int | None, source: str) -> Layout:
     if found != FORMAT:
         raise UnknownFormat(f'{source}: format is {found!r:.60}, but it must be "{FORMAT}"; give a table book.')
     if not isinstance(version, int):
-        raise DamagedTable(f"{source}: schema_version is {version!r:.60}, but it must be {KNOWN}.")
-    if version > max(LAYOUTS):
+        raise DamagedTable(f"{source}: schema_version is {version!r:.60}, but it must be a number from {KNOWN}.")
+    if version > VERSIONS[-1]:
         raise NewerVersion(f"{source}: schema_version is {version}, this reader knows {KNOWN}; update it.")
-    if version < min(LAYOUTS):
+    if version < VERSIONS[0]:
         raise OlderVersion(f"{source}: schema_version is {version}, not {KNOWN}; export the book again.")
-    return LAYOUTS[version]
+    return layout_stored(version, set(file))

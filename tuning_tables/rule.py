@@ -1,10 +1,12 @@
 """The decision rule of the regulator, stated once for the controller, the simulator and the generated code.
 
-    raise   if the stage has an upper line and  v > upper(s)
+    raise   if the stage has an upper line and  v > upper(s), but before the entrance only below the entrance stage
     lower   if the stage has a  lower line and  v < lower(s)
     hold    otherwise; so a tie, v equal to the line, holds
 
-The lower line is looked at first; as lower(s) < upper(s) in every `ControllerTable`, both can never ask at once.
+The lower line is looked at first; as lower(s) < upper(s) in every `ControllerTable`, both can never ask at once. Before
+the entrance is s < 0, after rounding and clamping; 0.0 and -0.0 are at the entrance. The entrance stage bounds what the
+rule commands there. It lowers nothing: a cut that is taken over at a higher stage breaks the interlock (`approach`).
 
 All arithmetic is float32, one rounding an operation, Horner's rule from the highest power down, no fused multiply-add:
 c[r], then repeatedly (value * s) + c[i]. A path outside the valid range is clamped into it. The speed is compared as it
@@ -38,14 +40,16 @@ def decide(
     coefficients: npt.NDArray[np.float32],
     has_line: npt.NDArray[np.bool_],
     valid_range: npt.NDArray[np.float32],
+    entrance_stage: int,
     stage: int,
     s_m: float,
     v_m_s: float,
 ) -> int:
     """LOWER, HOLD or RAISE for one reading; the arrays are those of a `ControllerTable`, and only they are trusted.
 
-    coefficients float32 (K+1, 2, degree+1), has_line bool (K+1, 2), valid_range float32 (4,), stage 0..K, path and
-    speed in any float width (rounded to float32 before use). Pure; raises nothing for any number.
+    coefficients float32 (K+1, 2, degree+1), has_line bool (K+1, 2), valid_range float32 (4,), entrance_stage 0..K (K
+    where there is no approach), stage 0..K, path and speed in any float width (rounded to float32 before use). Pure;
+    raises nothing for any number.
 
     `numba.njit(decide)` compiles this text as it stands and gives the same answers: hence one function without helpers,
     and no literal in the arithmetic, which would promote it to double precision.
@@ -72,14 +76,14 @@ def decide(
         line_speed = coefficients[stage, 1, highest]
         for power in range(highest - 1, -1, -1):
             line_speed = line_speed * s + coefficients[stage, 1, power]
-        if v > line_speed:
+        if v > line_speed and not (s < 0 and stage >= entrance_stage):
             return RAISE
     return HOLD
 
 
 def decide_for(table: ControllerTable | ActiveTable, stage: int, s_m: float, v_m_s: float) -> int:
     """LOWER, HOLD or RAISE of `table`, or of lines chosen from a book, for one reading of path and speed at `stage`."""
-    return decide(table.coefficients, table.has_line, table.valid_range, stage, s_m, v_m_s)
+    return decide(table.coefficients, table.has_line, table.valid_range, table.entrance_stage, stage, s_m, v_m_s)
 
 
 def speed_for(
@@ -126,6 +130,7 @@ def decide_many(
     for power in range(table.coefficients.shape[2] - 2, -1, -1):
         line_speed = line_speed * s[..., np.newaxis] + table.coefficients[index, :, power]
     has_line = table.has_line[index] & credible[..., np.newaxis]
-    raises = has_line[..., 1] & (v > line_speed[..., 1])
+    is_gated = (s < 0) & (stages >= table.entrance_stage)
+    raises = has_line[..., 1] & (v > line_speed[..., 1]) & ~is_gated
     lowers = has_line[..., 0] & (v < line_speed[..., 0])
     return np.where(lowers, LOWER, np.where(raises, RAISE, HOLD)).astype(np.int8)

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from tuning_tables.approach import Approach, entrance_stage
 from tuning_tables.errors import InvalidTable
 from tuning_tables.estimator import Estimator
 from tuning_tables.figures import Predicted, Validated, ValidRange
@@ -42,6 +43,8 @@ class ControllerTable:
     valid             path and speed range of the lines
     predicted         figures of the solver; `validated` those of a closed loop, None before it was run
     estimator         with it the lines are for the estimated speed: see `rule.speed_for`; None: for the measured one
+    approach          the regulator acts from before the entrance, at s = -approach.length_m, where the path range
+                      begins; it ends behind the entrance, and an estimator's breaks begin no later. None: from s = 0
 
     Derived from these, as arrays for `rule.decide` (read-only; line 0 is `lower`, line 1 is `upper`):
 
@@ -66,6 +69,7 @@ class ControllerTable:
     predicted: Predicted
     validated: Validated | None = None
     estimator: Estimator | None = None
+    approach: Approach | None = None
     coefficients: npt.NDArray[np.float32] = field(init=False, repr=False, compare=False)
     has_line: npt.NDArray[np.bool_] = field(init=False, repr=False, compare=False)
     valid_range: npt.NDArray[np.float32] = field(init=False, repr=False, compare=False)
@@ -74,11 +78,17 @@ class ControllerTable:
         self._require_fields()
         self._require_stages()
         valid_range = np.array(self.valid.s_m + self.valid.v_m_s, dtype=np.float32)
+        self._require_approach()
         self._require_lines((float(valid_range[0]), float(valid_range[1])))
         coefficients, has_line = _line_arrays(self.stages, self.degree)
         for name, array in (("coefficients", coefficients), ("has_line", has_line), ("valid_range", valid_range)):
             array.setflags(write=False)
             object.__setattr__(self, name, array)
+
+    @property
+    def entrance_stage(self) -> int:
+        """The highest stage that may be commanded at s < 0, for `rule.decide`: stage K without approach."""
+        return entrance_stage(self.approach, len(self.stages))
 
     def with_validated(self, validated: Validated) -> ControllerTable:
         """The same table with the figures of a closed-loop run filled in."""
@@ -119,6 +129,23 @@ class ControllerTable:
             raise InvalidTable("stages[0].lower is given, but it must be null: there is no stage below the lowest.")
         if self.stages[-1].upper is not None:
             raise InvalidTable("upper of the top stage is given, but it must be null: there is no stage above it.")
+
+    def _require_approach(self) -> None:
+        if self.approach is None:
+            return
+        require_kind(self.approach, "approach", Approach)
+        require_count(self.approach.entrance_stage, "approach.entrance_stage", 0, len(self.stages) - 1)
+        begin_m, end_m = -self.approach.length_m, self.valid.s_m[1]
+        if not (self.valid.s_m[0] == begin_m and end_m > 0.0):
+            raise InvalidTable(
+                f"valid.s_m is {self.valid.s_m!r}, but with an approach it must begin at -approach.length_m, "
+                f"{begin_m!r}, and end behind the entrance."
+            )
+        if self.estimator is not None and self.estimator.s_m[0] > begin_m:
+            raise InvalidTable(
+                f"estimator.s_m begins at {self.estimator.s_m[0]!r}, but its breaks must begin at -approach.length_m, "
+                f"{begin_m!r}, or before."
+            )
 
     def _require_lines(self, s_range_m: tuple[float, float]) -> None:
         for stage in self.stages:

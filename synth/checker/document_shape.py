@@ -1,4 +1,4 @@
-"""What JSON documents of controller tables must look like, of either version, and the comparison with it."""
+"""What JSON documents of controller tables must look like, of any version, and the comparison with it."""
 
 from __future__ import annotations
 
@@ -68,15 +68,26 @@ SHAPE_WITH_ESTIMATOR: Final[Mapping[str, Any]] = {
 }
 """Version 2: its lines are for the speed that the estimator gives."""
 
-SHAPES: Final[Mapping[int, Mapping[str, Any]]] = {1: SHAPE, 2: SHAPE_WITH_ESTIMATOR}
+APPROACH: Final[Mapping[str, Any]] = {"length_m": NUMBER, "entrance_stage": COUNT, "interlock": TEXT}
+"""Version 3: the regulator acts from before the entrance; with or without an estimator."""
+
+SHAPES: Final[Mapping[tuple[int, bool], Mapping[str, Any]]] = {
+    (1, False): SHAPE,
+    (2, True): SHAPE_WITH_ESTIMATOR,
+    (3, False): {**SHAPE, "approach": APPROACH},
+    (3, True): {**SHAPE_WITH_ESTIMATOR, "approach": APPROACH},
+}
+"""By version, and by whether there is an estimator: only version 3 leaves that open."""
+KNOWN_VERSIONS: Final = (1, 2, 3)
 
 
 def require_document(document: Mapping[str, Any]) -> None:
     """Raise `DamagedError` unless `document` is of a known version and looks as that must."""
     version = document.get("version")
-    if isinstance(version, bool) or not isinstance(version, int) or version not in SHAPES:
-        raise DamagedError(f"its version is {shown(version)}, but this checker knows the versions 1 and 2 only")
-    require_shape(document, SHAPES[version], "")
+    if isinstance(version, bool) or not isinstance(version, int) or version not in KNOWN_VERSIONS:
+        raise DamagedError(f"its version is {shown(version)}, but this checker knows the versions 1 to 3 only")
+    estimating = version == 2 or (version == 3 and "estimator" in document)
+    require_shape(document, SHAPES[version, estimating], "")
 
 
 def require_shape(value: Any, form: Any, path: str) -> None:

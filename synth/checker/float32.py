@@ -68,6 +68,7 @@ def horner(line: Sequence[float], s: float) -> float:
 def decide(
     lines: Sequence[tuple[Sequence[float] | None, Sequence[float] | None]],
     path_m: tuple[float, float],
+    entrance_stage: int,
     stage: int,
     s_m: float,
     v_m_s: float,
@@ -80,6 +81,7 @@ def decide(
     lower, upper = lines[stage]
     if lower is not None and v < horner(lower, s):
         return -1
-    if upper is not None and v > horner(upper, s):
+    may_raise = s >= 0.0 or stage < entrance_stage
+    if may_raise and upper is not None and v > horner(upper, s):
         return 1
     return 0

@@ -35,7 +35,7 @@ def differences(content: bytes, tables: Sequence[Table]) -> Iterator[tuple[str, 
         if table is None:
             raise DamagedError(f"row {place} is of table {number}")
         seen.add(number)
-        right = decide(table.lines, table.path_m, stage, s, v)
+        right = decide(table.lines, table.path_m, table.entrance_stage, stage, s, v)
         if (name != table.id or right != answer) and number not in wrong:
             wrong.add(number)
             yield table.id, f"row {place} says {answer} of {name!r}, but the rule says {right} of {table.id!r}"

@@ -1,4 +1,4 @@
-"""A controller table read from its JSON document, of either version of the format."""
+"""A controller table read from its JSON document, of any version of the format."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ class Table:
 
     `lines`: (lower, upper) of stage 0, 1, …, ascending powers of s in metres. `p_stall` and the three validated
     figures are None where the table does not state them, `predicted_passes` where the prediction was not simulated,
-    `estimator` in version 1, `category_number` where nothing tells it.
+    `estimator` where it is for the measured speed, `category_number` where nothing tells it. `approach_m`, 0.0 without:
+    the regulator acts from so far before the entrance, and commands no stage above `entrance_stage` there.
     """
 
     id: str
@@ -50,6 +51,8 @@ class Table:
     validated_rms_m_s: float | None
     validated_ci95_m_s: tuple[float, float] | None
     estimator: Estimator | None
+    approach_m: float
+    entrance_stage: int
     document: Mapping[str, Any]
 
     @property
@@ -84,6 +87,7 @@ def table_of(document: Mapping[str, Any]) -> Table:
             refuse_unless(line is None or len(line) == degree + 1, line, f"stages[{k}]", f"of {degree + 1} numbers")
     refuse_unless(stages[0]["lower"] is None, stages[0]["lower"], "stages[0].lower", "null")
     refuse_unless(stages[-1]["upper"] is None, stages[-1]["upper"], f"stages[{len(stages) - 1}].upper", "null")
+    approach_m, entrance_stage = approach_of(document)
     return Table(
         id=document["id"],
         config_sha256=document["generator"]["config_sha256"],
@@ -111,8 +115,27 @@ def table_of(document: Mapping[str, Any]) -> Table:
         validated_rms_m_s=float(validated["rms_m_s"]) if validated else None,
         validated_ci95_m_s=pair(validated["rms_ci95_m_s"]) if validated else None,
         estimator=estimator_of(document["estimator"]) if "estimator" in document else None,
+        approach_m=approach_m,
+        entrance_stage=entrance_stage,
         document=document,
     )
+
+
+def approach_of(document: Mapping[str, Any]) -> tuple[float, int]:
+    """Length of the approach and entrance stage; without approach 0 and the highest stage."""
+    top = len(document["stages"]) - 1
+    if "approach" not in document:
+        return 0.0, top
+    approach, path = document["approach"], document["valid"]["s_m"]
+    length_m, stage, interlock = approach["length_m"], approach["entrance_stage"], approach["interlock"]
+    refuse_unless(0.001 <= length_m <= 100.0, length_m, "approach.length_m", "from 0.001 to 100")
+    refuse_unless(0 <= stage <= top, stage, "approach.entrance_stage", f"from 0 to {top}")
+    refuse_unless(interlock == "position_clear", interlock, "approach.interlock", '"position_clear"')
+    refuse_unless(path[0] == -length_m and path[1] > 0.0, path, "valid.s_m", "from -approach.length_m beyond 0")
+    if "estimator" in document:
+        first_m = document["estimator"]["s_m"][0]
+        refuse_unless(first_m <= -length_m, first_m, "estimator.s_m[0]", "-approach.length_m at most")
+    return float(length_m), stage
 
 
 def numbers(values: list[float]) -> tuple[float, ...]:

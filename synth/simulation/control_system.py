@@ -92,8 +92,7 @@ def regulator_system(plant: Plant, controller: Controller) -> NonlinearIOSystem:
     """
     import control
 
-    actuator = regulated_actuator(plant, controller)
-    period = plant.sensor.sample_period_s
+    actuator, period = regulated_actuator(plant, controller), plant.sensor.sample_period_s
     sensor = regulator.Sensor(period, 0.0, plant.sensor.resolution_m_s)
     law = controller.law()
     gain = period / (period + law.filter_s)
@@ -116,7 +115,7 @@ def regulator_system(plant: Plant, controller: Controller) -> NonlinearIOSystem:
         measured = regulator.measure(float(u[1]), 0.0, sensor)
         if law.coefficients.shape[0] > 0:
             seen = stage, float(u[0]), estimated(x, u, measured)[0]
-            step = regulator.table_decision(law.coefficients, law.has_line, law.valid, *seen)
+            step = regulator.table_decision(law.coefficients, law.has_line, law.valid, law.entrance_stage, *seen)
             wanted = min(max(stage + step, 0), top)
         else:
             ahead = measured + law.lead_s * filtered_slope(x, measured)

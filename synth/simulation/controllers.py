@@ -41,7 +41,8 @@ class TableController:
             fixed(table.has_line, np.bool_),
             fixed(table.valid_range, np.float32),
         )
-        return regulator.Rule(*arrays, none, none, 0.0, 1.0, False, 0.0, 0.0, *estimator_arrays(table.estimator))
+        by_table = *arrays, table.entrance_stage
+        return regulator.Rule(*by_table, none, none, 0.0, 1.0, False, 0.0, 0.0, *estimator_arrays(table.estimator))
 
 
 @dataclass(frozen=True)
@@ -72,6 +73,7 @@ class LineController:
             fixed(np.empty((0, 0, 0)), np.float32),
             fixed(np.empty((0, 0)), np.bool_),
             fixed(np.empty(0), np.float32),
+            lines.stages - 1,
             fixed(lines.lower_m_s, np.float64),
             fixed(lines.upper_m_s, np.float64),
             float(lines.nodes_m[0]),

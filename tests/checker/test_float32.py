@@ -54,19 +54,26 @@ def test_horner_is_that_of_numpy(line: list[float], s: float) -> None:
 
 
 LINE = st.none() | st.lists(st.floats(-8, 8, width=32), min_size=3, max_size=3)
-READING = st.floats(-2, 12, width=32) | st.floats()
+BEGIN = st.sampled_from([0.0, -3.0])
+STAGE = st.integers(-1, 5)
+READING = st.floats(-4, 12, width=32) | st.sampled_from([0.0, -0.0, -1e-45, -1e-60]) | st.floats()
 
 
-@given(st.lists(st.tuples(LINE, LINE), min_size=2, max_size=4), st.integers(-1, 5), READING, READING)
+@given(st.lists(st.tuples(LINE, LINE), min_size=2, max_size=4), BEGIN, STAGE, STAGE, READING, READING)
 def test_rule_is_that_of_the_controller(
-    lines: list[tuple[list[float] | None, list[float] | None]], stage: int, s: float, v: float
+    lines: list[tuple[list[float] | None, list[float] | None]],
+    begin: float,
+    entrance: int,
+    stage: int,
+    s: float,
+    v: float,
 ) -> None:
     missing = [math.nan] * 3
     coefficients = np.array([[line or missing for line in both] for both in lines], dtype=np.float32)
     has_line = np.array([[line is not None for line in both] for both in lines])
-    valid = np.array([0.0, 10.0, 0.0, 9.0], dtype=np.float32)
-    expected = rule.decide(coefficients, has_line, valid, stage, s, v)
-    assert decide(lines, (0.0, 10.0), stage, s, v) == expected
+    valid = np.array([begin, 10.0, 0.0, 9.0], dtype=np.float32)
+    expected = rule.decide(coefficients, has_line, valid, entrance, stage, s, v)
+    assert decide(lines, (begin, 10.0), entrance, stage, s, v) == expected
 
 
 @given(st.binary(max_size=300))

@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from tuning_tables import (
+    Approach,
     ControllerTable,
     CutId,
     Estimator,
@@ -60,12 +61,33 @@ def linear_table(table: ControllerTable) -> ControllerTable:
 
 
 @pytest.fixture(scope="session")
+def approached_table(table: ControllerTable) -> ControllerTable:
+    """The table with 4 m of approach and entrance stage 1, so of version 3: stage 1 has an upper line to be gated."""
+    valid = replace(table.valid, s_m=(-4.0, 37.45))
+    return replace(table, id="approached", valid=valid, approach=Approach(4.0, 1))
+
+
+@pytest.fixture(scope="session")
 def estimated_table(linear_table: ControllerTable) -> ControllerTable:
     """The linear table for the estimated speed, so of version 2; the retarder stands between 2 and 7 m."""
     breaks, drive, brake = (0.0, 2.0, 5.0, 7.0, 9.5), (0.0, 0.132, 0.33, 0.4, 0.55), (0.0, 0.0, 0.008, 0.02, 0.02)
     estimator = Estimator(0.05, 0.15, 0.1, 2.0, 60.0, breaks, drive, brake)
     predicted = Predicted(0.1, 0.0, 0.0, 2.0, 0.25, passes=5000)
     return replace(linear_table, id="estimated", estimator=estimator, predicted=predicted)
+
+
+@pytest.fixture(scope="session")
+def approached_estimate(estimated_table: ControllerTable) -> ControllerTable:
+    """The estimated table with 4 m of approach: its path and its breaks begin there."""
+    assert estimated_table.estimator is not None
+    breaks = (-4.0, *estimated_table.estimator.s_m[1:])
+    return replace(
+        estimated_table,
+        id="approached-estimate",
+        valid=replace(estimated_table.valid, s_m=(-4.0, 8.0)),
+        estimator=replace(estimated_table.estimator, s_m=breaks),
+        approach=Approach(4.0, 0),
+    )
 
 
 @pytest.fixture(scope="session")

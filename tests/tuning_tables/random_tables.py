@@ -3,6 +3,7 @@
 from hypothesis import strategies as st
 
 from tuning_tables import (
+    Approach,
     ControllerTable,
     CutId,
     Estimator,
@@ -71,10 +72,10 @@ def stage_lists(draw: st.DrawFn, degree: int, s_m: tuple[float, float]) -> tuple
 
 
 @st.composite
-def estimators(draw: st.DrawFn) -> Estimator:
-    """An estimator with two to six breaks."""
+def estimators(draw: st.DrawFn, latest_m: float = 50.0) -> Estimator:
+    """An estimator with two to six breaks, the first at `latest_m` or before."""
     steps = draw(st.lists(st.floats(0.5, 50.0), min_size=1, max_size=5))
-    breaks = [draw(numbers(-50.0, 50.0))]
+    breaks = [draw(numbers(-50.0, latest_m))]
     for step in steps:
         breaks.append(breaks[-1] + step + 0.0)
     length = len(breaks)
@@ -107,11 +108,13 @@ def tables(
 ) -> ControllerTable:
     """A table whose id is one of `names`; its path range is a few hundred metres at most."""
     degree = draw(st.integers(0, HIGHEST_DEGREE))
-    begin_m = draw(numbers(-50.0, 50.0))
-    s_m = (begin_m, begin_m + draw(st.floats(0.5, 50.0)) + 0.0)
+    length_m = draw(st.none() | numbers(1e-3, 50.0))
+    begin_m = draw(numbers(-50.0, 50.0)) if length_m is None else -length_m
+    s_m = (begin_m, (begin_m if length_m is None else 0.0) + draw(st.floats(0.5, 50.0)) + 0.0)
     low_m_s = draw(numbers(0.0, 5.0))
     interval = sorted((draw(numbers(0.0)), draw(numbers(0.0))))
-    estimator = draw(st.none() | estimators())
+    estimator = draw(st.none() | estimators(50.0 if length_m is None else begin_m))
+    stages = draw(stage_lists(degree, s_m))
     return ControllerTable(
         id=draw(names),
         created=draw(instants),
@@ -120,7 +123,7 @@ def tables(
         cut=draw(cuts()),
         target_speed_m_s=draw(above_zero()),
         degree=degree,
-        stages=draw(stage_lists(degree, s_m)),
+        stages=stages,
         valid=ValidRange(s_m, (low_m_s, low_m_s + draw(st.floats(0.5, 20.0)))),
         predicted=Predicted(
             draw(numbers(0.0)),
@@ -132,4 +135,5 @@ def tables(
         ),
         validated=draw(st.none() | st.builds(Validated, st.integers(1, 2**53), numbers(0.0), st.just(tuple(interval)))),
         estimator=estimator,
+        approach=None if length_m is None else Approach(length_m, draw(st.integers(0, len(stages) - 1))),
     )

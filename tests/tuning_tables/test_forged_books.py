@@ -26,7 +26,8 @@ from tuning_tables.book_columns import WITH_ESTIMATORS
 Refuse = Callable[[Edit], TableError]
 Index = int | tuple[int, ...]
 
-COLUMNS, AXES = WITH_ESTIMATORS.columns, WITH_ESTIMATORS.axes
+LAYOUT = WITH_ESTIMATORS.with_approaches()
+COLUMNS, AXES = LAYOUT.columns, LAYOUT.axes
 NAMES = [column.name for column in COLUMNS]
 FLOATS = [column.name for column in COLUMNS if column.dtype in ("<f4", "<f8")]
 TEXTS = [column.name for column in COLUMNS if column.dtype == "S"]
@@ -38,11 +39,11 @@ NAN, INF = float("nan"), float("inf")
 
 @pytest.fixture(scope="module")
 def original(
-    table: ControllerTable, estimated_table: ControllerTable, tmp_path_factory: pytest.TempPathFactory
+    table: ControllerTable, approached_estimate: ControllerTable, tmp_path_factory: pytest.TempPathFactory
 ) -> bytes:
-    """The bytes of a book of two tables that differ in every length, one with an estimator."""
+    """The bytes of a book of two tables that differ in every length, one with estimator and approach."""
     path = tmp_path_factory.mktemp("original") / "book.h5"
-    write_book([table, estimated_table], path)
+    write_book([table, approached_estimate], path)
     return path.read_bytes()
 
 
@@ -66,12 +67,12 @@ def refuse(original: bytes, tmp_path: Path) -> Refuse:
 
 
 def test_a_book_that_is_forged_without_a_change_is_read(
-    original: bytes, table: ControllerTable, estimated_table: ControllerTable, tmp_path: Path
+    original: bytes, table: ControllerTable, approached_estimate: ControllerTable, tmp_path: Path
 ) -> None:
     path = tmp_path / "book.h5"
     path.write_bytes(original)
     forge(path, lambda file: put(file, "mass_t", file["mass_t"][()]))
-    assert read_book(path) == (table, estimated_table)
+    assert read_book(path) == (table, approached_estimate)
 
 
 @pytest.mark.parametrize("name", [*NAMES, *AXES])
@@ -105,7 +106,8 @@ def test_every_dataset_tells_its_unit_and_meaning(refuse: Refuse, name: str, att
         ("format", ["retarder-book"], UnknownFormat),
         ("schema_version", None, DamagedTable),
         ("schema_version", 1, DamagedTable),
-        ("schema_version", 3, NewerVersion),
+        ("schema_version", 2, DamagedTable),
+        ("schema_version", 4, NewerVersion),
         ("schema_version", 2**63 - 1, NewerVersion),
         ("schema_version", 0, OlderVersion),
         ("schema_version", -1, OlderVersion),
@@ -260,6 +262,12 @@ def test_no_text_gets_through_that_is_none(refuse: Refuse, name: str, value: obj
         ("validated_passes", 0, -1, "validated.passes"),
         ("validated_passes", 0, 2**60, "validated.passes"),
         ("validated_passes", 1, 1, "validated"),
+        ("approach_entrance_stage", 0, 0, "approach_entrance_stage holds values beside"),
+        ("approach_entrance_stage", 1, 2, "approach.entrance_stage"),
+        ("approach_entrance_stage", 1, -1, "approach.entrance_stage"),
+        ("approach_length_m", 0, 4.0, "approach.entrance_stage"),
+        ("approach_length_m", 1, NAN, "no table has anything there"),
+        ("approach_length_m", 1, 3.5, "valid.s_m"),
         ("id", 1, b"leer-22t-4.0", "2 tables of the book have the id"),
     ],
 )

@@ -38,7 +38,12 @@ slowly = settings(
 def bits(table: ControllerTable) -> tuple[bytes | str, ...]:
     """Every bit that a decision or a reader of the table depends on."""
     arrays = (table.coefficients, table.has_line, table.valid_range)
-    return to_json(table), *(array.tobytes() for array in arrays), *(array.dtype.str for array in arrays)
+    return (
+        to_json(table),
+        str(table.entrance_stage),
+        *(array.tobytes() for array in arrays),
+        *(array.dtype.str for array in arrays),
+    )
 
 
 @given(st.lists(tables(), min_size=1, max_size=3, unique_by=lambda table: table.id))

@@ -49,7 +49,9 @@ def adversarial_readings(
     return stages, s, v
 
 
-def test_the_three_ways_agree_everywhere(table: ControllerTable) -> None:
+@pytest.mark.parametrize("name", ["table", "approached_table"])
+def test_the_three_ways_agree_everywhere(name: str, request: pytest.FixtureRequest) -> None:
+    table: ControllerTable = request.getfixturevalue(name)
     stages, s, v = adversarial_readings(table, np.random.default_rng(20261120), 100_000)
     compiled: Any = numba.njit(decide)
 
@@ -57,17 +59,20 @@ def test_the_three_ways_agree_everywhere(table: ControllerTable) -> None:
         coefficients: npt.NDArray[np.float32],
         has_line: npt.NDArray[np.bool_],
         valid_range: npt.NDArray[np.float32],
+        entrance_stage: int,
         stages: npt.NDArray[np.int64],
         s: npt.NDArray[np.float32],
         v: npt.NDArray[np.float32],
     ) -> npt.NDArray[np.int8]:
         answers = np.empty(stages.size, dtype=np.int8)
         for index in range(stages.size):
-            answers[index] = compiled(coefficients, has_line, valid_range, stages[index], s[index], v[index])
+            answers[index] = compiled(
+                coefficients, has_line, valid_range, entrance_stage, stages[index], s[index], v[index]
+            )
         return answers
 
     compiled_run: Any = numba.njit(run)
-    arrays = (table.coefficients, table.has_line, table.valid_range)
+    arrays = (table.coefficients, table.has_line, table.valid_range, table.entrance_stage)
     many = decide_many(table, stages, s, v)
     jitted = compiled_run(*arrays, stages, s, v)
     plain = np.array([decide(*arrays, *reading) for reading in zip(stages.tolist(), s, v, strict=True)])
@@ -77,23 +82,29 @@ def test_the_three_ways_agree_everywhere(table: ControllerTable) -> None:
     assert np.all(np.bincount(plain + 1) > 5_000)
 
 
-def test_answers_agree_with_an_independent_float32_evaluation(table: ControllerTable) -> None:
+@pytest.mark.parametrize("name", ["table", "approached_table"])
+def test_answers_agree_with_an_independent_float32_evaluation(name: str, request: pytest.FixtureRequest) -> None:
+    table: ControllerTable = request.getfixturevalue(name)
     stages, s, v = adversarial_readings(table, np.random.default_rng(1), 20_000)
     credible = np.isfinite(s) & np.isfinite(v) & (v >= 0) & (stages >= 0) & (stages < len(table.stages))
-    ties = 0
+    ties = gated = 0
     for k, path, speed in zip(stages[credible].tolist(), s[credible], v[credible], strict=True):
         stage = table.stages[k]
         clamped = np.clip(path, *table.valid_range[:2])
         lower = -INF if stage.lower is None else exact_horner(stage.lower, clamped)
         upper = INF if stage.upper is None else exact_horner(stage.upper, clamped)
         ties += speed in (lower, upper)
+        if table.approach is not None and path < 0.0 and k >= table.approach.entrance_stage:
+            gated += speed > upper
+            upper = INF
         assert decide_for(table, k, path, speed) == (LOWER if speed < lower else RAISE if speed > upper else HOLD)
     assert ties > 500
+    assert (gated > 100) == (table.approach is not None)
 
 
 def test_both_float_widths_of_a_reading_agree_in_compiled_code(table: ControllerTable) -> None:
     compiled: Any = numba.njit(decide)
-    arrays = (table.coefficients, table.has_line, table.valid_range)
+    arrays = (table.coefficients, table.has_line, table.valid_range, table.entrance_stage)
     for s in np.linspace(0.0, 37.0, 50):
         for v in np.linspace(4.0, 7.0, 50):
             assert compiled(*arrays, 1, float(s), float(v)) == compiled(*arrays, 1, np.float32(s), np.float32(v))
@@ -159,7 +170,7 @@ def test_subnormal_coefficients_are_not_flushed_to_zero(linear_table: Controller
         valid=ValidRange((0.0, 1.0), (0.0, 1.0)),
     )
     compiled: Any = numba.njit(decide)
-    arrays = (table.coefficients, table.has_line, table.valid_range)
+    arrays = (table.coefficients, table.has_line, table.valid_range, table.entrance_stage)
     for v, answer in ((tiny, HOLD), (float(np.nextafter(np.float32(tiny), np.float32(1))), RAISE)):
         assert decide(*arrays, 0, 0.5, v) == compiled(*arrays, 0, 0.5, v) == decide_many(table, 0, 0.5, v) == answer
 

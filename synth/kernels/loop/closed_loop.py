@@ -153,9 +153,8 @@ def run_pass(
     A pressure, stage or speed in `events` holds from its time on; the last event is the end of the pass. `known` (8,)
     is memory for the estimator.
     """
-    coefficients, has_line, valid, lower, upper, start_m, spacing_m, multi_step, lead_s, filter_s, parameters, work = (
-        law
-    )
+    coefficients, has_line, valid, gate, lower, upper, start_m, spacing_m, multi_step, lead_s, filter_s = law[:11]
+    parameters, work = law.estimator_parameters, law.estimator_work
     mode_kpa, command, chain_mode, chain_samples, chain_kpa, substeps, mode, stage, entrance_stage = drive
     period, part = sensor.period_s, sensor.period_s / substeps
     tabled, estimating = coefficients.shape[0] > 0, work.shape[1] > 0
@@ -181,7 +180,8 @@ def run_pass(
             measured = estimated if chain < 0 else math.nan  # compared, and noted, only at rest
         if chain < 0:
             if tabled:
-                wanted = min(max(stage + table_decision(coefficients, has_line, valid, stage, s, measured), 0), top)
+                step = table_decision(coefficients, has_line, valid, gate, stage, s, measured)
+                wanted = min(max(stage + step, 0), top)
             else:
                 ahead = measured + lead_s * slope
                 wanted = stage_by_lines(lower, upper, start_m, spacing_m, multi_step, stage, top, s, ahead)

@@ -115,7 +115,7 @@ def regulate(x: Floats, n: Ints, lane: int, speed_m_s: float, pieces: Pieces, la
     """What the regulator does where it has a command (as in `closed_loop.run_pass`)."""
     s, stage, top = x[S + lane], n[STAGE + lane], pieces.command.shape[1] - 1
     if law.coefficients.shape[0] > 0:
-        decision = table_decision(law.coefficients, law.has_line, law.valid, stage, s, speed_m_s)
+        decision = table_decision(law.coefficients, law.has_line, law.valid, law.entrance_stage, stage, s, speed_m_s)
         wanted = min(max(stage + decision, 0), top)
     else:
         wanted = stage_by_lines(

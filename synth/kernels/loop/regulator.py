@@ -31,15 +31,16 @@ class Rule(NamedTuple):
     """Switching rule: a polynomial table, or lines if the table has no stage (`coefficients` of size 0).
 
     Table: `coefficients` float32 (K + 1, 2, r + 1), NaN where there is no line, `has_line` (K + 1, 2), `valid`
-    float32 (4,). Lines: `lower`, `upper` (K + 1, N + 1) over nodes `spacing_m` apart from `start_m` on; with
-    `multi_step` the comparison is repeated at the stage reached; the speed compared is measured + `lead_s`·slope, the
-    slope filtered over `filter_s`. With `estimator_work` (3, B), B > 0, the speed compared is that of
-    `tuning_tables.estimator`.
+    float32 (4,), `entrance_stage` the highest stage that may be commanded at s < 0. Lines: `lower`, `upper`
+    (K + 1, N + 1) over nodes `spacing_m` apart from `start_m` on; with `multi_step` the comparison is repeated at the
+    stage reached; the speed compared is measured + `lead_s`·slope, the slope filtered over `filter_s`. With
+    `estimator_work` (3, B), B > 0, the speed compared is that of `tuning_tables.estimator`.
     """
 
     coefficients: NDArray[np.float32]
     has_line: NDArray[np.bool_]
     valid: NDArray[np.float32]
+    entrance_stage: int
     lower: Floats
     upper: Floats
     start_m: float

@@ -135,7 +135,7 @@ def _controller_through(ask: int, hear: int) -> tuple[Any, Any]:
         return answer
 
     @njit
-    def decide(coefficients, has_line, valid, stage, s, v):  # type: ignore[no-untyped-def]  # numba infers the types
+    def decide(coefficients, has_line, valid, entrance_stage, stage, s, v):  # type: ignore[no-untyped-def]  # as above
         return answered(stage, s, v, 0.0)[0]
 
     @njit

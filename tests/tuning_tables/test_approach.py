@@ -1,0 +1,176 @@
+"""Tables that act before the entrance: what they must be, what they may command there, and who reads them."""
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+
+from tuning_tables import (
+    HOLD,
+    LOWER,
+    RAISE,
+    Approach,
+    ControllerTable,
+    DamagedTable,
+    Estimator,
+    InvalidTable,
+    NewerVersion,
+    ValidRange,
+    decide_for,
+    decide_many,
+    from_json,
+    read_book,
+    to_json,
+    write_book,
+)
+from tuning_tables.active_table import active, between, interpolable
+from tuning_tables.canonical import canonical_json, document_checksum
+
+TINY = float(np.finfo(np.float32).smallest_subnormal)
+
+
+def document_of(table: ControllerTable) -> dict[str, Any]:
+    document: dict[str, Any] = json.loads(to_json(table))
+    return document
+
+
+def sealed(document: dict[str, Any]) -> bytes:
+    return canonical_json({**document, "crc32": document_checksum(document)})
+
+
+def with_estimator(table: ControllerTable, *breaks: float) -> ControllerTable:
+    return replace(table, estimator=Estimator(0.05, 0.15, 0.1, 2.0, 60.0, breaks, (0.0,) * 3, (0.0, 0.0, 0.01)))
+
+
+@pytest.mark.parametrize(
+    ("stage", "s_m", "v_m_s", "answer"),
+    [
+        (0, -4.0, 9.0, RAISE),  # below the entrance stage any raise is allowed
+        (1, -4.0, 9.0, HOLD),
+        (1, -100.0, 9.0, HOLD),  # clamped to the beginning of the approach
+        (1, -TINY, 9.0, HOLD),  # the last float32 number before the entrance
+        (1, -0.0, 9.0, RAISE),  # at the entrance
+        (1, 0.0, 9.0, RAISE),
+        (1, -1e-60, 9.0, RAISE),  # -0.0 in float32
+        (1, TINY, 9.0, RAISE),
+        (1, -2.0, 0.0, LOWER),  # lowering is always allowed
+        (3, -2.0, 0.0, LOWER),  # also where the interlock was broken
+        (3, -2.0, 9.0, HOLD),
+    ],
+)
+def test_before_the_entrance_no_stage_above_the_entrance_stage_is_commanded(
+    approached_table: ControllerTable, stage: int, s_m: float, v_m_s: float, answer: int
+) -> None:
+    assert decide_for(approached_table, stage, s_m, v_m_s) == answer
+    assert decide_many(approached_table, stage, s_m, v_m_s) == answer
+    assert decide_for(active(approached_table), stage, s_m, v_m_s) == answer
+
+
+def test_without_approach_the_entrance_stage_is_the_highest(table: ControllerTable) -> None:
+    assert table.entrance_stage == active(table).entrance_stage == 3
+    moved = replace(table, valid=ValidRange((-4.0, 37.45), (0.3, 9.0)))
+    assert decide_for(moved, 1, -2.0, 9.0) == RAISE  # as ever: its path range begins before the entrance
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        ({"approach": 4.0}, "approach is 4.0"),
+        ({"approach": Approach(4.0, 4)}, r"entrance_stage is 4, but it must be a whole number in \[0, 3\]"),
+        ({"approach": Approach(4.5, 1)}, r"valid\.s_m is .* must begin at -approach\.length_m, -4\.5"),
+        ({"valid": ValidRange((0.0, 37.45), (0.3, 9.0))}, "must begin at"),
+        ({"valid": ValidRange((-4.0, -0.5), (0.3, 9.0))}, "end behind the entrance"),
+    ],
+    ids=repr,
+)
+def test_an_approach_that_does_not_fit_its_table_is_refused(
+    approached_table: ControllerTable, change: dict[str, object], reason: str
+) -> None:
+    with pytest.raises(InvalidTable, match=reason):
+        replace(approached_table, **change)  # type: ignore[arg-type]  # one of the values has a wrong type
+
+
+def test_the_estimator_of_an_approach_begins_with_it(approached_table: ControllerTable) -> None:
+    assert with_estimator(approached_table, -4.0, 0.0, 12.0).estimator is not None
+    with pytest.raises(InvalidTable, match=r"breaks must begin at -approach\.length_m"):
+        with_estimator(approached_table, -3.9, 0.0, 12.0)
+
+
+@pytest.mark.parametrize(
+    ("length_m", "stage"), [(0.0, 1), (-4.0, 1), (1e-4, 1), (100.5, 1), (float("nan"), 1), (4.0, -1), (4.0, 1.0)]
+)
+def test_a_wrong_approach_is_refused(length_m: float, stage: Any) -> None:
+    with pytest.raises(InvalidTable, match="approach"):
+        Approach(length_m, stage)
+
+
+def test_versions_follow_from_what_is_in_the_table(approached_table: ControllerTable, table: ControllerTable) -> None:
+    estimated = with_estimator(approached_table, -4.0, 0.0, 12.0)
+    without = replace(estimated, approach=None, valid=table.valid)
+    assert [document_of(each)["version"] for each in (table, without, approached_table, estimated)] == [1, 2, 3, 3]
+    assert list(document_of(estimated))[-4:] == ["validated", "estimator", "approach", "crc32"]
+    expected = {"length_m": 4.0, "entrance_stage": 1, "interlock": "position_clear"}
+    assert document_of(approached_table)["approach"] == expected
+    assert [from_json(to_json(each)) for each in (approached_table, estimated)] == [approached_table, estimated]
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        (lambda document: document.update(version=1), "unknown key 'approach'"),
+        (lambda document: document.update(version=2), "estimator is missing"),
+        (lambda document: document.pop("approach"), "approach is missing"),
+        (lambda document: document["approach"].pop("interlock"), r"approach\.interlock is missing"),
+        (lambda document: document["approach"].update(interlock="none"), 'only "position_clear" is allowed'),
+        (lambda document: document["approach"].update(length_m=4.1), "must begin at"),
+        (lambda document: document["approach"].update(entrance_stage=4), "entrance_stage is 4"),
+        (lambda document: document["approach"].update(entrance_stage=1.5), "entrance_stage is 1.5"),
+        (lambda document: document["predicted"].update(passes=10), "unknown key 'passes'"),
+    ],
+)
+def test_a_document_of_version_3_is_read_strictly(
+    approached_table: ControllerTable, change: Callable[[dict[str, Any]], object], reason: str
+) -> None:
+    document = document_of(approached_table)
+    change(document)
+    with pytest.raises(DamagedTable, match=reason):
+        from_json(sealed(document))
+
+
+def test_a_reader_refuses_a_version_that_it_does_not_know(approached_table: ControllerTable) -> None:
+    # The readers of before know 1 and 2, and refuse 3 by the same comparison.
+    with pytest.raises(NewerVersion, match="version is 4, this reader knows only 1 to 3"):
+        from_json(sealed({**document_of(approached_table), "version": 4}))
+
+
+def test_books_with_and_without_estimators_hold_approaches(
+    approached_table: ControllerTable, table: ControllerTable, tmp_path: Path
+) -> None:
+    estimated = replace(with_estimator(approached_table, -4.0, 0.0, 12.0), id="estimated", approach=Approach(4.0, 3))
+    for tables in ((approached_table,), (table, approached_table), (table, approached_table, estimated)):
+        write_book(tables, tmp_path / "book.h5")
+        assert read_book(tmp_path / "book.h5") == tables
+        with h5py.File(tmp_path / "book.h5") as file:
+            assert file.attrs["schema_version"] == 3
+            assert ("break" in file) == (estimated in tables)
+            stages = [-1 if each.approach is None else each.approach.entrance_stage for each in tables]
+            assert file["approach_entrance_stage"][:].tolist() == stages
+    write_book((table,), tmp_path / "book.h5")
+    with h5py.File(tmp_path / "book.h5") as file:
+        assert file.attrs["schema_version"] == 1
+        assert "approach_length_m" not in file
+
+
+def test_lines_are_taken_between_equal_approaches_only(approached_table: ControllerTable) -> None:
+    faster = replace(approached_table, id="faster", target_speed_m_s=5.0)
+    assert interpolable(approached_table, faster)
+    assert between(approached_table, faster, np.float32(4.5)).entrance_stage == 1
+    assert not interpolable(approached_table, replace(faster, approach=Approach(4.0, 2)))
+    assert not interpolable(approached_table, replace(faster, approach=None))
+    longer = replace(faster, approach=Approach(4.5, 1), valid=ValidRange((-4.5, 37.45), (0.3, 9.0)))
+    assert not interpolable(approached_table, longer)
