@@ -1,5 +1,6 @@
 """The plant: cars, retarders, pneumatics, friction, sensors and motion, in SI, without solver words."""
 
+from plant_models.approach import Approach
 from plant_models.cut import Car, Cut, couple
 from plant_models.entry_speed import EntryLaw, EntrySpeed, HistogramEntrySpeed, NormalEntrySpeed
 from plant_models.errors import PlantError
@@ -13,6 +14,7 @@ from plant_models.speed_sensor import DopplerSensor
 from plant_models.track_profile import TrackProfile
 
 __all__ = [
+    "Approach",
     "Car",
     "Cut",
     "DopplerSensor",

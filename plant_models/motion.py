@@ -48,21 +48,23 @@ def braked_axles(position: RetarderPosition, cut: Cut, s_m: NDArray[np.float64])
     return count
 
 
-def path_breaks_m(position: RetarderPosition, cut: Cut, profile: TrackProfile) -> NDArray[np.float64]:
-    """Sorted positions in [0, S_exit], both included, where N(s) or the grade under an axle changes."""
+def path_breaks_m(
+    position: RetarderPosition, cut: Cut, profile: TrackProfile, start_m: float = 0.0
+) -> NDArray[np.float64]:
+    """Sorted positions in [`start_m`, S_exit], both included, where N(s) or the grade under an axle changes."""
     offsets = np.asarray(cut.axle_offsets_m)
     marks = [edge for zone in position.zones_m for edge in zone] + list(profile.starts_m)
     breaks = (np.asarray(marks)[:, None] + offsets).ravel()
     exit_m = position.exit_m(cut)
-    inner = breaks[(breaks > 1e-9) & (breaks < exit_m - 1e-9)]
-    return np.unique(np.concatenate([[0.0], np.round(inner, 9), [exit_m]]))
+    inner = breaks[(breaks > start_m + 1e-9) & (breaks < exit_m - 1e-9)]
+    return np.unique(np.concatenate([[start_m], np.round(inner, 9), [exit_m]]))
 
 
 def path_coefficients(
     position: RetarderPosition, cut: Cut, profile: TrackProfile, edges_m: NDArray[np.float64]
 ) -> PathCoefficients:
     """Exact means of gravity and brake coefficient over the cells between `edges_m`."""
-    fine = np.unique(np.concatenate([path_breaks_m(position, cut, profile), edges_m]))
+    fine = np.unique(np.concatenate([path_breaks_m(position, cut, profile, min(0.0, float(edges_m[0]))), edges_m]))
     middle = 0.5 * (fine[1:] + fine[:-1])
     axles = braked_axles(position, cut, middle)
     slope = np.array([0.0] + [n * position.force.slope_kn_per_kpa(cut, n) for n in range(1, cut.axles + 1)])

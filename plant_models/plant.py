@@ -4,15 +4,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.approach import AT_THE_ENTRANCE, Approach
 from plant_models.cut import Cut
 from plant_models.entry_speed import EntryLaw
 from plant_models.errors import require
 from plant_models.friction import Friction
-from plant_models.motion import mean_braked_axles
+from plant_models.motion import mean_braked_axles, path_breaks_m, path_coefficients
 from plant_models.retarder import RetarderPosition
 from plant_models.rolling_resistance import RollingResistance
 from plant_models.speed_sensor import DopplerSensor
 from plant_models.track_profile import TrackProfile
+
+SLOWEST_START_M_S = 0.3
 
 
 @dataclass(frozen=True)
@@ -26,6 +32,7 @@ class Plant:
     resistance: RollingResistance
     sensor: DopplerSensor
     entry: EntryLaw
+    approach: Approach = AT_THE_ENTRANCE
 
     def __post_init__(self) -> None:
         require(
@@ -33,6 +40,37 @@ class Plant:
             f"entry: {self.entry.high_key} is {self.entry.high_m_s:g}; {self.position.name} takes at most "
             f"{self.position.max_entry_speed_m_s:g} m/s: lower it or choose another retarder",
         )
+        require(
+            self.approach.initial_stage <= self.top_stage,
+            f"regulator: initial_stage is {self.approach.initial_stage}; the highest stage that this cut may be given "
+            f"is {self.top_stage}",
+        )
+
+    @property
+    def start_m(self) -> float:
+        """Path of the first axle from which on the regulator acts, metres; 0 or negative."""
+        return 0.0 - self.approach.length_m
+
+    @property
+    def entrance_stage(self) -> int:
+        """Highest stage that may be commanded while the first axle is before the entrance."""
+        return min(self.top_stage, self.approach.entrance_stage)
+
+    def start_speed_m_s(
+        self, entrance_speed_m_s: NDArray[np.float64], resistance_n_per_kn: NDArray[np.float64] | float
+    ) -> NDArray[np.float64]:
+        """Speed at `start_m` of cuts that reach the entrance with `entrance_speed_m_s`: nothing brakes in between.
+
+        No slower than `SLOWEST_START_M_S`: a cut that a steep approach would have brought from less begins with that.
+        """
+        if self.start_m == 0.0:
+            return entrance_speed_m_s
+        edges = path_breaks_m(self.position, self.cut, self.profile, self.start_m)
+        edges = np.append(edges[edges < 0.0], 0.0)
+        cells = path_coefficients(self.position, self.cut, self.profile, edges)
+        grade = float(cells.gravity_m_s2 @ np.diff(edges))
+        gained = grade + self.start_m * cells.resistance_m_s2_per_n_kn * np.asarray(resistance_n_per_kn)
+        return np.sqrt(np.maximum(entrance_speed_m_s**2 - 2.0 * gained, SLOWEST_START_M_S**2))
 
     @property
     def exit_m(self) -> float:

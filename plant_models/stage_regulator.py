@@ -47,6 +47,10 @@ class Actuator:
         """Number of stages K + 1."""
         return int(self.command.shape[1])
 
+    def mode_of(self, stage: int) -> int:
+        """The mode in which `stage` rests when it was reached from below."""
+        return int(np.argmax(self.mode_stage == stage))
+
 
 def stage_locked_actuator(position: RetarderPosition, sensor: DopplerSensor, top_stage: int, substeps: int) -> Actuator:
     """Modes and chains of `position` with its stages 0 … `top_stage` under the regulator's sampling."""

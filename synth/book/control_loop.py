@@ -74,7 +74,7 @@ def control_loop(table: ControllerTable, label: str, plant: Plant) -> ControlLoo
         response=nominal_response(plant, controller, entry, phase_s),
         trace=nominal_pass(plant, controller, MEDIAN_ENTRY, HALF_A_PERIOD),
         portrait=tuple(nominal_response(plant, controller, float(speed), phase_s) for speed in speeds),
-        hunting=hunting_report(plant, lines_of(table, np.linspace(0.0, plant.exit_m, LINE_NODES))),
+        hunting=hunting_report(plant, lines_of(table, np.linspace(plant.start_m, plant.exit_m, LINE_NODES))),
         pressure=pressure_hunting(plant),
     )
 

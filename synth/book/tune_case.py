@@ -78,8 +78,7 @@ def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable) -
         return beside_table(name, passes.run(controller), sample, target)
 
     def without_estimator() -> Measured:
-        nodes_m = np.linspace(0.0, order.setup.plant.exit_m, LINE_NODES)
-        return measured("without estimator", LineController(tuned.lines.at(nodes_m)))
+        return measured("without estimator", LineController(tuned.lines.at(tuned.lines.nodes_m(LINE_NODES))))
 
     return Comparison(
         table=Measured("table", validated.statistics, predicted.rms_m_s, predicted.passes),
@@ -113,7 +112,9 @@ def case_study(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable) -
     """Lines, policy map, what the indifferent region saves, and three passes."""
     passes, controller = order.setup.passes, TableController(validated.table)
     return CaseStudy(
-        table_lines=lines_of(validated.table, np.linspace(0.0, order.setup.plant.exit_m, LINE_NODES)),
+        table_lines=lines_of(
+            validated.table, np.linspace(order.setup.plant.start_m, order.setup.plant.exit_m, LINE_NODES)
+        ),
         solver_lines=order.solution.lines,
         policy_map=policy_map(order.solution, INDIFFERENCE_SHOWN_M2_S2),
         indifference=indifference(order, tuned),

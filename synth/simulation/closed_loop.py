@@ -72,12 +72,13 @@ class ClosedLoop:
         if cut_factor is not None:
             factor, weight = np.full(len(passes), cut_factor, dtype=np.float64), np.ones(len(passes))
         factor, path_z = fixed(factor, np.float64), fixed(passes.path_z, np.float32)
+        resistance = self.resistance_n_kn(passes.resistance_u)
         rows = np.empty((len(passes), len(self.path.gravity_m_s2)))
         kernel.brake_rows(self.path, factor, path_z, rows)
         return kernel.Draws(
             factor,
-            fixed(self.resistance_n_kn(passes.resistance_u), np.float64),
-            fixed(plant.entry.speed_m_s(passes.entry_u), np.float64),
+            fixed(resistance, np.float64),
+            fixed(plant.start_speed_m_s(plant.entry.speed_m_s(passes.entry_u), resistance), np.float64),
             fixed(passes.phase_u * plant.sensor.sample_period_s, np.float64),
             path_z,
             fixed(passes.noise_z, np.float32),
@@ -171,6 +172,9 @@ def close_loop(plant: Plant, stages: int, substeps: int | None = None) -> Closed
         # Rounded, so that the kernel sees that a pressure at rest is one and the same.
         fixed(np.round(actuator.chain_overpressure_kpa, 9), np.float64),
         actuator.substeps,
+        actuator.mode_of(plant.approach.initial_stage),
+        plant.approach.initial_stage,
+        plant.approach.entrance_stage,
     )
     sensor = plant.sensor
     period = sensor.sample_period_s
@@ -189,6 +193,8 @@ def path_cells(plant: Plant) -> kernel.Path:
     coefficients = path_coefficients(plant.position, plant.cut, plant.profile, edges)
     length = np.diff(edges)
     memory = np.append(0.0, plant.friction.path_correlation(0.5 * (length[1:] + length[:-1])))  # none before the first
+    before = int(np.searchsorted(edges, 0.0))
+    memory[before] = 0.0
     return kernel.Path(
         fixed(edges, np.float64),
         fixed(coefficients.gravity_m_s2, np.float64),
@@ -197,14 +203,22 @@ def path_cells(plant: Plant) -> kernel.Path:
         fixed(memory, np.float64),
         fixed(np.sqrt(1.0 - memory**2), np.float64),
         coefficients.resistance_m_s2_per_n_kn,
+        before,
     )
 
 
 def cell_edges_m(plant: Plant) -> NDArray[np.float64]:
     """Edges of at most 512 cells of at most 0.5 m, none of them with a change of N(s) or grade inside.
 
-    Long cuts get longer cells; if their axles alone make too many breaks, cells take the mean over a break.
+    Long cuts get longer cells; if their axles alone make too many breaks, cells take the mean over a break. Before the
+    entrance, where nothing brakes, there are no more cells than grades.
     """
+    ahead = path_breaks_m(plant.position, plant.cut, plant.profile, plant.start_m)
+    return np.concatenate([ahead[ahead < 0.0], braked_edges_m(plant)])
+
+
+def braked_edges_m(plant: Plant) -> NDArray[np.float64]:
+    """Edges of the cells from the entrance to the exit."""
     breaks = path_breaks_m(plant.position, plant.cut, plant.profile)
     if breaks.size > PATH_CELLS // 2:
         return np.linspace(0.0, plant.exit_m, PATH_CELLS + 1)
@@ -236,7 +250,7 @@ def simulate_many(
     The result does not depend on `threads` nor on how the passes are split.
     """
     loop = close_loop(plant, controller.stages)
-    cells, end = len(loop.path.gravity_m_s2), first_pass + count
+    cells, end = len(loop.path.gravity_m_s2) - loop.path.approach_cells, first_pass + count
     # Chunks end at multiples of their size, so that no block of random numbers is drawn twice.
     inner = range((first_pass // CHUNK_PASSES + 1) * CHUNK_PASSES, end, CHUNK_PASSES)
     starts, ends = [first_pass, *inner], [*inner, end]

@@ -37,7 +37,7 @@ class CommonPasses:
     def at_full_brake(self) -> ExitSample:
         """All passes under a regulator that raises at every decision: what brake power can do at most."""
         plant = self.plant
-        return self.run(full_brake(plant.top_stage + 1, plant.exit_m))
+        return self.run(full_brake(plant.top_stage + 1, plant.start_m, plant.exit_m))
 
     def trace(self, controller: Controller, index: int, cut_factor: float) -> PassTrace:
         """Pass `index` event by event, but with the friction factor `cut_factor`."""

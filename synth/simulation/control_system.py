@@ -30,11 +30,11 @@ def motion_system(plant: Plant) -> NonlinearIOSystem:
     """Motion of the cut: input p (kPa gauge), states and outputs s (m), v (m/s).
 
     Parameters of the system: `friction` ξ (1) and `resistance_n_kn` w (the class's mean). A cut at rest stays
-    where it is; outside [0, S_exit] the nearest path cell goes on.
+    where it is; outside the path the nearest path cell goes on.
     """
     import control  # start-up: python-control only where it is needed
 
-    edges = path_breaks_m(plant.position, plant.cut, plant.profile)
+    edges = path_breaks_m(plant.position, plant.cut, plant.profile, plant.start_m)
     path = path_coefficients(plant.position, plant.cut, plant.profile, edges)
     inner, gravity, brake = edges[1:-1].tolist(), path.gravity_m_s2.tolist(), path.brake_m_s2_per_kpa.tolist()
     touch = plant.position.force.touch_pressure_kpa
@@ -83,17 +83,16 @@ def nominal_loop(plant: Plant) -> InterconnectedSystem:
 
 
 def regulator_system(plant: Plant, controller: Controller) -> NonlinearIOSystem:
-    """The stage-locked regulator as a discrete-time system of the sensor's sampling period.
+    """The stage-locked regulator as a discrete-time system of the sampling period; it begins as `regulator_start`.
 
     Inputs: s (m), v (m/s, true; it is quantised here) and the mean overpressure since the sample before (kPa), which
     only an estimator looks at; output: the commanded stage. States: stage, resting mode (index of `Actuator`), samples
     for which it is still locked, filtered slope (m/s²), last measured speed (−1 before the first sample), and the eight
-    of the estimator. It starts from `regulator_start`.
+    of the estimator.
     """
     import control
 
-    actuator = regulated_actuator(plant, controller)
-    period = plant.sensor.sample_period_s
+    actuator, period = regulated_actuator(plant, controller), plant.sensor.sample_period_s
     sensor = regulator.Sensor(period, 0.0, plant.sensor.resolution_m_s)
     law = controller.law()
     gain = period / (period + law.filter_s)
@@ -115,13 +114,14 @@ def regulator_system(plant: Plant, controller: Controller) -> NonlinearIOSystem:
             return [stage]
         measured = regulator.measure(float(u[1]), 0.0, sensor)
         if law.coefficients.shape[0] > 0:
-            speed, _ = estimated(x, u, measured)
-            tabled = law.coefficients, law.has_line, law.valid, law.entrance_stage
-            step = regulator.table_decision(*tabled, stage, float(u[0]), speed)
-            return [min(max(stage + step, 0), top)]
-        ahead = measured + law.lead_s * filtered_slope(x, measured)
-        lines = (law.lower, law.upper, law.spacing_m, law.multi_step)
-        return [regulator.stage_by_lines(*lines, stage, top, float(u[0]), ahead)]
+            seen = stage, float(u[0]), estimated(x, u, measured)[0]
+            step = regulator.table_decision(law.coefficients, law.has_line, law.valid, law.entrance_stage, *seen)
+            wanted = min(max(stage + step, 0), top)
+        else:
+            ahead = measured + law.lead_s * filtered_slope(x, measured)
+            lines = (law.lower, law.upper, law.start_m, law.spacing_m, law.multi_step)
+            wanted = regulator.stage_by_lines(*lines, stage, top, float(u[0]), ahead)
+        return [regulator.admitted(stage, wanted, float(u[0]), plant.approach.entrance_stage)]
 
     def next_state(t: float, x: Any, u: Any, params: dict[str, float]) -> list[float]:
         [wanted] = stage_wanted(t, x, u, params)
@@ -144,9 +144,11 @@ def regulator_system(plant: Plant, controller: Controller) -> NonlinearIOSystem:
     )
 
 
-def regulator_start() -> NDArray[np.float64]:
-    """The state of `regulator_system` before the first sample: released, at rest, nothing measured."""
-    return np.array([0.0, 0.0, 0.0, 0.0, -1.0, *estimator.begin()])
+def regulator_start(plant: Plant, controller: Controller) -> NDArray[np.float64]:
+    """The state of `regulator_system` before the first sample: at rest as the plant has it, nothing measured."""
+    stage = plant.approach.initial_stage
+    mode = regulated_actuator(plant, controller).mode_of(stage)
+    return np.array([float(stage), float(mode), 0.0, 0.0, -1.0, *estimator.begin()])
 
 
 def regulated_actuator(plant: Plant, controller: Controller) -> Actuator:

@@ -42,7 +42,7 @@ class TableController:
             fixed(table.valid_range, np.float32),
         )
         by_table = *arrays, table.entrance_stage
-        return regulator.Rule(*by_table, none, none, 1.0, False, 0.0, 0.0, *estimator_arrays(table.estimator))
+        return regulator.Rule(*by_table, none, none, 0.0, 1.0, False, 0.0, 0.0, *estimator_arrays(table.estimator))
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,8 @@ class LineController:
             lines.stages - 1,
             fixed(lines.lower_m_s, np.float64),
             fixed(lines.upper_m_s, np.float64),
-            float(lines.nodes_m[-1]) / (lines.nodes_m.size - 1),
+            float(lines.nodes_m[0]),
+            float(lines.nodes_m[-1] - lines.nodes_m[0]) / (lines.nodes_m.size - 1),
             self.multi_step,
             self.lead_s,
             self.slope_filter_s,
@@ -84,11 +85,11 @@ class LineController:
         )
 
 
-def full_brake(stages: int, exit_m: float) -> LineController:
-    """A regulator of so many stages that raises at every decision, as far as there is a stage."""
+def full_brake(stages: int, start_m: float, exit_m: float) -> LineController:
+    """A regulator of so many stages that raises at every decision, as far as there is a stage and it may."""
     lower, upper = np.full((stages, 2), -np.inf), np.full((stages, 2), -1.0)  # below every speed
     upper[-1] = np.inf
-    return LineController(SwitchingLines(np.array([0.0, exit_m]), lower, upper))
+    return LineController(SwitchingLines(np.array([start_m, exit_m]), lower, upper))
 
 
 Controller = TableController | LineController

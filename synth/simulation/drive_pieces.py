@@ -14,8 +14,12 @@ def drive_pieces(drive: Drive, period_s: float) -> Pieces:
     modes, substeps = len(drive.mode_overpressure_kpa), drive.substeps
     resting, part = 1 + modes, period_s / substeps
     # Piece 0 lasts until the first sample, which each pass has elsewhere; then the resting modes.
-    kpa, parts = [drive.mode_overpressure_kpa[:1], drive.mode_overpressure_kpa], [np.zeros(resting)]
-    places, after = [np.zeros(resting, dtype=np.int64)], [np.append(1, np.arange(1, resting))]
+    begins_at = drive.initial_mode
+    kpa, parts = (
+        [drive.mode_overpressure_kpa[begins_at : begins_at + 1], drive.mode_overpressure_kpa],
+        [np.zeros(resting)],
+    )
+    places, after = [np.zeros(resting, dtype=np.int64)], [np.append(1 + begins_at, np.arange(1, resting))]
     first, count = [], resting
     for chain, mode in enumerate(drive.chain_mode):
         played = drive.chain_overpressure_kpa[chain, : drive.chain_samples[chain] * substeps]
@@ -40,4 +44,6 @@ def drive_pieces(drive: Drive, period_s: float) -> Pieces:
         command=fixed(np.where(none, 0, number[np.asarray(first)[drive.command]]), np.int64),
         resting=resting,
         sampled=int(np.sum(place % substeps == 0)),
+        initial_stage=drive.initial_stage,
+        entrance_stage=drive.entrance_stage,
     )

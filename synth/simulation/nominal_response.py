@@ -43,7 +43,7 @@ SOLVER = {"method": "RK45", "rtol": 1e-9, "atol": 1e-10, "max_step": 0.02}
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class NominalResponse:
-    """One nominal pass, arrays of shape (points,), from the entrance to the exit or to the stall.
+    """One nominal pass, arrays of shape (points,), from where the regulator acts to the exit or to the stall.
 
     `stage` is the commanded stage, `pressure_kpa` the gauge pressure in the cylinders.
     """
@@ -68,18 +68,20 @@ class NominalResponse:
 
 
 def nominal_response(plant: Plant, controller: Controller, entry_speed_m_s: float, phase_s: float) -> NominalResponse:
-    """The nominal pass of `plant` under `controller`, released at the entrance.
+    """The nominal pass of `plant` under `controller`, from where the regulator acts.
 
-    `phase_s`: time of the first sample after the entrance, 0 … sampling period. Friction is 1, resistance the
-    class's mean; the sensor quantises but has no noise.
+    `entry_speed_m_s` at the entrance; `phase_s`: time of the first sample after the beginning, 0 … sampling period.
+    Friction is 1, resistance the class's mean; the sensor quantises but has no noise.
     """
     loop, regulator = nominal_loop(plant), regulator_system(plant, controller)
     rests_kpa = regulated_actuator(plant, controller).mode_pressure_kpa
     position, sensor = plant.position, plant.sensor
-    memory, over_kpa = regulator_start(), 0.0
+    memory, over_kpa = regulator_start(plant, controller), 0.0
+    initial_kpa = rests_kpa[int(memory[1])]
+    start_speed = plant.start_speed_m_s(np.array(entry_speed_m_s), plant.resistance.mean_n_per_kn)
     schedule = [(-np.inf, CLOSED)]
-    points = played(loop, np.array([0.0, entry_speed_m_s, rests_kpa[0]]), 0.0, phase_s, schedule)
-    stages = [np.zeros(points.shape[1])]
+    points = played(loop, np.array([plant.start_m, float(start_speed), initial_kpa]), 0.0, phase_s, schedule)
+    stages = [np.full(points.shape[1], memory[0])]
     parts, sample = [points], 0
     while points[1, -1] < plant.exit_m and points[2, -1] > 0.0 and points[0, -1] < kernel.LONGEST_PASS_S:
         now, state = phase_s + sample * sensor.sample_period_s, points[1:, -1]

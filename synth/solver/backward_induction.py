@@ -79,6 +79,7 @@ def solve_all(
         hidden_prior(c).astype(value_type), *sweep_arguments(c),
         c.scenarios.factor, c.scenarios.extra_m_s2,
         c.grid.path_step_m, c.grid.energy_step_m2_s2, c.plant.sensor.sample_period_s, len(c.entry),
+        c.approach_nodes, c.plant.entrance_stage,
         values, lower, upper, gain_down, gain_up,
     )  # fmt: skip
     sweep(*arguments)

@@ -100,7 +100,7 @@ class Evaluation:
         arguments = (
             policy.down, policy.up, policy.down_slope, policy.up_slope,
             *criterion.exit_costs(c.grid.speed_m_s, self.aim.target_speed_m_s),
-            criterion.switching_tolerance_m2_s2, c.entry, *shared_arguments(c), c.scenarios.factor[i],
+            criterion.switching_tolerance_m2_s2, c.entry, c.entry_mode, *shared_arguments(c), c.scenarios.factor[i],
             c.scenarios.extra_m_s2[i], c.grid.path_step_m, c.grid.energy_step_m2_s2, c.plant.sensor.sample_period_s,
             density, band, by_lower, by_upper,
         )  # fmt: skip

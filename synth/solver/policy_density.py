@@ -35,6 +35,7 @@ def commands(chain: Chain, lines: SwitchingLines) -> Commands:
     nodes, points = len(chain.drive_m_s2), len(chain.grid.speed_m_s)
     lower, upper = lines.lower_m_s[:, :nodes].T.copy(), lines.upper_m_s[:, :nodes].T.copy()
     lower, upper, noise_m_s = chain.measurement.thresholds(lower, upper)
+    upper[: chain.approach_nodes, chain.plant.entrance_stage :] = np.inf  # before the entrance, no further
     arrays = [np.empty((nodes, lines.stages, points)) for _ in range(4)]
     command_probabilities(lower, upper, chain.grid.speed_m_s, noise_m_s, *arrays)
     return Commands(*arrays)
@@ -109,7 +110,7 @@ def forward_all(
     factor = c.scenarios.factor[scenarios]
     exits, totals = np.empty((len(factor), len(c.grid.speed_m_s))), np.empty((len(factor), 4))
     arguments = (
-        policy.down, policy.up, c.entry, *shared_arguments(c), factor, c.scenarios.extra_m_s2[scenarios],
+        policy.down, policy.up, c.entry, c.entry_mode, *shared_arguments(c), factor, c.scenarios.extra_m_s2[scenarios],
         c.grid.path_step_m, c.grid.energy_step_m2_s2, c.plant.sensor.sample_period_s, density, band, exits, totals,
     )  # fmt: skip
     forward(*arguments)

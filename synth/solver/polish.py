@@ -6,7 +6,7 @@ Its gradient comes from one forward and one backward pass (`evaluation.Evaluatio
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from plant_models.errors import require
 from synth.solver.one_blas_thread import one_blas_thread
-from synth.solver.polynomial_lines import MINIMUM_GAP_M_S, PolynomialLines, basis, gap_of, opened
+from synth.solver.polynomial_lines import MINIMUM_GAP_M_S, PolynomialLines, gap_of, opened
 from synth.solver.switching_lines import SwitchingLines
 
 LOOSE_M_S = 0.3
@@ -58,7 +58,7 @@ def polish(
     from scipy.optimize import minimize  # start-up: scipy only where it is needed
 
     free, width = np.nonzero(start.has_line), start.degree + 1
-    matrix = basis(nodes_m, start.exit_m, start.degree)[: curvature.shape[2]]
+    matrix = start.basis(nodes_m)[: curvature.shape[2]]
     first = evaluate(start.at(nodes_m))
     before = first[0]
     require(
@@ -73,7 +73,7 @@ def polish(
     def unpack(y: NDArray[np.float64]) -> PolynomialLines:
         coefficients = start.coefficients.copy()
         coefficients[free] += np.einsum("lab,lb->la", scale, y.reshape(-1, width))
-        return PolynomialLines(start.exit_m, coefficients, start.has_line)
+        return replace(start, coefficients=coefficients)
 
     def objective(y: Any) -> Any:
         nonlocal calls
@@ -116,8 +116,8 @@ def gap_constraint(
     lines: PolynomialLines, free: tuple[NDArray[np.int64], ...], scale: NDArray[np.float64]
 ) -> dict[str, Any]:
     """Linear inequality V_hi,k(s) − V_lo,k(s) − gap ≥ 0 at points along the path, for SLSQP."""
-    points = np.linspace(0.0, lines.exit_m, 13)
-    matrix = basis(points, lines.exit_m, lines.degree)
+    points = lines.nodes_m(13)
+    matrix = lines.basis(points)
     index = {(int(k), int(side)): i for i, (k, side) in enumerate(zip(*free, strict=True))}
     both = [k for k in range(len(lines.has_line)) if lines.has_line[k].all()]
     width = lines.degree + 1

@@ -30,10 +30,11 @@ def fit_lines(solution: Solution, occupancy: NDArray[np.float64], degree: int) -
     sample it costs nothing to be off it; a thousandth of the largest weight keeps it near its matrix.
     """
     t = solution.chain
-    nodes, exit_m, stages = t.grid.path_m[:-1], t.plant.exit_m, t.actuator.stages
+    nodes, stages = t.grid.path_m[:-1], t.actuator.stages
+    ends_m = t.plant.start_m, t.plant.exit_m
     has_line = np.ones((stages, 2), dtype=bool)
     has_line[0, 0] = has_line[-1, 1] = False
-    matrix = basis(nodes, exit_m, degree)
+    matrix = basis(nodes, *ends_m, degree)
     coefficients = np.zeros((stages, 2, degree + 1))
     curvature = np.zeros((stages, 2, len(nodes)))
     per_stage = stage_occupancy(occupancy, t.actuator.mode_stage, stages)
@@ -48,7 +49,7 @@ def fit_lines(solution: Solution, occupancy: NDArray[np.float64], degree: int) -
             continue
         root = np.sqrt(weight[known] + 1e-3 * weight[known].max() + 1e-12)
         coefficients[k, side] = np.linalg.lstsq(matrix[known] * root[:, None], line[known] * root, rcond=None)[0]
-    return Fit(opened(PolynomialLines(exit_m, coefficients, has_line)), curvature)
+    return Fit(opened(PolynomialLines(*ends_m, coefficients, has_line)), curvature)
 
 
 def stage_occupancy(occupancy: NDArray[np.float64], mode_stage: NDArray[np.int64], stages: int) -> NDArray[np.float64]:

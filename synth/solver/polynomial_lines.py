@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,11 +17,12 @@ MINIMUM_GAP_M_S = 0.04
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class PolynomialLines:
-    """Lines as Legendre series in x = 2 s/S_exit − 1 (well conditioned; the table holds powers of s).
+    """Lines as Legendre series in x, −1 at `start_m` and 1 at S_exit (well conditioned; tables hold powers of s).
 
     `coefficients` (K + 1, 2, r + 1): lower, upper; `has_line` (K + 1, 2).
     """
 
+    start_m: float
     exit_m: float
     coefficients: NDArray[np.float64]
     has_line: NDArray[np.bool_]
@@ -33,7 +34,7 @@ class PolynomialLines:
 
     def at(self, nodes_m: NDArray[np.float64]) -> SwitchingLines:
         """The lines at path nodes, ±inf where there is none."""
-        values: NDArray[np.float64] = self.coefficients @ basis(nodes_m, self.exit_m, self.degree).T
+        values: NDArray[np.float64] = self.coefficients @ self.basis(nodes_m).T
         lower = np.where(self.has_line[:, 0, None], values[:, 0], -np.inf)
         upper = np.where(self.has_line[:, 1, None], values[:, 1], np.inf)
         return SwitchingLines(np.array(nodes_m), lower, upper)
@@ -43,21 +44,30 @@ class PolynomialLines:
         series = np.polynomial.legendre.Legendre
         converted = np.zeros_like(self.coefficients)
         for index in np.ndindex(*self.has_line.shape):
-            power = series(self.coefficients[index], domain=[0.0, self.exit_m]).convert(
+            power = series(self.coefficients[index], domain=[self.start_m, self.exit_m]).convert(
                 kind=np.polynomial.Polynomial, domain=[-1.0, 1.0]
             )
             converted[index][: len(power.coef)] = power.coef
         return converted
 
+    def basis(self, nodes_m: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Legendre polynomials at the nodes, (nodes, r + 1)."""
+        return basis(nodes_m, self.start_m, self.exit_m, self.degree)
 
-def basis(nodes_m: NDArray[np.float64], exit_m: float, degree: int) -> NDArray[np.float64]:
+    def nodes_m(self, count: int) -> NDArray[np.float64]:
+        """Equally spaced path nodes over the whole path of the lines."""
+        return np.linspace(self.start_m, self.exit_m, count)
+
+
+def basis(nodes_m: NDArray[np.float64], start_m: float, exit_m: float, degree: int) -> NDArray[np.float64]:
     """Legendre polynomials at the nodes, (nodes, r + 1)."""
-    return np.asarray(np.polynomial.legendre.legvander(2.0 * nodes_m / exit_m - 1.0, degree), dtype=np.float64)
+    x = 2.0 * (nodes_m - start_m) / (exit_m - start_m) - 1.0
+    return np.asarray(np.polynomial.legendre.legvander(x, degree), dtype=np.float64)
 
 
 def gap_of(lines: PolynomialLines) -> float:
     """Smallest V_hi − V_lo over stages and a fine path mesh."""
-    at = lines.at(np.linspace(0.0, lines.exit_m, 201))
+    at = lines.at(lines.nodes_m(201))
     return float((at.upper_m_s - at.lower_m_s).min())
 
 
@@ -66,7 +76,7 @@ def opened(lines: PolynomialLines) -> PolynomialLines:
 
     The same object where nothing need be moved.
     """
-    at = lines.at(np.linspace(0.0, lines.exit_m, 201))
+    at = lines.at(lines.nodes_m(201))
     short = MINIMUM_GAP_M_S - (at.upper_m_s - at.lower_m_s).min(axis=1)
     if not (short > 0.0).any():
         return lines
@@ -74,4 +84,4 @@ def opened(lines: PolynomialLines) -> PolynomialLines:
     for k in np.nonzero(short > 0.0)[0]:
         coefficients[k, 0, 0] -= 0.5 * short[k]
         coefficients[k, 1, 0] += 0.5 * short[k]
-    return PolynomialLines(lines.exit_m, coefficients, lines.has_line)
+    return replace(lines, coefficients=coefficients)

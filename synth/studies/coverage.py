@@ -149,7 +149,7 @@ def rows_of(case: str, options: Options) -> Iterator[Row]:
 
 def simulated(plant: Plant, controllers: Sequence[TableController | LineController], count: int) -> list[ExitSample]:
     """The passes of these controllers and of a full brake."""
-    everyone = (*controllers, full_brake(plant.top_stage + 1, plant.exit_m))
+    everyone = (*controllers, full_brake(plant.top_stage + 1, plant.start_m, plant.exit_m))
     return [simulate_many(plant, each, SEED, count, threads=THREADS) for each in everyone]
 
 

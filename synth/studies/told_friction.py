@@ -65,8 +65,12 @@ class ToldFriction:
         whole = passes.part(0, len(passes) - len(passes) % count)
         strata = []
         for i, (factor, lines) in enumerate(zip(self.factor, self.lines, strict=True)):
-            nodes = np.linspace(0.0, lines.exit_m, LINE_NODES)
-            strata.append(loop.run(LineController(lines.at(nodes)), loop.draws(whole.every(count, i), float(factor))))
+            strata.append(
+                loop.run(
+                    LineController(lines.at(lines.nodes_m(LINE_NODES))),
+                    loop.draws(whole.every(count, i), float(factor)),
+                )
+            )
         return interleaved(strata, self.weight)
 
 

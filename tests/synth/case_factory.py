@@ -119,7 +119,7 @@ def make_polynomials(plant: Plant) -> PolynomialLines:
     stages = plant.top_stage + 1
     has_line = np.ones((stages, 2), dtype=bool)
     has_line[0, 0] = has_line[-1, 1] = False
-    return PolynomialLines(plant.exit_m, np.zeros((stages, 2, 4)), has_line)
+    return PolynomialLines(plant.start_m, plant.exit_m, np.zeros((stages, 2, 4)), has_line)
 
 
 def measured(name: str, sample: ExitSample, table: ExitSample, target: float, promised: float) -> Measured:

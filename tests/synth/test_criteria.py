@@ -31,7 +31,7 @@ from synth.solver.finer_speed import finer_in_speed, known_factors
 from synth.solver.policy_density import exit_density, scenario_densities
 from synth.solver.polish import whitening
 from synth.solver.polynomial_fit import Fit
-from synth.solver.polynomial_lines import PolynomialLines, basis
+from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.required_lines import required_lines
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tuned_lines import fitted, polished
@@ -180,7 +180,7 @@ def test_an_active_limit_is_met_where_lagrangian_and_limit_meet(
     ground = finer_in_speed(design, 2.0, check.scenarios)
     priced = Criterion(terminal=PenalisedOverspeed(found.multiplier_m2_s2, 0.05))
     cost, by_lower, by_upper = Evaluation(ground, Aim(TARGET_M_S, priced)).gradient(lines.at(ground.grid.path_m))
-    matrix, free_lines = basis(ground.grid.path_m[:-1], lines.exit_m, DEGREE), np.nonzero(lines.has_line)
+    matrix, free_lines = lines.basis(ground.grid.path_m[:-1]), np.nonzero(lines.has_line)
     gradient = np.stack([by_lower @ matrix, by_upper @ matrix], axis=1)[free_lines] / cost
     step = np.einsum("lab,la->lb", whitening(fit.curvature[free_lines], matrix, cost), gradient)
     print("promised", 0.5 * float((step**2).sum()))

@@ -111,7 +111,7 @@ def test_a_trim_never_makes_worse() -> None:
 def test_a_trim_cannot_make_lines_meet(plant_of: Callable[[float], Plant]) -> None:
     constant = np.zeros((2, 2, 2))
     constant[:, 0, 0], constant[:, 1, 0] = 3.0, 3.1
-    lines = PolynomialLines(37.0, constant, np.array([[False, True], [True, True]]))
+    lines = PolynomialLines(0.0, 37.0, constant, np.array([[False, True], [True, True]]))
     at = shifted(lines, 0.09, -0.05).at(np.linspace(0.0, 37.0, 5))
     assert (at.upper_m_s - at.lower_m_s)[1] == pytest.approx(0.04)
     assert (0.5 * (at.upper_m_s + at.lower_m_s))[1] == pytest.approx(3.07)

@@ -50,7 +50,7 @@ def lines_with(lower: float, upper: float) -> PolynomialLines:
     coefficients[:, 0, 0], coefficients[:, 1, 0] = lower, upper
     has_line = np.ones((3, 2), dtype=bool)
     has_line[0, 0] = has_line[-1, 1] = False
-    return PolynomialLines(30.0, coefficients, has_line)
+    return PolynomialLines(0.0, 30.0, coefficients, has_line)
 
 
 def test_powers_of_s_are_the_same_polynomial(fit: Fit) -> None:

@@ -28,7 +28,7 @@ def cubic(plant: Plant, gap_m_s: float) -> PolynomialLines:
     coefficients[:, :, 1], coefficients[:, :, 3] = -0.3, 0.0123456789
     has_line = np.ones((stages, 2), dtype=bool)
     has_line[0, 0] = has_line[-1, 1] = False
-    return PolynomialLines(plant.exit_m, coefficients, has_line)
+    return PolynomialLines(plant.start_m, plant.exit_m, coefficients, has_line)
 
 
 def table_of(plant: Plant, gap_m_s: float = 0.3) -> ControllerTable:

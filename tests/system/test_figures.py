@@ -41,7 +41,7 @@ def test_intervals_of_real_tables_hold_the_truth(path: Path) -> None:
     """400 blocks of the fewest passes; plain ones held the rms in 57 and 67 of 100 blocks of twice as many."""
     table = read_json(path)
     _, plant = plant_for(table, load_config(None), "test")
-    target, full = table.target_speed_m_s, full_brake(plant.top_stage + 1, plant.exit_m)
+    target, full = table.target_speed_m_s, full_brake(plant.top_stage + 1, plant.start_m, plant.exit_m)
     every, at_full = (
         simulate_many(plant, each, 9, BLOCKS * PASSES, threads=2) for each in (TableController(table), full)
     )

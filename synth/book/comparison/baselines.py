@@ -127,8 +127,8 @@ def energy_rule(
 
 
 def line_nodes_m(loop: ClosedLoop) -> NDArray[np.float64]:
-    """Equally spaced nodes from the entrance to the exit."""
-    return np.linspace(0.0, loop.plant.exit_m, LINE_NODES)
+    """Equally spaced nodes from where the regulator acts to the exit."""
+    return np.linspace(loop.plant.start_m, loop.plant.exit_m, LINE_NODES)
 
 
 OFFSETS_M_S = (-0.2, 0.0, 0.1, 0.2, 0.4)

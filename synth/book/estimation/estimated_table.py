@@ -109,7 +109,7 @@ def designed_lines(problem: Problem, design: Chain, degree: int, error_m_s: floa
 
 def controller_of(lines: PolynomialLines, estimator: Estimator | None) -> LineController:
     """A regulator that compares the estimated speed with `lines`; without an estimator, the measured one."""
-    return LineController(lines.at(np.linspace(0.0, lines.exit_m, 301)), estimator=estimator)
+    return LineController(lines.at(lines.nodes_m(301)), estimator=estimator)
 
 
 def shifted(lines: PolynomialLines, lower_m_s: float, upper_m_s: float) -> PolynomialLines:

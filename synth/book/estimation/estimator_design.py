@@ -21,13 +21,12 @@ def estimator_of(plant: Plant) -> Estimator:
     Quantisation counts as noise, resolution/√12. D and W are exact at the breaks of N(s) and grade; very long cuts,
     with more breaks than a table takes, have evenly spaced ones instead.
     """
-    breaks = path_breaks_m(plant.position, plant.cut, plant.profile)
-    inside = breaks[(breaks > 0.0) & (breaks < plant.exit_m)]
-    edges = np.unique(np.concatenate([[0.0], inside, [plant.exit_m]]))
+    breaks = path_breaks_m(plant.position, plant.cut, plant.profile, plant.start_m)
+    edges = np.unique(breaks)
     # Slivers between nearly equal breaks would vanish in float32.
     edges = edges[np.concatenate([[True], np.diff(edges) > 2e-3])]
     if len(edges) > MOST_BREAKS:
-        edges = np.linspace(0.0, plant.exit_m, MOST_BREAKS)
+        edges = np.linspace(plant.start_m, plant.exit_m, MOST_BREAKS)
     cells = path_coefficients(plant.position, plant.cut, plant.profile, edges)
     drive = cells.free_m_s2(plant.resistance.mean_n_per_kn)
     length = np.diff(edges)

@@ -16,7 +16,15 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from synth.kernels.loop.regulator import Rule, Sensor, estimated_speed, measure, stage_by_lines, table_decision
+from synth.kernels.loop.regulator import (
+    Rule,
+    Sensor,
+    admitted,
+    estimated_speed,
+    measure,
+    stage_by_lines,
+    table_decision,
+)
 from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 
 Floats = NDArray[np.float64]
@@ -35,10 +43,11 @@ EVENT_FIELDS = 6
 
 
 class Path(NamedTuple):
-    """Cells along the path: `edges_m` (C + 1,); all others (C,) but the last.
+    """Cells along the path: `edges_m` (C + 1,); all others (C,) but the last two.
 
-    `eta_std` of η in the cell, `eta_memory` correlation with the cell before (0 in the first) and
-    `eta_fresh` = sqrt(1 − memory²); `drag_m_s2_per_n_kn`: deceleration by one N/kN of resistance.
+    `eta_std` of η in the cell, `eta_memory` correlation with the cell before (0 in the first that brakes) and
+    `eta_fresh` = sqrt(1 − memory²); `drag_m_s2_per_n_kn`: deceleration by one N/kN of resistance; `approach_cells`:
+    how many lie before the entrance.
     """
 
     edges_m: Floats
@@ -48,10 +57,15 @@ class Path(NamedTuple):
     eta_memory: Floats
     eta_fresh: Floats
     drag_m_s2_per_n_kn: float
+    approach_cells: int
 
 
 class Drive(NamedTuple):
-    """Resting modes and chains of the actuator (`stage_regulator.Actuator`, same names); mode 0 is released."""
+    """Resting modes and chains of the actuator (`stage_regulator.Actuator`, same names).
+
+    A pass begins at `initial_mode` of `initial_stage`; before the entrance no higher stage than `entrance_stage` is
+    commanded, whatever the law.
+    """
 
     mode_overpressure_kpa: Floats
     command: Ints
@@ -59,10 +73,13 @@ class Drive(NamedTuple):
     chain_samples: Ints
     chain_overpressure_kpa: Floats
     substeps: int
+    initial_mode: int
+    initial_stage: int
+    entrance_stage: int
 
 
 class Draws(NamedTuple):
-    """What chance gives to n passes: ξ_cut, w0, entry speed, first sample (n,); z of path and sensor (n, ·).
+    """What chance gives to n passes: ξ_cut, w0, speed at the beginning, first sample (n,); z of path and sensor (n, ·).
 
     `brake_m_s2_per_kpa` (n, C) follows from ξ_cut and path_z (`brake_rows`): worked out once for all controllers.
     `weight` (n,): how many cuts each pass stands for; no kernel reads it.
@@ -131,23 +148,24 @@ def run_pass(
     edges_m: Floats, free: Floats, brake: Floats, drive: Drive, sensor: Sensor, law: Rule,
     entry_m_s: float, first_sample_s: float, noise_z: NDArray[np.float32], events: Floats, known: NDArray[np.float32],
 ) -> Any:  # fmt: skip
-    """One pass from the entrance, released, to the exit; returns (v, time, status, switchings, events).
+    """One pass from where the regulator acts to the exit; returns (v, time, status, switchings, events).
 
     A pressure, stage or speed in `events` holds from its time on; the last event is the end of the pass. `known` (8,)
     is memory for the estimator.
     """
-    coefficients, has_line, valid, gate, lower, upper, spacing_m, multi_step, lead_s, filter_s, parameters, work = law
-    mode_kpa, command, chain_mode, chain_samples, chain_kpa, substeps = drive
+    coefficients, has_line, valid, gate, lower, upper, start_m, spacing_m, multi_step, lead_s, filter_s = law[:11]
+    parameters, work = law.estimator_parameters, law.estimator_work
+    mode_kpa, command, chain_mode, chain_samples, chain_kpa, substeps, mode, stage, entrance_stage = drive
     period, part = sensor.period_s, sensor.period_s / substeps
     tabled, estimating = coefficients.shape[0] > 0, work.shape[1] > 0
     known[:], passed_kpa = 0.0, 0.0
     top = command.shape[1] - 1
     gain, longest = period / (period + filter_s), int(LONGEST_PASS_S / period)
-    mode, sample, switchings, slope, before = 0, 0, 0, 0.0, math.nan
-    kpa = mode_kpa[0]
-    count = note(events, 0, 0.0, 0.0, entry_m_s, kpa, 0, math.nan)
-    cell, s, v, time, status = advance(edges_m, free, brake, kpa, first_sample_s, 0, 0.0, entry_m_s)
-    stage, chain, played = 0, -1, 0
+    sample, switchings, slope, before = 0, 0, 0.0, math.nan
+    kpa = mode_kpa[mode]
+    count = note(events, 0, 0.0, edges_m[0], entry_m_s, kpa, stage, math.nan)
+    cell, s, v, time, status = advance(edges_m, free, brake, kpa, first_sample_s, 0, edges_m[0], entry_m_s)
+    chain, played = -1, 0
     # One turn of the loop is one sampling period, at rest or within a chain.
     while status == MOVING and (chain >= 0 or sample < longest):
         measured = math.nan
@@ -166,7 +184,8 @@ def run_pass(
                 wanted = min(max(stage + step, 0), top)
             else:
                 ahead = measured + lead_s * slope
-                wanted = stage_by_lines(lower, upper, spacing_m, multi_step, stage, top, s, ahead)
+                wanted = stage_by_lines(lower, upper, start_m, spacing_m, multi_step, stage, top, s, ahead)
+            wanted = admitted(stage, wanted, s, entrance_stage)
             if wanted != stage:
                 chain, played, stage = command[mode, wanted], 0, wanted
                 switchings += 1
@@ -201,13 +220,17 @@ def run_pass(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def brake_rows(path: Path, cut_factor: Floats, path_z: NDArray[np.float32], rows: Floats) -> None:
-    """Deceleration by one kPa in every cell of every pass, `rows` (n, C): β·ξ_cut·(1 + η), η from cell to cell."""
+    """Deceleration by one kPa in every cell of every pass, `rows` (n, C): β·ξ_cut·(1 + η), η from cell to cell.
+
+    Before the entrance nothing brakes and no number is used up: the same cut meets the same η with any approach.
+    """
     # Several passes at once: a pass alone would wait for each cell's η before the next.
-    x, cells = np.empty(TOGETHER), rows.shape[1]
+    x, cells, before = np.empty(TOGETHER), rows.shape[1], path.approach_cells
+    rows[:, :before] = 0.0
     for first in range(0, rows.shape[0], TOGETHER):
         x[:] = 0.0
         passes = min(TOGETHER, rows.shape[0] - first)
-        for j in range(cells):
+        for j in range(before, cells):
             memory, fresh, std, brake = (
                 path.eta_memory[j],
                 path.eta_fresh[j],
@@ -215,7 +238,7 @@ def brake_rows(path: Path, cut_factor: Floats, path_z: NDArray[np.float32], rows
                 path.brake_m_s2_per_kpa[j],
             )
             for k in range(passes):
-                x[k] = memory * x[k] + fresh * path_z[first + k, j]
+                x[k] = memory * x[k] + fresh * path_z[first + k, j - before]
                 factor = cut_factor[first + k] * max(0.0, 1.0 + std * x[k])  # bars do not push
                 rows[first + k, j] = brake * factor
 

@@ -96,14 +96,14 @@ def move(work: Work, active: int, path: Path, brakes: Floats, pieces: Pieces, lo
 
 
 @borrowing_inline
-def begin(x: Floats, n: Ints, lane: int, i: int, path: Path, draws: Draws) -> None:
-    """Pass `i` enters, released, on `lane`; its sample −1 lasts until the first."""
-    x[S + lane], x[V + lane] = 0.0, draws.entry_m_s[i]
+def begin(x: Floats, n: Ints, lane: int, i: int, path: Path, pieces: Pieces, draws: Draws) -> None:
+    """Pass `i` begins on `lane`; its sample −1 lasts until the first."""
+    x[S + lane], x[V + lane] = path.edges_m[0], draws.entry_m_s[i]
     x[LEFT_S + lane], x[FIRST_S + lane] = draws.first_sample_s[i], draws.first_sample_s[i]
     x[DRAG + lane] = path.drag_m_s2_per_n_kn * draws.resistance_n_kn[i]
     x[SLOPE + lane], x[BEFORE + lane] = 0.0, math.nan
     n[CELL + lane], n[ROW + lane], n[PASS + lane] = 0, i * path.gravity_m_s2.shape[0], i
-    n[PIECE + lane], n[SAMPLE + lane], n[STAGE + lane], n[SWITCHINGS + lane] = 0, -1, 0, 0
+    n[PIECE + lane], n[SAMPLE + lane], n[STAGE + lane], n[SWITCHINGS + lane] = 0, -1, pieces.initial_stage, 0
 
 
 @borrowing_inline
@@ -164,7 +164,7 @@ def run_lanes(path: Path, pieces: Pieces, sensor: Sensor, law: Rule, draws: Draw
     looked_at = pieces.sampled if law.lead_s != 0.0 else pieces.resting
     clear(work)
     for lane in range(active):
-        begin(x, n, lane, lane, path, draws)
+        begin(x, n, lane, lane, path, pieces, draws)
     following = active
     while active > 0:
         waiting, ended = move(work, active, path, brakes, pieces, looked_at, longest)
@@ -176,7 +176,7 @@ def run_lanes(path: Path, pieces: Pieces, sensor: Sensor, law: Rule, draws: Draw
             lane = work.ended[k]
             record(work, lane, longest, path, pieces, sensor, draws, exits)
             if following < passes:
-                begin(x, n, lane, following, path, draws)
+                begin(x, n, lane, following, path, pieces, draws)
                 fetch_ahead(following + 2, path, draws)
                 following += 1
             else:

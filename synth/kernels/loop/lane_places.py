@@ -29,7 +29,7 @@ class Pieces(NamedTuple):
     chain several that end in a resting mode. Pieces below `resting` are at rest (1 + mode), those below `sampled` begin
     a sample, at rest or within a chain. `kpa`, `duration_s`, `after` (P,): overpressure, duration (that of piece 0 is
     each pass's own, noted as 0) and the piece that follows; `start_s` (P,) since the sample that it begins in.
-    `command` (modes, K + 1): first piece of the chain to a stage.
+    `command` (modes, K + 1): first piece of the chain to a stage. `initial_stage`, `entrance_stage` as in `Drive`.
     """
 
     kpa: Floats
@@ -39,6 +39,8 @@ class Pieces(NamedTuple):
     command: Ints
     resting: int
     sampled: int
+    initial_stage: int
+    entrance_stage: int
 
 
 class Work(NamedTuple):

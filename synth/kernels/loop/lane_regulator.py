@@ -25,7 +25,7 @@ from synth.kernels.loop.lane_places import (
     V,
     Work,
 )
-from synth.kernels.loop.regulator import Rule, Sensor, stage_by_lines, table_decision
+from synth.kernels.loop.regulator import Rule, Sensor, admitted, stage_by_lines, table_decision
 from synth.kernels.vector import packs
 from synth.kernels.vector.borrowing import borrowing_inline
 
@@ -100,7 +100,7 @@ def speaks_by_table(law, stage, s_m, v_m_s):
 @borrowing_inline
 def speaks_by_lines(law, stage, s, v):
     """Whether `regulator.line_decision` is not 0."""
-    place = s / law.spacing_m
+    place = (s - law.start_m) / law.spacing_m
     node = packs.least(packs.whole(place), law.lower.shape[1] - 2)
     part = place - packs.fraction(node)
     at = stage * law.lower.shape[1] + node
@@ -118,7 +118,10 @@ def regulate(x: Floats, n: Ints, lane: int, speed_m_s: float, pieces: Pieces, la
         decision = table_decision(law.coefficients, law.has_line, law.valid, law.entrance_stage, stage, s, speed_m_s)
         wanted = min(max(stage + decision, 0), top)
     else:
-        wanted = stage_by_lines(law.lower, law.upper, law.spacing_m, law.multi_step, stage, top, s, speed_m_s)
+        wanted = stage_by_lines(
+            law.lower, law.upper, law.start_m, law.spacing_m, law.multi_step, stage, top, s, speed_m_s
+        )
+    wanted = admitted(stage, wanted, s, pieces.entrance_stage)
     if wanted != stage:
         first = pieces.command[np.uint64(n[PIECE + lane] - 1), np.uint64(wanted)]
         n[STAGE + lane], n[PIECE + lane] = wanted, first

@@ -32,8 +32,8 @@ class Rule(NamedTuple):
 
     Table: `coefficients` float32 (K + 1, 2, r + 1), NaN where there is no line, `has_line` (K + 1, 2), `valid`
     float32 (4,), `entrance_stage` the highest stage that may be commanded at s < 0. Lines: `lower`, `upper`
-    (K + 1, N + 1) over nodes `spacing_m` apart; with `multi_step` the comparison is repeated at the stage reached; the
-    speed compared is measured + `lead_s`·slope, the slope filtered over `filter_s`. With
+    (K + 1, N + 1) over nodes `spacing_m` apart from `start_m` on; with `multi_step` the comparison is repeated at the
+    stage reached; the speed compared is measured + `lead_s`·slope, the slope filtered over `filter_s`. With
     `estimator_work` (3, B), B > 0, the speed compared is that of `tuning_tables.estimator`.
     """
 
@@ -43,6 +43,7 @@ class Rule(NamedTuple):
     entrance_stage: int
     lower: Floats
     upper: Floats
+    start_m: float
     spacing_m: float
     multi_step: bool
     lead_s: float
@@ -65,13 +66,15 @@ def measure(v: float, z: float, sensor: Sensor) -> float:
 
 
 @borrowing_inline
-def line_decision(lower: Floats, upper: Floats, spacing_m: float, stage: int, s: float, v: float) -> int:
+def line_decision(
+    lower: Floats, upper: Floats, start_m: float, spacing_m: float, stage: int, s: float, v: float
+) -> int:
     """−1, 0 or +1 stage by the switching lines; beside an infinite node there is no command.
 
     Without branches: which way they go could not be foretold, and that would cost more than all the arithmetic.
     Beside an infinite node a line is infinite or NaN, and no speed is beyond either.
     """
-    place = s / spacing_m
+    place = (s - start_m) / spacing_m
     node = np.uint64(min(int(place), lower.shape[1] - 2))
     row, after = np.uint64(stage), node + np.uint64(1)
     part = place - node
@@ -82,12 +85,26 @@ def line_decision(lower: Floats, upper: Floats, spacing_m: float, stage: int, s:
 
 @borrowing_inline
 def stage_by_lines(
-    lower: Floats, upper: Floats, spacing_m: float, multi_step: bool, stage: int, top: int, s: float, v: float
+    lower: Floats,
+    upper: Floats,
+    start_m: float,
+    spacing_m: float,
+    multi_step: bool,
+    stage: int,
+    top: int,
+    s: float,
+    v: float,
 ) -> int:
     """Stage that switching lines want at (s, v) while `stage` rests, within 0 … `top`."""
-    step = line_decision(lower, upper, spacing_m, stage, s, v)
+    step = line_decision(lower, upper, start_m, spacing_m, stage, s, v)
     wanted: int = min(max(stage + step, 0), top)
     if multi_step and step != 0:
-        while 0 < wanted < top and line_decision(lower, upper, spacing_m, wanted, s, v) == step:
+        while 0 < wanted < top and line_decision(lower, upper, start_m, spacing_m, wanted, s, v) == step:
             wanted += step
     return wanted
+
+
+@borrowing_inline
+def admitted(stage: int, wanted: int, s: float, entrance_stage: int) -> int:
+    """The stage that the position lets a regulator command at `s`: before the entrance none above `entrance_stage`."""
+    return min(wanted, max(stage, entrance_stage)) if s < 0.0 else wanted

@@ -27,7 +27,7 @@ def sweep(
     terminal, stalled, change_cost, tolerance, rounding, noise, smear_start, smear, prior,
     speed, stage, pressure, lower_chain, upper_chain, chain_mode,
     ends, factors, probability, mean, std, levels, transition,
-    drive, brake, factor, extra, path_step, energy_step, period, reach,
+    drive, brake, factor, extra, path_step, energy_step, period, reach, approach_nodes, entrance_stage,
     values, lower, upper, gain_down, gain_up,
 ):  # fmt: skip
     """One backward sweep over all path quanta.
@@ -35,10 +35,10 @@ def sweep(
     `terminal` (E·T',) cost by exit energy and target, `stalled` (T',) cost of a stall, `change_cost` (T',) of a
     command, where T' ≥ T are whole packs of eight; values are computed in the type of `terminal`. `tolerance`: an
     averaged gain of less is none; `rounding`: so is one of less than this part of the cost. I scenarios: `factor`,
-    `extra` (I,); `prior` (I, H, L) weights of what is hidden; `smear_start` (E,), `smear` (E, W):
-    probability of true speeds given a measured one. Outputs: `values` (I, N + 1, H, L, E, T), or of the first nodes
-    only, `lower`, `upper` (N, K + 1, T), `gain_down`, `gain_up` (N, K + 1, T, E): averaged cost saved by the change,
-    by measured speed.
+    `extra` (I,); `prior` (I, H, L) weights of what is hidden; `smear_start` (E,), `smear` (E, W): probability of true
+    speeds given a measured one. No node below `approach_nodes` raises beyond `entrance_stage`. Outputs: `values`
+    (I, N + 1, H, L, E, T), or of the first nodes only, `lower`, `upper` (N, K + 1, T), `gain_down`, `gain_up`
+    (N, K + 1, T, E): averaged cost saved by the change, by measured speed.
     """
     count, nodes, width = factor.shape[0], drive.shape[0], stalled.shape[0]
     modes, size, points = pressure.shape[0], levels.shape[0], speed.shape[0]
@@ -78,8 +78,8 @@ def sweep(
             for side in range(2):
                 for h in range(modes):
                     c = upper_chain[h] if side == 1 else lower_chain[h]
-                    if c < 0:
-                        continue
+                    if c < 0 or (side == 1 and n < approach_nodes and stage[h] >= entrance_stage):
+                        continue  # no gain, so no line, and what `changes` holds plays no part
                     found = find_runs(
                         n, c, 0, points, factor[i], ends, factors, path_step, probability.shape[1] - 1, crossed, runs
                     )

@@ -26,17 +26,17 @@ MATTERS = 1e-3 * NEGLIGIBLE_MASS
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def forward(
-    down, up, entry, speed, stage, pressure, lower_chain, upper_chain, chain_mode,
+    down, up, entry, entry_mode, speed, stage, pressure, lower_chain, upper_chain, chain_mode,
     ends, factors, probability, mean, std, levels, transition, stationary,
     drive, brake, factor, extra, path_step, energy_step, period, density, band, exits, totals,
 ):  # fmt: skip
     """Density of sampled states, and the distribution at the exit, in the scenarios `factor`, `extra` (I,).
 
     `down`, `up` (N, K + 1, E) command probabilities; `entry` (M + 1, E): probability of entering with speed j
-    and having the first sample at node r; the rest as in `flow` and `transient`. Outputs: `density`
-    (I, N, H, L, E) expected number of samples at each node and state, or (I, 0, 0, 0, 0); `band` (I, N, 2) range of
-    energies that are met at a node; `exits` (I, E) exit probability by energy; `totals` (I, 4): stalled mass,
-    escaped mass, changes down, changes up.
+    and having the first sample at node r, `entry_mode` the mode at rest then; the rest as in `flow` and `transient`.
+    Outputs: `density` (I, N, H, L, E) expected number of samples at each node and state, or (I, 0, 0, 0, 0); `band`
+    (I, N, 2) range of energies that are met at a node; `exits` (I, E) exit probability by energy; `totals` (I, 4):
+    stalled mass, escaped mass, changes down, changes up.
     """
     modes, size, points, row = pressure.shape[0], levels.shape[0], speed.shape[0], ends.shape[4]
     reach, ring = entry.shape[0], probability.shape[1] + 3
@@ -54,8 +54,8 @@ def forward(
         heading[:], spans[:], landed[:] = 0.0, 0, 0
         for r in range(reach):
             for q in range(size):
-                heading[r, 0, q, :points] = entry[r] * stationary[q]
-                spans[r, 0, q, 1] = points
+                heading[r, entry_mode, q, :points] = entry[r] * stationary[q]
+                spans[r, entry_mode, q, 1] = points
         follow(
             heading, arriving, mixing, memory, scratch, spans, arrived, landed,
             down, up, speed, stage, pressure, lower_chain, upper_chain, chain_mode,

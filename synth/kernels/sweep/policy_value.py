@@ -20,7 +20,7 @@ NEGLIGIBLE_PROBABILITY = 1e-9
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def backward(
-    down, up, down_slope, up_slope, terminal, stalled, change_cost, entry, speed, stage, pressure,
+    down, up, down_slope, up_slope, terminal, stalled, change_cost, entry, entry_mode, speed, stage, pressure,
     lower_chain, upper_chain, chain_mode, ends, factors, probability, mean, std,
     levels, transition, stationary, drive, brake, factor, extra, path_step, energy_step, period,
     density, band, lower_gradient, upper_gradient,
@@ -56,7 +56,11 @@ def backward(
         for q in range(size):
             for j in range(points):
                 if entry[r, j] != 0.0:
-                    cost += entry[r, j] * stationary[q] * (ahead[r, 0, q, j] if r > 0 else values[0, 0, q, j])
+                    cost += (
+                        entry[r, j]
+                        * stationary[q]
+                        * (ahead[r, entry_mode, q, j] if r > 0 else values[0, entry_mode, q, j])
+                    )
     return cost
 
 

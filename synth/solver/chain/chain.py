@@ -25,6 +25,9 @@ from synth.solver.chain.path_noise import (
 from synth.solver.chain.scenarios import Scenarios, check_scenarios, persistent_scenarios
 from synth.solver.chain.speed_measurement import SpeedMeasurement, quantised_measurement, smooth_measurement
 
+NODE_AT_ENTRANCE_M = 1e-9
+"""A path node this near to the entrance is there."""
+
 
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
@@ -33,6 +36,7 @@ class Chain:
 
     `measurement`: the measured speed as command probabilities take it. `drive_m_s2`, `brake_m_s2_per_kpa` (N,): cell
     means. `entry` (M + 1, E): probability of entry energy j with the first sample at path node r.
+    `entry_mode`: the resting mode that the regulator finds.
     """
 
     plant: Plant
@@ -47,6 +51,12 @@ class Chain:
     transient_noise: TransientNoise
     scenarios: Scenarios
     entry: NDArray[np.float64]
+    entry_mode: int
+
+    @property
+    def approach_nodes(self) -> int:
+        """Number of path nodes before the entrance."""
+        return int(np.searchsorted(self.grid.path_m, -NODE_AT_ENTRANCE_M))
 
     def quantised(self) -> Chain:
         """The same with the sensor's staircase."""
@@ -85,6 +95,7 @@ def chain_of(plant: Plant, resolution: Resolution, scenarios: Scenarios) -> Chai
         transient_noise=noise_on_landings(path_noise, landings, grid),
         scenarios=scenarios,
         entry=entry_distribution(plant, grid),
+        entry_mode=actuator.mode_of(plant.approach.initial_stage),
     )
 
 

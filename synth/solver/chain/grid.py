@@ -24,8 +24,8 @@ MARGIN_CELLS = 10
 class Grid:
     """Nodes of the state space.
 
-    `path_m` (N + 1,): s_n = n·ΔS, the last one S_exit; `energy_m2_s2` (E,): e_j = j·Δe, e_0 = 0 standing for
-    a stall; `speed_m_s` (E,) = sqrt(2 e).
+    `path_m` (N + 1,): s_n = s_0 + n·ΔS, from where the regulator acts to S_exit; `energy_m2_s2` (E,): e_j = j·Δe,
+    e_0 = 0 standing for a stall; `speed_m_s` (E,) = sqrt(2 e).
     """
 
     path_m: NDArray[np.float64]
@@ -35,7 +35,7 @@ class Grid:
     @property
     def path_step_m(self) -> float:
         """ΔS."""
-        return float(self.path_m[1])
+        return float(self.path_m[1] - self.path_m[0])
 
     @property
     def energy_step_m2_s2(self) -> float:
@@ -45,19 +45,21 @@ class Grid:
 
 def make_grid(plant: Plant, resolution: Resolution) -> Grid:
     """The grid for `plant`: it holds every speed that an unbraked pass can reach, and a margin."""
-    quanta = max(4, round(plant.exit_m / resolution.path_step_m))
+    length_m = plant.exit_m - plant.start_m
+    quanta = max(4, round(length_m / resolution.path_step_m))
     step = resolution.speed_step_m_s * resolution.reference_speed_m_s
-    downhill = max(0.0, max(plant.profile.grades_permille)) * 1e-3 * plant.cut.reduced_gravity_m_s2 * plant.exit_m
-    top = 0.5 * plant.entry.high_m_s**2 + downhill + MARGIN_CELLS * step
+    downhill = max(0.0, max(plant.profile.grades_permille)) * 1e-3 * plant.cut.reduced_gravity_m_s2 * length_m
+    fastest = plant.start_speed_m_s(np.array(plant.entry.high_m_s), plant.resistance.mean_n_per_kn)
+    top = 0.5 * max(plant.entry.high_m_s, float(fastest)) ** 2 + downhill + MARGIN_CELLS * step
     energy = step * np.arange(math.ceil(top / step) + 1, dtype=np.float64)
-    return Grid(np.linspace(0.0, plant.exit_m, quanta + 1), energy, np.sqrt(2.0 * energy))
+    return Grid(np.linspace(plant.start_m, plant.exit_m, quanta + 1), energy, np.sqrt(2.0 * energy))
 
 
 def memory_estimate_bytes(plant: Plant, designs: Sequence[Resolution]) -> int:
     """What solves of `plant` on the `designs` and a check of the first will hold at most, from their largest arrays."""
     total = 0
     for r in (*designs, finer_for_check(designs[0])):
-        quanta = max(4, round(plant.exit_m / r.path_step_m))
+        quanta = max(4, round((plant.exit_m - plant.start_m) / r.path_step_m))
         points = 0.5 * plant.entry.high_m_s**2 / (r.speed_step_m_s * r.reference_speed_m_s) * 1.2
         modes, chains = 2 * plant.top_stage, 4 * plant.top_stage
         landings = quanta * chains * 7 * points * 2

@@ -62,7 +62,7 @@ def make_landings(plant: Plant, grid: Grid, actuator: Actuator) -> Landings:
             if 0 <= stage + step < actuator.stages:
                 neighbours[mode] = len(used)
                 used.append(int(actuator.command[mode, stage + step]))
-    fine = np.linspace(0.0, plant.exit_m, FINE_CELLS_PER_QUANTUM * (len(grid.path_m) - 1) + 1)
+    fine = np.linspace(plant.start_m, plant.exit_m, FINE_CELLS_PER_QUANTUM * (len(grid.path_m) - 1) + 1)
     cells = path_coefficients(plant.position, plant.cut, plant.profile, fine)
     work = np.concatenate([[0.0], np.cumsum(cells.brake_m_s2_per_kpa * np.diff(fine))])
     drive = cells.free_m_s2(plant.resistance.mean_n_per_kn)

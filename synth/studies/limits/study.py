@@ -11,8 +11,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
 from synth.book.estimation.estimated_table import controller_of, estimated_table, estimator_design
 from synth.configuration.config_file import load_config
 from synth.configuration.resolved_config import ResolvedConfig
@@ -125,7 +123,7 @@ def changed(case: Case, change: Change, config: ResolvedConfig, passes: RandomPa
 
 def controller_for(case: Case, lines: PolynomialLines) -> LineController:
     """The regulator of these lines."""
-    return LineController(lines.at(np.linspace(0.0, case.plant.exit_m, LINE_NODES)))
+    return LineController(lines.at(lines.nodes_m(LINE_NODES)))
 
 
 def simulated(case: Case, change: Change, controller: LineController, passes: RandomPasses) -> Row:

@@ -7,7 +7,7 @@ other passes.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -118,7 +118,7 @@ def fit_surfaces(compact: Compact, surfaces: SwitchingSurfaces, loop: UnlockedLo
         if not len(mode):
             rows.append(np.append((0.0, 15.0)[side], np.zeros(compact.form.terms - 1)))
             continue
-        columns = [basis(path, compact.exit_m, degree)[node] * (x[at][mode] ** power)[:, None]
+        columns = [basis(path, 0.0, compact.exit_m, degree)[node] * (x[at][mode] ** power)[:, None]
                    for power, degree in enumerate(compact.form.degrees)]  # fmt: skip
         root = np.sqrt(near[mode, node] + 1e-3)
         rows.append(np.linalg.lstsq(np.hstack(columns) * root[:, None], lines[mode, node] * root, rcond=None)[0])
@@ -166,13 +166,13 @@ def search_locked(
     lines: PolynomialLines, loop: ClosedLoop, draws: Draws, target_m_s: float, criterion: Criterion, evaluations: int
 ) -> LineController:
     """Stage-locked cubics taken through the same search: the control that tells unlocking and searching apart."""
-    nodes = np.linspace(0.0, lines.exit_m, LINE_NODES)
+    nodes = lines.nodes_m(LINE_NODES)
     where = lines.has_line[:, :, None] & np.ones(lines.coefficients.shape, dtype=bool)
 
     def controller(vector: Vector) -> LineController:
         coefficients = np.zeros(lines.coefficients.shape)
         coefficients[where] = vector
-        return LineController(PolynomialLines(lines.exit_m, coefficients, lines.has_line).at(nodes))
+        return LineController(replace(lines, coefficients=coefficients).at(nodes))
 
     def cost(vector: Vector) -> float:
         return cost_of(loop.run(controller(vector), draws), target_m_s, criterion)

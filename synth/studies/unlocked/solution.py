@@ -67,7 +67,7 @@ def unlocked_plant(
     """`plant` on a grid; raises `PlantError` for drives that cannot be commanded during a transient."""
     grid = make_grid(plant, resolution)
     chain = correlated_noise(plant.friction, grid.path_step_m, resolution.path_levels)
-    fine = np.linspace(0.0, plant.exit_m, FINE_CELLS_PER_QUANTUM * (len(grid.path_m) - 1) + 1)
+    fine = np.linspace(plant.start_m, plant.exit_m, FINE_CELLS_PER_QUANTUM * (len(grid.path_m) - 1) + 1)
     cells = path_coefficients(plant.position, plant.cut, plant.profile, fine)
     free = cells.free_m_s2(plant.resistance.mean_n_per_kn)
     entry = entry_distribution(plant, grid)

@@ -1,0 +1,43 @@
+"""The path before the entrance on which the regulator already acts, and what it finds and may command there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from plant_models.errors import require, require_between
+
+LONGEST_APPROACH_M = 100.0
+
+ANY_STAGE = 31
+"""No limit at the entrance: no retarder has more stages."""
+
+
+@dataclass(frozen=True)
+class Approach:
+    """The regulator acts from `length_m` before the entrance on; 0: from the entrance, as without a sensor ahead.
+
+    `entrance_stage`: the highest stage that it may command while the first axle is before the entrance, so that no
+    cut runs into a retarder that is closed harder. `initial_stage`: the stage at rest when it takes over the cut, left
+    from the cut ahead. Nothing brakes before the entrance. That the cut ahead has left is the interlock of the
+    permission to act there, and not part of the motion.
+    """
+
+    length_m: float = 0.0
+    entrance_stage: int = ANY_STAGE
+    initial_stage: int = 0
+
+    def __post_init__(self) -> None:
+        require_between("regulator: approach_m", self.length_m, 0.0, LONGEST_APPROACH_M)
+        require(
+            0 <= self.entrance_stage <= ANY_STAGE,
+            f"cut: entrance_stage is {self.entrance_stage}; it must be a whole number from 0 to {ANY_STAGE}",
+        )
+        require(
+            0 <= self.initial_stage <= self.entrance_stage,
+            f"regulator: initial_stage is {self.initial_stage}; it must be a whole number from 0 to the stage allowed "
+            f"at the entrance, {self.entrance_stage}",
+        )
+
+
+AT_THE_ENTRANCE = Approach()
+"""The regulator acts from the entrance on, and finds the brake released."""
