@@ -138,7 +138,7 @@ def test_words_in_c_are_those_of_the_exporter(estimated_once: Path, tuned_once: 
     for chosen in (plain, made, [replace(made[0], id="another"), *plain]):
         book = TableBook(tuple(chosen))
         own = [read_table(to_json(table)) for table in book.tables]
-        size = book.most_stages, book.highest_degree + 1, most_breaks(own)
+        size = book.most_stages, book.highest_degree + 1, most_breaks(own), False
         for number, table in enumerate(own):
             words = block_of(book, number).words.tolist()
             assert [*words_of(table, size)] == words[:-1]
