@@ -99,7 +99,7 @@ def old_version(document: Document) -> None:
 
 
 def next_version(document: Document) -> None:
-    document["version"] = 3
+    document["version"] = 4
 
 
 def unknown_key(document: Document) -> None:
@@ -115,7 +115,7 @@ def unknown_key(document: Document) -> None:
         (no_passes, "predicted.passes"),
         (times("speed_noise_m_s", 1e-9), "estimator.speed_noise_m_s is .* from 0.0001 to 10"),
         (old_version, "unknown keys"),
-        (next_version, "versions 1 and 2 only"),
+        (next_version, "versions 1 to 3 only"),
         (unknown_key, "delay_s"),
     ],
 )
