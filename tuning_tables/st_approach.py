@@ -21,7 +21,7 @@ APPROACH: Final[Mapping[str, str]] = {
    Approach
    The regulator acts from Approach_m before the entrance on. The path is negative there, and 0.0 where the first axle
    enters. The interlock is the program's: the regulator may take over a cut only when the cut ahead has left the
-   position, its last axle behind the exit, and then only when the stage commanded is at most EntranceStage.
+   position, its last axle out of the last retarder, and then only when the stage commanded is at most EntranceStage.
 """,
     "APPROACH_MEMBERS": """
         Approach_m : REAL; (* the regulator acts from so far before the entrance; 0: from the entrance on *)
