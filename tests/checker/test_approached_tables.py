@@ -11,7 +11,9 @@ import pytest
 
 from synth.checker import c_export, golden_export, st_export, track_export
 from synth.checker.finding import Kind
+from synth.checker.plant import UnusableConfigError, plant_of
 from synth.checker.source import read_source
+from synth.checker.summary import read_summary
 from synth.checker.table_reading import read_table
 from synth.checker.verdict import CONFIRMED, verify
 from tests.checker.planted_fault import Document, alone, found, look, rewrite
@@ -175,3 +177,34 @@ def test_exports_of_many_shapes_are_those_of_the_exporter(estimators: bool, tmp_
     source = read_source(tmp_path / "book.h5")
     assert source.findings == ()
     assert [table.document for table in source.tables] == [table.document for table in tables]
+
+
+@pytest.mark.parametrize(
+    ("section", "changes", "words"),
+    [
+        ("regulator", {"approach_m": 101.0}, r"regulator\.approach_m of its configuration is 101"),
+        ("regulator", {"approach_m": "4"}, r"regulator\.approach_m of its configuration is '4'"),
+        ("regulator", {"initial_stage": 2}, r"regulator\.initial_stage of its configuration is 2"),
+        ("regulator", {"initial_stage": 0.5}, r"regulator\.initial_stage of its configuration is 0\.5, no stage"),
+        ("cut", {"entrance_stage": 5}, r"entrance_stage of its configuration is 5"),
+        ("cut", {"entrance_stage": -1}, r"entrance_stage of its configuration is -1"),
+    ],
+)
+def test_a_configuration_with_an_impossible_approach_is_refused(
+    approached_once: Path, section: str, changes: Document, words: str
+) -> None:
+    config = read_summary(approached_once / "summary.json").config
+    (cut,) = config["cut"]
+    parts: Document = {"regulator": dict(config["regulator"]), "cut": dict(cut)}
+    parts[section] |= changes
+    with pytest.raises(UnusableConfigError, match=words):
+        plant_of({**config, "regulator": parts["regulator"]}, parts["cut"])
+
+
+def test_keys_of_the_approach_may_be_absent(approached_once: Path) -> None:
+    config = read_summary(approached_once / "summary.json").config
+    (cut,) = config["cut"]
+    plant = plant_of(config, cut)
+    assert (plant.approach_m, plant.initial_stage, plant.entrance_stage) == (4.0, 0, 1)
+    before = plant_of({**config, "regulator": {"estimator": False}}, {k: cut[k] for k in cut if k != "entrance_stage"})
+    assert (before.approach_m, before.initial_stage, before.entrance_stage) == (0.0, 0, 4)
