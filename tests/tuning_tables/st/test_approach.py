@@ -14,6 +14,7 @@ from tests.tuning_tables.st.test_select import require_equal, select
 from tests.tuning_tables.st.test_self_test import another, calls_of, next_number, run_all
 from tests.tuning_tables.st.test_syntax import require_structured_text
 from tuning_tables.export_prefix import RETARDER
+from tuning_tables.golden_vectors import FEW, few_golden_vectors
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 from tuning_tables.st_source import SELF_TEST_FILE, TABLE_FILE, st_files
 from tuning_tables.table_book import TableBook
@@ -33,6 +34,8 @@ def few() -> TableBook:
 
 def test_it_is_structured_text_and_its_self_test_finds_nothing_wrong(approached: TableBook) -> None:
     require_structured_text(approached)
+    for table in approached.tables:
+        assert len(few_golden_vectors(table)) <= FEW * np.count_nonzero(table.has_line)
     for size in (FULL, SMALL):
         outputs = run_all(st_files(approached, RETARDER, size), calls_of(approached))
         assert outputs == {"DONE": True, "FAILED": 0, "FIRSTFAILED": -1, "FIRSTFAULT": -1}
