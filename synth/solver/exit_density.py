@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
-from synth.problem.terminal_cost import share_above
+
+Vector = NDArray[np.float64]
 
 
 @frozen_arrays
@@ -36,5 +37,66 @@ class ExitDensity:
         return float(first - self.stalled * target_speed_m_s)
 
     def p_overspeed(self, limit_m_s: float) -> float:
-        """P(exit speed > limit), the cell that holds the limit shared linearly in energy."""
-        return float(max((self.probability * share_above(self.speed_m_s, limit_m_s)).sum(), 0.0))
+        """P(exit speed > limit): what lies above half-way between two grid points is a sum, cubic between these."""
+        energy = 0.5 * self.speed_m_s**2
+        above = np.concatenate((self.probability[::-1].cumsum()[::-1], np.zeros(4)))  # above (j − ½)·Δe
+        place = 0.5 * limit_m_s**2 / energy[1] + 0.5
+        j = min(max(int(place), 1), len(self.probability))
+        x = min(place - j, 2.0)
+        cubic = (-x * (x - 1) * (x - 2) / 6, (x + 1) * (x - 1) * (x - 2) / 2, -(x + 1) * x * (x - 2) / 2,
+                 (x + 1) * x * (x - 1) / 6)  # fmt: skip
+        return float(min(max(cubic @ above[j - 1 : j + 3], 0.0), 1.0))
+
+
+CORE = 1e-3
+"""Where a probability has this share of the largest, it may be changed for those that were negative."""
+
+NEWTON_STEPS = 30
+"""Far more than are needed where little is negative; so many where no distribution has the moments."""
+
+
+def without_negative(density: ExitDensity) -> ExitDensity:
+    """The same with no probability below 0, of equal mass, mean and mean square; unchanged if there is none.
+
+    Cubic weights leave negative probabilities where a density is narrow for its grid. Each becomes 0; and the core of
+    the density is multiplied by the exponential of a parabola, so that all three moments are what they were. Of all
+    that keep them this is the core nearest to what it was, by relative entropy. The tails stay as they are.
+    """
+    if density.probability.min(initial=0.0) >= 0.0:
+        return density
+    positive = np.maximum(density.probability, 0.0)
+    core = positive > CORE * positive.max()
+    middle = np.average(density.speed_m_s[core], weights=positive[core])
+    width = np.sqrt(np.average((density.speed_m_s[core] - middle) ** 2, weights=positive[core]))
+    x = (density.speed_m_s - middle) / max(width, 1e-9)
+    powers = np.stack([np.ones_like(x), x, x * x])
+    moments = powers @ (density.probability - np.where(core, 0.0, positive))
+    positive[core] = tilted(positive[core], powers[:, core], moments)
+    return replace(density, probability=positive)
+
+
+def tilted(weight: NDArray[np.float64], powers: NDArray[np.float64], moments: NDArray[np.float64]) -> Vector:
+    """`weight` (E,) times exp(λ·`powers`), λ such that the sums with `powers` (3, E) are `moments`: Newton's method.
+
+    The λ sought minimises the convex Σ weight·exp(λ·powers) − λ·moments; a step that does not lower it is halved.
+    """
+
+    def at(place: Vector) -> tuple[Vector, float]:
+        found = weight * np.exp(np.minimum(place @ powers, 100.0))
+        return found, float(found.sum() - place @ moments)
+
+    place = np.zeros(len(moments))
+    found, height = at(place)
+    for _ in range(NEWTON_STEPS):
+        slope = powers @ found - moments
+        step = np.linalg.lstsq((powers * found) @ powers.T, slope)[0]
+        if abs(slope @ step) < 1e-24:
+            break
+        share = 1.0
+        while share > 1e-6:
+            ahead, lower = at(place - share * step)
+            if lower <= height:
+                break
+            share *= 0.5
+        place, found, height = place - share * step, ahead, lower
+    return found
