@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Final
 
+from plant_models.approach import Approach
 from plant_models.entry_speed import EntryLaw
 from plant_models.errors import require
 from plant_models.friction import Friction
@@ -47,12 +48,26 @@ FRICTION = {
     "friction.correlation_length_m": Quantity("m", number),
     "friction.floor": Quantity("1", number),
 }
+APPROACH: Final = "regulator.approach_m"
+INITIAL_STAGE: Final = "regulator.initial_stage"
+REGULATOR = {APPROACH: Quantity("m", number), INITIAL_STAGE: Quantity("stage", number)}
+"""Keys that a position file may leave out."""
+
 TARGETS = {"targets.exit_speeds_m_s": Quantity("m/s", numbers)}
+
+NOT_STATED: Final = (
+    SourcedValue(
+        APPROACH, 0.0, "m", (0.0, 12.0), "not stated by the position: the regulator acts from the entrance", ""
+    ),
+    SourcedValue(INITIAL_STAGE, 0.0, "stage", (0.0, 31.0), "the brake is released when the cut ahead has left", ""),
+)
+"""What stands for the keys of `REGULATOR` that a position file leaves out."""
 
 KEYS_OF_PLANT = {
     "retarder: ": "",
     "friction: ": "friction.",
     "entry: ": "entry.",
+    "regulator: ": "regulator.",
     "track profile: grades_permille": "track.grade_permille",
     "track profile: starts_m": "track.grade_permille: starts_m",
 }
@@ -61,7 +76,7 @@ KEYS_OF_PLANT = {
 
 @dataclass(frozen=True)
 class PositionEntry:
-    """A position with its surroundings (grade, entry speeds, friction, sensor, exit speeds), and where they are from.
+    """A position with its surroundings (grade, entry speeds, friction, sensor, approach, exit speeds), with origins.
 
     `law`: the force law of its retarder type. `provenance`: every number behind the other fields, keys as in a
     configuration.
@@ -76,6 +91,7 @@ class PositionEntry:
     entry: EntryLaw
     friction: Friction
     sensor: DopplerSensor
+    approach: Approach
     target_speeds_m_s: tuple[float, ...]
     provenance: tuple[SourcedValue, ...]
 
@@ -138,7 +154,10 @@ def site_schema(tree: Mapping[str, Any]) -> dict[str, Quantity]:
         set(entry) & {"edges_m_s", "shares", "mean_m_s", "std_m_s"} if isinstance(entry, dict) else set()
     )
     keys = {ENTRY + key: quantity for key, quantity in law.items()}
-    return {**(ZONES_STATED if "zones_m" in tree else PLACES), **TRACK, **keys, **FRICTION, **TARGETS}
+    regulator = tree.get("regulator")
+    stated = {key for key in REGULATOR if isinstance(regulator, dict) and key.rpartition(".")[2] in regulator}
+    zones = ZONES_STATED if "zones_m" in tree else PLACES
+    return {**zones, **TRACK, **keys, **FRICTION, **{key: REGULATOR[key] for key in stated}, **TARGETS}
 
 
 def position_with_types(
@@ -170,12 +189,14 @@ def composed(site: SourcedTable, unit: RetarderEntry, sensor: tuple[SourcedValue
     """All numbers of a position in the order of a configuration, with its keys."""
     by_key = {value.key: value for value in site.values}
     zones = by_key.pop("zones_m", None) or zones_of(by_key.pop("starts_m"), unit.length_m)
+    regulator = [by_key.pop(value.key, value) for value in NOT_STATED]
     surroundings = [value for value in by_key.values() if value.key != "targets.exit_speeds_m_s"]
     return (
         replace(zones, key=ZONES),
         *(replace(value, key=RETARDER + value.key) for value in unit.drive.values),
         *surroundings,
         *(replace(value, key=SENSOR + value.key) for value in sensor),
+        *regulator,
         by_key["targets.exit_speeds_m_s"],
     )
 
@@ -201,9 +222,17 @@ def entry_of(name: str, title: str, notes: tuple[str, ...], law: str, table: Sou
         entry=entry_law(table),
         friction=Friction(**{key.removeprefix("friction."): table.number(key) for key in FRICTION}),
         sensor=sensor_of(table, SENSOR),
+        approach=approach_of(table),
         target_speeds_m_s=table.numbers("targets.exit_speeds_m_s"),
         provenance=table.values,
     )
+
+
+def approach_of(table: SourcedTable) -> Approach:
+    """Where the regulator begins to act; what a cut may be given at the entrance depends on the cut."""
+    stage = table.number(INITIAL_STAGE)
+    require(stage.is_integer(), f"regulator: initial_stage is {stage:g}; it must be a whole number")
+    return Approach(table.number(APPROACH), initial_stage=int(stage))
 
 
 def profile_of(table: SourcedTable) -> TrackProfile:

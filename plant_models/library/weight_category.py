@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any, Final
 
@@ -19,7 +19,7 @@ from plant_models.library.data_file import (
     telling,
 )
 from plant_models.library.near_miss import near_miss
-from plant_models.library.sourced_value import SourcedValue
+from plant_models.library.sourced_value import SourcedTable, SourcedValue
 from plant_models.library.type_file import TypeFile
 from plant_models.rolling_resistance import RollingResistance
 
@@ -28,6 +28,9 @@ OF_CATEGORY = {
     "rolling_resistance.std_n_per_kn": Quantity("N/kN", number),
     "allowed_stage": Quantity("1", number),
 }
+ENTRANCE_STAGE: Final = "entrance_stage"
+"""A key that may be left out: then the allowed stage is allowed at the entrance, too."""
+
 BY_MASS = {"mass_above_t": Quantity("t", number), **OF_CATEGORY}
 BY_AXLE_LOAD = {"axle_load_above_t": Quantity("t", number), **OF_CATEGORY}
 """Every key of a category: its limit is the mass of a 4-axle car, or the load of an axle."""
@@ -62,6 +65,7 @@ class WeightCategory:
     mass_above_t: float
     resistance: RollingResistance
     allowed_stage: int
+    entrance_stage: int
     provenance: tuple[SourcedValue, ...]
 
 
@@ -117,24 +121,36 @@ def category_of(latin: str, tree: dict[str, Any], lighter: tuple[WeightCategory,
     require_number(name, its_number)
     same = [c.latin for c in lighter if its_number == c.number or {name, latin} & {c.name, c.latin}]
     require(not same, f"its name {name} or number {its_number} is that of {', '.join(same)}, too")
-    table = sourced_table(tree, BY_AXLE_LOAD if "axle_load_above_t" in tree else BY_MASS, origin)
+    schema = BY_AXLE_LOAD if "axle_load_above_t" in tree else BY_MASS
+    if ENTRANCE_STAGE in tree:
+        schema = {**schema, ENTRANCE_STAGE: Quantity("1", number)}
+    table = with_entrance_stage(sourced_table(tree, schema, origin))
     by_axle = "axle_load_above_t" in tree
     key = "axle_load_above_t" if by_axle else "mass_above_t"
     limit = table.number(key) * (4.0 if by_axle else 1.0)  # exact: the limits of a 4-axle car
     resistance = RollingResistance(
         table.number("rolling_resistance.mean_n_per_kn"), table.number("rolling_resistance.std_n_per_kn")
     )
-    stage = table.number("allowed_stage")
-    require(
-        stage.is_integer() and 1 <= stage <= HIGHEST_STAGE,
-        f"allowed_stage is {stage:g}; it must be a whole number from 1 to {HIGHEST_STAGE}",
-    )
+    allowed, at_entrance = table.number("allowed_stage"), table.number(ENTRANCE_STAGE)
+    for key, stage, least in (("allowed_stage", allowed, 1), (ENTRANCE_STAGE, at_entrance, 0)):
+        require(
+            stage.is_integer() and least <= stage <= HIGHEST_STAGE,
+            f"{key} is {stage:g}; it must be a whole number from {least} to {HIGHEST_STAGE}",
+        )
     lowest = lighter[-1].mass_above_t if lighter else None
     require(
         limit == 0.0 if lowest is None else limit > lowest,
         f"{key} is {table.number(key):g}; the limits must start at 0 and increase",
     )
-    return WeightCategory(name, its_number, latin, limit, resistance, int(stage), table.values)
+    return WeightCategory(name, its_number, latin, limit, resistance, int(allowed), int(at_entrance), table.values)
+
+
+def with_entrance_stage(table: SourcedTable) -> SourcedTable:
+    """`table` with the stage allowed at the entrance, if need be that of the whole position."""
+    if any(value.key == ENTRANCE_STAGE for value in table.values):
+        return table
+    allowed = table["allowed_stage"]
+    return SourcedTable((*table.values, replace(allowed, key=ENTRANCE_STAGE, source="not stated: as allowed_stage")))
 
 
 def require_number(name: str, number_of_category: object) -> None:

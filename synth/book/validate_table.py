@@ -142,11 +142,14 @@ def differences(table: ControllerTable, plant: Plant) -> Iterator[str]:
         ("retarder.dead_band_kpa", [position.pneumatics.dead_band_kpa], [table.retarder.dead_band_kpa]),
         ("cut.mass_t", [cut.mass_t], [table.cut.mass_t]),
         ("cut.axle_offsets_m", cut.axle_offsets_m, table.cut.axle_offsets_m),
+        ("regulator.approach_m", [plant.approach.length_m], [table.approach.length_m if table.approach else 0.0]),
         ("the highest stage allowed", [plant.top_stage], [reached_stage(table)]),
     )  # fmt: skip
     for key, ours, theirs in pairs:
         if len(ours) != len(theirs) or not all(map(alike, ours, theirs)):
             yield f"{key} ({numbers(ours)}, in the table {numbers(theirs)})"
+    if table.approach and table.approach.entrance_stage != plant.entrance_stage:
+        yield f"cut.entrance_stage ({plant.entrance_stage}, in the table {table.approach.entrance_stage})"
     if cut.category != table.cut.category:
         yield f"cut.category ({cut.category}, in the table {table.cut.category})"
 

@@ -19,6 +19,7 @@ from plant_models.library import (
 from synth.configuration.cut_class import CutClass
 from synth.configuration.plant_settings import DEFAULT_POSITION, PositionSettings
 from synth.configuration.resolved_config import ResolvedConfig, resolve, setting_limits, setting_unit
+from synth.configuration.section import Section
 from synth.configuration.settings import (
     NUMERICAL_SECTIONS,
     OutputSettings,
@@ -52,14 +53,17 @@ def lines(config: ResolvedConfig) -> Iterator[str]:
     yield f"weight_categories = {quoted(YARD_CATEGORIES)}"
     yield from ("", "[position]", f"# one of the library: {', '.join(position_names())}; or the path of your own file")
     yield f"name = {quoted(config.retarder.name)}"
+    switches: dict[str, type[Section]] = {"regulator": RegulatorSettings, "output": OutputSettings}
     for section, values in groupby(config.retarder.provenance, key=lambda value: value.key.rpartition(".")[0]):
         yield from ("", f"[{section}]")
         for value in values:
-            yield from (f"# {origin(value)}", f"{value.key.rpartition('.')[2]} = {toml_value(value.value)}")
+            yield from (f"# {origin(value)}", f"{value.key.rpartition('.')[2]} = {number_of(value)}")
             if value.key == "track.grade_permille":
                 yield "# or pieces, each (start in m, permille): grade_permille = [[0.0, 8.0], [12.0, 5.0]]"
             if value.key == "entry.high_m_s":
                 yield "# or, with mean_m_s and std_m_s: normal between the two; or edges_m_s and shares: a histogram"
+        if section in switches:
+            yield from switch_lines(switches.pop(section))
     for name in NUMERICAL_SECTIONS:
         yield from ("", f"[{name}]")
         section_model = Settings.model_fields[name].default
@@ -67,12 +71,17 @@ def lines(config: ResolvedConfig) -> Iterator[str]:
             limits = setting_limits(field)
             span = f"{limits[0]:g} to {limits[1]:g}" if limits else "any"
             yield from (f"# {setting_unit(field)}; {span}; setting: {field.description}", f"{key} = {field.default!r}")
-    for name, switches in (("regulator", RegulatorSettings), ("output", OutputSettings)):
-        yield from ("", f"[{name}]")
-        for key, field in switches.model_fields.items():
-            yield from (f"# {field.description}", f"{key} = {json.dumps(field.default)}")
+    for name, section_model in switches.items():
+        yield from ("", f"[{name}]", *switch_lines(section_model))
     for cut_class in config.cuts:
         yield from cut_lines(cut_class)
+
+
+def switch_lines(section: type[Section]) -> Iterator[str]:
+    """The switches of a section, which are on or off."""
+    for key, field in section.model_fields.items():
+        if field.annotation is bool:
+            yield from (f"# {field.description}", f"{key} = {json.dumps(field.default)}")
 
 
 def source_lines(text: Iterable[str]) -> Iterator[str]:
@@ -92,6 +101,7 @@ def cut_lines(cut_class: CutClass) -> Iterator[str]:
     yield from (f"# {origin(by_name['mass_t'])}; of the whole cut", f"mass_t = {cut_class.cut.mass_t!r}")
     yield "# From the mass per axle follow (remove the leading # to change one):"
     yield f"# category = {quoted(cut_class.cut.category)}  # or L, LS, S, ST, T"
+    yield f"# entrance_stage = {cut_class.entrance_stage}  # {origin(by_name['entrance_stage'])}"
     yield f"# allowed_stage = {cut_class.cut.allowed_stage}  # {origin(by_name['allowed_stage'])}"
     yield f"# rolling_resistance.mean_n_per_kn = {mean.value!r}  # {origin(mean)}"
     yield f"# rolling_resistance.std_n_per_kn = {std.value!r}  # {origin(std)}"
@@ -104,6 +114,11 @@ def origin(value: SourcedValue) -> str:
     confidence = f" (confidence {value.confidence})" if value.confidence else ""
     source = f"ASSUMED, {value.source}" if value.assumed else value.source
     return f"{value.unit}; {value.span or 'any'}; {source}{confidence}"
+
+
+def number_of(value: SourcedValue) -> str:
+    """The value as TOML; the number of a stage is a whole number."""
+    return f"{value.value:g}" if value.unit == "stage" else toml_value(value.value)
 
 
 def toml_value(value: Value) -> str:

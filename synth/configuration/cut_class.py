@@ -38,6 +38,7 @@ class CutClass:
     consist: Consist
     cut: Cut
     resistance: RollingResistance
+    entrance_stage: int
     mass_limits_t: tuple[float, float]
     entry: EntryLaw | None
     targets_m_s: tuple[float, ...] | None
@@ -85,11 +86,12 @@ def resolve_cut(settings: CutSettings, index: int, at: Surroundings) -> CutClass
     key, file = f"cut[{index}]", at.file
     consist = resolve_consist(settings, key, at.library, file)
     top = at.position.position.top_stage
-    if settings.allowed_stage is not None and not 1 <= settings.allowed_stage <= top:
-        raise InputError(
-            f"{file}: {key}.allowed_stage is {settings.allowed_stage}; it must be from 1 to {top}, "
-            f"the highest stage of {at.position.name}"
-        )
+    for name, stage, least in (("allowed", settings.allowed_stage, 1), ("entrance", settings.entrance_stage, 0)):
+        if stage is not None and not least <= stage <= top:
+            raise InputError(
+                f"{file}: {key}.{name}_stage is {stage}; it must be from {least} to {top}, "
+                f"the highest stage of {at.position.name}"
+            )
     with in_file(file, lambda sentence: of_class(sentence, key)):
         axles = sum(len(car.axle_offsets_m) for car in consist.cars)
         by_mass = at.categories.of(consist.mass_t, axles)
@@ -115,7 +117,8 @@ def resolve_cut(settings: CutSettings, index: int, at: Surroundings) -> CutClass
     label = settings.label or consist.label
     if len(label) > LONGEST_LABEL:
         raise InputError(f"{file}: {key}.label is missing; the names of so many cars make none: give the class a label")
-    return CutClass(label, consist, cut, resistance, limits, entry, targets, provenance)
+    at_entrance = int(table.number("entrance_stage"))
+    return CutClass(label, consist, cut, resistance, at_entrance, limits, entry, targets, provenance)
 
 
 def of_class(sentence: str, key: str) -> str:
@@ -133,8 +136,10 @@ def overrides_of(settings: CutSettings) -> dict[str, float]:
     """What a [[cut]] table changes of its category."""
     changed = settings.rolling_resistance.model_dump(exclude_none=True)
     overrides = {f"rolling_resistance.{name}": float(value) for name, value in changed.items()}
-    if settings.allowed_stage is not None:
-        overrides["allowed_stage"] = float(settings.allowed_stage)
+    for name in ("allowed_stage", "entrance_stage"):
+        stage = getattr(settings, name)
+        if stage is not None:
+            overrides[name] = float(stage)
     return overrides
 
 

@@ -123,6 +123,7 @@ class CutSettings(Section):
     mass_t: float | None = None
     category: str | None = None
     allowed_stage: int | None = None
+    entrance_stage: int | None = None
     rolling_resistance: RollingResistanceSettings = RollingResistanceSettings()
     targets_m_s: Numbers | None = None
     entry: EntrySettings = EntrySettings()

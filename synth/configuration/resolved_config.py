@@ -19,6 +19,7 @@ from plant_models.library import (
     SourcedValue,
     load_weight_categories,
 )
+from plant_models.library.position_entry import REGULATOR
 from plant_models.library.sourced_value import SET_BY_USER
 from synth.configuration.cut_class import CutClass, Surroundings, category_warnings, resolve_cut
 from synth.configuration.grid_warnings import grid_warnings
@@ -74,14 +75,13 @@ class ResolvedConfig:
 
     def plants(self) -> tuple[tuple[str, Plant], ...]:
         """(label, plant) of every cut class."""
-        at = self.retarder
-        return tuple(
-            (
-                c.label,
-                Plant(at.position, c.cut, at.profile, at.friction, c.resistance, at.sensor, c.entry or self.entry),
-            )
-            for c in self.cuts
-        )
+        return tuple((c.label, self.plant_of(c)) for c in self.cuts)
+
+    def plant_of(self, c: CutClass) -> Plant:
+        """The plant of one of the classes."""
+        at, entry = self.retarder, c.entry or self.entry
+        approach = replace(at.approach, entrance_stage=c.entrance_stage)
+        return Plant(at.position, c.cut, at.profile, at.friction, c.resistance, at.sensor, entry, approach)
 
     def targets_of(self, label: str) -> tuple[float, ...]:
         """Commanded exit speeds of the class `label`."""
@@ -118,21 +118,29 @@ class ResolvedConfig:
         return self.resolution, finer
 
     def canonical_json(self) -> str:
-        """What the results depend on, in the canonical form of RFC 8785 (title and [output] are left out)."""
+        """What the results depend on, in the canonical form of RFC 8785.
+
+        Left out are title and [output], and what an approach adds, where there is none.
+        """
         tree: dict[str, Any] = {"format": "retarder-config", "version": 1}
         tree["retarder"] = {"name": self.retarder.name, "law": self.retarder.law}
         for parameter in self.retarder.provenance:
+            if parameter.key in REGULATOR and parameter.value == 0.0:
+                continue
             *path, name = parameter.key.split(".")
             table = tree
             for part in path:
                 table = table.setdefault(part, {})
             table[name] = parameter.value
         tree["cut"] = [c.canonical() for c in self.cuts]
+        if self.retarder.approach.length_m > 0.0:
+            stages = (self.plant_of(c).entrance_stage for c in self.cuts)
+            tree["cut"] = [{**c, "entrance_stage": stage} for c, stage in zip(tree["cut"], stages, strict=True)]
+        tree.setdefault("regulator", {})["estimator"] = self.regulator.estimator
         sections = {
             "criterion": self.criterion_settings,
             "grid": self.grid,
             "fit": self.fit,
-            "regulator": self.regulator,
             "validation": self.validation,
             "acceptance": self.acceptance,
         }

@@ -61,8 +61,13 @@ class FitSettings(Section):
 
 
 class RegulatorSettings(Section):
-    """What the regulator on the track computes besides the rule."""
+    """Where the regulator on the track acts, and what it computes besides the rule.
 
+    `approach_m`, `initial_stage` replace values of the library's position.
+    """
+
+    approach_m: float | None = None
+    initial_stage: int | None = None
     estimator: bool = Field(False, description="compare an estimated speed with the lines: tables of version 2")
 
 
@@ -169,10 +174,10 @@ class Settings(Section):
 
     def library_overrides(self) -> dict[str, Value]:
         """Set values by the dotted keys of the library's positions."""
-        sections = {"retarder", "track", "entry", "friction", "sensor", "targets"}
-        not_numbers = {"retarder": {"name", "type"}, "sensor": {"type"}}
-        tree = self.model_dump(include=sections, exclude=not_numbers, exclude_none=True)
-        return dict(dotted(tree, ""))
+        sections = {"retarder", "track", "entry", "friction", "sensor", "regulator", "targets"}
+        not_of_the_plant = {"retarder": {"name", "type"}, "sensor": {"type"}, "regulator": {"estimator"}}
+        tree = self.model_dump(include=sections, exclude=not_of_the_plant, exclude_none=True)
+        return {key: float(value) if isinstance(value, int) else value for key, value in dotted(tree, "")}
 
 
 NUMERICAL_SECTIONS = ("grid", "fit", "criterion", "validation", "acceptance")

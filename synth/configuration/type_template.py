@@ -52,14 +52,16 @@ FORM: Final = {
 # retarder, sensor: names of types in the library, or paths from this file's folder.
 # starts_m: where each unit begins. Units of different lengths: give zones_m = [[begin, end], …] in its place.
 # [entry]: low_m_s and high_m_s; with mean_m_s and std_m_s beside them a normal law between these limits; or edges_m_s
-# and shares, a histogram. [track]: one grade, or pieces, each [start in m, permille].""",
+# and shares, a histogram. [track]: one grade, or pieces, each [start in m, permille]. [regulator]: approach_m, from how
+# far before the entrance the regulator acts, and initial_stage, the stage left from the cut ahead; 0 if left out.""",
     SENSORS: """\
 # resolution_m_s: 0 means not quantised.""",
     WEIGHT_CATEGORIES: """\
 # One table for each category, the lightest first. name: in tables; the table's own name is a second one, for keyboards.
 # number: stands for the category in controllers for good: 16 to 255; 1 to 5 only for Л, ЛС, С, СТ, Т.
 # The limit, exceeded by all cuts of the category: axle_load_above_t, or mass_above_t of a car with four axles; 0 first.
-# allowed_stage: the highest stage that cuts of the category may be given.""",
+# allowed_stage: the highest stage that cuts of the category may be given; entrance_stage: the same while the first axle
+# is before the entrance (left out: as allowed_stage).""",
 }
 
 

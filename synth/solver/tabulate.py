@@ -10,6 +10,7 @@ from plant_models import Plant
 from synth.solver.exit_density import ExitDensity
 from synth.solver.switching_lines import SwitchingLines
 from tuning_tables import (
+    Approach,
     ControllerTable,
     CutId,
     Estimator,
@@ -70,7 +71,15 @@ def tabulate(
         valid=ValidRange((float(plant.start_m), float(plant.exit_m)), (LOWEST_VALID_SPEED_M_S, highest)),
         predicted=predicted,
         estimator=estimator,
+        approach=approach_of(plant),
     )
+
+
+def approach_of(plant: Plant) -> Approach | None:
+    """What a table says of the path before the entrance; None where the regulator acts from the entrance on."""
+    if plant.start_m == 0.0:
+        return None
+    return Approach(float(-plant.start_m), plant.entrance_stage)
 
 
 def prediction_of(density: ExitDensity, target_speed_m_s: float) -> Predicted:

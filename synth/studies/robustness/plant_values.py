@@ -34,7 +34,8 @@ def with_values(plant: Plant, values: Mapping[str, float]) -> Plant:
         if key not in known and key.rpartition(".")[0] not in SECTIONS:
             raise ValueError(f"{key}: a plant has no such value")
     cut = replace(plant.cut, **fields_in("cut", values))
-    return Plant(
+    return replace(
+        plant,
         position=changed_position(plant, values),
         cut=cut,
         profile=changed_profile(plant.profile, values.get(GRADE, 1.0)),
