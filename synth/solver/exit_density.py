@@ -37,15 +37,22 @@ class ExitDensity:
         return float(first - self.stalled * target_speed_m_s)
 
     def p_overspeed(self, limit_m_s: float) -> float:
-        """P(exit speed > limit): what lies above half-way between two grid points is a sum, cubic between these."""
+        """P(exit speed > limit), the probabilities taken as points of a density and joined as the recursion does it."""
         energy = 0.5 * self.speed_m_s**2
-        above = np.concatenate((self.probability[::-1].cumsum()[::-1], np.zeros(4)))  # above (j − ½)·Δe
-        place = 0.5 * limit_m_s**2 / energy[1] + 0.5
-        j = min(max(int(place), 1), len(self.probability))
-        x = min(place - j, 2.0)
-        cubic = (-x * (x - 1) * (x - 2) / 6, (x + 1) * (x - 1) * (x - 2) / 2, -(x + 1) * x * (x - 2) / 2,
-                 (x + 1) * x * (x - 1) / 6)  # fmt: skip
-        return float(min(max(cubic @ above[j - 1 : j + 3], 0.0), 1.0))
+        share = share_beyond((0.5 * limit_m_s**2 - energy) / energy[1])
+        return float(min(max(self.probability @ share, 0.0), 1.0))
+
+
+def share_beyond(cells: Vector) -> Vector:
+    """Integral from `cells` to infinity of the cubic Lagrange function, by which four points of a grid interpolate."""
+    x = np.clip(np.abs(cells), 0.0, 2.0)
+    t = np.maximum(x - 1.0, 0.0)
+    near = np.minimum(x, 1.0)
+    within = (
+        near * (2.0 - near * (0.5 + near * (2.0 / 3.0 - 0.25 * near))) / 2.0
+        - t * t * (1.0 - t * (1.0 - 0.25 * t)) / 6.0
+    )
+    return np.where(cells < 0.0, 0.5 + within, 0.5 - within)
 
 
 CORE = 1e-3

@@ -63,7 +63,7 @@ def finer_length_m(target_speed_m_s: float) -> float:
 def finer_end(chain: Chain, lines: SwitchingLines, length_m: float, times: int) -> FinerEnd:
     """The last `length_m` of `chain` with energies `times` as dense, below a ceiling that lies above all of `lines`."""
     grid, quanta = chain.grid, len(chain.drive_m_s2)
-    node = max(0, quanta - round(length_m / grid.path_step_m))
+    node = quanta - min(max(round(length_m / grid.path_step_m), 1), quanta)
     upper = lines.upper_m_s[:, node:]
     ceiling_m_s = float(upper.max(initial=0.0, where=np.isfinite(upper))) + ABOVE_LINES_M_S
     cells = min(math.ceil(0.5 * ceiling_m_s**2 / grid.energy_step_m2_s2), len(grid.speed_m_s))
@@ -71,7 +71,7 @@ def finer_end(chain: Chain, lines: SwitchingLines, length_m: float, times: int) 
     drive = chain.drive_m_s2[node:]
     gained = float(np.maximum(drive + chain.scenarios.extra_m_s2.max(), 0.0).sum()) * grid.path_step_m
     points = times * min(cells + math.ceil(gained / grid.energy_step_m2_s2) + MARGIN_CELLS, len(grid.speed_m_s))
-    energy = grid.energy_step_m2_s2 / times * np.arange(points)
+    energy = grid.energy_step_m2_s2 / times * np.arange(points, dtype=np.float64)
     finer = Grid(grid.path_m[node:].copy(), energy, np.sqrt(2.0 * energy))
     end = replace(
         chain,

@@ -23,9 +23,9 @@ from synth.solver.backward_induction import Solution, solve
 from synth.solver.chain.chain import check_chain, persistent_chain
 from synth.solver.evaluation import Evaluation
 from synth.solver.policy_density import density_and_occupancy, exit_density
-from synth.solver.resolved_density import resolved_density
 from synth.solver.polynomial_fit import stage_occupancy
 from synth.solver.polynomial_lines import PolynomialLines
+from synth.solver.resolved_density import resolved_density
 from synth.solver.tuned_lines import fitted
 from synth.studies.cases import Case, named_cases
 from synth.studies.convergence.findings import CaseRow, Convergence, Level, Refinement
