@@ -132,10 +132,10 @@ def category_of(latin: str, tree: dict[str, Any], lighter: tuple[WeightCategory,
         table.number("rolling_resistance.mean_n_per_kn"), table.number("rolling_resistance.std_n_per_kn")
     )
     allowed, at_entrance = table.number("allowed_stage"), table.number(ENTRANCE_STAGE)
-    for key, stage, least in (("allowed_stage", allowed, 1), (ENTRANCE_STAGE, at_entrance, 0)):
+    for of_stage, stage, least in (("allowed_stage", allowed, 1), (ENTRANCE_STAGE, at_entrance, 0)):
         require(
             stage.is_integer() and least <= stage <= HIGHEST_STAGE,
-            f"{key} is {stage:g}; it must be a whole number from {least} to {HIGHEST_STAGE}",
+            f"{of_stage} is {stage:g}; it must be a whole number from {least} to {HIGHEST_STAGE}",
         )
     lowest = lighter[-1].mass_above_t if lighter else None
     require(

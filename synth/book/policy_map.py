@@ -18,6 +18,7 @@ def policy_map(solution: Solution, tolerance_m2_s2: float) -> PolicyMap:
     grid = solution.chain.grid
     down, up = (np.moveaxis(gain, 1, 0) for gain in (solution.gain_down, solution.gain_up))
     down, up = np.where(available(down), down, -np.inf), np.where(available(up), up, -np.inf)
+    up[solution.chain.plant.entrance_stage :, : solution.chain.approach_nodes] = -np.inf
     best = np.maximum(0.0, np.maximum(down, up))
     command = np.zeros(down.shape, dtype=np.int8)
     command[(down > 0.0) & (down >= up)] = -1

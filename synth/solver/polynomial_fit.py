@@ -43,6 +43,7 @@ def fit_lines(solution: Solution, occupancy: NDArray[np.float64], degree: int) -
         gain = (solution.gain_down, solution.gain_up)[side][:, k]
         weight = off_line_cost(line, gain, per_stage[:, k], t.grid.speed_m_s)
         curvature[k, side] = weight
+        line = carried_back(line, t.approach_nodes)
         known = np.isfinite(line)
         if not known.any():
             coefficients[k, side, 0] = (0.0, t.grid.speed_m_s[-1])[side]
@@ -50,6 +51,19 @@ def fit_lines(solution: Solution, occupancy: NDArray[np.float64], degree: int) -
         root = np.sqrt(weight[known] + 1e-3 * weight[known].max() + 1e-12)
         coefficients[k, side] = np.linalg.lstsq(matrix[known] * root[:, None], line[known] * root, rcond=None)[0]
     return Fit(opened(PolynomialLines(*ends_m, coefficients, has_line)), curvature)
+
+
+def carried_back(line: NDArray[np.float64], nodes: int) -> NDArray[np.float64]:
+    """`line` (N,) with its first finite value in place of infinite ones at the first `nodes`.
+
+    Before the entrance a stage may have no line where it must not be left or is never met. A polynomial that is free
+    there would cross its partner, and what keeps the two apart would move both everywhere.
+    """
+    finite = np.isfinite(line)
+    if not finite.any():
+        return line
+    first = int(np.argmax(finite))
+    return np.where((np.arange(len(line)) < min(first, nodes)), line[first], line)
 
 
 def stage_occupancy(occupancy: NDArray[np.float64], mode_stage: NDArray[np.int64], stages: int) -> NDArray[np.float64]:

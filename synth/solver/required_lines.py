@@ -27,7 +27,7 @@ class RequiredLines:
 
 def required_lines(solution: Solution, check: Chain, fit: Fit) -> RequiredLines:
     """Polish the fitted lines, then make them keep what the criterion requires, as predicted on `check`."""
-    found = polished(solution, fit, check)
+    found = polished(solution, fit)
     finding: Finding | None
     match solution.aim.criterion.requirement:
         case OverspeedLimit() as limit:

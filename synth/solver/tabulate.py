@@ -94,9 +94,10 @@ def prediction_of(density: ExitDensity, target_speed_m_s: float) -> Predicted:
 
 
 def lines_of(table: ControllerTable, nodes_m: np.ndarray) -> SwitchingLines:
-    """The table's lines at path nodes, from its float32 coefficients; ±inf where it has none."""
+    """The table's lines at path nodes, from its float32 coefficients; ±inf where it has none, or may not raise."""
     powers = np.vander(nodes_m, table.degree + 1, increasing=True)
     values = np.nan_to_num(table.coefficients.astype(np.float64)) @ powers.T
     lower = np.where(table.has_line[:, 0, None], values[:, 0], -np.inf)
     upper = np.where(table.has_line[:, 1, None], values[:, 1], np.inf)
+    upper[table.entrance_stage :, nodes_m < 0.0] = np.inf
     return SwitchingLines(np.array(nodes_m, dtype=np.float64), lower, upper)

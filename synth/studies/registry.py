@@ -16,6 +16,14 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.accuracy_grid.picture",
     ),
     Study(
+        "approach",
+        "What is gained when the regulator acts from before the entrance, and from how far?",
+        150.0,
+        "approach.md",
+        "synth.studies.approach.study",
+        "synth.studies.approach.picture",
+    ),
+    Study(
         "benchmark",
         "How fast do the kernels of a tune solve its problem, beside numpy and the limit of the machine?",
         34.0,

@@ -21,6 +21,7 @@ from plant_models.library import (
     retarder_names,
 )
 from plant_models.library.car_entry import car_from
+from plant_models.library.position_entry import INITIAL_STAGE
 from plant_models.library.retarder_entry import retarder_from
 from plant_models.library.weight_category import categories_from
 
@@ -51,7 +52,8 @@ def test_holds_the_promised_types() -> None:
 def test_every_number_of_a_position_has_an_origin(name: str) -> None:
     entry = load_position(name)
     assert entry.position.name == name
-    assert all(v.source and v.confidence and v.range is not None and v.in_range for v in entry.provenance)
+    stated = [v for v in entry.provenance if v.key != INITIAL_STAGE]
+    assert all(v.source and v.confidence and v.range is not None and v.in_range for v in stated)
     assert any(v.assumed for v in entry.provenance)
     assert entry.entry.high_m_s <= entry.position.max_entry_speed_m_s
     assert max(entry.target_speeds_m_s) < entry.entry.high_m_s

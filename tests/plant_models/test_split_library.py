@@ -5,7 +5,8 @@ import json
 
 import pytest
 
-from plant_models.library import load_position, load_retarder, position_names
+from plant_models.library import SourcedValue, load_position, load_retarder, position_names
+from plant_models.library.position_entry import REGULATOR
 
 BEFORE = {
     "knp-5-bunch": "136d4aeecccac776d56d325a8124c26c0d9205dd269f3c914c4c9197ac97b699",
@@ -20,9 +21,14 @@ Who changes a number, its source or its range on purpose takes the position out 
 """
 
 
+def before(name: str) -> list[SourcedValue]:
+    """The numbers of a position, but for where its regulator begins to act: those keys came later."""
+    return [value for value in load_position(name).provenance if value.key not in REGULATOR]
+
+
 @pytest.mark.parametrize("name", BEFORE)
 def test_every_number_and_its_origin_is_what_it_was(name: str) -> None:
-    rows = [[v.key, v.value, v.unit, v.range, v.source, v.confidence] for v in load_position(name).provenance]
+    rows = [[v.key, v.value, v.unit, v.range, v.source, v.confidence] for v in before(name)]
     text = json.dumps(rows, ensure_ascii=False, separators=(",", ":"))
     assert hashlib.sha256(text.encode()).hexdigest() == BEFORE[name]
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 
 from plant_models import (
+    Approach,
     Cut,
     DopplerSensor,
     EntrySpeed,
@@ -62,8 +64,8 @@ def coarse() -> Resolution:
     return COARSE
 
 
-@pytest.fixture(scope="session")
-def small() -> Callable[[], Chain]:
+@pytest.fixture(scope="session", params=[Approach(), Approach(3.0, 1, 1)], ids=["entrance", "approach"])
+def small(request: pytest.FixtureRequest) -> Callable[[], Chain]:
     """The random plant on the coarse grid; behind a call, as hypothesis prints its arguments."""
-    transitions = persistent_chain(random_plant(), COARSE)
-    return lambda: transitions
+    chain = persistent_chain(replace(random_plant(), approach=request.param), COARSE)
+    return lambda: chain

@@ -122,7 +122,7 @@ def test_the_picture_book_names_every_picture_once_and_every_case(tmp_path: Path
 
 def test_the_map_shows_command_and_indifference_where_they_are(cases: list[CaseResult]) -> None:
     case = cases[1]
-    image = command_image(case.study.policy_map, 1, case.plant.exit_m, (2.0, 6.9), (240, 200))
+    image = command_image(case.study.policy_map, 1, (case.plant.start_m, case.plant.exit_m), (2.0, 6.9), (240, 200))
     up, down = image[-1, -1], image[0, -1]
     assert up[0] > up[2], "up is reddish"
     assert down[2] > down[0], "down is bluish"

@@ -22,13 +22,17 @@ from tuning_tables import ControllerTable, to_json
 CREATED = "2026-11-22T00:00:00Z"
 FEW = "[validation]\npasses = 1000\n"
 GONDOLA = '[[cut]]\ncar = "gondola-4"\nmass_t = 36\n'
+ENTRANCE = "[regulator]\napproach_m = 0.0\n"
+AHEAD = "[regulator]\napproach_m = 4.0\n"
 CONFIGURATIONS = {
-    **{name: f'{FEW}[retarder]\nname = "{name}"\n' for name in position_names()},
-    "estimator": f"{FEW}[regulator]\nestimator = true\n{GONDOLA}",
-    "p_overspeed": f"{FEW}[criterion]\np_overspeed = 0.02\n[targets]\nexit_speeds_m_s = [2.0]\n{GONDOLA}",
+    **{name: f'{FEW}{ENTRANCE}[retarder]\nname = "{name}"\n' for name in position_names()},
+    "estimator": f"{FEW}{ENTRANCE}estimator = true\n{GONDOLA}",
+    "approach": f"{FEW}{AHEAD}",
+    "approach, estimator": f"{FEW}{AHEAD}estimator = true\n{GONDOLA}",
+    "p_overspeed": f"{FEW}{ENTRANCE}[criterion]\np_overspeed = 0.02\n[targets]\nexit_speeds_m_s = [2.0]\n{GONDOLA}",
     "worst_friction": (
-        f"{FEW}[criterion]\nworst_friction_low = 0.8\nworst_friction_high = 1.2\n[targets]\nexit_speeds_m_s = [3.0]\n"
-        f"{GONDOLA}"
+        f"{FEW}{ENTRANCE}[criterion]\nworst_friction_low = 0.8\nworst_friction_high = 1.2\n"
+        f"[targets]\nexit_speeds_m_s = [3.0]\n{GONDOLA}"
     ),
 }
 
@@ -45,7 +49,7 @@ def tuned(config: ResolvedConfig) -> Iterator[ControllerTable]:
 
 def swept() -> Iterator[ControllerTable]:
     """The tables of a small sweep."""
-    for unit in plan_of(parse_sweep(PLANT + SWEEP, "sweep.toml"), CREATED).units:
+    for unit in plan_of(parse_sweep(ENTRANCE + PLANT + SWEEP, "sweep.toml"), CREATED).units:
         yield from (row.table for row in tune_unit(unit.order).rows)
 
 

@@ -1,8 +1,8 @@
 """Not one coefficient changes unless somebody means it to: hashes of all stages and lines, kept in `coefficients.json`.
 
-They were made by commit 0514bc8, before the rooms of `synth` were moved. Who changes tables on purpose writes the file
-anew (`python -m tests.system.coefficients`) and says why in the commit. BLAS is told which processor to compute for, as
-its kernels differ in the last bit; on a processor without AVX2 this test cannot run.
+Those without approach were made by commit 0514bc8, before the rooms of `synth` were moved. Who changes tables on
+purpose writes the file anew (`python -m tests.system.coefficients`) and says why in the commit. BLAS is told which
+processor to compute for, as its kernels differ in the last bit; on a processor without AVX2 this test cannot run.
 """
 
 from __future__ import annotations

@@ -24,6 +24,7 @@ DOTS_PER_INCH = 110
 
 LINE_COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BLACK)
 LINE_STYLES: Final[tuple[LineStyleType, ...]] = ("-", "--", "-.", ":", (0, (5, 1, 1, 1)), (0, (8, 2)), (0, (1, 1)))
+ENTRANCE_STYLE: Final[LineStyleType] = (0, (1, 2))
 LINE_MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 
 
@@ -98,6 +99,13 @@ def mark_zones(axes: Axes, case: CaseResult) -> None:
         [(start, end - start) for start, end in zones], (0.0, 0.025), transform=axes.get_xaxis_transform(),
         facecolor=INK, zorder=4,
     )  # fmt: skip
+    mark_entrance(axes, case.plant.start_m)
+
+
+def mark_entrance(axes: Axes, start_m: float) -> None:
+    """The entrance as a thin line in a panel over path, where the regulator acts from before it."""
+    if start_m < 0.0:
+        axes.axvline(0.0, color=INK, linewidth=0.8, linestyle=ENTRANCE_STYLE, zorder=4)
 
 
 def legend_below(figure: Figure, handles: Sequence[Artist], columns: int, bottom_in: float = 0.08) -> Legend:

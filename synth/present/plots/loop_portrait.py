@@ -44,15 +44,15 @@ def loop_portrait(loop: ControlLoop) -> Figure:
     figure = new_figure(13.0, 6.4, title, subject(loop.table))
     place(figure, left=0.65, right=0.2, bottom=1.2, top=0.85, w=0.13)
     whole, near = figure.subplots(1, 2)
-    target, exit_m = loop.table.target_speed_m_s, loop.plant.exit_m
+    target, ends_m = loop.table.target_speed_m_s, (loop.plant.start_m, loop.plant.exit_m)
     for axes in (whole, near):
         draw(axes, loop)
     speeds = np.concatenate([response.speed_m_s for response in loop.portrait])
     lowest, highest = min(float(speeds.min()), target - 0.8), float(speeds.max())
     dress(whole, f"{len(loop.portrait)} passes of mean friction", "path of the first axle, m", "speed, m/s")
-    whole.set(xlim=(0.0, exit_m), ylim=(max(0.0, lowest - 0.2), highest + 0.3))
+    whole.set(xlim=ends_m, ylim=(max(0.0, lowest - 0.2), highest + 0.3))
     dress(near, "the same, around the commanded speed", "path of the first axle, m", "speed, m/s")
-    near.set(xlim=(0.0, exit_m), ylim=(target - NEAR_M_S, target + NEAR_M_S))
+    near.set(xlim=ends_m, ylim=(target - NEAR_M_S, target + NEAR_M_S))
     legend_below(figure, entries(loop), columns=5)
     return figure
 

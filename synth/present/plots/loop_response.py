@@ -11,7 +11,7 @@ from synth.book.control_loop import TOLERANCE_M_S, ControlLoop
 from synth.present.plots.house_style import BLUE, GREY, INK, VERMILLION, dress, legend_below, new_figure, place
 from synth.present.plots.table_picture import subject
 
-TIME = "time since the first axle entered, s"
+TIME = "time since the regulator took over, s"
 
 
 def loop_response(loop: ControlLoop) -> Figure:
@@ -43,7 +43,7 @@ def draw_speed(axes: Axes, loop: ControlLoop) -> None:
     axes.axhline(target, color=INK, linewidth=1.0, linestyle=(0, (4, 3)), zorder=1)
     title = f"leaves with {response.exit_speed_m_s:.4f} and {trace.exit_speed_m_s:.4f} m/s, commanded {target:g}"
     dress(axes, title, "path of the first axle, m", "speed, m/s")
-    axes.set(xlim=(0.0, loop.plant.exit_m), ylim=(0.0, None))
+    axes.set(xlim=(loop.plant.start_m, loop.plant.exit_m), ylim=(0.0, None))
 
 
 def draw_difference(axes: Axes, loop: ControlLoop) -> None:

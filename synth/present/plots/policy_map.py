@@ -18,6 +18,7 @@ from synth.book.case_names import cut_name, target_name
 from synth.book.case_result import CaseResult, PolicyMap
 from synth.present.plots.house_style import (
     BLUE,
+    ENTRANCE_STYLE,
     GREY,
     INK,
     VERMILLION,
@@ -45,7 +46,7 @@ def policy_map(case: CaseResult) -> Figure:
     label_panels(grid, stages)
     box = grid.flat[stages].get_position()
     figure.legend(
-        handles=legend_entries(), loc="center", bbox_to_anchor=(box.x0, box.y0, box.width, box.height), fontsize=9,
+        handles=legend_entries(case), loc="center", bbox_to_anchor=(box.x0, box.y0, box.width, box.height), fontsize=9,
         frameon=False,
     )  # fmt: skip
     return figure
@@ -76,10 +77,10 @@ def label_panels(grid: Any, stages: int) -> None:
 def draw_stage(axes: Axes, case: CaseResult, stage: int) -> None:
     """One panel: map, solver's lines (dots), exported lines (bold), passes while they were in this stage."""
     low, high = speed_window_m_s(case)
-    exit_m = case.plant.exit_m
+    ends_m = case.plant.start_m, case.plant.exit_m
     pixels = round(axes.bbox.width), round(axes.bbox.height)
-    image = command_image(case.study.policy_map, stage, exit_m, (low, high), pixels)
-    axes.imshow(image, extent=(0.0, exit_m, low, high), origin="lower", aspect="auto", interpolation="none")
+    image = command_image(case.study.policy_map, stage, ends_m, (low, high), pixels)
+    axes.imshow(image, extent=(*ends_m, low, high), origin="lower", aspect="auto", interpolation="none")
     raw, exported = case.study.solver_lines, case.study.table_lines
     sides = ((raw.lower_m_s, exported.lower_m_s, BLUE, "--"), (raw.upper_m_s, exported.upper_m_s, VERMILLION, "-"))
     for dots, line, colour, style in sides:
@@ -89,7 +90,7 @@ def draw_stage(axes: Axes, case: CaseResult, stage: int) -> None:
     mark_zones(axes, case)
     dress(axes, f"stage {stage} · {case.plant.position.stage_pressures_kpa[stage]:g} kPa")
     axes.grid(False)
-    axes.set(xlim=(0.0, exit_m), ylim=(low, high))
+    axes.set(xlim=ends_m, ylim=(low, high))
 
 
 def finite(line: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -98,11 +99,15 @@ def finite(line: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def command_image(
-    policy: PolicyMap, stage: int, exit_m: float, speeds_m_s: tuple[float, float], pixels: tuple[int, int]
+    policy: PolicyMap,
+    stage: int,
+    ends_m: tuple[float, float],
+    speeds_m_s: tuple[float, float],
+    pixels: tuple[int, int],
 ) -> NDArray[np.uint8]:
     """The map of one stage as colours (speed, path, 4) on an even mesh of `pixels`, path by speed; slowest first."""
     width, height = pixels
-    path = (np.arange(width) + 0.5) / width * exit_m
+    path = ends_m[0] + (np.arange(width) + 0.5) / width * (ends_m[1] - ends_m[0])
     speed = speeds_m_s[0] + (np.arange(height) + 0.5) / height * (speeds_m_s[1] - speeds_m_s[0])
     node = np.clip(np.searchsorted(policy.path_m, path, side="right") - 1, 0, policy.path_m.size - 1)
     here = np.ix_(node, nearest(policy.speed_m_s, speed))
@@ -131,8 +136,9 @@ def parts_in_stage(traces: tuple[PassTrace, ...], stage: int) -> tuple[NDArray[n
     return np.concatenate(paths), np.concatenate(speeds)
 
 
-def legend_entries() -> list[Artist]:
+def legend_entries(case: CaseResult) -> list[Artist]:
     """What the colours, hatches and lines of a panel mean."""
+    entrance = [Line2D([], [], color=INK, linewidth=0.8, linestyle=ENTRANCE_STYLE, label="entrance")]
     return [
         Patch(facecolor=UP, edgecolor=GREY, label="best: one stage up (brake more)"),
         Patch(facecolor=HOLD, edgecolor=GREY, label="best: hold"),
@@ -143,4 +149,5 @@ def legend_entries() -> list[Artist]:
         Line2D([], [], color=GREY, marker=".", linestyle="", markersize=5, label="solver's lines, unsmoothed"),
         Line2D([], [], color=INK, linewidth=0.8, label="simulated passes while in the stage"),
         Patch(facecolor=INK, label="retarder zones"),
+        *(entrance if case.plant.start_m < 0.0 else ()),
     ]

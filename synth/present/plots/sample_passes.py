@@ -42,7 +42,7 @@ def sample_passes(case: CaseResult) -> Figure:
         handles.append(Line2D([], [], color=colour, linestyle=style, linewidth=1.6, label=label))
     finish_speed(speed, case)
     dress(pressure, "pressure above the touch of the pads, kPa")
-    dress(stage, "commanded stage", "time since the first axle entered, s")
+    dress(stage, "commanded stage", "time since the regulator took over, s")
     last_s = max((float(trace.time_s[-1]) for trace in case.study.traces), default=1.0)
     pressure.tick_params(labelbottom=False)
     pressure.set(xlim=(0.0, last_s), ylim=(0.0, None))
@@ -59,8 +59,8 @@ def finish_speed(axes: Axes, case: CaseResult) -> None:
     """Target, the place where the last axle has left the last zone, zones and labels of the speed panel."""
     axes.axhline(case.target_speed_m_s, color=INK, linewidth=1.0, linestyle=(0, (4, 3)), zorder=1)
     axes.annotate(
-        target_name(case), (0.0, case.target_speed_m_s), (4.0, -4.0), textcoords="offset points", va="top",
-        fontsize=8.5,
+        target_name(case), (case.plant.start_m, case.target_speed_m_s), (4.0, -4.0), textcoords="offset points",
+        va="top", fontsize=8.5,
     )  # fmt: skip
     mark_zones(axes, case)
     last_end = case.plant.position.zones_m[-1][1]
@@ -70,7 +70,7 @@ def finish_speed(axes: Axes, case: CaseResult) -> None:
     )  # fmt: skip
     dress(axes, "true speed, m/s", "path of the first axle, m")
     highest = max((float(trace.speed_m_s.max()) for trace in case.study.traces), default=case.plant.entry.high_m_s)
-    axes.set(xlim=(0.0, case.plant.exit_m), ylim=(0.0, 1.05 * highest))
+    axes.set(xlim=(case.plant.start_m, case.plant.exit_m), ylim=(0.0, 1.05 * highest))
 
 
 def outcome(trace: PassTrace) -> str:

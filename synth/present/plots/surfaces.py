@@ -23,7 +23,7 @@ POINTS_PER_STAGE = 3
 def surfaces(case: CaseResult) -> Figure:
     """The exported lines of a case over path and pressure; see `surface_figure`."""
     stages = case.study.table_lines.stages
-    path = np.linspace(0.0, case.plant.exit_m, PATH_POINTS)
+    path = np.linspace(case.plant.start_m, case.plant.exit_m, PATH_POINTS)
     lines = lines_of(case.table, path)
     pressure = np.asarray(case.plant.position.stage_pressures_kpa[:stages])
     subject = f"{cut_name(case)}, {target_name(case)}"
@@ -47,7 +47,7 @@ def surface_figure(
     path, stages = lines.nodes_m, len(pressure_kpa)
     for all_speeds, colour, alpha in ((lines.lower_m_s, BLUE, 0.75), (lines.upper_m_s, VERMILLION, 0.45)):
         speeds = all_speeds[:stages]
-        has_line = np.isfinite(speeds).all(axis=1)
+        has_line = np.isfinite(speeds).any(axis=1)
         if has_line.any():
             shown = np.clip(speeds[has_line], *window_m_s)
             axes.add_collection3d(sheet(path, pressure_kpa[has_line], shown, colour, alpha), autolim=False)

@@ -22,6 +22,7 @@ from synth.present.plots.house_style import (
     VERMILLION,
     dress,
     legend_below,
+    mark_entrance,
     new_figure,
     place,
 )
@@ -96,6 +97,7 @@ def draw_stage(axes: Axes, table: ControllerTable, stage: int, passes: Passes | 
         axes.plot(*parts_in_stage(passes.traces, stage), color=INK, linewidth=0.8, zorder=6)
     bars = [(start, end - start) for start, end in table.retarder.zones_m]
     axes.broken_barh(bars, (0.0, 0.025), transform=axes.get_xaxis_transform(), facecolor=INK, zorder=4)
+    mark_entrance(axes, table.valid.s_m[0])
     dress(axes, f"stage {stage} · {table.stages[stage].pressure_kpa:g} kPa")
     axes.grid(False)
     axes.set(xlim=table.valid.s_m, ylim=(low, high))
@@ -123,7 +125,7 @@ def table_passes(table: ControllerTable, passes: Passes) -> Figure:
         handles.append(Line2D([], [], color=colour, linestyle=style, linewidth=1.6, label=label))
     speed.axhline(table.target_speed_m_s, color=INK, linewidth=1.0, linestyle=(0, (4, 3)), zorder=1)
     dress(speed, "true speed, m/s", "path of the first axle, m")
-    dress(pressure, "pressure above the touch of the pads, kPa", "time since the first axle entered, s")
+    dress(pressure, "pressure above the touch of the pads, kPa", "time since the regulator took over, s")
     speed.set(xlim=table.valid.s_m, ylim=(0.0, None))
     pressure.set(xlim=(0.0, None), ylim=(0.0, None))
     draw_exits(exits, table, passes.sample)

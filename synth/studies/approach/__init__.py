@@ -1,0 +1,1 @@
+"""What a start before the entrance is worth."""
