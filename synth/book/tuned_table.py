@@ -20,11 +20,12 @@ from synth.simulation.passes import ExitSample
 from synth.solver.backward_induction import Solution, solve_all
 from synth.solver.chain.chain import Chain
 from synth.solver.exit_density import ExitDensity
-from synth.solver.policy_density import density_and_occupancy, exit_density
+from synth.solver.policy_density import density_and_occupancy
 from synth.solver.polish import Polish
 from synth.solver.polynomial_fit import fit_lines
 from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.required_lines import required_lines
+from synth.solver.resolved_density import resolved_density
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tabulate import UNPREDICTED, lines_of, prediction_of, tabulate
 from tuning_tables import ControllerTable, Validated
@@ -121,7 +122,8 @@ def with_prediction(check: Chain, table: ControllerTable) -> tuple[ControllerTab
 
 
 def predict(check: Chain, table: ControllerTable) -> ExitDensity:
-    """Exit-speed density of an exported table on `check`."""
+    """Exit-speed density of an exported table on `check`, resolved near its target."""
     lines = lines_of(table, check.grid.path_m)
     stages = check.actuator.stages
-    return exit_density(check, SwitchingLines(lines.nodes_m, lines.lower_m_s[:stages], lines.upper_m_s[:stages]))
+    used = SwitchingLines(lines.nodes_m, lines.lower_m_s[:stages], lines.upper_m_s[:stages])
+    return resolved_density(check, used, table.target_speed_m_s)

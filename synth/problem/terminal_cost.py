@@ -67,8 +67,8 @@ class AsymmetricSquare:
 class PenalisedOverspeed:
     """(V_exit − V_target)² + `price_m2_s2`·[V_exit > V_target + `margin_m_s`], the Lagrangian of a chance constraint.
 
-    The step is a ramp over the one cell that holds the limit, as in `ExitDensity.p_overspeed`; so the expected cost is
-    mean square + price × that probability, exactly.
+    The step is a ramp over the one cell that holds the limit, so that the expected cost is mean square + price × the
+    mean of the ramp, exactly.
     """
 
     price_m2_s2: float

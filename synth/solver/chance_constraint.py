@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from synth.problem.aim import Aim
 from synth.problem.requirement import OverspeedLimit
 from synth.problem.requirement_found import OverspeedLimitFound
-from synth.problem.terminal_cost import PenalisedOverspeed
+from synth.problem.terminal_cost import PenalisedOverspeed, share_above
 from synth.solver.backward_induction import Solution
 from synth.solver.chain.chain import Chain
 from synth.solver.evaluation import Evaluation
@@ -73,7 +73,8 @@ def keep_overspeed_limit(
 
     def judged(price: float, lines: PolynomialLines) -> Candidate:
         density = predicted_density(judge, lines)
-        probability = density.p_overspeed(target_speed_m_s + limit.margin_m_s)
+        above = share_above(density.speed_m_s, target_speed_m_s + limit.margin_m_s)  # the ramp that is priced
+        probability = max(float((density.probability * above).sum()), 0.0)
         return Candidate(price, lines, probability, density.rms_m_s(target_speed_m_s))
 
     highest = limit.highest_probability

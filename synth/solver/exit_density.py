@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
-from synth.problem.terminal_cost import share_above
+
+Vector = NDArray[np.float64]
 
 
 @frozen_arrays
@@ -36,5 +37,73 @@ class ExitDensity:
         return float(first - self.stalled * target_speed_m_s)
 
     def p_overspeed(self, limit_m_s: float) -> float:
-        """P(exit speed > limit), the cell that holds the limit shared linearly in energy."""
-        return float(max((self.probability * share_above(self.speed_m_s, limit_m_s)).sum(), 0.0))
+        """P(exit speed > limit), the probabilities taken as points of a density and joined as the recursion does it."""
+        energy = 0.5 * self.speed_m_s**2
+        share = share_beyond((0.5 * limit_m_s**2 - energy) / energy[1])
+        return float(min(max(self.probability @ share, 0.0), 1.0))
+
+
+def share_beyond(cells: Vector) -> Vector:
+    """Integral from `cells` to infinity of the cubic Lagrange function, by which four points of a grid interpolate."""
+    x = np.clip(np.abs(cells), 0.0, 2.0)
+    t = np.maximum(x - 1.0, 0.0)
+    near = np.minimum(x, 1.0)
+    within = (
+        near * (2.0 - near * (0.5 + near * (2.0 / 3.0 - 0.25 * near))) / 2.0
+        - t * t * (1.0 - t * (1.0 - 0.25 * t)) / 6.0
+    )
+    return np.where(cells < 0.0, 0.5 + within, 0.5 - within)
+
+
+CORE = 1e-3
+"""Where a probability has this share of the largest, it may be changed for those that were negative."""
+
+NEWTON_STEPS = 30
+"""Far more than are needed where little is negative; so many where no distribution has the moments."""
+
+
+def without_negative(density: ExitDensity) -> ExitDensity:
+    """The same with no probability below 0, of equal mass, mean and mean square; unchanged if there is none.
+
+    Cubic weights leave negative probabilities where a density is narrow for its grid. Each becomes 0; and the core of
+    the density is multiplied by the exponential of a parabola, so that all three moments are what they were. Of all
+    that keep them this is the core nearest to what it was, by relative entropy. The tails stay as they are.
+    """
+    if density.probability.min(initial=0.0) >= 0.0:
+        return density
+    positive = np.maximum(density.probability, 0.0)
+    core = positive > CORE * positive.max()
+    middle = np.average(density.speed_m_s[core], weights=positive[core])
+    width = np.sqrt(np.average((density.speed_m_s[core] - middle) ** 2, weights=positive[core]))
+    x = (density.speed_m_s - middle) / max(width, 1e-9)
+    powers = np.stack([np.ones_like(x), x, x * x])
+    moments = powers @ (density.probability - np.where(core, 0.0, positive))
+    positive[core] = tilted(positive[core], powers[:, core], moments)
+    return replace(density, probability=positive)
+
+
+def tilted(weight: NDArray[np.float64], powers: NDArray[np.float64], moments: NDArray[np.float64]) -> Vector:
+    """`weight` (E,) times exp(λ·`powers`), λ such that the sums with `powers` (3, E) are `moments`: Newton's method.
+
+    The λ sought minimises the convex Σ weight·exp(λ·powers) − λ·moments; a step that does not lower it is halved.
+    """
+
+    def at(place: Vector) -> tuple[Vector, float]:
+        found = weight * np.exp(np.minimum(place @ powers, 100.0))
+        return found, float(found.sum() - place @ moments)
+
+    place = np.zeros(len(moments))
+    found, height = at(place)
+    for _ in range(NEWTON_STEPS):
+        slope = powers @ found - moments
+        step = np.linalg.lstsq((powers * found) @ powers.T, slope)[0]
+        if abs(slope @ step) < 1e-24:
+            break
+        share = 1.0
+        while share > 1e-6:
+            ahead, lower = at(place - share * step)
+            if lower <= height:
+                break
+            share *= 0.5
+        place, found, height = place - share * step, ahead, lower
+    return found

@@ -19,7 +19,7 @@ from synth.problem.problem import Problem
 from synth.problem.requirement import FrictionRange, OverspeedLimit
 from synth.problem.requirement_found import OverspeedLimitFound
 from synth.problem.resolution import Resolution, finer_for_check
-from synth.problem.terminal_cost import AsymmetricSquare, PenalisedOverspeed, SquaredError, TerminalCost
+from synth.problem.terminal_cost import AsymmetricSquare, PenalisedOverspeed, SquaredError, TerminalCost, share_above
 from synth.simulation.closed_loop import LineController, simulate
 from synth.simulation.exit_statistics import clopper_pearson, exit_statistics
 from synth.simulation.random_passes import random_passes
@@ -97,7 +97,8 @@ def test_a_penalised_overspeed_costs_its_price_times_the_probability(design: Cha
     priced = replace(free, terminal=PenalisedOverspeed(2.0, 0.02))
     dear, cheap = (Evaluation(design, Aim(TARGET_M_S, each)).cost(lines) for each in (priced, free))
     assert density.p_overspeed(TARGET_M_S + 0.02) > 0.02
-    assert dear - cheap == pytest.approx(2.0 * density.p_overspeed(TARGET_M_S + 0.02), rel=1e-6)
+    ramp = share_above(density.speed_m_s, TARGET_M_S + 0.02)
+    assert dear - cheap == pytest.approx(2.0 * float(density.probability @ ramp), rel=1e-6)
 
 
 @pytest.mark.parametrize("terminal", [SquaredError(), ASYMMETRIC, PenalisedOverspeed(0.05, 0.05)])

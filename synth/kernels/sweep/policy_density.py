@@ -20,8 +20,8 @@ from synth.kernels.vector.packs import EIGHT, choose, fraction, holds_anywhere, 
 NEGLIGIBLE_MASS = 1e-11
 """A state with less mass is left out."""
 
-MATTERS = 1e-3 * NEGLIGIBLE_MASS
-"""Energies at which no state has this mass are not looked at."""
+MATTERS = 1e-3
+"""Energies at which no state has this share of the negligible mass are not looked at."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -56,8 +56,9 @@ def forward(
             for q in range(size):
                 heading[r, entry_mode, q, :points] = entry[r] * stationary[q]
                 spans[r, entry_mode, q, 1] = points
+        totals[i] = 0.0
         follow(
-            heading, arriving, mixing, memory, scratch, spans, arrived, landed,
+            0, drive.shape[0], NEGLIGIBLE_MASS, heading, arriving, mixing, memory, scratch, spans, arrived, landed,
             down, up, speed, stage, pressure, lower_chain, upper_chain, chain_mode,
             ends, factors, met[0], slope[0], levels, transition,
             drive, brake, factor[i], extra[i], path_step, energy_step, period, density[i], band[i], totals[i],
@@ -67,26 +68,27 @@ def forward(
 
 @borrowing
 def follow(
-    heading, arriving, mixing, memory, scratch, spans, arrived, landed,
+    start, stop, negligible, heading, arriving, mixing, memory, scratch, spans, arrived, landed,
     down, up, speed, stage, pressure, lower_chain, upper_chain, chain_mode,
     ends, factors, met, slope, levels, transition,
     drive, brake, factor, extra, path_step, energy_step, period, density, band, totals,
 ):  # fmt: skip
-    """One scenario: masses on their way (`heading`) and after transients (`arriving`, `mixing`: rings).
+    """One scenario from node `start` to node `stop`: masses on their way (`heading`) and after transients (`arriving`,
+    `mixing`: rings), which stand at `start` before and at `stop` after.
 
     Most states are empty, and it is known which: `spans` (M + 1, H, L, 2) ranges of energies out of which `heading` is
     zero, `landed` (ring, H, 2) the same of the rings, `arrived` (H, L, 2) of what matters of the arrivals at this node.
-    The rings are zero before, and after but for the exit node.
+    The rings are zero behind the node that is reached. A state with less than `negligible` mass is left out. `totals`
+    (4,) are added to.
     """
     moved, mass, quanta, chance, shift = memory
     nodes, reach, ring = drive.shape[0], heading.shape[0], arriving.shape[0]
     modes, size, points = pressure.shape[0], levels.shape[0], speed.shape[0]
-    totals[:] = 0.0
     first, last = 0, points
-    for n in range(nodes):
+    for n in range(start, stop):
         here, mixed = arriving[n % ring], mixing[n % ring]
-        find_arrivals(here, mixed, transition, landed[n % ring], arrived)
-        first, last = occupied(heading, spans, arrived, points)
+        find_arrivals(here, mixed, transition, landed[n % ring], MATTERS * negligible, arrived)
+        first, last = occupied(heading, spans, arrived, points, MATTERS * negligible)
         band[n, 0], band[n, 1] = first, last
         shifts(n, factor, levels, drive, brake, pressure, extra, path_step, energy_step, shift)
         lowest = max(first, 1)
@@ -95,20 +97,20 @@ def follow(
             for q in range(size):
                 totals[0] += here[h, q, 0] + heading[0, h, q, 0]
                 begin, end = masses_at_sample(
-                    here[h, q], arrived[h, q], heading[0, h, q], spans[0, h, q], lowest, last, mass
+                    here[h, q], arrived[h, q], heading[0, h, q], spans[0, h, q], lowest, last, negligible, mass
                 )
                 acceleration = shift[h, q] * energy_step / path_step
                 quanta_to_next_sample(speed, begin, end, acceleration, period, path_step, quanta)
                 for j in range(begin, end):
                     chance[0, j], chance[1, j] = down[n, k, j], up[n, k, j]
-                go_on(mass, chance, quanta, begin, end, heading, spans, h, q)
+                go_on(mass, chance, quanta, begin, end, negligible, heading, spans, h, q)
                 if density.shape[0] > 0:
                     for j in range(lowest, last):
                         density[n, h, q, j] = mass[j] if begin <= j < end else 0.0
                 for side in range(2):
                     c = upper_chain[h] if side == 1 else lower_chain[h]
                     share = chance[side]
-                    low, high = extent(share, begin, end, NEGLIGIBLE_MASS)
+                    low, high = extent(share, begin, end, negligible)
                     if c < 0 or low >= high:
                         continue
                     changes = totals[2 + side]
@@ -131,11 +133,11 @@ def follow(
 
 
 @borrowing
-def find_arrivals(here, mixed, transition, landed, arrived):
+def find_arrivals(here, mixed, transition, landed, matters, arrived):
     """Mass that was deposited before the noise level changed joins `here` (H, L, E') after the change.
 
     `landed` (H, 2): ranges of energies out of which both are zero; `arrived` (H, L, 2) becomes the ranges out of which
-    nothing that matters has arrived.
+    no mass that `matters` has arrived.
     """
     modes, levels, row = here.shape
     for h in range(modes):
@@ -145,7 +147,7 @@ def find_arrivals(here, mixed, transition, landed, arrived):
             for m in range(levels):
                 add_row(mixed[h, q], transition[q, m], begin, end, here, (h * levels + m) * row)
         for q in range(levels):
-            arrived[h, q, 0], arrived[h, q, 1] = extent(here[h, q], low, high, MATTERS)
+            arrived[h, q, 0], arrived[h, q, 1] = extent(here[h, q], low, high, matters)
 
 
 @borrowing
@@ -159,23 +161,23 @@ def clear_landed(here, mixed, landed):
 
 
 @borrowing
-def occupied(heading, spans, arrived, points):
-    """The range of energies at which mass that matters stands, has arrived or is on its way."""
+def occupied(heading, spans, arrived, points, matters):
+    """The range of energies at which mass that `matters` stands, has arrived or is on its way."""
     low, high = heading.shape[3], 0
     for h in range(arrived.shape[0]):
         for q in range(arrived.shape[1]):
             if arrived[h, q, 0] < arrived[h, q, 1]:
                 low, high = min(low, arrived[h, q, 0]), max(high, arrived[h, q, 1])
             for r in range(heading.shape[0]):
-                begin, end = extent(heading[r, h, q], spans[r, h, q, 0], min(spans[r, h, q, 1], points), MATTERS)
+                begin, end = extent(heading[r, h, q], spans[r, h, q, 0], min(spans[r, h, q, 1], points), matters)
                 if begin < end:
                     low, high = min(low, begin), max(high, end)
     return min(low, high), high
 
 
 @borrowing
-def masses_at_sample(here, arrived, heading, span, first, last, mass):
-    """`mass` (E',) = `here` + `heading` where it is not negligible: the range returned, which zeros follow."""
+def masses_at_sample(here, arrived, heading, span, first, last, negligible, mass):
+    """`mass` (E',) = `here` + `heading` where it is not `negligible`: the range returned, which zeros follow."""
     begin, end = span[0], span[1]
     if begin >= end:
         begin, end = arrived[0], arrived[1]
@@ -184,19 +186,19 @@ def masses_at_sample(here, arrived, heading, span, first, last, mass):
     begin, end = max(begin, first), min(end, last)
     for j in range(begin, end):
         mass[j] = here[j] + heading[j]
-    begin, end = extent(mass, begin, end, NEGLIGIBLE_MASS)
+    begin, end = extent(mass, begin, end, negligible)
     for j in range(end, end + EIGHT):
         mass[j] = 0.0
     return begin, end
 
 
 @borrowing
-def go_on(mass, chance, quanta, begin, end, heading, spans, h, q):
+def go_on(mass, chance, quanta, begin, end, negligible, heading, spans, h, q):
     """What holds is on its way to its next sample, in `heading` (M + 1, H, L, E') at mode `h` and level `q`.
 
     `mass` (E',) becomes the expected number of samples at this node: where the next sample may be at it again, the
     geometric series is summed. `chance` (2, E'), probabilities of the commands down and up, becomes the masses that
-    get them. What is negligible goes nowhere.
+    get them. What is `negligible` goes nowhere.
     """
     reach, row = heading.shape[0], mass.shape[0]
     size = heading.shape[2]
@@ -204,7 +206,7 @@ def go_on(mass, chance, quanta, begin, end, heading, spans, h, q):
     for j in range(begin, end, EIGHT):
         found, f = load8(mass, j), load8(quanta, j)
         down, up = load8(chance, j), load8(chance, row + j)
-        matters = magnitude(found) >= NEGLIGIBLE_MASS
+        matters = magnitude(found) >= negligible
         step = least(whole(f), reach - 2)
         x = least(f - fraction(step), 1.0)
         hold, again = 1.0 - down - up, step < 1
@@ -221,8 +223,8 @@ def go_on(mass, chance, quanta, begin, end, heading, spans, h, q):
                 store(heading, at, load8(heading, at) + choose(lanes, near, 0.0))
                 store(heading, at + stride, load8(heading, at + stride) + choose(lanes, far, 0.0))
         down, up = samples * down, samples * up
-        store(chance, j, choose(magnitude(down) >= NEGLIGIBLE_MASS, down, 0.0))
-        store(chance, row + j, choose(magnitude(up) >= NEGLIGIBLE_MASS, up, 0.0))
+        store(chance, j, choose(magnitude(down) >= negligible, down, 0.0))
+        store(chance, row + j, choose(magnitude(up) >= negligible, up, 0.0))
 
 
 @borrowing

@@ -17,7 +17,6 @@ from synth.book.case_result import CaseResult
 from synth.present.plots.house_style import (
     GREY,
     INK,
-    PALE_GREY,
     SKY,
     VERMILLION,
     dress,
@@ -35,19 +34,13 @@ LEAST = 1e-4
 NARROW_M_S, WIDE_M_S = 0.01, 0.1
 """Widths of the bins of simulated passes within `OVERSPEED_M_S` of the target, and beyond."""
 
-REACH = 3
-"""Grid points to both sides that one cubic interpolation can disturb."""
-
-PIECES = 8
-"""Points that are drawn from one grid point to the next."""
-
 
 def exit_density(cases: Sequence[CaseResult]) -> Figure:
     """One column a case: density in 1/(m/s) over exit speed in m/s, near the target, and its tails logarithmically."""
     columns = len(cases)
     figure = new_figure(3.9 * columns + 0.7, 6.4, "Exit speed, predicted and simulated", cut_name(cases[0]))
-    in_legend = min(5, 2 * columns)  # beside each other: a single panel is narrow
-    place(figure, left=0.8, right=0.2, bottom=0.75 + 0.2 * math.ceil(5 / in_legend), top=1.25, w=0.2, h=0.22)
+    in_legend = min(4, 2 * columns)  # beside each other: a single panel is narrow
+    place(figure, left=0.8, right=0.2, bottom=0.75 + 0.2 * math.ceil(4 / in_legend), top=1.25, w=0.2, h=0.22)
     panels = figure.subplots(2, columns, squeeze=False)
     for column, case in enumerate(cases):
         draw_case(panels[0, column], panels[1, column], case)
@@ -56,7 +49,6 @@ def exit_density(cases: Sequence[CaseResult]) -> Figure:
     handles = [
         Patch(facecolor=SKY, label="simulated passes"),
         Line2D([], [], color=VERMILLION, linewidth=1.4, label=prediction_origin(cases)),
-        Patch(facecolor=PALE_GREY, edgecolor=GREY, hatch="////", linewidth=0, label="below the grid's error"),
         Line2D([], [], color=INK, linewidth=1.2, label="target"),
         Line2D([], [], color=GREY, linewidth=1.2, linestyle="--", label=f"target ± {OVERSPEED_M_S:g} m/s"),
     ]
@@ -76,22 +68,20 @@ def prediction_origin(cases: Sequence[CaseResult]) -> str:
 def draw_case(near: Axes, tails: Axes, case: CaseResult) -> None:
     """Both panels of one case."""
     target, speeds, share = case.target_speed_m_s, case.exit_speeds_m_s, case.exit_weight / case.exit_weight.sum()
-    speed, predicted, error = predicted_density(case.predicted)
+    speed, predicted = predicted_density(case.predicted)
     edges = bin_edges_m_s(target, float(max(speeds.max(initial=0.0), speed[-1])))
     moving = speeds > 0.0
     simulated = np.histogram(speeds[moving], edges, weights=share[moving])[0] / np.diff(edges)
     dress(near, panel_title(case))
     dress(tails, x="exit speed, m/s")
-    resolved = predicted > np.maximum(error, LEAST)
-    shown = np.concatenate((speed[resolved], edges[1:][simulated > LEAST], edges[:-1][simulated > LEAST]))
+    told = predicted > LEAST
+    shown = np.concatenate((speed[told], edges[1:][simulated > LEAST], edges[:-1][simulated > LEAST]))
     if not shown.size:
         near.text(0.5, 0.5, "no pass leaves the position", transform=near.transAxes, ha="center", fontsize=9)
         return
     for axes in (near, tails):
         axes.stairs(simulated, edges, fill=True, color=SKY, linewidth=0)
-        axes.fill_between(speed, 0.0, error, where=(error > LEAST) & ~resolved,
-                          facecolor=PALE_GREY, edgecolor=GREY, hatch="////", linewidth=0, zorder=0.6)  # fmt: skip
-        axes.plot(speed, np.where(resolved, predicted, np.nan), color=VERMILLION, linewidth=1.3)
+        axes.plot(speed, np.where(told, predicted, np.nan), color=VERMILLION, linewidth=1.3)
         axes.axvline(target, color=INK, linewidth=1.0)
         for mark in (target - OVERSPEED_M_S, target + OVERSPEED_M_S):
             axes.axvline(mark, color=GREY, linewidth=1.0, linestyle="--")
@@ -101,27 +91,10 @@ def draw_case(near: Axes, tails: Axes, case: CaseResult) -> None:
     logarithmic_y(tails, (1.25 * LEAST, 2.0 * highest))
 
 
-def predicted_density(exits: ExitDensity) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Speeds, density there in 1/(m/s), and the error below which the grid tells nothing of the density.
-
-    The grid carries the distribution by weights of a cubic interpolation, `PIECES` points are drawn between two of
-    its points by the same interpolation. Where a density has become negative it is wrong by that much at least: the
-    largest such error within `REACH` points is taken for the error there.
-    """
-    energy = 0.5 * exits.speed_m_s**2
-    step, weight = float(energy[1] - energy[0]), exits.probability.copy()
-    weight[0] = 0.0  # stands for cuts next to a stall
-    at = np.arange(PIECES, PIECES * (energy.size - 2)) / PIECES
-    first, x = np.floor(at).astype(int), at % 1.0
-    a, b, c, d = x + 1.0, x, x - 1.0, x - 2.0
-    cubic = (-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0)
-    between = np.sum([share * weight[first - 1 + k] for k, share in enumerate(cubic)], axis=0)
-    least = np.minimum(weight[first], weight[first + 1])
-    between = np.where(least > 0.0, np.maximum(between, least), between)  # a steep flank makes no dip of its own
-    wrong = np.pad(np.maximum(-between, 0.0), REACH * PIECES)
-    error = np.lib.stride_tricks.sliding_window_view(wrong, 2 * REACH * PIECES + 1).max(axis=1)
-    speed = np.sqrt(2.0 * at * step)
-    return speed, between * speed / step, error * speed / step
+def predicted_density(exits: ExitDensity) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Speeds, and the density there in 1/(m/s); the grid's first energy stands for cuts next to a stall."""
+    speed, probability = exits.speed_m_s[1:], exits.probability[1:]
+    return speed, probability * speed / (0.5 * exits.speed_m_s[1] ** 2)
 
 
 def bin_edges_m_s(target_m_s: float, highest_m_s: float) -> NDArray[np.float64]:

@@ -14,7 +14,7 @@ from plant_models.stage_regulator import Actuator, stage_locked_actuator
 from synth.problem.resolution import Resolution
 from synth.solver.chain.entry import entry_distribution
 from synth.solver.chain.grid import Grid, make_grid
-from synth.solver.chain.landings import Landings, make_landings
+from synth.solver.chain.landings import CHECK_FACTOR_STEP, FACTOR_STEP, Landings, friction_factors, make_landings
 from synth.solver.chain.path_noise import (
     PathNoise,
     TransientNoise,
@@ -72,16 +72,16 @@ def persistent_chain(plant: Plant, resolution: Resolution) -> Chain:
 def check_chain(plant: Plant, resolution: Resolution) -> Chain:
     """The persistent formulation with `check_scenarios` and the sensor's staircase: predicts a finished table."""
     scenarios = check_scenarios(plant, resolution.friction_nodes, resolution.resistance_nodes)
-    return chain_of(plant, resolution, scenarios).quantised()
+    return chain_of(plant, resolution, scenarios, CHECK_FACTOR_STEP).quantised()
 
 
-def chain_of(plant: Plant, resolution: Resolution, scenarios: Scenarios) -> Chain:
-    """The plant on the grid of `resolution`, η as a correlated chain."""
+def chain_of(plant: Plant, resolution: Resolution, scenarios: Scenarios, factor_step: float = FACTOR_STEP) -> Chain:
+    """The plant on the grid of `resolution`, η as a correlated chain; `factor_step` as in `friction_factors`."""
     grid = make_grid(plant, resolution)
     actuator = stage_locked_actuator(plant.position, plant.sensor, plant.top_stage, resolution.transient_substeps)
     coefficients = path_coefficients(plant.position, plant.cut, plant.profile, grid.path_m)
     path_noise = correlated_noise(plant.friction, grid.path_step_m, resolution.path_levels)
-    landings = make_landings(plant, grid, actuator)
+    landings = make_landings(plant, grid, actuator, friction_factors(plant, factor_step))
     return Chain(
         plant=plant,
         resolution=resolution,

@@ -15,10 +15,9 @@ from synth.kernels.sweep.landing import land
 from synth.kernels.vector.packs import EIGHT, SIXTEEN
 from synth.solver.chain.grid import Grid
 
-FACTOR_STEP = 0.5
-"""Largest distance of the friction factors for which transients are integrated; between them a parabola.
-
-Halving it changes no predicted rms in the sixth digit."""
+FACTOR_STEP, CHECK_FACTOR_STEP = 0.5, 1.0
+"""Largest distance of the friction factors for which transients are integrated, to design lines and to predict a
+finished table; between them a parabola. Halving either changes no predicted rms by more than 1e-6 m/s."""
 
 FINE_CELLS_PER_QUANTUM = 4
 
@@ -52,8 +51,11 @@ class Landings:
         return self.ends[..., 1, : self.points]
 
 
-def make_landings(plant: Plant, grid: Grid, actuator: Actuator) -> Landings:
-    """Integrate the motion through every change to a neighbouring stage (kernel `land`)."""
+def make_landings(plant: Plant, grid: Grid, actuator: Actuator, factors: NDArray[np.float64]) -> Landings:
+    """Integrate the motion through every change to a neighbouring stage (kernel `land`), for friction `factors` (F,).
+
+    The grid's path may begin anywhere on that of the plant, and ends at S_exit.
+    """
     modes = len(actuator.mode_stage)
     used: list[int] = []
     lower, upper = np.full(modes, -1), np.full(modes, -1)
@@ -62,11 +64,10 @@ def make_landings(plant: Plant, grid: Grid, actuator: Actuator) -> Landings:
             if 0 <= stage + step < actuator.stages:
                 neighbours[mode] = len(used)
                 used.append(int(actuator.command[mode, stage + step]))
-    fine = np.linspace(plant.start_m, plant.exit_m, FINE_CELLS_PER_QUANTUM * (len(grid.path_m) - 1) + 1)
+    fine = np.linspace(grid.path_m[0], plant.exit_m, FINE_CELLS_PER_QUANTUM * (len(grid.path_m) - 1) + 1)
     cells = path_coefficients(plant.position, plant.cut, plant.profile, fine)
     work = np.concatenate([[0.0], np.cumsum(cells.brake_m_s2_per_kpa * np.diff(fine))])
     drive = cells.free_m_s2(plant.resistance.mean_n_per_kn)
-    factors = friction_factors(plant)
     samples = actuator.chain_samples[used]
     overpressure = np.ascontiguousarray(actuator.chain_overpressure_kpa[used, : samples.max() * actuator.substeps])
     speed = in_whole_packs(grid.speed_m_s)
@@ -84,9 +85,9 @@ def in_whole_packs(speed_m_s: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.pad(speed_m_s, (0, EIGHT + -(len(speed_m_s) + EIGHT) % SIXTEEN), mode="edge")
 
 
-def friction_factors(plant: Plant) -> NDArray[np.float64]:
-    """Equally spaced factors ξ that cover four standard deviations of ξ_cut and three of η."""
+def friction_factors(plant: Plant, step: float) -> NDArray[np.float64]:
+    """Factors ξ, at most `step` apart, that cover four standard deviations of ξ_cut and three of η."""
     cv, std = plant.friction_cv, plant.friction.path_std
     low = min(max(plant.friction.floor, 1.0 - 4.0 * cv) * max(1.0 - 3.0 * std, 0.0), 0.9)
     high = max((1.0 + 4.0 * cv) * (1.0 + 3.0 * std), 1.1)
-    return np.linspace(low, high, max(3, math.ceil((high - low) / FACTOR_STEP) + 1))
+    return np.linspace(low, high, max(3, math.ceil((high - low) / step) + 1))

@@ -25,6 +25,7 @@ from synth.solver.evaluation import Evaluation
 from synth.solver.policy_density import density_and_occupancy, exit_density
 from synth.solver.polynomial_fit import stage_occupancy
 from synth.solver.polynomial_lines import PolynomialLines
+from synth.solver.resolved_density import resolved_density
 from synth.solver.tuned_lines import fitted
 from synth.studies.cases import Case, named_cases
 from synth.studies.convergence.findings import CaseRow, Convergence, Level, Refinement
@@ -117,7 +118,7 @@ def refined(case: Case, config: ResolvedConfig, kind: str, levels: int, cubic: P
 def prediction_rms(plant: Plant, resolution: Resolution, cubic: PolynomialLines, target_m_s: float) -> float:
     """Predicted rms of the cubic as of an exported table."""
     chain = check_chain(plant, resolution)
-    return exit_density(chain, cubic.at(chain.grid.path_m)).rms_m_s(target_m_s)
+    return resolved_density(chain, cubic.at(chain.grid.path_m), target_m_s).rms_m_s(target_m_s)
 
 
 def halved(check: Resolution) -> Resolution:

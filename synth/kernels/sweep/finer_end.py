@@ -1,0 +1,147 @@
+"""Forward density of a fixed policy whose last metres are followed on a finer energy grid.
+
+Before the exit cuts are slow, and in e = v²/2 the same spread of speeds covers fewer cells the slower they are. So at
+one node of the path what stands below a ceiling is handed over to a grid whose steps are a whole fraction of the coarse
+ones, and the rest goes on as before. The equation is linear in the masses: both are added up at the exit.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from synth.kernels.sweep.flow import NO_MASS, extent, stencil, widen
+from synth.kernels.sweep.landing_plan import landing_scratch, landing_tables
+from synth.kernels.sweep.policy_density import collect, follow
+from synth.kernels.vector.borrowing import borrowing
+
+LINEAR_BELOW = 2
+"""Cells next to the stall whose mass is refined linearly: a cubic would reach below it."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def forward_to_finer_end(
+    node, handed, times, fine_down, fine_up, fine_speed, fine_ends, negligible,
+    down, up, entry, entry_mode, speed, stage, pressure, lower_chain, upper_chain, chain_mode,
+    ends, factors, probability, mean, std, levels, transition, stationary,
+    drive, brake, factor, extra, path_step, energy_step, period, exits, totals,
+):  # fmt: skip
+    """Distribution at the exit in the scenarios `factor`, `extra` (I,).
+
+    At `node` the share `handed` (E,) of every energy goes over to the finer grid, whose energies are `times` as dense:
+    `fine_down`, `fine_up` (N − node, K + 1, E_f), `fine_speed` (E_f,), `fine_ends` (N − node, C, F, 2, E_f') belong to
+    it. `negligible` (I,): a state of a scenario with less mass is left out. The rest as in `policy_density.forward`,
+    but for `exits` (I, times·E), by energy of the finer grid.
+    """
+    modes, size, nodes, points, row = pressure.shape[0], levels.shape[0], drive.shape[0], speed.shape[0], ends.shape[4]
+    reach, ring, fine_row = entry.shape[0], probability.shape[1] + 3, fine_ends.shape[4]
+    heading, fine_heading = np.empty((reach, modes, size, row)), np.empty((reach, modes, size, fine_row))
+    arriving, fine_arriving = np.zeros((ring, modes, size, row)), np.zeros((ring, modes, size, fine_row))
+    mixing, fine_mixing = np.zeros((ring, modes, size, row)), np.zeros((ring, modes, size, fine_row))
+    memory = np.zeros(row), np.zeros(row), np.ones(row), np.zeros((2, row)), np.empty((modes, size))
+    fine_memory = np.zeros(fine_row), np.zeros(fine_row), np.ones(fine_row), np.zeros((2, fine_row)), memory[4]
+    spans, fine_spans = np.empty((reach, modes, size, 2), np.int64), np.empty((reach, modes, size, 2), np.int64)
+    landed, fine_landed = np.empty((ring, modes, 2), np.int64), np.empty((ring, modes, 2), np.int64)
+    arrived = np.zeros((modes, size, 2), np.int64)
+    scratch, fine_scratch = landing_scratch(row, size, speed.dtype), landing_scratch(fine_row, size, speed.dtype)
+    basis, rest, late = refinement(times), np.empty(points), np.empty(fine_speed.shape[0])
+    unkept, bands = np.empty((0, 0, 0, 0)), np.empty((nodes, 2), np.int64)
+    fine_drive, fine_brake = drive[node:].copy(), brake[node:].copy()
+    for i in range(factor.shape[0]):
+        met, slope = landing_tables(
+            factor[i : i + 1], extra[i : i + 1], factors, probability, mean, std,
+            levels, pressure, drive, brake, path_step,
+        )  # fmt: skip
+        heading[:], spans[:], landed[:], totals[i] = 0.0, 0, 0, 0.0
+        fine_heading[:], fine_spans[:], fine_landed[:] = 0.0, 0, 0
+        for r in range(reach):
+            for q in range(size):
+                heading[r, entry_mode, q, :points] = entry[r] * stationary[q]
+                spans[r, entry_mode, q, 1] = points
+        for start, stop in ((0, node), (node, nodes)):
+            follow(
+                start, stop, negligible[i], heading, arriving, mixing, memory, scratch, spans, arrived, landed,
+                down, up, speed, stage, pressure, lower_chain, upper_chain, chain_mode,
+                ends, factors, met[0], slope[0], levels, transition,
+                drive, brake, factor[i], extra[i], path_step, energy_step, period, unkept, bands, totals[i],
+            )  # fmt: skip
+            if start == 0:
+                hand_over(heading, spans, handed, basis, fine_heading, fine_spans)
+                for n in range(node, min(node + ring, nodes + 1)):
+                    at, to = n % ring, (n - node) % ring
+                    hand_over_landed(arriving[at], landed[at], handed, basis, fine_arriving[to], fine_landed[to])
+                    hand_over_landed(mixing[at], landed[at], handed, basis, fine_mixing[to], fine_landed[to])
+        collect(arriving[nodes % ring], mixing[nodes % ring], heading, rest)
+        follow(
+            0, nodes - node, negligible[i], fine_heading, fine_arriving, fine_mixing, fine_memory, fine_scratch,
+            fine_spans, arrived, fine_landed, fine_down, fine_up, fine_speed, stage, pressure,
+            lower_chain, upper_chain, chain_mode, fine_ends, factors, met[0],
+            np.ascontiguousarray(slope[0, :, :, node:]), levels, transition, fine_drive, fine_brake,
+            factor[i], extra[i], path_step, energy_step / times, period, unkept, bands, totals[i],
+        )  # fmt: skip
+        collect(fine_arriving[(nodes - node) % ring], fine_mixing[(nodes - node) % ring], fine_heading, late)
+        exits[i] = 0.0
+        exits[i, : late.shape[0]] = late
+        refine(rest, 0, points, np.ones(points), basis, exits[i])
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def refinement(times):
+    """What a mass on a grid becomes on one `times` as dense: cubic Lagrange functions, (4·times − 1,), sum 1.
+
+    Mass, mean and second moment of any row are kept, and a smooth row becomes a smooth one.
+    """
+    basis = np.empty(4 * times - 1)
+    for d in range(-2 * times + 1, 2 * times):
+        x = abs(d) / times
+        c = stencil(x % 1.0)
+        basis[d + 2 * times - 1] = (c[1] if x < 1.0 else c[0]) / times
+    return basis
+
+
+@borrowing
+def hand_over(rows, spans, handed, basis, finer, finer_spans):
+    """Take the share `handed` (E,) out of `rows` (M, H, L, E') and put it, refined, into `finer` (M, H, L, E_f')."""
+    for r in range(rows.shape[0]):
+        for h in range(rows.shape[1]):
+            for q in range(rows.shape[2]):
+                begin, end = spans[r, h, q, 0], min(spans[r, h, q, 1], handed.shape[0])
+                refine_span(rows[r, h, q], begin, end, handed, basis, finer[r, h, q], finer_spans[r, h, q])
+
+
+@borrowing
+def hand_over_landed(rows, landed, handed, basis, finer, finer_landed):
+    """The same for what has landed at a node: `rows` (H, L, E'), `landed` (H, 2) for all levels."""
+    for h in range(rows.shape[0]):
+        for q in range(rows.shape[1]):
+            begin, end = landed[h, 0], min(landed[h, 1], handed.shape[0])
+            refine_span(rows[h, q], begin, end, handed, basis, finer[h, q], finer_landed[h])
+
+
+@borrowing
+def refine_span(row, begin, end, handed, basis, finer, span):
+    """`refine` within the range in which there is mass; `span` (2,), the range of `finer`, is widened."""
+    begin, end = extent(row, begin, end, NO_MASS)
+    while begin < end and handed[end - 1] == 0.0:
+        end -= 1
+    if begin < end:
+        times = (basis.shape[0] + 1) // 4
+        refine(row, begin, end, handed, basis, finer)
+        widen(span, max(times * (begin - 2), 0), min(times * (end + 1), finer.shape[0]))
+
+
+@borrowing
+def refine(row, begin, end, share, basis, finer):
+    """Move `share` (E,) of `row`[begin:end] to `finer`, added, and out of `row`."""
+    times = (basis.shape[0] + 1) // 4
+    for j in range(begin, end):
+        mass = share[j] * row[j]
+        row[j] -= mass
+        if j == 0 or times * (j + 2) > finer.shape[0]:
+            finer[times * j] += mass
+        elif j < LINEAR_BELOW:
+            for d in range(-times + 1, times):
+                finer[times * j + d] += mass * (times - abs(d)) / (times * times)
+        else:
+            for d in range(-2 * times + 1, 2 * times):
+                finer[times * j + d] += mass * basis[d + 2 * times - 1]

@@ -1,0 +1,48 @@
+"""The exit-speed density of a table, resolved near its target: what a prediction prints and draws."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from synth.kernels.sweep.finer_end import forward_to_finer_end
+from synth.solver.chain.chain import Chain
+from synth.solver.chain.finer_end import FinerEnd, finer_end, finer_length_m, times_as_fine
+from synth.solver.exit_density import ExitDensity, without_negative
+from synth.solver.policy_density import commands, exit_density, shared_arguments
+from synth.solver.switching_lines import SwitchingLines
+
+NEGLIGIBLE = 3e-11
+"""A state of less probability is left out; in all less than 2e-6 is lost."""
+
+
+def resolved_density(chain: Chain, lines: SwitchingLines, target_speed_m_s: float) -> ExitDensity:
+    """Exit-speed density of `lines`, all scenarios weighted, its last metres on energies that resolve it at the target.
+
+    Nowhere negative; mass, mean and mean square are those of the recursion.
+    """
+    times = times_as_fine(chain, target_speed_m_s)
+    if times == 1:
+        return without_negative(exit_density(chain, lines))
+    end = finer_end(chain, lines, finer_length_m(target_speed_m_s), times)
+    return without_negative(density_by_end(chain, lines, end))
+
+
+def density_by_end(chain: Chain, lines: SwitchingLines, end: FinerEnd) -> ExitDensity:
+    """The same with a given `end`, as the recursion leaves it; its energies are `end.times` as dense as the chain's."""
+    c, last = chain, end.chain
+    late = SwitchingLines(lines.nodes_m[end.node :], lines.lower_m_s[:, end.node :], lines.upper_m_s[:, end.node :])
+    policy, late_policy = commands(c, lines), commands(last, late)
+    points, weight = end.times * len(c.grid.speed_m_s), c.scenarios.weight
+    negligible = np.clip(NEGLIGIBLE / np.maximum(np.abs(weight), 1e-12), NEGLIGIBLE, 1e-7)
+    exits, totals = np.empty((len(weight), points)), np.empty((len(weight), 4))
+    arguments = (
+        end.node, end.handed, end.times, late_policy.down, late_policy.up, last.grid.speed_m_s, last.landings.ends,
+        negligible, policy.down, policy.up, c.entry, c.entry_mode, *shared_arguments(c),
+        c.scenarios.factor, c.scenarios.extra_m_s2, c.grid.path_step_m, c.grid.energy_step_m2_s2,
+        c.plant.sensor.sample_period_s, exits, totals,
+    )  # fmt: skip
+    forward_to_finer_end(*arguments)
+    probability = (weight[:, None] * exits).sum(axis=0)
+    stalled, escaped, lowered, raised = (float(each) for each in (weight[:, None] * totals).sum(axis=0))
+    speed = np.sqrt(2.0 * c.grid.energy_step_m2_s2 / end.times * np.arange(points))
+    return ExitDensity(speed, probability, max(stalled, 0.0), escaped, lowered + raised)
