@@ -59,21 +59,22 @@ def golden_vectors(table: ControllerTable) -> GoldenVectors:
 def few_golden_vectors(table: ControllerTable) -> GoldenVectors:
     """At most `FEW` readings a line, but 2 without any: on it and next to it, at four places of the path.
 
-    The places are the farthest numbers before and behind the range, and two within it. At every stage with a line
-    also a negative speed, none, the largest, and what is not finite; and stages that do not exist. With an approach the
-    largest speed just before and at the entrance, too.
+    The places are the farthest numbers before and behind the range, and two within it; with an approach one of these is
+    just before the entrance. At every stage with a line also a negative speed, none, the largest, and what is not
+    finite, within the range or at the entrance; and stages that do not exist.
     """
     low, high = table.valid_range[0], table.valid_range[1]
-    inner = [low + (high - low) * np.float32(part) for part in (0.25, 0.8125)]
-    paths = np.array([-LARGEST, *inner, LARGEST], dtype=np.float32)
+    near, far = (low + (high - low) * np.float32(part) for part in (0.25, 0.8125))
+    before = near
+    if table.approach is not None:
+        before, near = np.float32(-LEAST_NORMAL), np.float32(0.0)
+    paths = np.array([-LARGEST, before, far, LARGEST], dtype=np.float32)
     fast, speeds = np.float32(LARGEST), [np.float32(v) for v in (-1.0, 0.0, LARGEST, np.inf, np.nan)]
     lined = np.flatnonzero(table.has_line.any(axis=1)).tolist()
     readings = [reading for reading in _line_readings(table, paths, STEPS) if reading[0] in lined]
-    readings += [(k, inner[0], v) for k in lined for v in speeds]
+    readings += [(k, near, v) for k in lined for v in speeds]
     readings += [(k, np.float32(-np.inf), fast) for k in lined]
-    readings += [(k, inner[0], fast) for k in (-1, len(table.stages))]
-    if table.approach is not None:
-        readings += [(k, s, fast) for k in lined for s in (np.float32(-LEAST_NORMAL), np.float32(0.0))]
+    readings += [(k, near, fast) for k in (-1, len(table.stages))]
     return _answered(table, readings)
 
 
