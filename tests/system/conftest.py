@@ -28,7 +28,7 @@ degree = 2
 [validation]
 passes = 1000
 [acceptance]
-honesty_high = 1.35
+honesty_high = 1.5
 [output]
 csv = true
 [[cut]]

@@ -1,4 +1,4 @@
-"""A tune with the estimator: tables of version 2 that do better, are read, validated and shown like any other."""
+"""A tune with the estimator: tables that do better, are read, validated and shown like any other."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ def case(tuned: Tuned) -> Any:
     return json.loads((tuned[1] / "summary.json").read_text())["cases"][0]
 
 
-def test_its_tables_are_of_version_2_and_say_where_the_prediction_comes_from(tuned: Tuned, case: Any) -> None:
+def test_its_tables_say_that_they_are_for_it_and_where_the_prediction_comes_from(tuned: Tuned, case: Any) -> None:
     assert tuned[2] == 0
     written = json.loads((tuned[1] / case["table"]).read_text())
-    assert written["version"] == 2
+    assert written["version"] == 3
     assert written["predicted"]["passes"] >= 1000
     table = read_json(tuned[1] / case["table"])
     assert table.estimator is not None
@@ -79,7 +79,7 @@ def test_where_it_gains_nothing_it_is_left_out(
     assert "prediction is itself simulated" not in page
     (case,) = json.loads((tmp_path / "out" / "summary.json").read_text())["cases"]
     written = json.loads((tmp_path / "out" / case["table"]).read_text())
-    assert (written["version"], case["estimate"]["used"]) == (1, False)
+    assert (written["version"], case["estimate"]["used"]) == (3, False)
     assert "passes" not in written["predicted"]
     assert case["simulated"]["rms_m_s"] == pytest.approx(case["comparison"]["without estimator"]["rms_m_s"], rel=0.02)
     verified = command("verify", tmp_path / "out", "--passes", "200")
