@@ -12,7 +12,7 @@ from tuning_tables.requirement import require_between, require_count
 LENGTH_RANGE_M: Final = (0.001, 100.0)
 
 INTERLOCK: Final = "position_clear"
-"""The regulator takes over a cut only when the cut ahead has left the position, its last axle behind the exit."""
+"""The regulator takes over a cut only when the cut ahead has left the position, its last axle out of it."""
 
 
 @dataclass(frozen=True)

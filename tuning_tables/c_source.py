@@ -20,7 +20,16 @@ from tuning_tables.golden_choices import GoldenChoice, golden_choices
 from tuning_tables.golden_tracks import GoldenTrack, golden_tracks
 from tuning_tables.golden_vectors import GoldenVectors, golden_vectors
 from tuning_tables.self_test_size import FULL, SelfTestSize
-from tuning_tables.table_block import HAS_LOWER, HAS_UPPER, LAYOUT, BlockSize, TableBlock, block_of, block_size
+from tuning_tables.table_block import (
+    HAS_LOWER,
+    HAS_UPPER,
+    LAYOUT,
+    BlockSize,
+    TableBlock,
+    approach_m,
+    block_of,
+    block_size,
+)
 from tuning_tables.table_book import TableBook
 
 TEMPLATES = ("retarder_table.h", "retarder_table.c", "retarder_self_test.h", "retarder_self_test.c")
@@ -54,6 +63,7 @@ def c_blanks(book: TableBook, vectors: Sequence[GoldenVectors], tracks: Sequence
         "STAGES": f"{size.stages}u",
         "POWERS": f"{size.powers}u",
         "BREAKS": f"{size.breaks}u",
+        "APPROACH": f"{size.approach:d}u",
         "COUNT": f"{len(book.tables)}",
         "TABLES": ",\n".join(table_text(book, number, size) for number in range(len(book.tables))),
         "VECTORS": f"{sum(map(len, vectors))}",
@@ -126,10 +136,22 @@ def table_text(book: TableBook, number: int, size: BlockSize) -> str:
             ",\n".join(stage_text(block, stage, size) for stage in range(size.stages)),
             "        },",
             *estimator_text(block, size),
+            *approach_text(block, size),
             f"        0x{block.crc32:08x}u /* crc32 */",
             "    }",
         ]
     )
+
+
+def approach_text(block: TableBlock, size: BlockSize) -> list[str]:
+    """The lines of a table's initialiser about its approach; none if no table of the book has one."""
+    if not size.approach:
+        return []
+    length_m = approach_m(block.table)
+    return [
+        f"        {hex_float(length_m)}, /* approach, {length_m:g} m */",
+        f"        {block.table.entrance_stage}u, /* highest stage before the entrance */",
+    ]
 
 
 def stage_text(block: TableBlock, stage: int, size: BlockSize) -> str:

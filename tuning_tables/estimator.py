@@ -61,8 +61,8 @@ class Estimator:
     path_std, correlation_length_m   σ_η and ℓ of the friction along the path, ℓ in m
     touch_pressure_kpa     P0, at which the beams touch the wheels: the overpressure is max(0, P - P0)
     s_m, drive_m2_s2, brake_m2_s2_per_kpa   D and W at path breaks, linear between: kinetic energy per mass gained from
-                           the entrance to s, and lost for each kPa of overpressure at ξ = 1; W never falls, breaks are
-                           a millimetre apart at least
+                           the first break to s, and lost for each kPa of overpressure at ξ = 1; W never falls, breaks
+                           are a millimetre apart at least
 
     Derived, for `observe` (read-only): parameters float32 (13,), work float32 (3, B). Raises `InvalidTable`.
     """

@@ -15,6 +15,7 @@ from tuning_tables.table import ControllerTable
 Floats = npt.NDArray[np.float32]
 
 LARGEST: Final = float(np.finfo(np.float32).max)
+LEAST_NORMAL: Final = float(np.finfo(np.float32).smallest_normal)
 SMALLEST: Final = float(np.finfo(np.float32).smallest_subnormal)
 STAGE_LIMITS: Final = (-32768, 32767)
 """Of a 16-bit INT, which every controller has."""
@@ -46,26 +47,34 @@ class GoldenVectors:
 def golden_vectors(table: ControllerTable) -> GoldenVectors:
     """Readings on, next to (one float32 step) and beyond every line and both ends of the path, and incredible ones.
 
-    The same table gives the same vectors, in the same order, each once.
+    With an approach also on and next to every line on it, just before, at and just behind the entrance. The same table
+    gives the same vectors, in the same order, each once.
     """
-    return _answered(table, [*_line_readings(table, _paths(table), STEPS_AND_ASIDE), *_incredible_readings(table)])
+    readings = [*_line_readings(table, _paths(table), STEPS_AND_ASIDE), *_incredible_readings(table)]
+    if table.approach is not None:
+        readings += _line_readings(table, _entrance_paths(table), STEPS)
+    return _answered(table, readings)
 
 
 def few_golden_vectors(table: ControllerTable) -> GoldenVectors:
     """At most `FEW` readings a line, but 2 without any: on it and next to it, at four places of the path.
 
-    The places are the farthest numbers before and behind the range, and two within it. At every stage with a line
-    also a negative speed, none, the largest, and what is not finite; and stages that do not exist.
+    The places are the farthest numbers before and behind the range, and two within it; with an approach one of these is
+    just before the entrance. At every stage with a line also a negative speed, none, the largest, and what is not
+    finite, within the range or at the entrance; and stages that do not exist.
     """
     low, high = table.valid_range[0], table.valid_range[1]
-    inner = [low + (high - low) * np.float32(part) for part in (0.25, 0.8125)]
-    paths = np.array([-LARGEST, *inner, LARGEST], dtype=np.float32)
+    near, far = (low + (high - low) * np.float32(part) for part in (0.25, 0.8125))
+    before = near
+    if table.approach is not None:
+        before, near = np.float32(-LEAST_NORMAL), np.float32(0.0)
+    paths = np.array([-LARGEST, before, far, LARGEST], dtype=np.float32)
     fast, speeds = np.float32(LARGEST), [np.float32(v) for v in (-1.0, 0.0, LARGEST, np.inf, np.nan)]
     lined = np.flatnonzero(table.has_line.any(axis=1)).tolist()
     readings = [reading for reading in _line_readings(table, paths, STEPS) if reading[0] in lined]
-    readings += [(k, inner[0], v) for k in lined for v in speeds]
+    readings += [(k, near, v) for k in lined for v in speeds]
     readings += [(k, np.float32(-np.inf), fast) for k in lined]
-    readings += [(k, inner[0], fast) for k in (-1, len(table.stages))]
+    readings += [(k, near, fast) for k in (-1, len(table.stages))]
     return _answered(table, readings)
 
 
@@ -110,6 +119,13 @@ def _paths(table: ControllerTable) -> Floats:
     ends = [low, high, _next(low, -np.inf), _next(high, np.inf), _next(low, np.inf), _next(high, -np.inf)]
     inner = [low + (high - low) * np.float32(part) for part in (0.25, 0.5, 0.8125)]
     return np.array([*ends, *inner, low - np.float32(1000.0), high + np.float32(1000.0)], dtype=np.float32)
+
+
+def _entrance_paths(table: ControllerTable) -> Floats:
+    """Within the approach; then the entrance: its neighbours, those that every controller has, and both zeros."""
+    middle = table.valid_range[0] * np.float32(0.5)
+    paths = (middle, -LEAST_NORMAL, -SMALLEST, -0.0, 0.0, SMALLEST, LEAST_NORMAL)
+    return np.array(paths, dtype=np.float32)
 
 
 def _incredible_readings(table: ControllerTable) -> list[tuple[int, np.float32, np.float32]]:

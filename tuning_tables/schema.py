@@ -10,9 +10,10 @@ import json
 import os
 from typing import Any, Final
 
+from tuning_tables.approach import INTERLOCK, LENGTH_RANGE_M
 from tuning_tables.atomic_file import write_atomically
 from tuning_tables.category_number import KNOWN_NUMBERS, LARGEST_OWN, LEAST_OWN
-from tuning_tables.document import ESTIMATOR_VERSION, FORMAT, VARIABLE, VERSION
+from tuning_tables.document import APPROACH_VERSION, ESTIMATOR_VERSION, FORMAT, VARIABLE, VERSION
 from tuning_tables.estimator import FARTHEST_M, LARGEST_OVERPRESSURE_KPA, LARGEST_WORK, MOST_BREAKS
 from tuning_tables.requirement import SHA256_HEX, UTC_INSTANT
 from tuning_tables.table import HIGHEST_DEGREE, MOST_STAGES
@@ -21,7 +22,7 @@ DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 
 
 def table_schema() -> dict[str, object]:
-    """A new dict with the JSON Schema of the format "retarder-table", version 1, and 2 with an estimator."""
+    """A new dict with the JSON Schema of the format "retarder-table", versions 1 to 3."""
     line = {"anyOf": [{"type": "null"}, _array({"type": "number"}, 1, HIGHEST_DEGREE + 1)]}
     stage = _object(k=_whole(0, MOST_STAGES - 1), pressure_kpa=_number(0), lower=line, upper=line)
     validated = _object(passes=_whole(1), rms_m_s=_number(0), rms_ci95_m_s=_pair(_number(0)))
@@ -32,7 +33,7 @@ def table_schema() -> dict[str, object]:
     cut["properties"]["category_number"] = _whole(1, LARGEST_OWN)
     top = _object(
         format={"const": FORMAT},
-        version={"enum": [VERSION, ESTIMATOR_VERSION]},
+        version={"enum": [VERSION, ESTIMATOR_VERSION, APPROACH_VERSION]},
         id=_text(),
         created={"type": "string", "pattern": UTC_INSTANT},
         generator=_object(name=_text(), version=_text(), config_sha256={"type": "string", "pattern": SHA256_HEX}),
@@ -47,11 +48,23 @@ def table_schema() -> dict[str, object]:
         crc32={"type": "string", "pattern": "^[0-9a-f]{8}$"},
     )
     top["properties"]["estimator"] = _estimator()
+    top["properties"]["approach"] = _object(
+        length_m=_number(*LENGTH_RANGE_M), entrance_stage=_whole(0, MOST_STAGES - 1), interlock={"const": INTERLOCK}
+    )
+    title = f"{FORMAT} {VERSION} to {APPROACH_VERSION}"
+    return {"$schema": DIALECT, "title": title, **top, "oneOf": _versions()}
+
+
+def _versions() -> list[object]:
+    """What must and must not be there in each version; version 3 has an estimator or none."""
     exact: dict[str, object] = {"properties": {"passes": False}}
-    plain = {"properties": {"version": {"const": VERSION}, "estimator": False, "predicted": exact}}
-    estimated = {"properties": {"version": {"const": ESTIMATOR_VERSION}}, "required": ["estimator"]}
-    title = f"{FORMAT} {VERSION} and {ESTIMATOR_VERSION}"
-    return {"$schema": DIALECT, "title": title, **top, "oneOf": [plain, estimated]}
+    measured: dict[str, object] = {"estimator": False, "predicted": exact}
+    either = {"anyOf": [{"required": ["estimator"]}, {"properties": measured}]}
+    return [
+        {"properties": {"version": {"const": VERSION}, "approach": False, **measured}},
+        {"properties": {"version": {"const": ESTIMATOR_VERSION}, "approach": False}, "required": ["estimator"]},
+        {"properties": {"version": {"const": APPROACH_VERSION}}, "required": ["approach"], **either},
+    ]
 
 
 def _numbered_cuts() -> list[object]:

@@ -32,9 +32,9 @@ $CATEGORIES
    1. A path or speed that is not finite, a negative speed, or a stage that the table has not: hold.
    2. The path is clamped into the range of the table.
    3. If the stage has a lower line and the speed is below it: lower, to the next stage down.
-   4. If the stage has an upper line and the speed is above it: raise, to the next stage up.
+   4. If the stage has an upper line and the speed is above it: raise, to the next stage up.$GATE_RULE
    5. Otherwise hold; a speed equal to a line holds.
-
+$INTERLOCK
    Arithmetic. Every operation on REAL stands in a statement of its own, so that its result is rounded to REAL
    (binary32) before the next. A controller that calculates in double precision and rounds when it assigns gives the
    same results: rounding + - * / of binary32 numbers to 53 bits first and to 24 afterwards never differs from rounding
@@ -54,7 +54,7 @@ TYPE
         PathMax_m : REAL;
         Touch_kpa : REAL; (* pressure above which cylinders brake, for RETARDER_OBSERVE; 0 without estimator *)
         Stages : INT; (* stages 0 to Stages - 1; 0: no table *)
-        Powers : INT; (* coefficients of a line: its degree + 1 *)
+        Powers : INT; (* coefficients of a line: its degree + 1 *)$APPROACH_MEMBERS
         HasLower : ARRAY[0..$LAST_STAGE] OF BOOL; (* by stage *)
         HasUpper : ARRAY[0..$LAST_STAGE] OF BOOL;
         (* at (stage * 2 + line) * $POWERS + power, line 0 lower, 1 upper; m/s per m^power *)
@@ -111,7 +111,7 @@ IF Credible THEN
             Command := -1;
         END_IF;
     END_IF;
-    IF (Command = 0) AND Table.HasUpper[Stage] THEN
+    IF (Command = 0) AND Table.HasUpper[Stage]$GATE THEN
         First := Stage * $STRIDE + $POWERS;
         Line := Table.Coefficient[First + Table.Powers - 1];
         FOR Power := Table.Powers - 2 TO 0 BY -1 DO
@@ -130,7 +130,7 @@ SELECT_DECLARATIONS: Final = """\
 FUNCTION_BLOCK RETARDER_SELECT
 (* The table for a cut. Candidates are the tables of its category and number of axles; of several masses the largest.
    The command equal to a target: that table. Between two targets: the lines between them, if the two tables have the
-   same stages, degree, lines, path range and estimator. Otherwise the table of the next target below the command: the
+   same stages, degree, lines, path range$SAME_NAMES. Otherwise the table of the next target below the command: the
    cut never leaves faster than commanded. Below all targets, or no number: no table. *)
 VAR_INPUT
     Layout : INT; (* of whoever numbers the categories: write $LAYOUT, the layout of this file, as a number *)
@@ -207,7 +207,7 @@ IF (SlowerNo >= 0) AND (Commanded_m_s > 0.0) AND (Commanded_m_s <= 3.4028235E+38
         Status := 2;
         IF FasterNo >= 0 THEN
             Loader(TableNo := FasterNo, Table := Faster);
-            Fits := (Table.Stages = Faster.Stages) AND (Table.Powers = Faster.Powers)
+            Fits := (Table.Stages = Faster.Stages) AND (Table.Powers = Faster.Powers)$SAME_APPROACH
                 AND (Table.PathMin_m = Faster.PathMin_m) AND (Table.PathMax_m = Faster.PathMax_m)$SAME_ESTIMATOR;
             FOR Index := 0 TO $LAST_STAGE DO
                 IF (Table.HasLower[Index] XOR Faster.HasLower[Index])
@@ -271,7 +271,7 @@ IF Found THEN
     Table.PathMin_m := PathMinOf[TableNo];
     Table.PathMax_m := PathMaxOf[TableNo];
     Table.Stages := StagesOf[TableNo];
-    Table.Powers := PowersOf[TableNo];
+    Table.Powers := PowersOf[TableNo];$LOAD_APPROACH
     CASE TableNo OF
 $CASES
     END_CASE;

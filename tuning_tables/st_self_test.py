@@ -19,6 +19,7 @@ from tuning_tables.distinct_estimators import distinct_estimators
 from tuning_tables.golden_choices import GoldenChoice, golden_choices
 from tuning_tables.golden_vectors import GoldenVectors
 from tuning_tables.self_test_size import SelfTestSize
+from tuning_tables.st_approach import approach_check
 from tuning_tables.st_literals import LONGEST_ARRAY, int_array, is_portable, real, real_array
 from tuning_tables.st_tables import coefficients_of, constants
 from tuning_tables.st_test_blocks import (
@@ -58,6 +59,8 @@ def _table_test(book: TableBook, number: int, estimator: int, vectors: GoldenVec
     declarations, statements = [real_array("Expected", expected)], [Template(TABLE_CONSTANTS).substitute(blanks)]
     if size.breaks:
         statements.append(estimator_check(book, number, estimator))
+    if size.approach:
+        statements.append(approach_check(block))
     first = len(expected)
     for part, chosen in _parts(kept):
         declarations += [

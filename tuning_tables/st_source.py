@@ -16,12 +16,13 @@ from tuning_tables.category_names import category_names, comment_text
 from tuning_tables.errors import InvalidTable
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.self_test_size import FULL, SelfTestSize
+from tuning_tables.st_approach import approach_blanks
 from tuning_tables.st_blocks import CATEGORIES, DECIDE, HEAD, TABLE_TYPE
 from tuning_tables.st_estimator import observe_blocks
 from tuning_tables.st_observe import ESTIMATE_TYPE
 from tuning_tables.st_self_test import self_test_blocks
 from tuning_tables.st_tables import blanks_of, load_block, select_block
-from tuning_tables.table_block import LAYOUT
+from tuning_tables.table_block import LAYOUT, block_size
 from tuning_tables.table_book import TableBook
 
 MOST_TABLES: Final = 500
@@ -73,7 +74,8 @@ def st_unit_files(
 def head(book: TableBook) -> str:
     """The comment at the beginning."""
     origin = "\n".join(f"   {line}" for line in origin_lines(book))
-    return HEAD.substitute(ORIGIN=origin, CATEGORIES="\n".join(category_lines(book)), LAYOUT=LAYOUT)
+    categories = "\n".join(category_lines(book))
+    return HEAD.substitute(approach_blanks(block_size(book)), ORIGIN=origin, CATEGORIES=categories, LAYOUT=LAYOUT)
 
 
 def table_units(book: TableBook) -> list[str]:

@@ -9,6 +9,7 @@ from string import Template
 import numpy as np
 
 from tuning_tables.category_names import comment_text
+from tuning_tables.st_approach import approach_blanks, approach_constants
 from tuning_tables.st_blocks import LOAD_BODY, LOAD_DECLARATIONS, SELECT_BODY, SELECT_DECLARATIONS
 from tuning_tables.st_estimator import estimator_blanks, estimator_constants
 from tuning_tables.st_literals import bool_array, int_array, real_array
@@ -28,7 +29,8 @@ def blanks_of(book: TableBook) -> Mapping[str, str]:
         "LAST_STAGE": size.stages - 1,
         "LAST_COEFFICIENT": 2 * size.stages * size.powers - 1,
     }
-    return {**{name: str(number) for name, number in numbers.items()}, **estimator_blanks(book, size)}
+    sizes = {name: str(number) for name, number in numbers.items()}
+    return {**sizes, **estimator_blanks(book, size), **approach_blanks(size)}
 
 
 def load_block(book: TableBook) -> str:
@@ -43,7 +45,7 @@ def load_block(book: TableBook) -> str:
     ]
     for number, block in enumerate(blocks):
         declarations += _table_constants(book, number, block, size)
-    declarations += estimator_constants(book, size)
+    declarations += approach_constants(blocks, size) + estimator_constants(book, size)
     blanks = blanks_of(book)
     cases = "\n".join(Template(_CASE).substitute(blanks, NUMBER=number) for number in range(len(blocks)))
     return "".join(

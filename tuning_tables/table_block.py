@@ -4,8 +4,9 @@ Words, each from its lowest byte to its highest: category number, axles, stages,
 lines (1 lower, 2 upper, 3 both); as binary32 mass_t, target speed in m/s, s_min and s_max in m; the coefficients by
 stage, line (lower, upper) and power; if any table of the book has an estimator, its number of breaks (0: none), and as
 binary32 the variance of a measured speed, of the factor, and of the path, the touch pressure in kPa, and of all breaks
-first s, then D, then W; and the CRC-32 of all words before it. All tables of a book have blocks of one size, that of
-its table with most stages, powers and breaks; what a table has not is 0.
+first s, then D, then W; if any table of the book has an approach, its length in m as binary32 (0: none) and the
+entrance stage; and the CRC-32 of all words before it. All tables of a book have blocks of one size, that of its table
+with most stages, powers and breaks; what a table has not is 0, save the entrance stage, which is then its highest.
 """
 
 from __future__ import annotations
@@ -29,19 +30,23 @@ HAS_LOWER, HAS_UPPER = 1, 2
 ESTIMATOR_HEAD = 5
 """Words of an estimator before its breaks: their number, three variances, the touch pressure."""
 
+APPROACH_WORDS = 2
+"""Its length and the entrance stage."""
+
 
 @dataclass(frozen=True)
 class BlockSize:
-    """Stages, coefficients of a line, and breaks of an estimator that there is room for in a block."""
+    """Stages, coefficients of a line, and breaks of an estimator that there is room for in a block; and an approach."""
 
     stages: int
     powers: int
     breaks: int
+    approach: bool
 
     @property
     def words(self) -> int:
         """Length of a block in words of 32 bits, checksum included."""
-        return int(self.estimator.stop) + 1
+        return int(self.approach_words.stop) + 1
 
     @property
     def coefficients(self) -> slice:
@@ -54,6 +59,12 @@ class BlockSize:
         """Where the estimator is: nowhere if the book has none."""
         first = self.coefficients.stop
         return slice(first, first + (ESTIMATOR_HEAD + 3 * self.breaks if self.breaks else 0))
+
+    @property
+    def approach_words(self) -> slice:
+        """Where the approach is: nowhere if the book has none."""
+        first = self.estimator.stop
+        return slice(first, first + (APPROACH_WORDS if self.approach else 0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +89,8 @@ class TableBlock:
 def block_size(book: TableBook) -> BlockSize:
     """The least size that every table of the book fits into."""
     breaks = max(0 if table.estimator is None else len(table.estimator.s_m) for table in book.tables)
-    return BlockSize(book.most_stages, book.highest_degree + 1, breaks)
+    approach = any(table.approach is not None for table in book.tables)
+    return BlockSize(book.most_stages, book.highest_degree + 1, breaks, approach)
 
 
 def block_of(
@@ -106,6 +118,7 @@ def block_of(
             numbers.view(np.uint32),
             coefficients.ravel().view(np.uint32),
             estimator_words(table.estimator, size),
+            approach_words(table)[: APPROACH_WORDS * size.approach],
         ]
     )
     words = np.append(body, np.uint32(zlib.crc32(body.astype("<u4").tobytes())))
@@ -121,3 +134,14 @@ def estimator_words(estimator: Estimator | None, size: BlockSize) -> npt.NDArray
         words[0], words[1:ESTIMATOR_HEAD] = breaks, numbers.view(np.uint32)
         words[ESTIMATOR_HEAD:].reshape(3, size.breaks)[:, :breaks] = estimator.work.view(np.uint32)
     return words
+
+
+def approach_words(table: ActiveTable) -> npt.NDArray[np.uint32]:
+    """The words of an approach in a block."""
+    length_m = np.array([approach_m(table)], dtype=np.float32)
+    return np.append(length_m.view(np.uint32), np.uint32(table.entrance_stage))
+
+
+def approach_m(table: ActiveTable) -> np.float32:
+    """The length of the approach, 0 for none."""
+    return np.float32(0.0 if table.approach is None else table.approach.length_m)

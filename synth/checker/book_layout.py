@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -57,15 +57,28 @@ WITH_ESTIMATORS: Final[Mapping[str, Stored]] = {
     "estimator_drive_m2_s2": Stored("<f8", ("table", "break"), "m2/s2"),
     "estimator_brake_m2_s2_per_kpa": Stored("<f8", ("table", "break"), "m2/s2 per kPa"),
 }
-SCHEMAS: Final[Mapping[int, Mapping[str, Stored]]] = {1: DATASETS, 2: WITH_ESTIMATORS}
-"""By schema version."""
+APPROACH: Final[Mapping[str, Stored]] = {
+    "approach_length_m": Stored("<f8", TABLE, "m"),
+    "approach_entrance_stage": Stored("<i4", TABLE, "1"),
+}
+SCHEMAS: Final[Mapping[tuple[int, bool], Mapping[str, Stored]]] = {
+    (1, False): DATASETS,
+    (2, True): WITH_ESTIMATORS,
+    (3, False): {**DATASETS, **APPROACH},
+    (3, True): {**WITH_ESTIMATORS, **APPROACH},
+}
+"""By schema version, and by whether a table has an estimator: only version 3 leaves that open."""
 NUMBER: Final = "category_number"
-"""In books whose tables state it, of either version; 0: not stated."""
+"""In books whose tables state it, of any version; 0: not stated."""
 
 
-def datasets_of(version: int, numbered: bool) -> Mapping[str, Stored]:
-    """The datasets of a book of a schema version, whose tables state the numbers of their categories or do not."""
-    return {**SCHEMAS[version], NUMBER: Stored("<i4", TABLE, "1")} if numbered else SCHEMAS[version]
+def datasets_of(version: int, names: Set[str]) -> Mapping[str, Stored]:
+    """The datasets of a book of a schema version with datasets of these `names`; `DamagedError` for another version."""
+    estimating = version == 2 or (version == 3 and "estimator_breaks" in names)
+    if (version, estimating) not in SCHEMAS:
+        raise DamagedError(f"its schema_version is {shown(version)}; this checker knows the versions 1 to 3 only")
+    datasets = SCHEMAS[version, estimating]
+    return {**datasets, NUMBER: Stored("<i4", TABLE, "1")} if NUMBER in names else datasets
 
 
 def axes_of(datasets: Mapping[str, Stored]) -> frozenset[str]:
@@ -130,6 +143,7 @@ def short_arrays(document: Mapping[str, Any]) -> dict[str, Any]:
         "pressure_kpa": [stage["pressure_kpa"] for stage in stages],
         "has_line": [[int(line is not None) for line in both] for both in lines],
         "coefficients": [[line or [] for line in both] for both in lines],
+        "approach_length_m": document.get("approach", {}).get("length_m"),
         "validated_rms_m_s": validated["rms_m_s"] if validated else None,
         "validated_rms_ci95_m_s": validated["rms_ci95_m_s"] if validated else [None, None],
         **{f"estimator_{name}": estimator.get(name) for name in ESTIMATOR_NUMBERS},

@@ -11,7 +11,6 @@ from typing import Any, Final
 
 from synth.checker.book_layout import (
     NUMBER,
-    SCHEMAS,
     axes_of,
     datasets_of,
     require_axes,
@@ -66,9 +65,7 @@ def checked_columns(book: Any) -> dict[str, list[Any]]:
     """All columns as lists, once attributes, names and `payload_sha256` are right."""
     attributes = root_attributes(book)
     version = attributes["schema_version"]
-    if version not in SCHEMAS:
-        raise DamagedError(f"its schema_version is {shown(version)}; this checker knows the versions 1 and 2 only")
-    names = datasets_of(version, NUMBER in book)
+    names = datasets_of(version, set(book))
     unlike = set(book) ^ (names.keys() | axes_of(names))
     if unlike:
         raise DamagedError(f"the datasets {shown(sorted(unlike))} are missing or unknown")
@@ -94,8 +91,10 @@ def checked_columns(book: Any) -> dict[str, list[Any]]:
     if NUMBER in values and not values[NUMBER].any():
         raise DamagedError(f"it holds {NUMBER}, but none of its tables states one")
     require_axes(book, values, names)
-    if version == 2 and not values["estimator_breaks"].any():
-        raise DamagedError("its schema_version is 2, but none of its tables has an estimator")
+    if "estimator_breaks" in values and not values["estimator_breaks"].any():
+        raise DamagedError("it holds estimators, but none of its tables has one")
+    if version == 3 and not (values["approach_entrance_stage"] >= 0).any():
+        raise DamagedError("its schema_version is 3, but none of its tables has an approach")
     return {name: array.tolist() for name, array in values.items()}
 
 
@@ -128,11 +127,11 @@ def document_of(row: Row) -> dict[str, Any]:
         predicted["p_stall"] = row["predicted_p_stall"]
     if row.get("predicted_passes", 0):
         predicted["passes"] = row["predicted_passes"]
-    estimator = estimator_section(row)
+    estimator, approach = estimator_section(row), approach_section(row)
     interval = {"rms_m_s": row["validated_rms_m_s"], "rms_ci95_m_s": row["validated_rms_ci95_m_s"]}
     return {
         "format": "retarder-table",
-        "version": 2 if estimator else 1,
+        "version": 3 if approach else 2 if estimator else 1,
         "id": text(row["id"]),
         "created": text(row["created"]),
         "generator": {
@@ -159,7 +158,16 @@ def document_of(row: Row) -> dict[str, Any]:
         "predicted": predicted,
         "validated": {"passes": row["validated_passes"], **interval} if row["validated_passes"] else None,
         **({"estimator": estimator} if estimator else {}),
+        **({"approach": approach} if approach else {}),
     }
+
+
+def approach_section(row: Row) -> dict[str, Any] | None:
+    """The approach of one table, None where it has none; `DamagedError` where its two cells do not say the same."""
+    length_m, stage = row.get("approach_length_m", math.nan), row.get("approach_entrance_stage", -1)
+    if math.isnan(length_m) != (stage == -1):
+        raise DamagedError(f"{text(row['id'])!r} has an approach of {length_m} m and the entrance stage {stage}")
+    return None if stage == -1 else {"length_m": length_m, "entrance_stage": stage, "interlock": "position_clear"}
 
 
 def estimator_section(row: Row) -> dict[str, Any] | None:

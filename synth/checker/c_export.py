@@ -77,11 +77,15 @@ def differences(blocks: Sequence[Words], tables: Sequence[Table], header: str) -
     if stages is None or powers is None:
         yield "", "its header does not tell RETARDER_STAGES and RETARDER_POWERS"
         return
-    size = int(stages[1]), int(powers[1]), most_breaks(tables)
+    size = int(stages[1]), int(powers[1]), most_breaks(tables), any(table.approach_m > 0.0 for table in tables)
     yield from (("", sentence) for sentence in category_differences(tables, header))
     breaks = re.search(SIZE.format("BREAKS"), header)  # not in exports from before there were estimators
     if int(breaks[1] if breaks else 0) != size[2]:
         yield "", f"its header has room for {breaks[1] if breaks else 'no'} breaks, but the tables have {size[2]}"
+    approach = re.search(SIZE.format("APPROACH"), header)  # likewise
+    if int(approach[1] if approach else 0) != size[3]:
+        room, has = ("no room", "a table has one") if size[3] else ("room", "no table has one")
+        yield "", f"its header has {room} for an approach, but {has}"
     for number, (block, table) in enumerate(zip(blocks, tables, strict=True)):
         body = b"".join(WORD.pack(word) for word in block[:-1])
         if block[-1] != crc32(body):
@@ -114,9 +118,12 @@ def most_breaks(tables: Sequence[Table]) -> int:
     return max(len(table.estimator.s_m) if table.estimator else 0 for table in tables)
 
 
-def words_of(table: Table, size: tuple[int, int, int]) -> Words:
-    """The words that a table should have, its checksum left out; missing lines, stages, powers and breaks are 0."""
-    stages, powers, breaks = size
+def words_of(table: Table, size: tuple[int, int, int, bool]) -> Words:
+    """The words that a table should have, its checksum left out; missing lines, stages, powers and breaks are 0.
+
+    `size`: stages, powers, breaks, and whether there is room for an approach; its length is 0 for a table without.
+    """
+    stages, powers, breaks, approach = size
     lines = [(lower is not None) + 2 * (upper is not None) for lower, upper in table.lines]
     words = [table.category_number or 0, len(table.axle_offsets_m), len(table.lines), table.degree + 1]
     words += lines + [0] * (stages - len(lines))
@@ -125,7 +132,8 @@ def words_of(table: Table, size: tuple[int, int, int]) -> Words:
         for line in table.lines[k] if k < len(table.lines) else (None, None):
             coefficients = line or ()
             words += [bits(c) for c in coefficients] + [0] * (powers - len(coefficients))
-    return tuple(words + (estimator_words(table.estimator, breaks) if breaks else []))
+    words += estimator_words(table.estimator, breaks) if breaks else []
+    return tuple(words + ([bits(table.approach_m), table.entrance_stage] if approach else []))
 
 
 def estimator_words(estimator: Estimator | None, breaks: int) -> list[int]:

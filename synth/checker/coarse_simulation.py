@@ -4,7 +4,8 @@ Everything moves on in steps of a quarter of the sampling period: position and s
 of the step, pressure by the valves as they stand. The regulator of the pressure is played as the relay that it is,
 with its delays, and not from histories known in advance; friction is a random walk over short stretches of path; the
 lines are evaluated in double precision; an estimator of the table runs in float32 and hears at every sample the mean
-overpressure since the last. All this differs from the simulator that made the claims.
+overpressure since the last. With an approach a pass begins there, with the speed from which the cut, not braked,
+reaches the entrance with its entry speed. All this differs from the simulator that made the claims.
 
 Cuts of low friction are rare and make most of a mean square. So half of the passes have the friction of cuts as it
 comes, the others low friction (`low_friction`), and each pass counts by its weight.
@@ -28,14 +29,21 @@ LONGEST_STEP_S: Final = 0.025
 CELL_M: Final = 0.05
 MOST_CELLS: Final = 2000
 NOISE_CELLS_A_LENGTH: Final = 8
+SLOWEST_START_M_S: Final = 0.3
+"""Of cuts that a steep approach would have brought from less."""
 LONGEST_PASS_S: Final = 300.0
 """A cut that is still inside then has stalled: it creeps."""
 
 
 @dataclass(frozen=True)
 class Ground:
-    """The path in cells: free acceleration without resistance, and deceleration by one kPa, of each."""
+    """The path in cells: free acceleration without resistance, and deceleration by one kPa, of each.
 
+    Cells begin at `start_m`, noise cells at the entrance; `approach_m2_s2`: what gravity adds to v² up to there.
+    """
+
+    start_m: float
+    approach_m2_s2: float
     cell_m: float
     gravity_m_s2: tuple[float, ...]
     brake_m_s2_per_kpa: tuple[float, ...]
@@ -62,7 +70,7 @@ class Passes:
 def simulate(plant: Plant, table: Table, count: int, seed: int) -> Passes:
     """`count` passes of `plant` under `table`; equal arguments give equal passes."""
     ground, random = ground_of(plant), Random(f"{seed} {table.id}")
-    rest_kpa = released_kpa(plant)
+    rest_kpa = resting_kpa(plant)
     observer = Observer(table.estimator) if table.estimator else None
     friction = friction_numbers(count, random)
     found = [one_pass(plant, ground, table, observer, rest_kpa, each.normal, random) for each in friction]
@@ -73,15 +81,18 @@ def simulate(plant: Plant, table: Table, count: int, seed: int) -> Passes:
 
 def ground_of(plant: Plant) -> Ground:
     """The path of `plant` in cells; coefficients are those at the middle of a cell."""
-    count = min(MOST_CELLS, math.ceil(plant.exit_m / CELL_M))
-    cell_m = plant.exit_m / count
-    middles = [(i + 0.5) * cell_m for i in range(count)]
+    start_m = -plant.approach_m
+    count = min(MOST_CELLS, math.ceil((plant.exit_m - start_m) / CELL_M))
+    cell_m = (plant.exit_m - start_m) / count
+    middles = [start_m + (i + 0.5) * cell_m for i in range(count)]
     braked = [plant.braked(s) for s in middles]
     reduced = GRAVITY_M_S2 * plant.mass_t / plant.inertia_t * 1e-3
     busy = [n for n in braked if n > 0]
     mean_braked = max(1.0, sum(busy) / max(1, len(busy)))
     noise_cells = min(MOST_CELLS, math.ceil(plant.exit_m * NOISE_CELLS_A_LENGTH / plant.correlation_m))
     return Ground(
+        start_m=start_m,
+        approach_m2_s2=2.0 * reduced * plant.grade_work(start_m, 0.0),
         cell_m=cell_m,
         gravity_m_s2=tuple(reduced * plant.grade_permille(s) for s in middles),
         brake_m_s2_per_kpa=tuple(n * plant.slope_kn_per_kpa[n - 1] / plant.inertia_t if n else 0.0 for n in braked),
@@ -92,14 +103,15 @@ def ground_of(plant: Plant) -> Ground:
     )
 
 
-def released_kpa(plant: Plant) -> float:
-    """Pressure at which stage 0 rests after stage 1 was left."""
+def resting_kpa(plant: Plant) -> float:
+    """Pressure at which the initial stage rests: stage 0 after stage 1 was left, another one entered from below."""
     drive = BrakeDrive(plant.drive, plant.stages_kpa[1])
-    drive.command(plant.stages_kpa[0], 0.0)
-    for _ in range(1000):
-        drive.overpressure(0.1)
-        if drive.resting:
-            break
+    for stage in range(plant.initial_stage + 1):
+        drive.command(plant.stages_kpa[stage], 0.0)
+        for _ in range(1000):
+            drive.overpressure(0.1)
+            if drive.resting:
+                break
     return drive.pressure_kpa
 
 
@@ -129,10 +141,11 @@ def one_pass(
     w = random.gammavariate((mean / std) ** 2, std * std / mean) if std > 0.0 else mean
     drag = w * ground.drag_m_s2_per_n_kn
     drive = BrakeDrive(plant.drive, rest_kpa)
-    s, v, stage, switchings = 0.0, plant.entry.draw(random), 0, 0
+    s, stage, switchings = ground.start_m, plant.initial_stage, 0
+    v = start_speed_m_s(ground, drag, plant.entry.draw(random))
     period = plant.period_s
     steps = max(STEPS_A_PERIOD, math.ceil(period / LONGEST_STEP_S))
-    # The first sample comes at a random time after the entrance: until then one short row of steps.
+    # The first sample comes at a random time after the beginning: until then one short row of steps.
     dt, time, end_m = random.random() * period / steps, 0.0, plant.exit_m
     held = drive.overpressure_kpa
     while time < LONGEST_PASS_S:
@@ -144,8 +157,8 @@ def one_pass(
                 p, held = drive.overpressure(dt), drive.overpressure_kpa
             pressed += p
             middle = s + 0.5 * v * dt
-            cell = min(int(middle / ground.cell_m), len(ground.gravity_m_s2) - 1)
-            xi = friction[min(int(middle / ground.noise_cell_m), ground.noise_cells - 1)]
+            cell = min(int((middle - ground.start_m) / ground.cell_m), len(ground.gravity_m_s2) - 1)
+            xi = friction[min(int(max(0.0, middle) / ground.noise_cell_m), ground.noise_cells - 1)]
             a = ground.gravity_m_s2[cell] - drag - xi * ground.brake_m_s2_per_kpa[cell] * p
             s_next = s + (v + 0.5 * a * dt) * dt
             if s_next >= end_m:
@@ -169,6 +182,14 @@ def one_pass(
     return 0.0, True, switchings
 
 
+def start_speed_m_s(ground: Ground, drag_m_s2: float, entry_m_s: float) -> float:
+    """The speed at the beginning of a cut that reaches the entrance, not braked, with `entry_m_s`."""
+    if ground.start_m == 0.0:
+        return entry_m_s
+    square = entry_m_s**2 - ground.approach_m2_s2 - 2.0 * drag_m_s2 * ground.start_m
+    return max(math.sqrt(max(0.0, square)), SLOWEST_START_M_S)
+
+
 def measured(plant: Plant, v: float, random: Random) -> float:
     """What the sensor reports of the speed `v`."""
     seen = v + plant.noise_m_s * random.gauss(0.0, 1.0)
@@ -183,6 +204,8 @@ def decision(table: Table, stage: int, s: float, v: float) -> int:
     lower, upper = table.lines[stage]
     if lower is not None and v < speed_at(lower, s):
         return -1
+    if s < 0.0 and stage >= table.entrance_stage:
+        return 0
     return 1 if upper is not None and v > speed_at(upper, s) else 0
 
 

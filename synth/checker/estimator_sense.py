@@ -37,7 +37,8 @@ def work_of(plant: Plant) -> Work:
     """The work along the path, exact, piece by piece; and the mean number of braked pairs where any is."""
     marks = [edge for zone in plant.zones_m for edge in zone] + [start for start, _ in plant.grades]
     places = {mark + x for mark in marks for x in plant.axle_offsets_m}
-    edges = sorted({0.0, plant.exit_m, *(s for s in places if 0.0 < s < plant.exit_m)})
+    start = -plant.approach_m
+    edges = sorted({start, plant.exit_m, *(s for s in places if start < s < plant.exit_m)})
     reduced = GRAVITY_M_S2 * plant.mass_t / plant.inertia_t * 1e-3
     drive, brake, pairs, length = [0.0], [0.0], 0.0, 0.0
     for a, b in pairwise(edges):

@@ -6,6 +6,7 @@ import hashlib
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, Final
 
 from synth.checker.canonical import canonical_form
@@ -42,7 +43,9 @@ class Plant:
     """A cut in a position, and what is random about it.
 
     `slope_kn_per_kpa[N − 1]`: force of one wheel pair per kPa over the touch pressure, N of them braked.
-    `grades`: (start in m, permille, downhill positive), the first also before its start.
+    `grades`: (start in m, permille, downhill positive), the first also before its start. The regulator acts from
+    `approach_m` before the entrance on, finds the brake at rest in `initial_stage`, and commands no stage above
+    `entrance_stage` there; 0 m: from the entrance on.
     """
 
     zones_m: tuple[tuple[float, float], ...]
@@ -63,6 +66,9 @@ class Plant:
     period_s: float
     computing_s: float
     entry: Entry
+    approach_m: float
+    initial_stage: int
+    entrance_stage: int
 
     @property
     def exit_m(self) -> float:
@@ -78,6 +84,12 @@ class Plant:
         """Wheel pairs inside any zone while the first axle stands at `s_m`."""
         places = [s_m - x for x in self.axle_offsets_m]
         return sum(begin <= place < end for place in places for begin, end in self.zones_m)
+
+    def grade_work(self, begin_m: float, end_m: float) -> float:
+        """Integral of the mean grade under the axles, permille times m, exact piece by piece."""
+        places = {start + x for start, _ in self.grades for x in self.axle_offsets_m}
+        edges = [begin_m, *sorted(s for s in places if begin_m < s < end_m), end_m]
+        return math.fsum(self.grade_permille(0.5 * (a + b)) * (b - a) for a, b in pairwise(edges))
 
     def grade_permille(self, s_m: float) -> float:
         """Mean grade under the axles."""
@@ -104,6 +116,17 @@ class Reader:
     def number(self, key: str, low: float = 0.0, high: float = 1e4) -> float:
         """The number at `key`."""
         return checked(self.value(key), key, low, high)
+
+    def stage(self, key: str, absent: int, highest: int) -> int:
+        """The number of a stage at `key`, `absent` where there is no such key."""
+        section, _, name = key.rpartition(".")
+        there = self.value(section) if section else self.config
+        if not isinstance(there, dict) or name not in there:
+            return absent
+        found = self.number(key, 0, highest)
+        if found != int(found):
+            raise UnusableConfigError(f"{key} of its configuration is {found:g}, no stage")
+        return int(found)
 
     def numbers(self, key: str, low: float = 0.0, high: float = 1e4) -> tuple[float, ...]:
         """The list of numbers at `key`."""
@@ -163,7 +186,22 @@ def plant_of(config: Mapping[str, Any], cut: Mapping[str, Any]) -> Plant:
         period_s=at.number("sensor.sample_period_s", 1e-3, 10.0),
         computing_s=at.number("sensor.computing_delay_s", 0.0, 10.0),
         entry=entry_speeds(of if "entry" in cut else at),
+        **approach_of(at, of),
     )
+
+
+def approach_of(at: Reader, of: Reader) -> dict[str, Any]:
+    """What the keys of a configuration and of one of its cuts say of the approach; without them there is none."""
+    regulator = at.config.get("regulator")
+    top = len(at.numbers("retarder.stage_pressures_kpa")) - 1
+    entrance_stage = of.stage("entrance_stage", top, top)
+    if not isinstance(regulator, dict) or "approach_m" not in regulator:
+        return {"approach_m": 0.0, "initial_stage": 0, "entrance_stage": entrance_stage}
+    return {
+        "approach_m": at.number("regulator.approach_m", 0.0, 100.0),
+        "initial_stage": at.stage("regulator.initial_stage", 0, entrance_stage),
+        "entrance_stage": entrance_stage,
+    }
 
 
 def entry_speeds(of: Reader) -> Entry:

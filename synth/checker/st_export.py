@@ -15,6 +15,7 @@ COMMENT: Final = re.compile(r"\(\*.*?\*\)", re.DOTALL)
 LAYOUT: Final = r"\bIF Layout <> (\d{1,6}) THEN"
 OWN_ARRAYS: Final = ("Lower", "Upper", "Coefficient")
 ESTIMATOR_COLUMNS: Final = ("BreaksOf", "SpeedVarianceOf", "FactorVarianceOf", "PathVarianceOf")
+APPROACH_COLUMNS: Final = {"ApproachOf", "EntranceStageOf"}
 ESTIMATOR_ROWS: Final = ("BreakPath", "Drive", "Brake")
 
 Arrays = dict[str, list[list[Any]]]
@@ -60,6 +61,12 @@ def differences(arrays: Arrays, tables: Sequence[Table]) -> Iterator[tuple[str, 
         "AxlesOf": [len(table.axle_offsets_m) for table in tables],
         "MassOf": [rounded(table.mass_t) for table in tables],
     }
+    approached = any(table.approach_m > 0.0 for table in tables)
+    if approached:
+        columns["ApproachOf"] = [rounded(table.approach_m) for table in tables]
+        columns["EntranceStageOf"] = [table.entrance_stage for table in tables]
+    elif APPROACH_COLUMNS & arrays.keys():
+        yield "", "it holds approaches, but no table has one"
     for name, wanted in columns.items():
         yield from array_differences(name, arrays, wanted, "")
     stages, powers = max(len(t.lines) for t in tables), max(t.degree for t in tables) + 1

@@ -110,9 +110,15 @@ def require_fit(plant: Plant, table: Table) -> None:
         ("zones", plant.zones_m, table.zones_m),
         ("stage pressures", plant.stages_kpa, table.pressures_kpa),
         ("dead band", plant.drive.band_kpa, table.dead_band_kpa),
+        ("approach", plant.approach_m, table.approach_m),
     ):
         if one != other:
             raise UnusableConfigError(f"the configuration beside it has other {name}: {shown(one)}, not {shown(other)}")
+    if plant.approach_m > 0.0 and plant.entrance_stage != table.entrance_stage:
+        raise UnusableConfigError(
+            f"the configuration beside it allows stage {plant.entrance_stage} before the entrance, not "
+            f"{table.entrance_stage}"
+        )
     low, high = plant.entry.low_m_s, plant.entry.high_m_s
     flat = [edge for zone in plant.zones_m for edge in zone]
     if low > high or sorted(flat) != flat or sorted(plant.axle_offsets_m) != list(plant.axle_offsets_m):

@@ -13,6 +13,7 @@ import numpy as np
 from synth.book.forms.exported_code import exported_code
 from synth.book.forms.table_file import TableFile, holds_tables, read_tables, summary_beside
 from tuning_tables import DamagedTable
+from tuning_tables.approach import Approach
 from tuning_tables.document import to_document
 from tuning_tables.estimator import Estimator
 from tuning_tables.table import ControllerTable
@@ -97,12 +98,22 @@ def table_words(table: ControllerTable, says_none: bool) -> list[str]:
         words.insert(-1, f"    estimator  {estimator_words(table.estimator)}")
     elif says_none:
         words.insert(-1, "    estimator  none: the lines are for the measured speed")
+    if table.approach is not None:
+        words.insert(-1, f"    approach   {approach_words(table.approach)}")
     path = shown_path(table)
     words.append(f"      {'s, m':<22}" + "".join(f"{s:>9.2f}" for s in path))
     for line in lines_at(table):
         name = f"stage {line['k']} ({line['pressure_kpa']:g} kPa) {line['line']}"
         words.append(f"      {name:<22}" + "".join(f"{v:>9.3f}" for v in line["v_m_s"]))
     return words
+
+
+def approach_words(approach: Approach) -> str:
+    """From where on the regulator acts, what it may command there, and its interlock."""
+    return (
+        f"the regulator acts from {approach.length_m:g} m before the entrance on, where it commands no stage above "
+        f"{approach.entrance_stage}; it takes over a cut only when the cut ahead has left the position"
+    )
 
 
 def estimator_words(estimator: Estimator) -> str:

@@ -54,8 +54,9 @@ class ResolvedConfig:
     """Everything that a tune depends on.
 
     `parameters`: every number with unit, range, source, confidence and whether it is assumed; source
-    'configuration' marks what the user changed. `retarder`: the position. `entry`, `targets_m_s`: of the classes that
-    have none of their own. `warnings`: sentences about values outside their sensible range.
+    'configuration' marks what the user changed. `retarder`: the position, with what [regulator] says of it. `entry`,
+    `targets_m_s`: of the classes that have none of their own. `warnings`: sentences about values outside their sensible
+    range.
     """
 
     title: str
@@ -174,7 +175,7 @@ def resolve(settings: Settings, file: str, library: Library = BUILT_IN) -> Resol
         criterion_settings=settings.criterion,
         grid=settings.grid,
         fit=settings.fit,
-        regulator=settings.regulator,
+        regulator=RegulatorSettings(estimator=settings.regulator.estimator),
         validation=settings.validation,
         acceptance=settings.acceptance,
         output=settings.output,

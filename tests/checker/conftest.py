@@ -38,6 +38,11 @@ mass_t = 22
 """
 """A park retarder, one light class and two targets, on a coarse grid."""
 
+FROM_THE_ENTRANCE = "approach_m = 0.0\n"
+
+APPROACHED = f"{CONFIG}entrance_stage = 1\n[regulator]\napproach_m = 4.0\n"
+"""The class may be given stage 1 before the entrance."""
+
 
 def tune(folder: Path, config: str) -> Path:
     """The directory of a tune with every export."""
@@ -53,20 +58,33 @@ def tune(folder: Path, config: str) -> Path:
 def tuned_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The directory of the tune, C99 in c/ and Structured Text in st/; not to be changed."""
     folder = tmp_path_factory.mktemp("checked")
-    return tune(folder, CONFIG)
+    return tune(folder, f"{CONFIG}[regulator]\n{FROM_THE_ENTRANCE}")
 
 
 @pytest.fixture(scope="session")
 def estimated_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The directory of the same tune with an estimator, version 2; not to be changed."""
     folder = tmp_path_factory.mktemp("estimated")
-    return tune(folder, f"{CONFIG}[regulator]\nestimator = true\n")
+    return tune(folder, f"{CONFIG}[regulator]\n{FROM_THE_ENTRANCE}estimator = true\n")
+
+
+@pytest.fixture(scope="session", params=[False, True], ids=["measured", "estimated"])
+def approached_once(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The directory of the same tune with an approach, version 3, without and with estimator; not to be changed."""
+    folder = tmp_path_factory.mktemp("approached")
+    return tune(folder, f"{APPROACHED}estimator = {str(request.param).lower()}\n")
 
 
 @pytest.fixture
 def tuned(tuned_once: Path, tmp_path: Path) -> Path:
     """A copy of it, to be changed at will."""
     return Path(shutil.copytree(tuned_once, tmp_path / "out"))
+
+
+@pytest.fixture
+def approached(approached_once: Path, tmp_path: Path) -> Path:
+    """A copy of it, to be changed at will."""
+    return Path(shutil.copytree(approached_once, tmp_path / "out"))
 
 
 @pytest.fixture

@@ -12,8 +12,16 @@ import pytest
 from plant_models import Pneumatics
 from synth.checker.brake_drive import BrakeDrive
 from synth.checker.claims import Honesty, simulated_faults
-from synth.checker.coarse_simulation import Passes, friction_row, ground_of, simulate
+from synth.checker.coarse_simulation import (
+    Passes,
+    decision,
+    friction_row,
+    ground_of,
+    simulate,
+    start_speed_m_s,
+)
 from synth.checker.entry import Uniform
+from synth.checker.estimator_sense import at, work_of
 from synth.checker.plant import Drive, Plant, config_sha256
 from synth.checker.statistics import FALSE_ALARM, binomial_tail, figures_of
 from synth.checker.summary import Summary, read_summary
@@ -147,3 +155,69 @@ def test_binomial_tail_is_that_of_scipy(hits: int, n: int, p: float) -> None:
     from scipy.stats import binom
 
     assert binomial_tail(hits, n, p) == pytest.approx(float(binom.sf(hits - 1, n, p)), rel=1e-9)
+
+
+@pytest.fixture(scope="module")
+def far_plant(approached_once: Path) -> Plant:
+    """With an approach of 4 m."""
+    return read_summary(approached_once / "summary.json").plant(far_table_of(approached_once))
+
+
+@pytest.fixture(scope="module")
+def far_table(approached_once: Path) -> Table:
+    return far_table_of(approached_once)
+
+
+def far_table_of(tuned: Path) -> Table:
+    return read_table(max((tuned / "tables").glob("*.json")).read_bytes())
+
+
+def silent(table: Table) -> Table:
+    """Lines that never ask for another stage, and no estimator."""
+    high, low = (20.0, *[0.0] * table.degree), (-1.0, *[0.0] * table.degree)
+    lines = ((None, high), *[(low, high)] * (len(table.lines) - 2), (low, None))
+    return dataclasses.replace(table, lines=lines, estimator=None)
+
+
+def test_a_cut_reaches_the_entrance_with_its_entry_speed(far_plant: Plant, far_table: Table) -> None:
+    """Whatever the approach is like: the exit speed follows from the entry speed and the way from the entrance on."""
+    steep = dataclasses.replace(deterministic(far_plant), grades=((-10.0, 9.0), (-1.5, -2.0), (6.0, 1.0)))
+    count = 40_000
+    way = [(i + 0.5) * steep.exit_m / count for i in range(count)]
+    grade = math.fsum(map(steep.grade_permille, way)) * steep.exit_m / count
+    reduced = 9.81 * steep.mass_t / (steep.mass_t + 0.42 * 4) * 1e-3
+    exact = math.sqrt(9.0 + 2.0 * reduced * (grade - steep.resistance_n_kn[0] * steep.exit_m))
+    passes = simulate(steep, silent(far_table), 5, 1)
+    assert passes.exit_m_s == pytest.approx([exact] * 5, rel=2e-4)  # cells of 5 cm, with changes of grade inside
+
+
+def test_a_cut_that_comes_from_a_steep_approach_begins_with_the_least_speed(far_plant: Plant, far_table: Table) -> None:
+    steep = dataclasses.replace(deterministic(far_plant), grades=((-10.0, 150.0), (0.0, 1.0)))
+    ground = ground_of(steep)
+    assert start_speed_m_s(ground, 0.0, 2.0) == 0.3
+    assert start_speed_m_s(ground, 0.0, 5.0) == pytest.approx(math.sqrt(25.0 - ground.approach_m2_s2), rel=1e-12)
+    assert start_speed_m_s(ground_of(dataclasses.replace(steep, approach_m=0.0)), 0.0, 0.1) == 0.1
+
+
+def test_the_brake_is_at_rest_in_the_initial_stage(far_plant: Plant, far_table: Table) -> None:
+    """Entered from below, so at the lower edge of the dead band, from the beginning to the exit."""
+    plant = dataclasses.replace(deterministic(far_plant), initial_stage=1, entry=Uniform(6.0, 6.0))
+    work = work_of(plant)
+    over = plant.stages_kpa[1] - plant.drive.band_kpa - plant.drive.touch_kpa
+    square = 36.0 + 2.0 * (work.drive_m2_s2[-1] - at(work.s_m, work.drive_m2_s2, 0.0))
+    exact = math.sqrt(square - 2.0 * over * work.brake_m2_s2_per_kpa[-1])
+    assert over > 0.0
+    assert simulate(plant, silent(far_table), 3, 1).exit_m_s == pytest.approx([exact] * 3, rel=3e-3)  # steps of 0.15 m
+
+
+def test_before_the_entrance_no_stage_above_the_entrance_stage_is_commanded(far_table: Table) -> None:
+    zero = (0.0,) * (far_table.degree + 1)
+    always = dataclasses.replace(far_table, lines=((None, zero), *[(None, zero)] * (len(far_table.lines) - 1)))
+    assert [decision(always, stage, -0.01, 3.0) for stage in (0, 1, 2)] == [1, 0, 0]
+    assert [decision(always, stage, 0.0, 3.0) for stage in (0, 1, 2)] == [1, 1, 1]
+    # A brake that is always raised fills earlier where it may begin 4 m ahead.
+    assert decision(dataclasses.replace(always, entrance_stage=3), 1, -0.01, 3.0) == 1
+
+
+def test_agrees_with_the_production_simulator_from_before_the_entrance(far_plant: Plant, far_table: Table) -> None:
+    test_agrees_with_the_production_simulator(simulate(far_plant, far_table, 4000, 9), far_table)

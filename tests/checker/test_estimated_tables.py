@@ -99,7 +99,7 @@ def old_version(document: Document) -> None:
 
 
 def next_version(document: Document) -> None:
-    document["version"] = 3
+    document["version"] = 4
 
 
 def unknown_key(document: Document) -> None:
@@ -115,7 +115,7 @@ def unknown_key(document: Document) -> None:
         (no_passes, "predicted.passes"),
         (times("speed_noise_m_s", 1e-9), "estimator.speed_noise_m_s is .* from 0.0001 to 10"),
         (old_version, "unknown keys"),
-        (next_version, "versions 1 and 2 only"),
+        (next_version, "versions 1 to 3 only"),
         (unknown_key, "delay_s"),
     ],
 )
@@ -138,7 +138,7 @@ def test_words_in_c_are_those_of_the_exporter(estimated_once: Path, tuned_once: 
     for chosen in (plain, made, [replace(made[0], id="another"), *plain]):
         book = TableBook(tuple(chosen))
         own = [read_table(to_json(table)) for table in book.tables]
-        size = book.most_stages, book.highest_degree + 1, most_breaks(own)
+        size = book.most_stages, book.highest_degree + 1, most_breaks(own), False
         for number, table in enumerate(own):
             words = block_of(book, number).words.tolist()
             assert [*words_of(table, size)] == words[:-1]

@@ -118,8 +118,9 @@ def test_work_is_the_integral_along_the_path() -> None:
     """Against sums over 20 000 cells: N(s), its slope and the grades change on the way."""
     ((_, plant), _) = plants_of(CONFIGS[2])
     work, count = work_of(plant), 20_000
-    step = plant.exit_m / count
-    middles = [(i + 0.5) * step for i in range(count)]
+    assert plant.approach_m == 4.0
+    step = (plant.exit_m + plant.approach_m) / count
+    middles = [(i + 0.5) * step - plant.approach_m for i in range(count)]
     braked = [plant.braked(s) for s in middles]
     weight = 9.81 * plant.mass_t * 1e-3
     drive = sum(weight * (plant.grade_permille(s) - plant.resistance_n_kn[0]) for s in middles) * step

@@ -8,10 +8,16 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.controller_code.sample_book import estimating_book, sample_book
+from tests.controller_code.sample_book import approaching_book, estimating_book, sample_book
 from tuning_tables.table_book import TableBook
 
 Tool = Callable[[str], str]
+
+BOOKS: dict[str, Callable[[], TableBook]] = {
+    "measured": sample_book,
+    "estimated": estimating_book,
+    "approached": approaching_book,
+}
 
 
 @pytest.fixture(scope="session")
@@ -29,8 +35,8 @@ def tool() -> Tool:
     return find
 
 
-@pytest.fixture(scope="session", params=[sample_book, estimating_book], ids=["measured", "estimated"])
+@pytest.fixture(scope="session", params=list(BOOKS.values()), ids=list(BOOKS))
 def book(request: pytest.FixtureRequest) -> TableBook:
-    """Tables of many shapes, without and with estimators."""
+    """Tables of many shapes, without and with estimators, without and with approaches."""
     made: TableBook = request.param()
     return made

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from tuning_tables import (
+    Approach,
     ControllerTable,
     CutId,
     Estimator,
@@ -62,6 +63,33 @@ def estimating_book() -> TableBook:
         "odd": Estimator(1e-4, 0.0, 1.0, 1e3, 0.0, (0.0, 1e-3, 2.5), (0.0, -1.0, 5.0), (0.0, 0.02, 0.02)),
     }  # fmt: skip
     return TableBook(tuple(replace(table, estimator=given.get(table.id)) for table in sample_book().tables))
+
+
+def approaching_book(estimators: bool = True) -> TableBook:
+    """The estimating book, or the sample book, with approaches: every entrance stage, 0 and the highest among them.
+
+    Of the class with three targets the first two have equal approaches, the third has another entrance stage, so that
+    lines between them have a meaning only below the second. Four tables have none; the path of one of these, too,
+    begins before the entrance.
+    """
+    given = {
+        "light-2.0": (4.0, 1), "light-3.3": (4.0, 1), "light-4.0": (4.0, 2), "shadow-1.5": (0.3, 0),
+        "shadow-3.0": (4.0, 4), "medium-4.0": (8.0, 3), "medium-2.0": (8.0, 3), "many-stages": (9.0, 6),
+        "constant": (1e-3, 0),
+    }  # fmt: skip
+    book = estimating_book() if estimators else sample_book()
+    return TableBook(tuple(with_approach(table, *given.get(table.id, (0.0, 0))) for table in book.tables))
+
+
+def with_approach(table: ControllerTable, length_m: float, entrance_stage: int) -> ControllerTable:
+    """The table with an approach of `length_m`, its path and the breaks of its estimator moved there; 0 m: none."""
+    if length_m == 0.0:
+        return table
+    estimator = table.estimator
+    if estimator is not None:
+        estimator = replace(estimator, s_m=tuple(s - length_m for s in estimator.s_m))
+    valid = replace(table.valid, s_m=(-length_m, table.valid.s_m[1]))
+    return replace(table, valid=valid, estimator=estimator, approach=Approach(length_m, entrance_stage))
 
 
 def park_book() -> TableBook:

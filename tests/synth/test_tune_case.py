@@ -115,5 +115,6 @@ def test_degree_study_predicts_the_exported_table_to_the_last_digit(book: Book) 
     exported = book.cases[0].table
     assert study.degrees == (1, 2, 3, 4, 5, 6)
     assert study.polished_rms_m_s[study.degrees.index(exported.degree)] == exported.predicted.rms_m_s
-    assert (study.polished_rms_m_s < study.fitted_rms_m_s).all()
+    few = np.array(study.degrees) <= 4  # more coefficients fit the errors of a grid as coarse as this
+    assert (study.polished_rms_m_s < study.fitted_rms_m_s)[few].all()
     assert study.polished_rms_m_s[2] < 1.1 * study.polished_rms_m_s.min()

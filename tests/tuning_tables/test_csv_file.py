@@ -13,8 +13,10 @@ import pytest
 from tuning_tables import ControllerTable, InvalidTable, to_csv, to_json, write_csv
 
 
-def test_every_value_reads_back_exactly(table: ControllerTable, linear_table: ControllerTable) -> None:
-    for exported in (table, linear_table):
+def test_every_value_reads_back_exactly(
+    table: ControllerTable, linear_table: ControllerTable, approached_estimate: ControllerTable
+) -> None:
+    for exported in (table, linear_table, approached_estimate):
         rows = list(csv.DictReader(io.StringIO(to_csv(exported).decode("utf-8"), newline="")))
         document = json.loads(to_json(exported))
         lines = {(row["record"], int(row["key"])): numbers(row) for row in rows if row["record"] in ("lower", "upper")}

@@ -20,10 +20,10 @@ COUNT, FIRST_SEED = int(os.environ.get("FUZZ_COUNT", "2500")), int(os.environ.ge
 
 @pytest.mark.parametrize("seed", range(FIRST_SEED, FIRST_SEED + 2))
 def test_nearly_right_inputs_are_refused_in_order_or_read_exactly(
-    table: ControllerTable, linear_table: ControllerTable, tmp_path: Path, seed: int
+    table: ControllerTable, approached_estimate: ControllerTable, tmp_path: Path, seed: int
 ) -> None:
     outcomes: Counter[tuple[str, str, str]] = Counter()
-    for attempt in islice(attempts(seed, [table, linear_table], tmp_path), COUNT):
+    for attempt in islice(attempts(seed, [table, approached_estimate], tmp_path), COUNT):
         try:
             outcomes[attempt.reader, attempt.kind, outcome_of(attempt, tmp_path)] += 1
         except Finding as finding:

@@ -22,7 +22,7 @@ import numpy as np
 import pytest
 
 from tests.checker.test_estimator import random_estimator
-from tests.controller_code.sample_book import estimating_book
+from tests.controller_code.sample_book import approaching_book, estimating_book
 from tuning_tables import TableBook, to_json
 from tuning_tables.c_source import c_files
 
@@ -123,7 +123,7 @@ def odd_book() -> TableBook:
     )
 
 
-@pytest.mark.parametrize("book", [estimating_book, odd_book])
+@pytest.mark.parametrize("book", [estimating_book, approaching_book, odd_book])
 def test_the_page_gives_every_bit_of_the_golden_tracks(book: Any) -> None:
     wrong, count = wrong_samples(book(), *blocks_of_the_page())
     assert count > 1000

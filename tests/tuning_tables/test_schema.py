@@ -27,8 +27,10 @@ def test_exported_tables_conform(
     table: ControllerTable,
     linear_table: ControllerTable,
     estimated_table: ControllerTable,
+    approached_table: ControllerTable,
+    approached_estimate: ControllerTable,
 ) -> None:
-    for exported in (table, linear_table, estimated_table):
+    for exported in (table, linear_table, estimated_table, approached_table, approached_estimate):
         assert list(validator.iter_errors(json.loads(to_json(exported)))) == []
 
 
@@ -49,15 +51,11 @@ def altered(document: Document, path: JsonPath, value: object) -> Document:
 
 
 @pytest.mark.parametrize("wrong", [None, True, "", [], {}, -1], ids=repr)
-@pytest.mark.parametrize("version", [1, 2])
+@pytest.mark.parametrize("name", ["table", "estimated_table", "approached_table", "approached_estimate"])
 def test_what_the_schema_refuses_the_reader_refuses_too(
-    validator: jsonschema.Draft202012Validator,
-    table: ControllerTable,
-    estimated_table: ControllerTable,
-    version: int,
-    wrong: object,
+    validator: jsonschema.Draft202012Validator, request: pytest.FixtureRequest, name: str, wrong: object
 ) -> None:
-    document = json.loads(to_json(table if version == 1 else estimated_table))
+    document = json.loads(to_json(request.getfixturevalue(name)))
     refused = 0
     for path in places(document):
         if not path or path[0] in ("format", "version", "crc32"):
@@ -110,3 +108,18 @@ def test_an_estimator_and_its_version_belong_together(
         wrong["crc32"] = document_checksum(wrong)
         with pytest.raises(DamagedTable):
             from_json(canonical_json(wrong))
+
+
+def test_an_approach_and_its_version_belong_together(
+    validator: jsonschema.Draft202012Validator, approached_table: ControllerTable, approached_estimate: ControllerTable
+) -> None:
+    for exported in (approached_table, approached_estimate):
+        document = json.loads(to_json(exported))
+        assert document["version"] == 3
+        without = {key: value for key, value in document.items() if key != "approach"}
+        other = {**document, "approach": {**document["approach"], "interlock": "none"}}
+        for wrong in ({**document, "version": 1}, {**document, "version": 2}, without, other):
+            assert not validator.is_valid(wrong)
+            wrong["crc32"] = document_checksum(wrong)
+            with pytest.raises(DamagedTable):
+                from_json(canonical_json(wrong))

@@ -13,7 +13,7 @@ from synth.studies.in_the_loop.hard_readings import hard_commands, hard_readings
 from synth.studies.in_the_loop.hard_samples import hard_samples
 from synth.studies.in_the_loop.observed import observed, same_nan
 from tuning_tables import decide_many
-from tuning_tables.table_block import LAYOUT, block_of, block_size
+from tuning_tables.table_block import LAYOUT, approach_m, block_of, block_size
 from tuning_tables.table_book import Status, TableBook
 
 
@@ -43,7 +43,8 @@ class Tracks:
 class Differences:
     """How many answers of a controller are others, words of tables that are others, and what its self-test says.
 
-    `estimates`: samples after which the speed or anything in the estimate has another bit; a NaN is as good as any.
+    `tables` counts tables with another approach, too. `estimates`: samples after which the speed or anything in the
+    estimate has another bit; a NaN is as good as any.
     """
 
     decisions: int
@@ -82,9 +83,16 @@ def differences(controller: Controller, questions: Questions, tracks: Tracks) ->
         decisions=int(np.count_nonzero(controller.decide(questions.readings) != questions.decisions)),
         choices=int(np.count_nonzero(wrong)),
         estimates=int(np.count_nonzero(astray)),
-        tables=int(np.count_nonzero(controller.dump() != words)),
+        tables=int(np.count_nonzero(controller.dump() != words)) + wrong_approaches(controller, book),
         self_test=controller.self_test(),
     )
+
+
+def wrong_approaches(controller: Controller, book: TableBook) -> int:
+    """Of how many tables the controller tells another approach or entrance stage."""
+    blocks = [block_of(book, number) for number in range(len(book.tables))]
+    right = [(float(approach_m(block.table)), block.table.entrance_stage) for block in blocks]
+    return sum(found != due for found, due in zip(controller.approaches(), right, strict=True))
 
 
 def decisions_of(book: TableBook, readings: NDArray[np.void]) -> NDArray[np.int8]:

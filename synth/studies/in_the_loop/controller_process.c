@@ -8,6 +8,7 @@
  *                   and observe: float estimated speed of table N; else its int32 decision, `what` being the stage
  *   select          for {uint32 layout, uint32 category, uint32 axles, float speed}: int32 status, the table (zeros if none)
  *   intact          for a table: int32, whether its checksum is right
+ *   approach        nothing: for every table float approach in m, int32 entrance stage
  *   dump            all tables
  *   self-test       nothing; the exit code is the fault
  */
@@ -62,7 +63,7 @@ static int decide(void)
     return 0;
 }
 
-static void answer_speed(float value)
+static void answer_float(float value)
 {
     if (fwrite(&value, sizeof value, 1, stdout) != 1) {
         exit(9);
@@ -80,7 +81,7 @@ static int observe(void)
         } else if (now.start == 2u) {
             estimate = now.given;
         }
-        answer_speed(retarder_observe(now.table < retarder_table_count ? &retarder_tables[now.table] : 0, &estimate,
+        answer_float(retarder_observe(now.table < retarder_table_count ? &retarder_tables[now.table] : 0, &estimate,
                                       now.s_m, now.v_m_s, now.overpressure_kpa));
         if (fwrite(&estimate, sizeof estimate, 1, stdout) != 1) {
             return 9;
@@ -105,7 +106,7 @@ static int serve(unsigned number)
             retarder_begin(&estimate);
         }
         if (now.what == BEGIN || now.what == OBSERVE) {
-            answer_speed(retarder_observe(table, &estimate, now.s_m, now.v_m_s, now.overpressure_kpa));
+            answer_float(retarder_observe(table, &estimate, now.s_m, now.v_m_s, now.overpressure_kpa));
         } else {
             answer(retarder_decide(table, now.what, now.s_m, now.v_m_s));
         }
@@ -141,6 +142,16 @@ static int intact(void)
     return 0;
 }
 
+static int approach(void)
+{
+    uint32_t number;
+    for (number = 0u; number < retarder_table_count; ++number) {
+        answer_float(retarder_approach(&retarder_tables[number]));
+        answer(retarder_entrance_stage(&retarder_tables[number]));
+    }
+    return 0;
+}
+
 int main(int count, char **arguments)
 {
     const char *mode = count > 1 ? arguments[1] : "";
@@ -158,6 +169,9 @@ int main(int count, char **arguments)
     }
     if (strcmp(mode, "intact") == 0) {
         return intact();
+    }
+    if (strcmp(mode, "approach") == 0) {
+        return approach();
     }
     if (strcmp(mode, "dump") == 0) {
         return fwrite(retarder_tables, sizeof retarder_tables[0], retarder_table_count, stdout) == retarder_table_count

@@ -69,6 +69,12 @@ class Controller:
         sound: NDArray[np.bool_] = np.frombuffer(self._answer(("intact",), words), f"{self.order}i4") == 1
         return sound
 
+    def approaches(self) -> list[tuple[float, int]]:
+        """Length of the approach, m, and entrance stage of every table."""
+        dtype = [("length_m", f"{self.order}f4"), ("entrance_stage", f"{self.order}i4")]
+        told = np.frombuffer(self._answer(("approach",), np.empty(0, np.uint32)), dtype)
+        return [(float(length_m), int(stage)) for length_m, stage in told]
+
     def dump(self) -> NDArray[np.uint32]:
         """The words of all tables, (tables, words)."""
         words = np.frombuffer(self._answer(("dump",), np.empty(0, np.uint32)), f"{self.order}u4")

@@ -61,6 +61,7 @@ def anything(book: TableBook, count: int, rng: np.random.Generator) -> NDArray[n
     s, v = bits.view(np.float32)
     ordinary = rng.random(count) < 0.5
     s = np.where(ordinary, rng.uniform(-5.0, 45.0, count).astype(np.float32), s)
+    s = np.where(rng.random(count) < 0.1, rng.choice(AT_THE_ENTRANCE, count), s)
     stage = np.where(rng.random(count) < 0.1, rng.integers(-(2**31), 2**31, count), rng.integers(-2, 11, count))
     return readings(rng.integers(0, len(book.tables), count), stage, s, v)
 
@@ -69,9 +70,14 @@ EXPONENTS = np.array([0x00000000, 0x7F800000, 0x7F000000, 0x00800000], dtype=np.
 """Of denormals and zeros, of NaN and infinity, of the largest and of the smallest normal numbers."""
 
 
+AT_THE_ENTRANCE = np.array([-1e-3, -1.1754944e-38, -1e-45, -0.0, 0.0, 1e-45, 1e-3], dtype=np.float32)
+"""On either side of the place from which on any stage may be commanded."""
+
+
 def plausible(book: TableBook, count: int, rng: np.random.Generator) -> NDArray[np.void]:
-    """What a cut really gives."""
-    s, v = rng.uniform(-1.0, 39.0, count), rng.uniform(0.0, 9.0, count)
+    """What a cut really gives, from before the approaches on."""
+    begins = [float(table.valid_range[0]) for table in book.tables]
+    s, v = rng.uniform(min(begins) - 1.0, 39.0, count), rng.uniform(0.0, 9.0, count)
     return readings(rng.integers(0, len(book.tables), count), rng.integers(0, 5, count), s, v)
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.controller_code.sample_book import estimator_of
+from tests.controller_code.sample_book import estimator_of, with_approach
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Array, Kind, Record, Scalar, Value
 from tuning_tables.export_prefix import RETARDER
@@ -156,6 +156,12 @@ def test_bytes(default_book: TableBook) -> None:
     ) - (size(program.types["RETARDER_LOAD"]) - size(few.types["RETARDER_LOAD"]))  # SELECT holds an instance of LOAD
     assert stated("one `RETARDER_TABLE` without") == [size(program.types["RETARDER_TABLE"])]
     assert stated("constants of one table") == [constants]
+    one = default_book.tables[1]  # whose lines keep their order before the entrance, too
+    alone, approached = (
+        Program(st_files(TableBook((table,)))[TABLE_FILE]).types for table in (one, with_approach(one, 4.0, 2))
+    )
+    more = [size(approached[name]) - size(alone[name]) for name in ("RETARDER_TABLE", "RETARDER_LOAD")]
+    assert stated("an approach: more") == more
     for label, self_test in (("self-test of one table", FULL), ("the same, small", SMALL)):
         program = Program(b"".join(st_files(default_book, RETARDER, self_test).values()))
         tests = [size(program.types[f"RETARDER_TEST_{number}"]) for number in range(len(default_book.tables))]
