@@ -13,10 +13,10 @@ from synth.book.class_setup import Origin
 from synth.book.tuned_table import predict
 from synth.solver.backward_induction import Solution
 from synth.solver.chain.chain import Chain
-from synth.solver.evaluation import Evaluation
 from synth.solver.policy_density import density_and_occupancy
 from synth.solver.polynomial_fit import fit_lines
 from synth.solver.polynomial_lines import PolynomialLines
+from synth.solver.resolved_density import resolved_density
 from synth.solver.tabulate import UNPREDICTED, tabulate
 from synth.solver.tuned_lines import polished
 from tuning_tables import ControllerTable, InvalidTable
@@ -60,5 +60,5 @@ def degree_study(solution: Solution, check: Chain, label: str, tables: tuple[Tab
         degrees=tuple(each.degree for each in tables),
         fitted_rms_m_s=np.array([rms_m_s(each.fitted) for each in tables]),
         polished_rms_m_s=np.array([rms_m_s(each.polished) for each in tables]),
-        lines_rms_m_s=Evaluation(check, solution.aim).rms_m_s(solution.lines.at(check.grid.path_m)),
+        lines_rms_m_s=resolved_density(check, solution.lines.at(check.grid.path_m), target).rms_m_s(target),
     )

@@ -40,18 +40,15 @@ class ExitDensity:
         """P(exit speed > limit), the probabilities taken as points of a density and joined as the recursion does it."""
         energy = 0.5 * self.speed_m_s**2
         share = share_beyond((0.5 * limit_m_s**2 - energy) / energy[1])
-        return float(min(max(self.probability @ share, 0.0), 1.0))
+        return min(max(float(self.probability @ share), 0.0), 1.0)
 
 
 def share_beyond(cells: Vector) -> Vector:
     """Integral from `cells` to infinity of the cubic Lagrange function, by which four points of a grid interpolate."""
-    x = np.clip(np.abs(cells), 0.0, 2.0)
-    t = np.maximum(x - 1.0, 0.0)
-    near = np.minimum(x, 1.0)
-    within = (
-        near * (2.0 - near * (0.5 + near * (2.0 / 3.0 - 0.25 * near))) / 2.0
-        - t * t * (1.0 - t * (1.0 - 0.25 * t)) / 6.0
-    )
+    near = np.minimum(np.abs(cells), 1.0)
+    far = np.clip(np.abs(cells) - 1.0, 0.0, 1.0)
+    within: Vector = near * (1.0 - near * (0.25 + near * (1.0 / 3.0 - 0.125 * near)))
+    within = within - far**2 * (1.0 - far * (1.0 - 0.25 * far)) / 6.0
     return np.where(cells < 0.0, 0.5 + within, 0.5 - within)
 
 

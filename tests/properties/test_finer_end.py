@@ -66,6 +66,31 @@ def test_a_finer_end_of_the_whole_path_is_a_finer_chain(small: Callable[[], Chai
     assert found == pytest.approx(wanted, rel=2e-4)
 
 
+def test_landings_between_energies_are_those_of_the_motion(small: Callable[[], Chain]) -> None:
+    """Interpolated and integrated from the last 4 m on: alike to 1e-4 m and m²/s² but where a cut leaves or stops.
+
+    These are 1.6 % of the landings, and alike to 4 cm and 0.016 m²/s², a third of a coarse cell.
+    """
+    plant, resolution = small().plant, small().resolution
+    chain = chain_of(plant, replace(resolution, speed_step_m_s=0.015), small().scenarios)
+    end = finer_end(chain, random_lines(chain, 3), 4.0, 3)
+    finer = replace(chain.resolution, speed_step_m_s=0.005)
+    wanted = chain_of(chain.plant, finer, chain.scenarios).landings
+    count = end.chain.landings.points - 40
+    for found, exact in (
+        (end.chain.landings.travel_m, wanted.travel_m), (end.chain.landings.energy_m2_s2, wanted.energy_m2_s2)
+    ):  # fmt: skip
+        part = exact[end.node :, ..., :count]
+        moves = (wanted.travel_m[end.node :, ..., :count] >= 0.0) & (end.chain.landings.travel_m[..., :count] >= 0.0)
+        error = np.abs(found[..., :count] - part)[moves]
+        print(moves.mean(), (error > 1e-4).mean(), error.max())
+        assert moves.mean() > 0.5
+        assert (error > 1e-4).mean() < 0.04
+        assert error.max() < 0.04
+    stalls = (wanted.travel_m[end.node :, ..., :count] < 0.0) != (end.chain.landings.travel_m[..., :count] < 0.0)
+    assert stalls.mean() < 0.01
+
+
 @given(seed=SEEDS, times=st.integers(1, 6))
 def test_a_refined_row_keeps_mass_mean_and_mean_square(seed: int, times: int) -> None:
     """In cells next to a stall, which are refined linearly, mass and mean."""
@@ -95,7 +120,7 @@ def test_a_smooth_row_is_refined_to_what_it_is() -> None:
 
 @given(seed=SEEDS, size=st.floats(1e-8, 1e-3))
 def test_a_density_made_positive_keeps_its_moments_and_its_tails(seed: int, size: float) -> None:
-    """Six ripples of up to a thousandth beside the peak, a thin tail: moments to 1e-12, the tail as it was."""
+    """Six ripples of up to a thousandth beside the peak, a thin tail: moments to 1e-10, the tail as it was."""
     rng = np.random.default_rng(seed)
     density = normal_on_grid(2.0, 3.0)
     probability = 0.999 * density.probability
@@ -105,7 +130,7 @@ def test_a_density_made_positive_keeps_its_moments_and_its_tails(seed: int, size
     rippled = replace(density, probability=probability)
     found = without_negative(rippled)
     assert found.probability.min() >= 0.0
-    np.testing.assert_allclose(moments(found), moments(rippled), rtol=1e-12)
+    np.testing.assert_allclose(moments(found), moments(rippled), rtol=1e-10)
     np.testing.assert_array_equal(found.probability[250:300], probability[250:300])
 
 

@@ -86,6 +86,33 @@ def forward_to_finer_end(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def refine_landings(ends, points, node, times, fine_ends):
+    """`fine_ends` (N − node, C, F, 2, E_f'): `ends` (N, C, F, 2, E') from `node` on at energies `times` as dense.
+
+    A landing is smooth in the energy, so four of `points` E energies are interpolated; next to a stall and at the top
+    the nearest counts.
+    """
+    row, fine_row = ends.shape[4], fine_ends.shape[4]
+    for n, c, f in np.ndindex(fine_ends.shape[:3]):
+        path = ends[node + n, c, f, 0]
+        begin = 0
+        for j in range(points):
+            if path[j] < 0.0:
+                begin = j + 1
+        begin, end = min(begin + 1, points), min((fine_row - 1) // times, points - 2)
+        for side in range(2):
+            found, out = ends[node + n, c, f, side], fine_ends[n, c, f, side]
+            for i in range(min(times * begin, fine_row)):
+                out[i] = found[(2 * i + times) // (2 * times)]
+            for d in range(times):
+                c0, c1, c2, c3 = stencil(d / times)
+                for j in range(begin, end):
+                    out[times * j + d] = c0 * found[j - 1] + c1 * found[j] + c2 * found[j + 1] + c3 * found[j + 2]
+            for i in range(times * max(begin, end), fine_row):
+                out[i] = found[min((2 * i + times) // (2 * times), row - 1)]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def refinement(times):
     """What a mass on a grid becomes on one `times` as dense: cubic Lagrange functions, (4·times − 1,), sum 1.
 

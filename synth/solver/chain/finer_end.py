@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
+from synth.kernels.sweep.finer_end import refine_landings
 from synth.solver.chain.chain import Chain
 from synth.solver.chain.grid import MARGIN_CELLS, Grid
-from synth.solver.chain.landings import make_landings
+from synth.solver.chain.landings import in_whole_packs
 from synth.solver.switching_lines import SwitchingLines
 
 CELLS = 20
@@ -21,12 +22,12 @@ SHARE_OF_NOISE, OTHER_SPREAD_M2_S2 = 0.42, 0.03
 """The least standard deviation of an exit speed near its target that is expected: this share of the noise of a measured
 speed, and in energy what sampling and valves leave."""
 
-LONGEST_M, LENGTH_M2_S = 12.0, 24.0
+LONGEST_M, LENGTH_M2_S = 18.0, 36.0
 """The finer grid begins `LENGTH_M2_S` / target before the exit, `LONGEST_M` at most. Errors of the coarse grid before
 that die down by a factor of about e every 4 m, because the regulator goes on acting; faster cuts spread over more cells
 of energy."""
 
-ABOVE_LINES_M_S = 0.5
+ABOVE_LINES_M_S = 0.8
 """What stands so far above the highest line hardly comes down to the target any more."""
 
 BLEND_CELLS = 16
@@ -61,11 +62,12 @@ def finer_length_m(target_speed_m_s: float) -> float:
 
 
 def finer_end(chain: Chain, lines: SwitchingLines, length_m: float, times: int) -> FinerEnd:
-    """The last `length_m` of `chain` with energies `times` as dense, below a ceiling that lies above all of `lines`."""
+    """The last `length_m` of `chain` with energies `times` as dense, below a ceiling above all lines that are met."""
     grid, quanta = chain.grid, len(chain.drive_m_s2)
     node = quanta - min(max(round(length_m / grid.path_step_m), 1), quanta)
     upper = lines.upper_m_s[:, node:]
-    ceiling_m_s = float(upper.max(initial=0.0, where=np.isfinite(upper))) + ABOVE_LINES_M_S
+    met = upper < grid.speed_m_s[-1]
+    ceiling_m_s = float(upper.max(initial=0.0, where=met)) + ABOVE_LINES_M_S
     cells = min(math.ceil(0.5 * ceiling_m_s**2 / grid.energy_step_m2_s2), len(grid.speed_m_s))
     below = np.clip((cells - np.arange(len(grid.speed_m_s))) / BLEND_CELLS, 0.0, 1.0)
     drive = chain.drive_m_s2[node:]
@@ -73,11 +75,14 @@ def finer_end(chain: Chain, lines: SwitchingLines, length_m: float, times: int) 
     points = times * min(cells + math.ceil(gained / grid.energy_step_m2_s2) + MARGIN_CELLS, len(grid.speed_m_s))
     energy = grid.energy_step_m2_s2 / times * np.arange(points, dtype=np.float64)
     finer = Grid(grid.path_m[node:].copy(), energy, np.sqrt(2.0 * energy))
+    landings = chain.landings
+    ends = np.empty((*landings.ends[node:].shape[:4], len(in_whole_packs(energy))))
+    refine_landings(landings.ends, landings.points, node, times, ends)
     end = replace(
         chain,
         grid=finer,
         drive_m_s2=drive.copy(),
         brake_m_s2_per_kpa=chain.brake_m_s2_per_kpa[node:].copy(),
-        landings=make_landings(chain.plant, finer, chain.actuator, chain.landings.factors),
+        landings=replace(landings, ends=ends, points=points),
     )
     return FinerEnd(end, node, times, below * below * (3.0 - 2.0 * below))

@@ -52,10 +52,7 @@ class Landings:
 
 
 def make_landings(plant: Plant, grid: Grid, actuator: Actuator, factors: NDArray[np.float64]) -> Landings:
-    """Integrate the motion through every change to a neighbouring stage (kernel `land`), for friction `factors` (F,).
-
-    The grid's path may begin anywhere on that of the plant, and ends at S_exit.
-    """
+    """Integrate the motion through every change to a neighbouring stage (`land`), for friction `factors` (F,)."""
     modes = len(actuator.mode_stage)
     used: list[int] = []
     lower, upper = np.full(modes, -1), np.full(modes, -1)
@@ -64,7 +61,7 @@ def make_landings(plant: Plant, grid: Grid, actuator: Actuator, factors: NDArray
             if 0 <= stage + step < actuator.stages:
                 neighbours[mode] = len(used)
                 used.append(int(actuator.command[mode, stage + step]))
-    fine = np.linspace(grid.path_m[0], plant.exit_m, FINE_CELLS_PER_QUANTUM * (len(grid.path_m) - 1) + 1)
+    fine = np.linspace(plant.start_m, plant.exit_m, FINE_CELLS_PER_QUANTUM * (len(grid.path_m) - 1) + 1)
     cells = path_coefficients(plant.position, plant.cut, plant.profile, fine)
     work = np.concatenate([[0.0], np.cumsum(cells.brake_m_s2_per_kpa * np.diff(fine))])
     drive = cells.free_m_s2(plant.resistance.mean_n_per_kn)

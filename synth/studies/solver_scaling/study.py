@@ -20,7 +20,7 @@ from synth.problem.aim import Aim
 from synth.problem.resolution import finer_for_check
 from synth.solver.backward_induction import solve, solve_all
 from synth.solver.chain.chain import Chain, check_chain, persistent_chain
-from synth.solver.evaluation import Evaluation
+from synth.solver.resolved_density import resolved_density
 from synth.solver.switching_lines import SwitchingLines
 from synth.studies.benchmark.study import spread_aims
 from synth.studies.cases import of_masses
@@ -109,7 +109,7 @@ def predictions_of(config: ResolvedConfig, rounds: int) -> tuple[Prediction, ...
         aim = Aim(target, config.criterion)
         check = check_chain(plant, finer_for_check(config.resolution))
         lines = solve(persistent_chain(plant, config.resolution), aim).lines
-        calls[label] = partial(Evaluation(check, aim).density, on_nodes(lines, check))
+        calls[label] = partial(resolved_density, check, on_nodes(lines, check), target)
     times = in_turns(calls, rounds)
     return tuple(Prediction(label, min(each.processor_s)) for label, each in times.items())
 
