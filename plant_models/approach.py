@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from plant_models.errors import require, require_between
 
-LONGEST_APPROACH_M = 100.0
+SHORTEST_APPROACH_M, LONGEST_APPROACH_M = 0.001, 100.0
 
 ANY_STAGE = 31
 """No limit at the entrance: no retarder has more stages."""
@@ -28,6 +28,10 @@ class Approach:
 
     def __post_init__(self) -> None:
         require_between("regulator: approach_m", self.length_m, 0.0, LONGEST_APPROACH_M)
+        require(
+            self.length_m == 0.0 or self.length_m >= SHORTEST_APPROACH_M,
+            f"regulator: approach_m is {self.length_m:g}; it must be 0, or from {SHORTEST_APPROACH_M:g} m up",
+        )
         require(
             0 <= self.entrance_stage <= ANY_STAGE,
             f"cut: entrance_stage is {self.entrance_stage}; it must be a whole number from 0 to {ANY_STAGE}",

@@ -17,7 +17,6 @@ from plant_models import Plant
 from synth.book.case_result import DegreeStudy
 from synth.book.class_setup import Origin
 from synth.book.degree_study import TablesOfDegree, degree_study, tables_by_degree
-from synth.configuration.config_file import load_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.problem.resolution import finer_for_check
@@ -26,6 +25,7 @@ from synth.simulation.replicates import Interval, rms_of, rms_quotient, share_of
 from synth.solver.backward_induction import Solution, solve_all
 from synth.solver.chain.chain import check_chain, persistent_chain
 from synth.studies.cases import of_masses
+from synth.studies.entrance import from_the_entrance
 from synth.studies.markdown_table import MarkdownTable, plus_minus, table
 from synth.studies.near_target import NEAR_M_S
 from synth.studies.options import option
@@ -151,7 +151,7 @@ def as_study(case: CaseRow) -> DegreeStudy:
 
 def run(options: Options, tell: Tell) -> Degrees:
     """Tables of every degree for every case."""
-    config = load_config(options.config)
+    config = from_the_entrance(options.config)
     degrees = tuple(sorted({*options.degrees, COMPARED}))
 
     def rows_of(item: tuple[str, Plant]) -> list[CaseRow]:

@@ -13,7 +13,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.configuration.config_file import load_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.problem.resolution import Resolution
@@ -23,6 +22,7 @@ from synth.studies.benchmark.by_numpy import Swept, sweep_by_numpy
 from synth.studies.benchmark.findings import LANES, Benchmark, Limit, Way
 from synth.studies.benchmark.work import SweepWork, sweep_work
 from synth.studies.cases import of_masses
+from synth.studies.entrance import from_the_entrance
 from synth.studies.options import option
 from synth.studies.reference_problem.machine_rates import calls_of, load_loop, multiply_add_loop
 from synth.studies.study import Method, Tell
@@ -46,7 +46,7 @@ class Options:
 
 def run(options: Options, tell: Tell) -> Benchmark:
     """Compare the results, then the times."""
-    config = of_masses(load_config(options.config), (options.mass_t,))
+    config = of_masses(from_the_entrance(options.config), (options.mass_t,))
     machine = this_machine()
     ((label, plant),) = config.plants()
     chain = persistent_chain(plant, COARSE if options.coarse else config.resolution)

@@ -14,7 +14,6 @@ from pathlib import Path
 import numpy as np
 
 from synth.book.tuned_table import predict
-from synth.configuration.config_file import load_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
@@ -32,6 +31,7 @@ from synth.solver.required_lines import required_lines
 from synth.solver.tuned_lines import fitted
 from synth.studies.cases import Case, named_cases
 from synth.studies.criteria.findings import Criteria, CriterionRow, Measured, PriceRow
+from synth.studies.entrance import from_the_entrance
 from synth.studies.options import option
 from synth.studies.side_by_side import side_by_side
 from synth.studies.study import Method, Tell
@@ -113,7 +113,7 @@ class Bench:
 
 def run(options: Options, tell: Tell) -> Criteria:
     """All criteria and prices of all cases."""
-    config = load_config(options.config)
+    config = from_the_entrance(options.config)
     seed = config.validation.seed + FRESH
     passes = stratified_passes(seed, 0, options.passes)
 

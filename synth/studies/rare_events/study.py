@@ -17,12 +17,12 @@ from typing import TypeVar
 import numpy as np
 
 from plant_models import Plant
-from synth.configuration.config_file import load_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.simulation.closed_loop import TableController, close_loop, simulate_many
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.random_passes import random_passes
 from synth.studies.cases import Case, named_cases
+from synth.studies.entrance import from_the_entrance
 from synth.studies.options import option
 from synth.studies.rare_events.cross_entropy import Pilot, learn, mixture_of
 from synth.studies.rare_events.findings import (
@@ -76,7 +76,7 @@ class Options:
 
 def run(options: Options, tell: Tell) -> RareEvents:
     """All methods for every case."""
-    config = load_config(options.config)
+    config = from_the_entrance(options.config)
     rows = []
     for case in named_cases(config, options.cases):
         rows.append(studied(case, config, options))

@@ -13,10 +13,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from synth.configuration.config_file import load_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.simulation.stratified_passes import stratified_passes
 from synth.studies.cases import Case, named_cases
+from synth.studies.entrance import from_the_entrance
 from synth.studies.options import option
 from synth.studies.robustness.condition import conditions
 from synth.studies.robustness.experiments import one_at_a_time, sweep, together
@@ -66,7 +66,7 @@ class Bench:
 
 def run(options: Options, tell: Tell) -> Robustness:
     """Tune the tables, then change what is under them."""
-    config = load_config(options.config)
+    config = from_the_entrance(options.config)
     seed = config.validation.seed + FRESH
     benches = []
     for case in named_cases(config, options.cases):

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from plant_models import Plant
 from synth.book.comparison.baselines import tune_baselines
-from synth.configuration.config_file import load_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.problem.resolution import Resolution
@@ -30,6 +29,7 @@ from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.polynomial_lines import PolynomialLines
 from synth.studies.cases import Case, named_cases
+from synth.studies.entrance import from_the_entrance
 from synth.studies.near_target import near_ratio, near_target
 from synth.studies.options import option
 from synth.studies.side_by_side import side_by_side
@@ -113,7 +113,7 @@ class Bench:
 
 def run(options: Options, tell: Tell) -> Unlocked:
     """All cases with all valves."""
-    config = load_config(options.config)
+    config = from_the_entrance(options.config)
     seed = config.validation.seed + FRESH
     fresh = stratified_passes(seed, 0, options.passes)
 
