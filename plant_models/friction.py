@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.errors import require_between
+
+MOST_CV, MOST_MEAN_CV = 0.6, 0.3
 
 
 @dataclass(frozen=True)
@@ -18,6 +20,10 @@ class Friction:
     ξ_cut ~ N(1, CV²) is drawn once per cut and kept, CV² = `common_cv`² + `axle_cv`²/N̄, and never falls
     under `floor`; η is stationary and Gaussian with std `path_std` and exponential correlation over
     `correlation_length_m`.
+
+    `mean_cv`: how far the mean of ξ_cut, taken as 1, may itself be off on a day: standard deviation of that mean by
+    weather, the oil of the day, a wrong weight. No pass is drawn with it. What must keep a reserve is designed for
+    `of_any_day`.
     """
 
     common_cv: float
@@ -25,12 +31,22 @@ class Friction:
     path_std: float
     correlation_length_m: float
     floor: float = 0.3
+    mean_cv: float = 0.0
 
     def __post_init__(self) -> None:
         for name in ("common_cv", "axle_cv", "path_std"):
-            require_between(f"friction: {name}", getattr(self, name), 0.0, 0.6)
+            require_between(f"friction: {name}", getattr(self, name), 0.0, MOST_CV)
         require_between("friction: correlation_length_m", self.correlation_length_m, 0.01, 1000.0)
         require_between("friction: floor", self.floor, 0.05, 0.9)
+        require_between("friction: mean_cv", self.mean_cv, 0.0, MOST_MEAN_CV)
+
+    @property
+    def of_any_day(self) -> Friction:
+        """The friction of a cut on an unknown day: the spread of the mean is part of that of ξ_cut.
+
+        Its `common_cv` is never above the highest that one may have.
+        """
+        return replace(self, common_cv=min(math.hypot(self.common_cv, self.mean_cv), MOST_CV), mean_cv=0.0)
 
     def cut_cv(self, mean_braked_axles: float) -> float:
         """Coefficient of variation of ξ_cut with N̄ = `mean_braked_axles`."""

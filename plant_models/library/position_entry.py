@@ -41,17 +41,18 @@ ZONES_STATED = {"zones_m": Quantity("m", pairs)}
 """Where the retarders stand: their beginnings (the type has their length), or both ends of each."""
 
 TRACK = {"track.grade_permille": Quantity("permille, downhill positive", number_or_pairs)}
+MEAN_CV: Final = "friction.mean_cv"
 FRICTION = {
     "friction.common_cv": Quantity("1", number),
     "friction.axle_cv": Quantity("1", number),
     "friction.path_std": Quantity("1", number),
     "friction.correlation_length_m": Quantity("m", number),
     "friction.floor": Quantity("1", number),
+    MEAN_CV: Quantity("1", number),
 }
 APPROACH: Final = "regulator.approach_m"
 INITIAL_STAGE: Final = "regulator.initial_stage"
 REGULATOR = {APPROACH: Quantity("m", number), INITIAL_STAGE: Quantity("stage", number)}
-"""Keys that a position file may leave out."""
 
 TARGETS = {"targets.exit_speeds_m_s": Quantity("m/s", numbers)}
 
@@ -60,8 +61,9 @@ NOT_STATED: Final = (
         APPROACH, 0.0, "m", (0.0, 12.0), "not stated by the position: the regulator acts from the entrance", ""
     ),
     SourcedValue(INITIAL_STAGE, 0.0, "stage", (0.0, 31.0), "the brake is released when the cut ahead has left", ""),
+    SourcedValue(MEAN_CV, 0.0, "1", (0.0, 0.3), "not stated by the position: the mean friction is taken as known", ""),
 )
-"""What stands for the keys of `REGULATOR` that a position file leaves out."""
+"""What stands for the keys that a position file may leave out."""
 
 KEYS_OF_PLANT = {
     "retarder: ": "",
@@ -154,10 +156,17 @@ def site_schema(tree: Mapping[str, Any]) -> dict[str, Quantity]:
         set(entry) & {"edges_m_s", "shares", "mean_m_s", "std_m_s"} if isinstance(entry, dict) else set()
     )
     keys = {ENTRY + key: quantity for key, quantity in law.items()}
-    regulator = tree.get("regulator")
-    stated = {key for key in REGULATOR if isinstance(regulator, dict) and key.rpartition(".")[2] in regulator}
     zones = ZONES_STATED if "zones_m" in tree else PLACES
-    return {**zones, **TRACK, **keys, **FRICTION, **{key: REGULATOR[key] for key in stated}, **TARGETS}
+    known = {**zones, **TRACK, **keys, **FRICTION, **REGULATOR, **TARGETS}
+    left_out = {value.key for value in NOT_STATED if not states(tree, value.key)}
+    return {key: quantity for key, quantity in known.items() if key not in left_out}
+
+
+def states(tree: Mapping[str, Any], key: str) -> bool:
+    """Whether the file has the dotted `key` of a section."""
+    section, _, name = key.partition(".")
+    inner = tree.get(section)
+    return isinstance(inner, dict) and name in inner
 
 
 def position_with_types(
@@ -189,14 +198,15 @@ def composed(site: SourcedTable, unit: RetarderEntry, sensor: tuple[SourcedValue
     """All numbers of a position in the order of a configuration, with its keys."""
     by_key = {value.key: value for value in site.values}
     zones = by_key.pop("zones_m", None) or zones_of(by_key.pop("starts_m"), unit.length_m)
-    regulator = [by_key.pop(value.key, value) for value in NOT_STATED]
+    stated = {value.key: by_key.pop(value.key, value) for value in NOT_STATED}
     surroundings = [value for value in by_key.values() if value.key != "targets.exit_speeds_m_s"]
     return (
         replace(zones, key=ZONES),
         *(replace(value, key=RETARDER + value.key) for value in unit.drive.values),
         *surroundings,
+        stated[MEAN_CV],
         *(replace(value, key=SENSOR + value.key) for value in sensor),
-        *regulator,
+        *(stated[key] for key in REGULATOR),
         by_key["targets.exit_speeds_m_s"],
     )
 

@@ -80,6 +80,7 @@ class FrictionSettings(Section):
     path_std: float | None = None
     correlation_length_m: float | None = None
     floor: float | None = None
+    mean_cv: float | None = None
 
 
 class SensorSettings(Section):

@@ -19,7 +19,7 @@ from plant_models.library import (
     SourcedValue,
     load_weight_categories,
 )
-from plant_models.library.position_entry import REGULATOR
+from plant_models.library.position_entry import MEAN_CV, REGULATOR
 from plant_models.library.sourced_value import SET_BY_USER
 from synth.configuration.cut_class import CutClass, Surroundings, category_warnings, resolve_cut
 from synth.configuration.grid_warnings import grid_warnings
@@ -121,12 +121,16 @@ class ResolvedConfig:
     def canonical_json(self) -> str:
         """What the results depend on, in the canonical form of RFC 8785.
 
-        Left out are title and [output], and what an approach adds, where there is none.
+        Left out are title and [output], what an approach adds, where there is none, and the uncertainty of the mean
+        friction where nothing is designed for it.
         """
+        left_out_at_0 = {*REGULATOR, MEAN_CV}
         tree: dict[str, Any] = {"format": "retarder-config", "version": 1}
         tree["retarder"] = {"name": self.retarder.name, "law": self.retarder.law}
         for parameter in self.retarder.provenance:
-            if parameter.key in REGULATOR and parameter.value == 0.0:
+            if parameter.key in left_out_at_0 and parameter.value == 0.0:
+                continue
+            if parameter.key == MEAN_CV and not self.regulator.estimator:
                 continue
             *path, name = parameter.key.split(".")
             table = tree

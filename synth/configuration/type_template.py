@@ -53,7 +53,8 @@ FORM: Final = {
 # starts_m: where each unit begins. Units of different lengths: give zones_m = [[begin, end], …] in its place.
 # [entry]: low_m_s and high_m_s; with mean_m_s and std_m_s beside them a normal law between these limits; or edges_m_s
 # and shares, a histogram. [track]: one grade, or pieces, each [start in m, permille]. [regulator]: approach_m, from how
-# far before the entrance the regulator acts, and initial_stage, the stage left from the cut ahead; 0 if left out.""",
+# far before the entrance the regulator acts, and initial_stage, the stage left from the cut ahead; 0 if left out.
+# [friction]: mean_cv, how uncertain the mean friction itself is, may be left out, too: then it is taken as known.""",
     SENSORS: """\
 # resolution_m_s: 0 means not quantised.""",
     WEIGHT_CATEGORIES: """\

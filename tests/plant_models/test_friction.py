@@ -1,6 +1,7 @@
 """Friction: dispersion of a cut, and the cell-wise equivalent of the path process."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -34,7 +35,25 @@ def test_cells_as_a_chain_carry_the_work_variance_of_the_process(cell_m: float) 
     assert per_metre == pytest.approx(2 * 2.0 * 0.1**2, rel=1e-12)
 
 
-@pytest.mark.parametrize("name", ["common_cv", "axle_cv", "path_std", "correlation_length_m", "floor"])
+def test_the_friction_of_any_day_has_the_spread_of_a_mean_that_is_drawn_too() -> None:
+    law = replace(FRICTION, mean_cv=0.12)
+    rng = np.random.default_rng(3)
+    mean = 1.0 + law.mean_cv * rng.standard_normal(200_000)
+    drawn = mean + law.cut_cv(6.0) * rng.standard_normal(200_000)
+    assert law.of_any_day.cut_cv(6.0) == pytest.approx(drawn.std(), rel=0.01)
+    assert law.of_any_day.mean_cv == 0.0
+    assert law.cut_cv(6.0) == FRICTION.cut_cv(6.0)
+
+
+def test_where_the_mean_is_known_any_day_is_like_the_other_to_the_bit() -> None:
+    assert FRICTION.of_any_day == FRICTION
+
+
+def test_the_widest_law_is_still_one() -> None:
+    assert Friction(0.6, 0.0, 0.1, 2.0, mean_cv=0.3).of_any_day.common_cv == 0.6
+
+
+@pytest.mark.parametrize("name", ["common_cv", "axle_cv", "path_std", "correlation_length_m", "floor", "mean_cv"])
 def test_impossible_values_are_refused(name: str) -> None:
     values = {"common_cv": 0.1, "axle_cv": 0.1, "path_std": 0.1, "correlation_length_m": 1.0, "floor": 0.3}
     for bad in (-1.0, math.nan, math.inf):

@@ -6,7 +6,7 @@ import json
 import pytest
 
 from plant_models.library import SourcedValue, load_position, load_retarder, position_names
-from plant_models.library.position_entry import REGULATOR
+from plant_models.library.position_entry import MEAN_CV, REGULATOR
 
 BEFORE = {
     "knp-5-bunch": "136d4aeecccac776d56d325a8124c26c0d9205dd269f3c914c4c9197ac97b699",
@@ -22,8 +22,8 @@ Who changes a number, its source or its range on purpose takes the position out 
 
 
 def before(name: str) -> list[SourcedValue]:
-    """The numbers of a position, but for where its regulator begins to act: those keys came later."""
-    return [value for value in load_position(name).provenance if value.key not in REGULATOR]
+    """The numbers of a position, but for its approach and the uncertainty of its mean friction: those came later."""
+    return [value for value in load_position(name).provenance if value.key not in {*REGULATOR, MEAN_CV}]
 
 
 @pytest.mark.parametrize("name", BEFORE)

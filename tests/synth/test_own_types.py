@@ -323,3 +323,14 @@ def test_both_spellings_of_the_position_and_no_two_of_them() -> None:
     assert one == parse_config('retarder.name = "t-50-bunch"', "x.toml")
     with pytest.raises(InputError, match=r"position.name is 't-50-bunch', but retarder.name is 'kv-3-bunch'"):
         parse_config('position.name = "t-50-bunch"\nretarder.name = "kv-3-bunch"', "x.toml")
+
+
+def test_a_position_that_does_not_state_how_uncertain_its_mean_friction_is_takes_it_as_known(tmp_path: Path) -> None:
+    own(tmp_path, POSITIONS, "silent", mean_cv="")
+    own(tmp_path, POSITIONS, "telling", mean_cv=number("mean_cv", "0.11"))
+    text = 'library = ["{}/"]\n[position]\nname = "{}"\n' + CUT
+    silent, telling = (config_in(tmp_path, text.format(".", name)) for name in ("silent", "telling"))
+    assert silent.retarder.friction.mean_cv == 0.0
+    assert telling.retarder.friction.mean_cv == 0.11
+    (told,) = (value for value in silent.parameters if value.key == "friction.mean_cv")
+    assert told.source.startswith("not stated")

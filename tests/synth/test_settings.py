@@ -74,6 +74,16 @@ def test_canonical_json_is_sorted_and_ignores_spelling_title_and_output() -> Non
     assert one.sha256 == hashlib.sha256(one.canonical_json().encode()).hexdigest()
 
 
+def test_how_uncertain_the_mean_friction_is_counts_only_where_lines_are_designed_for_it() -> None:
+    known, thought = "[friction]\nmean_cv = 0.0\n", "[friction]\nmean_cv = 0.12\n"
+    plain, estimator = "", "[regulator]\nestimator = true\n"
+    by_mean = [[parse_config(mean + text, "x.toml") for mean in (known, thought)] for text in (plain, estimator)]
+    assert by_mean[0][0].sha256 == by_mean[0][1].sha256
+    assert by_mean[1][0].sha256 != by_mean[1][1].sha256
+    assert "mean_cv" not in by_mean[1][0].canonical_json()
+    assert by_mean[1][1].plants()[0][1].friction.mean_cv == 0.12
+
+
 def test_every_parameter_is_listed_once() -> None:
     keys = [p.key for p in load_config(None).parameters]
     assert len(keys) == len(set(keys))
@@ -174,6 +184,7 @@ def test_unusual_values_are_warned_of_not_refused() -> None:
         ("[entry]\nlow_m_s = 7", "entry.high_m_s", "6.5", "from low_m_s = 7"),
         ("[entry]\nhigh_m_s = 8", "entry.high_m_s", "8", "at most 7 m/s"),
         ("[friction]\ncommon_cv = 3", "friction.common_cv", "3.0", "from 0 to 0.6"),
+        ("[friction]\nmean_cv = 0.5", "friction.mean_cv", "0.5", "from 0 to 0.3"),
         ("[sensor]\nnoise_m_s = nan", "sensor.noise_m_s", "nan", "a finite number"),
         ("[sensor]\nnoise_m_s = inf", "sensor.noise_m_s", "inf", "a finite number"),
         ("[sensor]\nsample_period_s = 0", "sensor.sample_period_s", "0.0", "from 0.005 to 2"),
