@@ -154,7 +154,10 @@ class CaseResult:
         made = self.estimate
         if made is None or self.table.estimator is not None:
             return ""
-        return (
-            f"no estimator: it gained nothing on the tuning passes (rms {made.rms_after_m_s:.4f} m/s with it, "
-            f"{made.plain_rms_m_s:.4f} without), so the table is of version 1"
-        )
+        told = f"rms {made.rms_after_m_s:.4f} m/s with it, {made.plain_rms_m_s:.4f} without"
+        if made.rms_after_m_s < made.plain_rms_m_s:
+            return (
+                f"no estimator: on a day of another mean friction its rms was {made.worst_day:.2f} times that without "
+                f"(over all tuning passes: {told}), so the table is for the measured speed"
+            )
+        return f"no estimator: it gained nothing on the tuning passes ({told}), so the table is for the measured speed"

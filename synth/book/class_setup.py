@@ -10,10 +10,11 @@ from importlib.metadata import version
 from plant_models import Plant
 from synth.book.estimation.estimated_table import estimator_design
 from synth.book.estimation.simulated_prediction import prediction_passes
+from synth.book.estimation.tuning_days import tuning_row
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.resolution import finer_for_check
 from synth.simulation.common_passes import CommonPasses, common_passes
-from synth.simulation.random_passes import RandomPasses, random_passes
+from synth.simulation.random_passes import PATH_CELLS, RandomPasses
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.chain.chain import Chain, check_chain, persistent_chain
 from tuning_tables import Generator
@@ -21,7 +22,7 @@ from tuning_tables import Generator
 TUNING_PASSES = 600
 """Passes that baselines are tuned on: the first of the row after that of the validation."""
 
-TRIM_PASSES = 3000
+TRIM_PASSES = 3600
 """Passes that the error of an estimator and the trim of its lines are found on: those that follow."""
 
 
@@ -85,9 +86,14 @@ def estimator_setup(config: ResolvedConfig, label: str, compared: CommonPasses) 
     seed = config.validation.seed
     return EstimatorSetup(
         design=estimator_design(compared.plant, config.resolution, min(config.targets_of(label))),
-        tuning=random_passes(seed + 1, TUNING_PASSES, TUNING_PASSES + TRIM_PASSES),
+        tuning=trim_passes(seed, compared.plant),
         prediction=compared.of_others(prediction_passes(seed + 2, label)),
     )
+
+
+def trim_passes(seed: int, plant: Plant) -> RandomPasses:
+    """The passes that tables of `plant` are trimmed on, where those of the validation have `seed`."""
+    return tuning_row(plant.friction)(seed + 1, TUNING_PASSES, TRIM_PASSES, PATH_CELLS)
 
 
 def validation_passes(config: ResolvedConfig) -> RandomPasses:

@@ -150,6 +150,7 @@ def estimate_of(made: EstimatedTable) -> Document:
         "tuning_rms_without_m_s": made.plain_rms_m_s,
         "tuning_rms_before_trim_m_s": made.rms_before_m_s,
         "tuning_rms_m_s": made.rms_after_m_s,
+        "worst_day": made.worst_day,
     }
 
 

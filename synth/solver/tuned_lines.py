@@ -12,7 +12,7 @@ from synth.solver.policy_density import density_and_occupancy
 from synth.solver.polish import Polish, polish
 from synth.solver.polynomial_fit import Fit, fit_lines
 
-POLISH_ITERATIONS = 25
+POLISH_ITERATIONS, POLISH_TOLERANCE = 25, 5e-3
 
 FAR_SHARE, MOST_ROUNDS = 0.25, 4
 """A polish ends when a step gains little of the cost that it began with. If it has brought the cost down to less than
@@ -23,10 +23,10 @@ LEAST_ROUNDS_AHEAD = 2
 that the tables of before keep every bit."""
 
 
-def tuned_lines(design: Chain, aim: Aim, degree: int) -> Polish:
-    """Polished lines of `degree` for one aim on `design`."""
+def tuned_lines(design: Chain, aim: Aim, degree: int, tolerance: float = POLISH_TOLERANCE) -> Polish:
+    """Polished lines of `degree` for one aim on `design`; `tolerance` as of `polish`."""
     solution = solve(design, aim)
-    return polished(solution, fitted(solution, degree))
+    return polished(solution, fitted(solution, degree), tolerance)
 
 
 def fitted(solution: Solution, degree: int) -> Fit:
@@ -35,14 +35,14 @@ def fitted(solution: Solution, degree: int) -> Fit:
     return fit_lines(solution, occupancy.samples, degree)
 
 
-def polished(solution: Solution, fit: Fit) -> Polish:
+def polished(solution: Solution, fit: Fit, tolerance: float = POLISH_TOLERANCE) -> Polish:
     """The fitted lines after the polish; several rounds are told as one."""
     evaluate, nodes = Evaluation(solution.chain, solution.aim).gradient, solution.chain.grid.path_m
-    rounds = [polish(fit.lines, fit.curvature, nodes, evaluate, POLISH_ITERATIONS)]
+    rounds = [polish(fit.lines, fit.curvature, nodes, evaluate, POLISH_ITERATIONS, tolerance)]
     least = LEAST_ROUNDS_AHEAD if solution.chain.approach_nodes else 1
     while len(rounds) < least or (
         len(rounds) < MOST_ROUNDS and rounds[-1].cost_after < FAR_SHARE * rounds[-1].cost_before
     ):
-        rounds.append(polish(rounds[-1].lines, fit.curvature, nodes, evaluate, POLISH_ITERATIONS))
+        rounds.append(polish(rounds[-1].lines, fit.curvature, nodes, evaluate, POLISH_ITERATIONS, tolerance))
     evaluations = sum(each.evaluations for each in rounds)
     return replace(rounds[-1], cost_before=rounds[0].cost_before, evaluations=evaluations)

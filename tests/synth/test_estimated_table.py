@@ -8,15 +8,24 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from plant_models import Friction, Plant
-from synth.book.estimation.estimated_table import controller_of, estimated_table, estimator_design, shifted, trimmed
+from plant_models import Friction, Plant, PressingForce
+from synth.book.estimation.estimated_table import (
+    controller_of,
+    designed_lines,
+    estimated_table,
+    estimator_design,
+    shifted,
+    trimmed,
+)
 from synth.book.estimation.estimator_design import estimator_of, speed_error_m_s
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.problem import Problem
 from synth.problem.resolution import Resolution
 from synth.simulation.closed_loop import LineController, close_loop, simulate, trace
+from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.random_passes import RandomPasses, random_passes
+from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.chain.speed_measurement import SmoothMeasurement
 from synth.solver.polynomial_lines import PolynomialLines
@@ -99,6 +108,46 @@ def test_it_is_designed_for_its_own_error_and_better_than_no_estimator(
     gain = squares[0] - squares[1]
     assert gain.mean() > 3.0 * gain.std() / np.sqrt(len(gain))  # on the same passes
     assert np.sqrt(squares[1].mean()) < 0.04
+
+
+@pytest.mark.slow
+def test_lines_for_an_uncertain_mean_keep_a_reserve(plant_of: Callable[[float], Plant], passes: RandomPasses) -> None:
+    """On a day of little friction fewer cuts leave too fast, beyond chance, and the mean day hardly pays."""
+    coarse, target = Resolution(path_step_m=1.0, speed_step_m_s=0.05), 3.0
+    plants = [
+        replace(plant, friction=replace(plant.friction, mean_cv=m)) for m in (0.0, 0.15) for plant in [plant_of(36.0)]
+    ]
+    measured = tuned_lines(persistent_chain(plants[0], coarse), Aim(target), 3).lines
+    made = [
+        estimated_table(Problem(plant, Aim(target)), estimator_design(plant, coarse, target), measured, passes)
+        for plant in plants
+    ]
+    assert made[0].worst_day == pytest.approx(made[0].rms_after_m_s / made[0].plain_rms_m_s)
+    fresh = stratified_passes(13, 0, 6000)
+    controllers = [controller_of(each.lines, each.estimator) for each in made]
+    nominal = [exit_statistics(simulate(plants[0], each, fresh), target).rms_m_s for each in controllers]
+    assert nominal[1] < 1.1 * nominal[0]
+    force = PressingForce(0.7 * 20.0 / 550.0, 50.0)
+    weak = replace(plants[0], position=replace(plants[0].position, force=force))
+    samples = [simulate(weak, each, fresh) for each in controllers]
+    fast = [sample.weight * (sample.exit_speed_m_s > target + 0.3) for sample in samples]
+    fewer = (fast[0] - fast[1]).reshape(-1, 100).mean(axis=1)  # by replicate
+    assert fewer.mean() > 4.0 * fewer.std() / np.sqrt(len(fewer))
+
+
+def test_where_the_mean_is_known_lines_are_designed_as_for_the_friction_of_a_cut(
+    plant_of: Callable[[float], Plant],
+) -> None:
+    """Scenarios and lines to the bit; an uncertain mean gives others."""
+    plant, coarse = plant_of(36.0), Resolution(path_step_m=1.0, speed_step_m_s=0.05)
+    uncertain = replace(plant, friction=replace(plant.friction, mean_cv=0.15))
+    known, wide = (estimator_design(each, coarse, 3.0) for each in (plant, uncertain))
+    asked = persistent_chain(plant, known.resolution)
+    np.testing.assert_array_equal(known.scenarios.factor, asked.scenarios.factor)
+    assert wide.scenarios.factor.min() < known.scenarios.factor.min() - 0.1
+    seen = replace(asked, measurement=SmoothMeasurement(0.02))
+    lines = designed_lines(Problem(plant, Aim(3.0)), known, 3, 0.02)
+    np.testing.assert_array_equal(lines.coefficients, tuned_lines(seen, Aim(3.0), 3).lines.coefficients)
 
 
 def test_a_trim_never_makes_worse() -> None:

@@ -71,10 +71,10 @@ def test_where_it_gains_nothing_it_is_left_out(
     monkeypatch.setattr(EstimatedTable, "gains", property(lambda made: False))
     run = command("tune", tuned[0], "-o", tmp_path / "out", "--workers", "1")
     assert run.code in (0, 1)
-    assert "no estimator: it gained nothing on the tuning passes" in run.out
-    assert "no estimator: it gained nothing on the tuning passes" in run.err
+    assert "no estimator: on a day of another mean friction its rms was" in run.out
+    assert "no estimator: on a day of another mean friction its rms was" in run.err
     page = (tmp_path / "out" / "report.html").read_text()
-    assert "no estimator: it gained nothing on the tuning passes" in page
+    assert "no estimator: on a day of another mean friction its rms was" in page
     assert "two independent computations of one quantity" in page
     assert "prediction is itself simulated" not in page
     (case,) = json.loads((tmp_path / "out" / "summary.json").read_text())["cases"]

@@ -46,11 +46,12 @@ def estimator_of(plant: Plant) -> Estimator:
 def speed_error_m_s(loop: ClosedLoop, controller: Controller, passes: RandomPasses) -> float:
     """Root mean square error of the speed that `controller` compares with its lines, where it decides."""
     draws = loop.draws(passes)
-    squares, count = 0.0, 0
+    squares, count = 0.0, 0.0
     for index in range(len(passes)):
         one: Any = (each[index : index + 1] for each in draws)
         trace = loop.follow(controller, Draws(*one))
         decided = ~np.isnan(trace.measured_m_s)
-        squares += float(((trace.measured_m_s - trace.speed_m_s)[decided] ** 2).sum())
-        count += int(decided.sum())
-    return math.sqrt(squares / max(count, 1))
+        weight = float(passes.weight[index])
+        squares += weight * float(((trace.measured_m_s - trace.speed_m_s)[decided] ** 2).sum())
+        count += weight * int(decided.sum())
+    return math.sqrt(squares / max(count, 1.0))

@@ -1,0 +1,67 @@
+"""The passes that tables with an estimator are trimmed and chosen on, shared out to days of another mean friction.
+
+Lines for a good estimate brake late. What they lose in reserve shows on days on which cuts brake worse than they
+should; on the mean day it hardly shows. So they are judged on three days, by the quadrature of Gauss and Hermite for
+the mean of ξ_cut: 1 and 1 ± √3·`mean_cv`. Where the mean is taken as known there is one day, the mean one.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models import Plant
+from plant_models.friction import Friction
+from plant_models.frozen_arrays import frozen_arrays
+from synth.kernels.loop.closed_loop import Draws
+from synth.simulation.closed_loop import ClosedLoop, Controller, close_loop
+from synth.simulation.random_passes import PassRow, RandomPasses, random_passes
+from synth.simulation.stratified_passes import stratified_passes
+
+SEVERAL = (1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0), (-math.sqrt(3.0), 0.0, math.sqrt(3.0))
+ONE = (1.0,), (0.0,)
+"""Weights of the days, and their means of ξ_cut in standard deviations from 1."""
+
+LEAST_STD = 1e-12
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class TuningDays:
+    """`draws`: the passes of each day in `loop`, the plant of any day; `weight` (D,): how many of all days it stands
+    for."""
+
+    loop: ClosedLoop
+    draws: tuple[Draws, ...]
+    weight: NDArray[np.float64]
+
+    def mean_squares(self, controller: Controller, target_speed_m_s: float) -> NDArray[np.float64]:
+        """Mean squared error at the exit on each day, (D,) in m²/s²."""
+        found = []
+        for draws in self.draws:
+            exits = self.loop.run(controller, draws).exit_speed_m_s
+            found.append(np.average((exits - target_speed_m_s) ** 2, weights=draws.weight))
+        return np.array(found)
+
+
+def tuning_days(plant: Plant, passes: RandomPasses) -> TuningDays:
+    """The days of `plant`; each gets its part of `passes`."""
+    weights, means = SEVERAL if plant.friction.mean_cv > 0.0 else ONE
+    loop = close_loop(replace(plant, friction=plant.friction.of_any_day), plant.top_stage + 1)
+    share = len(passes) // len(means)
+    parts = [passes.part(share * day, share * (day + 1)) for day in range(len(means))]
+    # ξ_cut = 1 + mean_cv·y + CV·z, told as 1 + (CV of any day)·z'.
+    whole = max(loop.plant.friction_cv, LEAST_STD)
+    of_cut, of_mean = plant.friction_cv / whole, plant.friction.mean_cv / whole
+    draws = (
+        loop.draws(replace(part, cut_z=of_cut * part.cut_z + of_mean * y)) for part, y in zip(parts, means, strict=True)
+    )
+    return TuningDays(loop, tuple(draws), np.array(weights))
+
+
+def tuning_row(friction: Friction) -> PassRow:
+    """The row of passes for it: in strata where days of low friction count, whose rare cuts plain passes miss."""
+    return stratified_passes if friction.mean_cv > 0.0 else random_passes
