@@ -92,6 +92,14 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.estimator.study",
     ),
     Study(
+        "estimator-reserve",
+        "How much reserve for less friction than thought should lines for the estimate keep, and at what price?",
+        240.0,
+        "estimator.md#reserve",
+        "synth.studies.estimator.reserve_study",
+        "synth.studies.estimator.reserve_picture",
+    ),
+    Study(
         "estimator-spreads",
         "What does the estimator gain at other spreads of friction, and at another position?",
         104.0,

@@ -46,7 +46,8 @@ def shared() -> tuple[Case, Class]:
     (case,) = named_cases(config, ("52:3",))
     design = persistent_chain(case.plant, config.resolution)
     check = check_chain(case.plant, finer_for_check(config.resolution))
-    passes = Row(stratified_passes(1, 0, 5000), random_passes(2, 0, 3000), stratified_passes(3, 0, 1000))
+    trim = stratified_passes(2, 0, 3000)
+    passes = Row(stratified_passes(1, 0, 5000), random_passes(2, 0, 3000), trim, stratified_passes(3, 0, 1000))
     return case, Class(config, case.plant, design, check, 0.5, passes, 5)
 
 

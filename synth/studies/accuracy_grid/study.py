@@ -89,10 +89,11 @@ class ClassOrder:
 
 @dataclass(frozen=True)
 class Row:
-    """Passes of the grid: `fresh` for figures, `tuning` for the estimator and baselines, others for predictions."""
+    """Passes of the grid: `fresh` for figures, `tuning` for baselines, `trim` for the estimator, others to predict."""
 
     fresh: RandomPasses
     tuning: RandomPasses
+    trim: RandomPasses
     prediction: RandomPasses
 
 
@@ -114,6 +115,7 @@ def run(options: Options, tell: Tell) -> Grid:
     started = time.perf_counter()
     passes = Row(
         stratified_passes(SEED + FRESH, 0, options.passes), random_passes(SEED + TUNING, 0, TUNING_PASSES),
+        stratified_passes(SEED + TUNING, 0, TUNING_PASSES),
         stratified_passes(SEED + PREDICTION, 0, PREDICTION_PASSES),
     )  # fmt: skip
     starts = [partial(class_tasks, order, options, passes, tell) for order in orders_of(options)]
@@ -178,7 +180,7 @@ def figures_of(shared: Class, target: float, design: Chain, resolution: Resoluti
     predicted = predict(shared.check, table).rms_m_s(target)
     turned = time.perf_counter()
     problem = Problem(plant, Aim(target, config.criterion))
-    made = estimated_table(problem, estimator_design(plant, resolution, target), lines, passes.tuning)
+    made = estimated_table(problem, estimator_design(plant, resolution, target), lines, passes.trim)
     estimated = rounded(config, plant, made.lines, target, made.estimator)
     foreseen = loop.run(TableController(estimated), loop.draws(passes.prediction))
     promised = simulated_prediction(foreseen, target).rms_m_s

@@ -7,14 +7,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from plant_models import Plant
-from synth.book.class_setup import TRIM_PASSES, TUNING_PASSES
+from synth.book.class_setup import TRIM_PASSES, trim_passes
 from synth.book.estimation.estimated_table import controller_of, estimated_table, estimator_design
+from synth.book.estimation.tuning_days import tuning_row
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.problem import Problem
 from synth.simulation.closed_loop import Controller, TableController, simulate
 from synth.simulation.exit_statistics import OVERSPEED_M_S, exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
-from synth.simulation.random_passes import RandomPasses, random_passes
+from synth.simulation.random_passes import PATH_CELLS, RandomPasses
 from synth.simulation.replicates import Interval, share_of
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.polynomial_lines import PolynomialLines
@@ -34,7 +35,7 @@ class Pair:
     """Two controllers for one case and plant, for the measured speed and for the estimated one.
 
     `estimator` is that of the second; `error_m_s`: std of its error in the closed loop; `tuning_ratio`: rms of the
-    second / of the first, on the passes by which `tune` keeps an estimator or leaves it out.
+    second / of the first, on the passes by which `tune` keeps an estimator or leaves it out; `gains`: whether it does.
     """
 
     plain: Controller
@@ -42,6 +43,7 @@ class Pair:
     estimator: Estimator
     error_m_s: float
     tuning_ratio: float
+    gains: bool
 
     def misled(self, gauge: float) -> Controller:
         """The second, whose pressure gauge shows `gauge` times the overpressure."""
@@ -70,7 +72,7 @@ class Compared:
 
 def as_tuned(problem: Problem, config: ResolvedConfig, label: str) -> Pair:
     """The tables that `tune` writes for the class `label` of `config`, rounded."""
-    tuning = random_passes(config.validation.seed + 1, TUNING_PASSES, TUNING_PASSES + TRIM_PASSES)
+    tuning = trim_passes(config.validation.seed, problem.plant)
     pair, lines, estimated = designed(problem, config, min(config.targets_of(label)), tuning)
 
     plant, target = problem.plant, problem.target_speed_m_s
@@ -84,7 +86,7 @@ def without_price(problem: Problem, config: ResolvedConfig) -> Pair:
     """Lines, not rounded, without a price on switchings; the estimator made for this very target."""
     criterion = replace(problem.criterion, switching_tolerance_m2_s2=0.0)
     free = replace(problem, aim=replace(problem.aim, criterion=criterion))
-    tuning = random_passes(config.validation.seed + TUNING, 0, TRIM_PASSES)
+    tuning = tuning_row(problem.plant.friction)(config.validation.seed + TUNING, 0, TRIM_PASSES, PATH_CELLS)
     return designed(free, config, problem.target_speed_m_s, tuning)[0]
 
 
@@ -98,7 +100,7 @@ def designed(
     made = estimated_table(problem, estimator, lines, tuning)
     ratio = made.rms_after_m_s / made.plain_rms_m_s
     controllers = controller_of(lines, None), controller_of(made.lines, made.estimator)
-    return Pair(*controllers, made.estimator, made.error_m_s, ratio), lines, made.lines
+    return Pair(*controllers, made.estimator, made.error_m_s, ratio, made.gains), lines, made.lines
 
 
 def compared(target_m_s: float, plain: ExitSample, estimated: ExitSample) -> Compared:

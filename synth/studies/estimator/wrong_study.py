@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -39,11 +39,16 @@ class Options:
 
 @dataclass(frozen=True)
 class CaseRow:
-    """One case: figures by what is wrong, and the ratio on the passes by which `tune` keeps an estimator or not."""
+    """One case: figures by what is wrong, and the ratio on the passes by which `tune` keeps an estimator or not.
+
+    `without_reserve`: the same for lines that are designed for a mean friction that is known, `friction.mean_cv` = 0.
+    """
 
     case: str
     tuning_ratio: float
+    gains: bool
     by_wrong: dict[str, Compared]
+    without_reserve: dict[str, Compared]
 
 
 @dataclass(frozen=True)
@@ -58,11 +63,13 @@ class Misled(Findings):
     def tables(self) -> Mapping[str, MarkdownTable]:
         """`wrong`: a row for what is wrong, a column a case; `lost`: a row a case, the sensor lost for good."""
         names = [name for name in self.cases[0].by_wrong if name != LOST]
-        rows = [(name, *(ratio_cell(case.by_wrong[name]) for case in self.cases)) for name in names]
+        rows = [(name, *(ratio_cell(case.without_reserve[name], case.by_wrong[name]) for case in self.cases))
+                for name in names]  # fmt: skip
         heads = ("case", "rms, m/s, without → with", "stalled, %", "too fast by 0.3 m/s, %", "outside 0.3 m/s, %")
         return {
             "wrong": table(
-                "rms with / without estimator [95 %]; share outside 0.3 m/s, without → with, %",
+                "rms with / without estimator, without reserve → with it [95 %]; share outside 0.3 m/s, %: without "
+                "estimator, with it, with it and a reserve",
                 ("plant", *(case.case for case in self.cases)), rows,
             ),
             "lost": table("A sensor that is lost for good", heads, map(lost_cells, self.cases)),
@@ -72,16 +79,17 @@ class Misled(Findings):
         """How much was simulated, and what `tune` would do."""
         kept = [
             f"{case.case}: ratio {case.tuning_ratio:.3f} on the {TRIM_PASSES} tuning passes"
-            + (": tune leaves the estimator out" if case.tuning_ratio >= 1.0 else "")
+            + ("" if case.gains else ": tune leaves the estimator out")
             for case in self.cases
         ]
         return (f"{self.passes} fresh stratified passes each, seed {self.seed}", *kept)
 
 
-def ratio_cell(found: Compared) -> str:
-    """'**1.179** [1.173, 1.184]; 3.79 → 6.01': bold where worse beyond the interval."""
-    ratio = f"**{found.ratio:.3f}**" if found.ratio_ci95[0] > 1.0 else f"{found.ratio:.3f}"
-    return f"{ratio} {span(found.ratio_ci95, 3)}; {percent(found.outside, 2)}"
+def ratio_cell(before: Compared, found: Compared) -> str:
+    """'**1.245** → 0.960 [0.951, 0.970]; 0.79, 1.53, 0.77': bold where worse beyond the interval."""
+    first, last = (f"**{x.ratio:.3f}**" if x.ratio_ci95[0] > 1.0 else f"{x.ratio:.3f}" for x in (before, found))
+    shares = ", ".join(f"{100.0 * share:.2f}" for share in (found.outside[0], before.outside[1], found.outside[1]))
+    return f"{first} → {last} {span(found.ratio_ci95, 3)}; {shares}"
 
 
 def lost_cells(case: CaseRow) -> tuple[str, ...]:
@@ -103,14 +111,18 @@ def run(options: Options, tell: Tell) -> Misled:
     passes = stratified_passes(seed, 0, options.passes)
 
     def row_of(case: Case) -> CaseRow:
-        pair = as_tuned(Problem(case.plant, Aim(case.target_m_s, config.criterion)), config, case.label)
+        known = replace(case.plant, friction=replace(case.plant.friction, mean_cv=0.0))
+        aim = Aim(case.target_m_s, config.criterion)
+        before, pair = (as_tuned(Problem(plant, aim), config, case.label) for plant in (known, case.plant))
         transit_s = simulate(case.plant, pair.plain, passes).transit_time_s.astype(np.float64)
-        found = {}
+        found: tuple[dict[str, Compared], dict[str, Compared]] = ({}, {})
         for wrong in wrongs(case.plant, seed):
-            both = (simulated(wrong, each, passes, transit_s) for each in (pair.plain, pair.misled(wrong.gauge)))
-            found[wrong.name] = compared(case.target_m_s, *both)
-        tell(f"{case.name}: {len(found)} plants and faults")
-        return CaseRow(case.name, pair.tuning_ratio, found)
+            plain = simulated(wrong, pair.plain, passes, transit_s)
+            for figures, each in zip(found, (before, pair), strict=True):
+                estimated = simulated(wrong, each.misled(wrong.gauge), passes, transit_s)
+                figures[wrong.name] = compared(case.target_m_s, plain, estimated)
+        tell(f"{case.name}: {len(found[0])} plants and faults")
+        return CaseRow(case.name, pair.tuning_ratio, pair.gains, found[1], found[0])
 
     rows = side_by_side(row_of, class_cases(config, options.masses_t, options.targets_m_s))
     return Misled(config.sha256, seed, options.passes, rows)
