@@ -33,6 +33,8 @@ LEFT_OUT: Final = {
     "cut.car.pivots_m": "drawing of the car; a table is refused for other axles",
     "cut.car.axle_offsets_m": "drawing of the car; a table is refused for other axles",
     "cut.allowed_stage": "a rule of the yard; a table is refused for another",
+    "cut.entrance_stage": "a rule of the yard; a table is refused for another",
+    "regulator.approach_m": "where the regulator acts; a table is refused for another (study approach)",
 }
 """Assumed values that are not changed, and why."""
 
