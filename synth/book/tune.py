@@ -11,7 +11,6 @@ from pathlib import Path
 from plant_models import Plant, PlantError
 from synth.book.case_result import CaseResult, DegreeStudy
 from synth.book.class_setup import TUNING_PASSES, Origin, class_setup, creation_time, origin_of, validation_passes
-from synth.book.comparison.friction_bound import friction_known_bounds
 from synth.book.degree_study import degree_study, tables_by_degree
 from synth.book.tune_case import CaseOrder, tune_case
 from synth.book.tuned_table import Store, solutions
@@ -126,13 +125,10 @@ def class_tasks(run: TuneRun, label: str, plant: Plant, studied: bool) -> list[T
     free = [replace(aim, criterion=replace(aim.criterion, switching_tolerance_m2_s2=0.0)) for aim in aims]
     both = solutions(setup.design, [*aims, *free])
     published = solutions(as_published(setup.design, PUBLISHED_LEVELS), aims)
-    bounds = friction_known_bounds(setup.design, aims, run.passes, config.acceptance.rms_m_s)
     rehearsal = setup.passes.of_others(run.tuning)
     orders = [
-        CaseOrder(setup, solution, plain, as_was, known, feasibility, rehearsal, run.store)
-        for solution, plain, as_was, (known, feasibility) in zip(
-            both[: len(aims)], both[len(aims) :], published, bounds, strict=True
-        )
+        CaseOrder(setup, solution, plain, as_was, config.acceptance.rms_m_s, rehearsal, run.store)
+        for solution, plain, as_was in zip(both[: len(aims)], both[len(aims) :], published, strict=True)
     ]
 
     def study() -> DegreeStudy:

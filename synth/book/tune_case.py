@@ -10,13 +10,14 @@ from synth.book.case_result import CaseResult, CaseStudy, Indifference
 from synth.book.class_setup import ClassSetup
 from synth.book.comparison.baselines import tune_baselines
 from synth.book.comparison.comparison import Comparison
-from synth.book.comparison.measured import Feasibility, Measured, independent_ratio
+from synth.book.comparison.friction_bound import friction_bound
+from synth.book.comparison.measured import Measured
 from synth.book.policy_map import policy_map
 from synth.book.tuned_table import Store, TunedTable, ValidatedTable, tuned_table, validated_table
 from synth.problem.problem import Problem
 from synth.simulation.closed_loop import Controller, LineController, TableController
 from synth.simulation.common_passes import CommonPasses
-from synth.simulation.exit_statistics import ExitStatistics, exit_statistics, rms_ratio
+from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
 from synth.solver.backward_induction import Solution
 from synth.solver.evaluation import Evaluation
@@ -34,15 +35,15 @@ class CaseOrder:
     """What to do for one case, and with what.
 
     `solution` on the design chain, `without_tolerance` the same without the switching tolerance, `as_published` in the
-    formulation as published; `friction_known`: the simulated bound; `tuning`: passes that baselines are tuned on.
+    formulation as published; `limit_m_s`: the rms that makes a case feasible; `tuning`: passes that baselines are tuned
+    on.
     """
 
     setup: ClassSetup
     solution: Solution
     without_tolerance: Solution
     as_published: Solution
-    friction_known: Measured
-    feasibility: Feasibility
+    limit_m_s: float
     tuning: CommonPasses
     store: Store
 
@@ -52,6 +53,7 @@ def tune_case(order: CaseOrder) -> CaseResult:
     setup, solution = order.setup, order.solution
     tuned = tuned_table(setup, solution)
     validated = validated_table(setup, tuned.table, order.store)
+    bound = friction_bound(setup, tuned, validated, order.limit_m_s)
     return CaseResult(
         label=setup.label,
         problem=Problem(setup.plant, solution.aim),
@@ -63,14 +65,14 @@ def tune_case(order: CaseOrder) -> CaseResult:
         exit_speeds_m_s=validated.sample.exit_speed_m_s.astype(np.float32),
         exit_weight=validated.sample.weight,
         brake_power=validated.brake_power,
-        comparison=comparison(order, tuned, validated),
-        feasibility=order.feasibility,
+        comparison=comparison(order, tuned, validated, bound.sample),
+        feasibility=bound.feasibility,
         study=case_study(order, tuned, validated),
     )
 
 
-def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable) -> Comparison:
-    """The closed loops of all controllers on the common passes."""
+def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable, told: ExitSample) -> Comparison:
+    """The closed loops of all controllers on the common passes; `told`: that of the reference."""
     passes, target, sample = order.setup.passes, order.solution.aim.target_speed_m_s, validated.sample
     predicted, published = validated.table.predicted, order.as_published
 
@@ -87,7 +89,7 @@ def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable) -
             measured("as published", LineController(published.lines)),
             predicted_rms_m_s=Evaluation(published.chain.quantised(), published.aim).rms_m_s(published.lines),
         ),
-        friction_known=independently_beside(order.friction_known, validated.statistics),
+        friction_known=beside_table("friction known", told, sample, target),
         baselines=tuple(measured(b.name, b.controller) for b in tune_baselines(order.tuning, target)),
         without_estimator=None if tuned.estimate is None else without_estimator(),
     )
@@ -100,12 +102,6 @@ def beside_table(name: str, sample: ExitSample, table: ExitSample, target_speed_
         return Measured(name, found)
     ratio, ci95 = rms_ratio(table, sample, target_speed_m_s)
     return Measured(name, found, table_ratio=ratio, table_ratio_ci95=ci95)
-
-
-def independently_beside(known: Measured, table: ExitStatistics) -> Measured:
-    """The friction-known reference with the ratio of the table to it."""
-    ratio, ci95 = independent_ratio(table, known.statistics)
-    return replace(known, table_ratio=ratio, table_ratio_ci95=ci95)
 
 
 def case_study(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable) -> CaseStudy:

@@ -8,6 +8,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.frozen_arrays import frozen_arrays
 from synth.book.class_setup import ClassSetup, EstimatorSetup
 from synth.book.estimation.estimated_table import EstimatedTable, estimated_table
 from synth.book.estimation.simulated_prediction import density_of, simulated_prediction
@@ -37,13 +41,14 @@ Store = Callable[[ControllerTable], ControllerTable]
 """Keeps a table, and gives it back as a controller will read it."""
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class TunedTable:
     """The rounded table with its prediction, not yet simulated.
 
     `predicted`: the exit density behind the prediction; `lines`: polished, for the measured speed; `solver_density`:
-    of the solver's own lines on the design chain; `estimate`: where an estimator is asked for, how its lines were
-    designed.
+    of the solver's own lines on the design chain; `curvature` (K + 1, 2, N) of its cost, as `fit_lines` has it;
+    `estimate`: where an estimator is asked for, how its lines were designed.
     """
 
     table: ControllerTable
@@ -51,6 +56,7 @@ class TunedTable:
     lines: PolynomialLines
     polish: Polish
     solver_density: ExitDensity
+    curvature: NDArray[np.float64]
     finding: Finding | None
     estimate: EstimatedTable | None
 
@@ -77,7 +83,8 @@ def tuned_table(setup: ClassSetup, solution: Solution) -> TunedTable:
     """
     problem = Problem(setup.plant, solution.aim)
     density, occupancy = density_and_occupancy(solution.chain, solution.lines)
-    kept = required_lines(solution, setup.check, fit_lines(solution, occupancy.samples, setup.degree))
+    fit = fit_lines(solution, occupancy.samples, setup.degree)
+    kept = required_lines(solution, setup.check, fit)
     made = None
     if setup.estimator is not None:
         made = estimated_table(problem, setup.estimator.design, kept.lines, setup.estimator.tuning)
@@ -85,7 +92,7 @@ def tuned_table(setup: ClassSetup, solution: Solution) -> TunedTable:
         table, predicted = predicted_by_passes(setup, made, setup.estimator, problem.target_speed_m_s)
     else:
         table, predicted = with_prediction(setup.check, rounded(setup, kept.lines, problem.target_speed_m_s))
-    return TunedTable(table, predicted, kept.lines, kept.polish, density, kept.finding, made)
+    return TunedTable(table, predicted, kept.lines, kept.polish, density, fit.curvature, kept.finding, made)
 
 
 def validated_table(setup: ClassSetup, table: ControllerTable, store: Store) -> ValidatedTable:

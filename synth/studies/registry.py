@@ -115,6 +115,13 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.estimator.wrong_study",
     ),
     Study(
+        "friction-known",
+        "How good is the reference that regret and feasibility are measured by: what would more effort make of it?",
+        150.0,
+        "limits.md#the-friction-known-reference",
+        "synth.studies.friction_known",
+    ),
+    Study(
         "integration-error",
         "What do the time steps of the closed loop cost in accuracy?",
         8.0,

@@ -2,28 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from synth.book.class_setup import class_setup, origin_of
+from synth.book.comparison.told_regulator import by_lines, run_told
 from synth.book.tuned_table import solutions
 from synth.book.tuned_table import tuned_table as tuned_table_of_a_tune
 from synth.configuration.config_file import load_config
 from synth.problem.aim import Aim
 from synth.problem.resolution import finer_for_check
-from synth.simulation.closed_loop import close_loop
+from synth.simulation.common_passes import common_passes
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.random_passes import random_passes
 from synth.simulation.stratified_passes import stratified_passes
-from synth.solver.chain.chain import check_chain, persistent_chain, with_known_friction
+from synth.solver.backward_induction import solve
+from synth.solver.chain.chain import check_chain, persistent_chain
 from synth.solver.one_blas_thread import one_blas_thread
-from synth.solver.policy_density import exit_density
-from synth.studies.accuracy_grid.study import TOLD_EFFORT, Class, Row, figures_of, known, told
+from synth.solver.told_lines import SQUARED_ERROR_ALONE, knowing, mean_square, told_factors, told_lines
+from synth.solver.tuned_lines import fitted, polished
+from synth.studies.accuracy_grid.study import Class, Row, figures_of, plain_table
 from synth.studies.cases import Case, named_cases
 from synth.studies.convergence.study import METHOD, studied
-from synth.studies.told_friction import told_friction
 from synth.studies.tuned_table import CREATED, tuned_table
 
 
@@ -48,41 +48,34 @@ def shared() -> tuple[Case, Class]:
     check = check_chain(case.plant, finer_for_check(config.resolution))
     trim = stratified_passes(2, 0, 3000)
     passes = Row(stratified_passes(1, 0, 5000), random_passes(2, 0, 3000), trim, stratified_passes(3, 0, 1000))
-    return case, Class(config, case.plant, design, check, 0.5, passes, 5)
+    return case, Class(config, case.plant, design, check, 0.5, passes, common_passes(case.plant, passes.fresh))
 
 
 def test_what_is_told_is_simulated_as_the_check_grid_predicts(shared: tuple[Case, Class]) -> None:
-    """Passes in time, and Chapman–Kolmogorov on a finer grid than the lines were polished on, factor by factor.
-
-    The chain that knows the friction has the mean running resistance, so the passes have it too.
-    """
+    """Passes in time, and Chapman–Kolmogorov on a finer grid than the lines were polished on, friction by friction."""
     case, mine = shared
-    plant = replace(case.plant, resistance=replace(case.plant.resistance, std_n_per_kn=0.0))
-    target, criterion = case.target_m_s, replace(mine.config.criterion, switching_tolerance_m2_s2=0.0)
-    found = told_friction(mine.design, Aim(target, criterion), mine.config.fit.degree, 5, TOLD_EFFORT)
-    sample = exit_statistics(found.sample(close_loop(plant, plant.top_stage + 1), mine.passes.fresh), target)
-    squares = []
-    for factor, lines in zip(found.factor, found.lines, strict=True):
-        chain = with_known_friction(mine.check, float(factor))
-        squares.append(exit_density(chain, lines.at(chain.grid.path_m)).rms_m_s(target) ** 2)
-    assert sample.rms_m_s == pytest.approx(float(np.sqrt(found.weight @ np.array(squares))), rel=0.08)
-
-
-def test_the_reference_is_told_and_polished(shared: tuple[Case, Class]) -> None:
-    case, mine = shared
-    loop = close_loop(case.plant, case.plant.top_stage + 1)
-    simulated = told(mine, case.target_m_s, mine.design, loop)
-    assert simulated.ci95_m_s[0] < simulated.rms_m_s < simulated.ci95_m_s[1]
-    assert simulated.rms_m_s < 0.8 * known(mine, case.target_m_s, mine.design).rms_m_s
+    target, plant = case.target_m_s, case.plant
+    solution = solve(mine.design, Aim(target, SQUARED_ERROR_ALONE))
+    fit = fitted(solution, 3)
+    lines = told_lines(mine.design, target, polished(solution, fit).lines, fit.curvature)
+    factor, weight = told_factors(plant, 13)
+    squares = [mean_square(knowing(mine.check, target, float(each), 2), lines.at(float(each))) for each in factor]
+    sample = exit_statistics(run_told(mine.fresh.loop, mine.fresh.draws, by_lines(lines)), target)
+    assert sample.rms_m_s == pytest.approx(float(np.sqrt(weight @ np.array(squares))), rel=0.08)
 
 
 def test_figures_of_a_case_agree_with_one_another(shared: tuple[Case, Class]) -> None:
     case, mine = shared
-    found = figures_of(mine, case.target_m_s, mine.design, mine.config.resolution)
+    plain = plain_table(mine, case.target_m_s, mine.design, mine.config.resolution)
+    found = figures_of(mine, case.target_m_s, plain)
+    assert plain.bound.feasibility.feasible
     assert 0.95 < found.honesty < 1.05
     assert 0.9 < found.honesty_estimated < 1.1
     assert found.ratio == pytest.approx(found.estimated.rms_m_s / found.table.rms_m_s)
-    assert found.told.rms_m_s < found.table.rms_m_s < found.lines.rms_m_s < found.baselines["single threshold"].rms_m_s
+    assert 0.99 < found.regret < 1.3
+    assert 0.99 < found.regret_estimated < 1.2
+    assert found.told_estimated.rms_m_s < found.told.rms_m_s
+    assert found.table.rms_m_s < found.lines.rms_m_s < found.baselines["single threshold"].rms_m_s
     assert found.best_baseline == "energy rule"
     assert 0.5 < found.table_s < found.estimated_s
 

@@ -9,11 +9,11 @@ from synth.book.comparison.measured import Measured
 
 @dataclass(frozen=True)
 class Comparison:
-    """Our table and what it is compared with, all on the same passes but for the friction-known reference.
+    """Our table and what it is compared with, all on the same passes.
 
-    `full_lines`: the solver's lines, not yet polynomials; `as_published`: lines of the formulation as published, with
-    its own prediction; `baselines`: tuned classical laws; `without_estimator`: polished lines for the measured speed,
-    where an estimator was asked for.
+    `friction_known`: the same kind of regulator, told the friction of every cut; `full_lines`: the solver's lines, not
+    yet polynomials; `as_published`: lines of the formulation as published, with its own prediction; `baselines`: tuned
+    classical laws; `without_estimator`: polished lines for the measured speed, where an estimator was asked for.
     """
 
     table: Measured

@@ -1,102 +1,125 @@
-"""What the same plant reaches when the friction of every cut is known: the reference, and feasibility."""
+"""What the same plant reaches when the friction of every cut is known: the reference of regret, and feasibility.
+
+The reference has what the table has: the same readings of the speed, made into an estimate where the table has an
+estimator, one stage a command, no command before a transient has ended, the same path. It is told ξ_cut besides. It
+is a regulator that could be built, and it passes the cuts that the table passes; so no figure of it rests on a grid.
+Its lines begin at the table's and are polished for each friction. Where the table does better all the same, the
+reference is the table: who is told the friction need not use it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields, replace
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.book.comparison.measured import Feasibility, Measured
-from synth.problem.aim import Aim
-from synth.simulation.closed_loop import LineController, close_loop
+from synth.book.class_setup import ClassSetup
+from synth.book.comparison.measured import Feasibility
+from synth.book.comparison.told_regulator import Told, best_by_others, by_lines, picked, run_told
+from synth.book.estimation.told_estimator import told_with_estimator
+from synth.book.tuned_table import TunedTable, ValidatedTable
+from synth.simulation.closed_loop import TableController
+from synth.simulation.common_passes import CommonPasses
+from synth.simulation.controllers import fixed
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.passes import ExitSample
-from synth.simulation.random_passes import RandomPasses
-from synth.simulation.replicates import Interval
-from synth.solver.backward_induction import solve_all
-from synth.solver.chain.chain import Chain, with_known_friction
-from synth.solver.chain.scenarios import equally_spaced_normal
+from synth.simulation.replicates import Interval, rms_of
+from synth.solver.told_lines import told_lines
+from tuning_tables import ControllerTable
 
-ENTRY_POINTS = 41
-
-FRICTION_NODES = 6
-"""Nodes of ξ_cut, from −4 to 4 standard deviations; the highest, where no brake power is missing, is left out."""
+ENTRY_POINTS, ENTRY_PASSES = 16, 200
+"""Entry speeds at which the reference is simulated, and passes at each of them: the same, but for the speed."""
 
 
-def friction_known_bounds(
-    chain: Chain, aims: Sequence[Aim], passes: RandomPasses, limit_m_s: float
-) -> tuple[tuple[Measured, Feasibility], ...]:
-    """For every aim: solved and simulated for each of several known ξ_cut, with full switching lines.
+@dataclass(frozen=True)
+class FrictionBound:
+    """The reference of one table on the common passes, and what it says of the entry speeds that can be served."""
 
-    All else is equal: sensor, sampling, valves, path noise, resistance; the squared error counts, and switchings have
-    no price. The position is feasible for a target if the interval of this reference reaches `limit_m_s`. It is no
-    strict lower bound: its lines are the solver's, one stage a command, and not polished as the table's are.
+    sample: ExitSample
+    feasibility: Feasibility
+
+
+def friction_bound(setup: ClassSetup, tuned: TunedTable, validated: ValidatedTable, limit_m_s: float) -> FrictionBound:
+    """The reference of a table that was tuned and validated on `setup`."""
+    regulators = told_regulators(setup, tuned, validated.table.target_speed_m_s)
+    return bound_of(setup.passes, regulators, validated.table, validated.sample, limit_m_s)
+
+
+def bound_of(
+    passes: CommonPasses, regulators: Sequence[Told], table: ControllerTable, sample: ExitSample, limit_m_s: float
+) -> FrictionBound:
+    """The best of `regulators` and `table`, whose `sample` of `passes` is there.
+
+    The position is feasible for the target if the interval of the reference reaches `limit_m_s`.
     """
-    plant = chain.plant
-    free = [Aim(a.target_speed_m_s, replace(a.criterion.squared(), switching_tolerance_m2_s2=0.0)) for a in aims]
-    z, weights = (nodes[:-1] for nodes in equally_spaced_normal(FRICTION_NODES))
-    weights = weights / weights.sum()
-    factors = plant.friction.cut_factor(z, plant.friction_cv)
-    strata: list[list[ExitSample]] = [[] for _ in aims]
-    squares = np.zeros((len(aims), len(chain.grid.speed_m_s)))
-    loop = close_loop(plant, plant.top_stage + 1)
-    for i, (factor, weight) in enumerate(zip(factors, weights, strict=True)):
-        draws = loop.draws(passes.every(len(z), i), float(factor))
-        known = with_known_friction(chain, float(factor))
-        for t, solution in enumerate(solve_all(known, free, nodes_kept=1)):
-            strata[t].append(loop.run(LineController(solution.lines), draws))
-            squares[t] += weight * (solution.values[0, 0, 0] * chain.path_noise.stationary[:, None]).sum(axis=0)
-    bounds = []
-    for aim, samples, square in zip(aims, strata, squares, strict=True):
-        told = Measured("friction known", exit_statistics(interleaved(samples, weights), aim.target_speed_m_s))
-        reached = told.statistics.rms_ci95_m_s
-        bounds.append((told, feasibility_of(chain, aim.target_speed_m_s, square, reached, limit_m_s)))
-    return tuple(bounds)
+    target_m_s = table.target_speed_m_s
+    candidates: list[Told] = [*regulators, lambda _: TableController(table)]
+    samples = [*(run_told(passes.loop, passes.draws, each) for each in regulators), sample]
+    best = candidates[int(np.argmin([mean_square(each, target_m_s) for each in samples]))]
+    reference = best_by_others(samples, target_m_s)
+    rms_ci95 = exit_statistics(reference, target_m_s).rms_ci95_m_s
+    return FrictionBound(reference, feasibility_of(passes, best, target_m_s, rms_ci95, limit_m_s))
 
 
-def interleaved(samples: Sequence[ExitSample], weights: NDArray[np.float64]) -> ExitSample:
-    """One sample of n: pass j of `samples`[i] becomes pass j·len(samples) + i, with the weight of its friction.
+def told_regulators(setup: ClassSetup, tuned: TunedTable, target_m_s: float) -> Sequence[Told]:
+    """Regulators of the table's kind that are told the friction."""
+    if tuned.estimate is not None and tuned.table.estimator is not None and setup.estimator is not None:
+        tuning = setup.passes.of_others(setup.estimator.tuning)
+        return told_with_estimator(tuned.estimate, setup.estimator.design, tuned.curvature, tuning, target_m_s)
+    return [by_lines(told_lines(setup.design, target_m_s, tuned.lines, tuned.curvature))]
 
-    So every replicate has passes of all frictions alike.
-    """
-    size, count = len(samples), sum(map(len, samples))
 
-    def woven(arrays: Sequence[NDArray[Any]]) -> NDArray[Any]:
-        whole = np.empty(count, dtype=arrays[0].dtype)
-        for i, array in enumerate(arrays):
-            whole[i::size] = array
-        return whole
-
-    weighted = [replace(sample, weight=sample.weight * weight) for sample, weight in zip(samples, weights, strict=True)]
-    names = [field.name for field in fields(ExitSample)]
-    return ExitSample(**{name: woven([getattr(sample, name) for sample in weighted]) for name in names})
+def mean_square(sample: ExitSample, target_m_s: float) -> float:
+    """Mean squared error of the exit speed over all cuts."""
+    return rms_of(sample.exit_speed_m_s - target_m_s, sample.weight)[0] ** 2
 
 
 def feasibility_of(
-    chain: Chain, target_speed_m_s: float, square: np.ndarray, rms_ci95_m_s: Interval, limit_m_s: float
+    passes: CommonPasses,
+    told: Told,
+    target_m_s: float,
+    rms_ci95_m_s: Interval,
+    limit_m_s: float,
+    entry_passes: int = ENTRY_PASSES,
 ) -> Feasibility:
-    """Range of entry speeds that the position can serve; `square` (E,): bound's mean square by entry energy.
+    """Range of entry speeds that the position can serve, simulated under `told`: the first `entry_passes` at each.
 
-    `rms_ci95_m_s`: interval of the simulated bound.
+    `rms_ci95_m_s`: interval of the reference over the configured entry speeds.
     """
-    plant, speed = chain.plant, chain.grid.speed_m_s
-    entry = np.linspace(
-        max(target_speed_m_s, 0.5), min(plant.position.max_entry_speed_m_s, float(speed[-1])), ENTRY_POINTS
-    )
-    configured = (speed >= plant.entry.low_m_s) & (speed <= plant.entry.high_m_s)
-    # Slower than configured is never called better than the best configured speed: the values of the grid become
-    # optimistic there.
-    best = square[configured].min() if configured.any() else 0.0
-    rms = np.sqrt(np.interp(entry, speed, np.maximum(square, best)).clip(0.0))
-    served = entry[rms <= limit_m_s]
+    plant = passes.plant
+    entry = np.linspace(max(target_m_s, 0.5), plant.position.max_entry_speed_m_s, ENTRY_POINTS)
+    few = passes.first(entry_passes).draws
+    count = len(few.weight)
+    each = picked(few, np.tile(np.arange(count), ENTRY_POINTS))
+    start_m_s = plant.start_speed_m_s(np.repeat(entry, count), each.resistance_n_kn)
+    sample = run_told(passes.loop, each._replace(entry_m_s=fixed(start_m_s, np.float64)), told)
+    squares = (sample.exit_speed_m_s - target_m_s).reshape(ENTRY_POINTS, count) ** 2
+    rms = np.sqrt(squares @ few.weight / few.weight.sum())
     return Feasibility(
         entry_m_s=entry,
         bound_rms_m_s=rms,
         limit_m_s=limit_m_s,
-        served_m_s=(float(served.min()), float(served.max())) if len(served) else None,
+        served_m_s=served(entry, rms, limit_m_s),
         feasible=rms_ci95_m_s[0] <= limit_m_s,
         undecided=rms_ci95_m_s[0] <= limit_m_s < rms_ci95_m_s[1],
     )
+
+
+def served(
+    entry_m_s: NDArray[np.float64], rms_m_s: NDArray[np.float64], limit_m_s: float
+) -> tuple[float, float] | None:
+    """From the first to the last entry speed at which the rms meets the limit, the rms being linear in between."""
+    within = np.nonzero(rms_m_s <= limit_m_s)[0]
+    if not len(within):
+        return None
+
+    def end(inside: int, outside: int) -> float:
+        if not 0 <= outside < len(entry_m_s):
+            return float(entry_m_s[inside])
+        part = (limit_m_s - rms_m_s[inside]) / (rms_m_s[outside] - rms_m_s[inside])
+        return float(entry_m_s[inside] + part * (entry_m_s[outside] - entry_m_s[inside]))
+
+    first, last = int(within[0]), int(within[-1])
+    return end(first, first - 1), end(last, last + 1)

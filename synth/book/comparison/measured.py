@@ -59,15 +59,6 @@ def honesty_of(predicted_rms_m_s: float, predicted_passes: int | None, found: Ex
     return honest, (honest * math.exp(-of_log), honest * math.exp(of_log))
 
 
-def independent_ratio(one: ExitStatistics, other: ExitStatistics) -> tuple[float, Interval]:
-    """rms of `one` / rms of `other`, which do not share passes one by one, and its 95 % interval."""
-    if not (one.rms_ci95_m_s[0] > 0.0 and other.rms_ci95_m_s[0] > 0.0):
-        return math.nan, UNKNOWN
-    of_log = math.hypot(log_half_width(one), log_half_width(other))
-    ratio = one.rms_m_s / other.rms_m_s
-    return ratio, (ratio * math.exp(-of_log), ratio * math.exp(of_log))
-
-
 def log_half_width(found: ExitStatistics) -> float:
     """Half the 95 % interval of log(rms)."""
     low, high = found.rms_ci95_m_s

@@ -20,7 +20,7 @@ class Errors:
 class Figures:
     """All controllers of a feasible case on the same passes; seconds to make a table, shared work in proportion.
 
-    `known`: the solver's lines for each known friction; `told`: polished cubics for each; `ratio`: rms with estimator /
+    `told`, `told_estimated`: the references of the table and of the one with estimator; `ratio`: rms with estimator /
     without, paired; `finer`: the speed grid had to be halved, as `tune` advises.
     """
 
@@ -28,8 +28,8 @@ class Figures:
     estimated: Errors
     lines: Errors
     baselines: dict[str, Errors]
-    known: Errors
     told: Errors
+    told_estimated: Errors
     predicted_rms_m_s: float
     estimated_predicted_rms_m_s: float
     estimator_used: bool
@@ -54,9 +54,15 @@ class Figures:
         """The same with the estimator."""
         return self.estimated_predicted_rms_m_s / self.estimated.rms_m_s
 
-    def regret(self, ours: Errors) -> float:
-        """rms / rms where the friction of every cut is told."""
-        return ours.rms_m_s / self.told.rms_m_s
+    @property
+    def regret(self) -> float:
+        """rms of the table / rms where the friction of every cut is told."""
+        return self.table.rms_m_s / self.told.rms_m_s
+
+    @property
+    def regret_estimated(self) -> float:
+        """The same with the estimator."""
+        return self.estimated.rms_m_s / self.told_estimated.rms_m_s
 
     def gain(self, ours: Errors) -> float:
         """rms of the best baseline / rms."""
@@ -71,7 +77,7 @@ class Figures:
 class GridCase:
     """One case of the grid; no figures where the position cannot serve it.
 
-    `known_rms_m_s`: with the friction known, on the passes that feasibility is judged by.
+    `known_rms_m_s`: of the reference that is told the friction, by which feasibility is judged.
     """
 
     case: str

@@ -6,12 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from synth.studies.accuracy_grid.figures import Figures, GridCase
-from synth.studies.accuracy_grid.limits import NOMINAL_CV, Limit, limits
+from synth.studies.accuracy_grid.limits import Limit, limits
 from synth.studies.markdown_table import MarkdownTable, table
 from synth.studies.study import Findings
-
-DEFAULT_BOOK = "knp-5-bunch gondola-4-"
-"""How names of cases begin that are of the position and cars of the default book."""
 
 
 @dataclass(frozen=True)
@@ -34,24 +31,14 @@ class Grid(Findings):
         return limits(self.cases, self.minutes)
 
     def tables(self) -> Mapping[str, MarkdownTable]:
-        """`limits`: a row a limit; `reference`, `cases`: a row a feasible case."""
+        """`limits`: a row a limit; `cases`: a row a feasible case."""
         verdict = [(each.asked, each.found if each.met else f"**{each.found}: not met**") for each in self.verdict]
-        heads = ("case", "told", "with estimator", "table", "best baseline", "predicted / simulated: with, without",
-                 "switchings: with, without, baseline")  # fmt: skip
+        heads = ("case", "told", "told, with estimator", "with estimator", "table", "best baseline",
+                 "predicted / simulated: with, without", "switchings: with, without, baseline")  # fmt: skip
         return {
             "limits": table("limits", ("asked", "found"), verdict),
-            "reference": self.reference(),
             "cases": table("rms of the feasible cases, m/s", heads, (cells(*each) for each in self.known)),
         }
-
-    def reference(self) -> MarkdownTable:
-        """Cases like those of the default book: what is reached with the friction known, two ways."""
-        rows = [
-            (case.case, f"{figures.known.rms_m_s:.4f}", f"{figures.told.rms_m_s:.4f}", f"{figures.table.rms_m_s:.4f}")
-            for case, figures in self.known if case.cv == NOMINAL_CV and case.case.startswith(DEFAULT_BOOK)
-        ]  # fmt: skip
-        heads = ("case", "friction known, the solver's lines", "friction told, polished cubics", "table")
-        return table("rms with the friction of every cut known, m/s", heads, rows)
 
     def sentences(self) -> tuple[str, ...]:
         """How many cases."""
@@ -70,7 +57,7 @@ class Grid(Findings):
 def cells(case: GridCase, figures: Figures) -> tuple[str, ...]:
     """The cells of one case."""
     best = figures.best_baseline
-    rms = (figures.told, figures.estimated, figures.table)
+    rms = (figures.told, figures.told_estimated, figures.estimated, figures.table)
     switchings = (figures.estimated, figures.table, figures.baselines[best])
     return (
         case.case, *(f"{each.rms_m_s:.4f}" for each in rms), f"{best} {figures.baselines[best].rms_m_s:.4f}",

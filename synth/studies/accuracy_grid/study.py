@@ -1,8 +1,8 @@
 """How near the tables are to what physics leaves, with and without an estimator, over a whole grid of cases.
 
 5 masses × 4 targets × 3 spreads of friction × 2 positions, a cut of three cars and an eight-axle tank car. Of every
-feasible case: the exported cubic table, the same with the estimator, full lines, tuned baselines, and lines told the
-friction of every cut (polished, simulated), all on fresh common passes.
+feasible case: the exported cubic table, the same with the estimator, full lines, tuned baselines, and the references of
+both tables that are told the friction of every cut, all on fresh common passes.
 """
 
 from __future__ import annotations
@@ -12,11 +12,17 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
+import numpy as np
+from numpy.typing import NDArray
+
 from plant_models import Plant, PlantError
+from plant_models.frozen_arrays import frozen_arrays
 from synth.book.comparison.baselines import tune_baselines
-from synth.book.comparison.friction_bound import friction_known_bounds
+from synth.book.comparison.friction_bound import FrictionBound, bound_of
+from synth.book.comparison.told_regulator import by_lines
 from synth.book.estimation.estimated_table import estimated_table, estimator_design
 from synth.book.estimation.simulated_prediction import simulated_prediction
+from synth.book.estimation.told_estimator import told_with_estimator
 from synth.book.tuned_table import predict
 from synth.book.work_queue import run_nested
 from synth.configuration.config_file import parse_config
@@ -24,28 +30,31 @@ from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.problem.problem import Problem
 from synth.problem.resolution import Resolution, finer_for_check
-from synth.simulation.closed_loop import ClosedLoop, LineController, TableController, close_loop
-from synth.simulation.common_passes import common_passes
+from synth.simulation.closed_loop import LineController, TableController
+from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import Chain, check_chain, persistent_chain
+from synth.solver.polynomial_lines import PolynomialLines
+from synth.solver.switching_lines import SwitchingLines
+from synth.solver.told_lines import told_lines
+from synth.solver.tuned_lines import fitted, polished
 from synth.studies.accuracy_grid.figures import Errors, Figures, GridCase
 from synth.studies.accuracy_grid.findings import Grid
 from synth.studies.options import option
 from synth.studies.side_by_side import THREADS
 from synth.studies.study import Method, Tell
-from synth.studies.told_friction import Effort, told_friction
-from synth.studies.tuned_table import lines_of_solution, rounded
+from synth.studies.tuned_table import rounded
+from tuning_tables import ControllerTable
 
 SEED, FRESH, TUNING, PREDICTION = 20261120, 86028121, 32452843, 49979687
 TUNING_PASSES, BASELINE_PASSES, PREDICTION_PASSES = 3000, 600, 10_000
 GRID_STEP_M_S = 0.015
 """As fine as the tool advises for the lowest target."""
 
-TOLD_EFFORT = Effort(iterations=40, tolerance=1e-3, rounds=1)
 LONG_CUTS = (("gondola-4", 3, 156.0), ("tank-8", 1, 120.0))
 
 
@@ -59,7 +68,6 @@ class Options:
     retarders: tuple[str, ...] = option(("knp-5-bunch", "rnz-2m-park"), "positions of the library")
     no_long_cuts: bool = option(False, "leave out the cut of three cars and the tank car")
     passes: int = option(20_000, "fresh common passes of each case", (200, 10**7))
-    told_nodes: int = option(5, "factors of friction that the reference is told", (1, 31))
 
 
 @dataclass(frozen=True)
@@ -99,7 +107,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Class:
-    """What the targets of a class share; `seconds`: their part of the work on the grids."""
+    """What the targets of a class share; `seconds`: their part of the work on the grids; `fresh`: of `passes`."""
 
     config: ResolvedConfig
     plant: Plant
@@ -107,7 +115,23 @@ class Class:
     check: Chain
     seconds: float
     passes: Row
-    told_nodes: int
+    fresh: CommonPasses
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Plain:
+    """The table for the measured speed, as designed on a grid; its fresh passes, its reference, seconds to make it."""
+
+    resolution: Resolution
+    lines: PolynomialLines
+    curvature: NDArray[np.float64]
+    table: ControllerTable
+    sample: ExitSample
+    bound: FrictionBound
+    solver_lines: SwitchingLines
+    predicted_rms_m_s: float
+    seconds: float
 
 
 def run(options: Options, tell: Tell) -> Grid:
@@ -142,87 +166,85 @@ def class_tasks(order: ClassOrder, options: Options, passes: Row, tell: Tell) ->
     design = persistent_chain(plant, config.resolution)
     check = check_chain(plant, finer_for_check(config.resolution))
     seconds = (time.perf_counter() - started) / len(targets)
-    shared = Class(config, plant, design, check, seconds, passes, options.told_nodes)
-    aims = [Aim(target, config.criterion) for target in targets]
-    bounds = friction_known_bounds(design, aims, passes.tuning, config.acceptance.rms_m_s)
+    shared = Class(config, plant, design, check, seconds, passes, common_passes(plant, passes.fresh))
 
-    def task(target: float, known_rms_m_s: float, feasible: bool) -> GridCase:
-        figures = figures_on_a_grid_fine_enough(shared, target) if feasible else None
+    def task(target: float) -> GridCase:
         name = f"{order.named(label)} to {target:g} m/s"
-        tell(f"{name}: {'infeasible' if figures is None else f'{figures.table.rms_m_s:.4f} m/s'}")
-        return GridCase(name, order.cv, target, feasible, known_rms_m_s, figures)
+        found = on_a_grid_fine_enough(shared, target, GridCase(name, order.cv, target, False, 0.0, None))
+        tell(f"{name}: {'infeasible' if found.figures is None else f'{found.figures.table.rms_m_s:.4f} m/s'}")
+        return found
 
-    return [
-        partial(task, target, known.statistics.rms_m_s, bool(found.feasible))
-        for target, (known, found) in zip(targets, bounds, strict=True)
-    ]
+    return [partial(task, target) for target in targets]
 
 
-def figures_on_a_grid_fine_enough(shared: Class, target_m_s: float) -> Figures:
-    """The figures; on half the speed step where the grid is too coarse for a low target, as `tune` advises."""
+def on_a_grid_fine_enough(shared: Class, target_m_s: float, case: GridCase) -> GridCase:
+    """`case` with what was found; on half the speed step where the grid is too coarse for it, as `tune` advises."""
     resolution = shared.config.resolution
     try:
-        return figures_of(shared, target_m_s, shared.design, resolution)
+        return found_in(shared, target_m_s, shared.design, resolution, case)
     except PlantError:
         finer = replace(resolution, speed_step_m_s=0.5 * resolution.speed_step_m_s)
-        found = figures_of(shared, target_m_s, persistent_chain(shared.plant, finer), finer)
-        return replace(found, finer=True)
+        found = found_in(shared, target_m_s, persistent_chain(shared.plant, finer), finer, case)
+        return replace(found, figures=found.figures and replace(found.figures, finer=True))
 
 
-def figures_of(shared: Class, target: float, design: Chain, resolution: Resolution) -> Figures:
-    """All controllers of a feasible case on the same passes."""
-    plant, config, passes = shared.plant, shared.config, shared.passes
-    loop, used = close_loop(plant, plant.position.top_stage + 1), close_loop(plant, plant.top_stage + 1)
+def found_in(shared: Class, target: float, design: Chain, resolution: Resolution, case: GridCase) -> GridCase:
+    """`case` with what is reached with the friction known, and the figures if that is enough."""
+    plain = plain_table(shared, target, design, resolution)
+    known_rms_m_s = errors(plain.bound.sample, target).rms_m_s
+    feasible = plain.bound.feasibility.feasible
+    figures = figures_of(shared, target, plain) if feasible else None
+    return replace(case, feasible=feasible, known_rms_m_s=known_rms_m_s, figures=figures)
+
+
+def plain_table(shared: Class, target: float, design: Chain, resolution: Resolution) -> Plain:
+    """The table for the measured speed, designed on `design`."""
+    plant, config, fresh = shared.plant, shared.config, shared.fresh
     started = time.perf_counter()
     solution = solve(design, Aim(target, config.criterion))
-    lines = lines_of_solution(solution, config.fit.degree)
+    fit = fitted(solution, config.fit.degree)
+    lines = polished(solution, fit).lines
     table = rounded(config, plant, lines, target)
     predicted = predict(shared.check, table).rms_m_s(target)
-    turned = time.perf_counter()
+    seconds = shared.seconds + time.perf_counter() - started
+    sample = fresh.run(TableController(table))
+    told = [by_lines(told_lines(design, target, lines, fit.curvature))]
+    bound = bound_of(fresh, told, table, sample, config.acceptance.rms_m_s)
+    return Plain(resolution, lines, fit.curvature, table, sample, bound, solution.lines, predicted, seconds)
+
+
+def figures_of(shared: Class, target: float, plain: Plain) -> Figures:
+    """All controllers of a feasible case on the same passes."""
+    plant, config, passes, fresh = shared.plant, shared.config, shared.passes, shared.fresh
+    started = time.perf_counter()
     problem = Problem(plant, Aim(target, config.criterion))
-    made = estimated_table(problem, estimator_design(plant, resolution, target), lines, passes.trim)
+    design = estimator_design(plant, plain.resolution, target)
+    made = estimated_table(problem, design, plain.lines, passes.trim)
     estimated = rounded(config, plant, made.lines, target, made.estimator)
-    foreseen = loop.run(TableController(estimated), loop.draws(passes.prediction))
-    promised = simulated_prediction(foreseen, target).rms_m_s
-    ended = time.perf_counter()
-    if not made.gains:  # as `tune` does
-        estimated, promised = table, predicted
-    draws = loop.draws(passes.fresh)
-    by_table, by_estimated = (loop.run(TableController(each), draws) for each in (table, estimated))
-    draws = used.draws(passes.fresh)
-    ratio, ratio_ci95 = rms_ratio(by_estimated, by_table, target)
-    tuned = tune_baselines(common_passes(plant, passes.tuning.part(0, BASELINE_PASSES)), target)
+    promised = simulated_prediction(fresh.of_others(passes.prediction).run(TableController(estimated)), target).rms_m_s
+    seconds = shared.seconds + time.perf_counter() - started
+    by_estimated, told = plain.sample, plain.bound.sample
+    if made.gains:  # as `tune` does
+        by_estimated = fresh.run(TableController(estimated))
+        regulators = told_with_estimator(made, design, plain.curvature, fresh.of_others(passes.trim), target)
+        told = bound_of(fresh, regulators, estimated, by_estimated, config.acceptance.rms_m_s).sample
+    ratio, ratio_ci95 = rms_ratio(by_estimated, plain.sample, target)
+    tuned = tune_baselines(fresh.of_others(passes.tuning.part(0, BASELINE_PASSES)), target)
     return Figures(
-        table=errors(by_table, target),
+        table=errors(plain.sample, target),
         estimated=errors(by_estimated, target),
-        lines=errors(used.run(LineController(solution.lines), draws), target),
-        baselines={each.name: errors(used.run(each.controller, draws), target) for each in tuned},
-        known=known(shared, target, design),
-        told=told(shared, target, design, used),
-        predicted_rms_m_s=predicted,
-        estimated_predicted_rms_m_s=promised,
+        lines=errors(fresh.run(LineController(plain.solver_lines)), target),
+        baselines={each.name: errors(fresh.run(each.controller), target) for each in tuned},
+        told=errors(plain.bound.sample, target),
+        told_estimated=errors(told, target),
+        predicted_rms_m_s=plain.predicted_rms_m_s,
+        estimated_predicted_rms_m_s=promised if made.gains else plain.predicted_rms_m_s,
         estimator_used=made.gains,
         ratio=ratio,
         ratio_ci95=ratio_ci95,
-        table_s=shared.seconds + turned - started,
-        estimated_s=shared.seconds + ended - turned,
+        table_s=plain.seconds,
+        estimated_s=seconds,
     )
-
-
-def known(shared: Class, target: float, design: Chain) -> Errors:
-    """The solver's lines for each known friction."""
-    config, aims = shared.config, [Aim(target, shared.config.criterion)]
-    ((found, _),) = friction_known_bounds(design, aims, shared.passes.fresh, config.acceptance.rms_m_s)
-    statistics = found.statistics
-    return Errors(statistics.rms_m_s, statistics.rms_ci95_m_s, statistics.switchings)
-
-
-def told(shared: Class, target: float, design: Chain, loop: ClosedLoop) -> Errors:
-    """Lines for each known friction, simulated there, weighted by how probable it is."""
-    config, nodes = shared.config, shared.told_nodes
-    free = replace(config.criterion, switching_tolerance_m2_s2=0.0)
-    found = told_friction(design, Aim(target, free), config.fit.degree, nodes, TOLD_EFFORT)
-    return errors(found.sample(loop, shared.passes.fresh), target)
 
 
 def errors(sample: ExitSample, target_m_s: float) -> Errors:
@@ -231,5 +253,5 @@ def errors(sample: ExitSample, target_m_s: float) -> Errors:
     return Errors(found.rms_m_s, found.rms_ci95_m_s, found.switchings)
 
 
-SMALLEST = Options((52.0,), (3.0,), (0.15,), ("knp-5-bunch",), True, 200, 1)
+SMALLEST = Options((52.0,), (3.0,), (0.15,), ("knp-5-bunch",), True, 200)
 METHOD = Method(Options, SMALLEST, Grid, run)

@@ -6,9 +6,8 @@ from dataclasses import dataclass, replace
 
 from plant_models import Approach, Plant
 from synth.book.comparison.baselines import tune_baselines
-from synth.book.comparison.friction_bound import friction_known_bounds
+from synth.book.comparison.friction_bound import feasibility_of
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.problem.aim import Aim
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.exit_statistics import brake_power, exit_statistics, rms_ratio
@@ -16,8 +15,13 @@ from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from synth.simulation.replicates import Interval
 from synth.solver.chain.chain import persistent_chain
+from synth.solver.told_lines import IN_A_TUNE
+from synth.studies.told_friction import told_friction
 from synth.studies.tuned_table import tuned_table
 from tuning_tables import ControllerTable
+
+SERVED_PASSES = 2000
+"""At each entry speed."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +93,7 @@ def best_rival(table: ExitSample, passes: CommonPasses, target_m_s: float, given
 
 def highest_served_m_s(plant: Plant, target_m_s: float, given: Given) -> float | None:
     """The highest entry speed at which a controller that is told the friction keeps the limit of the acceptance."""
-    chain = persistent_chain(plant, given.config.resolution)
-    limit = given.config.acceptance.rms_m_s
-    (_, found), *_ = friction_known_bounds(chain, [Aim(target_m_s, given.config.criterion)], given.passes, limit)
-    return None if found.served_m_s is None else found.served_m_s[1]
+    design, limit = persistent_chain(plant, given.config.resolution), given.config.acceptance.rms_m_s
+    told = told_friction(design, target_m_s, given.config.fit.degree, IN_A_TUNE)
+    served = feasibility_of(common_passes(plant, given.passes), told, target_m_s, (0.0, 0.0), limit, SERVED_PASSES)
+    return served.served_m_s and served.served_m_s[1]

@@ -16,18 +16,18 @@ from synth.configuration.config_file import load_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.problem.problem import Problem
-from synth.simulation.closed_loop import close_loop
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.random_passes import RandomPasses
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.chain.chain import persistent_chain
+from synth.solver.told_lines import Effort
 from synth.studies.cases import Case, class_cases
 from synth.studies.estimator.pair import FRESH, Compared, nominal, without_price
 from synth.studies.markdown_table import MarkdownTable, around, table
 from synth.studies.options import option
 from synth.studies.side_by_side import side_by_side
 from synth.studies.study import Findings, Method, Tell
-from synth.studies.told_friction import TO_THE_END, Effort, told_friction
+from synth.studies.told_friction import THOROUGH, simulate_told, thorough, told_friction
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -44,8 +44,8 @@ class Options:
     masses_t: tuple[float, ...] = option((22.0, 52.0, 85.0), "only cuts of these masses, t")
     targets_m_s: tuple[float, ...] = option((), "exit speeds, m/s; those of the configuration without it", (0.1, 20.0))
     passes: int = option(20_000, "fresh passes of each case", (200, 10**7))
-    told_nodes: int = option(5, "factors of friction that the reference is told", (1, 31))
-    told_iterations: int = option(TO_THE_END.iterations, "of a polish with the friction told", (1, 10_000))
+    told_nodes: int = option(THOROUGH.frictions, "factors of friction with lines of their own", (1, 31))
+    told_iterations: int = option(THOROUGH.iterations[0], "of a polish with the friction told", (1, 10_000))
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class Gains(Findings):
     rows: tuple[Row, ...]
 
     def tables(self) -> Mapping[str, MarkdownTable]:
-        """`gains`: a row a case; `told`: over the rms reached when the friction of every cut is told."""
+        """`gains`: a row a case; `told`: over the rms of a regulator without estimator that is told the friction."""
         heads = ("case", "without", "with estimator", "ratio [95 %]", "bias", "switchings", "told the friction",
                  "error of the speed")  # fmt: skip
         over = ("controller", "least", "median", "largest")
@@ -76,7 +76,7 @@ class Gains(Findings):
         told = [(name, *(f"{x:.2f}" for x in (min(all_), median(all_), max(all_)))) for name, all_ in rows]
         return {
             "gains": table("rms without and with estimator, m/s", heads, map(cells, self.rows)),
-            "told": table("rms / rms where the friction of every cut is told", over, told),
+            "told": table("rms / rms where the friction of every cut is told, without estimator", over, told),
         }
 
     def over_told(self, which: int) -> list[float]:
@@ -119,8 +119,8 @@ def run(options: Options, tell: Tell) -> Gains:
     def row_of(case: Case) -> Row:
         pair = without_price(Problem(case.plant, Aim(case.target_m_s, config.criterion)), config)
         figures = nominal(case.plant, case.target_m_s, pair, passes)
-        effort = replace(TO_THE_END, iterations=options.told_iterations)
-        row = Row(case.name, pair.error_m_s, told_rms_m_s(case, config, passes, options.told_nodes, effort), figures)
+        effort = thorough(options.told_nodes, options.told_iterations)
+        row = Row(case.name, pair.error_m_s, told_rms_m_s(case, config, passes, effort), figures)
         tell(f"{row.case}: {figures.rms_m_s[0]:.4f} without, {figures.rms_m_s[1]:.4f} with estimator")
         return row
 
@@ -128,14 +128,11 @@ def run(options: Options, tell: Tell) -> Gains:
     return Gains(config.sha256, seed, options.passes, rows)
 
 
-def told_rms_m_s(case: Case, config: ResolvedConfig, passes: RandomPasses, nodes: int, effort: Effort) -> float:
-    """rms where the regulator is told the friction of every cut."""
+def told_rms_m_s(case: Case, config: ResolvedConfig, passes: RandomPasses, effort: Effort) -> float:
+    """rms where the regulator is told the friction of every cut, and looks at the measured speed."""
     finer = replace(config.resolution, speed_step_m_s=min(config.resolution.speed_step_m_s, FINE_STEP_M_S))
-    free = replace(config.criterion, switching_tolerance_m2_s2=0.0)
-    aim = Aim(case.target_m_s, free)
-    found = told_friction(persistent_chain(case.plant, finer), aim, config.fit.degree, nodes, effort)
-    sample = found.sample(close_loop(case.plant, case.plant.top_stage + 1), passes)
-    return exit_statistics(sample, case.target_m_s).rms_m_s
+    found = told_friction(persistent_chain(case.plant, finer), case.target_m_s, config.fit.degree, effort)
+    return exit_statistics(simulate_told(case.plant, found, passes), case.target_m_s).rms_m_s
 
 
 def figures(found: Gains) -> Mapping[str, Figure]:

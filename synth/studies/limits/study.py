@@ -17,13 +17,14 @@ from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.problem import Problem
-from synth.simulation.closed_loop import LineController, close_loop, simulate
+from synth.simulation.closed_loop import LineController, simulate
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.replicates import rms_of
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.polynomial_lines import PolynomialLines
+from synth.solver.told_lines import Effort
 from synth.solver.tuned_lines import tuned_lines
 from synth.studies.cases import Case, named_cases
 from synth.studies.limits.change import QUIET_M_S, Change, changes
@@ -32,7 +33,7 @@ from synth.studies.near_target import NEAR_M_S, NearTarget, near_target
 from synth.studies.options import option
 from synth.studies.side_by_side import side_by_side
 from synth.studies.study import Findings, Method, Tell
-from synth.studies.told_friction import TO_THE_END, Effort, told_friction
+from synth.studies.told_friction import THOROUGH, simulate_told, thorough, told_friction
 
 FRESH, TUNING, TUNING_PASSES = 49979687, 32452843, 3000
 LINE_NODES = 301
@@ -45,8 +46,8 @@ class Options:
     config: Path | None = option(None, "configuration; the built-in default book without it")
     cases: tuple[str, ...] = option(("22:2", "22:3", "52:3", "85:4"), "mass, t : target, m/s")
     passes: int = option(20_000, "passes of each change", (200, 10**7))
-    told_nodes: int = option(5, "factors of friction that the controller is told", (1, 31))
-    told_iterations: int = option(TO_THE_END.iterations, "of a polish with the friction told", (1, 10_000))
+    told_nodes: int = option(THOROUGH.frictions, "factors of friction with lines of their own", (1, 31))
+    told_iterations: int = option(THOROUGH.iterations[0], "of a polish with the friction told", (1, 10_000))
 
 
 @dataclass(frozen=True)
@@ -93,11 +94,11 @@ def run(options: Options, tell: Tell) -> Limits:
     config = load_config(options.config)
     seed = config.validation.seed + FRESH
     passes = stratified_passes(seed, 0, options.passes)
-    effort = replace(TO_THE_END, iterations=options.told_iterations)
+    effort = thorough(options.told_nodes, options.told_iterations)
 
     def rows_of(case: Case) -> list[Row]:
         rows = [changed(case, change, config, passes) for change in changes(case.plant, config.fit.degree)]
-        rows.append(told(case, config, passes, options.told_nodes, effort))
+        rows.append(told(case, config, passes, effort))
         rows.append(estimated(case, config, passes))
         tell(f"{case.name}: {len(rows)} changes")
         return rows
@@ -137,13 +138,12 @@ def row_of(case: Case, change: str, sample: ExitSample) -> Row:
     return Row(case.name, change, rms, near_target(sample, case.target_m_s))
 
 
-def told(case: Case, config: ResolvedConfig, passes: RandomPasses, nodes: int, effort: Effort) -> Row:
+def told(case: Case, config: ResolvedConfig, passes: RandomPasses, effort: Effort) -> Row:
     """The regulator is told the friction of every cut."""
     finer = replace(config.resolution, speed_step_m_s=min(config.resolution.speed_step_m_s, QUIET_M_S))
     design = persistent_chain(case.plant, finer)
-    found = told_friction(design, Aim(case.target_m_s, free(config)), config.fit.degree, nodes, effort)
-    sample = found.sample(close_loop(case.plant, case.plant.top_stage + 1), passes)
-    return row_of(case, "told the friction of every cut", sample)
+    found = told_friction(design, case.target_m_s, config.fit.degree, effort)
+    return row_of(case, "told the friction of every cut", simulate_told(case.plant, found, passes))
 
 
 def estimated(case: Case, config: ResolvedConfig, passes: RandomPasses) -> Row:

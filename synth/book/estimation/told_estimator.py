@@ -1,0 +1,96 @@
+"""A regulator with an estimator that is told the friction of every cut."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.speed_sensor import measured_speed_std
+from synth.book.comparison.told_regulator import run_told
+from synth.book.estimation.estimated_table import EstimatedTable, controller_of, shifted
+from synth.simulation.closed_loop import LineController
+from synth.simulation.common_passes import CommonPasses
+from synth.solver.chain.chain import Chain
+from synth.solver.chain.speed_measurement import SmoothMeasurement
+from synth.solver.polynomial_lines import PolynomialLines
+from synth.solver.told_lines import told_lines
+from tuning_tables.estimator import Estimator
+
+LEVELLINGS = 2
+
+BIAS_DEGREE, BIAS_WITHIN_M_S, BIAS_RANGE = 3, 0.3, (0.02, 0.98)
+"""The mean error is taken as a cubic in ξ_cut, of cuts that leave near the target, held beyond these quantiles."""
+
+LEAST_SPREAD, LEAST_PASSES = 0.01, 50
+"""Of ξ_cut for a cubic, else a constant; and of passes for either."""
+
+
+@dataclass(frozen=True)
+class Bias:
+    """The mean error at the exit, m/s: a polynomial in ξ_cut, highest power first, constant beyond `low` and `high`."""
+
+    low: float
+    high: float
+    series: tuple[float, ...] = (0.0,)
+
+    def at(self, factor: float) -> float:
+        """The error of cuts with this friction factor."""
+        return float(np.polyval(self.series, np.clip(factor, self.low, self.high)))
+
+    def and_of(self, factor: NDArray[np.float64], error_m_s: NDArray[np.float64]) -> Bias:
+        """With the mean of what is left, by passes with these factors and errors, (n,) each."""
+        degree = BIAS_DEGREE if self.high - self.low > LEAST_SPREAD else 0
+        left = np.polyfit(np.clip(factor, self.low, self.high), error_m_s, degree)
+        return replace(self, series=tuple(np.polyadd(self.series, left).tolist()))
+
+
+@dataclass(frozen=True)
+class ToldWithEstimator:
+    """Lines and an estimator for each friction; all lines are moved by the mean error at the exit."""
+
+    lines: Callable[[float], PolynomialLines]
+    estimator: Estimator
+    bias: Bias
+
+    def __call__(self, factor: float) -> LineController:
+        moved = -self.bias.at(factor)
+        return controller_of(shifted(self.lines(factor), moved, moved), knowing(self.estimator, factor))
+
+
+def told_with_estimator(
+    made: EstimatedTable, design: Chain, curvature: NDArray[np.float64], tuning: CommonPasses, target_m_s: float
+) -> Sequence[ToldWithEstimator]:
+    """Two regulators with the table's estimator, told the friction: with lines polished for it, and with the table's.
+
+    `design`: the grid for estimated speeds; `tuning`: passes on which the lines are levelled.
+    """
+    seen = replace(design, measurement=SmoothMeasurement(measured_speed_std(made.error_m_s, 0.0)))
+    polished = told_lines(seen, target_m_s, made.lines, curvature)
+    return [levelled(lines, made.estimator, tuning, target_m_s) for lines in (polished.at, lambda _: made.lines)]
+
+
+def knowing(estimator: Estimator, factor: float) -> Estimator:
+    """The same estimator where ξ_cut is known: the brake's work is that of this friction, and nothing is left to learn.
+
+    What friction does along the path stays unknown to it.
+    """
+    work = tuple(factor * each for each in estimator.brake_m2_s2_per_kpa)
+    return replace(estimator, friction_cv=0.0, brake_m2_s2_per_kpa=work)
+
+
+def levelled(
+    lines: Callable[[float], PolynomialLines], estimator: Estimator, tuning: CommonPasses, target_m_s: float
+) -> ToldWithEstimator:
+    """The regulator with its mean error at each friction taken out on the passes `tuning`."""
+    factor = tuning.draws.cut_factor
+    low, high = np.quantile(factor, BIAS_RANGE).tolist()
+    told = ToldWithEstimator(lines, estimator, Bias(low, high))
+    for _ in range(LEVELLINGS):
+        error = run_told(tuning.loop, tuning.draws, told).exit_speed_m_s - target_m_s
+        near = np.abs(error) < BIAS_WITHIN_M_S
+        if near.sum() >= LEAST_PASSES:
+            told = replace(told, bias=told.bias.and_of(factor[near], error[near]))
+    return told
