@@ -133,8 +133,13 @@ def gain_cells(row: CaseRow) -> tuple[str, ...]:
     return (
         row.case, rms_cell(row.without.rms_m_s, row.without.rms_ci95_m_s),
         rms_cell(row.ahead.rms_m_s, row.ahead.rms_ci95_m_s), around(row.ratio, row.ratio_ci95, 3),
-        f"{1e4 * row.without.out_of_brake:.2g} → {1e4 * row.ahead.out_of_brake:.2g}", served,
+        f"{in_10_000(row.without.out_of_brake)} → {in_10_000(row.ahead.out_of_brake)}", served,
     )  # fmt: skip
+
+
+def in_10_000(share: float) -> str:
+    """'184' or '7.5': of 10 000 cuts."""
+    return f"{1e4 * share:.0f}" if share >= 0.01 else f"{1e4 * share:.2g}"
 
 
 def rms_cell(rms_m_s: float, ci95_m_s: Interval) -> str:
