@@ -68,7 +68,7 @@ class RegulatorSettings(Section):
 
     approach_m: float | None = None
     initial_stage: int | None = None
-    estimator: bool = Field(False, description="compare an estimated speed with the lines: tables of version 2")
+    estimator: bool = Field(False, description="compare an estimated speed with the lines")
 
 
 class CriterionSettings(Section):
