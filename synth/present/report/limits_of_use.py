@@ -21,10 +21,22 @@ def sentences(book: BookReport) -> list[str]:
         rare_events(book),
         "A table holds for its cut class, target speed, path and speed range, for the entry speeds named in the "
         "parameters and for a regulator that gives no new command until the transient of the last one has ended.",
+        *interlock(book),
         "Predictions come from a grid; they carry its error beside that of the model.",
         "An infeasible case has a table too. It does what brake power allows; it does not meet the limit.",
         "The tool is not certified and claims no safety integrity. Before a table drives a retarder, check it with an "
         "independent program against the hashes below, and on the track.",
+    ]
+
+
+def interlock(book: BookReport) -> list[str]:
+    """What tables that act before the entrance take for granted."""
+    farthest = max((-case.plant.start_m for case in book.cases), default=0.0)
+    if farthest == 0.0:
+        return []
+    return [
+        f"The regulator acts from {farthest:g} m before the entrance. The cut ahead must have left the position by then: "
+        "this interlock, and a sensor that sees the cut there, are the yard's."
     ]
 
 

@@ -24,12 +24,12 @@ from tuning_tables.atomic_file import write_atomically
 HOW_TO_READ = (
     "rms: root mean square of exit speed − target; a cut that stops in the position counts with exit speed 0. "
     "Table loss: rms of the exported polynomial table / rms of the full switching lines. Friction known: a controller "
-    "that is told the friction of each cut, with full lines and one stage a command; regret: rms of the table / rms of "
-    "that controller, which is a reference and no lower bound. Feasible: that controller meets the limit. Over-speed: "
-    "more than 0.3 m/s above the target. Out of brake: leaves that fast even where every decision raises the stage, so "
-    "that no table can hold it. Brackets: 95 % intervals, from passes in strata of the friction; the chance of these "
-    "passes is all that they cover. All controllers see the same passes, but for the one that is told the friction: "
-    "its passes have a few fixed values of it."
+    "of the table's kind that is told the friction of each cut, with lines polished for it; regret: rms of the table / "
+    "rms of that controller, which is a reference and no lower bound. Feasible: that controller meets the limit. "
+    "Over-speed: more than 0.3 m/s above the target. Out of brake: leaves that fast even where every decision raises "
+    "the stage, so that no table can hold it. Brackets: 95 % intervals, from passes in strata of the friction; the "
+    "chance of these passes is all that they cover. All controllers see the same passes. Those of the best baseline "
+    "may jump stages in one command, which the tables' rule may not; all may act from the same place."
 )
 
 
