@@ -35,8 +35,8 @@ def interlock(book: BookReport) -> list[str]:
     if farthest == 0.0:
         return []
     return [
-        f"The regulator acts from {farthest:g} m before the entrance. The cut ahead must have left the position by then: "
-        "this interlock, and a sensor that sees the cut there, are the yard's."
+        f"The regulator acts from {farthest:g} m before the entrance. The cut ahead must have left the position by "
+        "then: this interlock, and a sensor that sees the cut there, are the yard's."
     ]
 
 
