@@ -64,3 +64,18 @@ def test_an_approach_that_makes_every_cut_faster_is_one_sentence(
     ran = command("tune", config, "-o", tmp_path / "out")
     assert ran.code == 2
     assert "steep.toml: regulator.approach_m is 100; there the grade alone brings each cut to 7." in ran.sentence
+    assert ran.sentence.endswith("raise that speed (cut class gondola-4-22t)")
+
+
+def test_a_wrong_initial_stage_names_the_class_that_forbids_it(
+    command: Command, two_classes: Path, tmp_path: Path
+) -> None:
+    config, classes = tmp_path / "closed.toml", two_classes.read_text(encoding="utf-8") + "entrance_stage = 1\n"
+    for stage, told in (
+        (2, "from 0 to the stage allowed at the entrance, 1 (cut class gondola-4-30t)"),
+        (-1, "from 0 to 31"),
+    ):
+        config.write_text(f"{classes}[regulator]\ninitial_stage = {stage}\n", encoding="utf-8")
+        ran = command("tune", config, "-o", tmp_path / "out")
+        assert ran.code == 2
+        assert ran.sentence.endswith(f"regulator.initial_stage is {stage}; it must be a whole number {told}")
