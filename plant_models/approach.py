@@ -36,10 +36,11 @@ class Approach:
             0 <= self.entrance_stage <= ANY_STAGE,
             f"cut: entrance_stage is {self.entrance_stage}; it must be a whole number from 0 to {ANY_STAGE}",
         )
+        named = "" if self.entrance_stage == ANY_STAGE else "the stage allowed at the entrance, "
         require(
             0 <= self.initial_stage <= self.entrance_stage,
-            f"regulator: initial_stage is {self.initial_stage}; it must be a whole number from 0 to the stage allowed "
-            f"at the entrance, {self.entrance_stage}",
+            f"regulator: initial_stage is {self.initial_stage}; it must be a whole number from 0 to "
+            f"{named}{self.entrance_stage}",
         )
 
 

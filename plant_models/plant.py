@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,6 +46,20 @@ class Plant:
             f"regulator: initial_stage is {self.approach.initial_stage}; the highest stage that this cut may be given "
             f"is {self.top_stage}",
         )
+        self._require_reachable_entrance()
+
+    def _require_reachable_entrance(self) -> None:
+        """No cut may come to the entrance slower than the grade of the approach lets one that starts from rest."""
+        if self.start_m == 0.0:
+            return
+        gained = float(self._gained_m2_s2(self.resistance.mean_n_per_kn))
+        least_m_s = math.sqrt(2.0 * max(0.0, gained) + SLOWEST_START_M_S**2)
+        require(
+            self.entry.low_m_s >= least_m_s,
+            f"regulator: approach_m is {self.approach.length_m:g}; there the grade alone brings each cut to "
+            f"{least_m_s:.2f} m/s or more at the entrance, but the lowest entry speed is {self.entry.low_m_s:g}: "
+            "shorten the approach or raise that speed",
+        )
 
     @property
     def start_m(self) -> float:
@@ -61,16 +76,21 @@ class Plant:
     ) -> NDArray[np.float64]:
         """Speed at `start_m` of cuts that reach the entrance with `entrance_speed_m_s`: nothing brakes in between.
 
-        No slower than `SLOWEST_START_M_S`: a cut that a steep approach would have brought from less begins with that.
+        No slower than `SLOWEST_START_M_S`: a cut that rolls so much easier than the mean that a steep approach would
+        have brought it from less begins with that.
         """
         if self.start_m == 0.0:
             return entrance_speed_m_s
+        gained = self._gained_m2_s2(resistance_n_per_kn)
+        return np.sqrt(np.maximum(entrance_speed_m_s**2 - 2.0 * gained, SLOWEST_START_M_S**2))
+
+    def _gained_m2_s2(self, resistance_n_per_kn: NDArray[np.float64] | float) -> NDArray[np.float64]:
+        """Kinetic energy per mass that a cut gains on the approach; negative where it is slowed down."""
         edges = path_breaks_m(self.position, self.cut, self.profile, self.start_m)
         edges = np.append(edges[edges < 0.0], 0.0)
         cells = path_coefficients(self.position, self.cut, self.profile, edges)
         grade = float(cells.gravity_m_s2 @ np.diff(edges))
-        gained = grade + self.start_m * cells.resistance_m_s2_per_n_kn * np.asarray(resistance_n_per_kn)
-        return np.sqrt(np.maximum(entrance_speed_m_s**2 - 2.0 * gained, SLOWEST_START_M_S**2))
+        return grade + self.start_m * cells.resistance_m_s2_per_n_kn * np.asarray(resistance_n_per_kn)
 
     @property
     def exit_m(self) -> float:

@@ -22,6 +22,8 @@ from tuning_tables import ControllerTable
 LENGTH_TOLERANCE = 1e-6
 """Relative, for lengths, masses and pressures that must be the same."""
 
+APPROACH_KEY = "regulator.approach_m"
+
 
 @dataclass(frozen=True)
 class Revalidation:
@@ -128,8 +130,17 @@ def plant_for(table: ControllerTable, config: ResolvedConfig, source: str) -> tu
     nearest = min(range(len(plants)), key=lambda place: len(apart[place]))
     raise InputError(
         f"{source}: no cut class fits the table {table.id}; the nearest, {plants[nearest][0]}, differs in "
-        f"{' and '.join(apart[nearest])}; give the configuration that the table was made from by --config"
+        f"{' and '.join(apart[nearest])}; {remedy(table, apart[nearest])}"
     )
+
+
+def remedy(table: ControllerTable, apart: Sequence[str]) -> str:
+    """What to do where the nearest class differs in `apart`. A configuration of before names no approach, so it gets
+    the one of the library's position, which tables of before do not have."""
+    given = "give the configuration that the table was made from by --config"
+    if table.approach is None and len(apart) == 1 and apart[0].startswith(APPROACH_KEY):
+        return f"{given}, with {APPROACH_KEY} = 0 in it if it names none"
+    return given
 
 
 def differences(table: ControllerTable, plant: Plant) -> Iterator[str]:
@@ -142,7 +153,7 @@ def differences(table: ControllerTable, plant: Plant) -> Iterator[str]:
         ("retarder.dead_band_kpa", [position.pneumatics.dead_band_kpa], [table.retarder.dead_band_kpa]),
         ("cut.mass_t", [cut.mass_t], [table.cut.mass_t]),
         ("cut.axle_offsets_m", cut.axle_offsets_m, table.cut.axle_offsets_m),
-        ("regulator.approach_m", [plant.approach.length_m], [table.approach.length_m if table.approach else 0.0]),
+        (APPROACH_KEY, [plant.approach.length_m], [table.approach.length_m if table.approach else 0.0]),
         ("the highest stage allowed", [plant.top_stage], [reached_stage(table)]),
     )  # fmt: skip
     for key, ours, theirs in pairs:

@@ -10,7 +10,7 @@ from typing import Any
 from annotated_types import Ge, Le
 from pydantic.fields import FieldInfo
 
-from plant_models import EntryLaw, Plant
+from plant_models import EntryLaw, Plant, PlantError
 from plant_models.library import (
     BUILT_IN,
     WEIGHT_CATEGORIES,
@@ -79,10 +79,13 @@ class ResolvedConfig:
         return tuple((c.label, self.plant_of(c)) for c in self.cuts)
 
     def plant_of(self, c: CutClass) -> Plant:
-        """The plant of one of the classes."""
+        """The plant of one of the classes; `PlantError` names the class."""
         at, entry = self.retarder, c.entry or self.entry
-        approach = replace(at.approach, entrance_stage=c.entrance_stage)
-        return Plant(at.position, c.cut, at.profile, at.friction, c.resistance, at.sensor, entry, approach)
+        try:
+            approach = replace(at.approach, entrance_stage=c.entrance_stage)
+            return Plant(at.position, c.cut, at.profile, at.friction, c.resistance, at.sensor, entry, approach)
+        except PlantError as fault:
+            raise PlantError(f"{fault} (cut class {c.label})") from fault
 
     def targets_of(self, label: str) -> tuple[float, ...]:
         """Commanded exit speeds of the class `label`."""

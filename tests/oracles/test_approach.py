@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from plant_models import Approach, DopplerSensor, EntrySpeed, Friction, Plant, PressingForce, TrackProfile
+from plant_models import Approach, DopplerSensor, EntrySpeed, Friction, Plant, PlantError, PressingForce, TrackProfile
 from synth.problem.aim import Aim
 from synth.problem.resolution import Resolution
 from synth.simulation.closed_loop import LineController, close_loop, simulate
@@ -61,6 +61,19 @@ def test_a_cut_reaches_the_entrance_at_its_entry_speed(plant: Plant) -> None:
     work = plant.cut.reduced_gravity_m_s2 * 1e-3 * (mean - 4.0 * w)
     speed = float(steep.start_speed_m_s(np.array(entrance), w))
     assert 0.5 * entrance**2 - 0.5 * speed**2 == pytest.approx(work, rel=1e-6)
+
+
+def test_no_cut_is_slower_at_the_entrance_than_the_grade_lets_it_be(plant: Plant) -> None:
+    """The longest approach by hand, where the slowest cut begins with 0.3 m/s; 1 % more is refused."""
+    profile = TrackProfile.uniform(20.0)
+    pull = plant.cut.reduced_gravity_m_s2 * 1e-3 * (20.0 - plant.resistance.mean_n_per_kn)
+    longest = (plant.entry.low_m_s**2 - 0.3**2) / (2.0 * pull)
+    near = replace(plant, profile=profile, approach=Approach(0.99 * longest))
+    slowest = float(near.start_speed_m_s(np.array(plant.entry.low_m_s), plant.resistance.mean_n_per_kn))
+    assert slowest == pytest.approx(math.sqrt(0.3**2 + 2.0 * pull * 0.01 * longest), rel=1e-6)
+    with pytest.raises(PlantError, match=r"approach_m is .*lowest entry speed is 4: shorten the approach"):
+        replace(near, approach=Approach(1.01 * longest))
+    replace(near, profile=TrackProfile.uniform(-20.0), approach=Approach(100.0))
 
 
 def test_released_before_the_entrance_is_as_from_the_entrance(plant: Plant) -> None:
