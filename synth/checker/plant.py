@@ -195,11 +195,10 @@ def approach_of(at: Reader, of: Reader) -> dict[str, Any]:
     regulator = at.config.get("regulator")
     top = len(at.numbers("retarder.stage_pressures_kpa")) - 1
     entrance_stage = of.stage("entrance_stage", top, top)
-    if not isinstance(regulator, dict) or "approach_m" not in regulator:
-        return {"approach_m": 0.0, "initial_stage": 0, "entrance_stage": entrance_stage}
+    known = regulator if isinstance(regulator, dict) else {}
     return {
-        "approach_m": at.number("regulator.approach_m", 0.0, 100.0),
-        "initial_stage": at.stage("regulator.initial_stage", 0, entrance_stage),
+        "approach_m": at.number("regulator.approach_m", 0.0, 100.0) if "approach_m" in known else 0.0,
+        "initial_stage": at.stage("regulator.initial_stage", 0, entrance_stage) if "initial_stage" in known else 0,
         "entrance_stage": entrance_stage,
     }
 

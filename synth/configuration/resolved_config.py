@@ -47,6 +47,7 @@ from synth.problem.resolution import Resolution
 from tuning_tables.canonical import canonical_json
 
 TOOL_DEFAULT = "default of the tool"
+DIMENSIONLESS = "1"
 
 
 @dataclass(frozen=True)
@@ -259,4 +260,5 @@ def range_warnings(parameters: tuple[SourcedValue, ...]) -> Iterator[str]:
     """A sentence for every value outside its sensible range."""
     for p in parameters:
         if p.range is not None and not p.in_range:
-            yield f"{p.key} is {p.value!r}; its sensible range is {p.range[0]:g} to {p.range[1]:g} {p.unit}"
+            unit = "" if p.unit == DIMENSIONLESS else f" {p.unit}"
+            yield f"{p.key} is {p.value!r}; its sensible range is {p.range[0]:g} to {p.range[1]:g}{unit}"

@@ -208,3 +208,5 @@ def test_keys_of_the_approach_may_be_absent(approached_once: Path) -> None:
     assert (plant.approach_m, plant.initial_stage, plant.entrance_stage) == (4.0, 0, 1)
     before = plant_of({**config, "regulator": {"estimator": False}}, {k: cut[k] for k in cut if k != "entrance_stage"})
     assert (before.approach_m, before.initial_stage, before.entrance_stage) == (0.0, 0, 4)
+    closed = plant_of({**config, "regulator": {"estimator": False, "initial_stage": 2}}, cut | {"entrance_stage": 2})
+    assert (closed.approach_m, closed.initial_stage) == (0.0, 2)

@@ -21,6 +21,7 @@ from synth.present.plots.degree_study import degree_study
 from synth.present.plots.exit_density import bin_edges_m_s, exit_density, predicted_density
 from synth.present.plots.feasibility import feasibility
 from synth.present.plots.figure_file import draw, save_figure
+from synth.present.plots.house_style import logarithmic_y
 from synth.present.plots.picture import save_picture
 from synth.present.plots.picture_book import all_pictures
 from synth.present.plots.policy_map import command_image, parts_in_stage, policy_map
@@ -175,6 +176,17 @@ def test_roles_and_names(cases: list[CaseResult]) -> None:
     assert [len(group) for group in by_class(cases)] == [2, 2]
     assert why_infeasible(cases[2]) == "out of brake power"
     assert file_stem("exit-density", "Four tanks, 3.5 m/s") == "exit-density-four-tanks-3.5-m-s"
+
+
+@pytest.mark.parametrize("low", [0.01, 0.0197, 0.0201, 0.031, 0.0501, 0.07])
+@pytest.mark.parametrize("ratio", [1.6, 2.9, 3.1, 3.7, 4.9, 20.0, 500.0])
+def test_a_logarithmic_axis_has_two_marks_at_least(low: float, ratio: float) -> None:
+    """One mark alone leaves the reader without a scale."""
+    axes = Figure().subplots()
+    logarithmic_y(axes, [low / 0.8, low * ratio / 1.25])
+    marks = axes.yaxis.get_majorticklocs()
+    assert 2 <= len(marks) <= 13
+    assert low * (1.0 - 1e-9) <= marks.min() < marks.max() <= low * ratio * (1.0 + 1e-9)
 
 
 def test_a_stalled_pass_is_called_so(cases: list[CaseResult]) -> None:

@@ -82,12 +82,14 @@ def room_for(values: Iterable[float]) -> tuple[float, float]:
 
 def mark_plainly(axis: Axis, low: float, high: float) -> None:
     """Marks at 0.01, 0.02, 0.05, 0.1 …; where they would crowd, at the decades; where they would be few, more."""
-    steps: tuple[float, ...] = (1.0, 2.0, 5.0) if high < 300.0 * low else (1.0,)
-    if high < 3.0 * low:
-        steps = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0, 7.0, 8.0)
-    decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
-    marks = [step * 10.0**decade for decade in decades for step in steps]
-    axis.set_major_locator(FixedLocator([mark for mark in marks if low <= mark <= high]))
+    fine = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0, 7.0, 8.0)
+    decades = [10.0**decade for decade in range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)]
+    within = [
+        [step * decade for decade in decades for step in steps if low <= step * decade <= high]
+        for steps in ((1.0, 2.0, 5.0) if high < 300.0 * low else (1.0,), fine)
+    ]
+    marks = within[1] if high < 3.0 * low or len(within[0]) < 2 else within[0]
+    axis.set_major_locator(FixedLocator(marks))
     axis.set_minor_locator(NullLocator())
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
 

@@ -26,7 +26,7 @@ def picture(found: Approaches) -> Figure:
             found.lengths_m, row.rms_m_s, (low, high), color=LINE_COLOURS[i % 7], marker=LINE_MARKERS[i % 7],
             label=row.case, capsize=3,
         )  # fmt: skip
-    logarithmic_y(axes, [rms for row in found.by_length for rms in row.rms_m_s])
+    logarithmic_y(axes, [end for row in found.by_length for ends in row.rms_ci95_m_s for end in ends])
     axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1.01, 0.5))
     return figure
 

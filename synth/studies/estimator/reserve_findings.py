@@ -86,7 +86,7 @@ class Reserves(Findings):
         cases = [case_cells(case.case, case.rows[0], row) for case, row in self.assumed_rows()]
         return {
             "curve": table("What a reserve costs and gives", heads, curve),
-            "cases": table(f"rms without reserve and with mean_cv = {self.assumed:g}", each, cases),
+            "cases": table(f"rms without reserve and with mean_cv = {self.shown:g}", each, cases),
         }
 
     def assumed_rows(self) -> list[tuple[CaseRows, Row]]:
@@ -95,6 +95,11 @@ class Reserves(Findings):
             (case, next((row for row in case.rows if row.mean_cv == self.assumed), case.rows[-1]))
             for case in self.cases
         ]
+
+    @property
+    def shown(self) -> float:
+        """The uncertainty of the rows that `assumed_rows` gives."""
+        return self.assumed_rows()[0][1].mean_cv
 
     def sentences(self) -> tuple[str, ...]:
         """How much was simulated."""

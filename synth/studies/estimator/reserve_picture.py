@@ -27,11 +27,14 @@ if TYPE_CHECKING:
 
     from synth.studies.estimator.reserve_findings import Reserves
 
+LEAST_HEIGHT_IN = 4.5
+"""Below, the label of the vertical axis would not fit beside it."""
+
 
 def picture(found: Reserves) -> Figure:
     """Left: price and worst ratio for each uncertainty of the mean; right: the worst ratio of every case."""
     cases = len(found.cases)
-    figure = new_figure(12.5, 2.2 + 0.21 * cases, "A reserve for less friction than thought")
+    figure = new_figure(12.5, max(LEAST_HEIGHT_IN, 2.2 + 0.21 * cases), "A reserve for less friction than thought")
     place(figure, left=0.8, right=0.3, bottom=0.7, top=0.75, w=0.42)
     left, right = figure.subplots(1, 2)
     curve(left, found)
@@ -60,14 +63,14 @@ def curve(axes: Axes, found: Reserves) -> None:
         axes.plot(x, y, marker, color=colour, markersize=9, markeredgecolor=BLACK, linestyle="", label=label, zorder=4)
     axes.set_xlim(left=low[0])
     axes.set_ylim(bottom=low[1])
-    axes.legend(fontsize=8, title="small: a case; large: the largest of all", title_fontsize=8, loc="upper left")
+    axes.legend(fontsize=8, title="small: a case; large: the largest of all", title_fontsize=8, loc="best")
 
 
 def before_and_after(axes: Axes, found: Reserves) -> None:
     """A line a case, from the worst ratio without reserve to that with the assumed one; those most helped on top."""
     rows = [(case.case, case.rows[0].worst_ratio, row) for case, row in found.assumed_rows()]
     rows.sort(key=lambda row: row[1])
-    dress(axes, f"hollow: without reserve; full: mean_cv = {found.assumed:g}, with its 95 % interval",
+    dress(axes, f"hollow: without reserve; full: mean_cv = {found.shown:g}, with its 95 % interval",
           "largest rms with / without estimator, any plant", "")  # fmt: skip
     axes.grid(axis="y", visible=False)
     for y, (_, before, row) in enumerate(rows):
