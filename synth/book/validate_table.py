@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from plant_models import Plant
+from plant_models.library.position_entry import APPROACH
 from synth.book.comparison.measured import honesty_of
 from synth.book.judgement import Judgement, judgement
 from synth.configuration.resolved_config import ResolvedConfig
@@ -21,8 +22,6 @@ from tuning_tables import ControllerTable
 
 LENGTH_TOLERANCE = 1e-6
 """Relative, for lengths, masses and pressures that must be the same."""
-
-APPROACH_KEY = "regulator.approach_m"
 
 
 @dataclass(frozen=True)
@@ -138,8 +137,8 @@ def remedy(table: ControllerTable, apart: Sequence[str]) -> str:
     """What to do where the nearest class differs in `apart`. A configuration of before names no approach, so it gets
     the one of the library's position, which tables of before do not have."""
     given = "give the configuration that the table was made from by --config"
-    if table.approach is None and len(apart) == 1 and apart[0].startswith(APPROACH_KEY):
-        return f"{given}, with {APPROACH_KEY} = 0 in it if it names none"
+    if table.approach is None and len(apart) == 1 and apart[0].startswith(APPROACH):
+        return f"{given}, with {APPROACH} = 0 in it if it names none"
     return given
 
 
@@ -153,7 +152,7 @@ def differences(table: ControllerTable, plant: Plant) -> Iterator[str]:
         ("retarder.dead_band_kpa", [position.pneumatics.dead_band_kpa], [table.retarder.dead_band_kpa]),
         ("cut.mass_t", [cut.mass_t], [table.cut.mass_t]),
         ("cut.axle_offsets_m", cut.axle_offsets_m, table.cut.axle_offsets_m),
-        (APPROACH_KEY, [plant.approach.length_m], [table.approach.length_m if table.approach else 0.0]),
+        (APPROACH, [plant.approach.length_m], [table.approach.length_m if table.approach else 0.0]),
         ("the highest stage allowed", [plant.top_stage], [reached_stage(table)]),
     )  # fmt: skip
     for key, ours, theirs in pairs:

@@ -27,7 +27,7 @@ degree = 2
 passes = 4000
 [acceptance]
 honesty_low = 0.9
-honesty_high = 1.5
+honesty_high = 1.35
 [output]
 csv = true
 plots = false

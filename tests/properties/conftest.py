@@ -64,7 +64,7 @@ def coarse() -> Resolution:
     return COARSE
 
 
-@pytest.fixture(scope="session", params=[Approach(), Approach(1.0, 1, 1)], ids=["entrance", "approach"])
+@pytest.fixture(scope="session", params=[Approach(), Approach(2.0, 1, 1)], ids=["entrance", "approach"])
 def small(request: pytest.FixtureRequest) -> Callable[[], Chain]:
     """The random plant on the coarse grid; behind a call, as hypothesis prints its arguments."""
     chain = persistent_chain(replace(random_plant(), approach=request.param), COARSE)

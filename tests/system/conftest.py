@@ -20,7 +20,7 @@ high_m_s = 4.0
 exit_speeds_m_s = [1.5]
 [grid]
 path_step_m = 1.0
-speed_step_m_s = 0.05
+speed_step_m_s = 0.04
 transient_step_s = 0.05
 friction_scenarios = 3
 [fit]
@@ -28,7 +28,7 @@ degree = 2
 [validation]
 passes = 1000
 [acceptance]
-honesty_high = 1.5
+honesty_high = 1.35
 [output]
 csv = true
 [[cut]]

@@ -15,7 +15,10 @@ from tests.system.conftest import CLASS, EPOCH, Command
 from tuning_tables import TableBook, read_book, read_json, write_book
 
 Tuned = tuple[Path, Path, int]
-CONFIG = CLASS.replace("csv = true", "plots = false") + "[regulator]\nestimator = true\n"
+CONFIG = (
+    CLASS.replace("csv = true", "plots = false").replace("passes = 1000", "passes = 4000")
+    + "[regulator]\nestimator = true\n"
+)
 
 
 @pytest.fixture(scope="module")
