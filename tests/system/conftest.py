@@ -37,6 +37,15 @@ mass_t = 22
 """
 """A park retarder, one light class and one target: solved in two seconds."""
 
+
+def changed(text: str, *swaps: tuple[str, str]) -> str:
+    """`text` with each (old, new) swapped; it must hold every `old`, or a case would lose its fault unseen."""
+    for old, new in swaps:
+        assert old in text, f"{old!r} is not in the configuration any more"
+        text = text.replace(old, new)
+    return text
+
+
 SECOND_CLASS = '[[cut]]\ncar = "gondola-4"\nmass_t = 30\nallowed_stage = 2\n'
 EPOCH = "1700000000"
 

@@ -12,7 +12,7 @@ import pytest
 
 from synth.book.output_directory import output_directory
 from synth.configuration.config_file import parse_config
-from tests.system.conftest import CLASS, Command
+from tests.system.conftest import CLASS, Command, changed
 from tuning_tables import from_json, read_book, read_json, to_csv, to_json, write_book
 from tuning_tables.canonical import canonical_json, document_checksum
 
@@ -83,9 +83,7 @@ def test_tune_prints_a_table_and_where_things_are(command: Command, one_class: P
 def test_missed_limits_give_1_and_stale_files_go(command: Command, one_class: Path, tuned: Path) -> None:
     strict = one_class.with_name("strict.toml")
     strict.write_text(
-        CLASS.replace("csv = true", "plots = false\nreport = false").replace(
-            "honesty_high = 1.35", "honesty_high = 1.0"
-        )
+        changed(CLASS, ("csv = true", "plots = false\nreport = false"), ("honesty_high = 1.35", "honesty_high = 1.0"))
     )
     (tuned / "tables" / "my-notes.json").write_text("{}")
     (tuned / "plots" / "my-photo.png").write_bytes(b"photo")
