@@ -50,7 +50,9 @@ class CarMix:
 
     def of(self, categories: WeightCategories, category: WeightCategory) -> CarMix:
         """The cars among these that can be in `category`; `PlantError` where there is none."""
-        able = tuple(c for c in self.cars if c.share > 0.0 and not np.isnan(mass_limits_t(categories, category, c.car)[0]))
+        able = tuple(
+            c for c in self.cars if c.share > 0.0 and not np.isnan(mass_limits_t(categories, category, c.car)[0])
+        )
         require(len(able) > 0, f"car mix: no car of it can be in the weight category {category.name}")
         return CarMix(able, self.following_share, self.underload_mean_t)
 
@@ -60,7 +62,9 @@ class CarMix:
         bounds = np.cumsum(shares) / shares.sum()
         return np.minimum(np.searchsorted(bounds, u, side="right"), len(shares) - 1)
 
-    def masses_t(self, categories: WeightCategories, category: WeightCategory, types: NDArray[np.int64], u: Floats) -> Floats:
+    def masses_t(
+        self, categories: WeightCategories, category: WeightCategory, types: NDArray[np.int64], u: Floats
+    ) -> Floats:
         """Masses for uniform `u`: uniform within the category; in the heaviest, gross mass less an exponential
         under-load, cut off where the category ends ([kozachenko-aimed])."""
         limits = np.array([mass_limits_t(categories, category, c.car) for c in self.cars])

@@ -150,7 +150,8 @@ def bend_heads_m(
     """Heads that each bend takes from each cut: (per (m/s)², whatever the speed), each (count, bends)."""
     u = uniform_numbers(seed, Purpose.BENDS, first, count, len(bends) * law.bend_numbers)
     rows: Iterator[tuple[Floats, Floats]] = (
-        law.bend_heads_m(bend, numbers) for bend, numbers in zip(bends, np.split(u, max(len(bends), 1), axis=1), strict=False)
+        law.bend_heads_m(bend, numbers)
+        for bend, numbers in zip(bends, np.split(u, max(len(bends), 1), axis=1), strict=False)
     )
     v2, head = np.zeros((count, len(bends))), np.zeros((count, len(bends)))
     for place, (of_v2, whatever) in enumerate(rows):

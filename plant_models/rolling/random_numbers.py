@@ -30,7 +30,9 @@ def uniform_numbers(seed: int, purpose: Purpose, first: int, count: int, columns
     Row i is the same whatever `first` and `count`, and its first columns whatever `columns`.
     """
     if seed < 0 or first < 0 or count < 0 or columns < 0:
-        raise ValueError(f"random cuts: seed {seed}, first {first}, count {count}, columns {columns} must not be negative")
+        raise ValueError(
+            f"random cuts: seed {seed}, first {first}, count {count}, columns {columns} must not be negative"
+        )
     drawn = np.empty((count, columns))
     for block in range(first // BLOCK, -(-(first + count) // BLOCK)):
         rng = np.random.Generator(np.random.SFC64(np.random.SeedSequence(seed, spawn_key=(int(purpose), block))))

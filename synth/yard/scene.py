@@ -108,6 +108,23 @@ class SceneCuts:
         """Where each head is when the last axle leaves the position, (n,)."""
         return self.scene.exit_m + self.rolling.cuts.last_axle_m
 
+    @property
+    def measured_speeds_m_s(self) -> tuple[Floats, Floats]:
+        """True speeds at both ends of the stretch, as the first axle passes them, each (n,); 0 if it stops before."""
+        ends = np.full((len(self), 1), self.scene.stretch.to_m) + self.rolling.cuts.first_axle_m[:, None]
+        return self.stretch_speed_m_s, self.rolling.roll_on(self.begin_m, self.stretch_speed_m_s, ends).speed_m_s[:, 0]
+
+    @property
+    def unbraked_exit_m_s(self) -> Floats:
+        """Speed at the release of cuts that nothing brakes, (n,); 0 if they stop before."""
+        release = self.release_m[:, None]
+        return self.rolling.roll_on(self.begin_m, self.stretch_speed_m_s, release).speed_m_s[:, 0]
+
+    @property
+    def begin_m(self) -> Floats:
+        """Where the heads are when the first axles are at the begin of the stretch, (n,)."""
+        return self.scene.stretch.from_m + self.rolling.cuts.first_axle_m
+
     def numbers(self, purpose: Purpose, columns: int) -> Floats:
         """Uniform numbers of these cuts, (n, columns)."""
         return uniform_numbers(self.seed, purpose, self.first, len(self), columns)
