@@ -70,9 +70,9 @@ class CarMix:
         limits = np.array([mass_limits_t(categories, category, c.car) for c in self.cars])
         low, high = limits[types, 0], limits[types, 1]
         if category is not categories.members[-1]:
-            return low + (high - low) * u
+            return np.asarray(low + (high - low) * u)
         scale = self.underload_mean_t
-        return high + scale * np.log1p(-u * -np.expm1(-(high - low) / scale))
+        return np.asarray(high + scale * np.log1p(u * np.expm1(-(high - low) / scale)))
 
 
 def mass_limits_t(categories: WeightCategories, category: WeightCategory, car: Car) -> tuple[float, float]:

@@ -49,12 +49,12 @@ class DrawnCuts:
     @property
     def cars(self) -> int:
         """Cars of each cut."""
-        return self.types.shape[1]
+        return int(self.types.shape[1])
 
     @property
     def cut_mass_t(self) -> Floats:
         """Q, shape (n,)."""
-        return self.mass_t.sum(axis=1)
+        return np.asarray(self.mass_t.sum(axis=1))
 
     @property
     def shares(self) -> Floats:
@@ -64,13 +64,13 @@ class DrawnCuts:
     @property
     def resistance_n_per_kn(self) -> Floats:
         """w0 of each cut: of its cars, weighted by mass, (n,)."""
-        return (self.shares * self.basic_n_per_kn).sum(axis=1)
+        return np.asarray((self.shares * self.basic_n_per_kn).sum(axis=1))
 
     @property
     def reduced_gravity_m_s2(self) -> Floats:
         """g' of each cut, (n,)."""
         axles = np.array([len(c.car.axle_offsets_m) for c in self.mix.cars])[self.types].sum(axis=1)
-        return GRAVITY_M_S2 / (1.0 + ROTATING_MASS_PER_AXLE_T * axles / self.cut_mass_t)
+        return np.asarray(GRAVITY_M_S2 / (1.0 + ROTATING_MASS_PER_AXLE_T * axles / self.cut_mass_t))
 
     @property
     def car_lengths_m(self) -> Floats:
@@ -90,7 +90,7 @@ class DrawnCuts:
     @property
     def last_axle_m(self) -> Floats:
         """How far the last axle is behind the head, (n,)."""
-        return self.car_lengths_m.sum(axis=1) - self.overhangs_m[self.types[:, -1]]
+        return np.asarray(self.car_lengths_m.sum(axis=1) - self.overhangs_m[self.types[:, -1]])
 
     @property
     def overhangs_m(self) -> Floats:
@@ -141,7 +141,7 @@ class CutPopulation:
 def drag_areas_m2(mix: CarMix, types: NDArray[np.int64]) -> Floats:
     """C_x1·S_1 + Σ C_xj·S_j of each cut, (n,): cars behind the first count by their following share."""
     areas = np.array([c.drag_area_m2 for c in mix.cars])[types]
-    return areas[:, 0] + mix.following_share * areas[:, 1:].sum(axis=1)
+    return np.asarray(areas[:, 0] + mix.following_share * areas[:, 1:].sum(axis=1))
 
 
 def bend_heads_m(

@@ -53,11 +53,11 @@ class AimOrder:
 class AimedSpeeds:
     """Commands of an order and what they give on cuts that they were not chosen on.
 
-    `readings`: the axis of the reading, None by category. All others have the shape (cars, distances), with the readings
-    as last axis if there are any: `speed_m_s` NaN where no command meets the requirement; share of over-speed with its
-    exact 95 % interval, mean gap a car, and the cuts that these are of, NaN and 0 in cells of less than 100 cuts: a cut
-    counts in the cell of the nearest reading. `above_m_s`, `below_m_s`: the most that linear interpolation was found to
-    be above and below what is right midway between two nodes.
+    `readings`: the axis of the reading, None by category. All others have the shape (cars, distances), with the
+    readings as last axis if there are any: `speed_m_s` NaN where no command meets the requirement; share of over-speed
+    with its exact 95 % interval, mean gap a car, and the cuts that these are of, NaN and 0 in cells of less than 100
+    cuts: a cut counts in the cell of the nearest reading. `above_m_s`, `below_m_s`: the most that linear interpolation
+    was found to be above and below what is right midway between two nodes.
     """
 
     order: AimOrder
@@ -73,9 +73,10 @@ class AimedSpeeds:
     below_m_s: float
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class TableCuts:
-    """Cuts of one number of cars, ready for every kind of knowledge: to choose on, to check interpolation, to report."""
+    """Cuts of one number of cars for all kinds of knowledge: to choose on, to check interpolation on, to report on."""
 
     design: SceneCuts
     thresholds_m_s: Floats
@@ -109,9 +110,19 @@ def known_speeds(
     speed, told = np.stack(made), np.stack(figures)
     if nodes is None:
         speed, told = speed[..., 0], told[..., 0, :]
-    columns = [np.ascontiguousarray(told[..., i]) for i in range(4)]
-    above, below = (float(np.max(e)) for e in zip(*errors, strict=True))
-    return AimedSpeeds(order, knowledge, nodes, speed, *columns, told[..., 4].astype(np.int64), above, below)
+    return AimedSpeeds(
+        order=order,
+        knowledge=knowledge,
+        readings=nodes,
+        speed_m_s=speed,
+        overspeed=told[..., 0],
+        overspeed_low95=told[..., 1],
+        overspeed_high95=told[..., 2],
+        gap_per_car_m=told[..., 3],
+        cuts=told[..., 4].astype(np.int64),
+        above_m_s=max(above for above, _ in errors),
+        below_m_s=max(below for _, below in errors),
+    )
 
 
 def table_cuts(scene: AimScene, order: AimOrder, cars: int) -> TableCuts:
@@ -219,6 +230,6 @@ def require_on_track(cuts: SceneCuts, free_distance_m: float) -> None:
     room = cuts.scene.track.end_m - float(cuts.release_m.max())
     require(
         free_distance_m <= room,
-        f"aim: free_distances_m holds {free_distance_m:g}; a cut of {cuts.rolling.cuts.cars} cars has {room:.0f} m at most "
-        "from where it leaves the position to the end of the track",
+        f"aim: free_distances_m holds {free_distance_m:g}; a cut of {cuts.rolling.cuts.cars} cars has {room:.0f} m at "
+        "most from where it leaves the position to the end of the track",
     )

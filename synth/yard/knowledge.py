@@ -20,7 +20,7 @@ NODES = 17
 """At which commands by a reading are worked out."""
 
 LOW_TAIL, HIGH_TAIL = 0.0002, 0.002
-"""Shares of readings beyond the ends of the nodes; they get the command of the end, too fast below and too slow above."""
+"""Shares of readings beyond the ends of the nodes; they get the command of the end: too fast below, too slow above."""
 
 
 @dataclass(frozen=True)
@@ -103,9 +103,8 @@ class ByReading:
 
     def readings(self, cuts: SceneCuts) -> Floats:
         """Evenly spaced readings that span those of `cuts`, (nodes,)."""
-        return np.linspace(
-            *np.quantile(self.reading.of(cuts).with_error(cuts), (LOW_TAIL, 1.0 - HIGH_TAIL)), self.nodes
-        )
+        low, high = np.quantile(self.reading.of(cuts).with_error(cuts), (LOW_TAIL, 1.0 - HIGH_TAIL))
+        return np.linspace(float(low), float(high), self.nodes)
 
     def commands_at(
         self, nodes: Floats, cuts: SceneCuts, thresholds_m_s: Floats, requirement: Requirement
@@ -124,12 +123,12 @@ class ByReading:
 def likelihood(reading: float, value: Floats, std: Floats) -> Floats:
     """Of a reading, for cuts of which a perfect sensor would have read `value`; the same factor is left out for all."""
     squares = ((reading - value) / std) ** 2
-    return np.exp(-0.5 * (squares - squares.min())) / std
+    return np.asarray(np.exp(-0.5 * (squares - squares.min())) / std)
 
 
 def not_falling(speeds_m_s: Floats) -> Floats:
-    """`speeds_m_s` (nodes, k) made not to fall along the nodes, by least squares: the noise of the draws is averaged out
-    where it would command a better runner more than a worse one. A node below one that is NaN is NaN, too."""
+    """`speeds_m_s` (nodes, k) made not to fall along the nodes, by least squares: the noise of the draws is averaged
+    out where it would command a better runner more than a worse one. A node below one that is NaN is NaN, too."""
     rising = np.full_like(speeds_m_s, np.nan)
     for k, column in enumerate(speeds_m_s.T):
         without = np.flatnonzero(np.isnan(column))

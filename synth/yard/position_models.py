@@ -93,7 +93,7 @@ class SampledExits:
         high = np.minimum(low + 1, len(self.commands_m_s) - 1)
         rows = np.arange(len(self.exits_m_s))
         rising = self.rising
-        return rising[rows, low] + (place - low) * (rising[rows, high] - rising[rows, low])
+        return np.asarray(rising[rows, low] + (place - low) * (rising[rows, high] - rising[rows, low]))
 
     def threshold(self, critical_m_s: Floats) -> Floats:
         """Where the exit of a cut goes beyond its critical speed."""

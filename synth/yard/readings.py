@@ -99,7 +99,7 @@ class ResistanceByRadar:
 
 @dataclass(frozen=True)
 class LightnessByWeigher:
-    """Mass of the cut below zero, tonnes, from a weigher with a relative error of `relative_std`: light cuts roll worse."""
+    """Less the mass of the cut, tonnes, by a weigher with a relative error of `relative_std`: light cuts roll worse."""
 
     relative_std: float = 0.02
 
