@@ -61,8 +61,11 @@ class Couplings:
 def couplings(cuts: SceneCuts, exits: ExitSpeeds, commanded_m_s: Floats, arrival_m: Floats) -> Couplings:
     """Let `cuts` out with `commanded_m_s` (n,) towards standing cars whose head is at `arrival_m` (n,).
 
-    Over-speed is told by the roll forwards, which knows nothing of the thresholds that the commands come from.
+    Over-speed is told by the roll forwards, which knows nothing of the thresholds that the commands come from. Raises
+    `ValueError` for a command that is NaN: where none meets the requirement, the caller says what is done.
     """
+    if not np.isfinite(commanded_m_s).all():
+        raise ValueError("couplings: a command is not a finite number")
     rolled = cuts.rolling.roll_on(cuts.release_m, exits.at(commanded_m_s), arrival_m[:, None])
     gap = np.where(np.isfinite(rolled.stop_m), np.maximum(arrival_m - rolled.stop_m, 0.0), 0.0)
     return Couplings(rolled.speed_m_s[:, 0], gap, cuts.scene.coupling_speed_m_s, cuts.rolling.cuts.cars)

@@ -83,7 +83,7 @@ class AimScene:
         rolling = rolling_cuts(self.population, self.track, self.exit_m, drawn)
         z = ndtri(uniform_numbers(seed, Purpose.BUNCH_EXIT, first, count, 1)[:, 0])
         begins = np.maximum(self.stretch.speed_mean_m_s + self.stretch.speed_std_m_s * z, SLOWEST_M_S)
-        return SceneCuts(self, rolling, begins, seed, first)
+        return SceneCuts(self, category, rolling, begins, seed, first)
 
 
 @frozen_arrays
@@ -95,6 +95,7 @@ class SceneCuts:
     """
 
     scene: AimScene
+    category: WeightCategory
     rolling: RollingCuts
     stretch_speed_m_s: Floats
     seed: int
@@ -107,6 +108,14 @@ class SceneCuts:
     def release_m(self) -> Floats:
         """Where each head is when the last axle leaves the position, (n,)."""
         return self.scene.exit_m + self.rolling.cuts.last_axle_m
+
+    def resistance_at(self, speed_m_s: Floats, rows: NDArray[np.int64]) -> Floats:
+        """Resistance of the cuts `rows` on straight track at `speed_m_s`, air and wind included, N/kN."""
+        cuts, law = self.rolling.cuts, self.scene.population.law
+        against = speed_m_s + cuts.head_wind_m_s[rows]
+        air = cuts.air_n_per_kn[rows] * against * np.abs(against)
+        steady = cuts.resistance_n_per_kn[rows] + law.slope_extra_n_per_kn
+        return np.asarray(steady + law.linear_n_per_kn * speed_m_s + air)
 
     @property
     def measured_speeds_m_s(self) -> tuple[Floats, Floats]:
