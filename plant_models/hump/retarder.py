@@ -1,0 +1,66 @@
+"""A retarder of the hump: where it brakes, which position of the library it is, and what its controller loads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+from plant_models.errors import require, require_between
+from plant_models.hump.edge import Edge
+from plant_models.hump.element_number import RETARDERS
+
+
+@dataclass(frozen=True)
+class Retarder:
+    """A retarder position of one track, whose element is at its entrance; its edge begins there.
+
+    `zones_m`: (begin, end) of each braking zone from the entrance, in order. The insulated section reaches from
+    `entry_joint_m` ahead of the entrance to `exit_joint_m` behind it, the last zone included. `position`: name in the
+    library of retarder positions. `book`, `aim_tables`: files of the controller tables and of the aim tables, as the
+    hump's file names them; None and () where they are not given yet. Raises `PlantError`.
+    """
+
+    number: int
+    next: Edge
+    zones_m: tuple[tuple[float, float], ...]
+    entry_joint_m: float
+    exit_joint_m: float
+    position: str
+    book: str | None = None
+    aim_tables: tuple[str, ...] = ()
+    axle_counters: bool = True
+
+    def __post_init__(self) -> None:
+        RETARDERS.checked(self.number)
+        require(len(self.zones_m) > 0, "zones_m: there is none; a retarder must have at least one braking zone")
+        for begin, end in self.zones_m:
+            require_between("zones_m: a begin", begin, 0.0, 200.0)
+            require_between("zones_m: an end", end, 0.0, 200.0)
+            require(end > begin, f"zones_m: a zone ends at {end:g} m; it must end behind its begin, {begin:g} m")
+        for ahead, behind in pairwise(self.zones_m):
+            require(
+                behind[0] >= ahead[1],
+                f"zones_m: a zone begins at {behind[0]:g} m, before the one ahead of it ends at {ahead[1]:g} m",
+            )
+        require_between("entry_joint_m", self.entry_joint_m, 0.0, 100.0)
+        require_between("exit_joint_m", self.exit_joint_m, 0.0, 300.0)
+        require(
+            self.exit_joint_m >= self.zones_m[-1][1],
+            f"exit_joint_m is {self.exit_joint_m:g}; it must not be before the end of the last zone, "
+            f"{self.zones_m[-1][1]:g} m",
+        )
+
+    @property
+    def exit_m(self) -> float:
+        """End of the last zone, from the entrance."""
+        return self.zones_m[-1][1]
+
+    @property
+    def edges(self) -> tuple[Edge, ...]:
+        """The one edge."""
+        return (self.next,)
+
+    @property
+    def section_m(self) -> tuple[float, float]:
+        """Metres of the insulated section (ahead of the element, behind it)."""
+        return self.entry_joint_m, self.exit_joint_m

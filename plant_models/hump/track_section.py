@@ -1,0 +1,69 @@
+"""An insulated section of plain track: of a classification track, or between other elements."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from plant_models.errors import require, require_between
+from plant_models.hump.edge import LONGEST_EDGE_M, Edge
+from plant_models.hump.element_number import SECTIONS
+
+MOST_TRACKS = 199
+
+
+@dataclass(frozen=True)
+class TrackSection:
+    """An insulated section of `length_m`, whose element and edge begin where the section does.
+
+    `track`: number of the classification track that it is part of, None on the way there. The last section of a track
+    has an edge to nowhere and is as long as that; `standing_m` of cars stand at its far end. Raises `PlantError`.
+    """
+
+    number: int
+    next: Edge
+    length_m: float
+    track: int | None = None
+    standing_m: float = 0.0
+    axle_counters: bool = True
+
+    def __post_init__(self) -> None:
+        SECTIONS.checked(self.number)
+        require_between("length_m", self.length_m, 0.1, LONGEST_EDGE_M)
+        require(
+            self.track is None or 1 <= self.track <= MOST_TRACKS,
+            f"track is {self.track}; it must be from 1 to {MOST_TRACKS}",
+        )
+        require_between("standing_m", self.standing_m, 0.0, LONGEST_EDGE_M)
+        if not self.is_last:
+            require(self.standing_m == 0.0, "standing_m is given; cars stand in the last section of a track alone")
+            return
+        require(self.track is not None, "track is missing; the last section of a track must tell the track's number")
+        require(
+            self.length_m == self.next.length_m,
+            f"length_m is {self.length_m:g}; the last section of a track must be as long as its edge, "
+            f"{self.next.length_m:g} m",
+        )
+        require(
+            self.standing_m <= self.length_m,
+            f"standing_m is {self.standing_m:g}; it must be at most the length of the section, {self.length_m:g} m",
+        )
+
+    @property
+    def is_last(self) -> bool:
+        """Whether the track ends in this section."""
+        return self.next.to is None
+
+    @property
+    def free_m(self) -> float:
+        """From the beginning of the section to the standing cars, or to its end."""
+        return self.length_m - self.standing_m
+
+    @property
+    def edges(self) -> tuple[Edge, ...]:
+        """The one edge."""
+        return (self.next,)
+
+    @property
+    def section_m(self) -> tuple[float, float]:
+        """Metres of the insulated section (ahead of the element, behind it)."""
+        return 0.0, self.length_m
