@@ -1,0 +1,47 @@
+"""What cuts did that were sent off with the exit speeds of an aim table, at each of its nodes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tuning_tables.aim.nodes import Nodes, nodes_of, require_all
+from tuning_tables.requirement import require_count
+
+
+@dataclass(frozen=True, eq=False)
+class Reported:
+    """Figures of `passes` simulated cuts a node, of other draws than those that the exit speeds were chosen on.
+
+    p_overspeed       share that coupled faster than required, with the ends of its 95 % interval: low <= p <= high
+    mean_gap_m        mean of what stayed free before the standing cars, >= 0; 0 for a cut that coupled
+
+    All have the shape of the axes, and NaN where there is no exit speed. Read-only copies. Raises `InvalidTable`.
+    """
+
+    passes: int
+    p_overspeed: Nodes
+    p_overspeed_low95: Nodes
+    p_overspeed_high95: Nodes
+    mean_gap_m: Nodes
+
+    def __post_init__(self) -> None:
+        require_count(self.passes, "reported.passes", 1)
+        shape = np.shape(self.p_overspeed)
+        for name in ("p_overspeed", "p_overspeed_low95", "p_overspeed_high95", "mean_gap_m"):
+            nodes = nodes_of(getattr(self, name), f"reported.{name}", shape)
+            nodes.setflags(write=False)
+            object.__setattr__(self, name, nodes)
+        low, p, high = self.p_overspeed_low95, self.p_overspeed, self.p_overspeed_high95
+        key, null = "reported.p_overspeed", np.isnan(p)
+        require_all(null | ((low >= 0.0) & (high <= 1.0)), p, key, "a share, its interval within [0, 1]")
+        require_all(null | ((low <= p) & (p <= high)), p, key, "within its interval")
+        require_all(null | (self.mean_gap_m >= 0.0), self.mean_gap_m, "reported.mean_gap_m", "0 m or more")
+
+    def require_nodes(self, speeds: Nodes) -> None:
+        """There are figures exactly where `speeds` has a number."""
+        for name in ("p_overspeed", "p_overspeed_low95", "p_overspeed_high95", "mean_gap_m"):
+            nodes = nodes_of(getattr(self, name), f"reported.{name}", speeds.shape)
+            wanted = "null exactly where there is no exit speed"
+            require_all(np.isnan(nodes) == np.isnan(speeds), nodes, f"reported.{name}", wanted)
