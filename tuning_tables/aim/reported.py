@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from tuning_tables.aim.nodes import Nodes, nodes_of, require_all
 from tuning_tables.requirement import require_count
+
+FIGURES: Final = ("p_overspeed", "p_overspeed_low95", "p_overspeed_high95", "mean_gap_m")
+"""What is told of every node."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +33,7 @@ class Reported:
     def __post_init__(self) -> None:
         require_count(self.passes, "reported.passes", 1)
         shape = np.shape(self.p_overspeed)
-        for name in ("p_overspeed", "p_overspeed_low95", "p_overspeed_high95", "mean_gap_m"):
+        for name in FIGURES:
             nodes = nodes_of(getattr(self, name), f"reported.{name}", shape)
             nodes.setflags(write=False)
             object.__setattr__(self, name, nodes)
@@ -41,7 +45,7 @@ class Reported:
 
     def require_nodes(self, speeds: Nodes) -> None:
         """There are figures exactly where `speeds` has a number."""
-        for name in ("p_overspeed", "p_overspeed_low95", "p_overspeed_high95", "mean_gap_m"):
+        for name in FIGURES:
             nodes = nodes_of(getattr(self, name), f"reported.{name}", speeds.shape)
             wanted = "null exactly where there is no exit speed"
             require_all(np.isnan(nodes) == np.isnan(speeds), nodes, f"reported.{name}", wanted)
