@@ -21,6 +21,9 @@ LEAST_STEP: Final = 1e-3
 MOST_NODES_OF_A_CUT: Final = 999
 """Free distances times resistances: what one constant array of Structured Text holds."""
 
+MOST_NODES: Final = 20_000
+"""So that a JSON file stays below its limit, and an INT of Structured Text counts them."""
+
 
 @dataclass(frozen=True, eq=False)
 class AimAxes:
@@ -31,7 +34,8 @@ class AimAxes:
                          position, 0 to 10 000 m, (D,)
     resistance_n_per_kn  measured rolling resistance, within +-1000 N/kN, (R,); None in a table by category alone
 
-    Free distances and resistances are 0.001 apart at least, as float32; D times R is 999 at most.
+    Free distances and resistances are 0.001 apart at least, as float32; D times R is 999 at most, C times that
+    20 000.
 
     Raises `InvalidTable`.
     """
@@ -56,10 +60,10 @@ class AimAxes:
             resistance = _axis(self.resistance_n_per_kn, "axes.resistance_n_per_kn", limits)
             object.__setattr__(self, "resistance_n_per_kn", resistance)
         count = int(np.prod(self.shape[1:]))
-        if count > MOST_NODES_OF_A_CUT:
+        if count > MOST_NODES_OF_A_CUT or count * len(cars) > MOST_NODES:
             raise InvalidTable(
-                f"axes give {count} nodes for each number of cars, but at most {MOST_NODES_OF_A_CUT} are allowed: "
-                "take fewer free distances or resistances."
+                f"axes give {count} nodes for each of {len(cars)} numbers of cars, but at most {MOST_NODES_OF_A_CUT} "
+                f"are allowed, and {MOST_NODES} in all: take fewer free distances or resistances."
             )
 
     @property

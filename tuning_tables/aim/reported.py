@@ -21,7 +21,8 @@ class Reported:
     p_overspeed       share that coupled faster than required, with the ends of its 95 % interval: low <= p <= high
     mean_gap_m        mean of what stayed free before the standing cars, >= 0; 0 for a cut that coupled
 
-    All have the shape of the axes, and NaN where there is no exit speed. Read-only copies. Raises `InvalidTable`.
+    All have the shape of the axes, and NaN at the same nodes: where there is no exit speed, and where too few of the
+    passes came to a node to tell. Read-only copies. Raises `InvalidTable`.
     """
 
     passes: int
@@ -44,8 +45,7 @@ class Reported:
         require_all(null | (self.mean_gap_m >= 0.0), self.mean_gap_m, "reported.mean_gap_m", "0 m or more")
 
     def require_nodes(self, speeds: Nodes) -> None:
-        """There are figures exactly where `speeds` has a number."""
-        for name in FIGURES:
-            nodes = nodes_of(getattr(self, name), f"reported.{name}", speeds.shape)
-            wanted = "null exactly where there is no exit speed"
-            require_all(np.isnan(nodes) == np.isnan(speeds), nodes, f"reported.{name}", wanted)
+        """They have the shape of `speeds`, and no figure where that has no number."""
+        key = "reported.p_overspeed"
+        nodes = nodes_of(self.p_overspeed, key, speeds.shape)
+        require_all(np.isnan(nodes) | ~np.isnan(speeds), nodes, key, "null where there is no exit speed")
