@@ -40,6 +40,8 @@ class Reported:
             object.__setattr__(self, name, nodes)
         low, p, high = self.p_overspeed_low95, self.p_overspeed, self.p_overspeed_high95
         key, null = "reported.p_overspeed", np.isnan(p)
+        for nodes, name in ((low, "p_overspeed_low95"), (high, "p_overspeed_high95"), (self.mean_gap_m, "mean_gap_m")):
+            require_all(np.isnan(nodes) == null, nodes, f"reported.{name}", f"null exactly where {key} is")
         require_all(null | ((low >= 0.0) & (high <= 1.0)), p, key, "a share, its interval within [0, 1]")
         require_all(null | ((low <= p) & (p <= high)), p, key, "within its interval")
         require_all(null | (self.mean_gap_m >= 0.0), self.mean_gap_m, "reported.mean_gap_m", "0 m or more")
