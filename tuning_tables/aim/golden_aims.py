@@ -60,19 +60,29 @@ def golden_aims(table: AimTable) -> GoldenAims:
     middle, mean = far[len(far) // 2], high[len(high) // 2]
     for cars in _numbers_of_cars(table):
         questions += [(cars, middle, mean), (cars, far[0], high[0])]
-    return golden_answers(table, [*questions, *_incredible(table, middle, mean)])
+    return golden_answers(table, [*questions, *_incredible(table, mean)])
 
 
 def few_golden_aims(table: AimTable) -> GoldenAims:
-    """At most twelve questions for each number of cars, and some forty without: for controllers with little memory."""
+    """At most fourteen questions for each number of cars, and some forty besides: for controllers with little memory.
+
+    At both ends of the distance, at two places between, and at the last node that has a speed for each of the least and
+    the largest resistance; numbers of cars below and above the listed ones; and what is no number.
+    """
     low, top = table.resistance_nodes[[0, -1]].tolist()
     first, last = table.distance_nodes[[0, -1]].tolist()
-    inner = [begin + (end - begin) * part for part in (0.25, 0.8125) for begin, end in ((first, last),)]
+    near, far = (first + (last - first) * part for part in (0.25, 0.8125))
     between = [low + (top - low) * part for part in (0.1875, 0.75)]
-    questions = [(cars, d, r) for cars in table.axes.cars.tolist() for d in (first, *inner, last) for r in between]
-    questions += [(cars, inner[0], r) for cars in table.axes.cars.tolist() for r in (low, top)]
-    questions += [(cars, inner[1], between[1]) for cars in _numbers_of_cars(table)[-8:]]
-    return golden_answers(table, [*questions, *_incredible(table, inner[0], between[0])])
+    questions: list[Question] = []
+    for cars, speeds in zip(table.axes.cars.tolist(), table.speed_nodes, strict=True):
+        questions += [(cars, d, r) for d in (first, near, far, last) for r in between]
+        questions += [(cars, near, r) for r in (low, top)]
+        for r, column in ((low, 0), (top, -1)):
+            reached = max(int(np.count_nonzero(~np.isnan(speeds[:, column]))), 1)
+            questions.append((cars, float(table.distance_nodes[reached - 1]), r))
+    numbers = _numbers_of_cars(table)
+    questions += [(cars, first, between[1]) for cars in (*numbers[:4], *numbers[-4:])]
+    return golden_answers(table, [*questions, *_incredible(table, between[1])])
 
 
 def golden_answers(table: AimTable, questions: Sequence[Question]) -> GoldenAims:
@@ -117,8 +127,8 @@ def _numbers_of_cars(table: AimTable) -> list[int]:
     return sorted({cars + step for cars in listed for step in (-1, 0, 1)} | {0, -1, *INT_LIMITS})
 
 
-def _incredible(table: AimTable, distance_m: float, resistance: float) -> list[Question]:
+def _incredible(table: AimTable, resistance: float) -> list[Question]:
     """What cannot be true, or only just can, with the first and the last number of cars."""
     hard = (np.nan, np.inf, -np.inf, LARGEST, -LARGEST, SMALLEST, -SMALLEST, -1.0, -0.0, 0.0)
-    ends = table.axes.cars[[0, -1]].tolist()
-    return [question for cars in ends for x in hard for question in ((cars, x, resistance), (cars, distance_m, x))]
+    ends, first_m = table.axes.cars[[0, -1]].tolist(), float(table.distance_nodes[0])
+    return [question for cars in ends for x in hard for question in ((cars, x, resistance), (cars, first_m, x))]

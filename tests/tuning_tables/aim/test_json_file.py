@@ -44,6 +44,13 @@ def smallest_table() -> AimTable:
     return replace(category_table(), axes=axes, exit_speed_m_s=speeds, reported=reported_of(speeds))
 
 
+def smallest_measured_table() -> AimTable:
+    """One number of cars, two distances, two resistances, one null."""
+    speeds = np.array([[[1.0, 1.5], [np.nan, 2.0]]])
+    axes = AimAxes(np.array([1]), np.array([10.0, 20.0]), np.array([0.5, 1.5]))
+    return replace(measured_table(), axes=axes, exit_speed_m_s=speeds, reported=reported_of(speeds))
+
+
 def resealed(document: Document) -> bytes:
     return canonical_json({**document, "crc32": document_checksum(document)})
 
@@ -68,7 +75,7 @@ def changed_texts(content: bytes) -> Iterator[bytes]:
         yield before + after
         yield before + this + this + after
         yield before + after[:1] + this + after[1:]
-        for bit in (at % 8, (at + 3) % 8):
+        for bit in range(8):
             yield before + bytes([this[0] ^ 1 << bit]) + after
         yield before + TELLING_BYTES[at % len(TELLING_BYTES)].to_bytes() + this + after
 
@@ -84,7 +91,7 @@ def test_no_flipped_bit_and_no_lost_doubled_inserted_or_transposed_byte_gets_thr
             tried += 1
             with pytest.raises(TableError):
                 from_aim_json(changed)
-    assert tried > 5.5 * len(content)
+    assert tried > 11.5 * len(content)
 
 
 @pytest.mark.parametrize(
@@ -209,7 +216,7 @@ def altered(document: Document, path: JsonPath, value: object) -> Document:
 
 
 @pytest.mark.parametrize("wrong", [None, True, "", [], {}, -1], ids=repr)
-@pytest.mark.parametrize("make", [smallest_table, measured_table])
+@pytest.mark.parametrize("make", [smallest_table, smallest_measured_table])
 def test_what_the_schema_refuses_the_reader_refuses_too(
     validator: jsonschema.Draft202012Validator, make: Callable[[], AimTable], wrong: object
 ) -> None:
