@@ -29,14 +29,10 @@ from tuning_tables.aim.st_blocks import (
 )
 from tuning_tables.aim.st_self_test import SELF_TEST_HEAD, aim_self_test_blocks
 from tuning_tables.category_names import category_names, comment_text
-from tuning_tables.errors import InvalidTable
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.st_literals import bool_array, int_array, real_array
 from tuning_tables.st_tables import constants
 from tuning_tables.st_units import unit_files
-
-MOST_TABLES: Final = 500
-"""In one text, as for controller tables."""
 
 AIM_FILE: Final = "aim_table.st"
 AIM_SELF_TEST_FILE: Final = "aim_self_test.st"
@@ -45,7 +41,7 @@ AIM_SELF_TEST_FILE: Final = "aim_self_test.st"
 def aim_st_files(aims: AimTables, prefix: ExportPrefix = RETARDER, ask: Ask = golden_aims) -> Mapping[str, bytes]:
     """The files of the export by name, ASCII with LF: the tables with their blocks, and the self-test.
 
-    Equal sets give equal bytes. Raises `InvalidTable` for more than `MOST_TABLES` tables.
+    Equal sets give equal bytes. There are 490 tables at most, two for each number of a category.
     """
     files = {
         AIM_FILE: "\n".join([_head(aims), *_units(aims)]),
@@ -72,11 +68,6 @@ def _head(aims: AimTables) -> str:
 
 def _units(aims: AimTables) -> list[str]:
     """Type and blocks, each a text of its own, none before one that it needs."""
-    if len(aims.tables) > MOST_TABLES:
-        raise InvalidTable(
-            f"there are {len(aims.tables)} aim tables, but Structured Text holds at most {MOST_TABLES}: "
-            "export fewer categories at a time."
-        )
     size = aim_block_size(aims)
     lengths = {"CARS": size.cars, "DISTANCE": size.distances, "RESISTANCE": size.resistances}
     last = {f"LAST_{name}": length - 1 for name, length in lengths.items()}
