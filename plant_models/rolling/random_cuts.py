@@ -1,0 +1,159 @@
+"""Cuts as they come over the hump: types, masses, resistance, wind and bends, one draw each for the whole way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtri
+
+from plant_models.cut import GRAVITY_M_S2, ROTATING_MASS_PER_AXLE_T
+from plant_models.errors import require
+from plant_models.frozen_arrays import frozen_arrays
+from plant_models.library.weight_category import WeightCategories, WeightCategory
+from plant_models.rolling.car_mix import CarMix
+from plant_models.rolling.random_numbers import Purpose, uniform_numbers
+from plant_models.rolling.resistance_law import ResistanceLaw
+from plant_models.rolling.roll_track import Bend
+from plant_models.rolling.weather import Weather
+
+Floats = NDArray[np.float64]
+
+MOST_CARS = 60
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class DrawnCuts:
+    """n cuts of `cars` cars each; arrays of shape (n, cars), of cuts (n,), of bends (n, bends).
+
+    `types`: places in the mix; `basic_n_per_kn`: resistance of each car in the yard at standstill; `head_wind_m_s`:
+    against the cut; `bend_v2_m_s2`, `bend_head_m`: head that a bend takes, per (m/s)² and whatever the speed;
+    `air_n_per_kn`: resistance of the air of the whole cut per (m/s)² of relative speed.
+    """
+
+    mix: CarMix
+    types: NDArray[np.int64]
+    mass_t: Floats
+    basic_n_per_kn: Floats
+    head_wind_m_s: Floats
+    bend_v2_m_s2: Floats
+    bend_head_m: Floats
+    air_n_per_kn: Floats
+
+    def __len__(self) -> int:
+        return len(self.types)
+
+    @property
+    def cars(self) -> int:
+        """Cars of each cut."""
+        return int(self.types.shape[1])
+
+    @property
+    def cut_mass_t(self) -> Floats:
+        """Q, shape (n,)."""
+        return np.asarray(self.mass_t.sum(axis=1))
+
+    @property
+    def shares(self) -> Floats:
+        """Mass of each car over that of its cut, (n, cars)."""
+        return self.mass_t / self.cut_mass_t[:, None]
+
+    @property
+    def resistance_n_per_kn(self) -> Floats:
+        """w0 of each cut: of its cars, weighted by mass, (n,)."""
+        return np.asarray((self.shares * self.basic_n_per_kn).sum(axis=1))
+
+    @property
+    def reduced_gravity_m_s2(self) -> Floats:
+        """g' of each cut, (n,)."""
+        axles = np.array([len(c.car.axle_offsets_m) for c in self.mix.cars])[self.types].sum(axis=1)
+        return np.asarray(GRAVITY_M_S2 / (1.0 + ROTATING_MASS_PER_AXLE_T * axles / self.cut_mass_t))
+
+    @property
+    def car_lengths_m(self) -> Floats:
+        """Length over couplers of each car, (n, cars)."""
+        return np.array([c.car.length_m for c in self.mix.cars])[self.types]
+
+    @property
+    def car_fronts_m(self) -> Floats:
+        """How far the front coupler of each car is behind the head of its cut, (n, cars)."""
+        return np.cumsum(self.car_lengths_m, axis=1) - self.car_lengths_m
+
+    @property
+    def first_axle_m(self) -> Floats:
+        """How far the first axle is behind the head, (n,)."""
+        return self.overhangs_m[self.types[:, 0]]
+
+    @property
+    def last_axle_m(self) -> Floats:
+        """How far the last axle is behind the head, (n,)."""
+        return np.asarray(self.car_lengths_m.sum(axis=1) - self.overhangs_m[self.types[:, -1]])
+
+    @property
+    def overhangs_m(self) -> Floats:
+        """From the coupler to the nearest axle, for each type of the mix."""
+        return np.array([(c.car.length_m - c.car.axle_offsets_m[-1]) / 2.0 for c in self.mix.cars])
+
+    def chosen(self, which: NDArray[np.bool_] | NDArray[np.int64] | slice) -> DrawnCuts:
+        """Some of these cuts."""
+        arrays = {f.name: getattr(self, f.name)[which] for f in fields(self) if f.name != "mix"}
+        return DrawnCuts(mix=self.mix, **arrays)
+
+
+@dataclass(frozen=True)
+class CutPopulation:
+    """Where cuts come from: mix of cars, weight categories, law of resistance, weather, and the bends of their way."""
+
+    mix: CarMix
+    categories: WeightCategories
+    law: ResistanceLaw
+    weather: Weather
+    bends: tuple[Bend, ...] = ()
+
+    def draw(self, category: WeightCategory, cars: int, seed: int, first: int, count: int) -> DrawnCuts:
+        """Cuts `first` … `first + count − 1` of the row `seed`, each of `cars` cars of `category`.
+
+        The first cars, the wind and the bends of cut i are the same whatever `cars`.
+        """
+        require(1 <= cars <= MOST_CARS, f"cut: {cars} cars; a cut has 1 to {MOST_CARS}")
+        mix = self.mix.of(self.categories, category)
+        u = uniform_numbers(seed, Purpose.CARS, first, count, 3 * cars).reshape(count, cars, 3)
+        types = mix.types(u[..., 0])
+        mass = mix.masses_t(self.categories, category, types, u[..., 1])
+        basic = self.law.basic_n_per_kn(category.resistance, mass, self.weather.temperature_c, u[..., 2])
+        wind = ndtri(uniform_numbers(seed, Purpose.WIND, first, count, 1)[:, 0])
+        v2, head = bend_heads_m(self.law, self.bends, seed, first, count)
+        return DrawnCuts(
+            mix=mix,
+            types=types,
+            mass_t=mass,
+            basic_n_per_kn=basic,
+            head_wind_m_s=self.weather.head_wind_mean_m_s + self.weather.head_wind_std_m_s * wind,
+            bend_v2_m_s2=v2,
+            bend_head_m=head,
+            air_n_per_kn=self.weather.air_n_per_kn(1.0) * drag_areas_m2(mix, types) / mass.sum(axis=1),
+        )
+
+
+def drag_areas_m2(mix: CarMix, types: NDArray[np.int64]) -> Floats:
+    """C_x1·S_1 + Σ C_xj·S_j of each cut, (n,): cars behind the first count by their following share."""
+    areas = np.array([c.drag_area_m2 for c in mix.cars])[types]
+    return np.asarray(areas[:, 0] + mix.following_share * areas[:, 1:].sum(axis=1))
+
+
+def bend_heads_m(
+    law: ResistanceLaw, bends: tuple[Bend, ...], seed: int, first: int, count: int
+) -> tuple[Floats, Floats]:
+    """Heads that each bend takes from each cut: (per (m/s)², whatever the speed), each (count, bends)."""
+    u = uniform_numbers(seed, Purpose.BENDS, first, count, len(bends) * law.bend_numbers)
+    rows: Iterator[tuple[Floats, Floats]] = (
+        law.bend_heads_m(bend, numbers)
+        for bend, numbers in zip(bends, np.split(u, max(len(bends), 1), axis=1), strict=False)
+    )
+    v2, head = np.zeros((count, len(bends))), np.zeros((count, len(bends)))
+    for place, (of_v2, whatever) in enumerate(rows):
+        v2[:, place], head[:, place] = of_v2, whatever
+    return v2, head

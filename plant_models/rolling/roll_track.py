@@ -1,0 +1,80 @@
+"""The track on which a cut rolls: falls, switches and curves, from the crest to the standing cars."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.errors import require, require_between
+from plant_models.track_profile import TrackProfile
+
+LONGEST_TRACK_M = 10_000.0
+
+
+@dataclass(frozen=True)
+class Bend:
+    """A stretch on which wheels are turned: `switches` points and `turn_deg` degrees of curve, switch curves included.
+
+    Its resistance is spread evenly over [`from_m`, `to_m`], metres from the crest.
+    """
+
+    from_m: float
+    to_m: float
+    switches: int
+    turn_deg: float
+
+    def __post_init__(self) -> None:
+        require_between("bend: from_m", self.from_m, 0.0, LONGEST_TRACK_M)
+        require_between("bend: to_m", self.to_m, 0.0, LONGEST_TRACK_M)
+        require(self.to_m > self.from_m, f"bend: to_m is {self.to_m:g}; it must be more than from_m, {self.from_m:g}")
+        require(0 <= self.switches <= 20, f"bend: switches is {self.switches}; it must be from 0 to 20")
+        require_between("bend: turn_deg", self.turn_deg, 0.0, 360.0)
+        require(
+            self.switches > 0 or self.turn_deg > 0.0,
+            f"bend: switches and turn_deg are both 0 at {self.from_m:g} m; a bend must have one of them",
+        )
+
+
+@dataclass(frozen=True)
+class RollTrack:
+    """Track from the crest (0 m) to `end_m`: grades in permille, downhill positive, and bends in order.
+
+    Grade before the crest is 0: that part of a long cut stands on the flat behind it.
+    """
+
+    profile: TrackProfile
+    end_m: float
+    bends: tuple[Bend, ...] = ()
+
+    def __post_init__(self) -> None:
+        require_between("track: end_m", self.end_m, 1.0, LONGEST_TRACK_M)
+        require(self.profile.starts_m[0] == 0.0, f"track: starts_m is {self.profile.starts_m}; it must begin with 0")
+        require(
+            self.profile.starts_m[-1] < self.end_m,
+            f"track: the last element begins at {self.profile.starts_m[-1]:g} m; it must begin before the end, "
+            f"{self.end_m:g} m",
+        )
+        for ahead, behind in pairwise(self.bends):
+            require(
+                behind.from_m >= ahead.to_m,
+                f"track: the bend from {behind.from_m:g} m overlaps the one that ends at {ahead.to_m:g} m",
+            )
+        if self.bends:
+            require(
+                self.bends[-1].to_m <= self.end_m,
+                f"track: the last bend ends at {self.bends[-1].to_m:g} m, after the end of the track, {self.end_m:g} m",
+            )
+
+    @property
+    def breaks_m(self) -> tuple[float, ...]:
+        """Where the grade changes, and the end."""
+        return (*self.profile.starts_m, self.end_m)
+
+    def fall_m(self, x_m: NDArray[np.float64]) -> NDArray[np.float64]:
+        """How far the track has fallen from the crest to `x_m`; before the crest 0, after the end as far as there."""
+        breaks = np.asarray(self.breaks_m)
+        falls = np.concatenate(([0.0], np.cumsum(np.diff(breaks) * np.asarray(self.profile.grades_permille) * 1e-3)))
+        return np.interp(x_m, breaks, falls)

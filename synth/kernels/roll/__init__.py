@@ -1,0 +1,1 @@
+"""Cuts that roll freely, one after the other, forwards and backwards."""

@@ -1,0 +1,51 @@
+"""The highest command that keeps the probability of over-speed: a quantile of a sorted list of thresholds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.frozen_arrays import frozen_arrays
+
+Floats = NDArray[np.float64]
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Thresholds:
+    """Commands above which n cuts couple too fast at k places: `sorted_m_s` (n, k), each column sorted, and `order`
+    (n, k): whose they are. Build it with `thresholds_of`."""
+
+    sorted_m_s: Floats
+    order: NDArray[np.int64]
+
+    def overspeed(self, commanded_m_s: Floats) -> Floats:
+        """Share of the cuts that couple too fast at place k when all are commanded `commanded_m_s` (k,)."""
+        columns = range(self.sorted_m_s.shape[1])
+        below = [np.searchsorted(self.sorted_m_s[:, k], commanded_m_s[k], side="left") for k in columns]
+        return np.array(below) / len(self.sorted_m_s)
+
+    def limit_speeds(self, p_overspeed: float, bounds_m_s: tuple[float, float]) -> Floats:
+        """The highest command for each place, (k,), that at most the share `p_overspeed` of the cuts couples too fast
+        with; at most the upper bound, and NaN where even the lower bound is too fast."""
+        return bounded(self.sorted_m_s[int(p_overspeed * len(self.sorted_m_s))], bounds_m_s)
+
+    def weighted_limit_speeds(self, weights: Floats, p_overspeed: float, bounds_m_s: tuple[float, float]) -> Floats:
+        """As `limit_speeds`, each cut counting by its weight (n,)."""
+        passed = np.cumsum(weights[self.order], axis=0)
+        place = np.minimum((passed <= p_overspeed * passed[-1]).sum(axis=0), len(passed) - 1)
+        return bounded(self.sorted_m_s[place, np.arange(passed.shape[1])], bounds_m_s)
+
+
+def thresholds_of(thresholds_m_s: Floats) -> Thresholds:
+    """The list of `thresholds_m_s` (n, k), sorted."""
+    order = np.argsort(thresholds_m_s, axis=0, kind="stable")
+    return Thresholds(np.take_along_axis(thresholds_m_s, order, axis=0), order)
+
+
+def bounded(speeds_m_s: Floats, bounds_m_s: tuple[float, float]) -> Floats:
+    """Speeds down to the upper bound, NaN below the lower one."""
+    low, high = bounds_m_s
+    return np.where(speeds_m_s >= low, np.minimum(speeds_m_s, high), np.nan)
