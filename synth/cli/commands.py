@@ -24,8 +24,7 @@ SourceOrDirectory = Annotated[
     Path, typer.Argument(metavar="TABLE|BOOK|DIR", help="A table (.json), a book (.h5), or what a tune left.")
 ]
 ExportSource = Annotated[
-    Path,
-    typer.Argument(metavar="TABLE|BOOK|DIR", help="A table (.json), a book (.h5), or a directory with aim tables."),
+    Path, typer.Argument(metavar="TABLE|BOOK|DIR", help="A table (.json), a book (.h5), or a folder of aim tables.")
 ]
 Config = Annotated[
     Path | None, typer.Option("--config", metavar="C", help="Configuration with the plant; built-in unless given.")

@@ -38,8 +38,8 @@ class AimTable:
     interpolation_error_m_s   largest shortfall against an exact solution between nodes, as the maker measured it
     reported          what cuts did, at the same nodes
 
-    No exit speed falls with the free distance, the number of cars or the resistance. Where there is none, there is none
-    for a longer distance either, nor for fewer cars or a smaller resistance.
+    No exit speed is less than one for a smaller resistance, at the same cars and distance. With the distance and with
+    the number of cars a speed may fall: where the track is steeper than a cut resists, it has to.
 
     Derived from these, float32 and read-only, for `exit_speed`: `distance_nodes` (D,), `resistance_nodes` (R,), one 0
     in a table by category, and `speed_nodes` (C, D, R), NaN for none.
@@ -108,20 +108,8 @@ class AimTable:
         key, (low, high) = "exit_speed_m_s", self.bounds_m_s
         null = np.isnan(speeds)
         require_all(null | ((low <= speeds) & (speeds <= high)), speeds, key, f"null, or within [{low!r}, {high!r}]")
-        # For more cars and for a larger resistance none is less than any speed, for a longer distance it stays none.
-        filled = np.where(null, -np.inf, speeds)
-        rises = {"the number of cars": 0, "the resistance": 2}
-        for name, axis in rises.items():
-            if axis < speeds.ndim:
-                require_all(_after(filled, axis, np.greater_equal), speeds, key, f"no less than before with {name}")
-        longer = np.where(null, np.inf, speeds)
-        holds = _after(longer, 1, np.greater_equal)
-        require_all(holds, speeds, key, "no less than at the distance before, and null behind null")
-
-
-def _after(values: Nodes, axis: int, relation: np.ufunc) -> npt.NDArray[np.bool_]:
-    """Whether `relation` holds between each value and the one before it along `axis`; True for the first."""
-    later = np.moveaxis(values, axis, 0)
-    holds = np.ones(later.shape, np.bool_)
-    holds[1:] = relation(later[1:], later[:-1])
-    return np.moveaxis(holds, 0, axis)
+        if self.is_measured:
+            before = np.fmax.accumulate(speeds, axis=2)[:, :, :-1]
+            holds = np.ones(speeds.shape, np.bool_)
+            holds[:, :, 1:] = ~(speeds[:, :, 1:] < before)
+            require_all(holds, speeds, key, "no less than for a smaller resistance")

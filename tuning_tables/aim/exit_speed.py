@@ -1,15 +1,16 @@
 """The rule of an aim table, stated once for controller, simulation and generated code: which exit speed to command.
 
-1. Cars. The nodes of the greatest listed number not above the given one: a longer cut is more predictable, so what is
-   right for fewer cars is on the safe side. Fewer than the first: no answer.
-2. Free distance and resistance are rounded to float32. No finite number, or nearer than the first distance: no answer.
-   Beyond the last distance that one counts, the safe side again: too slow, not too fast. The resistance is clamped
-   into its axis; a table by category alone does not look at it.
-3. On each axis the greatest node not above the number, and the next one, with the part of the way from one to the
-   other, (x - x0) / (x1 - x0). At a node, and at the last one, both are that node, and the part is 0.
-4. A speed missing at one of these (at most four) nodes: no answer.
-5. Along the distance at the lower resistance, likewise at the higher one, then from the first result to the second:
-   a + part * (b - a), but not above b.
+1. Free distance and resistance are rounded to float32. No finite number, or nearer than the first distance: no answer.
+   The resistance is clamped into its axis; a table by category alone does not look at it.
+2. On each axis the greatest node not above the number, and the next one, with the part of the way from one to the
+   other, (x - x0) / (x1 - x0). At a node both are that node, and the part is 0.
+3. A speed missing at one of these (at most four) nodes: no answer.
+4. Along the distance at the lower resistance, likewise at the higher one, then from the first result to the second:
+   a + part * (b - a), where rounding leads beyond b that is b.
+5. Beyond the last distance, at each of the two resistances: the speed at the last node, if there is one at the node
+   before and it is not greater; else no answer. Where speeds rise the last one is too slow there, and so safe.
+6. Cars. A listed number: as above. Between two listed numbers: the lesser of the answers for both; none if one has
+   none. Fewer than the first or more than the last: no answer.
 
 All arithmetic is float32, one rounding an operation, no fused multiply-add. No answer is NaN here, None from
 `aim_exit_speed`, -1 in controllers, and means: brake to the lowest speed, for no speed is known to be safe. Every
@@ -24,6 +25,9 @@ import numpy.typing as npt
 from tuning_tables.aim.aim_table import AimTable
 
 Floats = npt.NDArray[np.float32]
+Indices = npt.NDArray[np.intp]
+Place = tuple[Indices, Indices, Floats]
+"""The node below, the node above, and the part of the way."""
 
 
 def aim_exit_speed(
@@ -52,20 +56,23 @@ def aim_exit_speeds(
     if not table.is_measured:
         resistance = np.zeros_like(resistance)
     numbers, distance, resistance = np.broadcast_arrays(numbers, distance, resistance)
-    answered = (numbers >= table.axes.cars[0]) & np.isfinite(resistance)
-    answered &= np.isfinite(distance) & (distance >= table.distance_nodes[0])
+    listed, nodes = table.axes.cars, table.distance_nodes
+    answered = (numbers >= listed[0]) & (numbers <= listed[-1]) & np.isfinite(resistance)
+    answered &= np.isfinite(distance) & (distance >= nodes[0])
+    beyond = distance > nodes[-1]
+    if len(nodes) == 1:
+        answered &= ~beyond  # there is no node before the last
     # What gets no answer is replaced by the first node, which is harmless to compute with.
-    row = np.maximum(np.searchsorted(table.axes.cars, numbers, side="right") - 1, 0)
-    near, far, way = _between(table.distance_nodes, np.where(answered, distance, table.distance_nodes[0]))
-    lower, upper, share = _between(table.resistance_nodes, np.where(answered, resistance, table.resistance_nodes[0]))
-    speeds = table.speed_nodes
-    first = _along(speeds[row, near, lower], speeds[row, far, lower], way)
-    second = _along(speeds[row, near, upper], speeds[row, far, upper], way)
-    return np.where(answered, _along(first, second, share), np.float32(np.nan))
+    way = _between(nodes, np.where(answered, distance, nodes[0]))
+    share = _between(table.resistance_nodes, np.where(answered, resistance, table.resistance_nodes[0]))
+    fewer = np.maximum(np.searchsorted(listed, numbers, side="right") - 1, 0)
+    more = np.minimum(np.searchsorted(listed, numbers), len(listed) - 1)
+    speeds = (_for_row(table, row, way, share, beyond & answered) for row in (fewer, more))
+    return np.where(answered, np.minimum(*speeds), np.float32(np.nan))
 
 
-def _between(nodes: Floats, values: Floats) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp], Floats]:
-    """Rule 3: the node below, the node above, and the part of the way; `values` outside are clamped."""
+def _between(nodes: Floats, values: Floats) -> Place:
+    """Rule 2; `values` outside are clamped."""
     clamped = np.minimum(np.maximum(values, nodes[0]), nodes[-1])
     below = np.searchsorted(nodes, clamped, side="right") - 1
     above = np.where(clamped > nodes[below], below + 1, below)
@@ -73,8 +80,21 @@ def _between(nodes: Floats, values: Floats) -> tuple[npt.NDArray[np.intp], npt.N
     return below, above, (clamped - nodes[below]) / span
 
 
-def _along(begin: Floats, end: Floats, part: Floats) -> Floats:
-    """Rule 5; NaN where `begin` or `end` is."""
+def _for_row(table: AimTable, row: Indices, way: Place, share: Place, beyond: npt.NDArray[np.bool_]) -> Floats:
+    """Rules 3 to 5 for one listed number of cars each."""
+    near, far, part = way
+    near = np.where(beyond, far - 1, near)
+    first, second = (
+        _along(table.speed_nodes[row, near, column], table.speed_nodes[row, far, column], part, beyond)
+        for column in share[:2]
+    )
+    return _along(first, second, share[2], np.False_)
+
+
+def _along(begin: Floats, end: Floats, part: Floats, beyond: npt.NDArray[np.bool_] | np.bool_) -> Floats:
+    """Rule 4, and rule 5 where `beyond`; NaN where `begin` or `end` is."""
     rise = end - begin
     step = part * rise
-    return np.minimum(begin + step, end)
+    speed = begin + step
+    within = np.where(rise > 0.0, np.minimum(speed, end), np.maximum(speed, end))
+    return np.where(beyond, np.where(rise >= 0.0, end, np.float32(np.nan)), within)

@@ -64,10 +64,10 @@ def golden_aims(table: AimTable) -> GoldenAims:
 
 
 def few_golden_aims(table: AimTable) -> GoldenAims:
-    """At most fourteen questions for each number of cars, and some forty besides: for controllers with little memory.
+    """At most fifteen questions for each number of cars, and some sixty besides: for controllers with little memory.
 
     At both ends of the distance, at two places between, and at the last node that has a speed for each of the least and
-    the largest resistance; numbers of cars below and above the listed ones; and what is no number.
+    the largest resistance; numbers of cars below, between and above the listed ones; and what is no number.
     """
     low, top = table.resistance_nodes[[0, -1]].tolist()
     first, last = table.distance_nodes[[0, -1]].tolist()
@@ -76,12 +76,12 @@ def few_golden_aims(table: AimTable) -> GoldenAims:
     questions: list[Question] = []
     for cars, speeds in zip(table.axes.cars.tolist(), table.speed_nodes, strict=True):
         questions += [(cars, d, r) for d in (first, near, far, last) for r in between]
-        questions += [(cars, near, r) for r in (low, top)]
+        questions += [(cars, near, r) for r in (low, top)] + [(cars, last + 1000.0, between[0])]
         for r, column in ((low, 0), (top, -1)):
-            reached = max(int(np.count_nonzero(~np.isnan(speeds[:, column]))), 1)
-            questions.append((cars, float(table.distance_nodes[reached - 1]), r))
+            reached = np.flatnonzero(~np.isnan(speeds[:, column]))
+            questions.append((cars, float(table.distance_nodes[reached[-1] if len(reached) else 0]), r))
     numbers = _numbers_of_cars(table)
-    questions += [(cars, first, between[1]) for cars in (*numbers[:4], *numbers[-4:])]
+    questions += [(cars, near, between[1]) for cars in (*numbers[:4], *numbers[4:-4][:12], *numbers[-4:])]
     return golden_answers(table, [*questions, *_incredible(table, between[1])])
 
 

@@ -24,11 +24,13 @@ $CATEGORIES
    AIM_LOAD        the axes of a table, for AIM_EXIT_SPEED
 
    The rule
-   1. The greatest listed number of cars not above that of the cut counts; fewer cars than the first: no answer.
-   2. A distance or a resistance that is not finite, or nearer than the first distance: no answer. Beyond the last
-      distance that one counts; the resistance is clamped. A table by category alone does not look at the resistance.
-   3. No speed at one of the neighbouring nodes (at a node: that node alone): no answer.
-   4. Along the distance at the lower resistance and at the higher one, then between the two results.
+   1. A distance or a resistance that is not finite, or nearer than the first distance: no answer. The resistance is
+      clamped; a table by category alone does not look at it.
+   2. No speed at one of the neighbouring nodes (at a node: that node alone): no answer.
+   3. Along the distance at the lower resistance and at the higher one, then between the two results. Beyond the last
+      distance the speed of the last node, if there is one at the node before and it is not greater; else no answer.
+   4. Between two listed numbers of cars the lesser of the answers for both, none if one has none. Fewer or more cars
+      than are listed: no answer.
 
    Arithmetic. Every operation on REAL stands in a statement of its own, so that its result is rounded to REAL
    (binary32) before the next; see docs/structured-text.md.
@@ -135,8 +137,13 @@ VAR
     Loader : AIM_LOAD;
     Axes : AIM_AXES;
     Credible : BOOL;
+    Beyond : BOOL; (* the last distance *)
+    Sound : BOOL;
     Index : INT;
     Row : INT;
+    LastRow : INT;
+    Side : INT;
+    Place : INT;
     Below : INT;
     Above : INT;
     Lower : INT;
@@ -150,6 +157,7 @@ VAR
     Rise : REAL;
     First : REAL;
     Second : REAL;
+    Answer : REAL;
 END_VAR
 """
 
@@ -159,11 +167,18 @@ Loader(TableNo := TableNo, Axes := Axes);
 Row := -1;
 FOR Index := 0 TO Axes.Listed - 1 DO
     IF Cars >= Axes.Cars[Index] THEN
-        Row := Axes.FirstRow + Index;
+        Row := Index;
     END_IF;
 END_FOR;
+LastRow := Row;
+IF Row >= 0 THEN
+    IF Cars > Axes.Cars[Row] THEN
+        LastRow := Row + 1;
+    END_IF;
+END_IF;
 (* No comparison with a NaN is true. 3.4028235E+38 is the largest REAL, rounded up in its last digit. *)
-Credible := (Row >= 0) AND (FreeDistance_m >= Axes.Distance_m[0]) AND (FreeDistance_m <= 3.4028235E+38);
+Credible := (Row >= 0) AND (LastRow < Axes.Listed)
+    AND (FreeDistance_m >= Axes.Distance_m[0]) AND (FreeDistance_m <= 3.4028235E+38);
 IF Axes.Resistances > 0 THEN
     Credible := Credible AND (Resistance >= -3.4028235E+38) AND (Resistance <= 3.4028235E+38);
 END_IF;
@@ -176,12 +191,21 @@ IF Credible THEN
     END_FOR;
     Above := Below;
     Way := 0.0;
-    IF (FreeDistance_m > Axes.Distance_m[Below]) AND (Below < Axes.Distances - 1) THEN
-        Above := Below + 1;
-        Span := Axes.Distance_m[Above] - Axes.Distance_m[Below];
-        Way := FreeDistance_m - Axes.Distance_m[Below];
-        Way := Way / Span;
+    Beyond := FALSE;
+    IF FreeDistance_m > Axes.Distance_m[Below] THEN
+        IF Below < Axes.Distances - 1 THEN
+            Above := Below + 1;
+            Span := Axes.Distance_m[Above] - Axes.Distance_m[Below];
+            Way := FreeDistance_m - Axes.Distance_m[Below];
+            Way := Way / Span;
+        ELSE
+            Beyond := TRUE;
+            Below := Below - 1;
+        END_IF;
     END_IF;
+    Credible := Below >= 0;
+END_IF;
+IF Credible THEN
     Lower := 0;
     Upper := 0;
     Share := 0.0;
@@ -205,29 +229,56 @@ IF Credible THEN
     Node[1] := Above * Stride + Lower;
     Node[2] := Below * Stride + Upper;
     Node[3] := Above * Stride + Upper;
-    CASE Row OF
+    FOR Side := Row TO LastRow DO
+        Place := Axes.FirstRow + Side;
+        CASE Place OF
 $CASES
-    END_CASE;
-    IF (Speed[0] >= 0.0) AND (Speed[1] >= 0.0) AND (Speed[2] >= 0.0) AND (Speed[3] >= 0.0) THEN
-        Rise := Speed[1] - Speed[0];
-        Rise := Way * Rise;
-        First := Speed[0] + Rise;
-        IF First > Speed[1] THEN
+        END_CASE;
+        Answer := -1.0;
+        Sound := (Speed[0] >= 0.0) AND (Speed[1] >= 0.0) AND (Speed[2] >= 0.0) AND (Speed[3] >= 0.0);
+        IF Beyond THEN
+            Sound := Sound AND (Speed[0] <= Speed[1]) AND (Speed[2] <= Speed[3]);
+        END_IF;
+        IF Sound THEN
             First := Speed[1];
-        END_IF;
-        Rise := Speed[3] - Speed[2];
-        Rise := Way * Rise;
-        Second := Speed[2] + Rise;
-        IF Second > Speed[3] THEN
             Second := Speed[3];
+            IF NOT Beyond THEN
+                Rise := Speed[1] - Speed[0];
+                Rise := Way * Rise;
+                First := Speed[0] + Rise;
+                IF Speed[0] < Speed[1] THEN
+                    IF First > Speed[1] THEN
+                        First := Speed[1];
+                    END_IF;
+                ELSIF First < Speed[1] THEN
+                    First := Speed[1];
+                END_IF;
+                Rise := Speed[3] - Speed[2];
+                Rise := Way * Rise;
+                Second := Speed[2] + Rise;
+                IF Speed[2] < Speed[3] THEN
+                    IF Second > Speed[3] THEN
+                        Second := Speed[3];
+                    END_IF;
+                ELSIF Second < Speed[3] THEN
+                    Second := Speed[3];
+                END_IF;
+            END_IF;
+            Rise := Second - First;
+            Rise := Share * Rise;
+            Answer := First + Rise;
+            IF First < Second THEN
+                IF Answer > Second THEN
+                    Answer := Second;
+                END_IF;
+            ELSIF Answer < Second THEN
+                Answer := Second;
+            END_IF;
         END_IF;
-        Rise := Second - First;
-        Rise := Share * Rise;
-        ExitSpeed_m_s := First + Rise;
-        IF ExitSpeed_m_s > Second THEN
-            ExitSpeed_m_s := Second;
+        IF (Side = Row) OR (Answer < ExitSpeed_m_s) THEN
+            ExitSpeed_m_s := Answer;
         END_IF;
-    END_IF;
+    END_FOR;
 END_IF;
 END_FUNCTION_BLOCK
 """

@@ -118,5 +118,5 @@ def _speed_block(aims: AimTables) -> str:
     rows = [row for table in aims.tables for row in controller_speeds(table)]
     declarations = [real_array(f"Speed_{number}", row.ravel(), row.shape[1]) for number, row in enumerate(rows)]
     cases = "\n".join(Template(SPEED_CASE).substitute(ROW=number) for number in range(len(rows)))
-    body = Template(SPEED_BODY).substitute(CASES=textwrap.indent(cases, " " * 4))
+    body = Template(SPEED_BODY).substitute(CASES=textwrap.indent(cases, " " * 8))
     return SPEED_DECLARATIONS + constants(declarations) + body

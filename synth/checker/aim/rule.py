@@ -12,17 +12,34 @@ from synth.checker.float32 import rounded
 def exit_speed(aim: Aim, cars: int, distance_m: float, resistance: float) -> float | None:
     """The exit speed in m/s that docs/aim-table.md gives for a cut; None for no answer."""
     d, w = rounded(distance_m), rounded(resistance)
-    listed = [place for place, number in enumerate(aim.cars) if number <= cars]
-    if not listed or not math.isfinite(d) or d < rounded(aim.distances_m[0]):
+    if not aim.cars[0] <= cars <= aim.cars[-1] or not math.isfinite(d) or d < rounded(aim.distances_m[0]):
         return None
     if aim.is_measured and not math.isfinite(w):
         return None
-    rows = aim.speeds[listed[-1]]
-    near, far, way = between(aim.distances_m, d)
     lower, upper, share = between(aim.resistances, w) if aim.is_measured else (0, 0, 0.0)
-    first = along(rows[near][lower], rows[far][lower], way)
-    second = along(rows[near][upper], rows[far][upper], way)
-    return along(first, second, share)
+    # The listed numbers of cars between which the cut is; one where it is a listed number itself.
+    around = {
+        max(number for number in aim.cars if number <= cars),
+        min(number for number in aim.cars if number >= cars),
+    }
+    found: list[float] = []
+    for number in around:
+        rows = aim.speeds[aim.cars.index(number)]
+        first, second = (over_distance([row[column] for row in rows], aim.distances_m, d) for column in (lower, upper))
+        speed = along(first, second, share)
+        if speed is None:
+            return None
+        found.append(speed)
+    return min(found)
+
+
+def over_distance(speeds: Sequence[float | None], distances_m: Sequence[float], d: float) -> float | None:
+    """The speed at distance `d` among those at the nodes; beyond the last its own, if it does not fall there."""
+    if d > rounded(distances_m[-1]):
+        before, last = speeds[-2:] if len(speeds) > 1 else (None, None)
+        return rounded(last) if before is not None and last is not None and rounded(before) <= rounded(last) else None
+    near, far, way = between(distances_m, d)
+    return along(speeds[near], speeds[far], way)
 
 
 def between(axis: Sequence[float], x: float) -> tuple[int, int, float]:
@@ -38,8 +55,9 @@ def between(axis: Sequence[float], x: float) -> tuple[int, int, float]:
 
 
 def along(begin: float | None, end: float | None, part: float) -> float | None:
-    """begin + part * (end - begin), not above end; None where there is none."""
+    """begin + part * (end - begin), not beyond end; None where there is none."""
     if begin is None or end is None:
         return None
     a, b = rounded(begin), rounded(end)
-    return min(rounded(a + rounded(part * rounded(b - a))), b)
+    speed = rounded(a + rounded(part * rounded(b - a)))
+    return min(speed, b) if a < b else max(speed, b)

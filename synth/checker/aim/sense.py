@@ -68,28 +68,21 @@ def axis_faults(aim: Aim) -> Iterator[str]:
 
 
 def speed_faults(aim: Aim) -> Iterator[str]:
-    """Speeds out of their bounds, and speeds that fall; of each kind the first."""
+    """Speeds out of their bounds, and speeds that fall with the resistance; of each kind the first."""
     low, high = aim.bounds_m_s
     for place in aim.places():
         speed = at(aim.speeds, place)
         if speed is not None and not low <= speed <= high:
             yield f"{named(aim, place)}: the exit speed of {speed:.9g} m/s is out of its bounds {low:g} to {high:g} m/s"
             break
-    for axis, name in enumerate(("the number of cars", "the free distance", "the resistance")):
-        for place in aim.places():
-            if place[axis] == 0:
-                continue
-            before = tuple(index - (one == axis) for one, index in enumerate(place))
-            if falls(at(aim.speeds, before), at(aim.speeds, place), axis == 1):
-                yield f"{named(aim, place)}: the exit speed falls with {name}, or is there again after null"
-                break
-
-
-def falls(before: float | None, here: float | None, is_distance: bool) -> bool:
-    """Whether a speed is less than its neighbour; none is more than any speed far away, and less for more cars."""
-    if before is None or here is None:
-        return before is None and here is not None if is_distance else before is not None and here is None
-    return here < before
+    for c, rows in enumerate(aim.speeds):
+        for d, row in enumerate(rows):
+            least = -1.0
+            for r, speed in enumerate(row):
+                if speed is not None and speed < least:
+                    yield f"{named(aim, (c, d, r))}: the exit speed is less than for a smaller resistance"
+                    return
+                least = least if speed is None else speed
 
 
 def figure_faults(aim: Aim) -> Iterator[str]:
