@@ -11,7 +11,7 @@ from synth.checker.canonical import canonical_form, crc32, parse_json, without_c
 from synth.checker.document_shape import COUNT, NUMBER, TEXT, OrNull, Pair, refuse_unless, require_shape
 from synth.checker.finding import DamagedError, shown
 
-Nodes = tuple[tuple[tuple[float | None, ...], ...], ...]
+NodeValues = tuple[tuple[tuple[float | None, ...], ...], ...]
 """By cars, free distance, resistance; one resistance in a table by category alone. None: no exit speed."""
 
 MARK: Final = re.compile(rb'"format"\s*:\s*"aim-table"')
@@ -51,9 +51,9 @@ class Aim:
     cars: tuple[int, ...]
     distances_m: tuple[float, ...]
     resistances: tuple[float, ...]
-    speeds: Nodes
+    speeds: NodeValues
     bounds_m_s: tuple[float, float]
-    figures: Mapping[str, Nodes]
+    figures: Mapping[str, NodeValues]
     document: Mapping[str, Any]
 
     @property
@@ -124,7 +124,7 @@ def aim_of(document: Mapping[str, Any]) -> Aim:
     )
 
 
-def nodes_of(value: Any, lengths: tuple[int, ...], path: str) -> Nodes:
+def nodes_of(value: Any, lengths: tuple[int, ...], path: str) -> NodeValues:
     """The numbers at the nodes, with a third axis in any case."""
     refuse_unless(len(value) == lengths[0], len(value), f"the length of {path}", str(lengths[0]))
     for c, rows in enumerate(value):

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import Final
 
-from synth.checker.aim.reading import Aim, Nodes
+from synth.checker.aim.reading import Aim, NodeValues
 from synth.checker.category_number import OWN, YARD
 from synth.checker.float32 import rounded
 
@@ -119,7 +119,7 @@ def claim_faults(aim: Aim) -> Iterator[str]:
         )
 
 
-def at(nodes: Nodes, place: Sequence[int]) -> float | None:
+def at(nodes: NodeValues, place: Sequence[int]) -> float | None:
     """The number at a node."""
     c, d, r = place
     return nodes[c][d][r]
