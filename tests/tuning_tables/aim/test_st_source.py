@@ -177,6 +177,7 @@ SAME = {
 """Changed comparisons that change no answer: what happens to equal numbers is the same, and no speed is 0."""
 
 
+@pytest.mark.slow
 def test_every_wrong_operation_is_found() -> None:
     """By the self-test, or by an operation or index that has no result; but what changes no answer."""
     level = np.full((5, 7), 1.5)
