@@ -30,7 +30,8 @@ class ResistanceLaw(Protocol):
         """What the basic resistance is more on the hump slope than in the yard behind the park position, N/kN."""
 
     def basic_n_per_kn(self, resistance: RollingResistance, mass_t: Floats, temperature_c: float, u: Floats) -> Floats:
-        """Basic resistance of cars in the yard at standstill, one a number `u`; `resistance`: of their category."""
+        """Basic resistance of cars in the yard at standstill, one a number `u`; `resistance`: of their category;
+        `mass_t`: of a 4-axle car of their axle load."""
 
     def bend_heads_m(self, bend: Bend, u: Floats) -> tuple[Floats, Floats]:
         """Energy head that the bend takes from a cut: (per (m/s)², whatever the speed), each as `u` without its last
