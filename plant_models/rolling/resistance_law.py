@@ -82,7 +82,7 @@ class HumpNormLaw:
 
 @dataclass(frozen=True)
 class Tb10062Law:
-    """The Chinese norm TB 10062-99 as SwitchYard has it (`docs/sources.md`): normal spread, grows in the cold.
+    """The Chinese norm TB 10062-99 [tb-10062]: normal spread, grows in the cold.
 
     r = 2.439 + (0.00008 Q − 0.01743) t − 0.015 Q + 0.00017 t² + 0.1 v + 0.39 (1 − k), k = 1 in the yard and 0 on the
     slope; standard deviation 0.602 − (0.0012 + 0.00002 Q) t − 0.003 Q + 0.00002 t². Bends take 8 N·m/kN a degree and 24

@@ -20,9 +20,6 @@ REACH_S2_PER_M = 43.0
 """Longest step over the energy: a change of grade by 10 permille within the step takes less than all of it, so no cut
 stops between the two ends of a step unnoticed. The step is SHORT_M where that is more."""
 
-CORRECTIONS = 2
-"""Of the energy at the end of a step."""
-
 NO_SPEED_M_S = 1e-12
 """Keeps quotients of speeds finite."""
 
@@ -47,15 +44,17 @@ def stepped(lanes, linear, h, steady, more, bend_v2, early_v2, e, v):
     """
     g, v2 = lanes.gravity_m_s2, v * v
     there = packs.greatest(e + g * (steady - lost_head(lanes, linear, h, v, v2) - bend_v2 * v2), 0.0)
-    for _ in range(CORRECTIONS):
-        both, half = v + packs.root(there + there) + NO_SPEED_M_S, 0.5 * (e + there)
-        more_e = packs.least(packs.greatest(g * (more - 2.0 * early_v2 * half), half * -1.0), half)
-        mean_v = (2.0 / 3.0) * v + ((4.0 / 3.0) * there + 2.0 * more_e) / both
-        mean_v2 = e + there + 2.0 * more_e
-        in_bends = bend_v2 * mean_v2 - 2.0 * early_v2 * (there - e)
-        later = e + g * (steady - lost_head(lanes, linear, h, mean_v, mean_v2) - in_bends)
-        there = packs.greatest(later, 0.0)
-    return later, more_e
+    both, half = v + packs.root(there + there) + NO_SPEED_M_S, 0.5 * (e + there)
+    more_e = packs.least(packs.greatest(g * (more - 2.0 * early_v2 * half), half * -1.0), half)
+    part = 1.0 / both
+    mean_v = (2.0 / 3.0) * v + ((4.0 / 3.0) * there + 2.0 * more_e) * part
+    mean_v2 = e + there + 2.0 * more_e
+    in_bends = bend_v2 * mean_v2 - 2.0 * early_v2 * (there - e)
+    later = e + g * (steady - lost_head(lanes, linear, h, mean_v, mean_v2) - in_bends)
+    change = packs.greatest(later, 0.0) - there
+    mean_v = mean_v + (2.0 / 3.0) * (both + v) * part * part * change
+    in_bends = in_bends + (bend_v2 - 2.0 * early_v2) * change
+    return e + g * (steady - lost_head(lanes, linear, h, mean_v, mean_v2 + change) - in_bends), more_e
 
 
 @borrowing_inline

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from plant_models import TrackProfile
-from plant_models.library import BUILT_IN, YARD_CATEGORIES, load_car, load_weight_categories
+from plant_models.library import load_car, load_weight_categories
 from plant_models.rolling.car_mix import CarMix, MixedCar
-from plant_models.rolling.random_cuts import CutPopulation
+from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
 from plant_models.rolling.roll_track import Bend, RollTrack
 from plant_models.rolling.weather import Weather
@@ -25,6 +25,7 @@ SHARES_AND_DRAG: dict[str, tuple[float, float]] = {
 """Share and C_x·S in m²; engineering judgement all of them."""
 
 COUPLING_M_S = 1.39
+WIND_STD_M_S = 3.0
 
 
 @dataclass(frozen=True)
@@ -43,12 +44,24 @@ class RollCase:
     law: ResistanceLaw
     category: str = "Л"
 
+    @property
+    def population(self) -> CutPopulation:
+        """Where the cuts come from."""
+        weather = Weather(head_wind_std_m_s=WIND_STD_M_S)
+        return CutPopulation(mix(), load_weight_categories(), self.law, weather, self.track.bends)
+
+    def drawn(self, cars: int, seed: int, count: int) -> DrawnCuts:
+        """`count` cuts of `cars` cars each."""
+        people = self.population
+        return people.draw(people.categories.named(self.category), cars, seed, 0, count)
+
     def rolling(self, cars: int, seed: int, count: int) -> RollingCuts:
         """`count` drawn cuts of `cars` cars, ready to roll."""
-        categories = load_weight_categories(YARD_CATEGORIES)
-        population = CutPopulation(mix(), categories, self.law, Weather(head_wind_std_m_s=3.0), self.track.bends)
-        cuts = population.draw(categories.named(self.category), cars, seed, 0, count)
-        return rolling_cuts(population, self.track, PARK_EXIT_M, cuts)
+        return rolling_cuts(self.population, self.track, PARK_EXIT_M, self.drawn(cars, seed, count))
+
+    def extra_n_per_kn(self, at_m: Floats) -> Floats:
+        """Resistance of an axle beyond that of its cut: the law's for the slope."""
+        return np.where((at_m >= 0.0) & (at_m < PARK_EXIT_M), self.law.slope_extra_n_per_kn, 0.0)
 
     def starts_m(self, rolling: RollingCuts) -> Floats:
         """Heads at the start, (n,)."""
@@ -62,7 +75,7 @@ class RollCase:
 
 def mix() -> CarMix:
     """Five types of the library."""
-    return CarMix(tuple(MixedCar(load_car(name, BUILT_IN).car, *of) for name, of in SHARES_AND_DRAG.items()))
+    return CarMix(tuple(MixedCar(load_car(name).car, *of) for name, of in SHARES_AND_DRAG.items()))
 
 
 PARK_EXIT_M = 336.0

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 
+from plant_models.frozen_arrays import frozen_arrays
 from plant_models.rolling.random_cuts import DrawnCuts
 from plant_models.rolling.roll_track import RollTrack
 
@@ -17,6 +17,19 @@ LONGEST_S = 5000.0
 
 
 @dataclass(frozen=True)
+class Accuracy:
+    """What is asked of scipy; steps are limited because it does not know where grades change."""
+
+    relative: float
+    absolute: float
+    longest_step_s: float
+
+
+TIGHT, LOOSE = Accuracy(1e-8, 1e-9, 0.2), Accuracy(1e-5, 1e-6, 2.0)
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Motion:
     """Speeds and times at stations, 0 and infinite behind a stop; the stop, infinite without one."""
 
@@ -58,8 +71,15 @@ def acceleration(
     return a
 
 
-def solved(a: Callable[[float, float], float], start_m: float, speed_m_s: float, stations_m: Floats) -> Motion:
+def solved(
+    a: Callable[[float, float], float],
+    start_m: float,
+    speed_m_s: float,
+    stations_m: Floats,
+    accuracy: Accuracy = TIGHT,
+) -> Motion:
     """The roll from `start_m` over `stations_m`, to a stop or to the last of them."""
+    from scipy.integrate import solve_ivp  # start-up: scipy only where it is needed
 
     def stops(_: float, y: Floats) -> float:
         return float(y[1])
@@ -75,7 +95,7 @@ def solved(a: Callable[[float, float], float], start_m: float, speed_m_s: float,
         event.terminal, event.direction = True, last  # type: ignore[attr-defined]
     found = solve_ivp(
         lambda _, y: (y[1], a(y[0], y[1])), (0.0, LONGEST_S), (start_m, speed_m_s), "RK45", events=events,
-        rtol=1e-8, atol=1e-9, max_step=0.2,
+        rtol=accuracy.relative, atol=accuracy.absolute, max_step=accuracy.longest_step_s,
     )  # fmt: skip
     assert found.status == 1, found.message
     assert found.t_events is not None
