@@ -12,6 +12,7 @@ from plant_models.library.catalogue import (
     position_names,
     retarder_names,
 )
+from plant_models.library.hump_entry import HumpEntry, hump_names, load_hump
 from plant_models.library.library import BUILT_IN, Library
 from plant_models.library.position_entry import PositionEntry
 from plant_models.library.retarder_entry import RetarderEntry
@@ -41,6 +42,7 @@ __all__ = [
     "WEIGHT_CATEGORIES",
     "YARD_CATEGORIES",
     "CarEntry",
+    "HumpEntry",
     "Kind",
     "Library",
     "PositionEntry",
@@ -54,7 +56,9 @@ __all__ = [
     "WeightCategories",
     "WeightCategory",
     "car_names",
+    "hump_names",
     "load_car",
+    "load_hump",
     "load_position",
     "load_retarder",
     "load_sensor",
