@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from synth.cli import hump_commands
 from synth.cli.arguments import directory, whole_number, with_names
 
 app = typer.Typer(
@@ -207,6 +208,9 @@ def loop(
     from synth.cli.loop import loop_command
 
     return loop_command(source, output, config, as_json)
+
+
+app.add_typer(hump_commands.app, name="hump")
 
 
 @app.command()

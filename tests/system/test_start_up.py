@@ -76,3 +76,8 @@ def test_installed_command_ends_at_once_but_says_all() -> None:
     assert (refused.returncode, refused.stdout) == (2, "")
     assert refused.stderr.startswith("retarder-synth: nowhere.json: there is no such file")
     assert refused.stderr.endswith("\n")
+
+
+@pytest.mark.parametrize("verb", ["check", "routes"])
+def test_a_hump_is_read_without_the_numeric_libraries(verb: str) -> None:
+    assert modules_after("hump", verb, "dumper").isdisjoint(HEAVY)
