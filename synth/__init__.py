@@ -25,6 +25,7 @@ if TYPE_CHECKING:
         tabulate,
         trace,
     )
+    from synth.configuration.hump import load_hump
     from synth.problem.aim import Aim
     from synth.problem.criterion import Criterion
     from synth.problem.problem import Problem
@@ -43,6 +44,7 @@ __all__ = [
     "fit",
     "load_car",
     "load_config",
+    "load_hump",
     "load_position",
     "load_problem",
     "load_weight_categories",
@@ -66,6 +68,7 @@ _HOMES = {
     "Plant": "plant_models",
     "Problem": "synth.problem.problem",
     "Resolution": "synth.problem.resolution",
+    "load_hump": "synth.configuration.hump",
 }
 """Where a public name is defined, if not in `synth.api`."""
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from plant_models.library.hump_entry import HumpEntry, hump_from, hump_names, load_hump
+from plant_models.library.hump_entry import HumpEntry, hump_from, hump_names
+from plant_models.library.hump_entry import load_hump as load_of_library
 from plant_models.library.near_miss import near_miss
 from synth.configuration.plant_fault import in_file
 from synth.configuration.railml.read import from_railml
@@ -24,12 +25,17 @@ class ReadHump:
     ignored: tuple[str, ...] = ()
 
 
+def load_hump(source: Path | str) -> HumpEntry:
+    """The hump in the file `source`, or the one of that name in the library; `InputError` on any fault."""
+    return read_hump(Path(source)).entry
+
+
 def read_hump(source: Path) -> ReadHump:
     """The hump in the file `source`, or the one of that name in the library; `InputError` on any fault."""
     name = str(source)
     if name in hump_names() and not source.exists():
         with in_file(name):
-            return ReadHump(load_hump(name))
+            return ReadHump(load_of_library(name))
     if not source.exists():
         hint = near_miss(name, hump_names())
         raise InputError(f"{name}: there is no such file, and no such hump in the library; {hint}")

@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
+import synth
 from plant_models.library.hump_schema import hump_schema
+from synth.faults.input_error import InputError
 from tests.plant_models.hump.test_hump_file import SMALL
 from tests.system.conftest import Command
 
@@ -98,6 +100,13 @@ def test_a_bad_file_is_told_in_one_sentence(command: Command, tmp_path: Path, na
         run = command("hump", verb, tmp_path / name)
         assert (run.code, run.out) == (2, "")
         assert words in run.sentence
+
+
+def test_from_python(file: Path) -> None:
+    assert synth.load_hump(file).graph.route(201, 1).code == "0"
+    assert synth.load_hump("large").graph.tracks == tuple(range(1, 33))
+    with pytest.raises(InputError, match="there is no such file, and no such hump in the library"):
+        synth.load_hump("lage")
 
 
 def test_names_of_the_library(command: Command) -> None:
