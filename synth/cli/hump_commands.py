@@ -8,14 +8,13 @@ from typing import Annotated
 
 import typer
 
-from synth.cli.arguments import directory, whole_number
+from synth.cli.arguments import Json, directory, whole_number
 
 app = typer.Typer(help="Check, list and draw a hump: its graph of switches, retarders and tracks.")
 
 Hump = Annotated[
     Path, typer.Argument(metavar="FILE|NAME", help="A hump file (.toml, .railml), or a hump of the library.")
 ]
-Json = Annotated[bool, typer.Option("--json", help="Machine-readable results on stdout.")]
 
 
 @app.command()

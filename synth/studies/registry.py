@@ -16,6 +16,13 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.accuracy_grid.picture",
     ),
     Study(
+        "aim-tables",
+        "How large are the gaps where the default aim tables are used?",
+        12.0,
+        "aim.md#results",
+        "synth.studies.aim_tables",
+    ),
+    Study(
         "approach",
         "What is gained when the regulator acts from before the entrance, and from how far?",
         150.0,
