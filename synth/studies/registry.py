@@ -16,6 +16,14 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.accuracy_grid.picture",
     ),
     Study(
+        "aimed-braking",
+        "How far does a position aim: gap against over-speed, which assumption moves it, what would measuring bring?",
+        300.0,
+        "aimed-braking.md",
+        "synth.studies.aimed_braking.study",
+        "synth.studies.aimed_braking.pictures",
+    ),
+    Study(
         "approach",
         "What is gained when the regulator acts from before the entrance, and from how far?",
         150.0,
@@ -214,6 +222,14 @@ STUDIES: tuple[Study, ...] = (
         120.0,
         "verification.md",
         "synth.studies.verification",
+    ),
+    Study(
+        "yard-chain",
+        "What do exact exits and measured resistance bring the yard: metres of gap and damaging couplings?",
+        300.0,
+        "aimed-braking.md#the-chain",
+        "synth.studies.yard_chain.study",
+        "synth.studies.yard_chain.pictures",
     ),
 )
 
