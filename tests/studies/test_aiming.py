@@ -158,6 +158,8 @@ def test_a_practice_is_the_mean_over_cuts_and_places_and_savings_are_paired() ->
     figures = rng.random((4, 2, 2, 3, 6))
     samples = Samples((CATEGORY, MEASURED), (TODAY_EXIT, ESTIMATED), figures)
     found = practice("x", (samples.of(CATEGORY, TODAY_EXIT), samples.of(MEASURED, ESTIMATED)))
+    assert found.gap_m is not None
+    assert found.couplings[2] is not None
     assert found.gap_m.value == pytest.approx(0.5 * (figures[:, 0, 0, :, 0].mean() + figures[:, 1, 1, :, 0].mean()))
     assert found.couplings[2].value == pytest.approx(
         1e3 * 0.5 * (figures[:, 0, 0, :, 3].mean() + figures[:, 1, 1, :, 3].mean())
@@ -165,4 +167,8 @@ def test_a_practice_is_the_mean_over_cuts_and_places_and_savings_are_paired() ->
     second = saved(Kind("L", 1), samples, (100.0, 200.0, 300.0))[1]
     step = figures[:, 0, 0, 1, 0] - figures[:, 1, 1, 1, 0]
     low, high = stats.t.interval(0.95, 3, loc=step.mean(), scale=stats.sem(step))
+    assert second.both_m is not None
     assert second.both_m.ci95 == pytest.approx((low, high))
+    figures[2, 0, 0, 1, 0] = np.nan
+    none = saved(Kind("L", 1), samples, (100.0, 200.0, 300.0))
+    assert [row.both_m is None for row in none] == [False, True, False]

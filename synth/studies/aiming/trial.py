@@ -130,6 +130,11 @@ def outcomes(found_in: Floats) -> tuple[Outcome | None, ...]:
     return tuple(found)
 
 
+def value_if_known(replicates: Floats) -> Value | None:
+    """As `value_of`; None where a replicate has no figure."""
+    return None if np.isnan(replicates).any() else value_of(replicates)
+
+
 def value_of(replicates: Floats) -> Value:
     """Mean of independent, alike figures with its interval."""
     count = len(replicates)

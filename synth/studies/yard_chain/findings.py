@@ -94,7 +94,8 @@ class YardChain(Findings):
         return tuple(
             f"{s.cuts}, {s.metres:g} m: both steps save {signed(s.both_m)} m, one alone more"
             for s in self.saved
-            if s.both_m.ci95[1] < max(s.exit_alone_m.value, s.measuring_alone_m.value)
+            if s.both_m
+            and any(alone and s.both_m.ci95[1] < alone.value for alone in (s.exit_alone_m, s.measuring_alone_m))
         )
 
 
@@ -122,12 +123,14 @@ def outcome(found: Outcome | None) -> str:
     return "none" if found is None else cell(found.gap_m)
 
 
-def cell(value: Value, scale: float = 1.0) -> str:
+def cell(value: Value | None, scale: float = 1.0) -> str:
     """With digits by its size."""
+    if value is None:
+        return "none"
     size = scale * value.value
     return plus_minus(value.value, value.ci95, 0 if size >= 99.5 else 1 if size >= 9.95 else 2, scale)
 
 
-def signed(value: Value) -> str:
+def signed(value: Value | None) -> str:
     """'12.3 ± 0.4'."""
-    return plus_minus(value.value, value.ci95, 1)
+    return ABSENT if value is None else plus_minus(value.value, value.ci95, 1)

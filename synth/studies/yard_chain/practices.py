@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.studies.aiming.trial import Value, value_of
+from synth.studies.aiming.trial import Value, value_if_known
 from synth.studies.yard_chain.chain import CATEGORY, ESTIMATED, MEASURED, Kind
 
 Floats = NDArray[np.float64]
@@ -35,11 +35,11 @@ class Samples:
 @dataclass(frozen=True)
 class Practice:
     """Single cars, light and heavy alike often, all free distances alike often: metres of gap a car, and couplings
-    above the limit, 1.5 and 2 m/s in a thousand cars."""
+    above the limit, 1.5 and 2 m/s in a thousand cars. None where some cuts have no commands for the share."""
 
     name: str
-    gap_m: Value
-    couplings: tuple[Value, Value, Value]
+    gap_m: Value | None
+    couplings: tuple[Value | None, Value | None, Value | None]
 
 
 @dataclass(frozen=True)
@@ -48,15 +48,15 @@ class Saved:
 
     cuts: str
     metres: float
-    exit_alone_m: Value
-    measuring_alone_m: Value
-    both_m: Value
+    exit_alone_m: Value | None
+    measuring_alone_m: Value | None
+    both_m: Value | None
 
 
 def practice(name: str, pairs: tuple[Floats, ...]) -> Practice:
     """The mean over kinds of cuts, each (replicates, places, FIGURES)."""
     mean = np.mean([each.mean(axis=1) for each in pairs], axis=0)
-    gap, over, harder, hardest = (value_of(scale * mean[:, k]) for k, scale in enumerate((1.0, 1e3, 1e3, 1e3)))
+    gap, over, harder, hardest = (value_if_known(scale * mean[:, k]) for k, scale in enumerate((1.0, 1e3, 1e3, 1e3)))
     return Practice(name, gap, (over, harder, hardest))
 
 
@@ -87,5 +87,5 @@ def saved(kind: Kind, samples: Samples, metres: tuple[float, ...]) -> tuple[Save
     pairs = ((CATEGORY, ESTIMATED), (MEASURED, TODAY_EXIT), (MEASURED, ESTIMATED))
     steps = [today - samples.of(*pair) for pair in pairs]
     return tuple(
-        Saved(kind.name, place, *(value_of(step[:, k, 0]) for step in steps)) for k, place in enumerate(metres)
+        Saved(kind.name, place, *(value_if_known(step[:, k, 0]) for step in steps)) for k, place in enumerate(metres)
     )

@@ -40,7 +40,7 @@ class Options:
     """What is studied."""
 
     p_overspeed: float = option(0.1, "share of over-speeds that commands keep", (0.01, 0.5))
-    careful_share: float = option(0.02, "share of the last practice", (0.001, 0.5))
+    careful_share: float = option(0.05, "share of the last practice", (0.001, 0.5))
     metres: tuple[float, ...] = option((100.0, 200.0, 300.0), "free distances behind the position", (20.0, 500.0))
     cars: tuple[int, ...] = option((1, 3), "cars of a cut; 1 must be among them", (1, 20))
     records: int = option(300, "recorded cuts of the three control points", (10, 100_000))
