@@ -12,6 +12,7 @@ from synth.studies.aimed_braking.anemometer import ByReadingAndWind, WindByAnemo
 from synth.studies.aiming.hump import POINTS, weight_category, with_bends
 from synth.studies.aiming.places import FreeDistance
 from synth.studies.aiming.trial import Cuts, Draws, Outcome, outcomes, samples
+from synth.studies.side_by_side import side_by_side
 from synth.yard.knowledge import ByCategory, ByReading, Knowledge
 from synth.yard.position_models import NormalPosition
 from synth.yard.readings import LightnessByWeigher, ResistanceByRadar, ResistanceByTwoSpeeds
@@ -93,8 +94,8 @@ def measured(
     hump: AimScene, metres: tuple[float, ...], p: float, draws: Draws, ways: tuple[Measuring, ...]
 ) -> Iterator[Measured]:
     """The outcomes of each way."""
-    for way in ways:
-        yield Measured(way.name, outcomes(of_way(way, hump, metres, p, draws)))
+    found = side_by_side(lambda way: outcomes(of_way(way, hump, metres, p, draws)), ways)
+    yield from (Measured(way.name, of_one) for way, of_one in zip(ways, found, strict=True))
 
 
 def of_way(way: Measuring, hump: AimScene, metres: tuple[float, ...], p: float, draws: Draws) -> Floats:

@@ -13,6 +13,7 @@ from plant_models.rolling.resistance_law import HumpNormLaw, Tb10062Law
 from synth.studies.aiming.hump import GRADES, weight_category, with_bends, with_grades, with_mix, with_weather
 from synth.studies.aiming.norm_distance import norm_distance
 from synth.studies.aiming.trial import Cuts, Draws, Value, value_of
+from synth.studies.side_by_side import side_by_side
 from synth.yard.knowledge import ByCategory, Knowledge
 from synth.yard.position_models import NormalPosition
 from synth.yard.readings import ResistanceByTwoSpeeds
@@ -61,9 +62,9 @@ class Sensitivity:
 
 def sensitivities(scene: AimScene, inputs: int, last_m: float, p: float, draws: Draws) -> Iterator[Sensitivity]:
     """The assumed inputs first, then the first `inputs` of the changed ones."""
-    base = distances(Input("as assumed", "", "", lambda s: s), scene, last_m, p, draws)
-    for changed in (Input("as assumed", "", "", lambda s: s), *INPUTS[:inputs]):
-        found = base if changed.name == "as assumed" else distances(changed, scene, last_m, p, draws)
+    asked = (Input("as assumed", "", "", unchanged), *INPUTS[:inputs])
+    base, *others = side_by_side(lambda changed: distances(changed, scene, last_m, p, draws), asked)
+    for changed, found in zip(asked, (base, *others), strict=True):
         moved = (moved_by(new, old) for new, old in zip(found, base, strict=True))
         yield Sensitivity(changed.name, changed.assumed, changed.value, *moved)
 

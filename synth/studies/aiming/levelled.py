@@ -26,8 +26,8 @@ BOUNDS_M_S = (0.5, 7.0)
 NOT_SERVED_M_S = 0.4
 """Stands for every threshold below the lowest command: no command serves such a cut, however far below it is."""
 
-HALVINGS = 9
-"""Of the interval of the level, where the first one does not keep the share."""
+TRIES = 12
+"""Levels tried at most; where cuts that nothing serves are many, the share jumps, and the best one below counts."""
 
 NEAR = 0.001
 """A share that is so near below what is required is near enough."""
@@ -69,13 +69,8 @@ def levelled(knowledge: Knowledge, design: AimedCuts, place: int, p_overspeed: f
         over = commands.of(design.cuts).speed_m_s > thresholds[:, 0]
         return commands, float(over[others].mean())
 
-    best, share = tried(p_overspeed)
-    if p_overspeed - NEAR <= share <= p_overspeed:
-        return best
-    found = best if share <= p_overspeed else None
-    low, high = (p_overspeed, min(2.0 * p_overspeed, 0.999)) if found else (0.0, p_overspeed)
-    for _ in range(HALVINGS):
-        level = 0.5 * (low + high)
+    found, low, high, level = None, 0.0, 2.0 * p_overspeed, p_overspeed
+    for _ in range(TRIES):
         commands, share = tried(level)
         if share <= p_overspeed:
             found, low = commands, level
@@ -83,4 +78,7 @@ def levelled(knowledge: Knowledge, design: AimedCuts, place: int, p_overspeed: f
                 break
         else:
             high = level
+        level += p_overspeed - 0.5 * NEAR - share  # the share follows the level nearly one to one
+        if not low < level < high:
+            level = 0.5 * (low + high)
     return found

@@ -7,7 +7,7 @@ speeds are chosen for a share of over-speeds on some cuts and judged on others; 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -51,8 +51,8 @@ class Options:
     tables: int = option(6, "tables of a class, of as many exit speeds", (2, 6))
     detail_m: float = option(200.0, "free distance of these comparisons", (20.0, 500.0))
     replicates: int = option(5, "independent replicates", (2, 1000))
-    design: int = option(4000, "cuts of a replicate that commands are chosen on", (200, 10**6))
-    report: int = option(4000, "cuts of a replicate that commands are judged on", (200, 10**6))
+    design: int = option(3000, "cuts of a replicate that commands are chosen on", (200, 10**6))
+    report: int = option(3000, "cuts of a replicate that commands are judged on", (200, 10**6))
     seed: int = option(15, "of all draws", (0, 10**9))
 
 
@@ -81,7 +81,8 @@ def run(options: Options, tell: Tell) -> YardChain:
             tell(f"{kind.name}: aimed")
     assert detailed is not None, "light single cars are always among the cuts"
     light, p, at = LIGHT.cuts(hump), options.p_overspeed, options.detail_m
-    records = tuple(record_rows(light, detailed, options.records_compared, at, p, draws))
+    many = replace(draws, design=max(draws.design, 2 * max(options.records_compared)))
+    records = tuple(record_rows(light, detailed, options.records_compared, at, p, many))
     stretches = tuple(stretch_rows(hump, options.lengths_m, options.stds_m_s, at, p, draws))
     faulty = tuple(fault_rows(light, detailed, options.records, at, p, draws))
     tell("records, stretches, faults")
