@@ -16,11 +16,11 @@ from synth.studies.aiming.levelled import BOUNDS_M_S, NEAR, levelled
 from synth.studies.aiming.norm_distance import BEYOND, norm_distance, root
 from synth.studies.aiming.places import FreeDistance, FromCrest
 from synth.studies.aiming.trial import Cuts, Draws, outcomes, tried, value_of
-from synth.studies.yard_chain.chain import CATEGORY, ESTIMATED, MEASURED, Kind
+from synth.studies.yard_chain.chain import CATEGORY, ESTIMATED, MEASURED, BookSize, Kind, chain_samples
 from synth.studies.yard_chain.faults import HandBraked, WithMissing
 from synth.studies.yard_chain.practices import TODAY_EXIT, Samples, practice, saved
 from synth.yard.knowledge import ByCategory, ByReading, Knowledge, Requirement
-from synth.yard.position_models import NormalPosition
+from synth.yard.position_models import NormalPosition, PositionModel
 from synth.yard.readings import ResistanceByTwoSpeeds
 from synth.yard.recorded_cuts import NearestRecord
 from synth.yard.regression import ByRegression
@@ -117,6 +117,30 @@ def test_measured_resistance_leaves_less_gap_at_the_same_share() -> None:
     assert measured.gap_m.value < 0.5 * category.gap_m.value
     assert category.overspeed.value == pytest.approx(P, abs=0.02)
     assert measured.overspeed.value == pytest.approx(P, abs=0.02)
+
+
+def test_a_chain_holds_what_each_pair_gives_alone() -> None:
+    hump, draws = large_hump(), Draws(2, 400, 300, 4)
+    cuts = Kind("T", 2).cuts(hump)
+    positions: dict[str, PositionModel] = {"a": NormalPosition(0.0), "b": NormalPosition(0.3)}
+    knowledge: dict[str, Knowledge] = {"x": ByCategory(), "y": ByRegression(TWO)}
+    figures = chain_samples(cuts, (60.0, 150.0), positions, knowledge, P, draws)
+    assert figures.shape == (2, 2, 2, 2, 6)
+    alone = tried(cuts, FreeDistance((60.0, 150.0)), positions["b"], knowledge["y"], P, draws)
+    assert outcomes(figures[:, 1, 1]) == alone
+
+
+def test_a_park_book_is_for_the_cuts_that_come() -> None:
+    cuts = Kind("T", 3).cuts(large_hump())
+    book = BookSize(2, 3).book(cuts)
+    assert book.targets_m_s == (1.0, 1.2, 2.6)
+    assert all(3 * 72.0 < mass < 3 * 94.0 for mass in book.masses_t)
+    assert book.masses_t[0] < book.masses_t[1]
+    low, high = book.entry_m_s
+    assert 2.0 < low < high < 4.5
+    config = book.config(estimator=True)
+    assert config.regulator.estimator
+    assert [plant.cut.axles for _, plant in config.plants()] == [12, 12]
 
 
 def test_cuts_braked_by_hand_leave_with_their_own_error(drawn: SceneCuts) -> None:
