@@ -23,6 +23,9 @@ Source = Annotated[Path, typer.Argument(metavar="TABLE|BOOK", help="A table (.js
 SourceOrDirectory = Annotated[
     Path, typer.Argument(metavar="TABLE|BOOK|DIR", help="A table (.json), a book (.h5), or what a tune left.")
 ]
+ExportSource = Annotated[
+    Path, typer.Argument(metavar="TABLE|BOOK|DIR", help="A table (.json), a book (.h5), or a folder of aim tables.")
+]
 Config = Annotated[
     Path | None, typer.Option("--config", metavar="C", help="Configuration with the plant; built-in unless given.")
 ]
@@ -219,7 +222,7 @@ def inspect(source: SourceOrDirectory, as_json: Json = False) -> int:
 
 @app.command()
 def export(
-    source: Source,
+    source: ExportSource,
     form: Annotated[str, typer.Option("--format", metavar="json|c|st|csv", help="Form of the tables.")],
     output: Annotated[
         Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where they go.")

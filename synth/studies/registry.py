@@ -178,6 +178,13 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.robustness.pictures",
     ),
     Study(
+        "rolling",
+        "How fast and how exactly do cuts roll, beside numpy and scipy, and by which step?",
+        40.0,
+        "rolling.md",
+        "synth.studies.rolling.study",
+    ),
+    Study(
         "software-in-the-loop",
         "Does the compiled controller, as a process of its own, control a pass to the same bits as the simulator's?",
         41.0,

@@ -16,7 +16,7 @@ from synth.yard.scene import SceneCuts
 
 Floats = NDArray[np.float64]
 
-NODES = 17
+NODES = 25
 """At which commands by a reading are worked out."""
 
 LOW_TAIL, HIGH_TAIL = 0.0002, 0.002

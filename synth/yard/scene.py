@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -117,13 +118,13 @@ class SceneCuts:
         steady = cuts.resistance_n_per_kn[rows] + law.slope_extra_n_per_kn
         return np.asarray(steady + law.linear_n_per_kn * speed_m_s + air)
 
-    @property
+    @cached_property
     def measured_speeds_m_s(self) -> tuple[Floats, Floats]:
         """True speeds at both ends of the stretch, as the first axle passes them, each (n,); 0 if it stops before."""
         ends = np.full((len(self), 1), self.scene.stretch.to_m) + self.rolling.cuts.first_axle_m[:, None]
         return self.stretch_speed_m_s, self.rolling.roll_on(self.begin_m, self.stretch_speed_m_s, ends).speed_m_s[:, 0]
 
-    @property
+    @cached_property
     def unbraked_exit_m_s(self) -> Floats:
         """Speed at the release of cuts that nothing brakes, (n,); 0 if they stop before."""
         release = self.release_m[:, None]
