@@ -8,6 +8,7 @@ from plant_models.library.catalogue import (
     load_position,
     load_retarder,
     load_sensor,
+    load_track,
     load_weight_categories,
     position_names,
     retarder_names,
@@ -18,12 +19,15 @@ from plant_models.library.retarder_entry import RetarderEntry
 from plant_models.library.sensor_entry import SensorEntry
 from plant_models.library.source import Source, sources, sources_cited_in
 from plant_models.library.sourced_value import SourcedValue, Value
+from plant_models.library.track_entry import TrackEntry
 from plant_models.library.type_file import (
+    CAR_MIXES,
     CARS,
     KINDS,
     POSITIONS,
     RETARDERS,
     SENSORS,
+    TRACKS,
     WEIGHT_CATEGORIES,
     Kind,
     TypeFile,
@@ -34,10 +38,12 @@ from plant_models.library.weight_category import WeightCategories, WeightCategor
 __all__ = [
     "BUILT_IN",
     "CARS",
+    "CAR_MIXES",
     "KINDS",
     "POSITIONS",
     "RETARDERS",
     "SENSORS",
+    "TRACKS",
     "WEIGHT_CATEGORIES",
     "YARD_CATEGORIES",
     "CarEntry",
@@ -48,6 +54,7 @@ __all__ = [
     "SensorEntry",
     "Source",
     "SourcedValue",
+    "TrackEntry",
     "TypeFile",
     "TypeFileError",
     "Value",
@@ -58,6 +65,7 @@ __all__ = [
     "load_position",
     "load_retarder",
     "load_sensor",
+    "load_track",
     "load_weight_categories",
     "position_names",
     "retarder_names",

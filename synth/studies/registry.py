@@ -16,6 +16,13 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.accuracy_grid.picture",
     ),
     Study(
+        "aim-tables",
+        "How large are the gaps where the default aim tables are used?",
+        12.0,
+        "aim.md#results",
+        "synth.studies.aim_tables",
+    ),
+    Study(
         "aimed-braking",
         "How far does a position aim: gap against over-speed, which assumption moves it, what would measuring bring?",
         300.0,

@@ -47,11 +47,12 @@ class Rolled:
 
 @dataclass(frozen=True, eq=False)
 class RollingCuts:
-    """Cuts made ready for the kernel on one track. Build it with `rolling_cuts`."""
+    """Cuts made ready for the kernel on one track, rolled by `threads`, 0: one a processor; from `rolling_cuts`."""
 
     cuts: DrawnCuts
     way: Way
     arrays: Cuts
+    threads: int = 0
 
     def __len__(self) -> int:
         return len(self.cuts)
@@ -79,7 +80,7 @@ class RollingCuts:
         def part(first: int, last: int) -> None:
             kernel.roll_on(self.way, self.arrays, start, begins, at, longest, energy, time, stop, first, last)
 
-        side_by_side(part, len(start))
+        side_by_side(part, len(start), self.threads)
         return Rolled(np.sqrt(2.0 * energy[:, :count].T), time[:, :count].T.copy(), stop[:count].copy())
 
     def roll_back(self, arrival_m: Floats, speed_m_s: float, start_m: Floats, step_m: float = STEP_M) -> Floats:
@@ -91,15 +92,17 @@ class RollingCuts:
         def part(first: int, last: int) -> None:
             kernel.roll_back(self.way, self.arrays, arrival, ends, start, longest, energy, first, last)
 
-        side_by_side(part, len(start))
+        side_by_side(part, len(start), self.threads)
         return np.asarray(np.sqrt(2.0 * energy[: len(self)]))
 
 
-def rolling_cuts(population: CutPopulation, track: RollTrack, yard_from_m: float, cuts: DrawnCuts) -> RollingCuts:
+def rolling_cuts(
+    population: CutPopulation, track: RollTrack, yard_from_m: float, cuts: DrawnCuts, threads: int = 0
+) -> RollingCuts:
     """`cuts` of `population` on `track`; behind `yard_from_m` they roll in the yard, where snow lies and no extra
     resistance of the slope counts."""
     way, first_m = way_of(population, track, yard_from_m, cuts.mix)
-    return RollingCuts(cuts, way, arrays_of(population, cuts, way, first_m))
+    return RollingCuts(cuts, way, arrays_of(population, cuts, way, first_m), threads)
 
 
 def way_of(
@@ -149,11 +152,11 @@ def in_lanes(values: NDArray[Any]) -> NDArray[Any]:
     return np.ascontiguousarray(np.concatenate((values, values[..., values.shape[-1] - 1 :].repeat(short, -1)), -1))
 
 
-def side_by_side(part: Callable[[int, int], None], count: int) -> None:
+def side_by_side(part: Callable[[int, int], None], count: int, threads: int) -> None:
     """Call `part(first, last)` for all cuts, some at a time. Each is worked out alone, so threads change nothing."""
     if count <= TOGETHER:
         part(0, count)
         return
     starts = range(0, count, TOGETHER)
-    with ThreadPoolExecutor(max_workers=os.cpu_count() or 1) as pool:
+    with ThreadPoolExecutor(max_workers=threads or os.cpu_count() or 1) as pool:
         list(pool.map(lambda start: part(start, min(start + TOGETHER, count)), starts))

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from synth.checker.aim.reading import read_aim
 from synth.checker.aim.rule import exit_speed
@@ -242,7 +243,10 @@ def test_more_over_speeds_than_required_are_a_claim_that_is_not_confirmed(tmp_pa
             document["reported"][f"p_overspeed_{name}"][3][4] = value
         document["reported"]["p_overspeed"][3][4] = 0.13
 
-    for low, code in ((0.1101, 1), (0.11, 0)):
+    # By chance one of `count` nodes lies so far above its interval as often as a single one lies above its own.
+    count = int(np.isfinite(category_table().reported.p_overspeed).sum())
+    least = 0.13 - (0.13 - 0.11) * stats.norm.isf(0.025) / stats.norm.isf(0.025 / count)
+    for low, code in ((least + 1e-4, 1), (least - 1e-4, 0)):
         (tmp_path / "aim.json").write_bytes(rewritten(partial(excess, low=low)))
         assert verify(tmp_path, 100, 1).code == code
     (tmp_path / "aim.json").write_bytes(rewritten(partial(excess, low=0.12)))

@@ -28,13 +28,14 @@ def modules_after(*arguments: str) -> set[str]:
     return set(ran.stderr.split())
 
 
-@pytest.mark.parametrize("arguments", [["--help"], ["tune", "--help"], ["--version"]])
+@pytest.mark.parametrize("arguments", [["--help"], ["tune", "--help"], ["aim", "--help"], ["--version"]])
 def test_help_imports_nothing_numeric(arguments: list[str]) -> None:
     assert modules_after(*arguments).isdisjoint(HEAVY | {"numpy"})
 
 
-def test_init_needs_no_solver() -> None:
-    assert modules_after("init").isdisjoint(HEAVY)
+@pytest.mark.parametrize("arguments", [["init"], ["init", "--aim"]])
+def test_init_needs_no_solver(arguments: list[str]) -> None:
+    assert modules_after(*arguments).isdisjoint(HEAVY)
 
 
 def test_inspect_of_a_table_needs_no_solver(tuned: Path) -> None:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from plant_models.rolling.car_mix import CarMix
 from plant_models.rolling.resistance_law import HumpNormLaw, Tb10062Law
-from synth.studies.aiming.hump import GRADES, weight_category, with_bends, with_grades, with_mix, with_weather
+from synth.studies.aiming.hump import grades_of, weight_category, with_bends, with_grades, with_mix, with_weather
 from synth.studies.aiming.norm_distance import norm_distance
 from synth.studies.aiming.trial import Cuts, Draws, Value, value_of
 from synth.studies.side_by_side import side_by_side
@@ -122,25 +122,41 @@ def law(of: HumpNormLaw | Tb10062Law, temperature_c: float = 10.0) -> Callable[[
 
 
 def grade_behind(permille: float) -> Callable[[AimScene], AimScene]:
-    """Another grade of the classification track."""
-    return lambda scene: with_grades(scene, (*GRADES[:-2], (GRADES[-2][0], permille), GRADES[-1]))
+    """Another grade of the classification track, which begins where the first grade behind the position does."""
+
+    def changed(scene: AimScene) -> AimScene:
+        first = first_behind(scene)
+        return with_grades(scene, tuple((at, permille if at == first else i) for at, i in grades_of(scene)))
+
+    return changed
+
+
+def first_behind(scene: AimScene) -> float:
+    """Where the first grade behind the position begins, m."""
+    return min(at for at, _ in grades_of(scene) if at >= scene.exit_m)
 
 
 def farther(metres: float) -> Callable[[AimScene], AimScene]:
-    """Park position, measured stretch, bends before them and the grade behind them, all so much farther."""
+    """Park position, measured stretch, bends on the way to them and the grade behind them, all so much farther."""
 
     def changed(scene: AimScene) -> AimScene:
+        before, first = last_before(scene), first_behind(scene)
         bends = tuple(
-            replace(b, from_m=b.from_m + metres, to_m=b.to_m + metres) if b.from_m > GRADES[5][0] else b
+            replace(b, from_m=b.from_m + metres, to_m=b.to_m + metres) if b.from_m > before else b
             for b in scene.track.bends
         )
-        grades = tuple((start + (metres if start == GRADES[-2][0] else 0.0), i) for start, i in GRADES)
+        grades = tuple((at + (metres if at == first else 0.0), i) for at, i in grades_of(scene))
         moved = with_grades(with_bends(scene, bends), grades)
         stretch = replace(moved.stretch, from_m=moved.stretch.from_m + metres, to_m=moved.stretch.to_m + metres)
         entrance, exit_m = moved.entrance_m + metres, moved.exit_m + metres
         return replace(moved, entrance_m=entrance, exit_m=exit_m, stretch=stretch)
 
     return changed
+
+
+def last_before(scene: AimScene) -> float:
+    """Where the grade on which the position lies begins, m."""
+    return max(at for at, _ in grades_of(scene) if at <= scene.entrance_m)
 
 
 def bunch(mean_m_s: float, std_m_s: float) -> Callable[[AimScene], AimScene]:
