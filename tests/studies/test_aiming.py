@@ -62,7 +62,7 @@ def test_where_every_command_is_too_fast_there_are_none(design: AimedCuts) -> No
     commands = levelled(ByReading(TWO), replace(design, thresholds_m_s=some[:, None]), 0, P)
     assert commands is not None
     over = commands.of(design.cuts).speed_m_s > some
-    assert P - 5 * NEAR <= over.mean() <= P
+    assert P - 10 * NEAR <= over.mean() <= P  # with few cuts the share jumps where a node begins to be served
 
 
 def test_a_free_distance_is_counted_from_the_release(drawn: SceneCuts) -> None:
