@@ -25,7 +25,7 @@ STUDIES: tuple[Study, ...] = (
     Study(
         "aimed-braking",
         "How far does a position aim: gap against over-speed, which assumption moves it, what would measuring bring?",
-        300.0,
+        240.0,
         "aimed-braking.md",
         "synth.studies.aimed_braking.study",
         "synth.studies.aimed_braking.pictures",
@@ -240,7 +240,7 @@ STUDIES: tuple[Study, ...] = (
     Study(
         "yard-chain",
         "What do exact exits and measured resistance bring the yard: metres of gap and damaging couplings?",
-        300.0,
+        510.0,
         "aimed-braking.md#the-chain",
         "synth.studies.yard_chain.study",
         "synth.studies.yard_chain.pictures",
