@@ -23,6 +23,14 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.aim_tables",
     ),
     Study(
+        "aimed-braking",
+        "How far does a position aim: gap against over-speed, which assumption moves it, what would measuring bring?",
+        240.0,
+        "aimed-braking.md",
+        "synth.studies.aimed_braking.study",
+        "synth.studies.aimed_braking.pictures",
+    ),
+    Study(
         "approach",
         "What is gained when the regulator acts from before the entrance, and from how far?",
         150.0,
@@ -228,6 +236,14 @@ STUDIES: tuple[Study, ...] = (
         120.0,
         "verification.md",
         "synth.studies.verification",
+    ),
+    Study(
+        "yard-chain",
+        "What do exact exits and measured resistance bring the yard: metres of gap and damaging couplings?",
+        510.0,
+        "aimed-braking.md#the-chain",
+        "synth.studies.yard_chain.study",
+        "synth.studies.yard_chain.pictures",
     ),
 )
 

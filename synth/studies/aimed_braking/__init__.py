@@ -1,0 +1,1 @@
+"""Aimed braking: the figures of S1 and of the prototypes beside ours, and which assumption moves them."""
