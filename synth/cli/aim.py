@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from synth.cli import LIMITS_MISSED, OK, say
 
 if TYPE_CHECKING:
-    from synth.yard.resolved_aim import ResolvedAim
+    from synth.yard.aim.resolved_aim import ResolvedAim
 
 
 def aim_command(path: Path | None, output: Path, passes: int | None, seed: int | None, as_json: bool) -> int:
@@ -21,8 +21,8 @@ def aim_command(path: Path | None, output: Path, passes: int | None, seed: int |
 
     file = read_aim_file(path).with_simulation(passes, seed)
     require_date()
-    from synth.yard.aimed_position import position_of
-    from synth.yard.resolved_aim import resolve_aim
+    from synth.yard.aim.aimed_position import position_of
+    from synth.yard.aim.resolved_aim import resolve_aim
 
     config = resolve_aim(file)
     position_of(config)  # refuses a book that does not fit
@@ -39,8 +39,8 @@ def aim_into(directory: Path, config: ResolvedAim, as_json: bool) -> int:
     from synth.cli.progress import Progress
     from synth.kernels.cache import cache_in_use, guarded
     from synth.present.aim_outputs import write_aim
-    from synth.yard.aim_acceptance import judge_aims
-    from synth.yard.aim_book import aim_book
+    from synth.yard.aim.aim_acceptance import judge_aims
+    from synth.yard.aim.aim_book import aim_book
 
     started = time.monotonic()
     cache = cache_in_use()

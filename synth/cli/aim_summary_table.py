@@ -6,8 +6,8 @@ import math
 from pathlib import Path
 
 from synth.book.printed_numbers import ABSENT, counted, percent
-from synth.yard.aim_acceptance import AimBookVerdict
-from synth.yard.aim_book import AimBook
+from synth.yard.aim.aim_acceptance import AimBookVerdict
+from synth.yard.aim.aim_book import AimBook
 
 SHOWN = 4
 """Free distances of a printed row."""

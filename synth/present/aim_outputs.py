@@ -12,11 +12,11 @@ from synth.book.summary import Document
 from synth.present.outputs import file_hashes
 from synth.present.plots.picture import Picture, save_picture
 from synth.present.report.aim_report import AimReport, aim_page
-from synth.yard.aim_acceptance import AimBookVerdict
-from synth.yard.aim_book import AimBook, order_of
-from synth.yard.aim_curves import aim_curves, runners
-from synth.yard.aim_summary import aim_summary
-from synth.yard.aimed_position import position_of
+from synth.yard.aim.aim_acceptance import AimBookVerdict
+from synth.yard.aim.aim_book import AimBook, order_of
+from synth.yard.aim.aim_curves import aim_curves, runners
+from synth.yard.aim.aim_summary import aim_summary
+from synth.yard.aim.aimed_position import position_of
 from tuning_tables import TableError, write_atomically
 from tuning_tables.aim.json_file import read_aim_json
 from tuning_tables.canonical import canonical_json

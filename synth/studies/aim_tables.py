@@ -13,9 +13,9 @@ from synth.simulation.replicates import Interval
 from synth.studies.markdown_table import MarkdownTable, around, table
 from synth.studies.options import option
 from synth.studies.study import Findings, Method, Tell
-from synth.yard.aim_acceptance import judge_aims
-from synth.yard.aim_book import MadeAim, aim_book
-from synth.yard.resolved_aim import resolve_aim
+from synth.yard.aim.aim_acceptance import judge_aims
+from synth.yard.aim.aim_book import MadeAim, aim_book
+from synth.yard.aim.resolved_aim import resolve_aim
 
 KNOWN = {"category": "category", "measured": "and resistance"}
 

@@ -15,16 +15,16 @@ from synth.studies.aiming.hump import POINTS, large_hump, weight_category
 from synth.studies.aiming.levelled import BOUNDS_M_S, NEAR, levelled
 from synth.studies.aiming.norm_distance import BEYOND, norm_distance, root
 from synth.studies.aiming.places import FreeDistance, FromCrest
+from synth.studies.aiming.recorded_cuts import NearestRecord
+from synth.studies.aiming.regression import ByRegression
 from synth.studies.aiming.trial import Cuts, Draws, outcomes, tried, value_of
 from synth.studies.yard_chain.chain import CATEGORY, ESTIMATED, MEASURED, BookSize, Kind, chain_samples
 from synth.studies.yard_chain.faults import HandBraked, WithMissing
 from synth.studies.yard_chain.practices import TODAY_EXIT, Samples, practice, saved
-from synth.yard.knowledge import ByCategory, ByReading, Knowledge, Requirement
-from synth.yard.position_models import NormalPosition, PositionModel
-from synth.yard.readings import ResistanceByTwoSpeeds
-from synth.yard.recorded_cuts import NearestRecord
-from synth.yard.regression import ByRegression
-from synth.yard.scene import SceneCuts
+from synth.yard.aim.knowledge import ByCategory, ByReading, Knowledge, Requirement
+from synth.yard.aim.position_models import NormalPosition, PositionModel
+from synth.yard.aim.readings import ResistanceByTwoSpeeds
+from synth.yard.aim.scene import SceneCuts
 
 P = 0.1
 TWO = ResistanceByTwoSpeeds(0.03)

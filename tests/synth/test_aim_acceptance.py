@@ -9,9 +9,9 @@ import pytest
 from scipy import stats
 
 from synth.configuration.aim.aim_file import parse_aim_file
-from synth.yard.aim_acceptance import CHANCE, judge_aims
-from synth.yard.aim_book import MadeAim, aim_book
-from synth.yard.resolved_aim import resolve_aim
+from synth.yard.aim.aim_acceptance import CHANCE, judge_aims
+from synth.yard.aim.aim_book import MadeAim, aim_book
+from synth.yard.aim.resolved_aim import resolve_aim
 
 SMALL = """\
 [cuts]

@@ -15,7 +15,7 @@ from synth.configuration.aim.template import default_aim_toml
 from synth.configuration.section import setting_limits
 from synth.configuration.type_template import type_toml
 from synth.faults.input_error import InputError
-from synth.yard.resolved_aim import ResolvedAim, load_aim, resolve_aim
+from synth.yard.aim.resolved_aim import ResolvedAim, load_aim, resolve_aim
 
 
 def resolved(text: str, place: str = "aim.toml") -> ResolvedAim:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from synth.present.report.markup import Markup, element
-from synth.yard.aim_book import AimBook
+from synth.yard.aim.aim_book import AimBook
 
 
 def aim_limits(book: AimBook) -> Markup:

@@ -12,8 +12,8 @@ from synth.present.report.aim_tables import aim_tables
 from synth.present.report.document import Stamp, document, file_table, picture_sections
 from synth.present.report.markup import Markup, element, joined
 from synth.present.report.parameter_table import parameter_section
-from synth.yard.aim_acceptance import AimBookVerdict
-from synth.yard.aim_book import AimBook
+from synth.yard.aim.aim_acceptance import AimBookVerdict
+from synth.yard.aim.aim_book import AimBook
 
 HOW_TO_READ = (
     "Free distance: what the head of a cut has still to roll to the standing cars when its last axle leaves the "

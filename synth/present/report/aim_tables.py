@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from synth.book.printed_numbers import counted, percent
 from synth.present.report.markup import Cell, Markup, element, head_row, joined, table
-from synth.yard.aim_book import AimBook, MadeAim
+from synth.yard.aim.aim_book import AimBook, MadeAim
 
 KNOWN = {"category": "category alone", "measured": "resistance measured"}
 """What the page calls a kind of knowledge."""

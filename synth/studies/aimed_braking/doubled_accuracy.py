@@ -9,9 +9,9 @@ import numpy as np
 from plant_models.library.weight_category import WeightCategory
 from synth.studies.aiming.places import FromCrest
 from synth.studies.aiming.trial import Cuts, Draws, Value, samples, value_of
-from synth.yard.knowledge import ByCategory
-from synth.yard.position_models import NormalPosition
-from synth.yard.scene import AimScene
+from synth.yard.aim.knowledge import ByCategory
+from synth.yard.aim.position_models import NormalPosition
+from synth.yard.aim.scene import AimScene
 
 BEFORE, AFTER = 0.115, 0.055
 """Middle of the shares of over-speeds that S0 reports: 10 to 13 %, and 5 to 6 %."""

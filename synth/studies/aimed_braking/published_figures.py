@@ -10,9 +10,9 @@ from plant_models.library.weight_category import WeightCategory
 from synth.studies.aiming.aimed_cuts import AimedCuts, rolled_cuts
 from synth.studies.aiming.places import FromCrest
 from synth.studies.aiming.trial import Cuts, Draws, Outcome, Value, tried, value_of
-from synth.yard.knowledge import ByCategory, Knowledge
-from synth.yard.position_models import NormalPosition
-from synth.yard.scene import AimScene
+from synth.yard.aim.knowledge import ByCategory, Knowledge
+from synth.yard.aim.position_models import NormalPosition
+from synth.yard.aim.scene import AimScene
 
 BETWEEN_STATIONS_M = 10.0
 

@@ -12,13 +12,13 @@ from plant_models.rolling.car_mix import CarMix
 from plant_models.rolling.resistance_law import HumpNormLaw, Tb10062Law
 from synth.studies.aiming.hump import grades_of, weight_category, with_bends, with_grades, with_mix, with_weather
 from synth.studies.aiming.norm_distance import norm_distance
+from synth.studies.aiming.regression import ByRegression
 from synth.studies.aiming.trial import Cuts, Draws, Value, value_of
 from synth.studies.side_by_side import side_by_side
-from synth.yard.knowledge import ByCategory, Knowledge
-from synth.yard.position_models import NormalPosition
-from synth.yard.readings import ResistanceByTwoSpeeds
-from synth.yard.regression import ByRegression
-from synth.yard.scene import AimScene
+from synth.yard.aim.knowledge import ByCategory, Knowledge
+from synth.yard.aim.position_models import NormalPosition
+from synth.yard.aim.readings import ResistanceByTwoSpeeds
+from synth.yard.aim.scene import AimScene
 
 Floats = NDArray[np.float64]
 

@@ -16,15 +16,15 @@ from synth.studies.aimed_braking.published_figures import Line, by_category, cur
 from synth.studies.aimed_braking.sensitivity import INPUTS, sensitivities
 from synth.studies.aiming.hump import POINTS, large_hump, weight_category
 from synth.studies.aiming.norm_distance import norm_distance
+from synth.studies.aiming.recorded_cuts import NearestRecord
+from synth.studies.aiming.regression import ByRegression
 from synth.studies.aiming.trial import Cuts, Draws, value_of
 from synth.studies.options import option
 from synth.studies.study import Method, Tell
-from synth.yard.knowledge import ByCategory, ByReading, Knowledge
-from synth.yard.position_models import NormalPosition
-from synth.yard.readings import LightnessByWeigher, ResistanceByTwoSpeeds
-from synth.yard.recorded_cuts import NearestRecord
-from synth.yard.regression import ByRegression
-from synth.yard.scene import AimScene
+from synth.yard.aim.knowledge import ByCategory, ByReading, Knowledge
+from synth.yard.aim.position_models import NormalPosition
+from synth.yard.aim.readings import LightnessByWeigher, ResistanceByTwoSpeeds
+from synth.yard.aim.scene import AimScene
 
 EXACT_WEIGHT = 1e-4
 """Relative error of a weigher that stands for exact weight."""

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
 from synth.studies.aiming.places import Places
-from synth.yard.outcome import Couplings, couplings
-from synth.yard.position_models import ExitSpeeds, PositionModel
-from synth.yard.scene import SceneCuts
+from synth.yard.aim.outcome import Couplings, couplings
+from synth.yard.aim.position_models import ExitSpeeds, PositionModel
+from synth.yard.aim.scene import SceneCuts
 
 Floats = NDArray[np.float64]
 

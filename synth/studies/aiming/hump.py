@@ -12,8 +12,8 @@ from plant_models.rolling.resistance_law import HumpNormLaw
 from plant_models.rolling.roll_track import Bend
 from plant_models.rolling.weather import Weather
 from plant_models.track_profile import TrackProfile
-from synth.yard.recorded_cuts import ControlPoints
-from synth.yard.scene import AimScene, MeasuredStretch
+from synth.studies.aiming.recorded_cuts import ControlPoints
+from synth.yard.aim.scene import AimScene, MeasuredStretch
 
 POINTS = ControlPoints((200.0, 250.0, 305.0))
 """The three control points of S1, between bunch and park position."""

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
 from synth.studies.aiming.aimed_cuts import AimedCuts
-from synth.yard.knowledge import Commands, Knowledge, Requirement
-from synth.yard.recorded_cuts import NearestRecord
-from synth.yard.scene import SceneCuts
+from synth.studies.aiming.recorded_cuts import NearestRecord
+from synth.yard.aim.knowledge import Commands, Knowledge, Requirement
+from synth.yard.aim.scene import SceneCuts
 
 Floats = NDArray[np.float64]
 

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from synth.studies.aiming.aimed_cuts import rolled_cuts
 from synth.studies.aiming.places import FromCrest
 from synth.studies.aiming.trial import Cuts, Draws, judged
-from synth.yard.knowledge import Knowledge
-from synth.yard.position_models import PositionModel
-from synth.yard.scene import SceneCuts
+from synth.yard.aim.knowledge import Knowledge
+from synth.yard.aim.position_models import PositionModel
+from synth.yard.aim.scene import SceneCuts
 
 Floats = NDArray[np.float64]
 

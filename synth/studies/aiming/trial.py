@@ -13,10 +13,10 @@ from synth.simulation.replicates import Interval, student_quantile
 from synth.studies.aiming.aimed_cuts import AimedCuts, RolledCuts, rolled_cuts
 from synth.studies.aiming.levelled import levelled
 from synth.studies.aiming.places import Places
-from synth.yard.knowledge import Knowledge
-from synth.yard.outcome import Couplings
-from synth.yard.position_models import PositionModel
-from synth.yard.scene import AimScene, SceneCuts
+from synth.yard.aim.knowledge import Knowledge
+from synth.yard.aim.outcome import Couplings
+from synth.yard.aim.position_models import PositionModel
+from synth.yard.aim.scene import AimScene, SceneCuts
 
 Floats = NDArray[np.float64]
 

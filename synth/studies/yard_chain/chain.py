@@ -11,15 +11,15 @@ from numpy.typing import NDArray
 from synth.studies.aiming.aimed_cuts import rolled_cuts
 from synth.studies.aiming.hump import POINTS, weight_category, with_bends
 from synth.studies.aiming.places import FreeDistance
+from synth.studies.aiming.recorded_cuts import NearestRecord
+from synth.studies.aiming.regression import ByRegression
 from synth.studies.aiming.trial import Cuts, Draws, judged
 from synth.studies.side_by_side import side_by_side
 from synth.studies.yard_chain.park_book import ParkBook, park_book
-from synth.yard.knowledge import ByCategory, ByReading, Knowledge
-from synth.yard.position_models import NormalPosition, PositionModel
-from synth.yard.readings import LightnessByWeigher, ResistanceByRadar, ResistanceByTwoSpeeds
-from synth.yard.recorded_cuts import NearestRecord
-from synth.yard.regression import ByRegression
-from synth.yard.scene import AimScene, SceneCuts
+from synth.yard.aim.knowledge import ByCategory, ByReading, Knowledge
+from synth.yard.aim.position_models import NormalPosition, PositionModel
+from synth.yard.aim.readings import LightnessByWeigher, ResistanceByRadar, ResistanceByTwoSpeeds
+from synth.yard.aim.scene import AimScene, SceneCuts
 
 Floats = NDArray[np.float64]
 

@@ -9,14 +9,14 @@ import numpy as np
 
 from synth.studies.aiming.hump import POINTS
 from synth.studies.aiming.places import FreeDistance
+from synth.studies.aiming.recorded_cuts import NearestRecord
 from synth.studies.aiming.trial import Cuts, Draws, Outcome, judged, outcomes, tried
 from synth.studies.yard_chain.chain import Kind
 from synth.studies.yard_chain.faults import HandBraked, WithMissing
-from synth.yard.knowledge import ByCategory, ByReading, Knowledge
-from synth.yard.position_models import NormalPosition, PositionModel
-from synth.yard.readings import ResistanceByRadar, ResistanceByTwoSpeeds
-from synth.yard.recorded_cuts import NearestRecord
-from synth.yard.scene import AimScene
+from synth.yard.aim.knowledge import ByCategory, ByReading, Knowledge
+from synth.yard.aim.position_models import NormalPosition, PositionModel
+from synth.yard.aim.readings import ResistanceByRadar, ResistanceByTwoSpeeds
+from synth.yard.aim.scene import AimScene
 
 EXIT_STD_M_S = 0.03
 """Of the exit speed where lengths and errors of sensors are compared: what our tables leave, nearly."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.studies.aiming.trial import Value, value_if_known
 from synth.studies.yard_chain.chain import CATEGORY, ESTIMATED, MEASURED, Kind
 
@@ -19,7 +20,8 @@ LIGHT, HEAVY = Kind("L", 1), Kind("T", 1)
 LIGHT_STRAIGHT, HEAVY_STRAIGHT = Kind("L", 1, True), Kind("T", 1, True)
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Samples:
     """Figures of every replicate (replicates, knowledge, positions, places, FIGURES) with the names of two axes."""
 

@@ -14,7 +14,7 @@ from plant_models.rolling.random_cuts import CutPopulation
 from plant_models.rolling.resistance_law import HumpNormLaw
 from plant_models.rolling.roll_track import Bend, RollTrack
 from plant_models.rolling.weather import Weather
-from synth.yard.scene import AimScene, MeasuredStretch
+from synth.yard.aim.scene import AimScene, MeasuredStretch
 
 CATEGORIES = load_weight_categories()
 LIGHT, HEAVY = CATEGORIES.members[0], CATEGORIES.members[-1]

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from plant_models import PlantError
-from synth.yard.aim_table import AimedSpeeds, AimOrder, aimed_speeds, errors_between, table_cuts
-from synth.yard.knowledge import ByCategory, ByReading, Requirement
-from synth.yard.position_models import NormalPosition
-from synth.yard.readings import ResistanceByTwoSpeeds
-from synth.yard.scene import AimScene
+from synth.yard.aim.aim_table import AimedSpeeds, AimOrder, aimed_speeds, errors_between, table_cuts
+from synth.yard.aim.knowledge import ByCategory, ByReading, Requirement
+from synth.yard.aim.position_models import NormalPosition
+from synth.yard.aim.readings import ResistanceByTwoSpeeds
+from synth.yard.aim.scene import AimScene
 from tests.synth.yard.conftest import HEAVY, LIGHT
 
 ORDER = AimOrder(

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from synth.yard.outcome import couplings
-from synth.yard.position_models import NormalPosition
-from synth.yard.scene import AimScene
+from synth.yard.aim.outcome import couplings
+from synth.yard.aim.position_models import NormalPosition
+from synth.yard.aim.scene import AimScene
 from tests.synth.yard.conftest import HEAVY, LIGHT
 
 MARGIN_M_S = 0.003

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from synth.simulation.exit_statistics import clopper_pearson
-from synth.yard.knowledge import ByCategory, ByReading, Knowledge, Requirement, not_falling
-from synth.yard.outcome import couplings
-from synth.yard.position_models import NormalPosition
-from synth.yard.readings import LightnessByWeigher, ResistanceByRadar, ResistanceByTwoSpeeds
-from synth.yard.recorded_cuts import ControlPoints, NearestRecord, nearest
-from synth.yard.regression import ByRegression
-from synth.yard.scene import AimScene, SceneCuts
+from synth.studies.aiming.recorded_cuts import ControlPoints, NearestRecord, nearest
+from synth.studies.aiming.regression import ByRegression
+from synth.yard.aim.knowledge import ByCategory, ByReading, Knowledge, Requirement, not_falling
+from synth.yard.aim.outcome import couplings
+from synth.yard.aim.position_models import NormalPosition
+from synth.yard.aim.readings import LightnessByWeigher, ResistanceByRadar, ResistanceByTwoSpeeds
+from synth.yard.aim.scene import AimScene, SceneCuts
 from tests.synth.yard.conftest import LIGHT
 
 DISTANCE_M = 80.0

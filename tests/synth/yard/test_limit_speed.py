@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from synth.yard.limit_speed import thresholds_of
+from synth.yard.aim.limit_speed import thresholds_of
 
 BOUNDS = (0.5, 6.0)
 GRID = np.arange(0.5, 6.0, 0.001)

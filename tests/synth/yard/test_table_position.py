@@ -12,9 +12,9 @@ from synth.book.comparison.baselines import energy_rule
 from synth.configuration.config_file import parse_config
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.random_passes import random_passes
-from synth.yard.position_models import SampledExits
-from synth.yard.scene import AimScene
-from synth.yard.table_position import TableClass, TablePosition, entry_speeds_m_s
+from synth.yard.aim.position_models import SampledExits
+from synth.yard.aim.scene import AimScene
+from synth.yard.aim.table_position import TableClass, TablePosition, entry_speeds_m_s
 from tests.synth.yard.conftest import HEAVY, LIGHT
 
 TARGETS = (1.5, 2.0, 3.0)

@@ -11,8 +11,8 @@ from synth.present.plots.aim.gaps import gaps
 from synth.present.plots.aim.track import track
 from synth.present.plots.picture import Picture
 from synth.present.plots.picture_book import picture
-from synth.yard.aim_book import AimBook
-from synth.yard.aim_curves import AimCurves, Runners
+from synth.yard.aim.aim_book import AimBook
+from synth.yard.aim.aim_curves import AimCurves, Runners
 
 
 def aim_pictures(book: AimBook, curves: Sequence[AimCurves], rolled: Sequence[Runners]) -> Iterator[Picture]:

@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from synth.book.printed_numbers import counted
 from synth.present.plots.aim.series import graded
 from synth.present.plots.house_style import INK, dress, legend_below, new_figure, place
-from synth.yard.aim_curves import AimCurves, Floats
+from synth.yard.aim.aim_curves import AimCurves, Floats
 
 
 def chances(curves: AimCurves) -> Figure:

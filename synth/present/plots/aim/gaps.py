@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from synth.book.printed_numbers import counted
 from synth.present.plots.aim.series import graded, markers, named_lines
 from synth.present.plots.house_style import dress, legend_below, new_figure, place
-from synth.yard.aim_book import AimBook, MadeAim
+from synth.yard.aim.aim_book import AimBook, MadeAim
 
 KNOWN = {"category": "category alone", "measured": "resistance measured"}
 """What a panel calls a kind of knowledge."""

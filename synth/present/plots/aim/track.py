@@ -24,8 +24,8 @@ from synth.present.plots.house_style import (
     new_figure,
     place,
 )
-from synth.yard.aim_curves import RUNNERS, Runners
-from synth.yard.scene import AimScene
+from synth.yard.aim.aim_curves import RUNNERS, Runners
+from synth.yard.aim.scene import AimScene
 
 LOOKS = (VERMILLION, BLUE, GREEN)
 """Of a bad, a middling and a good runner."""

@@ -12,12 +12,12 @@ import numpy as np
 
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.library.weight_category import WeightCategory
-from synth.yard.aim_table import AimedSpeeds, AimOrder, aimed_speeds
-from synth.yard.aimed_position import position_of
-from synth.yard.knowledge import ByCategory, ByReading, Requirement
-from synth.yard.position_models import PositionModel
-from synth.yard.readings import ResistanceByTwoSpeeds
-from synth.yard.resolved_aim import BOUNDS_M_S, ResolvedAim
+from synth.yard.aim.aim_table import AimedSpeeds, AimOrder, aimed_speeds
+from synth.yard.aim.aimed_position import position_of
+from synth.yard.aim.knowledge import ByCategory, ByReading, Requirement
+from synth.yard.aim.position_models import PositionModel
+from synth.yard.aim.readings import ResistanceByTwoSpeeds
+from synth.yard.aim.resolved_aim import BOUNDS_M_S, ResolvedAim
 from tuning_tables import Generator
 from tuning_tables.aim import (
     AimAxes,

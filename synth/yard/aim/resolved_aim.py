@@ -41,7 +41,7 @@ from synth.configuration.plant_fault import in_file
 from synth.configuration.position_choice import require_held
 from synth.configuration.resolved_config import range_warnings
 from synth.faults.input_error import InputError
-from synth.yard.scene import AimScene, MeasuredStretch
+from synth.yard.aim.scene import AimScene, MeasuredStretch
 from tuning_tables.canonical import canonical_json
 
 BOUNDS_M_S: Final = (0.5, 7.0)

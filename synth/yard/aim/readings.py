@@ -13,7 +13,7 @@ from scipy.special import ndtri
 from plant_models.errors import require_between
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.rolling.random_numbers import Purpose
-from synth.yard.scene import SceneCuts
+from synth.yard.aim.scene import SceneCuts
 
 Floats = NDArray[np.float64]
 

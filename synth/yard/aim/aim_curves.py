@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.library.weight_category import WeightCategory
-from synth.yard.aim_table import AimOrder
-from synth.yard.limit_speed import thresholds_of
-from synth.yard.scene import AimScene
+from synth.yard.aim.aim_table import AimOrder
+from synth.yard.aim.limit_speed import thresholds_of
+from synth.yard.aim.scene import AimScene
 
 Floats = NDArray[np.float64]
 

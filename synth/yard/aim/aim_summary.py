@@ -8,8 +8,8 @@ from importlib.metadata import version
 
 from synth.book.output_directory import AIM_LAYOUT
 from synth.book.summary import Document, plain
-from synth.yard.aim_acceptance import AimBookVerdict, AimVerdict
-from synth.yard.aim_book import AimBook, MadeAim
+from synth.yard.aim.aim_acceptance import AimBookVerdict, AimVerdict
+from synth.yard.aim.aim_book import AimBook, MadeAim
 
 VERSION = 1
 

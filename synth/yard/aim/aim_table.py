@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from plant_models.errors import require, require_between
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.library.weight_category import WeightCategory
-from synth.yard.aim_figures import AimFigures, aim_figures, figures_row
-from synth.yard.knowledge import ByCategory, ByReading, CommandsByReading, Requirement
-from synth.yard.outcome import Couplings, couplings
-from synth.yard.position_models import PositionModel
-from synth.yard.scene import AimScene, SceneCuts
+from synth.yard.aim.aim_figures import AimFigures, aim_figures, figures_row
+from synth.yard.aim.knowledge import ByCategory, ByReading, CommandsByReading, Requirement
+from synth.yard.aim.outcome import Couplings, couplings
+from synth.yard.aim.position_models import PositionModel
+from synth.yard.aim.scene import AimScene, SceneCuts
 
 Floats = NDArray[np.float64]
 

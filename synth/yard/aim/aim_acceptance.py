@@ -9,7 +9,7 @@ import numpy as np
 from scipy.special import betainc
 
 from synth.book.printed_numbers import counted, percent
-from synth.yard.aim_book import MadeAim
+from synth.yard.aim.aim_book import MadeAim
 
 CHANCE = 0.025
 """Of calling a table that keeps its limit one that misses it, all its cells together."""

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from plant_models import PlantError
 from synth.faults.input_error import InputError
-from synth.yard.position_models import NormalPosition, PositionModel
-from synth.yard.resolved_aim import ResolvedAim
+from synth.yard.aim.position_models import NormalPosition, PositionModel
+from synth.yard.aim.resolved_aim import ResolvedAim
 
 
 def position_of(config: ResolvedAim) -> PositionModel:
@@ -22,7 +22,7 @@ def tabled(config: ResolvedAim, book: Path, tuned_with: Path | None) -> Position
     """The closed loops of the tables in `book`, for every category and number of cars that is asked for."""
     from synth.book.forms.table_file import read_tables
     from synth.configuration.config_file import BUILT_IN, load_config
-    from synth.yard.table_position import table_position
+    from synth.yard.aim.table_position import table_position
 
     (file,) = read_tables(book)
     for table in file.tables:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
-from synth.yard.outcome import Couplings
+from synth.yard.aim.outcome import Couplings
 
 Floats = NDArray[np.float64]
 

@@ -20,8 +20,8 @@ from synth.kernels.loop import closed_loop as kernel
 from synth.simulation.closed_loop import ClosedLoop, close_loop
 from synth.simulation.controllers import Controller, TableController, fixed
 from synth.simulation.random_passes import RandomPasses, random_passes
-from synth.yard.position_models import SampledExits
-from synth.yard.scene import SceneCuts
+from synth.yard.aim.position_models import SampledExits
+from synth.yard.aim.scene import SceneCuts
 from tuning_tables import ControllerTable
 
 Floats = NDArray[np.float64]

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
 from synth.simulation.exit_statistics import NORMAL_95, clopper_pearson
-from synth.yard.position_models import ExitSpeeds
-from synth.yard.scene import SceneCuts
+from synth.yard.aim.position_models import ExitSpeeds
+from synth.yard.aim.scene import SceneCuts
 
 Floats = NDArray[np.float64]
 

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from scipy.optimize import isotonic_regression
 
 from plant_models.frozen_arrays import frozen_arrays
-from synth.yard.limit_speed import thresholds_of
-from synth.yard.readings import Reading
-from synth.yard.scene import SceneCuts
+from synth.yard.aim.limit_speed import thresholds_of
+from synth.yard.aim.readings import Reading
+from synth.yard.aim.scene import SceneCuts
 
 Floats = NDArray[np.float64]
 
