@@ -194,6 +194,7 @@ def test_a_practice_is_the_mean_over_cuts_and_places_and_savings_are_paired() ->
     low, high = stats.t.interval(0.95, 3, loc=step.mean(), scale=stats.sem(step))
     assert second.both_m is not None
     assert second.both_m.ci95 == pytest.approx((low, high))
-    figures[2, 0, 0, 1, 0] = np.nan
-    none = saved(Kind("L", 1), samples, (100.0, 200.0, 300.0))
+    missing = figures.copy()
+    missing[2, 0, 0, 1, 0] = np.nan
+    none = saved(Kind("L", 1), Samples(samples.knowledge, samples.positions, missing), (100.0, 200.0, 300.0))
     assert [row.both_m is None for row in none] == [False, True, False]
