@@ -1,0 +1,95 @@
+"""All axle counters of a hump: records follow their cuts from section to section (S0)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from synth.yard.hump.event import Kind
+from synth.yard.hump.models import ENTRY, AxlePass
+from synth.yard.hump.practice_rules import PracticeRules
+from synth.yard.hump.route_store import RouteStore
+from synth.yard.hump.route_table import RouteTable
+from synth.yard.hump.section_counter import Finding, SectionCounter
+
+Tell = Callable[[float, int, Finding], None]
+"""Takes the time, the element and what was found."""
+
+
+class AxleCounters:
+    """The counters of all sections, told what the train is; findings go to `tell`.
+
+    `latest`: by section, the last cut all of whose axles came in.
+    """
+
+    def __init__(self, table: RouteTable, store: RouteStore, rules: PracticeRules, tell: Tell) -> None:
+        self._table, self._store, self._tell = table, store, tell
+        first = {lead: table.next_section(lead) for lead in table.graph.leads}
+        self._sections = {
+            number: SectionCounter(
+                sum(table.vertex(number).section_m), number not in table.last, rules, number in first.values()
+            )
+            for number in sorted(table.sections)
+        }
+        self._handed: set[tuple[int, int]] = set()
+        self._free_since: dict[int, float] = {}
+        self.latest: dict[int, int] = {}
+        for cut in store.cuts:
+            begin = first[table.graph.leads[cut.lead]]
+            assert begin is not None  # a crest leads to tracks
+            self._sections[begin].expect(cut.serial, cut.axles)
+
+    def is_clear(self, element: int) -> bool:
+        """Whether the counters of the section know of no cut on it."""
+        return self._sections[element].is_clear
+
+    def count(self, axle: AxlePass) -> None:
+        """One axle more."""
+        section = self._sections[axle.element]
+        found = section.axle_in(axle.time_s) if axle.end == ENTRY else section.axle_out(axle.time_s)
+        for finding in found:
+            if finding.kind is Kind.ENTRY_COUNTER and finding.value == 0.0:
+                self.latest[axle.element] = finding.cut
+            elif finding.kind is Kind.EXIT_COUNTER and axle.end != ENTRY:
+                self._hand_over(finding.cut, axle)
+            self._tell(axle.time_s, axle.element, finding)
+
+    def _hand_over(self, cut: int, axle: AxlePass) -> None:
+        """Give the record to the section to which its first axle goes."""
+        if (axle.element, cut) not in self._handed:
+            self._handed.add((axle.element, cut))
+            following = self._table.next_section(axle.element, axle.end)
+            if following is not None:
+                self._sections[following].expect(cut, self._store.record(cut).axles)
+
+    def occupied(self, element: int) -> None:
+        """The section is occupied."""
+        self._free_since.pop(element, None)
+
+    def freed(self, element: int, time_s: float) -> None:
+        """The section is free."""
+        if not self.is_clear(element):
+            self._free_since[element] = time_s
+
+    def check(self, time_s: float) -> None:
+        """Judge the sections that are free while their counters wait."""
+        for element, since in tuple(self._free_since.items()):
+            section, following = self._sections[element], self._following(element)
+
+            def passed(cut: int, here: int = element, following: tuple[int, ...] = following) -> bool:
+                went_on = (here, cut) in self._handed
+                return went_on and all(self._sections[number].counted_all(cut) for number in following)
+
+            for finding in section.check(time_s - since, passed):
+                self._tell(time_s, element, finding)
+            if section.is_clear:
+                del self._free_since[element]
+
+    def left_over(self) -> dict[int, int]:
+        """Axles that counters still wait for, by section; zeros left out."""
+        left = {number: section.exit or section.entry for number, section in self._sections.items()}
+        return {number: axles for number, axles in left.items() if axles}
+
+    def _following(self, element: int) -> tuple[int, ...]:
+        branches = (0, 1) if self._table.is_switch(element) else (0,)
+        found = (self._table.next_section(element, branch) for branch in branches)
+        return tuple(number for number in found if number is not None)
