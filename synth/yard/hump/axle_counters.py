@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections import defaultdict
+from collections.abc import Callable, Iterator
 
+from synth.yard.hump.cut_record import CutRecord, Mark
 from synth.yard.hump.event import Kind
 from synth.yard.hump.models import ENTRY, AxlePass
 from synth.yard.hump.practice_rules import PracticeRules
@@ -30,13 +32,15 @@ class AxleCounters:
             )
             for number in sorted(table.sections)
         }
-        self._handed: set[tuple[int, int]] = set()
+        self._rules = rules
+        self._handed: dict[tuple[int, int], int] = {}
+        self._gone: dict[tuple[int, int], int] = defaultdict(int)
         self._free_since: dict[int, float] = {}
         self.latest: dict[int, int] = {}
         for cut in store.cuts:
             begin = first[table.graph.leads[cut.lead]]
             assert begin is not None  # a crest leads to tracks
-            self._sections[begin].expect(cut.serial, cut.axles)
+            self._sections[begin].expect(cut.serial, cut.axles, self._base_m(cut))
 
     def is_clear(self, element: int) -> bool:
         """Whether the counters of the section know of no cut on it."""
@@ -53,13 +57,33 @@ class AxleCounters:
                 self._hand_over(finding.cut, axle)
             self._tell(axle.time_s, axle.element, finding)
 
+    def _base_m(self, cut: CutRecord) -> float:
+        return self._rules.longest_base_m if Mark.LONG_BASE in cut.marks else self._rules.usual_base_m
+
     def _hand_over(self, cut: int, axle: AxlePass) -> None:
-        """Give the record to the section to which its first axle goes."""
-        if (axle.element, cut) not in self._handed:
-            self._handed.add((axle.element, cut))
-            following = self._table.next_section(axle.element, axle.end)
-            if following is not None:
-                self._sections[following].expect(cut, self._store.record(cut).axles)
+        """Give the record to the section to which its first axle goes; where the rest of a split cut goes another way,
+        give the rest to that, and let nobody behind the first way wait for it."""
+        here, gone = (axle.element, cut), self._gone[axle.element, cut]
+        self._gone[here] = gone + 1
+        branch = self._handed.get(here)
+        if branch == axle.end:
+            return
+        self._handed[here] = axle.end
+        record = self._store.record(cut)
+        following = self._table.next_section(axle.element, axle.end)
+        if branch is not None:
+            old = self._table.next_section(axle.element, branch)
+            for number in self._below(old):
+                self._sections[number].shorten(cut, gone)
+        if following is not None:
+            self._sections[following].expect(cut, record.axles - gone, self._base_m(record))
+
+    def _below(self, element: int | None) -> Iterator[int]:
+        """The sections from `element` on."""
+        if element is not None:
+            yield element
+            for number in self._following(element):
+                yield from self._below(number)
 
     def occupied(self, element: int) -> None:
         """The section is occupied."""

@@ -15,15 +15,17 @@ class PracticeRules:
     stands over a short section (long-base rule), and so are a falsely free section and the rest of a split cut.
     `fouling_m_s`: points are not thrown while a cut behind them is slower than this limit and short of the fouling
     point; None: no such rule. `lone_axle_s`: counters that contradict each other on a free section are put right after
-    this time, if the next section counted the whole cut (filter of lone axles). `longest_base_m`: no car has more
-    between two axles; a longer gap in a cut is a wrong uncoupling. `coupled_gap_m`: the last and the first axle of two
+    this time, if the next section counted the whole cut (filter of lone axles). `usual_base_m`, `longest_base_m`: no
+    car has more between two axles, the latter if its cut has the mark long-base; a longer gap in a cut is a wrong
+    uncoupling. `coupled_gap_m`: the last and the first axle of two
     coupled cars are no further apart. `slowest_m_s`: moving cuts are no slower.
     """
 
     counters: bool = True
     fouling_m_s: float | None = 1.0
     lone_axle_s: float = 1.0
-    longest_base_m: float = 20.0
+    usual_base_m: float = 12.0
+    longest_base_m: float = 24.0
     coupled_gap_m: float = 6.0
     slowest_m_s: float = 2.0
 
@@ -32,6 +34,7 @@ class PracticeRules:
             require_between("rules: fouling_m_s", self.fouling_m_s, 0.0, 10.0)
         require_between("rules: lone_axle_s", self.lone_axle_s, 0.0, 60.0)
         require_between("rules: longest_base_m", self.longest_base_m, 5.0, 60.0)
+        require_between("rules: usual_base_m", self.usual_base_m, 2.0, self.longest_base_m)
         require_between("rules: coupled_gap_m", self.coupled_gap_m, 2.0, 20.0)
         require_between("rules: slowest_m_s", self.slowest_m_s, 0.1, 10.0)
 

@@ -20,19 +20,21 @@ class Finding(NamedTuple):
 
 
 class Axle(NamedTuple):
-    """An axle that came in: of which cut, how many of its axles were still to come, and when."""
+    """An axle that came in: its cut, the widest gap between axles of it, how many were still to come, and when."""
 
     cut: int
+    base_m: float
     still: int
     in_s: float
 
 
 @dataclass
 class Load:
-    """A record that was handed to the section: its axles, and how many came in and left."""
+    """A record that was handed to the section: its axles, the widest gap between two, how many came and left."""
 
     cut: int
     axles: int
+    base_m: float
     came: int = 0
     left: int = 0
 
@@ -56,9 +58,20 @@ class SectionCounter:
         self._before: tuple[Axle, float] | None = None
         self._told: set[tuple[Kind, int]] = set()
 
-    def expect(self, cut: int, axles: int) -> None:
-        """The next record."""
-        self._loads.append(Load(cut, axles))
+    def expect(self, cut: int, axles: int, base_m: float) -> None:
+        """The next record; `base_m`: no two axles of it are further apart."""
+        self._loads.append(Load(cut, axles, base_m))
+
+    def shorten(self, cut: int, axles: int) -> None:
+        """Expect only so many axles of `cut`: the rest went another way."""
+        for load in self._loads:
+            if load.cut == cut:
+                load.axles = max(min(load.axles, axles), load.came)
+        self._drop_complete()
+
+    def _drop_complete(self) -> None:
+        while self._loads and self._loads[0].axles == (self._loads[0].left if self._exits else self._loads[0].came):
+            self._loads.popleft()
 
     @property
     def is_clear(self) -> bool:
@@ -90,9 +103,9 @@ class SectionCounter:
         if load.came == 0 and leader is not load and self._exits:
             yield Finding(Kind.CATCH_UP, load.cut, leader.cut)
         load.came += 1
-        self._within.append(Axle(load.cut, load.axles - load.came, time_s))
-        if not self._exits and load.came == load.axles:
-            self._loads.popleft()
+        self._within.append(Axle(load.cut, load.base_m, load.axles - load.came, time_s))
+        if not self._exits:
+            self._drop_complete()
         yield Finding(Kind.ENTRY_COUNTER, load.cut, load.axles - load.came)
         if load.came == 1 and self._exits:
             yield Finding(Kind.EXIT_COUNTER, load.cut, self.exit)
@@ -104,21 +117,23 @@ class SectionCounter:
             yield Finding(Kind.COUNTER_FAULT, load.cut if load else 0, -1.0)
             return
         load.left += 1
-        if load.left == load.axles:
-            self._loads.popleft()
+        self._drop_complete()
         yield Finding(Kind.EXIT_COUNTER, load.cut, self.exit)
         if self._judges_gaps and self._within:
             yield from self._gap(self._within.popleft(), time_s)
 
     def _gap(self, axle: Axle, out_s: float) -> Iterator[Finding]:
-        """Judge the gap ahead of an axle that took from `axle.in_s` to `out_s` for the section."""
+        """Judge the gap ahead of an axle that left at `out_s`, by the times that both axles took for the section."""
         before, self._before = self._before, (axle, out_s)
-        if before is None or out_s <= axle.in_s or before[1] <= before[0].in_s:
+        if before is None or before[1] <= before[0].in_s or out_s <= axle.in_s:
             return
-        ahead = before[0]
-        speed = 0.5 * self._length_m * (1.0 / (out_s - axle.in_s) + 1.0 / (before[1] - ahead.in_s))
-        gap_m = speed * (axle.in_s - ahead.in_s)
-        if ahead.cut == axle.cut and gap_m > self._rules.longest_base_m:
+        ahead, ahead_out_s = before
+        apart_s, speed_m_s = axle.in_s - ahead.in_s, self._length_m / (ahead_out_s - ahead.in_s)
+        if axle.in_s > ahead_out_s:
+            # The speed of the one ahead is from the begin of the gap, that of this one from its end.
+            speed_m_s = 0.5 * (speed_m_s + self._length_m / (out_s - axle.in_s))
+        gap_m = speed_m_s * apart_s
+        if ahead.cut == axle.cut and gap_m > ahead.base_m:
             yield from self._once(Kind.TOO_FEW_AXLES, axle.cut, ahead.still)
         elif ahead.cut != axle.cut and gap_m < self._rules.coupled_gap_m:
             yield from self._once(Kind.TOO_MANY_AXLES, ahead.cut, axle.cut)

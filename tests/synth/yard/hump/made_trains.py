@@ -8,25 +8,37 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.yard.hump.cut_record import CutRecord
+from synth.yard.hump.cut_record import CutRecord, Mark
 from synth.yard.hump.hump_control import HumpControl, Operation
+from synth.yard.hump.models import ENTRY
 from synth.yard.hump.moving_cut import MovingCut
-from synth.yard.hump.reference_faults import Fault
+from synth.yard.hump.reference_faults import (
+    CounterSlip,
+    FalselyFree,
+    FalselyOccupied,
+    Fault,
+    LateSwitch,
+    StuckSwitch,
+)
 from synth.yard.hump.reference_track import ReferenceTrack
 from synth.yard.hump.route_table import RouteTable
 
 TICK_S = 0.1
 GRID_M = 10.0
-COUPLED_M, APART_M = 3.5, 7.0
+COUPLED_M, APART_M = 3.5, 9.0
 """Between the last axle of a car and the first of the next one, coupled and uncoupled at least."""
 
 
-def record(serial: int, track: int, cars: int = 1, lead: int = 0) -> CutRecord:
+USUAL_M, LONG_M = 8.65, 20.5
+"""From the first axle of a car to its third one; sections of random humps are 18 m long, shorter than the long car."""
+
+
+def record(serial: int, track: int, cars: int = 1, lead: int = 0, marks: frozenset[Mark] = frozenset()) -> CutRecord:
     """A cut of four-axle cars."""
-    return CutRecord(serial, cars, 4 * cars, 60.0 * cars, 3, track, 13.92 * cars, lead=lead)
+    return CutRecord(serial, cars, 4 * cars, 60.0 * cars, 3, track, 13.92 * cars, lead=lead, marks=marks)
 
 
-def axle_places(cars: int, base_m: float = 8.65) -> NDArray[np.float64]:
+def axle_places(cars: int, base_m: float = USUAL_M) -> NDArray[np.float64]:
     """Where the axles of coupled four-axle cars are, behind the first; `base_m` between the inner axles and a bogie."""
     of_car = np.array([0.0, 1.85, base_m, base_m + 1.85])
     return np.concatenate([of_car + car * (of_car[-1] + COUPLED_M) for car in range(cars)])
@@ -68,7 +80,7 @@ def moving(
     table: RouteTable,
     random: np.random.Generator,
     close: float,
-    base_m: float = 8.65,
+    base_m: float = USUAL_M,
 ) -> list[MovingCut]:
     """Objects that follow each other at random speeds and never overlap; `close`: share that comes close behind."""
     leads = {cut.serial: cut.lead for cut in cuts}
@@ -115,3 +127,36 @@ def humped(
         rest -= track.is_empty()
     control.finish()
     return control, track
+
+
+def random_faults(
+    table: RouteTable, random: np.random.Generator, count: int, until_s: float, points_alone: bool
+) -> list[Fault]:
+    """Faults of the equipment, each on an element of its own."""
+    switches, sections = sorted(table.needed), sorted(table.sections)
+    found: list[Fault] = []
+    for element in map(int, random.permutation(switches if points_alone else sections)[:count]):
+        from_s = float(random.uniform(0.0, until_s))
+        to_s = from_s + float(random.uniform(1.0, 40.0))
+        kind = random.integers(0 if element in switches else 2, 2 if points_alone else 5)
+        if kind == 0:
+            found.append(StuckSwitch(element, from_s, to_s))
+        elif kind == 1:
+            found.append(LateSwitch(element, float(random.uniform(0.5, 5.0))))
+        elif kind == 2:
+            end = int(random.choice([ENTRY, 0, 1]))
+            found.append(CounterSlip(element, end, int(random.integers(0, 20)), int(random.choice([-1, 1]))))
+        elif kind == 3:
+            found.append(FalselyOccupied(element, from_s, to_s))
+        else:
+            found.append(FalselyFree(element, from_s, to_s))
+    return found
+
+
+def random_uncoupling(
+    cuts: Sequence[CutRecord], random: np.random.Generator, share: float
+) -> tuple[dict[int, int], dict[int, int]]:
+    """Cuts that come apart in the middle, and cuts whose first cars stay with the cut ahead, whole cars each."""
+    splits = {c.serial: 4 * int(random.integers(1, c.cars)) for c in cuts if c.cars > 1 and random.random() < share}
+    kept = {c.serial: 4 * int(random.integers(1, c.cars + 1)) for c in cuts[1:] if random.random() < share}
+    return splits, {serial: axles for serial, axles in kept.items() if serial not in splits}
