@@ -27,9 +27,10 @@ class Misrouting:
             chosen in tracks, f"technology: track {chosen} for cut {cut} cannot be reached from element {element}; "
             f"it must be one of {', '.join(map(str, tracks))}",
         )  # fmt: skip
-        if chosen != belongs:
+        keeps = chosen == self._store.track(cut)
+        if chosen != belongs and not (keeps and cut in self._journal.state.misrouted):
             self._journal.tell(Kind.MISROUTED, element, cut, why)
-        if chosen == self._store.track(cut):
+        if keeps:
             return ()
         self._journal.tell(Kind.RE_ROUTED, element, cut, chosen)
         return self._store.change(cut, chosen)

@@ -12,20 +12,43 @@ from __future__ import annotations
 
 import csv
 import io
+import os
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from plant_models.errors import PlantError
+from plant_models.library import load_weight_categories
 from plant_models.library.near_miss import near_miss
 from plant_models.library.weight_category import WeightCategories
 from synth.faults.input_error import InputError
+from synth.faults.machine_fault import MACHINE_FAULTS
 from synth.yard.hump.cut_record import USUAL_CAR_M, USUAL_HUMP_SPEED_M_S, CutRecord, Mark, Rolling
 from synth.yard.hump.sorting_list import SortingList
+from tuning_tables.errors import DamagedTable
 from tuning_tables.excerpt import excerpt
+from tuning_tables.regular_file import read_regular_file
 
 NEEDED = ("cut", "cars", "axles", "mass_t", "category", "track")
 COLUMNS = (*NEEDED, "length_m", "rolling", "lead", "hump_speed_m_s", "marks")
-LARGEST_CHARACTERS = 1_000_000
+LARGEST_BYTES = 1_000_000
+
+
+def load_sorting_list(path: str | os.PathLike[str], categories: WeightCategories | None = None) -> SortingList:
+    """The list in the file at `path`; `categories`: those of the yard unless told otherwise. `InputError`."""
+    file = os.fspath(path)
+    try:
+        text = read_regular_file(path, LARGEST_BYTES).decode("utf-8")
+    except FileNotFoundError:
+        raise InputError(f"{file}: there is no such file; give the path of a sorting list as CSV") from None
+    except UnicodeDecodeError as fault:
+        raise InputError(f"{file}: byte {fault.start} is not UTF-8 text; save the file as UTF-8") from None
+    except DamagedTable:
+        raise InputError(f"{file}: it has more than {LARGEST_BYTES} bytes; a sorting list has fewer") from None
+    except OSError as fault:
+        if fault.errno in MACHINE_FAULTS:
+            raise
+        raise InputError(f"{file}: cannot be read ({fault.strerror}); check the path and its permissions") from None
+    return sorting_list_of_csv(text, file, load_weight_categories() if categories is None else categories)
 
 
 def to_sorting_csv(cuts: SortingList, categories: WeightCategories) -> str:
@@ -66,8 +89,6 @@ def sorting_list_of_csv(text: str, file: str, categories: WeightCategories) -> S
 
 def csv_rows(text: str, file: str) -> list[list[str]]:
     """The rows of `text`, empty ones left out."""
-    if len(text) > LARGEST_CHARACTERS:
-        raise InputError(f"{file}: it has more than {LARGEST_CHARACTERS} characters; a sorting list has fewer")
     try:
         rows = [row for row in csv.reader(io.StringIO(text.removeprefix("\ufeff"), newline=""), strict=True) if row]
     except csv.Error as fault:
