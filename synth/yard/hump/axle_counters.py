@@ -25,12 +25,12 @@ class AxleCounters:
 
     def __init__(self, table: RouteTable, store: RouteStore, rules: PracticeRules, tell: Tell) -> None:
         self._table, self._store, self._tell = table, store, tell
-        first = {lead: table.next_section(lead) for lead in table.graph.leads}
+        first = {lead: table.next_counted(lead) for lead in table.graph.leads}
         self._sections = {
             number: SectionCounter(
                 sum(table.vertex(number).section_m), number not in table.last, rules, number in first.values()
             )
-            for number in sorted(table.sections)
+            for number in sorted(table.counted)
         }
         self._rules = rules
         self._handed: dict[tuple[int, int], int] = {}
@@ -39,12 +39,12 @@ class AxleCounters:
         self.latest: dict[int, int] = {}
         for cut in store.cuts:
             begin = first[table.graph.leads[cut.lead]]
-            assert begin is not None  # a crest leads to tracks
-            self._sections[begin].expect(cut.serial, cut.axles, self._base_m(cut))
+            if begin is not None:
+                self._sections[begin].expect(cut.serial, cut.axles, self._base_m(cut))
 
     def is_clear(self, element: int) -> bool:
-        """Whether the counters of the section know of no cut on it."""
-        return self._sections[element].is_clear
+        """Whether the counters of the section know of no cut on it; True where there are none."""
+        return element not in self._sections or self._sections[element].is_clear
 
     def count(self, axle: AxlePass) -> None:
         """One axle more."""
@@ -70,9 +70,9 @@ class AxleCounters:
             return
         self._handed[here] = axle.end
         record = self._store.record(cut)
-        following = self._table.next_section(axle.element, axle.end)
+        following = self._table.next_counted(axle.element, axle.end)
         if branch is not None:
-            old = self._table.next_section(axle.element, branch)
+            old = self._table.next_counted(axle.element, branch)
             for number in self._below(old):
                 self._sections[number].shorten(cut, gone)
         if following is not None:
@@ -115,5 +115,5 @@ class AxleCounters:
 
     def _following(self, element: int) -> tuple[int, ...]:
         branches = (0, 1) if self._table.is_switch(element) else (0,)
-        found = (self._table.next_section(element, branch) for branch in branches)
+        found = (self._table.next_counted(element, branch) for branch in branches)
         return tuple(number for number in found if number is not None)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from plant_models.errors import require
 from synth.yard.hump.axle_counters import AxleCounters
 from synth.yard.hump.brake_task import BrakeTask, LeastInterval
 from synth.yard.hump.cut_record import CutRecord
@@ -37,19 +38,25 @@ class Operation:
 class HumpControl:
     """Controls switches, retarders and signals for one train; `tick` it until the train is humped, then `finish`.
 
-    Cuts that the list marks as not to be humped are left out. `PlantError` for a cut that no route leads home.
+    Cuts that the list marks as not to be humped are left out. `PlantError` for a cut that no route leads home, and for
+    rules that need counters where a switch has none.
     """
 
     def __init__(
         self, table: RouteTable, cuts: Sequence[CutRecord], track: TrackGeometry, operation: Operation | None = None
     ) -> None:
-        how = operation or Operation()
+        how, bare = operation or Operation(), table.uncounted_switch
+        require(
+            bare is None or not how.rules.counters,
+            f"switch {bare} has no axle counters; give it some, or follow no rule of practice that needs them",
+        )
         self._table, self._track, self._how, self._journal = table, track, how, Journal()
         self.store = RouteStore(table, [cut for cut in cuts if cut.goes_over_the_hump])
         self.counters = AxleCounters(table, self.store, how.rules, self._counted)
         self.switches = SwitchControl(self.store, self.counters, track, how.rules, self._journal)
         self.retarders = RetarderControl(table, self.store, track, how.tasks, self._journal)
         self._misrouting = Misrouting(self.store, how.technology, self._journal)
+        self._counts = bare is None
         self._awaits_points: dict[int, int] = {}
         self._seen: dict[int, int] = {}
         self._last = {cut.lead: cut.serial for cut in self.store.cuts}
@@ -74,8 +81,9 @@ class HumpControl:
         """Read the track at `time_s`, and command what follows."""
         self._journal.now_s = time_s
         self._track.advance(time_s)
-        for axle in self._track.axles():
-            self.counters.count(axle)
+        if self._counts:
+            for axle in self._track.axles():
+                self.counters.count(axle)
         for switch, position in self._track.positions():
             self._points(switch, position)
         for element, objects in self._track.occupations():

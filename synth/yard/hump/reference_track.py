@@ -51,7 +51,7 @@ class ReferenceTrack:
     """A `TrackGeometry` of `cuts`, which come over the hump in this order; `faults` are those of its equipment.
 
     `sees_axles`: a section is occupied while an axle is on it, as a track circuit tells; otherwise from the first axle
-    in to the last axle out, as the published model has it. Every section has counters.
+    in to the last axle out, as the published model has it.
     """
 
     def __init__(
@@ -189,6 +189,8 @@ class ReferenceTrack:
             self.truth.left_s[element, number] = time_s
 
     def _count(self, time_s: float, element: int, end: int) -> None:
+        if element not in self._table.counted:
+            return
         passed = self._counted[element, end]
         self._counted[element, end] = passed + 1
         times = 1 + self._slips.get((element, end, passed), 0)

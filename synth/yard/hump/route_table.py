@@ -90,6 +90,23 @@ class RouteTable:
         following = exits[branch if len(exits) > 1 else 0]
         return following if following in self.sections else self.next_section(following)
 
+    @cached_property
+    def counted(self) -> frozenset[int]:
+        """Numbers of the sections with axle counters at their joints."""
+        return frozenset(v.number for v in self.graph.vertices if not isinstance(v, Signal) and v.axle_counters)
+
+    @cached_property
+    def uncounted_switch(self) -> int | None:
+        """A switch without axle counters, the first by number; None where all have them."""
+        return min(self.needed.keys() - self.counted, default=None)
+
+    def next_counted(self, number: int, branch: int = 0) -> int | None:
+        """The next section with axle counters behind `number`, where no switch lies between; None if there is none."""
+        following = self.next_section(number, branch)
+        while following is not None and following not in self.counted:
+            following = None if self.is_switch(following) else self.next_section(following)
+        return following
+
     def route(self, lead: int, track: int) -> Route:
         """The route from the lead with this place in the list of leads, 0 or 1."""
         return self.graph.route(self.graph.leads[lead], track)

@@ -7,10 +7,12 @@ switch 2 (points at 160 m, section 154 to 172 m) before tracks 2 and 3. A throw 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import pytest
 
 from plant_models.errors import PlantError
+from plant_models.hump import HumpGraph, Signal
 from synth.yard.hump.brake_task import ManualBraking, TableBraking, UniformBraking, ZoneBraking
 from synth.yard.hump.cut_record import CutRecord, Mark
 from synth.yard.hump.event import Aspect, Block, Event, Kind, Why
@@ -28,7 +30,7 @@ from synth.yard.hump.reference_faults import (
 )
 from synth.yard.hump.reference_track import ReferenceTrack
 from synth.yard.hump.route_table import RouteTable
-from tests.plant_models.hump.random_humps import small_hump
+from tests.plant_models.hump.random_humps import small_hump, small_vertices
 from tests.synth.yard.hump.made_trains import LONG_M, axle_places, humped, record
 
 TABLE = RouteTable(small_hump())
@@ -290,3 +292,30 @@ def test_a_counter_that_missed_an_axle_is_put_right_when_the_next_section_counte
         assert [(e.element, e.cut, e.value) for e in fault] == [(1, 1, 1.0 if end == 1 else -1.0)] or end == ENTRY
         assert control.state.arrived == {1: [2], 2: [1]}
         assert not control.counters.left_over()
+
+
+def bare(*numbers: int) -> RouteTable:
+    """The small hump without the counters of some elements."""
+    vertices = [
+        v if isinstance(v, Signal) or v.number not in numbers else replace(v, axle_counters=False)
+        for v in small_vertices()
+    ]
+    return RouteTable(HumpGraph(tuple(vertices), (201,)))
+
+
+def test_records_pass_over_sections_without_counters() -> None:
+    """The retarder between two switches has none, nor has track 2."""
+    cuts = [record(1, 2), record(2, 3), record(3, 1)]
+    control, _ = humped(bare(401, 602), cuts, [rolling(n, 12.0 * n) for n in range(1, 4)])
+    assert not control.state.alarms
+    assert {e.element for e in told(control, Kind.ENTRY_COUNTER)} == {1, 2, 601, 603}
+    assert control.state.arrived == {1: [2], 2: [3], 3: [1]}
+
+
+def test_rules_that_need_counters_are_refused_where_a_switch_has_none() -> None:
+    table = bare(2)
+    with pytest.raises(PlantError, match="switch 2 has no axle counters"):
+        humped(table, [record(1, 2)], [rolling(1, 0.0)])
+    control, _ = humped(table, [record(1, 2)], [rolling(1, 0.0)], (), Operation(rules=PUBLISHED_MODEL))
+    assert not control.state.alarms
+    assert control.state.counters == {}
