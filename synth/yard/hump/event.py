@@ -53,6 +53,8 @@ class Kind(IntEnum):
     """The counters of a section contradict each other: axles in less axles out."""
     COUNTERS_LEFT = 27
     """At the end of the train counters are not at zero: axles still to leave."""
+    STROBED = 28
+    """A computed exit speed was not possible, and the nearest possible one was commanded: the computed one, m/s."""
 
 
 ALARMS = frozenset(
@@ -65,6 +67,7 @@ ALARMS = frozenset(
         Kind.TOO_MANY_AXLES,
         Kind.COUNTER_FAULT,
         Kind.COUNTERS_LEFT,
+        Kind.STROBED,
     }
 )
 """What stands as an alarm until somebody has looked."""

@@ -20,6 +20,7 @@ from synth.yard.hump.retarder_control import RetarderControl
 from synth.yard.hump.route_store import RouteStore
 from synth.yard.hump.route_table import RouteTable
 from synth.yard.hump.section_counter import Finding
+from synth.yard.hump.strobe import Strobe
 from synth.yard.hump.switch_control import SwitchControl
 from synth.yard.hump.technology import LeaderTrack
 
@@ -27,11 +28,12 @@ from synth.yard.hump.technology import LeaderTrack
 @dataclass(frozen=True)
 class Operation:
     """How a hump is operated: what is done with misrouted cuts, rules of practice, tasks of the retarders by
-    (retarder, cut), and the braking of a cut that came too close."""
+    (retarder, cut), the limits of exit speeds, and the braking of a cut that came too close."""
 
     technology: Technology = field(default_factory=LeaderTrack)
     rules: PracticeRules = field(default_factory=PracticeRules)
     tasks: Mapping[tuple[int, int], BrakeTask] = field(default_factory=dict)
+    strobe: Strobe = field(default_factory=Strobe)
     least_interval: LeastInterval = field(default_factory=LeastInterval)
 
 
@@ -54,7 +56,7 @@ class HumpControl:
         self.store = RouteStore(table, [cut for cut in cuts if cut.goes_over_the_hump])
         self.counters = AxleCounters(table, self.store, how.rules, self._counted)
         self.switches = SwitchControl(self.store, self.counters, track, how.rules, self._journal)
-        self.retarders = RetarderControl(table, self.store, track, how.tasks, self._journal)
+        self.retarders = RetarderControl(table, self.store, track, how.tasks, how.strobe, self._journal)
         self._misrouting = Misrouting(self.store, how.technology, self._journal)
         self._counts = bare is None
         self._awaits_points: dict[int, int] = {}

@@ -8,9 +8,10 @@ from plant_models.hump.retarder import Retarder
 from synth.yard.hump.brake_task import BrakeTask, LeastInterval
 from synth.yard.hump.event import Kind
 from synth.yard.hump.journal import Journal
-from synth.yard.hump.models import Braking, TrackGeometry
+from synth.yard.hump.models import Braking, ExitSpeed, TrackGeometry
 from synth.yard.hump.route_store import RouteStore
 from synth.yard.hump.route_table import RouteTable
+from synth.yard.hump.strobe import Strobe
 
 Tasks = Mapping[tuple[int, int], BrakeTask]
 """The task of each (retarder, cut), set before the train is humped; a cut without one rolls through."""
@@ -20,9 +21,10 @@ class RetarderControl:
     """Asks, at every tick, for the braking of each occupied retarder; the first cut on it rules."""
 
     def __init__(
-        self, table: RouteTable, store: RouteStore, track: TrackGeometry, tasks: Tasks, journal: Journal
+        self, table: RouteTable, store: RouteStore, track: TrackGeometry, tasks: Tasks, strobe: Strobe, journal: Journal
     ) -> None:
         self._table, self._store, self._track, self._journal = table, store, track, journal
+        self._strobe = strobe
         self._tasks = dict(tasks)
         self._first: dict[int, int] = {}
         self._told: dict[int, Braking | None] = {}
@@ -53,11 +55,15 @@ class RetarderControl:
         if self._told.get(retarder) == braking:
             return
         self._told[retarder] = braking
-        if braking is None:
+        possible = braking
+        if isinstance(braking, ExitSpeed) and not self._strobe.holds(braking.m_s):
+            self._journal.tell(Kind.STROBED, retarder, cut, braking.m_s)
+            possible = ExitSpeed(self._strobe.bounded(braking.m_s))
+        if possible is None:
             self._journal.tell(Kind.RELEASED, retarder, cut)
         else:
-            self._journal.tell(Kind.BRAKED, retarder, cut, braking[0])
-        self._track.brake(retarder, braking)
+            self._journal.tell(Kind.BRAKED, retarder, cut, possible[0])
+        self._track.brake(retarder, possible)
 
     def hold_back(self, cut: int, behind: int, law: LeastInterval) -> None:
         """Brake `cut`, which is on the element `behind`, for the least interval on the next retarder of its route."""

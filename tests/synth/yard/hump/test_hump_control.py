@@ -255,6 +255,16 @@ def test_a_retarder_brakes_as_its_task_says(task: UniformBraking, told_n: Resist
     assert at == [pytest.approx(begins / 5.0, abs=0.11), pytest.approx(ends / 5.0, abs=0.11)]
 
 
+@pytest.mark.parametrize(("computed", "commanded"), [(9.5, 8.5), (0.1, 0.5), (float("inf"), 8.5), (3.0, 3.0)])
+def test_an_exit_speed_that_cannot_be_is_strobed(computed: float, commanded: float) -> None:
+    tasks = {(401, 1): TableBraking(computed)}
+    control, track = humped(TABLE, [record(1, 2)], [rolling(1, 0.0)], (), Operation(tasks=tasks))
+    assert [e.value for e in told(control, Kind.BRAKED)] == [commanded]
+    strobed = [(e.element, e.cut, e.value) for e in told(control, Kind.STROBED)]
+    assert strobed == [(401, 1, computed)] * (computed != commanded)
+    assert track.braking == {401: None}
+
+
 def test_two_cuts_on_a_retarder_are_braked_as_the_first_one_is() -> None:
     tasks = {(401, 1): UniformBraking(10.0), (401, 2): UniformBraking(20.0)}
     control, _ = humped(

@@ -111,8 +111,6 @@ def test_tasks_and_rules_refuse_what_cannot_be() -> None:
         UniformBraking(-1.0)
     with pytest.raises(PlantError, match="degree"):
         ZoneBraking(0.0, 10.0, 1.1, 50.0)
-    with pytest.raises(PlantError, match="exit_speed_m_s"):
-        TableBraking(0.0)
     with pytest.raises(PlantError, match="braking by hand"):
         ManualBraking(lambda place_m: 1e6).braking(0.0)
     with pytest.raises(PlantError, match="longest_base_m"):
