@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from plant_models.errors import require
 from synth.yard.hump.axle_counters import AxleCounters
 from synth.yard.hump.brake_task import BrakeTask, LeastInterval
-from synth.yard.hump.cut_record import CutRecord
 from synth.yard.hump.event import Aspect, Kind, Why
 from synth.yard.hump.event_log import EventLog
 from synth.yard.hump.hump_state import MOVING, HumpState
 from synth.yard.hump.journal import Journal
 from synth.yard.hump.misrouting import Misrouting
-from synth.yard.hump.models import Technology, TrackGeometry
+from synth.yard.hump.models import Information, Technology, TrackGeometry
 from synth.yard.hump.practice_rules import PracticeRules
 from synth.yard.hump.retarder_control import RetarderControl
 from synth.yard.hump.route_store import RouteStore
@@ -45,7 +44,7 @@ class HumpControl:
     """
 
     def __init__(
-        self, table: RouteTable, cuts: Sequence[CutRecord], track: TrackGeometry, operation: Operation | None = None
+        self, table: RouteTable, train: Information, track: TrackGeometry, operation: Operation | None = None
     ) -> None:
         how, bare = operation or Operation(), table.uncounted_switch
         require(
@@ -53,7 +52,7 @@ class HumpControl:
             f"switch {bare} has no axle counters; give it some, or follow no rule of practice that needs them",
         )
         self._table, self._track, self._how, self._journal = table, track, how, Journal()
-        self.store = RouteStore(table, [cut for cut in cuts if cut.goes_over_the_hump])
+        self.store = RouteStore(table, [cut for cut in train.cuts if cut.goes_over_the_hump])
         self.counters = AxleCounters(table, self.store, how.rules, self._counted)
         self.switches = SwitchControl(self.store, self.counters, track, how.rules, self._journal)
         self.retarders = RetarderControl(table, self.store, track, how.tasks, how.strobe, self._journal)

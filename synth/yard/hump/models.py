@@ -1,7 +1,7 @@
 """The other models that the control works with, as the published model has them: a trainer plugs in its own.
 
 Track geometry tells which object occupies which section and moves points; technology decides what is done with a cut
-that cannot go where the list says; information tells the list.
+that cannot go where the list says; information tells what the train is.
 """
 
 from __future__ import annotations
@@ -104,7 +104,8 @@ class Technology(Protocol):
 
 
 class Information(Protocol):
-    """Where the lists of trains come from."""
+    """What is known of a train before it is humped; a `SortingList` is such."""
 
-    def next_train(self) -> Sequence[CutRecord]:
-        """The cuts of the next train, in the order in which they come over the hump."""
+    @property
+    def cuts(self) -> Sequence[CutRecord]:
+        """Its cuts, in the order in which they come over the hump."""

@@ -22,6 +22,7 @@ from synth.yard.hump.reference_faults import (
 )
 from synth.yard.hump.reference_track import ReferenceTrack
 from synth.yard.hump.route_table import RouteTable
+from synth.yard.hump.sorting_list import SortingList
 
 TICK_S = 0.1
 GRID_M = 10.0
@@ -120,7 +121,7 @@ def humped(
 ) -> tuple[HumpControl, ReferenceTrack]:
     """Hump the train until everything stands, and some time more."""
     track = ReferenceTrack(table, objects, faults, sees_axles)
-    control = HumpControl(table, cuts, track, operation)
+    control = HumpControl(table, SortingList(tuple(cuts)), track, operation)
     tick, rest = 0, 150
     while rest:
         control.tick(tick * TICK_S)

@@ -29,7 +29,9 @@ from synth.yard.hump.reference_faults import (
     StuckSwitch,
 )
 from synth.yard.hump.reference_track import ReferenceTrack
+from synth.yard.hump.route_store import RouteStore
 from synth.yard.hump.route_table import RouteTable
+from synth.yard.hump.sorting_list import SortingList
 from tests.plant_models.hump.random_humps import small_hump, small_vertices
 from tests.synth.yard.hump.made_trains import LONG_M, axle_places, humped, record
 
@@ -219,7 +221,7 @@ def test_a_falsely_occupied_switch_stays_and_the_cut_goes_where_it_lies() -> Non
 
 def test_a_switch_by_hand_stays_until_it_is_thrown_by_hand() -> None:
     track = ReferenceTrack(TABLE, [rolling(1, 0.0), rolling(2, 30.0)])
-    control = HumpControl(TABLE, [record(1, 1), record(2, 2)], track)
+    control = HumpControl(TABLE, SortingList((record(1, 1), record(2, 2))), track)
     control.switches.set_automatic(1, False)
     for tick in range(200):
         control.tick(0.1 * tick)
@@ -288,9 +290,9 @@ def test_a_cut_that_nobody_found_is_recorded_at_the_end() -> None:
 def test_a_track_that_no_route_leads_to_is_refused() -> None:
     for cut, words in ((record(1, 9), "track 9"), (record(1, 1, lead=1), "lead is 1; the hump has 1 lead, from 0 on")):
         with pytest.raises(PlantError, match=words):
-            HumpControl(TABLE, [cut], ReferenceTrack(TABLE, []))
+            HumpControl(TABLE, SortingList((cut,)), ReferenceTrack(TABLE, []))
     with pytest.raises(PlantError, match="same number"):
-        HumpControl(TABLE, [record(1, 1), record(1, 1)], ReferenceTrack(TABLE, []))
+        RouteStore(TABLE, [record(1, 1), record(1, 1)])
 
 
 def test_a_counter_that_missed_an_axle_is_put_right_when_the_next_section_counted_the_cut() -> None:
