@@ -74,7 +74,8 @@ class AxleCounters:
         if branch is not None:
             old = self._table.next_counted(axle.element, branch)
             for number in self._below(old):
-                self._sections[number].shorten(cut, gone)
+                for finding in self._sections[number].shorten(cut, gone):
+                    self._tell(axle.time_s, number, finding)
         if following is not None:
             self._sections[following].expect(cut, record.axles - gone, self._base_m(record))
 

@@ -62,16 +62,22 @@ class SectionCounter:
         """The next record; `base_m`: no two axles of it are further apart."""
         self._loads.append(Load(cut, axles, base_m))
 
-    def shorten(self, cut: int, axles: int) -> None:
+    def shorten(self, cut: int, axles: int) -> Iterator[Finding]:
         """Expect only so many axles of `cut`: the rest went another way."""
         for load in self._loads:
             if load.cut == cut:
                 load.axles = max(min(load.axles, axles), load.came)
         self._drop_complete()
+        yield from self._registers(cut)
 
     def _drop_complete(self) -> None:
         while self._loads and self._loads[0].axles == (self._loads[0].left if self._exits else self._loads[0].came):
             self._loads.popleft()
+
+    def _registers(self, cut: int) -> Iterator[Finding]:
+        yield Finding(Kind.ENTRY_COUNTER, cut, self.entry)
+        if self._exits:
+            yield Finding(Kind.EXIT_COUNTER, cut, self.exit)
 
     @property
     def is_clear(self) -> bool:
@@ -117,8 +123,12 @@ class SectionCounter:
             yield Finding(Kind.COUNTER_FAULT, load.cut if load else 0, -1.0)
             return
         load.left += 1
+        missed = load.came - load.left if load.left == load.axles else 0
         self._drop_complete()
         yield Finding(Kind.EXIT_COUNTER, load.cut, self.exit)
+        if missed < 0:
+            yield from self._once(Kind.COUNTER_FAULT, load.cut, missed)
+            yield Finding(Kind.ENTRY_COUNTER, load.cut, self.entry)
         if self._judges_gaps and self._within:
             yield from self._gap(self._within.popleft(), time_s)
 
@@ -162,8 +172,7 @@ class SectionCounter:
     def _put_right(self, cut: int) -> Iterator[Finding]:
         self._within.clear()
         self._before = None
-        yield Finding(Kind.ENTRY_COUNTER, cut, self.entry)
-        yield Finding(Kind.EXIT_COUNTER, cut, self.exit)
+        yield from self._registers(cut)
 
     def _begun(self) -> Iterator[Load]:
         for load in self._loads:

@@ -78,9 +78,10 @@ class Humping:
                     yield cut, element
 
     def silent_counters(self) -> list[int]:
-        """Sections whose counters are not at zero and which have no alarm."""
+        """Sections whose counters, by their own account or in the state, are not at zero and which have no alarm."""
         alarmed = {element for kind, element, _, _ in self.told if kind in ALARMS}
-        return [element for element in self.control.counters.left_over() if element not in alarmed]
+        waiting = {element for element, shown in self.control.state.counters.items() if any(shown)}
+        return sorted((waiting | set(self.control.counters.left_over())) - alarmed)
 
     def replays(self) -> bool:
         """Whether the log leads to the same state."""
