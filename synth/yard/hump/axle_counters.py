@@ -33,6 +33,7 @@ class AxleCounters:
             for number in sorted(table.counted)
         }
         self._rules = rules
+        self._expected: dict[tuple[int, int], int] = {}
         self._handed: dict[tuple[int, int], int] = {}
         self._gone: dict[tuple[int, int], int] = defaultdict(int)
         self._free_since: dict[int, float] = {}
@@ -40,7 +41,7 @@ class AxleCounters:
         for cut in store.cuts:
             begin = first[table.graph.leads[cut.lead]]
             if begin is not None:
-                self._sections[begin].expect(cut.serial, cut.axles, self._base_m(cut))
+                self._expect(begin, cut, cut.axles)
 
     def is_clear(self, element: int) -> bool:
         """Whether the counters of the section know of no cut on it; True where there are none."""
@@ -57,8 +58,12 @@ class AxleCounters:
                 self._hand_over(finding.cut, axle)
             self._tell(axle.time_s, axle.element, finding)
 
-    def _base_m(self, cut: CutRecord) -> float:
-        return self._rules.longest_base_m if Mark.LONG_BASE in cut.marks else self._rules.usual_base_m
+    def _expect(self, element: int, cut: CutRecord, axles: int) -> None:
+        """Announce so many axles of a cut to a section."""
+        long_base = Mark.LONG_BASE in cut.marks
+        base_m = self._rules.longest_base_m if long_base else self._rules.usual_base_m
+        self._expected[element, cut.serial] = axles
+        self._sections[element].expect(cut.serial, axles, base_m)
 
     def _hand_over(self, cut: int, axle: AxlePass) -> None:
         """Give the record to the section to which its first axle goes; where the rest of a split cut goes another way,
@@ -69,15 +74,16 @@ class AxleCounters:
         if branch == axle.end:
             return
         self._handed[here] = axle.end
-        record = self._store.record(cut)
         following = self._table.next_counted(axle.element, axle.end)
         if branch is not None:
             old = self._table.next_counted(axle.element, branch)
             for number in self._below(old):
-                for finding in self._sections[number].shorten(cut, gone):
-                    self._tell(axle.time_s, number, finding)
+                if (number, cut) in self._expected:
+                    self._expected[number, cut] = gone
+                    for finding in self._sections[number].shorten(cut, gone):
+                        self._tell(axle.time_s, number, finding)
         if following is not None:
-            self._sections[following].expect(cut, record.axles - gone, self._base_m(record))
+            self._expect(following, self._store.record(cut), self._expected[here] - gone)
 
     def _below(self, element: int | None) -> Iterator[int]:
         """The sections from `element` on."""
