@@ -110,7 +110,7 @@ class AxleCounters:
                 went_on = (here, cut) in self._handed
                 return went_on and all(self._sections[number].counted_all(cut) for number in following)
 
-            for finding in section.check(time_s - since, passed):
+            for finding in section.check(time_s, since, passed):
                 self._tell(time_s, element, finding)
             if section.is_clear:
                 del self._free_since[element]

@@ -25,7 +25,7 @@ class PracticeRules:
     fouling_m_s: float | None = 1.0
     lone_axle_s: float = 1.0
     usual_base_m: float = 12.0
-    longest_base_m: float = 24.0
+    longest_base_m: float = 30.0
     coupled_gap_m: float = 6.0
     slowest_m_s: float = 2.0
 

@@ -56,6 +56,7 @@ class SectionCounter:
         self._loads: deque[Load] = deque()
         self._within: deque[Axle] = deque()
         self._before: tuple[Axle, float] | None = None
+        self._latest_s = float("-inf")
         self._told: set[tuple[Kind, int]] = set()
 
     def expect(self, cut: int, axles: int, base_m: float) -> None:
@@ -101,6 +102,7 @@ class SectionCounter:
 
     def axle_in(self, time_s: float) -> Iterator[Finding]:
         """An axle at the entry joint."""
+        self._latest_s = time_s
         load = next((load for load in self._loads if load.came < load.axles), None)
         if load is None:
             yield Finding(Kind.COUNTER_FAULT, 0, 1.0)
@@ -118,6 +120,7 @@ class SectionCounter:
 
     def axle_out(self, time_s: float) -> Iterator[Finding]:
         """An axle at an exit joint."""
+        self._latest_s = time_s
         load = self._loads[0] if self._loads else None
         if load is None or not load.begun:
             yield Finding(Kind.COUNTER_FAULT, load.cut if load else 0, -1.0)
@@ -148,24 +151,28 @@ class SectionCounter:
         elif ahead.cut != axle.cut and gap_m < self._rules.coupled_gap_m:
             yield from self._once(Kind.TOO_MANY_AXLES, ahead.cut, axle.cut)
 
-    def check(self, free_s: float, passed: Callable[[int], bool]) -> Iterator[Finding]:
-        """Judge the counters of a section that has been free for `free_s`; `passed`: whether the next sections counted
-        all axles of a cut."""
+    def check(self, now_s: float, free_since_s: float, passed: Callable[[int], bool]) -> Iterator[Finding]:
+        """Judge the counters of a section that is free; `passed`: whether the next sections counted all axles of a cut.
+
+        Only quiet counts: time in which the section was free and no axle passed, since a section may be told free
+        while a cut rolls over it.
+        """
+        quiet_s = now_s - max(free_since_s, self._latest_s)
         begun = list(self._begun())
         came, left = sum(load.came for load in begun), sum(load.left for load in begun)
         if not begun:
             return
         if came == left:
-            if free_s > self._rules.patience_s:
+            if quiet_s > self._rules.patience_s:
                 yield from self._once(Kind.TOO_FEW_AXLES, begun[0].cut, begun[0].axles - came)
             return
-        if free_s < self._rules.lone_axle_s:
+        if quiet_s < self._rules.lone_axle_s:
             return
         yield from self._once(Kind.COUNTER_FAULT, begun[0].cut, came - left)
         if passed(begun[0].cut):
             self._loads.popleft()
             yield from self._put_right(begun[0].cut)
-        elif came == 1 and left == 0 and free_s > self._rules.patience_s:
+        elif came == 1 and left == 0 and quiet_s > self._rules.patience_s:
             begun[0].came = 0
             yield from self._put_right(begun[0].cut)
 

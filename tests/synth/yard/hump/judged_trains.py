@@ -31,8 +31,9 @@ from tests.synth.yard.hump.made_trains import (
     uncoupled,
 )
 
-SURE = 1.25
-"""A gap that is wider than the rule asks for by this factor is one for sure: speeds change while it passes."""
+SURE, NEAR = 1.25, 2.0
+"""A gap within a cut that is wider than the rule asks for by the first factor is one for sure; so is one between two
+cuts that is wider by the second: speeds change while it passes."""
 
 
 @dataclass(frozen=True)
@@ -112,19 +113,24 @@ class Humping:
                     yield element, cut
 
     def uncouplings(self) -> tuple[set[tuple[str, int]], set[tuple[str, int]]]:
-        """Wrong uncouplings at the first section, true ones and told ones; gaps that are no wider than a long car may
-        be told or not, so they are left out of both."""
+        """Wrong uncouplings at the first section, true ones and told ones. Where speeds change, a gap near the limit
+        of a rule may be told or not: it is left out of both."""
         told = {("apart", cut) for kind, _, cut, _ in self.told if kind is Kind.TOO_FEW_AXLES}
         told |= {("kept", int(value)) for kind, _, _, value in self.told if kind is Kind.TOO_MANY_AXLES}
         true: set[tuple[str, int]] = set()
         for number, each in enumerate(self.rolling):
             true |= {("kept", cut) for cut, _, _ in each.parts[1:]}
             cut = each.parts[0][0]
-            if number and self.rolling[number - 1].parts[-1][0] == cut:
-                if self._gap_m(number) > SURE * self._rule_m(cut):
-                    true.add(("apart", cut))
-                else:
-                    told.discard(("apart", cut))
+            if not number or self.objects[number - 1].lead != self.objects[number].lead:
+                continue
+            gap_m = self._gap_m(number)
+            if self.rolling[number - 1].parts[-1][0] != cut:
+                if gap_m < NEAR * PracticeRules().coupled_gap_m:
+                    told.discard(("kept", cut))
+            elif gap_m > SURE * self._rule_m(cut):
+                true.add(("apart", cut))
+            else:
+                told.discard(("apart", cut))
         return true, told
 
     def _rule_m(self, cut: int) -> float:

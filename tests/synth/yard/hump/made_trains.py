@@ -26,6 +26,9 @@ from synth.yard.hump.sorting_list import SortingList
 
 TICK_S = 0.1
 GRID_M = 10.0
+FASTER_M_S2 = 0.6
+"""No cut that was held up gets faster than by this; 60 permille give 0.59 m/s²."""
+
 COUPLED_M, APART_M = 3.5, 9.0
 """Between the last axle of a car and the first of the next one, coupled and uncoupled at least."""
 
@@ -84,7 +87,7 @@ def moving(
     base_m: float = USUAL_M,
 ) -> list[MovingCut]:
     """Objects that follow each other and never overlap, their speed a random walk of at most 0.5 m/s in 10 m from 2 to
-    7 m/s unless one ahead holds them up; `close`: share that comes close behind."""
+    7 m/s unless a cut ahead holds them up; `close`: share that comes close behind."""
     leads = {cut.serial: cut.lead for cut in cuts}
     lead = table.graph.leads[leads[rolling[0].cut]]
     end_m = max(e.from_m for e in table.places[lead].values()) + 40.0 + 14.0 * sum(cut.cars for cut in cuts)
@@ -103,7 +106,9 @@ def moving(
             leaves = np.interp(grid + ahead.axles_m[-1] + APART_M, ahead.places_m, ahead.times_s)
             wish, times[0] = times.copy(), max(times[0], leaves[0])
             for k in range(1, len(grid)):
-                times[k] = max(wish[k], leaves[k], times[k - 1] + (grid[k] - grid[k - 1]) / 7.0)
+                had = GRID_M / (times[k - 1] - times[k - 2]) if k > 1 else speeds[0]
+                fastest = min(7.0, (had**2 + 2.0 * FASTER_M_S2 * GRID_M) ** 0.5)
+                times[k] = max(wish[k], leaves[k], times[k - 1] + GRID_M / fastest)
         found.append(MovingCut(each.cut, axles, times, grid.copy(), leads[each.cut]))
         pause = random.uniform(0.5, 3.0) if random.random() < close else random.uniform(9.0, 16.0)
         start_s = float(times[0]) + (axles[-1] + COUPLED_M) / 2.0 + pause
