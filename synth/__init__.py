@@ -25,6 +25,7 @@ if TYPE_CHECKING:
         tabulate,
         trace,
     )
+    from synth.configuration.hump import load_hump
     from synth.problem.aim import Aim
     from synth.problem.criterion import Criterion
     from synth.problem.problem import Problem
@@ -59,6 +60,7 @@ __all__ = [
     "fit",
     "load_car",
     "load_config",
+    "load_hump",
     "load_position",
     "load_problem",
     "load_sorting_list",
@@ -89,6 +91,7 @@ _HOMES = {
     "Plant": "plant_models",
     "Problem": "synth.problem.problem",
     "Resolution": "synth.problem.resolution",
+    "load_hump": "synth.configuration.hump",
     "HumpControl": "synth.yard.hump.hump_control",
     "Operation": "synth.yard.hump.hump_control",
     "PracticeRules": "synth.yard.hump.practice_rules",

@@ -17,7 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.library.near_miss import near_miss
-from synth.book.class_setup import creation_time, origin_of
+from synth.book.class_setup import origin_of
+from synth.book.creation_time import creation_time
 from synth.book.tuned_table import with_prediction
 from synth.configuration.config_file import load_config as load_config_file
 from synth.configuration.resolved_config import ResolvedConfig

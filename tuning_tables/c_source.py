@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Mapping, Sequence
-from importlib.resources import files
 
 import numpy as np
 
 from tuning_tables.c_estimator import estimator_blanks, estimator_text, track_blanks, tracks_csv
 from tuning_tables.c_literals import hex_float
+from tuning_tables.c_template import filled
 from tuning_tables.category_names import category_names, comment_text
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.golden_choices import GoldenChoice, golden_choices
@@ -75,20 +75,15 @@ def c_blanks(book: TableBook, vectors: Sequence[GoldenVectors], tracks: Sequence
     }
 
 
-def filled(name: str, blanks: Mapping[str, str]) -> str:
-    """The template of the file `name` with every @BLANK@ filled."""
-    text = (files("tuning_tables") / "c99" / f"{name}.in").read_text("ascii")
-    for blank, content in blanks.items():
-        text = text.replace(f"@{blank}@", content)
-    return text
-
-
 def export_tag(book: TableBook) -> int:
-    """A number that differs for exports whose files must not be mixed: CRC-32 over layout, categories, all blocks."""
+    """A number that differs for exports whose files must not be mixed: CRC-32 over layout, categories, all blocks.
+
+    Without the checksums of the blocks: a CRC over content and its own CRC is the same whatever the content is.
+    """
     content = "\n".join([f"layout {LAYOUT}", *book.category_numbers]).encode("utf-8")
     size = block_size(book)
     for number in range(len(book.tables)):
-        content += block_of(book, number, size=size).words.astype("<u4").tobytes()
+        content += block_of(book, number, size=size).words[:-1].astype("<u4").tobytes()
     return zlib.crc32(content)
 
 
@@ -110,7 +105,7 @@ def category_lines(book: TableBook) -> list[str]:
     """One #define for each weight category."""
     return [
         f"#define RETARDER_CATEGORY_{each.macro} {each.number}u /* {comment_text(each.category)} */"
-        for each in category_names(book)
+        for each in category_names(book.exported_numbers())
     ]
 
 

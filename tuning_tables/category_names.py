@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Final
 
 from tuning_tables.category_number import KNOWN_NUMBERS
-from tuning_tables.table_book import TableBook
 
 LONGEST_MACRO: Final = 8
 """Characters kept of a name; with a prefix, CATEGORY and a number it stays within limits of 32 and more."""
@@ -32,12 +31,12 @@ class CategoryName:
     number: int
 
 
-def category_names(book: TableBook) -> tuple[CategoryName, ...]:
-    """The categories of the yard, in the book or not, and the book's own, by number.
+def category_names(exported: Mapping[str, int]) -> tuple[CategoryName, ...]:
+    """The categories of the yard, exported or not, and the numbers of those that are `exported`, by number.
 
     So a name stands for one number in every export, and what was written for one compiles with the next.
     """
-    numbers = {**KNOWN_NUMBERS, **{category: book.number_of(category) for category in book.category_numbers}}
+    numbers = {**KNOWN_NUMBERS, **exported}
     named = zip(category_macros(numbers), numbers.items(), strict=True)
     return tuple(sorted((CategoryName(name, *each) for name, each in named), key=lambda each: each.number))
 

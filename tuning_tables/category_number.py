@@ -19,8 +19,8 @@ LEAST_OWN, LARGEST_OWN = 16, 255
 """Of a user's own category; 6 to 15 are kept free, and 0 stands for none."""
 
 
-def require_category_number(category: str, number: object) -> None:
-    """`number` may stand for `category`; raises `InvalidTable`."""
+def require_category_number(category: str, number: object, key: str = "cut.category_number") -> None:
+    """`number`, which stands at `key`, may stand for `category`; raises `InvalidTable`."""
     if category in KNOWN_NUMBERS:
         allowed = KNOWN_NUMBERS[category] == number and not isinstance(number, bool)
         wanted = f"{KNOWN_NUMBERS[category]}, its number in every table"
@@ -29,6 +29,4 @@ def require_category_number(category: str, number: object) -> None:
         allowed = whole and LEAST_OWN <= number <= LARGEST_OWN  # type: ignore[operator]  # `whole`: an int
         wanted = f"a whole number in [{LEAST_OWN}, {LARGEST_OWN}], as it is a category of your own"
     if not allowed:
-        raise InvalidTable(
-            f"cut.category_number of the category {category} is {number!r:.60}, but it must be {wanted}."
-        )
+        raise InvalidTable(f"{key} of the category {category} is {number!r:.60}, but it must be {wanted}.")

@@ -14,19 +14,13 @@ that reads back exactly. The checksum is that of the JSON table.
 
 from __future__ import annotations
 
-import csv
-import io
 import os
 from collections.abc import Iterator
-from typing import Final
 
 from tuning_tables.atomic_file import write_atomically
+from tuning_tables.csv_rows import property_rows, rectangle
 from tuning_tables.document import to_document
-from tuning_tables.errors import InvalidTable
-from tuning_tables.excerpt import excerpt
 from tuning_tables.table import ControllerTable
-
-FORMULA_MARKS: Final = ("=", "+", "-", "@")
 
 
 def to_csv(table: ControllerTable) -> bytes:
@@ -34,40 +28,12 @@ def to_csv(table: ControllerTable) -> bytes:
 
     Raises `InvalidTable` for a text that a spreadsheet would take for a formula and compute.
     """
-    rows = [*_property_rows(to_document(table), ""), *_line_rows(table)]
-    width = max(len(row) for row in rows)
-    text = io.StringIO(newline="")
-    writer = csv.writer(text)
-    writer.writerow(["record", "key", *(f"value{index}" for index in range(width - 2))])
-    writer.writerows([*row, *[""] * (width - len(row))] for row in rows)
-    return text.getvalue().encode("utf-8")
+    return rectangle([*property_rows(to_document(table), "", ("lower", "upper")), *_line_rows(table)])
 
 
 def write_csv(table: ControllerTable, path: str | os.PathLike[str]) -> None:
     """Write `to_csv(table)` to the file at `path`, complete or not at all; raises `OSError`, and as `to_csv`."""
     write_atomically(path, to_csv(table))
-
-
-def _property_rows(value: object, key: str) -> Iterator[list[str]]:
-    """A row for each leaf of the document but the lines: a string, a number, or an array of numbers."""
-    if isinstance(value, dict):
-        for name, member in value.items():
-            if name not in ("lower", "upper"):
-                yield from _property_rows(member, f"{key}.{name}" if key else name)
-    elif isinstance(value, list) and isinstance(value[0], dict | list):
-        for index, item in enumerate(value):
-            yield from _property_rows(item, f"{key}.{index}")
-    elif isinstance(value, list):
-        yield ["number", key, *map(repr, value)]
-    elif isinstance(value, str):
-        if value.startswith(FORMULA_MARKS):
-            raise InvalidTable(
-                f"{key} is {excerpt(value)!r}, which a spreadsheet would compute; give it a name that does not begin "
-                f"with {value[0]!r}, or export another form."
-            )
-        yield ["text", key, value]
-    elif value is not None:
-        yield ["number", key, repr(value)]
 
 
 def _line_rows(table: ControllerTable) -> Iterator[list[str]]:

@@ -6,7 +6,8 @@ from typing import Final
 
 from tuning_tables.approach import INTERLOCK, Approach
 from tuning_tables.canonical import CHECKSUM_KEY, document_checksum
-from tuning_tables.errors import DamagedTable, InvalidTable, NewerVersion, OlderVersion, UnknownFormat
+from tuning_tables.document_head import require_checksum, require_format, require_version
+from tuning_tables.errors import DamagedTable, InvalidTable
 from tuning_tables.estimator import Estimator
 from tuning_tables.excerpt import excerpt
 from tuning_tables.figures import Predicted, Validated, ValidRange
@@ -107,9 +108,10 @@ def from_document(document: object, source: str) -> ControllerTable:
     Raises `UnknownFormat`, `NewerVersion`, `OlderVersion` for another format or version, and `DamagedTable` for a wrong
     checksum, a missing or unknown key, a wrong type, and values that make no table. Checked in this order.
     """
-    members, (required, optional) = _versioned(document, source)
+    members = require_format(document, source, FORMAT, "a controller table")
+    required, optional = _VERSION_KEYS[require_version(members, source, VERSION, APPROACH_VERSION)]
     top = Section(members, source, "", _KEYS + required, optional)
-    _require_checksum(members, top.text(CHECKSUM_KEY), source)
+    require_checksum(members, top.text(CHECKSUM_KEY), source)
     polynomial = top.section("polynomial", ("variable", "degree"))
     if polynomial.text("variable") != VARIABLE:
         found = polynomial.text("variable")
@@ -133,36 +135,6 @@ def from_document(document: object, source: str) -> ControllerTable:
     except InvalidTable as invalid:
         # The reason may quote a value, and a file may hold one of any length.
         raise DamagedTable(f"{source}: {excerpt(str(invalid), LONGEST_REASON)}") from invalid
-
-
-def _versioned(document: object, source: str) -> tuple[dict[str, object], tuple[tuple[str, ...], tuple[str, ...]]]:
-    """The document, now known to be an object of a format and version that the rest can read; and `_VERSION_KEYS`."""
-    if not isinstance(document, dict) or document.get("format") != FORMAT:
-        found = document.get("format") if isinstance(document, dict) else type(document).__name__
-        raise UnknownFormat(f'{source}: format is {found!r:.60}, but it must be "{FORMAT}"; give a controller table.')
-    version = document.get("version")
-    if not isinstance(version, int) or isinstance(version, bool):
-        raise DamagedTable(
-            f"{source}: version is {version!r:.60}, but it must be a whole number from {VERSION} to {APPROACH_VERSION}."
-        )
-    known = f"this reader knows only {VERSION} to {APPROACH_VERSION}"
-    if version > APPROACH_VERSION:
-        raise NewerVersion(f"{source}: version is {version}, {known}; update retarder-synth.")
-    if version < VERSION:
-        raise OlderVersion(f"{source}: version is {version}, {known}; export it again.")
-    return document, _VERSION_KEYS[version]
-
-
-def _require_checksum(members: dict[str, object], stored: str, source: str) -> None:
-    try:
-        computed = document_checksum(members)
-    except ValueError as fault:
-        raise DamagedTable(f"{source}: the content has no checksum, for {fault}") from fault
-    if stored != computed:
-        raise DamagedTable(
-            f"{source}: crc32 is {stored!r:.60}, but the content gives {computed!r}: "
-            "it was changed after the export; export the table again."
-        )
 
 
 def _floats(values: tuple[float, ...]) -> list[float]:

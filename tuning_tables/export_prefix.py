@@ -26,6 +26,8 @@ class ExportPrefix:
                 f"the prefix is {self.text!r:.60}, but it must have at most {LONGEST} Latin letters, digits and single "
                 "underscores between them, a letter first, such as BUNCH or TRACK_2"
             )
+        if re.search(r"(^|_)AIM$", self.text, re.IGNORECASE):
+            raise ValueError(f"the prefix is {self.text!r}, but it must not end with AIM, which names aim tables")
 
     @property
     def is_default(self) -> bool:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, Final
 
 from tuning_tables.approach import INTERLOCK, LENGTH_RANGE_M
 from tuning_tables.atomic_file import write_atomically
@@ -16,40 +15,40 @@ from tuning_tables.category_number import KNOWN_NUMBERS, LARGEST_OWN, LEAST_OWN
 from tuning_tables.document import APPROACH_VERSION, ESTIMATOR_VERSION, FORMAT, VARIABLE, VERSION
 from tuning_tables.estimator import FARTHEST_M, LARGEST_OVERPRESSURE_KPA, LARGEST_WORK, MOST_BREAKS
 from tuning_tables.requirement import SHA256_HEX, UTC_INSTANT
+from tuning_tables.schema_parts import DIALECT, above_zero, array_of, number, object_of, pair_of, text, whole
 from tuning_tables.table import HIGHEST_DEGREE, MOST_STAGES
-
-DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 
 
 def table_schema() -> dict[str, object]:
     """A new dict with the JSON Schema of the format "retarder-table", versions 1 to 3."""
-    line = {"anyOf": [{"type": "null"}, _array({"type": "number"}, 1, HIGHEST_DEGREE + 1)]}
-    stage = _object(k=_whole(0, MOST_STAGES - 1), pressure_kpa=_number(0), lower=line, upper=line)
-    validated = _object(passes=_whole(1), rms_m_s=_number(0), rms_ci95_m_s=_pair(_number(0)))
-    predicted = _object(rms_m_s=_number(0), bias_m_s=_number(), p_overspeed=_number(0, 1), switchings=_number(0))
-    predicted["properties"]["p_stall"] = _number(0, 1)
-    predicted["properties"]["passes"] = _whole(1)
-    cut = _object(category=_text(), mass_t=_above_zero(), axle_offsets_m=_array(_number(0), 1))
-    cut["properties"]["category_number"] = _whole(1, LARGEST_OWN)
-    top = _object(
+    line = {"anyOf": [{"type": "null"}, array_of({"type": "number"}, 1, HIGHEST_DEGREE + 1)]}
+    stage = object_of(k=whole(0, MOST_STAGES - 1), pressure_kpa=number(0), lower=line, upper=line)
+    validated = object_of(passes=whole(1), rms_m_s=number(0), rms_ci95_m_s=pair_of(number(0)))
+    predicted = object_of(rms_m_s=number(0), bias_m_s=number(), p_overspeed=number(0, 1), switchings=number(0))
+    predicted["properties"]["p_stall"] = number(0, 1)
+    predicted["properties"]["passes"] = whole(1)
+    zones = array_of(pair_of(number()), 1)
+    cut = object_of(category=text(), mass_t=above_zero(), axle_offsets_m=array_of(number(0), 1))
+    cut["properties"]["category_number"] = whole(1, LARGEST_OWN)
+    top = object_of(
         format={"const": FORMAT},
         version={"enum": [VERSION, ESTIMATOR_VERSION, APPROACH_VERSION]},
-        id=_text(),
+        id=text(),
         created={"type": "string", "pattern": UTC_INSTANT},
-        generator=_object(name=_text(), version=_text(), config_sha256={"type": "string", "pattern": SHA256_HEX}),
-        retarder=_object(name=_text(), zones_m=_array(_pair(_number()), 1), exit_m=_number(), dead_band_kpa=_number(0)),
+        generator=object_of(name=text(), version=text(), config_sha256={"type": "string", "pattern": SHA256_HEX}),
+        retarder=object_of(name=text(), zones_m=zones, exit_m=number(), dead_band_kpa=number(0)),
         cut={**cut, "oneOf": _numbered_cuts()},
-        target_speed_m_s=_above_zero(),
-        polynomial=_object(variable={"const": VARIABLE}, degree=_whole(0, HIGHEST_DEGREE)),
-        stages=_array(stage, 2, MOST_STAGES),
-        valid=_object(s_m=_pair(_number(-1e6, 1e6)), v_m_s=_pair(_number(0, 1e6))),
+        target_speed_m_s=above_zero(),
+        polynomial=object_of(variable={"const": VARIABLE}, degree=whole(0, HIGHEST_DEGREE)),
+        stages=array_of(stage, 2, MOST_STAGES),
+        valid=object_of(s_m=pair_of(number(-1e6, 1e6)), v_m_s=pair_of(number(0, 1e6))),
         predicted=predicted,
         validated={"anyOf": [{"type": "null"}, validated]},
         crc32={"type": "string", "pattern": "^[0-9a-f]{8}$"},
     )
     top["properties"]["estimator"] = _estimator()
-    top["properties"]["approach"] = _object(
-        length_m=_number(*LENGTH_RANGE_M), entrance_stage=_whole(0, MOST_STAGES - 1), interlock={"const": INTERLOCK}
+    top["properties"]["approach"] = object_of(
+        length_m=number(*LENGTH_RANGE_M), entrance_stage=whole(0, MOST_STAGES - 1), interlock={"const": INTERLOCK}
     )
     title = f"{FORMAT} {VERSION} to {APPROACH_VERSION}"
     return {"$schema": DIALECT, "title": title, **top, "oneOf": _versions()}
@@ -69,7 +68,7 @@ def _versions() -> list[object]:
 
 def _numbered_cuts() -> list[object]:
     """No number is given, or that of the category of the yard, or one of a user's own category."""
-    own = {"category": {"not": {"enum": list(KNOWN_NUMBERS)}}, "category_number": _whole(LEAST_OWN, LARGEST_OWN)}
+    own = {"category": {"not": {"enum": list(KNOWN_NUMBERS)}}, "category_number": whole(LEAST_OWN, LARGEST_OWN)}
     known = [
         {"category": {"const": name}, "category_number": {"const": number}} for name, number in KNOWN_NUMBERS.items()
     ]
@@ -78,58 +77,18 @@ def _numbered_cuts() -> list[object]:
 
 
 def _estimator() -> dict[str, dict[str, object]]:
-    return _object(
-        speed_noise_m_s=_number(1e-4, 10.0),
-        friction_cv=_number(0, 1),
-        path_std=_number(0, 1),
-        correlation_length_m=_number(1e-3, 1e4),
-        touch_pressure_kpa=_number(0, LARGEST_OVERPRESSURE_KPA),
-        s_m=_array(_number(-FARTHEST_M, FARTHEST_M), 2, MOST_BREAKS),
-        drive_m2_s2=_array(_number(-LARGEST_WORK, LARGEST_WORK), 2, MOST_BREAKS),
-        brake_m2_s2_per_kpa=_array(_number(-LARGEST_WORK, LARGEST_WORK), 2, MOST_BREAKS),
+    return object_of(
+        speed_noise_m_s=number(1e-4, 10.0),
+        friction_cv=number(0, 1),
+        path_std=number(0, 1),
+        correlation_length_m=number(1e-3, 1e4),
+        touch_pressure_kpa=number(0, LARGEST_OVERPRESSURE_KPA),
+        s_m=array_of(number(-FARTHEST_M, FARTHEST_M), 2, MOST_BREAKS),
+        drive_m2_s2=array_of(number(-LARGEST_WORK, LARGEST_WORK), 2, MOST_BREAKS),
+        brake_m2_s2_per_kpa=array_of(number(-LARGEST_WORK, LARGEST_WORK), 2, MOST_BREAKS),
     )
 
 
 def write_schema(path: str | os.PathLike[str]) -> None:
     """Write the schema to the file at `path`, complete or not at all; raises `OSError`."""
     write_atomically(path, (json.dumps(table_schema(), indent=1) + "\n").encode("utf-8"))
-
-
-def _object(**properties: object) -> dict[str, Any]:
-    """All `properties` and no others; all are required."""
-    return {
-        "type": "object",
-        "properties": dict(properties),
-        "required": list(properties),
-        "additionalProperties": False,
-    }
-
-
-def _array(items: object, fewest: int, most: int | None = None) -> dict[str, object]:
-    bounds = {"minItems": fewest} if most is None else {"minItems": fewest, "maxItems": most}
-    return {"type": "array", "items": items, **bounds}
-
-
-def _pair(items: object) -> dict[str, object]:
-    return _array(items, 2, 2)
-
-
-def _number(smallest: float | None = None, largest: float | None = None) -> dict[str, object]:
-    return _bounded("number", smallest, largest)
-
-
-def _whole(smallest: int, largest: int | None = None) -> dict[str, object]:
-    return _bounded("integer", smallest, largest)
-
-
-def _bounded(kind: str, smallest: float | None, largest: float | None) -> dict[str, object]:
-    bounds = {"minimum": smallest, "maximum": largest}
-    return {"type": kind, **{key: bound for key, bound in bounds.items() if bound is not None}}
-
-
-def _above_zero() -> dict[str, object]:
-    return {"type": "number", "exclusiveMinimum": 0}
-
-
-def _text() -> dict[str, object]:
-    return {"type": "string", "minLength": 1}

@@ -62,10 +62,13 @@ class Section:
 
     def count(self, key: str) -> int:
         """The integer at `key`, written without a decimal point."""
-        value = self._members[key]
-        if not isinstance(value, int) or isinstance(value, bool):
-            self._refuse(self._dotted(key), value, "a whole number")
-        return value
+        return self._count(self._members[key], self._dotted(key))
+
+    def counts(self, key: str) -> tuple[int, ...]:
+        """The array of integers at `key`, each written without a decimal point."""
+        path = self._dotted(key)
+        items = enumerate(self._array(self._members[key], path))
+        return tuple(self._count(item, f"{path}[{index}]") for index, item in items)
 
     def number(self, key: str) -> float:
         """The number at `key`; -0.0 is none."""
@@ -107,6 +110,11 @@ class Section:
             # The canonical form, and so the checksum, does not tell it from 0.0.
             self._refuse(path, value, "0.0, without a sign")
         return number
+
+    def _count(self, value: object, path: str) -> int:
+        if not isinstance(value, int) or isinstance(value, bool):
+            self._refuse(path, value, "a whole number")
+        return value
 
     def _array(self, value: object, path: str) -> list[object]:
         if not isinstance(value, list):

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
+from tuning_tables.aim.aim_table import AimTable
+from tuning_tables.aim.golden_aims import GoldenAims, few_golden_aims, golden_aims
 from tuning_tables.golden_vectors import GoldenVectors, few_golden_vectors, golden_vectors
 from tuning_tables.table import ControllerTable
 
@@ -14,13 +16,16 @@ from tuning_tables.table import ControllerTable
 class SelfTestSize:
     """`vectors`: the readings of a table that are decided, and their answers.
 
+    `aims`: likewise the questions that an aim table is asked.
+
     `line_checks`: of the choices between two tables, how many the Structured Text compares by every coefficient; it
     has no checksum that could do so. Choices and tracks of estimators are the same in every size.
     """
 
     vectors: Callable[[ControllerTable], GoldenVectors]
     line_checks: int
+    aims: Callable[[AimTable], GoldenAims]
 
 
-FULL: Final = SelfTestSize(golden_vectors, 16)
-SMALL: Final = SelfTestSize(few_golden_vectors, 2)
+FULL: Final = SelfTestSize(golden_vectors, 16, golden_aims)
+SMALL: Final = SelfTestSize(few_golden_vectors, 2, few_golden_aims)

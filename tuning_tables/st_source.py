@@ -6,7 +6,6 @@ docs/structured-text.md.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from string import Template
 from typing import Final
@@ -22,6 +21,7 @@ from tuning_tables.st_estimator import observe_blocks
 from tuning_tables.st_observe import ESTIMATE_TYPE
 from tuning_tables.st_self_test import self_test_blocks
 from tuning_tables.st_tables import blanks_of, load_block, select_block
+from tuning_tables.st_units import unit_files
 from tuning_tables.table_block import LAYOUT, block_size
 from tuning_tables.table_book import TableBook
 
@@ -40,9 +40,6 @@ SELF_TEST_HEAD: Final = """\
    that are not finite or denormal are left out, because they have no portable literal. Remove the blocks after the test
    if memory is short. *)
 """
-
-UNIT: Final = re.compile(r"^(?:FUNCTION_BLOCK (\w+)$|    (\w+) : STRUCT\b)", re.MULTILINE)
-"""How a unit begins: a block or a type, with its name."""
 
 
 def st_files(book: TableBook, prefix: ExportPrefix = RETARDER, self_test: SelfTestSize = FULL) -> Mapping[str, bytes]:
@@ -64,11 +61,7 @@ def st_unit_files(
     """The same units, a file each; by their names in the order in which they need each other. Raises as `st_files`."""
     texts = [prefix.renamed(text) for text in (*table_units(book), *self_test_blocks(book, self_test))]
     texts[0] = "\n".join([prefix.renamed(head(book)), texts[0]])
-    names = ["".join(*UNIT.findall(text)) for text in texts]
-    return {
-        f"{place:04d}_{name}.st": text.encode("ascii")
-        for place, (name, text) in enumerate(zip(names, texts, strict=True), start=1)
-    }
+    return unit_files(texts)
 
 
 def head(book: TableBook) -> str:
@@ -97,13 +90,13 @@ def category_lines(book: TableBook) -> list[str]:
     """The number of every weight category, for the head comment."""
     return [
         f"   {each.number:9d}  {each.macro}, in tables {comment_text(each.category)}".rstrip()
-        for each in category_names(book)
+        for each in category_names(book.exported_numbers())
     ]
 
 
 def categories_block(book: TableBook) -> str:
     """RETARDER_CATEGORIES: an output for every category, with its number from the start on."""
-    names = category_names(book)
+    names = category_names(book.exported_numbers())
     return Template(CATEGORIES).substitute(
         LAYOUT=LAYOUT,
         DECLARED="\n".join(

@@ -121,6 +121,10 @@ class TableBook:
             )
         return number
 
+    def exported_numbers(self) -> Mapping[str, int]:
+        """`number_of` every category of the book; raises as that."""
+        return {category: self.number_of(category) for category in self.category_numbers}
+
     def shadowed(self) -> tuple[ControllerTable, ...]:
         """The tables that no choice can use: another of the same category and axles is heavier, or comes first."""
         used = {number for numbers in self.by_class.values() for number in numbers}

@@ -23,7 +23,7 @@ _Kind = TypeVar("_Kind", Switch, Signal, Retarder, TrackSection)
 
 @dataclass(frozen=True)
 class HumpGraph:
-    """The elements of a hump, and its `leads`: the signal at each crest, where routes begin.
+    """The elements of a hump by number, and its `leads`: the signal at each crest, where routes begin.
 
     Incidence lists, lists of tracks and routes follow from the edges, as in the control model ([kozachenko-control]).
     Raises `HumpError`, which names the element, unless the numbers are unique, every edge leads to an element, no way
@@ -36,6 +36,8 @@ class HumpGraph:
 
     def __post_init__(self) -> None:
         require_hump(self.vertices, self.leads)
+        # in one order, so that two humps of the same elements are equal
+        object.__setattr__(self, "vertices", tuple(sorted(self.vertices, key=lambda vertex: vertex.number)))
 
     @cached_property
     def by_number(self) -> Mapping[int, Vertex]:
@@ -67,7 +69,7 @@ class HumpGraph:
         return self._of(TrackSection)
 
     def _of(self, kind: type[_Kind]) -> tuple[_Kind, ...]:
-        return tuple(sorted((v for v in self.vertices if isinstance(v, kind)), key=lambda v: v.number))
+        return tuple(v for v in self.vertices if isinstance(v, kind))
 
     @cached_property
     def incidence(self) -> Mapping[int, tuple[int, ...]]:

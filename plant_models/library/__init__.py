@@ -8,22 +8,27 @@ from plant_models.library.catalogue import (
     load_position,
     load_retarder,
     load_sensor,
+    load_track,
     load_weight_categories,
     position_names,
     retarder_names,
 )
+from plant_models.library.hump_entry import HumpEntry, hump_names, load_hump
 from plant_models.library.library import BUILT_IN, Library
 from plant_models.library.position_entry import PositionEntry
 from plant_models.library.retarder_entry import RetarderEntry
 from plant_models.library.sensor_entry import SensorEntry
 from plant_models.library.source import Source, sources, sources_cited_in
 from plant_models.library.sourced_value import SourcedValue, Value
+from plant_models.library.track_entry import TrackEntry
 from plant_models.library.type_file import (
+    CAR_MIXES,
     CARS,
     KINDS,
     POSITIONS,
     RETARDERS,
     SENSORS,
+    TRACKS,
     WEIGHT_CATEGORIES,
     Kind,
     TypeFile,
@@ -34,13 +39,16 @@ from plant_models.library.weight_category import WeightCategories, WeightCategor
 __all__ = [
     "BUILT_IN",
     "CARS",
+    "CAR_MIXES",
     "KINDS",
     "POSITIONS",
     "RETARDERS",
     "SENSORS",
+    "TRACKS",
     "WEIGHT_CATEGORIES",
     "YARD_CATEGORIES",
     "CarEntry",
+    "HumpEntry",
     "Kind",
     "Library",
     "PositionEntry",
@@ -48,16 +56,20 @@ __all__ = [
     "SensorEntry",
     "Source",
     "SourcedValue",
+    "TrackEntry",
     "TypeFile",
     "TypeFileError",
     "Value",
     "WeightCategories",
     "WeightCategory",
     "car_names",
+    "hump_names",
     "load_car",
+    "load_hump",
     "load_position",
     "load_retarder",
     "load_sensor",
+    "load_track",
     "load_weight_categories",
     "position_names",
     "retarder_names",

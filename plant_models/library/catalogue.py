@@ -7,7 +7,15 @@ from plant_models.library.library import BUILT_IN, Library
 from plant_models.library.position_entry import PositionEntry, position_with_types
 from plant_models.library.retarder_entry import RetarderEntry, retarder_from
 from plant_models.library.sensor_entry import SensorEntry, sensor_from
-from plant_models.library.type_file import CARS, POSITIONS, RETARDERS, SENSORS, WEIGHT_CATEGORIES
+from plant_models.library.track_entry import TrackEntry, track_from
+from plant_models.library.type_file import (
+    CARS,
+    POSITIONS,
+    RETARDERS,
+    SENSORS,
+    TRACKS,
+    WEIGHT_CATEGORIES,
+)
 from plant_models.library.weight_category import WeightCategories, categories_from
 
 YARD_CATEGORIES = "hump-norm"
@@ -52,3 +60,8 @@ def load_sensor(name: str, library: Library = BUILT_IN) -> SensorEntry:
 def load_weight_categories(name: str = YARD_CATEGORIES, library: Library = BUILT_IN) -> WeightCategories:
     """The set of weight categories `name`; `PlantError` as `load_position`."""
     return categories_from(library.file(WEIGHT_CATEGORIES, name))
+
+
+def load_track(name: str, library: Library = BUILT_IN) -> TrackEntry:
+    """The track `name`; `PlantError` as `load_position`."""
+    return track_from(library.file(TRACKS, name))

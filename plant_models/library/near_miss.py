@@ -14,8 +14,8 @@ def near_miss(word: str, choices: Iterable[str]) -> str:
 
 
 def close_name(word: str, choices: Iterable[str]) -> str | None:
-    """The one of `choices` that begins with `word`, or the closest to it; None if none is close."""
+    """The shortest of `choices` that begins with `word`, or the closest to it; None if none is close."""
     known = sorted(choices)
-    begun = [name for name in known if len(word) >= 3 and name.startswith(word)]
+    begun = sorted((name for name in known if len(word) >= 3 and name.startswith(word)), key=len)
     close = begun or get_close_matches(word, known, n=1, cutoff=0.6)
     return close[0] if close else None

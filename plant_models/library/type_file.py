@@ -32,8 +32,12 @@ CARS: Final = Kind("cars", "car")
 SENSORS: Final = Kind("sensors", "sensor")
 WEIGHT_CATEGORIES: Final = Kind("weight_categories", "set of weight categories")
 POSITIONS: Final = Kind("positions", "position")
+TRACKS: Final = Kind("tracks", "track")
+CAR_MIXES: Final = Kind("car_mixes", "car mix")
+HUMPS: Final = Kind("humps", "hump")
 
-KINDS: Final = (POSITIONS, RETARDERS, CARS, SENSORS, WEIGHT_CATEGORIES)
+KINDS: Final = (POSITIONS, RETARDERS, CARS, SENSORS, WEIGHT_CATEGORIES, TRACKS, CAR_MIXES)
+"""Kinds of which a configuration may name a user's file; humps are files of their own."""
 
 
 @dataclass(frozen=True)

@@ -48,6 +48,11 @@ class CarMix:
         require_between("car mix: following_share", self.following_share, 0.0, 1.0)
         require_between("car mix: underload_mean_t", self.underload_mean_t, 0.01, 100.0)
 
+    @property
+    def axles(self) -> NDArray[np.int64]:
+        """Axles of each type."""
+        return np.array([len(c.car.axle_offsets_m) for c in self.cars])
+
     def of(self, categories: WeightCategories, category: WeightCategory) -> CarMix:
         """The cars among these that can be in `category`; `PlantError` where there is none."""
         able = tuple(
@@ -69,7 +74,7 @@ class CarMix:
         under-load, cut off where the category ends ([kozachenko-aimed])."""
         limits = np.array([mass_limits_t(categories, category, c.car) for c in self.cars])
         low, high = limits[types, 0], limits[types, 1]
-        if category is not categories.members[-1]:
+        if category != categories.members[-1]:
             return np.asarray(low + (high - low) * u)
         scale = self.underload_mean_t
         return np.asarray(high + scale * np.log1p(u * np.expm1(-(high - low) / scale)))

@@ -13,7 +13,7 @@ from plant_models.cut import GRAVITY_M_S2, ROTATING_MASS_PER_AXLE_T
 from plant_models.errors import require
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.library.weight_category import WeightCategories, WeightCategory
-from plant_models.rolling.car_mix import CarMix
+from plant_models.rolling.car_mix import AXLES_OF_A_CATEGORY, CarMix
 from plant_models.rolling.random_numbers import Purpose, uniform_numbers
 from plant_models.rolling.resistance_law import ResistanceLaw
 from plant_models.rolling.roll_track import Bend
@@ -69,7 +69,7 @@ class DrawnCuts:
     @property
     def reduced_gravity_m_s2(self) -> Floats:
         """g' of each cut, (n,)."""
-        axles = np.array([len(c.car.axle_offsets_m) for c in self.mix.cars])[self.types].sum(axis=1)
+        axles = self.mix.axles[self.types].sum(axis=1)
         return np.asarray(GRAVITY_M_S2 / (1.0 + ROTATING_MASS_PER_AXLE_T * axles / self.cut_mass_t))
 
     @property
@@ -123,7 +123,8 @@ class CutPopulation:
         u = uniform_numbers(seed, Purpose.CARS, first, count, 3 * cars).reshape(count, cars, 3)
         types = mix.types(u[..., 0])
         mass = mix.masses_t(self.categories, category, types, u[..., 1])
-        basic = self.law.basic_n_per_kn(category.resistance, mass, self.weather.temperature_c, u[..., 2])
+        on_four_axles = mass * (AXLES_OF_A_CATEGORY / mix.axles[types])
+        basic = self.law.basic_n_per_kn(category.resistance, on_four_axles, self.weather.temperature_c, u[..., 2])
         wind = ndtri(uniform_numbers(seed, Purpose.WIND, first, count, 1)[:, 0])
         v2, head = bend_heads_m(self.law, self.bends, seed, first, count)
         return DrawnCuts(

@@ -30,7 +30,8 @@ class ResistanceLaw(Protocol):
         """What the basic resistance is more on the hump slope than in the yard behind the park position, N/kN."""
 
     def basic_n_per_kn(self, resistance: RollingResistance, mass_t: Floats, temperature_c: float, u: Floats) -> Floats:
-        """Basic resistance of cars in the yard at standstill, one a number `u`; `resistance`: of their category."""
+        """Basic resistance of cars in the yard at standstill, one a number `u`; `resistance`: of their category;
+        `mass_t`: of a 4-axle car of their axle load."""
 
     def bend_heads_m(self, bend: Bend, u: Floats) -> tuple[Floats, Floats]:
         """Energy head that the bend takes from a cut: (per (m/s)², whatever the speed), each as `u` without its last
@@ -81,7 +82,7 @@ class HumpNormLaw:
 
 @dataclass(frozen=True)
 class Tb10062Law:
-    """The Chinese norm TB 10062-99 as SwitchYard has it (`docs/sources.md`): normal spread, grows in the cold.
+    """The Chinese norm TB 10062-99 [tb-10062]: normal spread, grows in the cold.
 
     r = 2.439 + (0.00008 Q − 0.01743) t − 0.015 Q + 0.00017 t² + 0.1 v + 0.39 (1 − k), k = 1 in the yard and 0 on the
     slope; standard deviation 0.602 − (0.0012 + 0.00002 Q) t − 0.003 Q + 0.00002 t². Bends take 8 N·m/kN a degree and 24

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from importlib.metadata import version
 
 from plant_models import Plant
@@ -104,10 +102,3 @@ def validation_passes(config: ResolvedConfig) -> RandomPasses:
 def origin_of(config_sha256: str, created: str) -> Origin:
     """This program, for the problem of that hash."""
     return Origin(Generator("retarder-synth", version("retarder-synth"), config_sha256), created)
-
-
-def creation_time() -> str:
-    """Now in UTC, or the time of SOURCE_DATE_EPOCH (which makes a run's files reproducible to the byte)."""
-    epoch = os.environ.get("SOURCE_DATE_EPOCH")
-    moment = datetime.fromtimestamp(int(epoch), UTC) if epoch else datetime.now(UTC)
-    return moment.strftime("%Y-%m-%dT%H:%M:%SZ")

@@ -1,14 +1,17 @@
-"""The directory that a tune leaves its results in: checked before anything is computed, held by one tune at a time."""
+"""The directory that a command leaves its results in: checked before anything is computed, held by one at a time."""
 
 from __future__ import annotations
 
 import contextlib
 import fcntl
+import json
 import os
 import re
 import tempfile
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 from synth.faults.input_error import InputError
 from synth.faults.machine_fault import MACHINE_FAULTS
@@ -16,13 +19,29 @@ from tuning_tables import TableError, read_json
 from tuning_tables.atomic_file import faults_naming
 
 SUMMARY = "summary.json"
-FOLDERS = ("tables", "c", "plots")
+
+
+@dataclass(frozen=True)
+class Layout:
+    """What a command leaves in its directory: `folders`, and a summary of this `form`; `noun`: the command."""
+
+    noun: str
+    form: str
+    folders: tuple[str, ...]
+
+
+TUNE_LAYOUT: Final = Layout("tune", "retarder-summary", ("tables", "c", "plots"))
+AIM_LAYOUT: Final = Layout("aim", "aim-summary", ("tables", "c", "st", "plots"))
+LAYOUTS: Final = (TUNE_LAYOUT, AIM_LAYOUT)
 LEFTOVER = re.compile(r"\..+\.[0-9a-f]{16}\.part")
 PICTURES = re.compile(
     r"(rms-by-controller|feasibility|switchings|degree-study|(exit-density|surfaces|policy-map|sample-passes)-.+)"
     r"\.(png|svg)"
 )
 """File names of the pictures that a tune draws."""
+
+AIM_PICTURES = re.compile(r"aim-(track|gaps|commands-by-cars|commands-by-resistance|chances-.+)\.(png|svg)")
+"""Those of an aim."""
 
 SWEEP_LEDGER, SWEPT_CONFIG = "sweep/ledger.jsonl", "config.toml"
 """What is in every directory of a sweep, and beside every book of one."""
@@ -31,12 +50,13 @@ CSV_MARKS = (b"record,key,", b"\r\ntext,generator.name,retarder-synth,")
 
 
 @contextlib.contextmanager
-def output_directory(path: Path) -> Iterator[Path]:
-    """Make and hold `path` for one tune; `InputError` if it cannot be written or another tune holds it.
+def output_directory(path: Path, layout: Layout = TUNE_LAYOUT) -> Iterator[Path]:
+    """Make and hold `path` for one command; `InputError` if it cannot be written or another command holds it.
 
-    Within: no summary.json, which would not belong to what is written next, and no leftovers of a killed tune.
+    Within: no summary.json, which would not belong to what is written next, and no leftovers of a killed command.
     """
     require_no_sweep(path)
+    require_no_other(path, layout)
     make_directory(path)
     descriptor = os.open(path, os.O_RDONLY)
     try:
@@ -44,10 +64,12 @@ def output_directory(path: Path) -> Iterator[Path]:
             # On the directory itself: no lock file is left, and the lock ends with the process, however it ends.
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise InputError(f"{path}: another tune is writing there; wait for it, or give another one by -o") from None
+            raise InputError(
+                f"{path}: another {layout.noun} is writing there; wait for it, or give another one by -o"
+            ) from None
         except OSError:  # a file system without locks
             pass
-        for folder in FOLDERS:
+        for folder in layout.folders:
             make_directory(path / folder)
         remove_leftovers(path)
         (path / SUMMARY).unlink(missing_ok=True)
@@ -63,6 +85,18 @@ def require_no_sweep(path: Path) -> None:
     above = path.resolve().parent / SWEEP_LEDGER
     if (path / SWEEP_LEDGER).exists() or (above.exists() and (path / SWEPT_CONFIG).exists()):
         raise InputError(f"{path}: it holds the results of a sweep; give another directory by -o")
+
+
+def require_no_other(path: Path, layout: Layout) -> None:
+    """`InputError` if a command of another layout has left its results in `path`."""
+    try:
+        document = json.loads((path / SUMMARY).read_bytes())
+    except (OSError, ValueError, RecursionError):
+        return
+    form = document.get("format") if isinstance(document, dict) else None
+    for other in LAYOUTS:
+        if form == other.form != layout.form:
+            raise InputError(f"{path}: it holds the results of '{other.noun}'; give another directory by -o")
 
 
 def make_directory(path: Path) -> None:
@@ -81,8 +115,8 @@ def make_directory(path: Path) -> None:
 
 
 def remove_leftovers(path: Path) -> None:
-    """Remove the unfinished files that a killed tune has left; only the holder of the directory may."""
-    for folder in (path, *(path / name for name in FOLDERS)):
+    """Remove the unfinished files that a killed command has left; only the holder of the directory may."""
+    for folder in (path, *(path / name for name in {name for layout in LAYOUTS for name in layout.folders})):
         for file in folder.glob(".*.part"):
             if LEFTOVER.fullmatch(file.name):
                 file.unlink(missing_ok=True)

@@ -10,7 +10,8 @@ from pathlib import Path
 
 from plant_models import Plant, PlantError
 from synth.book.case_result import CaseResult, DegreeStudy
-from synth.book.class_setup import TUNING_PASSES, Origin, class_setup, creation_time, origin_of, validation_passes
+from synth.book.class_setup import TUNING_PASSES, Origin, class_setup, origin_of, validation_passes
+from synth.book.creation_time import creation_time
 from synth.book.degree_study import degree_study, tables_by_degree
 from synth.book.tune_case import CaseOrder, tune_case
 from synth.book.tuned_table import Store, solutions

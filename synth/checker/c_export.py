@@ -32,9 +32,16 @@ def read_blocks(source: str) -> list[Words]:
     array, count = ARRAY.search(source), COUNT.search(source)
     if array is None or count is None:
         raise DamagedError("it has no array retarder_tables or no retarder_table_count")
+    blocks = words_of_array(array[1])
+    if len(blocks) != int(count[1]):
+        raise DamagedError(f"retarder_table_count is {count[1]}, but the array holds {len(blocks)} tables")
+    return blocks
+
+
+def words_of_array(text: str) -> list[Words]:
+    """The words of each element of an array of tables; `DamagedError` for anything but numbers in balanced braces."""
     blocks: list[list[int]] = []
     depth = place = 0
-    text = array[1]
     while place < len(text):
         token = TOKEN.match(text, place)
         if token is None:
@@ -50,8 +57,8 @@ def read_blocks(source: str) -> list[Words]:
             if depth < 2:
                 raise DamagedError("a number stands outside the tables")
             blocks[-1].append(word_of(token["real"], token["whole"]))
-    if depth != 0 or len(blocks) != int(count[1]):
-        raise DamagedError(f"retarder_table_count is {count[1]}, but the array holds {len(blocks)} tables")
+    if depth != 0:
+        raise DamagedError("the braces of its tables do not match")
     return [tuple(block) for block in blocks]
 
 

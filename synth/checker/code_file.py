@@ -20,6 +20,9 @@ OLD_ADVICE: Final = "layout 1, in which the numbers of the categories follow the
 UNIT_FILE: Final = re.compile(r"\d{4}_(\w+)_LOAD\.st")
 """Of an export with a file each unit, the one with most of the tables."""
 
+IS_AIM: Final = re.compile(r"(?:^|_)AIM$")
+"""Whether what stands before _LOAD is of an aim table: no prefix may end so."""
+
 
 class OtherLayoutError(Exception):
     """The code is whole, but of a layout that is not compared; the message is one sentence without the file's name."""
@@ -62,7 +65,7 @@ def st_files(folder: Path) -> Iterator[CodeFile]:
     yield from whole_files(folder, "_table.st")
     for file in sorted(folder.glob("*_LOAD.st")):
         found = UNIT_FILE.fullmatch(file.name)
-        if found:
+        if found and not IS_AIM.search(found[1]):
             yield CodeFile(file, found[1])
 
 

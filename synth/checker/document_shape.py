@@ -93,6 +93,8 @@ def require_document(document: Mapping[str, Any]) -> None:
 def require_shape(value: Any, form: Any, path: str) -> None:
     """Raise `DamagedError` unless `value`, found at `path`, looks like `form`."""
     match form:
+        case None:
+            refuse_unless(value is None, value, path, "null")
         case OrNull():
             if value is not None:
                 require_shape(value, form.form, path)

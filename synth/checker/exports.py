@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Final
 
 from synth.checker import c_export, csv_export, golden_export, st_export, track_export
+from synth.checker.aim.exports import check_aim_exports, is_aim_csv
 from synth.checker.book_categories import without_number
-from synth.checker.code_file import CodeFile, OtherLayoutError, c_files, require_layout, st_files
-from synth.checker.finding import DamagedError, Finding, Kind
+from synth.checker.code_file import CodeFile, c_files, require_layout, st_files
+from synth.checker.export_check import Differences, findings_of
+from synth.checker.finding import Finding, Kind
 from synth.checker.source import Source, named
 from synth.checker.source_file import content_of
 from synth.checker.table_reading import Table
@@ -20,8 +22,6 @@ from synth.checker.table_reading import Table
 FOLDERS: Final = ("", "c", "st")
 PLACE: Final = re.compile(r"[/(]\* (\d{1,6}): (.*?) \*[/)]")
 """How C and Structured Text name a table: its number in the book, and its id in ASCII."""
-
-Differences = Iterator[tuple[str, str]]
 
 
 @dataclass(frozen=True)
@@ -39,15 +39,12 @@ def check_exports(source: Source, folder: Path) -> ExportReport:
 
     def check(file: Path, compare: Callable[[], Differences]) -> None:
         files.append(named(file, folder))
-        try:
-            for about, sentence in compare():
-                where = f"{files[-1]}: {sentence}"
-                findings.append(Finding(Kind.DISAGREES, about or files[-1], where if about else sentence))
-        except DamagedError as fault:
-            findings.append(Finding(Kind.DAMAGED, files[-1], str(fault)))
-        except OtherLayoutError as fault:
-            findings.append(Finding(Kind.LAYOUT, files[-1], str(fault)))
+        findings.extend(findings_of(files[-1], compare))
 
+    if source.aims:
+        check_aim_exports(source.aims, folder, check)
+    if not source.tables and source.aims:
+        return ExportReport(tuple(files), tuple(findings))
     for place in FOLDERS:
         for code in c_files(folder / place):
             check(code.path, partial(c_differences, code, source))
@@ -58,7 +55,7 @@ def check_exports(source: Source, folder: Path) -> ExportReport:
         for code in st_files(folder / place):
             check(code.path, partial(st_differences, code, source))
     tables = {table.id: table for table in source.tables}
-    csv_files = sorted((folder / "tables").glob("*.csv"))
+    csv_files = [file for file in sorted((folder / "tables").glob("*.csv")) if not is_aim_csv(file)]
     seen: set[str] = set()
     for file in csv_files:
         check(file, partial(csv_differences, file, tables, seen))

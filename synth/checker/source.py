@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from synth.checker.aim.reading import MARK, Aim, read_aim
 from synth.checker.book_categories import contradictions
 from synth.checker.book_reading import SIGNATURE, read_documents
 from synth.checker.canonical import canonical_form
@@ -18,7 +19,7 @@ from synth.checker.table_reading import Table, read_table, table_of
 
 @dataclass(frozen=True)
 class Source:
-    """The tables at `path`, in the order of the book where there is one, else by file name.
+    """The tables at `path`, in the order of the book where there is one, else by file name; and the aim tables.
 
     `folder` is the directory whose other exports belong to them, None for a single file. `files`: what was read.
     """
@@ -29,6 +30,7 @@ class Source:
     has_book: bool
     files: tuple[str, ...]
     findings: tuple[Finding, ...]
+    aims: tuple[Aim, ...] = ()
 
 
 def read_source(path: Path) -> Source:
@@ -40,6 +42,8 @@ def read_source(path: Path) -> Source:
         raise NothingToVerifyError(f"{path}: {what}; give a table (.json), a book (.h5) or a directory")
     try:
         content = content_of(path)
+        if MARK.search(content):
+            return Source(path, None, (), False, (str(path),), (), (read_aim(content),))
         if content.startswith(SIGNATURE) or path.suffix in (".h5", ".hdf5"):
             tables, is_book = tables_of_book(content), True
         else:
@@ -60,14 +64,23 @@ def read_directory(path: Path) -> Source:
         )
     findings: list[Finding] = []
     single: dict[str, Table] = {}
+    aims: dict[str, Aim] = {}
     for file in files:
         try:
-            table = read_table(content_of(file))
+            content = content_of(file)
+            if MARK.search(content):
+                aim = read_aim(content)
+                if aim.id in aims:
+                    findings.append(
+                        Finding(Kind.DISAGREES, named(file, path), f"another file has the id {aim.id}, too")
+                    )
+                aims[aim.id] = aim
+                continue
+            table = read_table(content)
         except DamagedError as fault:
             findings.append(Finding(Kind.DAMAGED, named(file, path), str(fault)))
             continue
-        if table.id in single:
-            findings.append(Finding(Kind.DISAGREES, named(file, path), f"another file has the id {table.id}, too"))
+        findings += twice(table.id, single, named(file, path))
         single[table.id] = table
     bound: tuple[Table, ...] = ()
     if book_file.exists():
@@ -81,7 +94,12 @@ def read_directory(path: Path) -> Source:
     order += [table for table in single.values() if table.id not in {each.id for each in bound}]
     findings += [Finding(Kind.DISAGREES, name, sentence) for name, sentence in contradictions(order)]
     names = [named(file, path) for file in files] + (["book.h5"] if book_file.exists() else [])
-    return Source(path, path, tuple(order), bool(bound), tuple(names), tuple(findings))
+    return Source(path, path, tuple(order), bool(bound), tuple(names), tuple(findings), tuple(aims.values()))
+
+
+def twice(name: str, seen: Container[str], file: str) -> list[Finding]:
+    """What is wrong with the file if the id `name` in it was `seen` before."""
+    return [Finding(Kind.DISAGREES, file, f"another file has the id {name}, too")] if name in seen else []
 
 
 def named(file: Path, path: Path) -> str:

@@ -6,6 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from synth.checker.aim.reading import Aim
+from synth.checker.aim.sense import claim_faults
+from synth.checker.aim.sense import sense as aim_sense
 from synth.checker.canonical import require_right_crc32
 from synth.checker.claims import own_faults, simulated_faults
 from synth.checker.coarse_simulation import simulate
@@ -34,6 +37,14 @@ class TableVerdict:
 
 
 @dataclass(frozen=True)
+class AimVerdict:
+    """One aim table, and what was found."""
+
+    aim: Aim
+    findings: tuple[Finding, ...]
+
+
+@dataclass(frozen=True)
 class Verdict:
     """Everything about a source; `others` are findings that belong to no sound table."""
 
@@ -43,11 +54,13 @@ class Verdict:
     tables: tuple[TableVerdict, ...]
     others: tuple[Finding, ...]
     files: tuple[str, ...]
+    aims: tuple[AimVerdict, ...] = ()
 
     @property
     def findings(self) -> tuple[Finding, ...]:
         """All of them."""
-        return tuple(finding for each in self.tables for finding in each.findings) + self.others
+        verdicts: tuple[TableVerdict | AimVerdict, ...] = (*self.tables, *self.aims)
+        return tuple(finding for each in verdicts for finding in each.findings) + self.others
 
     @property
     def code(self) -> int:
@@ -63,13 +76,23 @@ def verify(path: Path, passes: int, seed: int) -> Verdict:
     require_right_crc32()
     source = read_source(path)
     report = check_exports(source, source.folder) if source.folder else ExportReport((), ())
-    summary, summary_findings = summary_beside(source)
+    of_tables = bool(source.tables or not source.aims)  # the summary of a tune says nothing of aim tables
+    summary, summary_findings = summary_beside(source) if of_tables else (None, [])
     found = [*source.findings, *report.findings, *summary_findings]
     tables = tuple(judge(table, summary, passes, seed, found) for table in source.tables)
-    ids = {table.id for table in source.tables}
+    aims = tuple(judge_aim(aim, found) for aim in source.aims)
+    ids = {table.id for table in source.tables} | {aim.id for aim in source.aims}
     others = tuple(finding for finding in found if finding.about not in ids)
     files = (*source.files, *report.files, *([summary.path.name] if summary else []))
-    return Verdict(path, passes, seed, tables, others, files)
+    return Verdict(path, passes, seed, tables, others, files, aims)
+
+
+def judge_aim(aim: Aim, found: list[Finding]) -> AimVerdict:
+    """Everything about one aim table; `found` are findings of files, some of them about it."""
+    findings = [finding for finding in found if finding.about == aim.id]
+    senseless = [Finding(Kind.DAMAGED, aim.id, sentence) for sentence in aim_sense(aim)]
+    claims = [] if senseless else [Finding(Kind.CLAIM, aim.id, sentence) for sentence in claim_faults(aim)]
+    return AimVerdict(aim, (*findings, *senseless, *claims))
 
 
 def judge(table: Table, summary: Summary | None, passes: int, seed: int, found: list[Finding]) -> TableVerdict:

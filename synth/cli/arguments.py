@@ -4,8 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Annotated
 
 import typer
+
+Source = Annotated[Path, typer.Argument(metavar="TABLE|BOOK", help="A table (.json) or a book (.h5).")]
+SourceOrDirectory = Annotated[
+    Path, typer.Argument(metavar="TABLE|BOOK|DIR", help="A table (.json), a book (.h5), or what a tune left.")
+]
+ExportSource = Annotated[
+    Path, typer.Argument(metavar="TABLE|BOOK|DIR", help="A table (.json), a book (.h5), or a folder of aim tables.")
+]
+Config = Annotated[
+    Path | None, typer.Option("--config", metavar="C", help="Configuration with the plant; built-in unless given.")
+]
+Json = Annotated[bool, typer.Option("--json", help="Machine-readable results on stdout.")]
 
 
 def directory(word: str) -> Path:
@@ -30,7 +43,7 @@ def whole_number(low: int, high: int) -> Callable[[str], int]:
     return number
 
 
-NAME_OPTIONS = ("--retarder", "--position", "--car", "--sensor", "--weight-categories")
+NAME_OPTIONS = ("--retarder", "--position", "--car", "--sensor", "--weight-categories", "--aim")
 """Options of init whose value may be left out."""
 
 

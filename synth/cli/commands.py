@@ -8,7 +8,17 @@ from typing import Annotated
 
 import typer
 
-from synth.cli.arguments import directory, whole_number, with_names
+from synth.cli.arguments import (
+    Config,
+    ExportSource,
+    Json,
+    Source,
+    SourceOrDirectory,
+    directory,
+    whole_number,
+    with_names,
+)
+from synth.cli.yard_commands import add_yard_commands
 
 app = typer.Typer(
     name="retarder-synth",
@@ -18,15 +28,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-
-Source = Annotated[Path, typer.Argument(metavar="TABLE|BOOK", help="A table (.json) or a book (.h5).")]
-SourceOrDirectory = Annotated[
-    Path, typer.Argument(metavar="TABLE|BOOK|DIR", help="A table (.json), a book (.h5), or what a tune left.")
-]
-Config = Annotated[
-    Path | None, typer.Option("--config", metavar="C", help="Configuration with the plant; built-in unless given.")
-]
-Json = Annotated[bool, typer.Option("--json", help="Machine-readable results on stdout.")]
 
 
 def run(arguments: list[str]) -> int:
@@ -83,6 +84,9 @@ def tune(
     from synth.cli.tune import tune_command
 
     return tune_command(config, output, workers, as_json)
+
+
+add_yard_commands(app)
 
 
 @app.command()
@@ -219,7 +223,7 @@ def inspect(source: SourceOrDirectory, as_json: Json = False) -> int:
 
 @app.command()
 def export(
-    source: Source,
+    source: ExportSource,
     form: Annotated[str, typer.Option("--format", metavar="json|c|st|csv", help="Form of the tables.")],
     output: Annotated[
         Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where they go.")
@@ -258,19 +262,18 @@ def init(
     weight_categories: Annotated[
         str | None, typer.Option(metavar=TypeName, help="File of a set of weight categories.")
     ] = None,
+    aim: Annotated[
+        str | None,
+        typer.Option(metavar=TypeName, help="Aim configuration. With the name of a track or car mix: its file."),
+    ] = None,
     show_list: Annotated[bool, typer.Option("--list", help="Only list what the library holds.")] = False,
     as_json: Json = False,
 ) -> int:
     """Print a commented configuration to start from, or the file of one type."""
     from synth.cli.init import init_command
 
-    types = {
-        "retarders": retarder,
-        "positions": position,
-        "cars": car,
-        "sensors": sensor,
-        "weight_categories": weight_categories,
-    }
+    types = {"retarders": retarder, "positions": position, "cars": car, "sensors": sensor, "aim": aim}
+    types["weight_categories"] = weight_categories
     return init_command(types, show_list, as_json)
 
 

@@ -25,6 +25,8 @@ class AskedCode:
 
 def export_command(source: Path, form: str, output: Path, asked: AskedCode, as_json: bool) -> int:
     """Write the tables in `source` as `form` into the directory `output`, and print the names of the files."""
+    from synth.book.forms.aim_file import read_aims
+    from synth.book.forms.aim_forms import AIM_FORMS
     from synth.book.forms.code_options import code_options
     from synth.book.forms.table_file import read_tables
     from synth.book.forms.table_forms import FORMS
@@ -34,13 +36,14 @@ def export_command(source: Path, form: str, output: Path, asked: AskedCode, as_j
     if form not in FORMS:
         raise InputError(f"--format {form}: there is no such form; give {', '.join(FORMS)}")
     options = code_options(form, asked.prefix, asked.self_test, asked.split)
-    (file,) = read_tables(source)
+    aims = [file.table for file in read_aims(source)]
+    tables = () if aims else read_tables(source)[0].tables
     try:
-        files = FORMS[form](file.tables, options)
+        files = AIM_FORMS[form](aims, options) if aims else FORMS[form](tables, options)
     except (InputError, InvalidTable) as fault:  # each table is right, but together they make no export
         raise InputError(f"{source}: {fault}") from None
-    if form in ("c", "st"):
-        warn_of_shadows(source, file.tables)
+    if form in ("c", "st") and tables:
+        warn_of_shadows(source, tables)
     make_directory(output)
     for name, content in files.items():
         write_atomically(output / name, content)

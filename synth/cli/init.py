@@ -13,7 +13,8 @@ def init_command(types: dict[str, str | None], show_list: bool, as_json: bool) -
     """Print a commented configuration, the file of one type, or the library's list.
 
     `types`: by folder of the library, the type that is asked for; '' for a usual one, None for none. A position under
-    "retarders" asks for a configuration with it: so the option --retarder was, before there were files of types.
+    "retarders" asks for a configuration with it: so the option --retarder was, before there were files of types. Under
+    "aim" '' asks for an aim configuration, a name for the file of a track or a car mix.
     """
     if show_list:
         return print_list(as_json)
@@ -31,8 +32,11 @@ def asked_for(types: dict[str, str | None]) -> tuple[str, str]:
     from synth.faults.input_error import InputError
 
     asked = [kind for kind in KINDS if types.get(kind.folder) is not None]
-    if len(asked) > 1:
+    aim = types.get("aim")
+    if len(asked) + (aim is not None) > 1:
         raise InputError("init prints one file at a time; give one of its options")
+    if aim is not None:
+        return aim_file(aim)
     if not asked:
         return "configuration", default_config_toml()
     (kind,) = asked
@@ -41,6 +45,23 @@ def asked_for(types: dict[str, str | None]) -> tuple[str, str]:
         require_held("retarder-synth init: --retarder", POSITIONS, name, BUILT_IN)
         return "configuration", default_config_toml(name)
     return "type", type_toml(kind, name or None)
+
+
+def aim_file(name: str) -> tuple[str, str]:
+    """As `asked_for`: an aim configuration, or the file of the track or car mix `name`."""
+    from plant_models.library import BUILT_IN, CAR_MIXES, TRACKS
+    from plant_models.library.near_miss import near_miss
+    from synth.configuration.aim.template import default_aim_toml
+    from synth.configuration.type_template import type_toml
+    from synth.faults.input_error import InputError
+
+    if not name:
+        return "configuration", default_aim_toml()
+    for kind in (TRACKS, CAR_MIXES):
+        if name in BUILT_IN.names(kind):
+            return "type", type_toml(kind, name)
+    known = (*BUILT_IN.names(TRACKS), *BUILT_IN.names(CAR_MIXES))
+    raise InputError(f"init --aim {name}: the library has no such track or car mix; {near_miss(name, known)}")
 
 
 def print_list(as_json: bool) -> int:

@@ -10,8 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from synth.book.forms.aim_file import read_aims
 from synth.book.forms.exported_code import exported_code
 from synth.book.forms.table_file import TableFile, holds_tables, read_tables, summary_beside
+from synth.cli.inspect_aim import aim_document, aim_words
 from tuning_tables import DamagedTable
 from tuning_tables.approach import Approach
 from tuning_tables.document import to_document
@@ -24,10 +26,11 @@ SHOWN_POINTS = 5
 def inspect_command(source: Path, as_json: bool) -> int:
     """Print the contents of the tables in `source`, and what controller code is there; `TableError` for damage."""
     code = exported_code(source)
-    files = () if code and not holds_tables(source) else read_tables(source, directory_allowed=True)
+    aims = read_aims(source)
+    files = () if (code or aims) and not holds_tables(source) else read_tables(source, directory_allowed=True)
     summary = checked_summary(source) if source.is_dir() else None
     if as_json:
-        found: dict[str, Any] = {"path": str(source), "files": [file_document(file) for file in files]}
+        found: dict[str, Any] = {"path": str(source), "files": [*map(file_document, files), *map(aim_document, aims)]}
         found |= {"code": [each.document() for each in code]} if code else {}
         if summary is not None:
             found["summary"] = summary
@@ -38,6 +41,8 @@ def inspect_command(source: Path, as_json: bool) -> int:
         print(f"{file.path}: {contents(file)}")
         for table in file.tables:
             print(*table_words(table, mixed), sep="\n")
+    for aim in aims:
+        print(*aim_words(aim), sep="\n")
     for each in code:
         print(f"{each.path}: {each.sentence}")
     if summary is not None:

@@ -14,7 +14,7 @@ from synth.cli import INTERRUPTED, leave, say
 
 
 @contextlib.contextmanager
-def interruptible(directory: Path | None = None) -> Iterator[None]:
+def interruptible(directory: Path | None = None, result: str = "book") -> Iterator[None]:
     """Within, Ctrl-C ends the process with code 130, after removing unfinished files from `directory`.
 
     Not by an exception: it would wait for threads that compute for seconds and cannot be told to stop.
@@ -30,7 +30,7 @@ def interruptible(directory: Path | None = None) -> Iterator[None]:
 
             with contextlib.suppress(OSError):
                 remove_leftovers(directory)
-        say("interrupted" if directory is None else f"interrupted; {directory} holds no complete book")
+        say("interrupted" if directory is None else f"interrupted; {directory} holds no complete {result}")
         with contextlib.suppress(OSError, ValueError):
             sys.stdout.flush()
         leave(INTERRUPTED)

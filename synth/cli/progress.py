@@ -1,4 +1,4 @@
-"""How far a tune is, on stderr: a line for each case, and on a terminal a bar below them."""
+"""How far a tune or an aim is, on stderr: a line for each case, and on a terminal a bar below them."""
 
 from __future__ import annotations
 
@@ -12,16 +12,20 @@ from rich.progress import Progress as Bar
 
 
 class Progress:
-    """Counts finished cases out of `cases`; a context manager. Its methods may be called by any thread."""
+    """Counts finished cases out of `cases`; a context manager. Its methods may be called by any thread.
 
-    def __init__(self, cases: int) -> None:
+    `word`: what is being done; `noun`: what the cases are called.
+    """
+
+    def __init__(self, cases: int, word: str = "tuning", noun: str = "cases") -> None:
         self._cases = cases
+        self._noun = noun
         self._done = 0
         self._started = time.monotonic()
         self._console = Console(stderr=True, highlight=False, soft_wrap=True)
-        columns = (TextColumn("tuning"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+        columns = (TextColumn(word), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
         self._bar = Bar(*columns, console=self._console, transient=True, disable=not self._console.is_terminal)
-        self._task = self._bar.add_task("tuning", total=cases)
+        self._task = self._bar.add_task(word, total=cases)
 
     def __enter__(self) -> Progress:
         self._bar.start()
@@ -39,7 +43,8 @@ class Progress:
         self._bar.update(self._task, completed=self._done)
         elapsed = time.monotonic() - self._started
         left = elapsed / max(self._done, 1) * (self._cases - self._done)
-        self.note(f"[{self._done:{len(str(self._cases))}}/{self._cases}] {sentence}; {pace(elapsed, self._done, left)}")
+        rate = pace(elapsed, self._done, left, self._noun)
+        self.note(f"[{self._done:{len(str(self._cases))}}/{self._cases}] {sentence}; {rate}")
 
     def note(self, sentence: str) -> None:
         """A line of its own."""
@@ -49,7 +54,7 @@ class Progress:
             self._console.print(sentence, markup=False)
 
 
-def pace(elapsed_s: float, done: int, left_s: float) -> str:
+def pace(elapsed_s: float, done: int, left_s: float, noun: str) -> str:
     """Rate so far and time to come."""
-    rate = f"{elapsed_s:.0f} s, {60.0 * done / max(elapsed_s, 1e-3):.0f} cases a minute"
+    rate = f"{elapsed_s:.0f} s, {60.0 * done / max(elapsed_s, 1e-3):.0f} {noun} a minute"
     return f"{rate}, about {left_s:.0f} s left" if left_s > 0.5 else rate

@@ -41,7 +41,7 @@ def sweep_command(
 
 def run_command(path: Path, output: Path, workers: int | None, scheduler: str | None, as_json: bool) -> int:
     """Run or resume the sweep in the file `path` into the directory `output`."""
-    from synth.cli.tune import require_date
+    from synth.book.creation_time import require_date
     from synth.sweep.run import run_sweep, task_of
     from synth.sweep.sweep_directory import held
     from synth.sweep.sweep_file import load_sweep

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 import time
 from contextlib import ExitStack
@@ -16,6 +15,7 @@ from synth.faults.input_error import InputError
 
 def tune_command(path: Path | None, output: Path, workers: int | None, as_json: bool) -> int:
     """Tune the configuration in `path` into the directory `output`; the exit code."""
+    from synth.book.creation_time import require_date
     from synth.book.output_directory import output_directory
     from synth.configuration.config_file import load_config
 
@@ -88,15 +88,3 @@ def require_room(config: ResolvedConfig, path: Path | None, workers: int) -> Non
         except PlantError as error:
             sentence = str(error).replace("grid: ", "grid.", 1)
             raise InputError(f"{path or 'built-in configuration'}: {sentence}") from None
-
-
-def require_date() -> None:
-    """`InputError` if SOURCE_DATE_EPOCH is set to what is no time."""
-    from datetime import UTC, datetime
-
-    text = os.environ.get("SOURCE_DATE_EPOCH")
-    try:
-        if text:
-            datetime.fromtimestamp(int(text), UTC)
-    except (OSError, OverflowError, ValueError):
-        raise InputError(f"SOURCE_DATE_EPOCH is {text!r}; it must be whole seconds since 1970") from None

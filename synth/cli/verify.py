@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from synth.cli import INPUT_FAULT, say
 
 if TYPE_CHECKING:
-    from synth.checker.verdict import TableVerdict, Verdict
+    from synth.checker.finding import Finding
+    from synth.checker.verdict import AimVerdict, TableVerdict, Verdict
 
 
 def verify_command(source: Path, passes: int, seed: int, as_json: bool) -> int:
@@ -39,6 +41,7 @@ def document(verdict: Verdict) -> dict[str, Any]:
         "seed": verdict.seed,
         "files": list(verdict.files),
         "tables": [table_document(each) for each in verdict.tables],
+        "aims": [aim_document(each) for each in verdict.aims],
         "findings": [
             {"about": finding.about, "kind": finding.kind.value, "sentence": finding.sentence}
             for finding in verdict.findings
@@ -67,13 +70,39 @@ def table_document(each: TableVerdict) -> dict[str, Any]:
     }
 
 
+def aim_document(each: AimVerdict) -> dict[str, Any]:
+    """One aim table's verdict for programs."""
+    speeds = [speed for rows in each.aim.speeds for row in rows for speed in row]
+    return {
+        "id": each.aim.id,
+        "ok": not each.findings,
+        "nodes": len(speeds),
+        "nodes_without_speed": speeds.count(None),
+    }
+
+
+def aim_words(each: AimVerdict) -> list[str]:
+    """One aim table's verdict in lines."""
+    told = aim_document(each)
+    checked = f"an aim table of {told['nodes']} nodes, {told['nodes_without_speed']} without an exit speed"
+    return [f"{each.aim.id}: {state(each.findings)}; {checked}", *finding_lines(each.findings)]
+
+
+def state(findings: Sequence[Finding]) -> str:
+    """How many findings there are, in words."""
+    return f"{len(findings)} finding{'s' if len(findings) > 1 else ''}" if findings else "ok"
+
+
+def finding_lines(findings: Sequence[Finding]) -> list[str]:
+    """The findings about one table."""
+    return [f"  {finding.kind.value}: {finding.sentence}" for finding in findings]
+
+
 def words(verdict: Verdict) -> list[str]:
     """The verdict in lines."""
     lines = []
     for each in verdict.tables:
         figures, table = each.figures, each.table
-        count = len(each.findings)
-        state = f"{count} finding{'s' if count > 1 else ''}" if count else "ok"
         if figures is not None:
             low, high = figures.rms_ci95_m_s
             checked = (
@@ -82,9 +111,9 @@ def words(verdict: Verdict) -> list[str]:
             )
         else:
             checked = f"not simulated: {each.skipped}"
-        lines.append(f"{table.id}: {state}; {checked}")
-        lines += [f"  {finding.kind.value}: {finding.sentence}" for finding in each.findings]
+        lines.append(f"{table.id}: {state(each.findings)}; {checked}")
+        lines += finding_lines(each.findings)
+    lines += [line for each in verdict.aims for line in aim_words(each)]
     lines += [f"{finding.about}: {finding.kind.value}: {finding.sentence}" for finding in verdict.others]
-    count = len(verdict.findings)
-    found = f"{count} finding{'s' if count > 1 else ''}" if count else "nothing found"
-    return [*lines, f"{len(verdict.tables)} tables, {len(verdict.files)} files: {found}"]
+    found = state(verdict.findings) if verdict.findings else "nothing found"
+    return [*lines, f"{len(verdict.tables) + len(verdict.aims)} tables, {len(verdict.files)} files: {found}"]

@@ -18,8 +18,8 @@ from plant_models.library import (
 )
 from synth.configuration.cut_class import CutClass
 from synth.configuration.plant_settings import DEFAULT_POSITION, PositionSettings
-from synth.configuration.resolved_config import ResolvedConfig, resolve, setting_limits, setting_unit
-from synth.configuration.section import Section
+from synth.configuration.resolved_config import ResolvedConfig, resolve
+from synth.configuration.section import Section, setting_limits, setting_unit
 from synth.configuration.settings import (
     NUMERICAL_SECTIONS,
     OutputSettings,

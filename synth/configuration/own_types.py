@@ -15,11 +15,13 @@ from typing import Any, Final
 
 from plant_models import PlantError
 from plant_models.library import (
+    CAR_MIXES,
     CARS,
     KINDS,
     POSITIONS,
     RETARDERS,
     SENSORS,
+    TRACKS,
     WEIGHT_CATEGORIES,
     Kind,
     Library,
@@ -43,6 +45,8 @@ INIT_OPTION: Final = {
     POSITIONS: "--position",
     SENSORS: "--sensor",
     WEIGHT_CATEGORIES: "--weight-categories",
+    TRACKS: "--aim large-hump",
+    CAR_MIXES: "--aim usual",
 }
 """What has `retarder-synth init` print a file of a kind."""
 
@@ -158,12 +162,14 @@ def references_in(tree: Tree) -> Iterator[tuple[dict[str, Any], str, Kind, str]]
 
 
 def references_of_position(tree: Tree, prefix: str) -> Iterator[tuple[dict[str, Any], str, Kind, str]]:
-    """The places that name a position and the types that stand there."""
+    """The places that name a position and the types there, and those of an aim configuration."""
     for section, key, kind in (
         ("position", "name", POSITIONS),
         ("retarder", "name", POSITIONS),
         ("retarder", "type", RETARDERS),
         ("sensor", "type", SENSORS),
+        ("track", "name", TRACKS),
+        ("cuts", "mix", CAR_MIXES),
     ):
         table = tree.get(section)
         if isinstance(table, dict):

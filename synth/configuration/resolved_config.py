@@ -7,9 +7,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
-from annotated_types import Ge, Le
-from pydantic.fields import FieldInfo
-
 from plant_models import EntryLaw, Plant, PlantError
 from plant_models.library import (
     BUILT_IN,
@@ -25,7 +22,7 @@ from synth.configuration.cut_class import CutClass, Surroundings, category_warni
 from synth.configuration.grid_warnings import grid_warnings
 from synth.configuration.plant_fault import in_file
 from synth.configuration.position_choice import require_held, resolve_position
-from synth.configuration.section import Section
+from synth.configuration.section import Section, setting_limits, setting_source, setting_unit
 from synth.configuration.settings import (
     NUMERICAL_SECTIONS,
     AcceptanceSettings,
@@ -46,7 +43,6 @@ from synth.problem.problem import Problem
 from synth.problem.resolution import Resolution
 from tuning_tables.canonical import canonical_json
 
-TOOL_DEFAULT = "default of the tool"
 DIMENSIONLESS = "1"
 
 
@@ -238,22 +234,11 @@ def with_grid_warnings(config: ResolvedConfig, file: str) -> ResolvedConfig:
 def setting_values(name: str, section: Section) -> Iterator[SourcedValue]:
     """The numerical settings of a section with unit, limits and origin."""
     for key, field in type(section).model_fields.items():
+        if not setting_unit(field):
+            continue
         value = getattr(section, key)
-        source = TOOL_DEFAULT if value == field.default else SET_BY_USER
+        source = setting_source(field) if value == field.default else SET_BY_USER
         yield SourcedValue(f"{name}.{key}", float(value), setting_unit(field), setting_limits(field), source, "")
-
-
-def setting_unit(field: FieldInfo) -> str:
-    """Unit of a field made by `synth.configuration.settings.setting`."""
-    extra = field.json_schema_extra
-    return str(extra["unit"]) if isinstance(extra, dict) and "unit" in extra else ""
-
-
-def setting_limits(field: FieldInfo) -> tuple[float, float] | None:
-    """Lowest and highest allowed value of a field, or None."""
-    low = [float(m.ge) for m in field.metadata if isinstance(m, Ge)]  # type: ignore[arg-type]  # ge is a number here
-    high = [float(m.le) for m in field.metadata if isinstance(m, Le)]  # type: ignore[arg-type]
-    return (low[0], high[0]) if low and high else None
 
 
 def range_warnings(parameters: tuple[SourcedValue, ...]) -> Iterator[str]:

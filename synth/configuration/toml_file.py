@@ -22,12 +22,17 @@ LARGEST_WHOLE_NUMBER: Final = 2**63 - 1
 """Of TOML, which has no more than 64 bits for a whole number."""
 
 
-def read_text(path: Path) -> str:
-    """The text of the regular file at `path`; `InputError` if there is none, `OSError` for a fault of the machine."""
+def read_text(path: Path, template: str = "init") -> str:
+    """The text of the regular file at `path`; `InputError` if there is none, `OSError` for a fault of the machine.
+
+    `template`: the command that prints such a file.
+    """
     try:
         return read_regular_file(path, LARGEST_FILE_BYTES).decode("utf-8")
     except FileNotFoundError:
-        raise InputError(f"{path}: there is no such file; write one with 'retarder-synth init > {path.name}'") from None
+        raise InputError(
+            f"{path}: there is no such file; write one with 'retarder-synth {template} > {path.name}'"
+        ) from None
     except IsADirectoryError:
         raise InputError(f"{path}: this is a directory; give the path of a TOML configuration file") from None
     except UnicodeDecodeError as error:

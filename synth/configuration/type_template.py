@@ -7,15 +7,18 @@ from typing import Final
 
 from plant_models.library import (
     BUILT_IN,
+    CAR_MIXES,
     CARS,
     POSITIONS,
     RETARDERS,
     SENSORS,
+    TRACKS,
     WEIGHT_CATEGORIES,
     YARD_CATEGORIES,
     Kind,
     sources_cited_in,
 )
+from synth.configuration.aim.settings import DEFAULT_MIX, DEFAULT_TRACK
 from synth.configuration.plant_settings import DEFAULT_POSITION
 from synth.configuration.position_choice import require_held
 
@@ -25,6 +28,8 @@ START_FROM: Final = {
     POSITIONS: DEFAULT_POSITION,
     SENSORS: "doppler-radar",
     WEIGHT_CATEGORIES: YARD_CATEGORIES,
+    TRACKS: DEFAULT_TRACK,
+    CAR_MIXES: DEFAULT_MIX,
 }
 """The type that is printed where none is named."""
 
@@ -34,6 +39,8 @@ NAMED_IN: Final = {
     POSITIONS: 'name = "{0}" in [position]',
     SENSORS: 'sensor = "{0}" in a position file',
     WEIGHT_CATEGORIES: 'weight_categories = "{0}"',
+    TRACKS: 'name = "{0}" in [track] of an aim configuration',
+    CAR_MIXES: 'mix = "{0}" in [cuts] of an aim configuration',
 }
 """How a file of each kind is named where it is used."""
 
@@ -63,6 +70,11 @@ FORM: Final = {
 # The limit, exceeded by all cuts of the category: axle_load_above_t, or mass_above_t of a car with four axles; 0 first.
 # allowed_stage: the highest stage that cuts of the category may be given; entrance_stage: the same while the first axle
 # is before the entrance (left out: as allowed_stage).""",
+    TRACKS: """\
+# [bends] may be left out as a whole: a track without switches and curves. The park position must end before the track
+# does, and the stretch must end before the entrance of the park position.""",
+    CAR_MIXES: """\
+# One table [cars.NAME] for each type of car of the library or of your own; gross and tare are those of the type.""",
 }
 
 

@@ -16,7 +16,14 @@ from synth.kernels.sweep.policy_value import backward
 from synth.problem.aim import Aim
 from synth.solver.chain.chain import Chain
 from synth.solver.exit_density import ExitDensity
-from synth.solver.policy_density import Commands, commands, exit_density, forward_one, shared_arguments
+from synth.solver.policy_density import (
+    Commands,
+    commands,
+    exit_density,
+    forward_one,
+    shared_arguments,
+    slopes_of_commands,
+)
 from synth.solver.switching_lines import SwitchingLines
 
 Gradient = tuple[float, NDArray[np.float64], NDArray[np.float64]]
@@ -72,8 +79,9 @@ class Evaluation:
         """Expected cost by the backward recursion, every state valued."""
         policy = commands(self.chain, lines)
         nothing, no_band = np.empty((0, 0, 0, 0)), np.empty((0, 2), dtype=np.int64)
+        slopes = Commands(np.empty((0, 0, 0)), np.empty((0, 0, 0)))
         weights = enumerate(self.chain.scenarios.weight)
-        return float(sum(weight * self._backward(policy, i, nothing, no_band)[0] for i, weight in weights))
+        return float(sum(weight * self._backward(policy, slopes, i, nothing, no_band)[0] for i, weight in weights))
 
     def gradient(self, lines: SwitchingLines) -> Gradient:
         """Cost, and its exact derivatives by every line value; what `polish.polish` minimises."""
@@ -81,24 +89,26 @@ class Evaluation:
 
     def scenario_costs(self, lines: SwitchingLines) -> ScenarioCosts:
         """Cost and exact gradient in every scenario; their weights play no part."""
-        c, policy = self.chain, commands(self.chain, lines)
+        c, policy, slopes = self.chain, commands(self.chain, lines), slopes_of_commands(self.chain, lines)
         nodes, _, points = policy.down.shape
         density = np.empty((nodes, len(c.actuator.mode_stage), len(c.path_noise.levels), points))
         band = np.empty((nodes, 2), dtype=np.int64)
         found = []
         for i in range(len(c.scenarios.weight)):
             forward_one(c, policy, i, density, band)
-            one, lower, upper = self._backward(policy, i, density, band)
+            one, lower, upper = self._backward(policy, slopes, i, density, band)
             found.append((one, lower.T, upper.T))
         return ScenarioCosts(*(np.array(each) for each in zip(*found, strict=True)))
 
-    def _backward(self, policy: Commands, i: int, density: NDArray[np.float64], band: NDArray[np.int64]) -> Gradient:
+    def _backward(
+        self, policy: Commands, slopes: Commands, i: int, density: NDArray[np.float64], band: NDArray[np.int64]
+    ) -> Gradient:
         """Backward recursion in scenario `i`; gradient (N, K + 1) if `density`, `band` are its forward ones."""
         c, criterion = self.chain, self.aim.criterion
         nodes, stages, _ = policy.down.shape
         by_lower, by_upper = np.zeros((nodes, stages)), np.zeros((nodes, stages))
         arguments = (
-            policy.down, policy.up, policy.down_slope, policy.up_slope,
+            policy.down, policy.up, slopes.down, slopes.up,
             *criterion.exit_costs(c.grid.speed_m_s, self.aim.target_speed_m_s),
             criterion.switching_tolerance_m2_s2, c.entry, c.entry_mode, *shared_arguments(c), c.scenarios.factor[i],
             c.scenarios.extra_m_s2[i], c.grid.path_step_m, c.grid.energy_step_m2_s2, c.plant.sensor.sample_period_s,

@@ -5,6 +5,8 @@ Nothing is sampled: the Chapman–Kolmogorov equation is followed forward for ev
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
-from synth.kernels.sweep.commands import command_probabilities
+from synth.kernels.sweep.commands import command_probabilities, command_slopes
 from synth.kernels.sweep.policy_density import forward
+from synth.kernels.vector.packs import EIGHT
 from synth.solver.chain.chain import Chain
 from synth.solver.exit_density import ExitDensity
 from synth.solver.switching_lines import SwitchingLines
@@ -22,23 +25,36 @@ from synth.solver.switching_lines import SwitchingLines
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Commands:
-    """P(down), P(up) at every node, stage and true speed (N, K + 1, E), and their slopes by the line value."""
+    """P(down), P(up) at every node, stage and true speed (N, K + 1, E); or their slopes by the line value."""
 
     down: NDArray[np.float64]
     up: NDArray[np.float64]
-    down_slope: NDArray[np.float64]
-    up_slope: NDArray[np.float64]
 
 
 def commands(chain: Chain, lines: SwitchingLines) -> Commands:
     """Command probabilities of `lines`, linear between their nodes, under the chain's measurement."""
+    return by_lines(command_probabilities, chain, lines)
+
+
+def slopes_of_commands(chain: Chain, lines: SwitchingLines) -> Commands:
+    """How fast these probabilities change with the line value."""
+    return by_lines(command_slopes, chain, lines)
+
+
+def by_lines(kernel: Callable[..., None], chain: Chain, lines: SwitchingLines) -> Commands:
+    """What `kernel` gives for the lines as the measurement has them."""
     nodes, points = len(chain.drive_m_s2), len(chain.grid.speed_m_s)
     lower, upper = lines.lower_m_s[:, :nodes].T.copy(), lines.upper_m_s[:, :nodes].T.copy()
     lower, upper, noise_m_s = chain.measurement.thresholds(lower, upper)
     upper[: chain.approach_nodes, chain.plant.entrance_stage :] = np.inf  # before the entrance, no further
-    arrays = [np.empty((nodes, lines.stages, points)) for _ in range(4)]
-    command_probabilities(lower, upper, chain.grid.speed_m_s, noise_m_s, *arrays)
-    return Commands(*arrays)
+    down, up = (before_a_pack((nodes, lines.stages, points)) for _ in range(2))
+    kernel(lower, upper, chain.grid.speed_m_s, noise_m_s, down, up)
+    return Commands(down, up)
+
+
+def before_a_pack(shape: tuple[int, ...]) -> NDArray[np.float64]:
+    """An array of `shape`, all 0, behind which kernels may read a whole pack."""
+    return np.zeros(math.prod(shape) + EIGHT)[: math.prod(shape)].reshape(shape)
 
 
 @frozen_arrays
@@ -68,14 +84,14 @@ def density_and_occupancy(chain: Chain, lines: SwitchingLines) -> tuple[ExitDens
 
 def scenario_densities(chain: Chain, lines: SwitchingLines) -> tuple[ExitDensity, ...]:
     """Exit-speed density in every scenario alone, in their order."""
-    c, policy = chain, commands(chain, lines)
-    return tuple(scenario_density(c, policy, i) for i in range(len(c.scenarios.weight)))
+    scenarios, nodes = len(chain.scenarios.weight), len(chain.drive_m_s2)
+    nothing, band = np.empty((scenarios, 0, 0, 0, 0)), np.empty((scenarios, nodes, 2), dtype=np.int64)
+    found = zip(*forward_all(chain, commands(chain, lines), slice(None), nothing, band), strict=True)
+    return tuple(scenario_density(chain, exits, totals) for exits, totals in found)
 
 
-def scenario_density(chain: Chain, policy: Commands, i: int) -> ExitDensity:
-    """Exit-speed density in scenario `i` alone."""
-    band = np.empty((len(chain.drive_m_s2), 2), dtype=np.int64)
-    exits, totals = forward_one(chain, policy, i, np.empty((0, 0, 0, 0)), band)
+def scenario_density(chain: Chain, exits: NDArray[np.float64], totals: NDArray[np.float64]) -> ExitDensity:
+    """The density of one scenario from what the recursion gives for it."""
     stalled, escaped = max(float(totals[0]), 0.0), float(totals[1])
     return ExitDensity(chain.grid.speed_m_s, exits, stalled, escaped, float(totals[2] + totals[3]))
 

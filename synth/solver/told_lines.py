@@ -20,6 +20,7 @@ from synth.solver.chain.chain import Chain
 from synth.solver.chain.scenarios import equally_spaced_normal
 from synth.solver.evaluation import Evaluation
 from synth.solver.finer_speed import known_factors
+from synth.solver.policy_density import scenario_densities
 from synth.solver.polish import polish
 from synth.solver.polynomial_lines import PolynomialLines
 
@@ -85,7 +86,7 @@ def told_lines(
     factor, weight = told_factors(design.plant, effort.frictions)
     start = of_degree(common, max(effort.degree, common.degree))
     evaluations = [knowing(design, target_m_s, float(each), effort.resistance_nodes) for each in factor]
-    squares = np.array([mean_square(each, start) for each in evaluations])
+    squares = mean_squares(design, target_m_s, start, factor, effort.resistance_nodes)
     worth = weight * squares >= effort.least_share * float(weight @ squares)
     found: dict[int, PolynomialLines] = {}
     for i in from_the_middle(len(factor)):
@@ -132,6 +133,18 @@ def knowing(design: Chain, target_m_s: float, factor: float, resistance_nodes: i
     """Exact figures of lines at one known friction."""
     scenarios = known_factors(design.plant, np.array([factor]), resistance_nodes)
     return Evaluation(replace(design, scenarios=scenarios), Aim(target_m_s, SQUARED_ERROR_ALONE))
+
+
+def mean_squares(
+    design: Chain, target_m_s: float, lines: PolynomialLines, factor: NDArray[np.float64], resistance_nodes: int
+) -> NDArray[np.float64]:
+    """`mean_square` of the same lines at every known friction `factor` (M,), from one recursion."""
+    together = replace(design, scenarios=known_factors(design.plant, factor, resistance_nodes))
+    densities = scenario_densities(together, lines.at(design.grid.path_m))
+    squares = np.array([each.rms_m_s(target_m_s) ** 2 for each in densities]).reshape(len(factor), -1)
+    share = together.scenarios.weight.reshape(len(factor), -1) * len(factor)
+    found: NDArray[np.float64] = (share * squares).sum(axis=1)
+    return found
 
 
 def mean_square(evaluation: Evaluation, lines: PolynomialLines) -> float:

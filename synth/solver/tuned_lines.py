@@ -7,10 +7,11 @@ from dataclasses import replace
 from synth.problem.aim import Aim
 from synth.solver.backward_induction import Solution, solve
 from synth.solver.chain.chain import Chain
-from synth.solver.evaluation import Evaluation
+from synth.solver.evaluation import Evaluation, Gradient
 from synth.solver.policy_density import density_and_occupancy
-from synth.solver.polish import Polish, polish
+from synth.solver.polish import Evaluate, Polish, polish
 from synth.solver.polynomial_fit import Fit, fit_lines
+from synth.solver.switching_lines import SwitchingLines
 
 POLISH_ITERATIONS, POLISH_TOLERANCE = 25, 5e-3
 
@@ -37,7 +38,7 @@ def fitted(solution: Solution, degree: int) -> Fit:
 
 def polished(solution: Solution, fit: Fit, tolerance: float = POLISH_TOLERANCE) -> Polish:
     """The fitted lines after the polish; several rounds are told as one."""
-    evaluate, nodes = Evaluation(solution.chain, solution.aim).gradient, solution.chain.grid.path_m
+    evaluate, nodes = remembering(Evaluation(solution.chain, solution.aim).gradient), solution.chain.grid.path_m
     rounds = [polish(fit.lines, fit.curvature, nodes, evaluate, POLISH_ITERATIONS, tolerance)]
     least = LEAST_ROUNDS_AHEAD if solution.chain.approach_nodes else 1
     while len(rounds) < least or (
@@ -46,3 +47,16 @@ def polished(solution: Solution, fit: Fit, tolerance: float = POLISH_TOLERANCE) 
         rounds.append(polish(rounds[-1].lines, fit.curvature, nodes, evaluate, POLISH_ITERATIONS, tolerance))
     evaluations = sum(each.evaluations for each in rounds)
     return replace(rounds[-1], cost_before=rounds[0].cost_before, evaluations=evaluations)
+
+
+def remembering(evaluate: Evaluate) -> Evaluate:
+    """The same, asked once only for the same lines: a round begins with the lines with which the one before ended."""
+    known: dict[bytes, Gradient] = {}
+
+    def answer(lines: SwitchingLines) -> Gradient:
+        key = lines.lower_m_s.tobytes() + lines.upper_m_s.tobytes()
+        if key not in known:
+            known[key] = evaluate(lines)
+        return known[key]
+
+    return answer

@@ -16,6 +16,13 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.accuracy_grid.picture",
     ),
     Study(
+        "aim-tables",
+        "How large are the gaps where the default aim tables are used?",
+        12.0,
+        "aim.md#results",
+        "synth.studies.aim_tables",
+    ),
+    Study(
         "approach",
         "What is gained when the regulator acts from before the entrance, and from how far?",
         150.0,
@@ -168,6 +175,13 @@ STUDIES: tuple[Study, ...] = (
         "robustness.md",
         "synth.studies.robustness.study",
         "synth.studies.robustness.pictures",
+    ),
+    Study(
+        "rolling",
+        "How fast and how exactly do cuts roll, beside numpy and scipy, and by which step?",
+        40.0,
+        "rolling.md",
+        "synth.studies.rolling.study",
     ),
     Study(
         "software-in-the-loop",

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import resource
 from contextlib import closing
 from dataclasses import asdict, dataclass
-from datetime import UTC, datetime
 from importlib.metadata import version
 from typing import Protocol
 
+from synth.book.creation_time import creation_time
 from synth.book.output_directory import SWEPT_CONFIG
 from synth.faults.input_error import InputError
 from synth.solver.chain.grid import available_memory_bytes
@@ -67,13 +66,6 @@ def task_of(file: SweepFile, directory: SweepDirectory) -> Task:
         missing.append(unit)
     heaviest_first = sorted(missing, key=lambda unit: -unit.work)  # stable: equal ones in the order of the plan
     return Task(file, plan, created, tuple(heaviest_first), tuple(damaged))
-
-
-def creation_time() -> str:
-    """Now in UTC, or the time of SOURCE_DATE_EPOCH; as `synth.book.tune`, without loading the solver."""
-    epoch = os.environ.get("SOURCE_DATE_EPOCH")
-    moment = datetime.fromtimestamp(int(epoch), UTC) if epoch else datetime.now(UTC)
-    return moment.strftime("%Y-%m-%dT%H:%M:%SZ")
 
 
 def require_same_layout(file: SweepFile, ledger: Ledger, directory: SweepDirectory) -> None:

@@ -12,10 +12,12 @@ from pydantic_core import ErrorDetails
 
 from plant_models.library import BUILT_IN, Library
 from plant_models.library.near_miss import near_miss
-from synth.configuration.config_file import ALLOWED, key_path, shown, valid_settings
+from synth.configuration.config_file import valid_settings
+from synth.configuration.file_fault import ALLOWED, key_path, shown
 from synth.configuration.own_types import with_own_types
 from synth.configuration.plant_settings import DEFAULT_CUTS, CutSettings
-from synth.configuration.resolved_config import ResolvedConfig, resolve, setting_limits
+from synth.configuration.resolved_config import ResolvedConfig, resolve
+from synth.configuration.section import setting_limits
 from synth.configuration.settings import Settings
 from synth.configuration.toml_file import Tree, read_text, toml_tree
 from synth.faults.input_error import InputError

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from plant_models.errors import require, require_between
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.library.weight_category import WeightCategory
+from synth.yard.aim_figures import AimFigures, aim_figures, figures_row
 from synth.yard.knowledge import ByCategory, ByReading, CommandsByReading, Requirement
 from synth.yard.outcome import Couplings, couplings
 from synth.yard.position_models import PositionModel
@@ -57,7 +58,7 @@ class AimedSpeeds:
     readings as last axis if there are any: `speed_m_s` NaN where no command meets the requirement; share of over-speed
     with its exact 95 % interval, mean gap a car, and the cuts that these are of, NaN and 0 in cells of less than 100
     cuts: a cut counts in the cell of the nearest reading. `above_m_s`, `below_m_s`: the most that linear interpolation
-    was found to be above and below what is right midway between two nodes.
+    was found to be above and below what is right midway between two nodes. `of_all`: figures of all judged cuts.
     """
 
     order: AimOrder
@@ -71,6 +72,7 @@ class AimedSpeeds:
     cuts: NDArray[np.int64]
     above_m_s: float
     below_m_s: float
+    of_all: AimFigures
 
 
 @frozen_arrays
@@ -107,7 +109,7 @@ def known_speeds(
     figures = [
         figures_of(order, knowledge, cuts.report, commands, nodes) for cuts, commands in zip(by_cars, made, strict=True)
     ]
-    speed, told = np.stack(made), np.stack(figures)
+    speed, told = np.stack(made), np.stack([cells for cells, _ in figures])
     if nodes is None:
         speed, told = speed[..., 0], told[..., 0, :]
     return AimedSpeeds(
@@ -122,6 +124,7 @@ def known_speeds(
         cuts=told[..., 4].astype(np.int64),
         above_m_s=max(above for above, _ in errors),
         below_m_s=max(below for _, below in errors),
+        of_all=aim_figures(np.stack([rows for _, rows in figures])),
     )
 
 
@@ -180,7 +183,7 @@ def errors_between(
         among = 0.5 * (fine[:, :-2:2] + fine[:, 2::2]) - fine[:, 1::2]
         errors.append(among[:, counted[:-1] & counted[1:]])
     found = np.concatenate([e[np.isfinite(e)] for e in errors] + [np.zeros(1)])
-    return float(found.max()), float(-found.min())
+    return float(found.max()), float(-found.min()) + 0.0  # no zero with a sign
 
 
 def nearest_node(knowledge: ByReading, cuts: SceneCuts, nodes: Floats) -> NDArray[np.int64]:
@@ -200,10 +203,11 @@ def figures_of(
     report: SceneCuts,
     commands_m_s: Floats,
     nodes: Floats | None,
-) -> Floats:
-    """Over-speed with both ends of its interval, gap a car, cuts: (distances, readings, 5)."""
+) -> tuple[Floats, Floats]:
+    """Over-speed with both ends of its interval, gap a car, cuts: (distances, readings, 5); figures of all cuts
+    together: (distances, 7)."""
     exits, release = order.position.exits(report), report.release_m
-    figures = np.zeros((*commands_m_s.shape, 5))
+    figures, rows = np.zeros((*commands_m_s.shape, 5)), []
     nearest = np.zeros(len(report), dtype=np.int64)
     commanded = np.broadcast_to(commands_m_s[:, 0], (len(report), len(commands_m_s)))
     if nodes is not None and isinstance(knowledge, ByReading):
@@ -211,10 +215,12 @@ def figures_of(
         commanded = CommandsByReading(knowledge.reading, nodes, commands_m_s.T).of(report)
     for place, distance in enumerate(order.free_distances_m):
         told = np.isfinite(commanded[:, place])
-        met = couplings(report, exits, np.where(told, commanded[:, place], 0.0), release + distance)
+        lowest = order.requirement.bounds_m_s[0]
+        met = couplings(report, exits, np.where(told, commanded[:, place], lowest), release + distance)
+        rows.append(figures_row(met, 1.0 - float(told.mean())))
         for node in range(commands_m_s.shape[1]):
             figures[place, node] = figures_of_cell(met.of(told & (nearest == node)))
-    return figures
+    return figures, np.array(rows)
 
 
 def figures_of_cell(met: Couplings) -> Floats:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,13 +17,17 @@ from plant_models.rolling.car_mix import CarMix
 from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts
 from plant_models.rolling.roll_track import RollTrack
 from synth.kernels.roll import free_roll as kernel
+from synth.kernels.roll.felt_track import LANES, Cuts, Way
 
 Floats = NDArray[np.float64]
 
-STEP_M = 5.0
-"""Longest step of a roll; its error is in the tests and in `study rolling`."""
+STEP_M = 6.0
+"""Longest step of a single car; its error is in the tests and in `study rolling`."""
 
-NODE_M = 0.25
+LONGEST_STEPS = 2.0
+"""A cut of n cars takes √n as long steps, up to this: grades change under it bit by bit, and it meets less air."""
+
+NODE_M = 0.1
 """Distance of the nodes at which the fall of a type of car is worked out; between them it is linear."""
 
 TOGETHER = 512
@@ -41,89 +47,116 @@ class Rolled:
 
 @dataclass(frozen=True, eq=False)
 class RollingCuts:
-    """Cuts made ready for the kernel on one track. Build it with `rolling_cuts`."""
+    """Cuts made ready for the kernel on one track, rolled by `threads`, 0: one a processor; from `rolling_cuts`."""
 
     cuts: DrawnCuts
-    way: kernel.Way
-    arrays: kernel.Cuts
+    way: Way
+    arrays: Cuts
+    threads: int = 0
 
     def __len__(self) -> int:
         return len(self.cuts)
 
+    def fall_m(self, head_m: Floats) -> Floats:
+        """How far each cut has fallen when its head is at `head_m` (n,), as the kernel takes it: axle by axle, cars by
+        their mass, less the heads that snow and the slope's extra resistance take."""
+        nodes, rows, shares = (a[:, : len(self)] for a in (self.arrays.nodes, self.arrays.rows, self.arrays.shares))
+        place = head_m * self.way.nodes_per_m - nodes
+        node = np.clip(place, 0.0, self.way.fall_m.shape[1] - 1.5).astype(np.int64)
+        low, high = self.way.fall_m.reshape(-1)[rows + node], self.way.fall_m.reshape(-1)[rows + node + 1]
+        return np.asarray((shares * (low + (place - node) * (high - low))).sum(axis=0))
+
+    def longest_step_m(self, of_a_car_m: float) -> float:
+        """The longest step of these cuts, where that of a single car is `of_a_car_m`."""
+        return of_a_car_m * min(math.sqrt(self.cuts.cars), LONGEST_STEPS)
+
     def roll_on(self, start_m: Floats, speed_m_s: Floats, stations_m: Floats, step_m: float = STEP_M) -> Rolled:
         """Roll each cut from the head position `start_m` (n,) with `speed_m_s` (n,) over `stations_m` (n, k), which
         increase from there on."""
-        count, stations = stations_m.shape
-        energy, time, stop = np.empty((count, stations)), np.empty((count, stations)), np.empty(count)
-        start, begins, at = flat(start_m), flat(0.5 * speed_m_s**2), flat(stations_m)
+        count, longest = len(stations_m), self.longest_step_m(step_m)
+        start, begins, at = in_lanes(start_m), in_lanes(0.5 * speed_m_s**2), in_lanes(stations_m.T)
+        energy, time, stop = np.empty_like(at), np.empty_like(at), np.empty_like(start)
 
         def part(first: int, last: int) -> None:
-            kernel.roll_on(self.way, self.arrays, start, begins, at, step_m, energy, time, stop, first, last)
+            kernel.roll_on(self.way, self.arrays, start, begins, at, longest, energy, time, stop, first, last)
 
-        side_by_side(part, count)
-        return Rolled(np.sqrt(2.0 * energy), time, stop)
+        side_by_side(part, len(start), self.threads)
+        return Rolled(np.sqrt(2.0 * energy[:, :count].T), time[:, :count].T.copy(), stop[:count].copy())
 
     def roll_back(self, arrival_m: Floats, speed_m_s: float, start_m: Floats, step_m: float = STEP_M) -> Floats:
-        """The highest speeds (n,) at `start_m` (n,) with which the cuts have at most `speed_m_s` at `arrival_m` (n,), or
-        stop before; 0 where even a cut from rest arrives faster."""
-        count = len(self)
-        energy = np.empty(count)
-        arrival, start, ends = flat(arrival_m), flat(start_m), np.full(count, 0.5 * speed_m_s**2)
+        """The highest speeds (n,) at `start_m` (n,) with which the cuts have at most `speed_m_s` at `arrival_m` (n,),
+        or stop before; 0 where even a cut from rest arrives faster."""
+        arrival, start, longest = in_lanes(arrival_m), in_lanes(start_m), self.longest_step_m(step_m)
+        ends, energy = np.full_like(start, 0.5 * speed_m_s**2), np.empty_like(start)
 
         def part(first: int, last: int) -> None:
-            kernel.roll_back(self.way, self.arrays, arrival, ends, start, step_m, energy, first, last)
+            kernel.roll_back(self.way, self.arrays, arrival, ends, start, longest, energy, first, last)
 
-        side_by_side(part, count)
-        return np.asarray(np.sqrt(2.0 * energy))
+        side_by_side(part, len(start), self.threads)
+        return np.asarray(np.sqrt(2.0 * energy[: len(self)]))
 
 
-def rolling_cuts(population: CutPopulation, track: RollTrack, yard_from_m: float, cuts: DrawnCuts) -> RollingCuts:
+def rolling_cuts(
+    population: CutPopulation, track: RollTrack, yard_from_m: float, cuts: DrawnCuts, threads: int = 0
+) -> RollingCuts:
     """`cuts` of `population` on `track`; behind `yard_from_m` they roll in the yard, where snow lies and no extra
     resistance of the slope counts."""
-    return RollingCuts(cuts, way_of(population, track, yard_from_m, cuts.mix), arrays_of(population, cuts))
+    way, first_m = way_of(population, track, yard_from_m, cuts.mix)
+    return RollingCuts(cuts, way, arrays_of(population, cuts, way, first_m), threads)
 
 
-def way_of(population: CutPopulation, track: RollTrack, yard_from_m: float, mix: CarMix) -> kernel.Way:
-    """The track as each type of `mix` feels it, from its length before the crest to the end."""
+def way_of(
+    population: CutPopulation, track: RollTrack, yard_from_m: float, mix: CarMix, node_m: float = NODE_M
+) -> tuple[Way, float]:
+    """The track as each type of `mix` feels it, from its length before the crest to its length behind the end, and the
+    place of the front coupler at the first node."""
     longest = max(car.car.length_m for car in mix.cars)
-    first = -np.ceil(longest)
-    nodes = first + NODE_M * np.arange(int(np.ceil((track.end_m - first) / NODE_M)) + 2)
-    fall = np.empty((len(mix.cars), len(nodes)))
+    first = -float(np.ceil(longest))
+    nodes = first + node_m * np.arange(int(np.ceil((track.end_m + longest - first) / node_m)) + 3)
+    fall, gentlest = np.empty((len(mix.cars), len(nodes))), np.empty((len(mix.cars), len(nodes)))
     for row, mixed in enumerate(mix.cars):
         car = mixed.car
         overhang = (car.length_m - car.axle_offsets_m[-1]) / 2.0
         axles = nodes[:, None] - overhang - np.asarray(car.axle_offsets_m)
-        extra = population.law.slope_extra_n_per_kn * np.minimum(axles, yard_from_m)
+        extra = population.law.slope_extra_n_per_kn * np.clip(axles, 0.0, yard_from_m)
         snow = population.weather.snow_n_per_kn * np.maximum(axles - yard_from_m, 0.0)
         fall[row] = (track.fall_m(axles) - 1e-3 * (extra + snow)).mean(axis=1)
+        slopes = np.where(nodes[:-1] >= car.length_m, np.diff(fall[row]) / node_m, np.inf)
+        gentlest[row] = np.minimum.accumulate(np.append(slopes, np.inf))
+    summed = np.cumsum(fall, axis=1) - 0.5 * (fall + fall[:, :1])
     bends = np.array([(bend.from_m, bend.to_m) for bend in track.bends]).reshape(-1, 2)
-    return kernel.Way(float(first), 1.0 / NODE_M, fall, bends)
+    return Way(1.0 / node_m, fall, node_m * summed, gentlest, bends), first
 
 
-def arrays_of(population: CutPopulation, cuts: DrawnCuts) -> kernel.Cuts:
+def arrays_of(population: CutPopulation, cuts: DrawnCuts, way: Way, first_m: float) -> Cuts:
     """What the kernel needs of `cuts`."""
-    return kernel.Cuts(
-        types=np.ascontiguousarray(cuts.types, dtype=np.int64),
-        shares=flat(cuts.shares),
-        fronts_m=flat(cuts.car_fronts_m),
-        lengths_m=flat(cuts.car_lengths_m),
-        gravity_m_s2=flat(cuts.reduced_gravity_m_s2),
-        constant=flat(cuts.resistance_n_per_kn),
+    return Cuts(
+        rows=in_lanes(cuts.types.T * way.fall_m.shape[1]),
+        shares=in_lanes(cuts.shares.T),
+        nodes=in_lanes((cuts.car_fronts_m.T + first_m) * way.nodes_per_m),
+        middles_m=in_lanes((cuts.car_fronts_m + 0.5 * cuts.car_lengths_m).T),
+        length_m=in_lanes(cuts.car_lengths_m.sum(axis=1)),
+        gravity_m_s2=in_lanes(cuts.reduced_gravity_m_s2),
+        constant=in_lanes(1e-3 * cuts.resistance_n_per_kn),
         linear=float(population.law.linear_n_per_kn),
-        air=flat(cuts.air_n_per_kn),
-        wind_m_s=flat(cuts.head_wind_m_s),
-        bend_v2=flat(cuts.bend_v2_m_s2),
-        bend_head=flat(cuts.bend_head_m),
+        air=in_lanes(1e-3 * cuts.air_n_per_kn),
+        wind_m_s=in_lanes(cuts.head_wind_m_s),
+        bend_v2=in_lanes(cuts.bend_v2_m_s2.T),
+        bend_head=in_lanes(cuts.bend_head_m.T),
     )
 
 
-def flat(values: Floats) -> Floats:
-    """A contiguous copy, which may be written: the kernel is compiled for such arrays alone."""
-    return np.array(values, dtype=np.float64, order="C")
+def in_lanes(values: NDArray[Any]) -> NDArray[Any]:
+    """A contiguous copy whose last axis is filled up to whole packs with its last element; it may be written."""
+    short = -values.shape[-1] % LANES
+    return np.ascontiguousarray(np.concatenate((values, values[..., values.shape[-1] - 1 :].repeat(short, -1)), -1))
 
 
-def side_by_side(part: Callable[[int, int], None], count: int) -> None:
-    """Call `part(first, last)` for all cuts, some at a time; each cut is worked out alone, so threads change nothing."""
+def side_by_side(part: Callable[[int, int], None], count: int, threads: int) -> None:
+    """Call `part(first, last)` for all cuts, some at a time. Each is worked out alone, so threads change nothing."""
+    if count <= TOGETHER:
+        part(0, count)
+        return
     starts = range(0, count, TOGETHER)
-    with ThreadPoolExecutor(max_workers=os.cpu_count() or 1) as pool:
+    with ThreadPoolExecutor(max_workers=threads or os.cpu_count() or 1) as pool:
         list(pool.map(lambda start: part(start, min(start + TOGETHER, count)), starts))

@@ -40,7 +40,7 @@ class PositionModel(Protocol):
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class AddedError:
-    """Exit speed = command + error (n,), as S0 and S1 take it; at most `most_m_s` (n,)."""
+    """Exit speed = command + error (n,), as published studies take it; at most `most_m_s` (n,)."""
 
     error_m_s: Floats
     most_m_s: Floats
@@ -58,7 +58,7 @@ class AddedError:
 class NormalPosition:
     """Normal exit error of `std_m_s`; 0 is the ideal position.
 
-    `only_brakes`: a cut leaves no faster than it would roll through unbraked. S0 and S1 do not ask that.
+    `only_brakes`: a cut leaves no faster than it would roll through unbraked; [kozachenko-aimed] does not ask that.
     """
 
     std_m_s: float = 0.0

@@ -13,7 +13,6 @@ from scipy.special import ndtri
 from plant_models.errors import require_between
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.rolling.random_numbers import Purpose
-from synth.yard.free_roll import RollingCuts
 from synth.yard.scene import SceneCuts
 
 Floats = NDArray[np.float64]
@@ -58,7 +57,7 @@ class ResistanceByTwoSpeeds:
         stretch, gravity = cuts.scene.stretch, cuts.rolling.cuts.reduced_gravity_m_s2
         length = stretch.to_m - stretch.from_m
         begin = cuts.begin_m
-        fall = felt_fall_m(cuts.rolling, begin + length) - felt_fall_m(cuts.rolling, begin)
+        fall = cuts.rolling.fall_m(begin + length) - cuts.rolling.fall_m(begin)
         value = 1e3 * (fall - (v2**2 - v1**2) / (2.0 * gravity)) / length
         std = 1e3 * self.speed_std_m_s * np.hypot(v1, v2) / (gravity * length)
         return TrueReadings(np.where(v2 > 0.0, value, MOST_N_PER_KN), std)
@@ -89,7 +88,7 @@ class ResistanceByRadar:
         rolled = rolling.roll_on(cuts.begin_m, cuts.stretch_speed_m_s, np.stack([begins, ends], axis=1))
         v1, v2 = rolled.speed_m_s[:, 0], rolled.speed_m_s[:, 1]
         gravity, length = rolling.cuts.reduced_gravity_m_s2, ends - begins
-        fall = felt_fall_m(rolling, ends) - felt_fall_m(rolling, begins)
+        fall = rolling.fall_m(ends) - rolling.fall_m(begins)
         value = 1e3 * (fall - (v2**2 - v1**2) / (2.0 * gravity)) / length
         speed = np.maximum(0.5 * (v1 + v2), 0.1)
         readings = np.maximum(length / (speed * self.sample_period_s), 2.0)
@@ -110,13 +109,3 @@ class LightnessByWeigher:
         """Less the mass, tonnes."""
         mass = cuts.rolling.cuts.cut_mass_t
         return TrueReadings(-mass, self.relative_std * mass)
-
-
-def felt_fall_m(rolling: RollingCuts, head_m: Floats) -> Floats:
-    """Fall of each cut when its head is at `head_m` (n,), as `kernels.roll` takes it: by axles, cars by their mass."""
-    way, arrays = rolling.way, rolling.arrays
-    place = (head_m[:, None] - arrays.fronts_m - way.first_m) * way.nodes_per_m
-    place = np.clip(place, 0.0, way.fall_m.shape[1] - 1.000001)
-    node = place.astype(np.int64)
-    low, high = way.fall_m[arrays.types, node], way.fall_m[arrays.types, node + 1]
-    return np.asarray((arrays.shares * (low + (place - node) * (high - low))).sum(axis=1))

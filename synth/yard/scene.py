@@ -51,7 +51,8 @@ class AimScene:
     """One park position on one track, for one population of cuts.
 
     The position lies from `entrance_m` to `exit_m` from the crest; a cut is let go when its last axle is at `exit_m`.
-    `coupling_speed_m_s`: more than this is over-speed.
+    `coupling_speed_m_s`: more than this is over-speed. `threads` work on its cuts, 0: one a processor; they change no
+    result.
     """
 
     population: CutPopulation
@@ -60,6 +61,7 @@ class AimScene:
     exit_m: float
     stretch: MeasuredStretch
     coupling_speed_m_s: float = COUPLING_SPEED_M_S
+    threads: int = 0
 
     def __post_init__(self) -> None:
         require_between("position: entrance_m", self.entrance_m, 0.0, 10_000.0)
@@ -81,7 +83,7 @@ class AimScene:
     def draw(self, category: WeightCategory, cars: int, seed: int, first: int, count: int) -> SceneCuts:
         """Cuts `first` … of the row `seed`, rolled to the position."""
         drawn = self.population.draw(category, cars, seed, first, count)
-        rolling = rolling_cuts(self.population, self.track, self.exit_m, drawn)
+        rolling = rolling_cuts(self.population, self.track, self.exit_m, drawn, self.threads)
         z = ndtri(uniform_numbers(seed, Purpose.BUNCH_EXIT, first, count, 1)[:, 0])
         begins = np.maximum(self.stretch.speed_mean_m_s + self.stretch.speed_std_m_s * z, SLOWEST_M_S)
         return SceneCuts(self, category, rolling, begins, seed, first)

@@ -74,7 +74,7 @@ class TablePosition:
                     rows = start + chosen
                     exits[rows] = class_exits(of_class, taken(passes, chosen), cuts, rows, entry[rows])
 
-        with ThreadPoolExecutor(max_workers=os.cpu_count() or 1) as pool:
+        with ThreadPoolExecutor(max_workers=cuts.scene.threads or os.cpu_count() or 1) as pool:
             list(pool.map(run, range(0, len(cuts), CHUNK)))
         return SampledExits(np.array(targets), exits)
 

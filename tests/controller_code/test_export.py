@@ -22,7 +22,7 @@ from synth.studies.in_the_loop.controller_process import (
 from tests.controller_code.conftest import Tool
 from tuning_tables import InvalidTable, decide_for, from_json, read_book, to_json, write_book
 from tuning_tables.c_literals import hex_float
-from tuning_tables.c_source import c_files
+from tuning_tables.c_source import c_files, export_tag
 from tuning_tables.export_prefix import RETARDER
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 from tuning_tables.table_block import block_of, block_size
@@ -86,6 +86,13 @@ def test_files_of_two_exports_are_not_compiled_together(book: TableBook, tmp_pat
     (tmp_path / "retarder_table.c").write_bytes(other["retarder_table.c"])
     with pytest.raises(BuildError, match=r"retarder_table\.h is of another export"):
         compile_with([tool("gcc"), *CONTRACT, "-c", str(tmp_path / "retarder_table.c"), "-o", str(tmp_path / "o")])
+
+
+def test_exports_of_other_numbers_have_another_tag(book: TableBook) -> None:
+    """Also where shapes are equal."""
+    first = book.tables[0]
+    changed = replace(first, stages=(replace(first.stages[0], upper=first.stages[1].upper), *first.stages[1:]))
+    assert export_tag(TableBook((first,))) != export_tag(TableBook((changed,)))
 
 
 @pytest.mark.parametrize("standard", ["c++98", "c++11", "c++14", "c++17"])

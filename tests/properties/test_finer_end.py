@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from synth.kernels.sweep.finer_end import refine, refinement
+from synth.kernels.sweep.finer_end import refine, refine_landings, refinement
 from synth.problem.terminal_cost import share_above
 from synth.solver.chain.chain import Chain, chain_of
 from synth.solver.chain.finer_end import finer_end
@@ -153,3 +153,18 @@ def test_a_probability_of_overspeed_is_right_anywhere_between_grid_points(cells:
     assert abs(shared - exact).max() > 3.0 * error
     assert density.p_overspeed(0.01) == pytest.approx(1.0)
     assert density.p_overspeed(99.0) == 0.0
+
+
+@pytest.mark.parametrize(("points", "times"), [(5, 2), (17, 3), (40, 4)])
+def test_landings_between_energies_are_those_of_the_cubic(points: int, times: int) -> None:
+    """A cubic in the energy is met exactly from the second cell after a stall to the third below the top."""
+    energy, stalls = np.arange(points + 8.0), 2 if points > 5 else 0
+    ends = np.stack([3.0 + 1e-3 * energy**3, 0.5 * energy**2 - 1e-3 * energy**3]).reshape(1, 1, 1, 2, -1)
+    ends[..., 0, :stalls] = -1.0
+    fine = np.full((1, 1, 1, 2, times * points), np.nan)
+    refine_landings(ends, points, 0, times, fine)
+    place = np.arange(times * (stalls + 1), times * (points - 2)) / times
+    within = slice(times * (stalls + 1), times * (points - 2))
+    np.testing.assert_allclose(fine[0, 0, 0, 0, within], 3.0 + 1e-3 * place**3, rtol=1e-13)
+    np.testing.assert_allclose(fine[0, 0, 0, 1, within], 0.5 * place**2 - 1e-3 * place**3, atol=1e-12)
+    assert not np.isnan(fine).any()

@@ -24,6 +24,7 @@ from synth.solver.told_lines import (
     from_the_middle,
     knowing,
     mean_square,
+    mean_squares,
     of_degree,
     told_factors,
     told_lines,
@@ -133,3 +134,13 @@ def test_the_resistance_counts_where_it_is_asked_for(plant_of: Callable[[float],
     expected = both.chain.scenarios.weight @ np.array([mean_square(each, common) for each in one])
     assert mean_square(both, common) == pytest.approx(expected, rel=1e-9)
     assert mean_square(both, common) > mean_square(knowing(design, TARGET_M_S, 1.1, 1), common)
+
+
+def test_one_recursion_looks_at_all_frictions(plant_of: Callable[[float], Plant]) -> None:
+    """The mean squares of the same lines at several frictions are those at each alone."""
+    design = persistent_chain(plant_of(22.0), COARSE)
+    common, _ = beginning(design, TARGET_M_S, 3)
+    factor = np.array([0.6, 1.0, 1.3])
+    for nodes in (1, 2):
+        alone = [mean_square(knowing(design, TARGET_M_S, float(each), nodes), common) for each in factor]
+        assert mean_squares(design, TARGET_M_S, common, factor, nodes) == pytest.approx(alone, rel=1e-12)

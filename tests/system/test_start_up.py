@@ -28,13 +28,14 @@ def modules_after(*arguments: str) -> set[str]:
     return set(ran.stderr.split())
 
 
-@pytest.mark.parametrize("arguments", [["--help"], ["tune", "--help"], ["--version"]])
+@pytest.mark.parametrize("arguments", [["--help"], ["tune", "--help"], ["aim", "--help"], ["--version"]])
 def test_help_imports_nothing_numeric(arguments: list[str]) -> None:
     assert modules_after(*arguments).isdisjoint(HEAVY | {"numpy"})
 
 
-def test_init_needs_no_solver() -> None:
-    assert modules_after("init").isdisjoint(HEAVY)
+@pytest.mark.parametrize("arguments", [["init"], ["init", "--aim"]])
+def test_init_needs_no_solver(arguments: list[str]) -> None:
+    assert modules_after(*arguments).isdisjoint(HEAVY)
 
 
 def test_inspect_of_a_table_needs_no_solver(tuned: Path) -> None:
@@ -76,3 +77,8 @@ def test_installed_command_ends_at_once_but_says_all() -> None:
     assert (refused.returncode, refused.stdout) == (2, "")
     assert refused.stderr.startswith("retarder-synth: nowhere.json: there is no such file")
     assert refused.stderr.endswith("\n")
+
+
+@pytest.mark.parametrize("verb", ["check", "routes"])
+def test_a_hump_is_read_without_the_numeric_libraries(verb: str) -> None:
+    assert modules_after("hump", verb, "dumper").isdisjoint(HEAVY)

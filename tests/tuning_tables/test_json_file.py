@@ -27,7 +27,7 @@ from tuning_tables import (
     write_json,
 )
 from tuning_tables.canonical import canonical_json, document_checksum
-from tuning_tables.json_file import LARGEST_FILE_BYTES
+from tuning_tables.json_text import LARGEST_FILE_BYTES
 
 Document = dict[str, Any]
 JsonPath = tuple[str | int, ...]

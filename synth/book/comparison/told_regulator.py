@@ -46,8 +46,9 @@ def run_told(loop_of: Callable[[int], ClosedLoop], draws: Draws, told: Told, gro
 
 
 def picked(draws: Draws, which: NDArray[np.int64]) -> Draws:
-    """Some passes of `draws`, in this order."""
-    return Draws._make(fixed(each[which], each.dtype.type) for each in draws)
+    """Some passes of `draws`, in this order; of the path they keep what follows from `path_z`, not the numbers."""
+    kept = draws._replace(path_z=draws.path_z[:, :0])
+    return Draws._make(fixed(each[which], each.dtype.type) for each in kept)
 
 
 def best_by_others(samples: Sequence[ExitSample], target_m_s: float) -> ExitSample:

@@ -12,6 +12,7 @@ from tuning_tables.regular_file import first_bytes
 from tuning_tables.table_block import LAYOUT
 
 BEGINNING = b"Controller tables of a car retarder"
+AIM_BEGINNING = b"Aim tables of a park position"
 LAYOUTS = {
     "C99": re.compile(rb"#define \w+_LAYOUT (\d{1,6})u"),
     "Structured Text": re.compile(rb"^   layout +(\d{1,6}) ", re.MULTILINE),
@@ -24,15 +25,17 @@ MOST_BYTES = 65536
 
 @dataclass(frozen=True)
 class ExportedCode:
-    """An export of controller code, and its layout: 1 where it states none."""
+    """An export of controller code, and its layout: 1 where it states none, None of aim tables, which have none."""
 
     path: Path
     language: str
-    layout: int
+    layout: int | None
 
     @property
     def sentence(self) -> str:
         """What it is, and what to do if it is not of today's layout."""
+        if self.layout is None:
+            return f"aim tables in {self.language}; verify compares them with the tables"
         if self.layout > LAYOUT:
             return f"{self.language}, layout {self.layout}; this version knows layout {LAYOUT}: update it"
         if self.layout == LAYOUT:
@@ -41,7 +44,8 @@ class ExportedCode:
 
     def document(self) -> dict[str, Any]:
         """The same for programs."""
-        return {"path": str(self.path), "language": self.language, "layout": self.layout, "current": LAYOUT}
+        told = {"path": str(self.path), "language": self.language}
+        return told if self.layout is None else {**told, "layout": self.layout, "current": LAYOUT}
 
 
 def exported_code(path: Path) -> tuple[ExportedCode, ...]:
@@ -66,3 +70,5 @@ def recognised(file: Path) -> Iterator[ExportedCode]:
     if BEGINNING in text[: 2 * len(BEGINNING)]:
         found = LAYOUTS[language].search(text)
         yield ExportedCode(file, language, int(found[1]) if found else 1)
+    elif AIM_BEGINNING in text[: 2 * len(AIM_BEGINNING)]:
+        yield ExportedCode(file, language, None)

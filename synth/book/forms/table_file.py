@@ -7,9 +7,11 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from synth.book.forms.aim_file import is_aim_table
 from synth.faults.input_error import InputError
 from synth.faults.machine_fault import MACHINE_FAULTS
 from tuning_tables import ControllerTable, read_book, read_json
+from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.regular_file import first_bytes
 
 HDF5_SIGNATURE = b"\x89HDF"
@@ -41,10 +43,10 @@ def read_tables(path: Path, directory_allowed: bool = False) -> tuple[TableFile,
 
 
 def table_files(directory: Path) -> list[Path]:
-    """The JSON tables of a directory, those in tables/ if it has that, else its books."""
+    """The JSON tables of a directory but aim tables, those in tables/ if it has that, else its books."""
     folder = directory / "tables" if (directory / "tables").is_dir() else directory
     tables = sorted(file for file in folder.glob("*.json") if file.name != "summary.json")
-    return tables or sorted(directory.glob("*.h5"))
+    return [file for file in tables if not is_aim_table(file)] or sorted(directory.glob("*.h5"))
 
 
 def holds_tables(path: Path) -> bool:
@@ -65,7 +67,7 @@ def read_table_file(path: Path) -> TableFile:
         raise InputError(f"{path}: cannot be read ({error.strerror}); check the path and its permissions") from None
 
 
-def file_stem(table: ControllerTable) -> str:
+def file_stem(table: ControllerTable | AimTable) -> str:
     """The table's id as a file name: a file may hold any id, so no slash and no leading dot gets through."""
     return re.sub(r"[^\w.-]+", "-", table.id).lstrip(".-") or "table"
 

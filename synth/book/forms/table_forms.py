@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import TypeVar
 
 from synth.book.forms.code_options import PLAIN, CodeOptions
 from synth.book.forms.table_file import file_stem
 from synth.faults.input_error import InputError
 from tuning_tables import ControllerTable, to_csv, to_json
+from tuning_tables.aim.aim_table import AimTable
 
+_Table = TypeVar("_Table", ControllerTable, AimTable)
 Files = Mapping[str, bytes]
 Form = Callable[[Sequence[ControllerTable], CodeOptions], Files]
 
@@ -43,7 +46,7 @@ def st_form(tables: Sequence[ControllerTable], options: CodeOptions = PLAIN) -> 
 FORMS: Mapping[str, Form] = {"json": json_form, "csv": csv_form, "c": c_form, "st": st_form}
 
 
-def one_each(tables: Sequence[ControllerTable], write: Callable[[ControllerTable], bytes], suffix: str) -> Files:
+def one_each(tables: Sequence[_Table], write: Callable[[_Table], bytes], suffix: str) -> Files:
     """A file a table, called by its id; `InputError` if two would have one name."""
     files: dict[str, bytes] = {}
     for table in tables:

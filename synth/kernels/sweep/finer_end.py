@@ -14,6 +14,7 @@ from synth.kernels.sweep.flow import NO_MASS, extent, stencil, widen
 from synth.kernels.sweep.landing_plan import landing_scratch, landing_tables
 from synth.kernels.sweep.policy_density import collect, follow
 from synth.kernels.vector.borrowing import borrowing
+from synth.kernels.vector.packs import EIGHT, load8, scatter
 
 LINEAR_BELOW = 2
 """Cells next to the stall whose mass is refined linearly: a cubic would reach below it."""
@@ -93,6 +94,7 @@ def refine_landings(ends, points, node, times, fine_ends):
     the nearest counts.
     """
     row, fine_row = ends.shape[4], fine_ends.shape[4]
+    apart = times * np.arange(EIGHT)
     for n, c, f in np.ndindex(fine_ends.shape[:3]):
         path = ends[node + n, c, f, 0]
         begin = 0
@@ -105,11 +107,24 @@ def refine_landings(ends, points, node, times, fine_ends):
             for i in range(min(times * begin, fine_row)):
                 out[i] = found[(2 * i + times) // (2 * times)]
             for d in range(times):
-                c0, c1, c2, c3 = stencil(d / times)
-                for j in range(begin, end):
-                    out[times * j + d] = c0 * found[j - 1] + c1 * found[j] + c2 * found[j + 1] + c3 * found[j + 2]
+                between(found, begin, end, stencil(d / times), apart, out, d)
             for i in range(times * max(begin, end), fine_row):
                 out[i] = found[min((2 * i + times) // (2 * times), row - 1)]
+
+
+@borrowing
+def between(row, begin, end, weights, apart, finer, first):
+    """`finer`[`first` + times·j] = the four of `row` around j by their `weights`, begin ≤ j < end.
+
+    `apart` (8,): where a pack of results lies, times·(0 … 7).
+    """
+    c0, c1, c2, c3 = weights
+    times, places, stop = apart[1], load8(apart, 0), begin + (end - begin) // EIGHT * EIGHT
+    for j in range(begin, stop, EIGHT):
+        found = load8(row, j - 1) * c0 + load8(row, j) * c1 + load8(row, j + 1) * c2 + load8(row, j + 2) * c3
+        scatter(finer, places + (times * j + first), places >= 0, found)
+    for j in range(stop, end):
+        finer[times * j + first] = c0 * row[j - 1] + c1 * row[j] + c2 * row[j + 1] + c3 * row[j + 2]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

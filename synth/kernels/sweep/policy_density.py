@@ -15,7 +15,18 @@ from synth.kernels.sweep.landing_plan import landing_scratch, landing_tables
 from synth.kernels.sweep.next_sample import quanta_to_next_sample
 from synth.kernels.sweep.transient import spread_changes
 from synth.kernels.vector.borrowing import borrowing
-from synth.kernels.vector.packs import EIGHT, choose, fraction, holds_anywhere, least, load8, magnitude, store, whole
+from synth.kernels.vector.packs import (
+    EIGHT,
+    choose,
+    eight,
+    fraction,
+    holds_anywhere,
+    least,
+    load8,
+    magnitude,
+    store,
+    whole,
+)
 
 NEGLIGIBLE_MASS = 1e-11
 """A state with less mass is left out."""
@@ -32,8 +43,9 @@ def forward(
 ):  # fmt: skip
     """Density of sampled states, and the distribution at the exit, in the scenarios `factor`, `extra` (I,).
 
-    `down`, `up` (N, K + 1, E) command probabilities; `entry` (M + 1, E): probability of entering with speed j
-    and having the first sample at node r, `entry_mode` the mode at rest then; the rest as in `flow` and `transient`.
+    `down`, `up` (N, K + 1, E) command probabilities, behind which a pack may be read; `entry` (M + 1, E): probability
+    of entering with speed j and having the first sample at node r, `entry_mode` the mode at rest then; the rest as in
+    `flow` and `transient`.
     Outputs: `density` (I, N, H, L, E) expected number of samples at each node and state, or (I, 0, 0, 0, 0); `band`
     (I, N, 2) range of energies that are met at a node; `exits` (I, E) exit probability by energy; `totals` (I, 4):
     stalled mass, escaped mass, changes down, changes up.
@@ -101,9 +113,8 @@ def follow(
                 )
                 acceleration = shift[h, q] * energy_step / path_step
                 quanta_to_next_sample(speed, begin, end, acceleration, period, path_step, quanta)
-                for j in range(begin, end):
-                    chance[0, j], chance[1, j] = down[n, k, j], up[n, k, j]
-                go_on(mass, chance, quanta, begin, end, negligible, heading, spans, h, q)
+                told = (n * down.shape[1] + k) * points
+                go_on(mass, down, up, told, chance, quanta, begin, end, negligible, heading, spans, h, q)
                 if density.shape[0] > 0:
                     for j in range(lowest, last):
                         density[n, h, q, j] = mass[j] if begin <= j < end else 0.0
@@ -184,32 +195,31 @@ def masses_at_sample(here, arrived, heading, span, first, last, negligible, mass
     elif arrived[0] < arrived[1]:
         begin, end = min(begin, arrived[0]), max(end, arrived[1])
     begin, end = max(begin, first), min(end, last)
-    for j in range(begin, end):
-        mass[j] = here[j] + heading[j]
+    for j in range(begin, end, EIGHT):
+        store(mass, j, load8(here, j) + load8(heading, j))
     begin, end = extent(mass, begin, end, negligible)
-    for j in range(end, end + EIGHT):
-        mass[j] = 0.0
+    store(mass, end, eight(0.0))
     return begin, end
 
 
 @borrowing
-def go_on(mass, chance, quanta, begin, end, negligible, heading, spans, h, q):
+def go_on(mass, down, up, told, chance, quanta, begin, end, negligible, heading, spans, h, q):
     """What holds is on its way to its next sample, in `heading` (M + 1, H, L, E') at mode `h` and level `q`.
 
     `mass` (E',) becomes the expected number of samples at this node: where the next sample may be at it again, the
-    geometric series is summed. `chance` (2, E'), probabilities of the commands down and up, becomes the masses that
-    get them. What is `negligible` goes nowhere.
+    geometric series is summed. `chance` (2, E') becomes the masses that get the commands down and up, whose
+    probabilities stand in `down` and `up` from flat index `told` on. What is `negligible` goes nowhere.
     """
     reach, row = heading.shape[0], mass.shape[0]
     size = heading.shape[2]
     stride, state = heading.shape[1] * size * row, (h * size + q) * row
     for j in range(begin, end, EIGHT):
         found, f = load8(mass, j), load8(quanta, j)
-        down, up = load8(chance, j), load8(chance, row + j)
+        lower, higher = load8(down, told + j), load8(up, told + j)
         matters = magnitude(found) >= negligible
         step = least(whole(f), reach - 2)
         x = least(f - fraction(step), 1.0)
-        hold, again = 1.0 - down - up, step < 1
+        hold, again = 1.0 - lower - higher, step < 1
         samples = choose(again, found / (1.0 - hold * (1.0 - x)), found)
         store(mass, j, choose(matters, samples, found))
         samples = choose(matters, samples, 0.0)
@@ -222,9 +232,9 @@ def go_on(mass, chance, quanta, begin, end, negligible, heading, spans, h, q):
                 widen(spans[r + 1, h, q], j, min(j + EIGHT, row))
                 store(heading, at, load8(heading, at) + choose(lanes, near, 0.0))
                 store(heading, at + stride, load8(heading, at + stride) + choose(lanes, far, 0.0))
-        down, up = samples * down, samples * up
-        store(chance, j, choose(magnitude(down) >= negligible, down, 0.0))
-        store(chance, row + j, choose(magnitude(up) >= negligible, up, 0.0))
+        lower, higher = samples * lower, samples * higher
+        store(chance, j, choose(magnitude(lower) >= negligible, lower, 0.0))
+        store(chance, row + j, choose(magnitude(higher) >= negligible, higher, 0.0))
 
 
 @borrowing

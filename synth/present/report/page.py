@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import os
-from base64 import b64encode
-from collections.abc import Iterator, Sequence
-from itertools import groupby
+from collections.abc import Iterator
 
-from synth.present.plots.picture import Picture
 from synth.present.report.book_report import BookReport
 from synth.present.report.case_table import case_table
 from synth.present.report.checks_section import checks_section
 from synth.present.report.criterion_section import criterion_section
+from synth.present.report.document import Stamp, document, file_table, picture_sections
 from synth.present.report.honesty_section import honesty_section
 from synth.present.report.limits_of_use import limits_of_use
-from synth.present.report.markup import Cell, Markup, element, head_row, joined, table
-from synth.present.report.page_style import STYLE
+from synth.present.report.markup import Markup, element, joined
 from synth.present.report.parameter_table import parameter_section
 from synth.present.report.studies_section import studies_section
 from synth.present.report.verdict import verdict
@@ -40,25 +37,8 @@ def write_report(path: str | os.PathLike[str], book: BookReport) -> None:
 
 def report_page(book: BookReport) -> str:
     """One HTML document that loads nothing: style and pictures are inside."""
-    head = element(
-        "head",
-        element("meta", charset="utf-8"),
-        element("meta", name="viewport", content="width=device-width, initial-scale=1"),
-        element("title", book.title),
-        element("style", Markup(STYLE)),
-    )
-    sections = tuple(page_sections(book))
-    links = (element("a", name, href=f"#{anchor}") for anchor, name, _ in sections)
-    body = element(
-        "body",
-        element("h1", book.title),
-        element("p", f"{book.created} · retarder-synth {book.tool_version} · configuration ",
-                element("code", book.config_sha256), class_="meta"),
-        verdict(book),
-        element("nav", *(part for link in links for part in (link, " ")), aria_label="Contents"),
-        *(element("section", element("h2", name), content, id=anchor) for anchor, name, content in sections),
-    )  # fmt: skip
-    return f"<!DOCTYPE html>\n{element('html', head, body, lang='en')}\n"
+    stamp = Stamp(book.title, book.created, book.tool_version, book.config_sha256)
+    return document(stamp, verdict(book), tuple(page_sections(book)))
 
 
 def page_sections(book: BookReport) -> Iterator[tuple[str, str, Markup]]:
@@ -72,28 +52,4 @@ def page_sections(book: BookReport) -> Iterator[tuple[str, str, Markup]]:
         yield "pictures", "Pictures", picture_sections(book.pictures)
     yield "parameters", "Parameters", parameter_section(book.parameters)
     yield "limits", "Limits of use", limits_of_use(book)
-    yield "files", "Files", file_table(book)
-
-
-def picture_sections(pictures: Sequence[Picture]) -> Markup:
-    """The pictures under the headings of their sections, in the order in which the sections first appear."""
-    order = list(dict.fromkeys(picture.section for picture in pictures))
-    ranked = sorted(pictures, key=lambda picture: order.index(picture.section))
-    parts: list[Markup] = []
-    for section, group in groupby(ranked, key=lambda picture: picture.section):
-        parts += [element("h3", section), *(figure(picture) for picture in group)]
-    return joined(parts)
-
-
-def figure(picture: Picture) -> Markup:
-    """A picture as an image of its own: the identifiers of one SVG cannot meet those of another."""
-    data = b64encode(picture.drawing.svg).decode()
-    image = element("img", src=f"data:image/svg+xml;base64,{data}", alt=f"{picture.title}. {picture.caption}")
-    return element("figure", image, element("figcaption", picture.caption))
-
-
-def file_table(book: BookReport) -> Markup:
-    """SHA-256 of every file that belongs to this report."""
-    rows = [([Cell(name, kind="code"), Cell(digest, kind="code")], "") for name, digest in book.file_hashes.items()]
-    lead = element("p", "A file belongs to this report if its SHA-256 is the one below.")
-    return joined((lead, table("Hashes of files", (head_row("file", "SHA-256"),), rows, kind="files")))
+    yield "files", "Files", file_table(book.file_hashes)

@@ -1,0 +1,121 @@
+"""JSON Schema of a hump file: the keys of `hump_cells.ELEMENTS` and the form of each value, for editors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, Final
+
+from plant_models.hump import GROUPS
+from plant_models.library.data_file import number, number_or_pairs, pairs
+from plant_models.library.hump_cells import (
+    ELEMENTS,
+    Key,
+    Schema,
+    some_numbers,
+    some_pairs,
+    text,
+    texts,
+    triples,
+    truth,
+    whole,
+)
+from plant_models.library.hump_entry import FORMAT, VERSION
+from plant_models.library.sourced_value import CONFIDENCES
+
+Json = dict[str, Any]
+
+PRINTABLE: Final[Json] = {"type": "string", "minLength": 1}
+ORIGIN: Final[Json] = {"source": PRINTABLE, "confidence": {"enum": list(CONFIDENCES)}}
+NUMBER: Final[Json] = {"type": "number"}
+
+
+def rows_of(numbers: int, fewest: int = 0) -> Json:
+    """A list of rows of so many numbers."""
+    row = {"type": "array", "items": NUMBER, "minItems": numbers, "maxItems": numbers}
+    return {"type": "array", "items": row, "minItems": fewest}
+
+
+FORMS: Final[Mapping[Callable[[object], Any], Json]] = {
+    number: NUMBER,
+    number_or_pairs: {"anyOf": [NUMBER, rows_of(2, 1)]},
+    pairs: rows_of(2, 1),
+    some_pairs: rows_of(2),
+    some_numbers: {"type": "array", "items": NUMBER},
+    triples: rows_of(3),
+    whole: {"type": "integer"},
+    truth: {"type": "boolean"},
+    text: PRINTABLE,
+    texts: {"type": "array", "items": PRINTABLE},
+}
+"""What a value of each form may be."""
+
+
+def hump_schema() -> Json:
+    """The schema: whatever it refuses, the reader refuses; what needs more than one element, the reader alone sees."""
+    properties = {key: value for schema in ELEMENTS.values() for key, value in schema.items()}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Hump file of retarder-synth",
+        "type": "object",
+        "additionalProperties": False,
+        "required": ["format", "version", "title", "hump"],
+        "properties": {
+            "format": {"const": FORMAT},
+            "version": {"const": VERSION, "type": "integer"},
+            "title": PRINTABLE,
+            "notes": {"type": "array", "items": PRINTABLE},
+            **ORIGIN,
+            "type": {"type": "object", "additionalProperties": type_schema(properties)},
+            "hump": {
+                "type": "object",
+                "additionalProperties": False,
+                "required": ["leads"],
+                "properties": {
+                    "leads": {"type": "array", "items": {"type": "integer"}, "minItems": 1},
+                    **{kind: {"type": "array", "items": element_schema(kind)} for kind in ELEMENTS},
+                },
+            },
+        },
+    }
+
+
+def element_schema(kind: str) -> Json:
+    """A row of a kind; its number in the group of the kind."""
+    schema = table_schema(ELEMENTS[kind])
+    group = next(group for group in GROUPS if group.noun == kind)
+    properties = {**schema["properties"], "number": {"type": "integer", "minimum": group.first, "maximum": group.last}}
+    return {**schema, "properties": properties}
+
+
+def type_schema(properties: Schema) -> Json:
+    """A table `[type.NAME]`: keys of an element or of an edge; it names no other type itself."""
+    edge = properties["left"]
+    assert not isinstance(edge, Key)
+    schema = table_schema({**edge, **properties})
+    return {**schema, "properties": {key: value for key, value in schema["properties"].items() if key != "type"}}
+
+
+def table_schema(schema: Schema) -> Json:
+    """A table with some of the keys of `schema`."""
+    properties = {
+        key: cell_schema(value) if isinstance(value, Key) else table_schema(value) for key, value in schema.items()
+    }
+    return {
+        "type": "object",
+        "additionalProperties": False,
+        "properties": {"type": PRINTABLE, **ORIGIN, **properties},
+    }
+
+
+def cell_schema(key: Key) -> Json:
+    """A value, or where it is a number, a table of it and its origin."""
+    plain = FORMS[key.form]
+    if not key.unit:
+        return plain
+    sourced = {
+        "type": "object",
+        "additionalProperties": False,
+        "required": ["value"],
+        "properties": {"value": plain, **ORIGIN},
+    }
+    return {"anyOf": [plain, sourced]}

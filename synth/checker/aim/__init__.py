@@ -1,0 +1,1 @@
+"""The checker's own reading of aim tables, their rule, and their exports."""

@@ -1,0 +1,160 @@
+"""`retarder-synth hump`: check a hump file, tell its routes, draw it, write it in another form."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from synth.cli import OK
+
+if TYPE_CHECKING:
+    from plant_models.hump import HumpGraph, Route
+
+
+MOST_TOLD = 30
+"""Kinds of elements that were read over; `--json` tells all."""
+
+
+def check_command(source: Path, as_json: bool) -> int:
+    """Tell what the hump in `source` has, and what its file leaves open; `InputError` for the first fault of it."""
+    from synth.configuration.hump import read_hump
+    from synth.present.hump_document import checked_document
+
+    read = read_hump(source)
+    found = checked_document(read.entry)
+    if as_json:
+        print(json.dumps({"path": str(source), **found, "ignored": read.ignored}, indent=1, ensure_ascii=False))
+        return OK
+    print(*check_words(found), sep="\n")
+    if read.ignored:
+        more = len(read.ignored) - MOST_TOLD
+        rest = f" and {more} more" if more > 0 else ""
+        print(f"  read over: {', '.join(read.ignored[:MOST_TOLD])}{rest}")
+    return OK
+
+
+def check_words(found: dict[str, Any]) -> list[str]:
+    """What was found, a line a fact."""
+    numbers = found["numbers"]
+    return [
+        f"{found['title']}: a hump without faults",
+        f"  tracks: {found['tracks']}; switches: {found['switches']}; retarder positions: {found['retarders']}; "
+        f"sections of track: {found['sections']}; signals: {found['signals']}",
+        f"  elements with axle counters at their joints: {found['axle_counters']}; point sensors: "
+        f"{found['point_sensors']}; radars: {found['radars']}",
+        f"  routes from signal {' and '.join(map(str, found['leads']))}: {found['routes']}; "
+        f"{span(found['route_length_m'], ' m')}, {span(found['switches_on_a_route'], ' switches')} each",
+        f"  numbers of the file: {numbers['cited']} cited, {numbers['assumed']} assumed, {numbers['without_source']} "
+        "without a source"
+        if any(numbers.values())
+        else "  the file does not tell where its numbers are from",
+        f"  retarders without a controller book: {ranges(found['retarders_without_book']) or 'none'}",
+        f"  retarders without aim tables: {ranges(found['retarders_without_aim_tables']) or 'none'}",
+    ]
+
+
+def span(ends: Sequence[float], unit: str) -> str:
+    """'5 switches', or '3 to 5 switches'."""
+    low, high = ends
+    return f"{low:g}{unit}" if low == high else f"{low:g} to {high:g}{unit}"
+
+
+def ranges(numbers: Sequence[int]) -> str:
+    """Increasing numbers with runs as '401 to 408'."""
+    runs: list[list[int]] = []
+    for number in numbers:
+        if runs and number == runs[-1][1] + 1:
+            runs[-1][1] = number
+        else:
+            runs.append([number, number])
+    return ", ".join(str(first) if first == last else f"{first} to {last}" for first, last in runs)
+
+
+def routes_command(source: Path, as_json: bool) -> int:
+    """Print every route of the hump in `source`, and the lists of tracks of its switches."""
+    from synth.configuration.hump import read_hump
+    from synth.present.hump_document import routes_document
+
+    graph = read_hump(source).entry.graph
+    if as_json:
+        print(json.dumps(routes_document(graph), indent=1, ensure_ascii=False))
+        return OK
+    print(
+        "Elements with their metres from the crest; switches with the position that they need. Code: 0 left, 1 right."
+    )
+    for lead in graph.leads:
+        for route in graph.routes(lead).values():
+            print(route_words(route))
+    for switch in graph.switches:
+        left, right = graph.left_tracks(switch.number), graph.right_tracks(switch.number)
+        print(f"switch {switch.number}: left to tracks {ranges(left)}; right to tracks {ranges(right)}")
+    return OK
+
+
+def route_words(route: Route) -> str:
+    """A route in one line."""
+    sides = {0: " left", 1: " right", None: ""}
+    steps = [f"{element.number}{sides[element.position]} {element.at_m:g}" for element in route.elements]
+    name = f"signal {route.lead}, track {route.track}, code {route.code or 'none'}"
+    return f"{name}: {', '.join(steps)}, end {route.length_m:g}"
+
+
+def draw_command(source: Path, output: Path, track: int | None, as_json: bool) -> int:
+    """Draw the hump in `source` into the directory `output`; the profile is that of `track`."""
+    from synth.book.output_directory import make_directory
+    from synth.configuration.hump import read_hump
+
+    hump = read_hump(source).entry
+    route = drawn_route(hump.graph, track)
+    make_directory(output)
+    from synth.kernels.cache import guarded
+    from synth.present.plots.figure_file import save_figure
+    from synth.present.plots.hump.hump_picture import hump_picture
+    from synth.yard.design_runners import roll_runners
+
+    rolls = guarded(roll_runners, route)
+    files = save_figure(hump_picture(hump, route, rolls), output, f"{hump.name}-hump")
+    if as_json:
+        print(json.dumps({"track": route.track, "files": [str(file) for file in files]}, indent=1))
+    else:
+        print(*files, sep="\n")
+    return OK
+
+
+def export_command(source: Path, output: Path) -> int:
+    """Write the hump in `source` as railML into the file `output`."""
+    from synth.configuration.hump import RAILML_SUFFIXES, read_hump
+    from synth.configuration.railml.write import to_railml
+    from synth.faults.input_error import InputError
+    from tuning_tables.atomic_file import write_atomically
+
+    if output.suffix not in RAILML_SUFFIXES:
+        raise InputError(
+            f"--output is {output}; the name of a railML file must end with {' or '.join(RAILML_SUFFIXES)}"
+        )
+    write_atomically(output, to_railml(read_hump(source).entry))
+    print(output)
+    return OK
+
+
+def schema_command() -> int:
+    """Print the JSON Schema of hump files."""
+    from plant_models.library.hump_schema import hump_schema
+
+    print(json.dumps(hump_schema(), indent=1, ensure_ascii=False))
+    return OK
+
+
+def drawn_route(graph: HumpGraph, track: int | None) -> Route:
+    """The route to `track` from the first crest that reaches it; without a track, to the one with the most turning."""
+    from synth.faults.input_error import InputError
+
+    routes = [route for lead in graph.leads for route in graph.routes(lead).values()]
+    if track is None:
+        return max(routes, key=lambda route: round(sum(bend.turn_deg for bend in route.roll_track.bends), 6))
+    for route in routes:
+        if route.track == track:
+            return route
+    raise InputError(f"--track is {track}; the hump has the tracks {ranges(graph.tracks)}")

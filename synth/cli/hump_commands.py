@@ -1,0 +1,74 @@
+"""The commands `retarder-synth hump …`, their arguments and their help; what they do is in `synth.cli.hump`.
+
+Annotations are not postponed here: typer would compile every one of them anew at each start.
+"""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from synth.cli.arguments import Json, directory, whole_number
+
+app = typer.Typer(help="Check, list and draw a hump: its graph of switches, retarders and tracks.")
+
+Hump = Annotated[
+    Path, typer.Argument(metavar="FILE|NAME", help="A hump file (.toml, .railml), or a hump of the library.")
+]
+
+
+@app.command()
+def check(source: Hump, as_json: Json = False) -> int:
+    """Check a hump file, and tell what it holds and what it leaves open."""
+    from synth.cli.hump import check_command
+
+    return check_command(source, as_json)
+
+
+@app.command()
+def routes(source: Hump, as_json: Json = False) -> int:
+    """Tell the route to every track: elements, metres from the crest, positions of the switches."""
+    from synth.cli.hump import routes_command
+
+    return routes_command(source, as_json)
+
+
+@app.command()
+def draw(
+    source: Hump,
+    output: Annotated[
+        Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where the pictures go.")
+    ] = Path("out/hump"),
+    track: Annotated[
+        int | None,
+        typer.Option(
+            parser=whole_number(1, 199),
+            metavar="N",
+            help="Whose profile is drawn; by default that with the most turning.",
+        ),
+    ] = None,
+    as_json: Json = False,
+) -> int:
+    """Draw the track plan, and below it the profile of a route with speed heads of a good, a mean and a bad runner."""
+    from synth.cli.hump import draw_command
+
+    return draw_command(source, output, track, as_json)
+
+
+@app.command()
+def export(
+    source: Hump,
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="FILE.railml", help="The railML file.")],
+) -> int:
+    """Write a hump as railML 3; retarders and the like in a namespace of their own."""
+    from synth.cli.hump import export_command
+
+    return export_command(source, output)
+
+
+@app.command()
+def schema() -> int:
+    """Print the JSON Schema of hump files, for editors that check TOML by it."""
+    from synth.cli.hump import schema_command
+
+    return schema_command()

@@ -1,0 +1,49 @@
+"""The commands of the yard behind the retarders; `synth.cli.commands` names them.
+
+Annotations are not postponed here: typer would compile every one of them anew at each start.
+"""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from synth.cli import hump_commands
+from synth.cli.arguments import Json, directory, whole_number
+
+
+def add_yard_commands(app: typer.Typer) -> None:
+    """Add the commands of the yard to `app`."""
+    app.command()(aim)
+    app.add_typer(hump_commands.app, name="hump")
+
+
+def aim(
+    config: Annotated[Path | None, typer.Argument(metavar="CONFIG.toml", help="Built-in unless given.")] = None,
+    output: Annotated[
+        Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where the results go.")
+    ] = Path("out/aim"),
+    passes: Annotated[
+        int | None,
+        typer.Option(
+            parser=whole_number(1000, 200_000),
+            metavar="N",
+            help="Cuts of each number of cars that speeds are chosen on; as configured unless given.",
+        ),
+    ] = None,
+    seed: Annotated[
+        int | None,
+        typer.Option(
+            parser=whole_number(0, 2**53), metavar="N", help="Of the random numbers; as configured unless given."
+        ),
+    ] = None,
+    as_json: Json = False,
+) -> int:
+    """Make aim tables: the exit speeds at which a park position lets cuts go.
+
+    Random cuts roll to the standing cars; the tables keep a required probability of coupling too fast. Exit code 1 if a
+    table misses it.
+    """
+    from synth.cli.aim import aim_command
+
+    return aim_command(config, output, passes, seed, as_json)

@@ -1,0 +1,1 @@
+"""What an aim configuration may contain, how it is read, and a commented one to start from."""

@@ -1,0 +1,49 @@
+"""Reading an aim configuration: TOML → `AimFileSettings` and the library that has the user's own types."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from plant_models.library import BUILT_IN, Library
+from synth.configuration.aim.settings import AimFileSettings
+from synth.configuration.file_fault import faults_in
+from synth.configuration.own_types import with_own_types
+from synth.configuration.toml_file import read_text, toml_tree
+from synth.faults.input_error import InputError
+
+BUILT_IN_AIM = "built-in aim configuration"
+
+
+@dataclass(frozen=True)
+class AimFile:
+    """What a file says: `settings`, the `library` with the user's own types; `place`: what messages call the file."""
+
+    settings: AimFileSettings
+    library: Library
+    place: str
+
+    def with_simulation(self, passes: int | None, seed: int | None) -> AimFile:
+        """The same with other passes or another seed, as given on a command line; None keeps the file's."""
+        given = {key: value for key, value in (("passes", passes), ("seed", seed)) if value is not None}
+        simulation = self.settings.simulation.model_copy(update=given)
+        return replace(self, settings=self.settings.model_copy(update={"simulation": simulation}))
+
+
+def read_aim_file(path: Path | None) -> AimFile:
+    """The file at `path`, or the built-in default; `InputError` on any fault of form."""
+    if path is None:
+        return AimFile(AimFileSettings(), BUILT_IN, BUILT_IN_AIM)
+    return parse_aim_file(read_text(path, "init --aim"), str(path))
+
+
+def parse_aim_file(text: str, place: str) -> AimFile:
+    """The file with this `text`; paths in it begin at the folder of `place`."""
+    tree, library = with_own_types(toml_tree(text, place), place)
+    try:
+        settings = AimFileSettings.model_validate(tree)
+    except ValidationError as error:
+        raise InputError(*(f"{place}: {sentence}" for sentence in faults_in(error, AimFileSettings))) from None
+    return AimFile(settings, library, place)

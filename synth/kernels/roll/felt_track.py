@@ -1,0 +1,145 @@
+"""The track as rolling cuts feel it, sixteen cuts side by side: how far they have fallen, and what bends take."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.kernels.vector import packs
+from synth.kernels.vector.borrowing import borrowing_inline
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+LANES = packs.SIXTEEN
+"""Cuts side by side: two packs of the machine, because each waits most of the time for roots and divisions."""
+
+
+class Way(NamedTuple):
+    """The track as each type of car feels it: `fall_m` (types, nodes) is the mean fall of its axles, less the head that
+    resistance beyond that of the cut takes there, at node / `nodes_per_m` metres behind the first node.
+    `fall_m2` (types, nodes): the fall summed up over the path from the first node.
+    `gentlest` (types, nodes): least fall per metre of a car that is between the crest and the node, or just behind it.
+    `bends_m` (bends, 2): where bends begin and end."""
+
+    nodes_per_m: float
+    fall_m: Floats
+    fall_m2: Floats
+    gentlest: Floats
+    bends_m: Floats
+
+
+class Cuts(NamedTuple):
+    """n cuts, a multiple of `LANES`: arrays of cars (cars, n), of cuts (n,), of bends (bends, n).
+
+    `rows`: first place of each car's type in `fall_m`, flat. `nodes`: from the front coupler of each car to where the
+    head is at the first node, in nodes. `middles_m`: of cars, behind the head. `constant` and `air`: heads per metre.
+    """
+
+    rows: Ints
+    shares: Floats
+    nodes: Floats
+    middles_m: Floats
+    length_m: Floats
+    gravity_m_s2: Floats
+    constant: Floats
+    linear: float
+    air: Floats
+    wind_m_s: Floats
+    bend_v2: Floats
+    bend_head: Floats
+
+
+class Lanes(NamedTuple):
+    """What the cuts from `i` on are."""
+
+    i: int
+    length_m: Any
+    gravity_m_s2: Any
+    constant: Any
+    air: Any
+    wind_m_s: Any
+
+
+@borrowing_inline
+def lanes_from(cuts, i):
+    """The cuts from `i` on."""
+    return Lanes(
+        i,
+        packs.load16(cuts.length_m, i),
+        packs.load16(cuts.gravity_m_s2, i),
+        packs.load16(cuts.constant, i),
+        packs.load16(cuts.air, i),
+        packs.load16(cuts.wind_m_s, i),
+    )
+
+
+@borrowing_inline
+def place_of(way, cuts, at, x):
+    """(node, nodes beyond it) of the cars at flat index `at` with the heads at `x`; at most 1 beyond it, but outside
+    the table, where the fall goes on as at its end."""
+    place = x * way.nodes_per_m - packs.load16(cuts.nodes, at)
+    node = packs.whole(packs.least(packs.greatest(place, 0.0), way.fall_m.shape[1] - 1.5))
+    return node, place - packs.fraction(node)
+
+
+@borrowing_inline
+def fall_at(way, cuts, i, x):
+    """(fall of the cuts when their heads are at `x`, metres; the same summed up over the path)."""
+    fall, total = packs.choose(x == x, 0.0, x), packs.choose(x == x, 0.0, x)
+    for j in range(cuts.shares.shape[0]):
+        at = j * cuts.shares.shape[1] + i
+        node, beyond = place_of(way, cuts, at, x)
+        where = packs.load16(cuts.rows, at) + node
+        low, high = packs.gather(way.fall_m, where), packs.gather(way.fall_m, where + 1)
+        rise, share = beyond * (high - low), packs.load16(cuts.shares, at)
+        fall = fall + share * (low + rise)
+        path = beyond * (1.0 / way.nodes_per_m)
+        total = total + share * (packs.gather(way.fall_m2, where) + path * (low + 0.5 * rise))
+    return fall, total
+
+
+@borrowing_inline
+def bends_between(way, cuts, lanes, x, h):
+    """Heads that the bends take while the heads go from `x` to `x` + `h`: (per (m/s)², whatever the speed), and by how
+    much their mean on the way is above half of them, (per (m/s)², whatever the speed).
+
+    Each car meets a bend with its middle.
+    """
+    count, none = cuts.shares.shape[1], packs.choose(x == x, 0.0, x)
+    v2, head, early_v2, early_head = none, none, none, none
+    for b in range(way.bends_m.shape[0]):
+        begins, ends = way.bends_m[b, 0], way.bends_m[b, 1]
+        if packs.holds_anywhere((x + h > begins) & (x - lanes.length_m < ends)):
+            part, early = none, none
+            for j in range(cuts.shares.shape[0]):
+                middle = x - packs.load16(cuts.middles_m, j * count + lanes.i)
+                enters, leaves = packs.greatest(middle, begins), packs.least(middle + h, ends)
+                inside = packs.load16(cuts.shares, j * count + lanes.i) * packs.greatest(leaves - enters, 0.0)
+                part = part + inside
+                early = early + inside * (0.5 * h + middle - 0.5 * (enters + leaves))
+            part, early = part * (1.0 / (ends - begins)), early * (1.0 / (ends - begins)) / h
+            of_v2 = packs.load16(cuts.bend_v2, b * count + lanes.i)
+            whatever = packs.load16(cuts.bend_head, b * count + lanes.i)
+            v2, head = v2 + part * of_v2, head + part * whatever
+            early_v2, early_head = early_v2 + early * of_v2, early_head + early * whatever
+    return v2, head, early_v2, early_head
+
+
+@borrowing_inline
+def start_by_themselves(way, cuts, lanes, x, target):
+    """The lanes that start from rest wherever their heads are from `target` to `x`; False where that is not certain."""
+    won = packs.choose(x == x, 0.0, x)
+    for j in range(cuts.shares.shape[0]):
+        at = j * cuts.shares.shape[1] + lanes.i
+        node, _ = place_of(way, cuts, at, x)
+        won = won + packs.load16(cuts.shares, at) * packs.gather(way.gentlest, packs.load16(cuts.rows, at) + node)
+    lost = lanes.constant + lanes.air * lanes.wind_m_s * packs.magnitude(lanes.wind_m_s)
+    for b in range(way.bends_m.shape[0]):
+        begins, ends = way.bends_m[b, 0], way.bends_m[b, 1]
+        meets = (x > begins) & (target - lanes.length_m < ends)
+        head = packs.load16(cuts.bend_head, b * cuts.shares.shape[1] + lanes.i)
+        lost = lost + packs.choose(meets, head * (1.0 / (ends - begins)), 0.0)
+    return (won > lost) & (target > lanes.length_m)

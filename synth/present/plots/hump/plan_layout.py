@@ -1,0 +1,54 @@
+"""Where each element of a hump is drawn in the track plan: along in metres from the crest, across in rows of tracks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from plant_models.hump import HumpGraph
+
+
+@dataclass(frozen=True)
+class PlanLayout:
+    """`at` (metres from the crest, row) of each element; `end_m`, `row` of each track, the leftmost track in row 0.
+
+    Rows are in the order of the tracks from left to right; across, the plan is not to scale.
+    """
+
+    at: Mapping[int, tuple[float, float]]
+    end_m: Mapping[int, float]
+    row: Mapping[int, int]
+
+
+def plan_layout(graph: HumpGraph) -> PlanLayout:
+    """Each element stands in the middle of the tracks behind it; an element of one of two crests beside that."""
+    row: dict[int, int] = {}
+    metres: dict[int, float] = {}
+    end_m: dict[int, float] = {}
+    reached_by: dict[int, set[int]] = {}
+    for lead in graph.leads:
+        for route in sorted(graph.routes(lead).values(), key=lambda route: route.code):
+            row.setdefault(route.track, len(row))
+            end_m.setdefault(route.track, route.length_m)
+            for element in route.elements:
+                metres.setdefault(element.number, element.at_m)
+                reached_by.setdefault(element.number, set()).add(lead)
+    rows: dict[int, list[int]] = {}
+    leads_of_track: dict[int, set[int]] = {}
+    for lead in graph.leads:
+        for route in graph.routes(lead).values():
+            leads_of_track.setdefault(route.track, set()).add(lead)
+            for element in route.elements:
+                if row[route.track] not in rows.setdefault(element.number, []):
+                    rows[element.number].append(row[route.track])
+    by_row = {place: track for track, place in row.items()}
+    at: dict[int, tuple[float, float]] = {}
+    for number, places in rows.items():
+        across = sum(places) / len(places)
+        shared = {lead for place in places for lead in leads_of_track[by_row[place]]}
+        if len(reached_by[number]) == 1 and len(shared) > 1:
+            leads = sorted(shared, key=graph.leads.index)
+            apart = leads.index(next(iter(reached_by[number]))) - (len(leads) - 1) / 2.0
+            across += apart * 0.15 * len(row)
+        at[number] = (metres[number], across)
+    return PlanLayout(at, end_m, row)

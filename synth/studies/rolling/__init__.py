@@ -1,0 +1,1 @@
+"""How fast and how exactly cuts roll by the kernel, beside numpy and scipy."""

@@ -1,0 +1,318 @@
+"""Aim tables and their exports by the checker's own reading: sound ones pass, every planted fault is found."""
+
+from __future__ import annotations
+
+import json
+import random
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from synth.checker.aim.reading import read_aim
+from synth.checker.aim.rule import exit_speed
+from synth.checker.finding import Kind
+from synth.checker.float32 import bits
+from synth.checker.verdict import verify
+from synth.cli import main
+from tests.checker.planted_fault import Document, found, look
+from tests.controller_code.sample_book import FOUR_AXLES, table_of
+from tests.tuning_tables.aim.hard_questions import answers, hard_questions, sample_set
+from tests.tuning_tables.aim.made_tables import category_table, measured_table
+from tuning_tables import from_json, to_json
+from tuning_tables.aim import AimTables, from_aim_json, to_aim_csv, to_aim_json
+from tuning_tables.aim.c_source import aim_c_files
+from tuning_tables.aim.st_source import aim_st_files, aim_st_unit_files
+from tuning_tables.c_source import c_files
+from tuning_tables.canonical import canonical_json, document_checksum
+from tuning_tables.export_prefix import ExportPrefix
+from tuning_tables.table_book import TableBook
+
+AIMS = AimTables((category_table(1.0), measured_table(), category_table(1.5, 4, "СТ")))
+PARK = ExportPrefix("Park")
+
+
+def write_all(folder: Path, aims: AimTables) -> Path:
+    """The tables with CSV beside them, C in c/, Structured Text in st/, and another export of both, prefixed, split."""
+    for name in ("tables", "c", "st"):
+        (folder / name).mkdir(parents=True)
+    for table in aims.tables:
+        (folder / "tables" / f"{table.id}.json").write_bytes(to_aim_json(table))
+        (folder / "tables" / f"{table.id}.csv").write_bytes(to_aim_csv(table))
+    exports = {"c": aim_c_files(aims), "st": aim_st_files(aims), "": aim_c_files(aims, PARK)}
+    for place, files in (*exports.items(), ("st", aim_st_unit_files(aims, PARK))):
+        for name, content in files.items():
+            (folder / place / name).write_bytes(content)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def exported_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Every export of three tables; not to be changed."""
+    return write_all(tmp_path_factory.mktemp("aims") / "out", AIMS)
+
+
+@pytest.fixture
+def exported(exported_once: Path, tmp_path: Path) -> Path:
+    """A copy of it, to be changed at will."""
+    return Path(shutil.copytree(exported_once, tmp_path / "out"))
+
+
+def test_sound_tables_and_exports_are_confirmed(exported_once: Path, tmp_path: Path) -> None:
+    verdict = look(exported_once)
+    assert verdict.findings == ()
+    assert verdict.code == 0
+    assert {each.aim.id for each in verdict.aims} == {table.id for table in AIMS.tables}
+    assert len(verdict.files) == 3 + 3 + 2 * 2 + 2
+    hard = look(write_all(tmp_path / "hard", sample_set()))
+    assert hard.findings == ()
+    assert len(hard.aims) == 19
+
+
+def test_the_checkers_rule_is_the_rule_to_the_last_bit() -> None:
+    aims = sample_set()
+    read = [read_aim(to_aim_json(table)) for table in aims.tables]
+    asked = hard_questions(aims, 20_000, 77)
+    for (number, cars, distance, resistance), right in zip(asked.tolist(), answers(aims, asked), strict=True):
+        speed = exit_speed(read[number], cars, distance, resistance)
+        assert bits(-1.0 if speed is None else speed) == int(right.view(np.uint32))
+
+
+@pytest.mark.parametrize(
+    ("name", "pattern", "replacement", "words"),
+    [
+        ("c/aim_table.c", r"(0x1\.)([0-8])([0-9a-f]*p\+0f)", r"\g<1>9\3", "the crc32 of table 0"),
+        ("c/aim_table.c", r"(0x1\.)([0-8])([0-9a-f]*p\+0f)", r"\g<1>9\3", "but the table says"),
+        ("c/aim_table.c", r"aim_table_count = 3u", "aim_table_count = 2u", "aim_table_count is 2"),
+        ("c/aim_table.c", r"        4u, /\* category \*/", "        5u, /* category */", "is not among the tables"),
+        ("c/aim_table.c", r"-0x1p\+0f", "0x1p+0f", r"aim-1-category: .*\(1\), but the table says bf800000 \(-1\)"),
+        ("c/aim_table.h", r"(CATEGORY_\w+) 1u", r"\1 2u", "defines the categories"),
+        ("c/aim_table.h", r"AIM_DISTANCES 7u", "AIM_DISTANCES 8u", "its header has room for"),
+        ("park_aim_table.c", r"(0x1\.)([0-8])([0-9a-f]*p\+0f)", r"\g<1>9\3", "park_aim_table.c: word"),
+        ("c/golden_aims.csv", r"(?m)^(0,[^,]*,1,41a00000,\w+,)3f", r"\g<1>40", r"golden_aims.csv: row \d+ says .* but"),
+        ("c/golden_aims.csv", r"(?m)^0,.*\r\n(?=0)", "", ""),
+        ("park_golden_aims.csv", r"table,id", "table,di", "its first line is not"),
+        ("st/aim_table.st", r"(\d\.\d{8})\d(E[+-]\d\d)", r"\g<1>X\2", "something else than REAL"),
+        ("st/aim_table.st", r"Distance_1 : ARRAY(.*?)2\.0", r"Distance_1 : ARRAY\g<1>2.1", r"Distance_1\[0\]"),
+        ("st/aim_table.st", r"(Speed_3 : .*?\[\s*)1\.4", r"\g<1>1.5", r"aim-1-category: .*Speed_3\[0\]"),
+        ("st/aim_table.st", r"MeasuredOf : (.*?)\[FALSE", r"MeasuredOf : \1[TRUE", "holds tables for the categories"),
+        ("st/aim_table.st", r"FirstRowOf : (.*?)\[0, 5", r"FirstRowOf : \1[0, 4", r"FirstRowOf\[1\] is 4"),
+        ("st/aim_table.st", r"    Cars_2 : [^\n]*\n", "", "the array Cars_2 is missing"),
+        ("st/0004_PARK_AIM_EXIT_SPEED.st", r"(Speed_3 : .*?\[\s*)1\.4", r"\g<1>1.5", r"Speed_3\[0\]"),
+        ("tables/aim-1-category.csv", r"(?m)^(node,0,1,)20.0", r"\g<1>21.0", "the row node,0 holds"),
+        ("tables/aim-1-category.csv", r"(?m)^(node,6,1,400.0,,),", r"\g<1>0.5,", "the row node,6 holds"),
+        ("tables/aim-1-category.csv", r"(?m)^node,7,.*\r\n", "", "the row node,7 is missing"),
+        ("tables/aim-1-category.csv", r"(required.p_overspeed),0.1", r"\1,0.2", "required.p_overspeed holds"),
+        ("tables/aim-1-measured.csv", r"(?m)^names,node,cars", "names,node,cats", "the row names,node holds"),
+        ("tables/aim-1-measured.csv", r"text,id,aim-1-measured", "text,id,other", "which no other file holds"),
+    ],
+)  # fmt: skip
+def test_one_changed_digit_in_an_export_is_found(
+    exported: Path, name: str, pattern: str, replacement: str, words: str
+) -> None:
+    text, count = re.subn(pattern, replacement, (exported / name).read_bytes().decode(), count=1, flags=re.DOTALL)
+    if ".csv" in name:
+        text, count = re.subn(pattern, replacement, (exported / name).read_bytes().decode(), count=1)
+    assert count == 1
+    (exported / name).write_bytes(text.encode())
+    if not words:  # fewer golden aims than the export writes are still right ones
+        assert look(exported).findings == ()
+        return
+    damaged = ("else than", "count is", "first line")
+    kind = Kind.DAMAGED if any(each in words for each in damaged) else Kind.DISAGREES
+    assert found(look(exported), kind, words)
+
+
+def test_a_table_more_or_less_is_found(exported: Path) -> None:
+    moved = exported / "tables" / "aim-4-category.json"
+    content = moved.read_bytes()
+    moved.unlink()
+    verdict = look(exported)
+    for words in (
+        "it holds 3 tables",
+        r"holds tables for the categories \[1, 1, 4\]",
+        "no other file holds",
+        "no golden aim",
+    ):
+        assert found(verdict, Kind.DAMAGED if "golden" in words else Kind.DISAGREES, words)
+    moved.write_bytes(content)
+    moved.with_name("copy.json").write_bytes(content)
+    assert found(look(exported), Kind.DISAGREES, "another file has the id aim-4-category, too")
+
+
+def rewritten(change: Callable[[Document], object], measured: bool = False) -> bytes:
+    document = json.loads(to_aim_json(measured_table() if measured else category_table(1.0)))
+    change(document)
+    return canonical_json({**document, "crc32": document_checksum(document)})
+
+
+def put(place: tuple[Any, ...], value: object) -> Callable[[Document], None]:
+    """Puts `value` at a place of the document."""
+
+    def change(document: Document) -> None:
+        part: Any = document
+        for key in place[:-1]:
+            part = part[key]
+        part[place[-1]] = value
+
+    return change
+
+
+FAULTS: tuple[tuple[Callable[[Document], object], str], ...] = (
+    (put(("version",), 2), "its version is 2"),
+    (put(("surplus",), 2), "without missing or unknown keys"),
+    (lambda d: d.pop("bounds"), "without missing or unknown keys"),
+    (put(("knowledge",), {"kind": "guess"}), "knowledge.kind is 'guess'"),
+    (put(("knowledge",), {"kind": "measured_resistance"}), "axes.resistance_n_per_kn is None"),
+    (put(("exit_speed_m_s", 1), [1.0]), r"the length of exit_speed_m_s\[1\] is 1"),
+    (lambda d: d["exit_speed_m_s"].pop(), "the length of exit_speed_m_s is 4"),
+    (put(("reported", "mean_gap_m", 0, 0), "2"), "must be a number"),
+    (put(("category", "number"), 3), "has the number 3, which is not its own"),
+    (put(("category",), {"number": 7, "name": "own"}), "has the number 7"),
+    (put(("required", "p_overspeed"), 1.0), r"does not lie within \(0, 1\)"),
+    (put(("required", "coupling_speed_m_s"), 0), "its coupling speed of 0"),
+    (put(("bounds", "exit_speed_m_s"), [0.0, 7.0]), "its bounds .* do not rise"),
+    (put(("bounds", "exit_speed_m_s"), [7.0, 0.5]), "two numbers, the smaller one first"),
+    (put(("interpolation", "error_m_s"), -1.0), "its interpolation error"),
+    (put(("reported", "passes"), 0), "its number of passes"),
+    (put(("position", "exit_at_m"), -1.0), "its position ends at -1 m"),
+    (put(("created",), "2026-11-22"), "its date"),
+    (put(("generator", "config_sha256"), "0" * 63), "its config_sha256"),
+    (put(("axes", "cars"), [1, 2, 3, 3, 8]), "its numbers of cars"),
+    (put(("axes", "cars"), [0, 2, 3, 5, 8]), "its numbers of cars"),
+    (put(("axes", "cars"), [1, 2, 3, 5, 1001]), "its numbers of cars"),
+    (put(("axes", "free_distance_m", 1), 20.0005), "its free distances do not rise by 0.001"),
+    (put(("axes", "free_distance_m", 0), -1.0), "its free distances"),
+    (put(("axes", "free_distance_m", 6), 10_001.0), "its free distances"),
+    (put(("exit_speed_m_s", 4, 6), 7.5), "8 cars at 400 m: the exit speed of 7.5 m/s is out of its bounds"),
+    (put(("exit_speed_m_s", 0, 5), None), "1 cars at 300 m: figures are reported where there is no exit speed"),
+    (put(("reported", "p_overspeed", 2, 2), 0.2), "3 cars at 100 m: p of 0.2 in"),
+    (put(("reported", "mean_gap_m", 2, 2), -1.0), "3 cars at 100 m: p of .* a gap of -1 m"),
+    (put(("reported", "mean_gap_m", 2, 2), None), "3 cars at 100 m: some figures are reported without the others"),
+)  # fmt: skip
+MEASURED_FAULTS: tuple[tuple[Callable[[Document], object], str], ...] = (
+    (put(("axes", "resistance_n_per_kn", 1), 0.4), "its resistances do not rise"),
+    (put(("axes", "resistance_n_per_kn", 4), 1001.0), "its resistances"),
+    (put(("axes", "resistance_n_per_kn"), None), "must be an array"),
+    (put(("knowledge", "to_m"), 228.0), "its resistance is measured from 228 to 228 m"),
+    (put(("knowledge", "speed_std_m_s"), -0.1), "its resistance is measured"),
+    (put(("exit_speed_m_s", 1, 2, 2), 0.6), "2 cars at 100 m and 1.5 N/kN: the exit speed is less than for a"),
+    (put(("exit_speed_m_s", 1, 2, slice(1, 3)), [None, 0.6]), "2 cars at 100 m and 1.5 N/kN: the exit speed is less"),
+    (put(("exit_speed_m_s", 0, 0), [1.0]), r"the length of exit_speed_m_s\[0\]\[0\] is 1"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("change", "words"), FAULTS, ids=[str(place) for place in range(len(FAULTS))])
+def test_a_fault_under_a_right_checksum_is_found_as_the_reader_finds_it(
+    change: Callable[[Document], object], words: str, tmp_path: Path
+) -> None:
+    require_found(rewritten(change), words, tmp_path)
+
+
+@pytest.mark.parametrize(("change", "words"), MEASURED_FAULTS, ids=[str(n) for n in range(len(MEASURED_FAULTS))])
+def test_a_fault_of_a_measured_table_is_found_as_the_reader_finds_it(
+    change: Callable[[Document], object], words: str, tmp_path: Path
+) -> None:
+    require_found(rewritten(change, measured=True), words, tmp_path)
+
+
+def require_found(content: bytes, words: str, folder: Path) -> None:
+    (folder / "aim.json").write_bytes(content)
+    assert found(look(folder / "aim.json"), Kind.DAMAGED, words)
+    with pytest.raises(ValueError):  # noqa: PT011  # whichever kind of refusal
+        from_aim_json(content)
+
+
+def test_a_wrong_checksum_is_damage(tmp_path: Path) -> None:
+    (tmp_path / "aim.json").write_bytes(to_aim_json(category_table()).replace(b"0.012", b"0.013"))
+    assert found(look(tmp_path / "aim.json"), Kind.DAMAGED, "crc32")
+    assert found(look(tmp_path), Kind.DAMAGED, "aim.json: its crc32")
+
+
+def test_more_over_speeds_than_required_are_a_claim_that_is_not_confirmed(tmp_path: Path) -> None:
+    def excess(document: Document, low: float) -> None:
+        for name, value in (("low95", low), ("high95", 0.14)):
+            document["reported"][f"p_overspeed_{name}"][3][4] = value
+        document["reported"]["p_overspeed"][3][4] = 0.13
+
+    # By chance one of `count` nodes lies so far above its interval as often as a single one lies above its own.
+    count = int(np.isfinite(category_table().reported.p_overspeed).sum())
+    least = 0.13 - (0.13 - 0.11) * stats.norm.isf(0.025) / stats.norm.isf(0.025 / count)
+    for low, code in ((least + 1e-4, 1), (least - 1e-4, 0)):
+        (tmp_path / "aim.json").write_bytes(rewritten(partial(excess, low=low)))
+        assert verify(tmp_path, 100, 1).code == code
+    (tmp_path / "aim.json").write_bytes(rewritten(partial(excess, low=0.12)))
+    words = (
+        r"at 1 nodes more cuts over-speed than required, p = 0.1; most at 5 cars at 200 m: 0.1300 \[0.1200, 0.1400\]"
+    )
+    assert found(look(tmp_path), Kind.CLAIM, words)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "tables/aim-1-measured.json",
+        "tables/aim-1-category.csv",
+        "c/aim_table.c",
+        "c/golden_aims.csv",
+        "st/aim_table.st",
+    ],
+)
+def test_broken_bytes_never_raise(exported: Path, name: str) -> None:
+    whole, chance, codes = (exported / name).read_bytes(), random.Random(name), []
+    for _ in range(25):
+        broken = bytearray(whole)
+        for _ in range(chance.randint(1, 4)):
+            broken[chance.randrange(len(broken))] = chance.choice(b'0123456789-+eE.,:"{}[]nN\x00\xff')
+        (exported / name).write_bytes(
+            bytes(broken[: chance.randrange(1, len(broken))] if chance.random() < 0.1 else broken)
+        )
+        codes.append(verify(exported, 2, 1).code)
+    assert set(codes) <= {0, 3}
+    assert codes.count(3) >= (20 if not name.endswith((".st", ".c")) else 5)
+
+
+def test_beside_controller_tables(exported: Path) -> None:
+    """Tables of both kinds in one directory, with code of both, one of it of a prefix that looks alike."""
+    table = table_of("a", "Л", 22.0, FOUR_AXLES, 2.0)
+    (exported / "tables" / "a.json").write_bytes(to_json(table))
+    for name, content in c_files(TableBook((table,)), ExportPrefix("AIM_2")).items():
+        (exported / "c" / name).write_bytes(content)
+    verdict = look(exported)
+    assert verdict.findings == ()
+    assert [each.table.id for each in verdict.tables] == ["a"]
+    assert len(verdict.aims) == 3
+    assert "c/aim_2_table.c" in verdict.files
+    for text in ("AIM", "aim", "PARK_AIM"):
+        with pytest.raises(ValueError, match="must not end with AIM"):
+            ExportPrefix(text)
+    with pytest.raises(ValueError, match="give a controller table"):
+        from_json(to_aim_json(category_table()))
+
+
+def test_words_json_and_no_numpy(exported_once: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    capfd.readouterr()
+    assert main(["verify", str(exported_once)]) == 0
+    lines = capfd.readouterr().out.splitlines()
+    assert lines[0] == "aim-1-category: ok; an aim table of 35 nodes, 1 without an exit speed"
+    assert lines[-1] == "3 tables, 12 files: nothing found"
+    assert main(["verify", str(exported_once), "--json"]) == 0
+    told = json.loads(capfd.readouterr().out)
+    assert told["aims"][1] == {"id": "aim-1-measured", "ok": True, "nodes": 175, "nodes_without_speed": 26}
+    assert told["tables"] == []
+    source = (
+        "import sys; from synth.cli import main; code = main(['verify', sys.argv[1]]); "
+        "print(*sorted({name.partition('.')[0] for name in sys.modules}), file=sys.stderr); raise SystemExit(code)"
+    )
+    ran = subprocess.run(
+        [sys.executable, "-c", source, str(exported_once)], capture_output=True, text=True, timeout=60, check=True
+    )
+    assert set(ran.stderr.split()).isdisjoint({"numpy", "scipy", "numba", "h5py", "tuning_tables", "plant_models"})

@@ -1,0 +1,299 @@
+"""The exported C of aim tables: clean, bit for bit the Python rule in every build, and its self-test finds faults."""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from synth.studies.in_the_loop.builds import BUILDS, Build
+from synth.studies.in_the_loop.controller_process import CONTRACT, BuildError, compile_with
+from tests.controller_code.conftest import Tool
+from tests.controller_code.sample_book import sample_book
+from tests.controller_code.test_export import FLOAT_H, PEDANTIC
+from tests.tuning_tables.aim.hard_questions import answers, hard_questions, sample_set
+from tests.tuning_tables.aim.made_tables import category_table, measured_table, random_table, reported_of
+from tuning_tables.aim import AimTables
+from tuning_tables.aim.block import aim_block, aim_block_size
+from tuning_tables.aim.c_source import aim_c_files
+from tuning_tables.aim.golden_aims import few_golden_aims, golden_aims
+from tuning_tables.c_source import c_files
+from tuning_tables.export_prefix import RETARDER, ExportPrefix
+
+QUESTIONS = 200_000
+SOURCES = ("aim_table.c", "aim_self_test.c")
+PROGRAM = r"""
+#include <stdio.h>
+#include <string.h>
+#include "aim_self_test.h"
+int main(int count, char **arguments)
+{
+    uint32_t question[4];
+    static aim_table given;
+    if (count > 1 && strcmp(arguments[1], "self-test") == 0) {
+        uint32_t where = 0u;
+        const int fault = aim_self_test(&where);
+        printf("fault %d at %u\n", fault, (unsigned)where);
+        return 0;
+    }
+    if (count > 1) {
+        while (fread(&given, sizeof given, 1, stdin) == 1) {
+            const float speed = aim_exit_speed(&given, 5, 60.0f, 2.0f);
+            printf("%d %d\n", aim_table_intact(&given), speed >= 0.5f && speed <= 7.0f ? 1 : speed == -1.0f ? 0 : 2);
+        }
+        return 0;
+    }
+    while (fread(question, sizeof question, 1, stdin) == 1) {
+        float distance, resistance, speed;
+        int32_t cars;
+        memcpy(&cars, question + 1, 4);
+        memcpy(&distance, question + 2, 4);
+        memcpy(&resistance, question + 3, 4);
+        speed = aim_exit_speed(question[0] < aim_table_count ? &aim_tables[question[0]] : 0, (int)cars, distance,
+                               resistance);
+        fwrite(&speed, sizeof speed, 1, stdout);
+    }
+    return 0;
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def aims() -> AimTables:
+    return sample_set()
+
+
+@pytest.fixture(scope="module")
+def asked(aims: AimTables) -> npt.NDArray[np.void]:
+    return hard_questions(aims, QUESTIONS, 20261122)
+
+
+@pytest.fixture(scope="module")
+def right(aims: AimTables, asked: npt.NDArray[np.void]) -> npt.NDArray[np.float32]:
+    return answers(aims, asked)
+
+
+def written(files: Mapping[str, bytes], folder: Path) -> None:
+    for name, content in files.items():
+        (folder / name).write_bytes(content)
+    (folder / "main.c").write_text(PROGRAM)
+
+
+def built(files: Mapping[str, bytes], folder: Path, build: Build) -> list[str]:
+    """The command that runs a program with the exported files in it."""
+    written(files, folder)
+    objects = []
+    for name in SOURCES:
+        objects.append(str(folder / f"{name}.o"))
+        compile_with([build.compiler, *build.contract, *build.flags, "-c", str(folder / name), "-o", objects[-1]])
+    program = str(folder / "program")
+    compile_with([build.compiler, *build.flags, *build.link, str(folder / "main.c"), *objects, "-o", program])
+    return [*build.emulator, program]
+
+
+def told(command: Sequence[str], *arguments: str, given: bytes = b"") -> bytes:
+    return subprocess.run([*command, *arguments], input=given, capture_output=True, timeout=300, check=True).stdout
+
+
+@pytest.mark.parametrize("build", BUILDS, ids=str)
+def test_c_answers_as_python_to_the_last_bit(
+    build: Build,
+    aims: AimTables,
+    asked: npt.NDArray[np.void],
+    right: npt.NDArray[np.float32],
+    tmp_path: Path,
+    tool: Tool,
+) -> None:
+    for name in build.missing():
+        tool(name)
+    command = built(aim_c_files(aims), tmp_path, build)
+    found = np.frombuffer(
+        told(command, given=asked.astype(asked.dtype.newbyteorder(build.order)).tobytes()), f"{build.order}f4"
+    )
+    assert np.array_equal(found.astype(np.float32).view(np.uint32), right.view(np.uint32))
+    assert told(command, "self-test") == b"fault 0 at 0\n"
+
+
+def test_the_questions_reach_much(asked: npt.NDArray[np.void], right: npt.NDArray[np.float32]) -> None:
+    assert 0.3 * QUESTIONS < np.count_nonzero(right > 0.0) < 0.8 * QUESTIONS
+    assert len(np.unique(right)) > 20_000
+    for name in ("distance", "resistance"):
+        assert np.count_nonzero(~np.isfinite(asked[name])) > 100
+    # One step of float32 in the distance changes the answer: it is near a node, or sharp.
+    assert np.count_nonzero(asked["cars"] < 1) > 1000
+
+
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+@pytest.mark.parametrize("measured", [True, False])
+def test_compilers_have_nothing_to_say(compiler: str, measured: bool, tmp_path: Path, tool: Tool) -> None:
+    written(aim_c_files(sample_set() if measured else AimTables((category_table(),))), tmp_path)
+    for name in SOURCES:
+        said = compile_with([tool(compiler), *PEDANTIC, str(tmp_path / name), "-o", str(tmp_path / "o")])
+        assert said == ""
+
+
+def test_analysers_have_nothing_to_say(aims: AimTables, tmp_path: Path, tool: Tool) -> None:
+    written(aim_c_files(aims), tmp_path)
+    weak = ("-Weverything", "-Wno-padded", "-Wno-unsafe-buffer-usage", "-Wno-unknown-warning-option",
+            "-Wno-declaration-after-statement")  # fmt: skip
+    for name in SOURCES:
+        for command in ([tool("gcc"), *PEDANTIC, "-fanalyzer"], [tool("clang"), *PEDANTIC, *weak]):
+            assert compile_with([*command, str(tmp_path / name), "-o", str(tmp_path / "o")]) == ""
+    files = [str(tmp_path / name) for name in (*SOURCES, "main.c")]
+    checks = ["--enable=all", "--inconclusive", "--std=c99", "--quiet", "--error-exitcode=3"]
+    assert compile_with([tool("cppcheck"), *checks, "--suppress=missingIncludeSystem", *FLOAT_H, *files]) == ""
+
+
+def test_nothing_but_itself_is_linked_and_nothing_is_variable(aims: AimTables, tmp_path: Path, tool: Tool) -> None:
+    written(aim_c_files(aims), tmp_path)
+    for name in SOURCES:
+        compile_with([tool("gcc"), *CONTRACT, "-Os", "-c", str(tmp_path / name), "-o", str(tmp_path / f"{name}.o")])
+    listed = compile_with(["nm", *(str(tmp_path / f"{name}.o") for name in SOURCES)])
+    kinds = {(line.split()[-2], line.split()[-1]) for line in listed.splitlines() if len(line.split()) >= 2}
+    defined = {name for kind, name in kinds if kind in "TRDBC"}
+    assert {name for kind, name in kinds if kind == "U"} - defined <= {"memcpy", "memset"}
+    assert not {kind for kind, _ in kinds} & set("dDbBC")
+    assert {name for kind, name in kinds if kind in "TR"} == {
+        "aim_table_count", "aim_tables", "aim_select", "aim_exit_speed", "aim_table_intact", "aim_crc32",
+        "aim_self_test",
+    }  # fmt: skip
+
+
+MUTANTS = (
+    ("0x1.666666p+0f", "0x1.666668p+0f", "fault 2 at"),  # the last bit of a speed
+    ("value > nodes[found.below] &&", "", "fault 3 at"),
+    ("found.below + 1u < count) {", "1) {", "fault 3 at"),
+    ("rounded(value - begin) /", "rounded(value) /", "fault 3 at"),
+    ("nodes[found.above] - begin", "nodes[found.above]", "fault 3 at"),
+    ("return end < speed ? end : speed;", "return end;", "fault 3 at"),
+    ("return end > speed ? end : speed;", "return end;", "fault 3 at"),
+    ("if (begin < end) {", "if (begin > end) {", "fault 3 at"),
+    ("begin >= 0.0f && end >= 0.0f", "begin >= 0.0f", "fault 3 at"),
+    ("begin >= 0.0f && end >= 0.0f", "end >= 0.0f", "fault 3 at"),
+    ("begin >= 0.0f && begin <= end", "begin <= end", "fault 3 at"),
+    ("begin >= 0.0f && begin <= end", "begin >= 0.0f", "fault 3 at"),
+    ("begin >= 0.0f && begin <= end", "begin >= 0.0f && begin < end", "fault 3 at"),
+    ("if (is_beyond) {\n        return", "if (0) {\n        return", "fault 3 at"),
+    ("rounded(end - begin)", "rounded(begin - end)", "fault 3 at"),
+    ("(uint32_t)cars < table->cars[0]", "0", "fault 3 at"),
+    ("(uint32_t)cars > table->cars[table->cars_count - 1u]", "0", "fault 3 at"),
+    ("cars < 0 ||", "", None),  # as an unsigned number it is beyond the last
+    ("free_distance_m >= table->distance_m[0] &&", "free_distance_m >= 0.0f &&", "fault 3 at"),
+    ("free_distance_m <= FLT_MAX", "1", "fault 3 at"),
+    ("resistance_n_per_kn <= FLT_MAX", "1", "fault 3 at"),
+    ("resistance_n_per_kn >= -FLT_MAX", "1", "fault 3 at"),
+    ("(uint32_t)cars >= table->cars[row + 1u]", "(uint32_t)cars > table->cars[row + 1u]", "fault 3 at"),
+    ("? row + 1u : row;", "? row : row;", "fault 3 at"),
+    ("if (speed < least) {", "if (speed > least) {", "fault 3 at"),
+    ("row, way, share.above, is_beyond", "row, way, share.below, is_beyond", "fault 3 at"),
+    ("along(first, second, share.part)", "along(first, second, way.part)", "fault 3 at"),
+    ("if (table->resistances > 0u) {", "if (table->resistances > 99u) {", "fault 3 at"),
+    ("(table->resistances != 0u) == (measured != 0)", "1", "fault 4 at"),
+    ("table->category == category &&", "", "fault 4 at"),
+    ("0xEDB88320u", "0xEDB88321u", "fault 1 at 0"),
+)
+
+
+@pytest.mark.parametrize("small", [False, True], ids=["full", "small"])
+@pytest.mark.parametrize(
+    ("before", "after", "fault"), MUTANTS, ids=[f"{each[1][:30]}-{n}" for n, each in enumerate(MUTANTS)]
+)
+def test_the_self_test_finds_a_wrong_controller(
+    before: str, after: str, fault: str | None, small: bool, tmp_path: Path, tool: Tool
+) -> None:
+    tool("gcc")
+    speeds = category_table().exit_speed_m_s.copy()
+    speeds[0, 0] = np.float32(1.4)  # 0x1.666666p+0f
+    speeds[3, -2:] = 1.75  # level at the end
+    speeds[4] = 1.3  # less for more cars
+    speeds[4, -2] = np.nan
+    flat = replace(category_table(), exit_speed_m_s=speeds, reported=reported_of(speeds))
+    steep = category_table(1.5, 4, "СТ")
+    files = dict(
+        aim_c_files(AimTables((flat, measured_table(), steep)), RETARDER, few_golden_aims if small else golden_aims)
+    )
+    text = files["aim_table.c"].decode()
+    assert before in text
+    files["aim_table.c"] = text.replace(before, after, 1).encode()
+    command = built(files, tmp_path, Build("gcc", ("-O1",), ("-std=c99", "-w")))
+    found = told(command, "self-test").decode()
+    assert found.startswith(fault) if fault else found == "fault 0 at 0\n"
+
+
+def test_a_damaged_table_is_found_and_leads_nowhere(tmp_path: Path, tool: Tool) -> None:
+    """Every changed byte of a block; sizes that would lead out of the table; speeds that are none."""
+    tool("gcc")
+    aims = AimTables((category_table(), measured_table()))
+    command = built(aim_c_files(aims), tmp_path, Build("gcc", ("-O1", "-g", "-fsanitize=address,undefined")))
+    size = aim_block_size(aims)
+    sound = aim_block(aims.tables[1], size)
+    damaged = np.repeat(sound[None, :], 4 * len(sound), axis=0)
+    places = np.arange(4 * len(sound))
+    damaged.view(np.uint8)[places, places] ^= (1 + places % 255).astype(np.uint8)
+    for word, value in ((1, 0), (1, size.cars + 1), (2, 0), (2, 2**31), (3, size.resistances + 1), (3, 2**32 - 1)):
+        forged = sound.copy()
+        forged[word] = value
+        damaged = np.vstack([damaged, forged])
+    for bits in (0x7F800000, 0x7FC00000, 0x7F000000, 0xBF000000, 0x3A000000):  # speeds: inf, NaN, huge, negative, tiny
+        forged = sound.copy()
+        forged[size.nodes] = bits
+        damaged = np.vstack([damaged, forged])
+    lines = told(command, "given", given=np.vstack([sound, damaged]).tobytes()).decode().splitlines()
+    assert lines[0] == "1 1"
+    assert len(lines) == 1 + len(damaged)
+    assert {line[0] for line in lines[1:]} == {"0"}
+    assert {line[2] for line in lines[1:]} == {"0", "1"}  # never a speed out of the bounds
+    assert set(lines[-11:]) == {"0 0"}
+
+
+def test_files_of_two_exports_are_not_compiled_together(tmp_path: Path, tool: Tool) -> None:
+    written(aim_c_files(AimTables((category_table(),))), tmp_path)
+    (tmp_path / "aim_table.h").write_bytes(aim_c_files(AimTables((category_table(0.7),)))["aim_table.h"])
+    for name in SOURCES:
+        with pytest.raises(BuildError, match=r"aim_table\.h is of another export"):
+            compile_with([tool("gcc"), *CONTRACT, "-c", str(tmp_path / name), "-o", str(tmp_path / "o")])
+
+
+def test_aim_tables_of_two_positions_and_controller_tables_fit_into_one_program(tmp_path: Path, tool: Tool) -> None:
+    tool("gcc")
+    files = {
+        **c_files(sample_book(), ExportPrefix("PARK")),
+        **aim_c_files(AimTables((category_table(),)), ExportPrefix("PARK")),
+    }
+    files |= aim_c_files(AimTables((random_table(3, True),)), ExportPrefix("Park_2"))
+    main = '#include "park_self_test.h"\n#include "park_aim_self_test.h"\n#include "park_2_aim_self_test.h"\n'
+    main += "int main(void) { return park_self_test(0) + park_aim_self_test(0) + park_2_aim_self_test(0)"
+    main += " + (PARK_AIM_CATEGORY_ST != PARK_CATEGORY_ST) + (park_2_aim_select(1u, 0) != 0); }\n"
+    written({**files, "all.c": main.encode()}, tmp_path)
+    sources = [name for name in files if name.endswith(".c")]
+    assert sorted(sources)[:2] == ["park_2_aim_self_test.c", "park_2_aim_table.c"]
+    compile_with(
+        ["gcc", *CONTRACT[:-1], *(str(tmp_path / name) for name in (*sources, "all.c")), "-o", str(tmp_path / "all")]
+    )
+    assert subprocess.run([tmp_path / "all"], check=False).returncode == 0
+
+
+@pytest.mark.parametrize("standard", ["c++98", "c++17"])
+def test_cxx_takes_the_headers_and_since_17_the_code(
+    standard: str, aims: AimTables, tmp_path: Path, tool: Tool
+) -> None:
+    written(aim_c_files(aims), tmp_path)
+    (tmp_path / "caller.cpp").write_text('#include "aim_self_test.h"\nint main() { return aim_self_test(0); }\n')
+    compiler = [tool("clang"), "-x", "c++", f"-std={standard}", "-pedantic-errors", "-c", "-o", str(tmp_path / "o")]
+    compile_with([*compiler, str(tmp_path / "caller.cpp")])
+    if standard == "c++17":
+        for name in SOURCES:
+            compile_with([*compiler, "-ffp-contract=off", str(tmp_path / name)])
+
+
+def test_equal_sets_give_equal_bytes_and_golden_aims_are_few(aims: AimTables) -> None:
+    assert aim_c_files(aims) == aim_c_files(sample_set())
+    for table in aims.tables:
+        assert len(few_golden_aims(table)) <= 15 * len(table.axes.cars) + 70
+        for golden in (golden_aims(table), few_golden_aims(table)):
+            assert np.count_nonzero(golden.exit_speed_m_s < 0.0) > 10

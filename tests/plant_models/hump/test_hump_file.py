@@ -1,0 +1,325 @@
+"""Hump files: the humps of the library, every fault with its line, mutations, and the schema."""
+
+from __future__ import annotations
+
+import copy
+import random
+import tomllib
+from collections.abc import Iterator
+from typing import Any
+
+import jsonschema
+import pytest
+
+from plant_models.hump import HumpGraph
+from plant_models.library.hump_entry import HumpEntry, hump_from, hump_names, load_hump
+from plant_models.library.hump_schema import hump_schema
+from plant_models.library.library import BUILT_IN
+from plant_models.library.source import CITATION, sources
+from plant_models.library.sourced_value import CONFIDENCES, JUDGEMENT
+from plant_models.library.toml_lines import line_of, places_of
+from plant_models.library.type_file import HUMPS, TypeFileError
+
+SMALL = """\
+format = "hump"
+version = 1
+title = "Small"
+source = "engineering judgement: a test"
+confidence = "L"
+
+[type.turnout]
+entry_joint_m = 6
+exit_joint_m = 5
+throw_s = { value = 0.6, source = "a data sheet", confidence = "H" }
+relay_s = 0.2
+left = { turn_deg = 4.73, fouling_m = 26, length_m = 60, grade_permille = 10 }
+right = { turn_deg = 4.73, fouling_m = 26, length_m = 60, grade_permille = 10 }
+
+[type.track]
+next = { length_m = 300, grade_permille = [[0, 1], [200, 0]] }
+
+[hump]
+leads = [201]
+signal = [{ number = 201, next = { to = 1, length_m = 42, grade_permille = 45 } }]
+switch = [
+    { number = 1, type = "turnout", left = { to = 401 }, right = { to = 602 } },
+]
+section = [
+    { number = 601, type = "track", track = 1 },
+    { number = 602, type = "track", track = 2, standing_m = 20 },
+]
+
+[[hump.retarder]]
+number = 401
+position = "knp-5-bunch"
+entry_joint_m = 1
+exit_joint_m = 28
+next = { to = 601, length_m = 40, grade_permille = 8, curves = [[30, 40, -14]], radars_m = [[0, 27]] }
+"""
+
+
+def read(text: str) -> HumpEntry:
+    return hump_from(tomllib.loads(text), text, "small", "small.toml")
+
+
+def test_a_row_counts_before_its_type() -> None:
+    graph = read(SMALL.replace("left = { to = 401 }", "left = { to = 401, length_m = 70, fouling_m = 30 }")).graph
+    switch = graph.switches[0]
+    assert (switch.left.edge.length_m, switch.left.fouling_m, switch.left.turn_deg) == (70.0, 30.0, 4.73)
+    assert (switch.right.edge.length_m, switch.right.fouling_m) == (60.0, 26.0)
+    assert (switch.throw_s, switch.relay_s) == (0.6, 0.2)
+    (retarder,) = graph.retarders
+    assert retarder.zones_m == ((0.0, 12.475), (14.475, 26.95))  # those of the library's position
+    assert [(c.from_m, c.to_m, c.turn_deg) for c in retarder.next.curves] == [(30.0, 40.0, -14.0)]
+    assert graph.route(201, 2).free_to_m == 42.0 + 60.0 + 280.0
+
+
+def test_every_number_has_its_origin() -> None:
+    told = {value.key: (value.value, value.source, value.confidence) for value in read(SMALL).provenance}
+    assert told["type.turnout.throw_s"] == (0.6, "a data sheet", "H")
+    assert told["type.turnout.left.turn_deg"] == (4.73, "engineering judgement: a test", "L")
+    assert told["hump.retarder.0.next.curves"][0] == (30.0, 40.0, -14.0)
+    assert told["type.track.next.grade_permille"][0] == (0.0, 1.0, 200.0, 0.0)
+    leaves = list(numbers_in(tomllib.loads(SMALL)))
+    assert sum(1 if isinstance(value, float) else len(value) for value, _, _ in told.values()) == len(leaves)
+
+
+def numbers_in(tree: Any) -> Iterator[float]:
+    """Every number but the names of elements, by plain recursion."""
+    if isinstance(tree, dict):
+        for name, value in tree.items():
+            named = name in ("version", "number", "to", "track", "leads") and not isinstance(value, dict)
+            yield from () if named else numbers_in(value)
+    elif isinstance(tree, list):
+        for value in tree:
+            yield from numbers_in(value)
+    elif isinstance(tree, int | float):
+        yield float(tree)
+
+
+@pytest.mark.parametrize("name", hump_names())
+def test_a_hump_of_the_library_is_sound_and_sourced(name: str) -> None:
+    hump = load_hump(name)
+    names = {source.name for source in sources()}
+    for value in hump.provenance:
+        assert value.confidence in CONFIDENCES, value.key
+        assert value.source.startswith(JUDGEMENT) or CITATION.search(value.source), value.key
+        assert set(CITATION.findall(value.source)) <= names, value.key
+    for lead in hump.graph.leads:
+        for route in hump.graph.routes(lead).values():
+            turned = sum(turn_to_the_left(hump.graph, route.lead, route.track))
+            assert turned == pytest.approx(0.0, abs=1e-9), route  # the tracks are parallel
+            retarders = [e for e in route.elements if 400 < e.number < 600]
+            assert all(0.0 < e.from_m < e.to_m for e in retarders)
+
+
+def turn_to_the_left(graph: HumpGraph, lead: int, track: int) -> Iterator[float]:
+    for element in graph.route(lead, track).elements:
+        if element.position is not None:
+            turn = (element.vertex.left, element.vertex.right)[element.position].turn_deg  # type: ignore[union-attr]  # a switch
+            yield turn if element.position == 0 else -turn
+        yield from (curve.turn_deg for curve in element.edge.curves)
+
+
+@pytest.mark.parametrize(
+    ("name", "tracks", "leads", "switches", "positions"),
+    [("large", 32, 1, 5, 3), ("large-two-leads", 32, 2, 5, 3), ("medium", 16, 1, 4, 3), ("dumper", 8, 1, 3, 1)],
+)
+def test_the_humps_of_the_library(name: str, tracks: int, leads: int, switches: int, positions: int) -> None:
+    graph = load_hump(name).graph
+    assert (len(graph.tracks), len(graph.leads)) == (tracks, leads)
+    for lead in graph.leads:
+        routes = graph.routes(lead)
+        assert list(routes) == list(range(1, tracks + 1))
+        assert {len(route.positions) for route in routes.values()} == {switches}
+        assert {sum(400 < e.number < 600 for e in route.elements) for route in routes.values()} == {positions}
+        assert [int(route.code, 2) for route in routes.values()] == list(range(tracks))  # track 1 is the leftmost
+
+
+def test_the_large_hump_keeps_the_rules_of_layout() -> None:
+    """Distances of TB 10062-99 and the profile that the hump was drawn up with."""
+    route = load_hump("large").graph.route(201, 1)
+    places = {e.number: e.at_m for e in route.elements}
+    assert places == {
+        201: 0.0,
+        1: 42.0,
+        401: 68.0,
+        2: 112.0,
+        411: 150.0,
+        4: 184.0,
+        8: 214.0,
+        16: 246.0,
+        421: 316.0,
+        601: 338.0,
+    }
+    assert 30.0 <= route.element(1).from_m <= 40.0  # from the crest to the first joint
+    assert places[421] - route.fouling_m(16) >= 42.0
+    assert places[421] - route.roll_track.bends[-1].to_m >= 14.0
+    assert route.roll_track.profile.starts_m == (0.0, 40.0, 66.0, 98.0, 138.0, 178.0, 338.0, 770.0)
+    assert route.roll_track.profile.grades_permille == (45.0, 22.0, 12.0, 10.0, 8.0, 1.5, 0.8, 0.0)
+
+
+FAULTS = [
+    ('format = "hump"', 'format = "humps"', 1, 'format is "humps"; this program reads hump files of format "hump"'),
+    ("version = 1", "version = 2", 2, "version is 2; this program reads"),
+    ("version = 1", "version = true", 2, "version is True"),
+    ('title = "Small"', "title = 3", 3, "title must be"),
+    ("relay_s = 0.2", "rely_s = 0.2", 11, "type.turnout: unknown key rely_s; did you mean relay_s?"),
+    ("relay_s = 0.2\n", "", 21, "switch 1: key relay_s is missing"),
+    ("relay_s = 0.2", "relay_s = '0.2'", 11, "type.turnout: relay_s is '0.2'; it must be a finite number"),
+    ("relay_s = 0.2", "relay_s = inf", 11, "relay_s is inf"),
+    ("relay_s = 0.2", "relay_s = -0.2", 11, "relay_s is -0.2; it must be a finite number from 0 to 5"),
+    ('confidence = "H"', 'confidence = "HH"', 10, "confidence is 'HH'; it must be one of H, M-H"),
+    ("value = 0.6, ", "", 10, "key throw_s.value is missing"),
+    ("length_m = 300", "length_m = -300", 16, "type.track: next: length_m is -300.0"),
+    ("[200, 0]", "[400, 0]", 16, "grade_permille: the one from 400 m ends at 300 m"),
+    ("[0, 1], [200", "[0, 61], [200", 16, "from -60 to 60"),
+    ("leads = [201]", "leads = [202]", 19, "there is no signal 202"),
+    ("leads = [201]", "leads = 201", 19, "leads must be a list of whole numbers"),
+    ("leads = [201]", "led = [201]", 19, "unknown key led; did you mean leads?"),
+    ("to = 1, length_m = 42", "to = 1, length_m = 5", 20, "signal 201: its insulated section ends"),
+    ("number = 1,", "number = 200,", 22, "switch 200: the number is not in its group"),
+    ("number = 1,", "number = 1.0,", 22, "switch[0]: number is 1.0; it must be a whole number"),
+    ("to = 602", "to = 603", 22, "switch 1: an edge leads to 603, but there is no such element"),
+    ("to = 602", "to = 1", 22, "switch 1: the way from it comes back to it"),
+    ("to = 602", "to = 401", 22, "switch 1: both branches lead to retarder 401; a switch must have two exits"),
+    (", right = { to = 602 }", "", 22, "switch 1: right: key to is missing"),
+    (', type = "turnout"', ', type = "turnouts"', 22, "did you mean turnout?"),
+    ('{ number = 601, type = "track", track = 1 },\n', "", 28, "retarder 401: an edge leads to 601"),
+    ("track = 1 }", "track = 2 }", 26, "section 602: track 2 ends here and in section 601"),
+    ("number = 602", "number = 601", 26, "section[0] has the number 601, too"),
+    ("standing_m = 20", "standing_m = 301", 26, "section 602: standing_m is 301"),
+    ("track = 2, ", "", 26, "section 602: track is missing"),
+    ('position = "knp-5-bunch"', 'position = "knp"', 31, "'knp' is not in the library; did you mean knp-5-bunch?"),
+    ("exit_joint_m = 28", "exit_joint_m = 20", 33, "retarder 401: exit_joint_m is 20; it must not be before the end"),
+    ("exit_joint_m = 28", "exit_joint_m = 41", 29, "retarder 401: its insulated section ends 41 m behind it"),
+    ("[[30, 40, -14]]", "[[30, 41, -14]]", 34, "curves: one ends at 41 m; it must not be beyond"),
+    ("[[30, 40, -14]]", "[[30, 40]]", 34, "it must be a list of [from_m, to_m, turn_deg]"),
+    ("[type.track]", "[type.spare]\n[type.track]", 15, "no element names the type spare"),
+]  # fmt: skip
+"""What is changed into what, the line that the message tells, and words of it."""
+
+
+@pytest.mark.parametrize(("old", "new", "line", "words"), FAULTS)
+def test_a_fault_is_told_with_file_line_element_and_value(old: str, new: str, line: int, words: str) -> None:
+    assert old in SMALL
+    with pytest.raises(TypeFileError) as caught:
+        read(SMALL.replace(old, new))
+    sentence = str(caught.value)
+    assert sentence.startswith(f"small.toml, line {line}: ")
+    assert words in sentence
+    assert "\n" not in sentence
+
+
+LINES = """\
+a = 1 # [no header]
+b = "x = [1]\\"" # =
+c = '''
+[no header]
+'''
+"d.e" = { f = 1, 'g h' = [1, [2,
+  3], { i = 4 }] }
+
+[j . "k"]
+l = 1979-05-27 07:32:00
+m.n = [
+  # one
+  { o = 1 },
+
+  { o = 2 }, ]
+[[p]]
+q = \"\"\"
+two \\\"\"\"quoted\"\"\"\"\"
+r = 1
+[[p]]
+r = 2
+[[p.s]]
+t = 1
+[[p.s]]
+t = 2
+"""
+
+
+def test_lines_of_places() -> None:
+    assert places_of(LINES) == {
+        ("a",): 1, ("b",): 2, ("c",): 3, ("d.e",): 6, ("d.e", "f"): 6, ("d.e", "g h"): 6, ("d.e", "g h", 0): 6,
+        ("d.e", "g h", 1): 6, ("d.e", "g h", 1, 0): 6, ("d.e", "g h", 1, 1): 7, ("d.e", "g h", 2): 7,
+        ("d.e", "g h", 2, "i"): 7, ("j",): 9, ("j", "k"): 9, ("j", "k", "l"): 10, ("j", "k", "m"): 11,
+        ("j", "k", "m", "n"): 11,
+        ("j", "k", "m", "n", 0): 13, ("j", "k", "m", "n", 0, "o"): 13, ("j", "k", "m", "n", 1): 15,
+        ("j", "k", "m", "n", 1, "o"): 15, ("p",): 16, ("p", 0): 16, ("p", 0, "q"): 17, ("p", 0, "r"): 19, ("p", 1): 20,
+        ("p", 1, "r"): 21, ("p", 1, "s"): 22, ("p", 1, "s", 0): 22, ("p", 1, "s", 0, "t"): 23, ("p", 1, "s", 1): 24,
+        ("p", 1, "s", 1, "t"): 25,
+    }  # fmt: skip
+    tomllib.loads(LINES)
+    assert line_of(LINES, ("p", 1, "s", 7, "u")) == 22
+    assert line_of(LINES, ("unknown",)) == 1
+
+
+def changed_trees(seed: int, count: int) -> Iterator[dict[str, Any]]:
+    """Trees of humps with one to three values taken away, doubled or replaced."""
+    rng = random.Random(seed)
+    humps = [tomllib.loads(SMALL), tomllib.loads(BUILT_IN.file(HUMPS, "dumper").text)]
+    spare: tuple[object, ...] = (
+        *(0, 1, -1, 3.5, 1e308, float("nan"), float("inf"), True, "", "x", "turnout", "\x00", 2**62, 602, 603, 201),
+        *([], [[]], {}, {"value": 1}, {"type": "track"}, [1, 2], [[0, 1], [2, 3]], [[0, 9, 4.0]]),
+    )
+    for _ in range(count):
+        tree = copy.deepcopy(rng.choice(humps))
+        for _ in range(rng.randint(1, 3)):
+            places = list(every_place(tree))
+            holder, key = rng.choice(places)
+            match rng.randrange(3):
+                case 0:
+                    del holder[key]
+                case 1 if isinstance(holder, list):
+                    holder.insert(key, copy.deepcopy(holder[key]))
+                case _:
+                    holder[key] = copy.deepcopy(rng.choice(spare))
+            if not tree:
+                break
+        yield tree
+
+
+def every_place(tree: Any) -> Iterator[tuple[Any, Any]]:
+    items = tree.items() if isinstance(tree, dict) else enumerate(tree) if isinstance(tree, list) else ()
+    for key, value in list(items):
+        yield tree, key
+        yield from every_place(value)
+
+
+def test_what_the_schema_refuses_the_reader_refuses_too() -> None:
+    schema = hump_schema()
+    jsonschema.Draft202012Validator.check_schema(schema)
+    validator = jsonschema.Draft202012Validator(schema)
+    for name in hump_names():
+        validator.validate(tomllib.loads(BUILT_IN.file(HUMPS, name).text))
+    refused = sound = 0
+    for tree in changed_trees(1, 400):
+        if validator.is_valid(tree):
+            sound += 1
+            continue
+        refused += 1
+        with pytest.raises(TypeFileError):
+            hump_from(tree, "", "changed", "changed.toml")
+    assert refused > 100
+    assert sound > 50
+
+
+def test_changed_trees_are_read_or_told_in_one_sentence() -> None:
+    told = 0
+    for tree in changed_trees(2, 2000):
+        sentence = fault_of(tree)
+        if sentence:
+            told += 1
+            assert sentence.startswith("changed.toml, line 1: ")
+            assert sentence.isprintable()
+    assert 1000 < told < 2000
+
+
+def fault_of(tree: dict[str, Any]) -> str:
+    try:
+        hump_from(tree, "", "changed", "changed.toml")
+    except TypeFileError as fault:
+        return str(fault)
+    return ""

@@ -1,0 +1,126 @@
+"""Laws of rolling resistance against scipy.stats and against the figures that were worked out from TB 10062."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from plant_models import PlantError, RollingResistance
+from plant_models.rolling.resistance_law import HumpNormLaw, Tb10062Law
+from plant_models.rolling.roll_track import Bend
+from tests.plant_models.rolling.populations import CATEGORIES
+
+U = (np.arange(20_000) + 0.5) / 20_000
+"""Evenly spread probabilities: quantiles at them have the moments of the law, but for the last tail."""
+
+PUBLISHED = {"Л": (1.75, 0.67), "ЛС": (1.54, 0.59), "С": (1.40, 0.50), "СТ": (1.25, 0.38), "Т": (1.23, 0.35)}
+QUANTILES = {
+    "Л": (0.68, 0.81, 1.67, 2.98, 3.33),
+    "ЛС": (0.60, 0.71, 1.47, 2.62, 2.93),
+    "С": (0.59, 0.69, 1.34, 2.31, 2.57),
+    "СТ": (0.61, 0.70, 1.21, 1.93, 2.12),
+    "Т": (0.63, 0.72, 1.20, 1.86, 2.02),
+}
+"""At −2 σ of a normal law, 5, 50 and 95 %, and +2 σ of a normal law; N/kN, worked out apart from this program."""
+
+
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_basic_resistance_has_the_gamma_law_of_its_category(name: str) -> None:
+    resistance = CATEGORIES.named(name).resistance
+    mean, std = PUBLISHED[name]
+    drawn = HumpNormLaw().basic_n_per_kn(resistance, np.full(U.shape, 30.0), 10.0, U)
+    law = stats.gamma((mean / std) ** 2, scale=std**2 / mean)
+    np.testing.assert_allclose(drawn, law.ppf(U), rtol=1e-9)
+    assert drawn.mean() == pytest.approx(mean, abs=2e-4)
+    assert drawn.std() == pytest.approx(std, abs=1e-3)
+    assert stats.skew(drawn) == pytest.approx(2.0 * std / mean, abs=0.01)
+    u = np.array([stats.norm.cdf(-2.0), 0.05, 0.5, 0.95, stats.norm.cdf(2.0)])
+    at = HumpNormLaw().basic_n_per_kn(resistance, np.full(5, 30.0), 10.0, u)
+    np.testing.assert_allclose(at, QUANTILES[name], atol=0.0051)
+
+
+def test_a_law_without_spread_gives_its_mean() -> None:
+    drawn = HumpNormLaw().basic_n_per_kn(RollingResistance(1.4, 0.0), np.full(5, 30.0), 10.0, U[:5])
+    assert drawn.tolist() == [1.4] * 5
+
+
+@pytest.mark.parametrize("order", [1, 2, 3, 6])
+def test_the_head_of_a_bend_has_an_erlang_law(order: int) -> None:
+    law, bend = HumpNormLaw(erlang_order=order), Bend(10.0, 30.0, 2, 9.46)
+    assert law.bend_numbers == order
+    mean = 0.56e-3 * 2 + 0.23e-3 * 9.46
+    drawn, whatever = law.bend_heads_m(bend, np.random.default_rng(3).random((50_000, order)))
+    assert stats.kstest(drawn, stats.erlang(order, scale=mean / order).cdf).pvalue > 0.01
+    assert drawn.mean() == pytest.approx(mean, rel=0.02)
+    assert drawn.std() == pytest.approx(mean / np.sqrt(order), rel=0.03)
+    assert not whatever.any()
+
+
+@pytest.mark.parametrize(("order", "std"), [(1, 0.132), (2, 0.093), (3, 0.076), (4, 0.066), (6, 0.054)])
+def test_the_head_of_five_switches_spreads_as_worked_out(order: int, std: float) -> None:
+    """5 switches of 4.73° and two curves of 11.5° at 5 m/s: worked out apart from this program."""
+    bends = [*[Bend(0.0, 10.0, 1, 4.73)] * 5, *[Bend(0.0, 10.0, 0, 23.0 / 2)] * 2]
+    law, rng = HumpNormLaw(erlang_order=order), np.random.default_rng(5)
+    heads = np.sum([25.0 * law.bend_heads_m(bend, rng.random((40_000, order)))[0] for bend in bends], axis=0)
+    assert heads.mean() == pytest.approx(0.338, abs=0.003)
+    assert heads.std() == pytest.approx(std, rel=0.03)
+
+
+TB_ROWS = [
+    (22.0, 20.0, (2.75, 1.91, 3.60), (2.06, 1.22, 2.91)),
+    (22.0, -20.0, (3.38, 2.43, 4.33), (2.69, 1.74, 3.64)),
+    (60.0, 20.0, (2.24, 1.61, 2.87), (1.55, 0.92, 2.18)),
+    (60.0, -20.0, (2.75, 1.96, 3.54), (2.06, 1.27, 2.85)),
+    (80.0, 20.0, (1.98, 1.46, 2.49), (1.29, 0.77, 1.80)),
+    (80.0, -20.0, (2.42, 1.71, 3.12), (1.73, 1.02, 2.43)),
+]
+"""Mass, temperature; mean, 5 % and 95 % on the slope at 5 m/s and in the yard at 2 m/s: worked out from the norm."""
+
+
+@pytest.mark.parametrize(("mass", "temperature", "slope", "yard"), TB_ROWS)
+def test_tb_10062_gives_the_figures_of_the_norm(
+    mass: float, temperature: float, slope: tuple[float, ...], yard: tuple[float, ...]
+) -> None:
+    law, u = Tb10062Law(), np.array([0.5, 0.05, 0.95])
+    still = law.basic_n_per_kn(RollingResistance(9.9, 0.1), np.full(3, mass), temperature, u)
+    # The norm's easy and hard runners are 1.65 standard deviations off, the quantiles 1.645.
+    np.testing.assert_allclose(still + 2.0 * law.linear_n_per_kn, yard, atol=0.009)
+    np.testing.assert_allclose(still + 5.0 * law.linear_n_per_kn + law.slope_extra_n_per_kn, slope, atol=0.009)
+
+
+def test_tb_10062_spreads_normally_down_to_its_least_value() -> None:
+    mass = np.full(U.shape, 30.0)
+    drawn = Tb10062Law(least_n_per_kn=0.0).basic_n_per_kn(RollingResistance(1.0, 0.1), mass, 0.0, U)
+    law = stats.norm(2.439 - 0.45, 0.602 - 0.09)
+    np.testing.assert_allclose(drawn, np.maximum(law.ppf(U), 0.0), rtol=1e-9)
+    cut_off = Tb10062Law(least_n_per_kn=1.0).basic_n_per_kn(RollingResistance(1.0, 0.1), mass, 0.0, U)
+    assert cut_off.min() == 1.0
+    assert (cut_off == 1.0).mean() == pytest.approx(law.cdf(1.0), abs=1e-4)
+
+
+def test_tb_10062_takes_heads_whatever_the_speed() -> None:
+    v2, head = Tb10062Law().bend_heads_m(Bend(0.0, 50.0, 4, 25.0), np.full((3, 1), 0.7))
+    np.testing.assert_allclose(head, 0.296)
+    assert not v2.any()
+
+
+def test_the_two_norms_take_the_same_head_near_6_m_s() -> None:
+    """Four facing switches and 25°: 0.13, 0.20 and 0.29 m at 4, 5 and 6 m/s against 0.296 m."""
+    bend, law = Bend(0.0, 50.0, 4, 25.0), HumpNormLaw(erlang_order=50)
+    mean = law.per_switch_m_s2 * bend.switches + law.per_degree_m_s2 * bend.turn_deg
+    np.testing.assert_allclose([mean * v**2 for v in (4.0, 5.0, 6.0)], [0.128, 0.200, 0.288], atol=5e-4)
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "allowed"),
+    [("erlang_order", 0, "from 1 to 50"), ("per_switch_m_s2", -0.1, "from 0 to 0.1"), ("per_degree_m_s2", 1.0, "0.1")],
+)
+def test_a_norm_outside_its_range_is_refused(key: str, value: float, allowed: str) -> None:
+    with pytest.raises(PlantError, match=rf"^resistance: {key} is .*{allowed}"):
+        HumpNormLaw(**{key: value})  # type: ignore[arg-type]
+
+
+def test_a_least_value_outside_its_range_is_refused() -> None:
+    with pytest.raises(PlantError, match=r"^resistance: least_n_per_kn is -1"):
+        Tb10062Law(least_n_per_kn=-1.0)

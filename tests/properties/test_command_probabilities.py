@@ -1,0 +1,38 @@
+"""The probabilities of the commands and their slopes are those of the normal law, at every node, stage and speed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.stats import norm
+
+from synth.kernels.sweep.commands import CERTAIN, command_probabilities, command_slopes
+
+SPEED_M_S = np.sqrt(0.02 * np.arange(201.0))
+NOISE_M_S = 0.07
+
+
+def lines(seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Of 5 nodes and 4 stages: below, within and above all speeds, on a speed, so far from one that it is certain."""
+    found = np.random.default_rng(seed).uniform(-0.5, 2.7, (2, 5, 4))
+    found[:, 0] = -np.inf, np.inf, SPEED_M_S[7], SPEED_M_S[-1]
+    found[:, 1, :2] = SPEED_M_S[90] + CERTAIN * NOISE_M_S, SPEED_M_S[90] - CERTAIN * NOISE_M_S
+    lower, upper = found
+    return lower, upper
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_commands_are_those_of_the_normal_law(seed: int) -> None:
+    lower, upper = lines(seed)
+    down, up, down_slope, up_slope = (np.full((5, 4, len(SPEED_M_S)), np.nan) for _ in range(4))
+    command_probabilities(lower, upper, SPEED_M_S, NOISE_M_S, down, up)
+    command_slopes(lower, upper, SPEED_M_S, NOISE_M_S, down_slope, up_slope)
+    below = (lower[:, :, None] - SPEED_M_S) / NOISE_M_S
+    above = (SPEED_M_S - upper[:, :, None]) / NOISE_M_S
+    for found, slope, z, sign in ((down, down_slope, below, 1.0), (up, up_slope, above, -1.0)):
+        np.testing.assert_allclose(found, norm.cdf(z), rtol=1e-12, atol=1.1 * norm.sf(CERTAIN))
+        least = 1.1 * norm.pdf(CERTAIN) / NOISE_M_S
+        np.testing.assert_allclose(slope, sign * norm.pdf(z) / NOISE_M_S, rtol=1e-12, atol=least)
+        certain = np.abs(z) > CERTAIN * (1.0 + 1e-12)
+        assert (found[certain] == (z[certain] > 0.0)).all()
+        assert (slope[certain] == 0.0).all()

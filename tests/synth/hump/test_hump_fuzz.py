@@ -1,0 +1,102 @@
+"""Hump files with anything in them: read, or refused in one sentence; never another exception."""
+
+from __future__ import annotations
+
+import os
+import random
+import tomllib
+from collections.abc import Iterator
+from typing import Any
+
+from plant_models.library.library import BUILT_IN
+from plant_models.library.toml_lines import places_of
+from plant_models.library.type_file import HUMPS
+from synth.configuration.hump import parse_hump
+from synth.faults.input_error import InputError
+from tests.plant_models.hump.test_hump_file import LINES, SMALL
+
+FILES = int(os.environ.get("RETARDER_SYNTH_FUZZED_HUMPS", "10000"))
+"""How many; 100 000 are tried by hand before a release."""
+
+PIECES = (
+    *("[", "]", "{", "}", "=", ",", ".", "#", '"', "'", '"""', "\n", "\\", "\x00", "é", "-", "1e999", "nan", "9" * 30),
+    *(
+        "true",
+        "[hump]\n",
+        "[[hump.switch]]\n",
+        "[type.turnout]\n",
+        "type = 'track'",
+        "next = {}",
+        "number = 601",
+        "to = 1",
+    ),
+)
+
+
+def changed(text: str, rng: random.Random) -> str:
+    """`text` with one to four characters, lines or pieces taken away, added or exchanged."""
+    for _ in range(rng.randint(1, 4)):
+        at, to = sorted((rng.randrange(len(text) + 1), rng.randrange(len(text) + 1)))
+        match rng.randrange(5):
+            case 0:
+                text = text[:at] + text[at + rng.randint(1, 3) :]
+            case 1:
+                text = text[:at] + rng.choice(PIECES) + text[at:]
+            case 2:
+                text = text[:at] + rng.choice(PIECES) + text[at + 1 :]
+            case 3 if to - at < 80:
+                text = text[:at] + text[to:]
+            case _:
+                digits = [place for place, sign in enumerate(text) if sign.isdigit()]
+                if digits:
+                    place = rng.choice(digits)
+                    text = text[:place] + str(rng.randrange(1000)) + text[place + 1 :]
+    return text
+
+
+def places_in(tree: Any) -> Iterator[tuple[str | int, ...]]:
+    """Every place of a tree that tomllib made."""
+    items = tree.items() if isinstance(tree, dict) else enumerate(tree) if isinstance(tree, list) else ()
+    for key, value in items:
+        yield (key,)
+        yield from ((key, *below) for below in places_in(value))
+
+
+def test_lines_are_found_of_all_that_tomllib_finds() -> None:
+    rng, valid = random.Random(8), 0
+    while valid < 1000:
+        text = changed(LINES if valid % 2 else SMALL, rng)
+        try:
+            tree = tomllib.loads(text)
+        except (tomllib.TOMLDecodeError, RecursionError, ValueError):
+            continue
+        valid += 1
+        found = places_of(text)
+        assert set(found) == set(places_in(tree))
+        for place, line in found.items():
+            named = place[-1] if isinstance(place[-1], str) else None
+            if named is not None and named.isidentifier():
+                assert named in text.splitlines()[line - 1]
+
+
+def fault_of(text: str) -> str:
+    try:
+        parse_hump(text, "small", "small.toml")
+    except InputError as fault:
+        return str(fault)
+    return ""
+
+
+def test_fuzzed_files_are_read_or_told_in_one_sentence() -> None:
+    rng, told, with_line = random.Random(7), 0, 0
+    dumper = BUILT_IN.file(HUMPS, "dumper").text
+    for number in range(FILES):
+        sentence = fault_of(changed(dumper if number % 20 == 0 else SMALL, rng))
+        if sentence:
+            told += 1
+            with_line += sentence.startswith("small.toml, line ")
+            assert sentence.startswith("small.toml")
+            assert sentence.isprintable()
+            assert len(sentence) < 600
+    assert 0.5 * FILES < told < FILES
+    assert with_line > 0.1 * FILES

@@ -1,0 +1,19 @@
+"""The page on hump files: its whole file is read, and is what the text around it says."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from synth.configuration.hump import parse_hump
+
+PAGE = (Path(__file__).parents[3] / "docs" / "hump-file.md").read_text(encoding="utf-8")
+
+
+def test_the_file_on_the_page() -> None:
+    (text,) = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    hump = parse_hump(text, "page", "page.toml")
+    assert hump.graph.incidence[1] == (2, 3)
+    assert [route.code for route in hump.graph.routes(201).values()] == ["00", "01", "10", "11"]
+    assert hump.graph.route(201, 2).free_to_m == 40 + 34 + 34 + 400 - 120
+    assert all(value.assumed or value.source.startswith("data sheet") for value in hump.provenance)

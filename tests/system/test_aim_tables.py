@@ -1,0 +1,172 @@
+"""inspect, export and verify of aim tables: output, exit codes, and what they refuse in one sentence."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.controller_code.sample_book import FOUR_AXLES, table_of
+from tests.system.conftest import Command
+from tests.system.test_start_up import HEAVY, modules_after
+from tests.tuning_tables.aim.made_tables import category_table, measured_table, reported_of
+from tuning_tables import write_json
+from tuning_tables.aim import AimTable, ParkPosition, to_aim_csv, to_aim_json, write_aim_json
+from tuning_tables.aim.aim_tables import AimTables
+from tuning_tables.aim.c_source import aim_c_files
+from tuning_tables.aim.golden_aims import few_golden_aims
+from tuning_tables.aim.st_source import aim_st_files, aim_st_unit_files
+from tuning_tables.export_prefix import RETARDER, ExportPrefix
+
+TABLES = (category_table(1.0), measured_table(), category_table(1.5, 4, "СТ"))
+IN_ORDER = AimTables(TABLES)
+
+
+@pytest.fixture
+def aims(tmp_path: Path) -> Path:
+    """A directory with tables/, whose file names are in another order than the categories."""
+    folder = tmp_path / "aims"
+    (folder / "tables").mkdir(parents=True)
+    for name, table in zip("cba", TABLES, strict=True):
+        write_aim_json(table, folder / "tables" / f"{name}.json")
+    return folder
+
+
+def test_inspect_tells_the_contents(command: Command, aims: Path) -> None:
+    ran = command("inspect", aims)
+    assert ran.code == 0
+    for words in (
+        "c.json: an aim table; its CRC-32 is right",
+        "aim-1-category: couple faster than 1.39 m/s with a probability of 0.1",
+        "position   rnz-2m-park, left 338 m from the crest",
+        "cuts       category Л (number 1), known by category and number of cars",
+        "resistance measured from 228 to 338 m by two speeds +-0.03 m/s",
+        "over-speed 0.0990 on average, at most 0.0990 [0.0950, 0.1030], mean gap 0.0 to 6.0 m; 20000 passes",
+        "5 x 7, free distance 20 to 400 m; 1 of 35 have no exit speed, between them at most 0.012 m/s too slow",
+        "8 cars, 1.5 N/kN",
+    ):
+        assert words in ran.out
+    lines = command("inspect", aims / "tables" / "c.json").out.splitlines()
+    shown = next(line for line in lines if "      1 car  " in line).split()[2:]
+    speeds = TABLES[0].exit_speed_m_s[0, [0, 1, 2, 4, 5, 6]]
+    assert shown == [*(f"{speed:.3f}" for speed in speeds[:-1]), "none"]
+    found = json.loads(command("inspect", aims / "tables" / "b.json", "--json").out)["files"]
+    assert found == [
+        {"path": str(aims / "tables" / "b.json"), "kind": "aim table", "checksum": "right",
+         "tables": [json.loads(to_aim_json(TABLES[1]))]}
+    ]  # fmt: skip
+
+
+def test_a_table_without_any_speed_is_told(command: Command, tmp_path: Path) -> None:
+    nothing = np.full_like(TABLES[0].exit_speed_m_s, np.nan)
+    table = replace(TABLES[0], exit_speed_m_s=nothing, reported=reported_of(nothing))
+    write_aim_json(table, tmp_path / "aim.json")
+    ran = command("inspect", tmp_path)
+    assert ran.code == 0
+    assert "reported   nothing: no node has figures" in ran.out
+    assert "35 of 35 have no exit speed" in ran.out
+
+
+def test_inspect_and_verify_need_nothing_heavy(aims: Path) -> None:
+    assert modules_after("inspect", str(aims)).isdisjoint(HEAVY)
+
+
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        (("--format", "c"), lambda: aim_c_files(IN_ORDER)),
+        (("--format", "c", "--prefix", "Park", "--self-test", "small"),
+         lambda: aim_c_files(IN_ORDER, ExportPrefix("Park"), few_golden_aims)),
+        (("--format", "st"), lambda: aim_st_files(IN_ORDER)),
+        (("--format", "st", "--split", "--self-test", "small"),
+         lambda: aim_st_unit_files(IN_ORDER, RETARDER, few_golden_aims)),
+        (("--format", "json"), lambda: {f"{table.id}.json": to_aim_json(table) for table in TABLES}),
+        (("--format", "csv"), lambda: {f"{table.id}.csv": to_aim_csv(table) for table in TABLES}),
+    ],
+)  # fmt: skip
+def test_export_of_a_directory(
+    command: Command, aims: Path, tmp_path: Path, options: tuple[str, ...], expected: Callable[[], dict[str, bytes]]
+) -> None:
+    ran = command("export", aims, *options, "-o", tmp_path / "new", "--json")
+    assert ran.code == 0
+    files = {path.name: path.read_bytes() for path in (tmp_path / "new").iterdir()}
+    assert files == expected()
+    assert {Path(name).name for name in json.loads(ran.out)["files"]} == set(files)
+
+
+def test_export_of_one_file(command: Command, aims: Path, tmp_path: Path) -> None:
+    assert command("export", aims / "tables" / "c.json", "--format", "c", "-o", tmp_path / "c").code == 0
+    assert (tmp_path / "c" / "aim_table.c").read_bytes() == aim_c_files(AimTables(TABLES[:1]))["aim_table.c"]
+
+
+def test_verify_reads_what_export_writes(command: Command, aims: Path) -> None:
+    for form in ("c", "st"):
+        assert command("export", aims, "--format", form, "--prefix", "PARK", "-o", aims / form).code == 0
+    assert command("export", aims, "--format", "csv", "-o", aims / "tables").code == 0
+    ran = command("verify", aims)
+    assert (ran.code, ran.err) == (0, "")
+    assert ran.out.splitlines()[-1] == "3 tables, 9 files: nothing found"
+    told = command("inspect", aims)
+    assert f"{aims / 'c' / 'park_aim_table.h'}: aim tables in C99; verify compares them" in told.out
+    assert f"{aims / 'st' / 'park_aim_table.st'}: aim tables in Structured Text" in told.out
+    assert command("inspect", aims / "c" / "park_aim_table.c").code == 0
+    code = aims / "c" / "park_aim_table.c"
+    code.write_text(code.read_text().replace("{1u, 2u, 3u, 5u, 8u}", "{1u, 2u, 3u, 5u, 9u}", 1))
+    ran = command("verify", aims)
+    assert ran.code == 3
+    assert "c/park_aim_table.c: word 12 of table 0 is 00000009" in ran.out
+
+
+def refused(command: Command, *arguments: object) -> tuple[int, str]:
+    ran = command(*arguments)
+    assert ran.out == ""
+    assert ran.err.count("\n") == 1
+    return ran.code, ran.sentence
+
+
+def test_damage_and_faults_of_use_are_told_in_one_sentence(command: Command, aims: Path, tmp_path: Path) -> None:
+    bad = aims / "tables" / "c.json"
+    bad.write_bytes(bad.read_bytes().replace(b"0.012", b"0.013"))
+    for words in (("inspect", aims), ("export", aims, "--format", "c", "-o", tmp_path / "x")):
+        code, sentence = refused(command, *words)
+        assert code == 3
+        assert sentence.startswith(f"{bad}: crc32 is ")
+    write_aim_json(replace(TABLES[0], position=ParkPosition("other", 1.0)), bad)
+    code, sentence = refused(command, "export", aims, "--format", "st", "-o", tmp_path / "x")
+    assert code == 2
+    assert "or they end elsewhere, but a set serves one position: export them apart" in sentence
+    write_aim_json(replace(TABLES[2], id="СТ"), bad)
+    code, sentence = refused(command, "export", aims, "--format", "c", "-o", tmp_path / "x")
+    assert code == 2
+    assert "are both for the category СТ by it alone" in sentence
+    code, sentence = refused(command, "export", aims, "--format", "c", "--prefix", "Park_AIM", "-o", tmp_path / "x")
+    assert (code, "must not end with AIM" in sentence) == (2, True)
+    (tmp_path / "empty").mkdir()
+    assert refused(command, "export", tmp_path / "empty", "--format", "c")[0] == 2
+    assert refused(command, "plot", aims)[0] == 2
+    assert refused(command, "plot", aims / "tables" / "b.json")[0] == 3
+    assert not (tmp_path / "x").exists()
+
+
+def test_tables_of_both_kinds_in_one_directory(command: Command, aims: Path, tmp_path: Path) -> None:
+    """Commands for controller tables leave aim tables alone; inspect tells both; export of a directory is of aims."""
+    write_json(table_of("own", "Л", 22.0, FOUR_AXLES, 2.0), aims / "tables" / "own.json")
+    ran = command("inspect", aims, "--json")
+    assert [file["kind"] for file in json.loads(ran.out)["files"]] == ["table", "aim table", "aim table", "aim table"]
+    assert command("export", aims, "--format", "csv", "-o", tmp_path / "csv").code == 0
+    assert len(list((tmp_path / "csv").iterdir())) == 3
+    assert command("verify", aims).out.splitlines()[-1] == "4 tables, 4 files: nothing found"
+
+
+def test_equal_tables_make_equal_files(command: Command, aims: Path, tmp_path: Path) -> None:
+    made: list[AimTable] = [category_table(1.0), measured_table()]
+    assert [to_aim_json(table) for table in made] == [to_aim_json(table) for table in TABLES[:2]]
+    for place in ("a", "b"):
+        assert command("export", aims, "--format", "st", "-o", tmp_path / place).code == 0
+    assert {f.name: f.read_bytes() for f in (tmp_path / "a").iterdir()} == {
+        f.name: f.read_bytes() for f in (tmp_path / "b").iterdir()
+    }

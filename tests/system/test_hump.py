@@ -1,0 +1,114 @@
+"""The commands `hump`: what they tell, what they write, what they refuse."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import synth
+from plant_models.library.hump_schema import hump_schema
+from synth.faults.input_error import InputError
+from tests.plant_models.hump.test_hump_file import SMALL
+from tests.system.conftest import Command
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    path = tmp_path / "small.toml"
+    path.write_text(SMALL)
+    return path
+
+
+def test_check_tells_what_is_there_and_what_is_missing(command: Command, file: Path) -> None:
+    run = command("hump", "check", file, "--json")
+    found = json.loads(run.out)
+    assert (run.code, found["tracks"], found["switches"], found["retarders"]) == (0, 2, 1, 1)
+    assert found["retarders_without_book"] == found["retarders_without_aim_tables"] == [401]
+    assert found["numbers"] == {"cited": 1, "assumed": 22, "without_source": 0}
+    words = command("hump", "check", file).out
+    assert "tracks: 2; switches: 1; retarder positions: 1" in words
+    assert "retarders without a controller book: 401" in words
+
+
+def test_a_named_book_must_be_there(command: Command, file: Path) -> None:
+    file.write_text(
+        SMALL.replace('position = "knp-5-bunch"', 'position = "knp-5-bunch"\nbook = "b.h5"\naim_tables = ["a.json"]')
+    )
+    run = command("hump", "check", file)
+    assert run.code == 2
+    assert run.sentence == f"{file}: retarder 401: book names b.h5, and there is no such file; make it, or take it out"
+    file.with_name("b.h5").touch()
+    assert "aim_tables names a.json" in command("hump", "check", file).sentence
+    file.with_name("a.json").touch()
+    found = json.loads(command("hump", "check", file, "--json").out)
+    assert found["retarders_without_book"] == found["retarders_without_aim_tables"] == []
+
+
+def test_routes(command: Command, file: Path) -> None:
+    found = json.loads(command("hump", "routes", file, "--json").out)
+    assert [(route["track"], route["code"], route["length_m"]) for route in found["routes"]] == [
+        (1, "0", 442.0),
+        (2, "1", 402.0),
+    ]
+    assert found["switches"] == [{"number": 1, "left_tracks": [1], "right_tracks": [2]}]
+    first = found["routes"][0]["elements"]
+    assert first[1] == {"number": 1, "at_m": 42.0, "section_m": [36.0, 47.0], "position": 0, "fouling_m": 68.0}
+    lines = command("hump", "routes", file).out.splitlines()
+    assert "signal 201, track 2, code 1: 201 0, 1 right 42, 602 102, end 402" in lines
+    assert lines[-1] == "switch 1: left to tracks 1; right to tracks 2"
+
+
+def test_draw(command: Command, file: Path, tmp_path: Path) -> None:
+    run = command("hump", "draw", file, "-o", tmp_path / "out", "--track", "2", "--json")
+    assert run.code == 0
+    assert json.loads(run.out)["track"] == 2
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"small-hump.png", "small-hump.svg"}
+    refused = command("hump", "draw", file, "-o", tmp_path / "none", "--track", "3")
+    assert refused.code == 2
+    assert refused.sentence == "--track is 3; the hump has the tracks 1 to 2"
+    assert not (tmp_path / "none").exists()
+
+
+def test_export_as_railml_and_read_it(command: Command, file: Path, tmp_path: Path) -> None:
+    target = tmp_path / "small.railml"
+    assert command("hump", "export", file, "-o", target).code == 0
+    assert command("hump", "routes", target).out == command("hump", "routes", file).out
+    target.write_text(target.read_text().replace("<signalsIS>", "<speeds/><signalsIS>"))
+    assert "read over: speeds (1)" in command("hump", "check", target).out
+    assert "must end with .railml" in command("hump", "export", file, "-o", tmp_path / "small.txt").sentence
+
+
+def test_the_schema_is_printed(command: Command) -> None:
+    assert json.loads(command("hump", "schema").out) == hump_schema()
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("bad.toml", SMALL.replace("to = 602", "to = 603"), "bad.toml, line 22: switch 1: an edge leads to 603"),
+        ("bad.toml", SMALL + "[", "not valid TOML"),
+        ("bad.toml", "", "key format is missing"),
+        ("bad.railml", "<railML/>", "its root is railML"),
+        ("bad.railml", "<a", "not valid XML"),
+    ],
+)
+def test_a_bad_file_is_told_in_one_sentence(command: Command, tmp_path: Path, name: str, text: str, words: str) -> None:
+    (tmp_path / name).write_text(text)
+    for verb in ("check", "routes", "draw"):
+        run = command("hump", verb, tmp_path / name)
+        assert (run.code, run.out) == (2, "")
+        assert words in run.sentence
+
+
+def test_from_python(file: Path) -> None:
+    assert synth.load_hump(file).graph.route(201, 1).code == "0"
+    assert synth.load_hump("large").graph.tracks == tuple(range(1, 33))
+    with pytest.raises(InputError, match="there is no such file, and no such hump in the library"):
+        synth.load_hump("lage")
+
+
+def test_names_of_the_library(command: Command) -> None:
+    assert "tracks: 32;" in command("hump", "check", "large").out
+    assert "did you mean large?" in command("hump", "check", "lage").sentence

@@ -1,0 +1,254 @@
+"""The Structured Text of aim tables, run from its parse tree: bit for bit the Python rule; what its self-test finds."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.tuning_tables.aim.hard_questions import answers, hard_questions, sample_set
+from tests.tuning_tables.aim.made_tables import category_table, measured_table, reported_of
+from tests.tuning_tables.st.evaluator import Program
+from tests.tuning_tables.st.storage import Fault, Real
+from tests.tuning_tables.st.syntax import faults, parse, walk
+from tests.tuning_tables.st.test_syntax import KEYWORDS
+from tuning_tables.aim import AimAxes, AimCategory, AimTable, AimTables
+from tuning_tables.aim.golden_aims import few_golden_aims, golden_aims, golden_selections
+from tuning_tables.aim.st_source import AIM_FILE, AIM_SELF_TEST_FILE, aim_st_files, aim_st_unit_files
+from tuning_tables.export_prefix import RETARDER, ExportPrefix
+
+QUESTIONS = 200_000
+SOUND = {"DONE": 1, "FAILED": 0, "FIRSTFAILED": -1, "FIRSTFAULT": -1}
+
+
+@pytest.mark.parametrize("real", [np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
+def test_hard_questions_are_answered_as_by_python_to_the_last_bit(real: Real) -> None:
+    aims = sample_set()
+    asked = hard_questions(aims, QUESTIONS, 20261123)
+    asked["cars"] = np.clip(asked["cars"], -32768, 32767)  # an INT has 16 bits
+    program = Program(aim_st_files(aims)[AIM_FILE], real)
+    right = answers(aims, asked)
+    for number in range(len(aims.tables)):
+        here = asked[asked["table"] == number]
+        block = program.new("AIM_EXIT_SPEED")
+        program.call(
+            "AIM_EXIT_SPEED", block, TableNo=number, Cars=here["cars"].astype(np.int64),
+            FreeDistance_m=here["distance"], Resistance=here["resistance"],
+        )  # fmt: skip
+        found = block["EXITSPEED_M_S"].value
+        assert np.array_equal(found.view(np.uint32), right[asked["table"] == number].view(np.uint32))
+
+
+def test_the_table_may_change_from_call_to_call() -> None:
+    aims = sample_set()
+    asked = hard_questions(aims, 3000, 5)
+    asked["cars"] = np.clip(asked["cars"], 1, 40)
+    program = Program(aim_st_files(aims)[AIM_FILE])
+    block = program.new("AIM_EXIT_SPEED")
+    for row, right in zip(asked[:300], answers(aims, asked[:300]), strict=True):
+        table, cars, distance, resistance = row
+        program.call(
+            "AIM_EXIT_SPEED", block, TableNo=int(table), Cars=int(cars), FreeDistance_m=distance, Resistance=resistance
+        )
+        assert np.float32(block["EXITSPEED_M_S"].value).view(np.uint32) == right.view(np.uint32)
+
+
+@pytest.mark.parametrize("number", [-32768, -1, 3, 32767])
+def test_no_such_table_gives_no_answer(number: int) -> None:
+    program = Program(aim_st_files(small_set())[AIM_FILE])
+    block = program.new("AIM_EXIT_SPEED")
+    for table, answered in ((0, True), (number, False)):
+        program.call("AIM_EXIT_SPEED", block, TableNo=table, Cars=3, FreeDistance_m=60.0, Resistance=2.0)
+        assert (block["EXITSPEED_M_S"].value > 0.0) is np.bool_(answered)
+
+
+def test_every_selection() -> None:
+    aims = sample_set()
+    program = Program(aim_st_files(aims)[AIM_FILE])
+    block = program.new("AIM_SELECT")
+    for category, measured, number in golden_selections(aims):
+        program.call("AIM_SELECT", block, Category=category, Measured=np.bool_(measured))
+        assert block["TABLENO"].value == number
+
+
+def small_table(measured: bool) -> AimTable:
+    """Two numbers of cars, three distances, two resistances, and one null."""
+    speeds = np.array([[[0.9, 1.1], [1.0, 1.4], [np.nan, 1.7]], [[0.95, 1.2], [1.1, 1.5], [1.3, 1.9]]])
+    axes = AimAxes(np.array([1, 3]), np.array([10.0, 25.0, 60.0]), np.array([0.3, 1.7]) if measured else None)
+    speeds = speeds if measured else speeds[:, :, 0]
+    source = measured_table() if measured else category_table()
+    return replace(source, axes=axes, exit_speed_m_s=speeds, reported=reported_of(speeds))
+
+
+def small_set() -> AimTables:
+    return AimTables((small_table(False), small_table(True), category_table(1.5, 4, "СТ")))
+
+
+def run_all(
+    files: Mapping[str, bytes], calls: int, change: Callable[[str], str] = str, real: Real = np.float32
+) -> dict[str, int]:
+    """The outputs after that many calls of AIM_SELF_TEST, with the text of the tables changed."""
+    texts = change(files[AIM_FILE].decode("ascii")), files[AIM_SELF_TEST_FILE].decode("ascii")
+    program = Program("".join(texts).encode("ascii"), real)
+    instance = program.new("AIM_SELF_TEST")
+    for _ in range(calls):
+        program.call("AIM_SELF_TEST", instance, Restart=False)
+    return {name: int(instance[name].value) for name in SOUND}
+
+
+@pytest.mark.parametrize("real", [np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
+def test_nothing_is_wrong_with_the_export(real: Real) -> None:
+    for aims in (small_set(), AimTables(sample_set().tables[:8])):
+        for ask in (golden_aims, few_golden_aims):
+            assert run_all(aim_st_files(aims, RETARDER, ask), len(aims.tables) + 1, real=real) == SOUND
+
+
+def test_it_takes_a_call_a_table_and_can_be_repeated() -> None:
+    program = Program(b"".join(aim_st_files(small_set()).values()))
+    instance = program.new("AIM_SELF_TEST")
+    seen = []
+    for restart in (False, False, False, False, False, True, False, False, False):
+        program.call("AIM_SELF_TEST", instance, Restart=restart)
+        seen.append(bool(instance["DONE"].value))
+    assert seen == [False, False, False, True, True, False, False, False, True]
+
+
+def constants_in(text: str) -> Iterator[tuple[int, int]]:
+    """Spans of all numbers in constant arrays."""
+    number = re.compile(r"-?\d+\.\d+(?:E[+-]\d+)?|-?\d+|TRUE|FALSE")
+    for array in re.finditer(r"^    \w+ : ARRAY\[.*?:= \[(.*?)\];", text, re.MULTILINE | re.DOTALL):
+        yield from (found.span() for found in number.finditer(text, *array.span(1)))
+
+
+def another(literal: str) -> str:
+    """A literal of the same kind, and another value; a REAL by one float32 step."""
+    if literal in ("TRUE", "FALSE"):
+        return "FALSE" if literal == "TRUE" else "TRUE"
+    if "." not in literal:
+        return str(int(literal) + 1)
+    if float(literal) < 0.0:
+        return literal[1:]  # any speed below 0 stands for none
+    return f"{np.nextafter(np.float32(literal), np.float32(np.inf)):.9E}" if float(literal) else "1.0E-01"
+
+
+@pytest.mark.parametrize("ask", [golden_aims, few_golden_aims])
+def test_every_changed_constant_is_found(ask: Callable[..., object]) -> None:
+    aims = AimTables((small_table(False), small_table(True)))
+    files = aim_st_files(aims, RETARDER, ask)  # type: ignore[arg-type]  # one of the two
+    spans = list(constants_in(files[AIM_FILE].decode("ascii")))
+    assert len(spans) == 2 * (4 + 2 + 2 + 3) + 2 + 6 + 12
+    for begin, end in spans:
+
+        def change(text: str, begin: int = begin, end: int = end) -> str:
+            return text[:begin] + another(text[begin:end]) + text[end:]
+
+        with contextlib.suppress(Fault):  # an index out of its array: a controller stops
+            assert run_all(files, 3, change)["FAILED"] > 0, files[AIM_FILE][begin - 60 : end]
+
+
+def swapped_operators(code: str) -> Iterator[str]:
+    """The code with one operator of an assignment or comparison turned into another, each in its turn."""
+    swapped = {"+": "-", "-": "+", "*": "/", "/": "*", "<": "<=", ">": ">=", "<=": "<", ">=": ">"}
+    for match in re.finditer(r" ([-+*/<>]|[<>]=) ", code):
+        if code.rfind("(*", 0, match.start()) < code.rfind("*)", 0, match.start()):
+            yield f"{code[: match.start()]} {swapped[match[1]]} {code[match.end() :]}"
+
+
+SAME = {
+    "IF Axes.Resistances >= 0 THEN",
+    "IF FreeDistance_m > Axes.Distance_m[Index] THEN",
+    "IF (Resistance >= Axes.Resistance[Lower]) AND (Lower < Axes.Resistances - 1) THEN",
+    *(
+        "Sound := " + " AND ".join(f"(Speed[{node}] {'>' if node == changed else '>='} 0.0)" for node in range(4)) + ";"
+        for changed in range(4)
+    ),
+    *(f"IF {a} <= {b} THEN" for a, b in (("Speed[0]", "Speed[1]"), ("Speed[2]", "Speed[3]"), ("First", "Second"))),
+    *(
+        f"{begin} {a} {relation}= {b} THEN"
+        for begin, relation in (("IF", ">"), ("ELSIF", "<"))
+        for a, b in (("First", "Speed[1]"), ("Second", "Speed[3]"), ("Answer", "Second"))
+    ),
+    "IF (Side = Row) OR (Answer <= ExitSpeed_m_s) THEN",
+}
+"""Changed comparisons that change no answer: what happens to equal numbers is the same, and no speed is 0."""
+
+
+@pytest.mark.slow
+def test_every_wrong_operation_is_found() -> None:
+    """By the self-test, or by an operation or index that has no result; but what changes no answer."""
+    level = np.full((5, 7), 1.5)
+    flat = replace(category_table(0.6, 2, "ЛС"), exit_speed_m_s=level, reported=reported_of(level))
+    files = aim_st_files(AimTables((small_table(True), category_table(1.5, 4, "СТ"), flat)))
+    text = files[AIM_FILE].decode("ascii")
+    begin = text.index("END_VAR\n\nExitSpeed_m_s")
+    whole = {line.strip() for line in text.splitlines()}
+
+    def failed(code: str) -> bool:
+        try:
+            return run_all(files, 4, lambda _: text[:begin] + code)["FAILED"] > 0
+        except Fault:
+            return True
+
+    assert not failed(text[begin:])
+    changes = list(swapped_operators(text[begin:]))
+    assert len(changes) > 60
+    missed = {line.strip() for code in changes if not failed(code) for line in code.splitlines()} - whole
+    assert missed == SAME
+
+
+def test_the_text_is_plain_structured_text_without_keywords() -> None:
+    for aims in (sample_set(), small_set(), AimTables((category_table(),))):
+        files = aim_st_files(aims)
+        assert list(files) == [AIM_FILE, AIM_SELF_TEST_FILE]
+        for text in files.values():
+            assert faults(parse(text)) == []
+            lines = text.decode("ascii").split("\n")
+            assert lines[-1] == ""
+            assert all(line == line.rstrip() and line.isprintable() and len(line) <= 120 for line in lines)
+            names = {node.text.decode("ascii").upper() for node in walk(parse(text)) if node.type == "identifier"}
+            assert names & set(KEYWORDS.split()) == set()
+            assert all(len(name) <= 32 - 11 and "__" not in name and not name.endswith("_") for name in names)
+            assert max(int(end) for end in re.findall(rb"ARRAY\[0\.\.(\d+)\]", text)) < 999
+        assert files == aim_st_files(AimTables(aims.tables))
+
+
+def test_the_largest_table_is_exported() -> None:
+    axes = AimAxes(np.arange(1, 21), np.arange(1.0, 112.0), np.arange(9.0))
+    speeds = np.broadcast_to(np.linspace(0.5, 7.0, 111)[:, None], axes.shape).copy()
+    table = replace(measured_table(), axes=axes, exit_speed_m_s=speeds, reported=reported_of(speeds))
+    program = Program(b"".join(aim_st_files(AimTables((table,)), RETARDER, few_golden_aims).values()))
+    assert "AIM_SELF_TEST" in program.blocks
+    assert table.speed_nodes.size + len(golden_aims(table)) < 32767  # what an INT counts
+
+
+def test_units_in_files_of_their_own_are_the_same_text() -> None:
+    aims, prefix = small_set(), ExportPrefix("Park_2")
+    whole, units = aim_st_files(aims, prefix), aim_st_unit_files(aims, prefix)
+    assert list(whole) == ["park_2_aim_table.st", "park_2_aim_self_test.st"]
+    assert list(units)[:4] == [
+        "0001_PARK_2_AIM_AXES.st", "0002_PARK_2_AIM_LOAD.st", "0003_PARK_2_AIM_SELECT.st",
+        "0004_PARK_2_AIM_EXIT_SPEED.st",
+    ]  # fmt: skip
+    joined = "\n".join(text.decode("ascii") for text in units.values())
+    for text in whole.values():
+        blocks = re.findall(r"^FUNCTION_BLOCK.*?^END_FUNCTION_BLOCK$", text.decode("ascii"), re.MULTILINE | re.DOTALL)
+        assert len(blocks) >= 3
+        assert all(block in joined for block in blocks)
+    assert not re.search(r"(?i)\baim_", joined)
+    plain = {name: text.replace(b"PARK_2_AIM_", b"AIM_") for name, text in whole.items()}
+    assert [text.replace(b"park_2_aim_", b"aim_") for text in plain.values()] == list(aim_st_files(aims).values())
+
+
+def test_as_many_tables_as_there_are_categories_are_exported() -> None:
+    made = [
+        replace(small_table(measured), id=f"{n} {measured}", category=AimCategory(16 + n, f"own {n}"))
+        for n in range(240)
+        for measured in (False, True)
+    ]
+    text = aim_st_files(AimTables(tuple(made)))[AIM_FILE]
+    assert faults(parse(text)) == []
+    assert b"Speed_959 : ARRAY" in text

@@ -1,0 +1,87 @@
+"""The axes of an aim table: for which numbers of cars, free distances and measured resistances it has nodes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from tuning_tables.aim.nodes import Nodes, nodes_of
+from tuning_tables.errors import InvalidTable
+
+MOST_CARS: Final = 1000
+MOST_NUMBERS_OF_CARS: Final = 64
+LONGEST_FREE_DISTANCE_M: Final = 1e4
+LARGEST_RESISTANCE_N_PER_KN: Final = 1e3
+LEAST_STEP: Final = 1e-3
+"""Between neighbours of an axis, as float32: m, N/kN."""
+
+MOST_NODES_OF_A_CUT: Final = 999
+"""Free distances times resistances: what one constant array of Structured Text holds."""
+
+MOST_NODES: Final = 20_000
+"""So that a JSON file stays below its limit, and an INT of Structured Text counts them."""
+
+
+@dataclass(frozen=True, eq=False)
+class AimAxes:
+    """Three axes, each rising; read-only copies of what is given.
+
+    cars                 whole numbers, 1 to 1000, at most 64 of them, (C,)
+    free_distance_m      what the head of the cut has still to roll to the standing cars when its last axle leaves the
+                         position, 0 to 10 000 m, (D,)
+    resistance_n_per_kn  measured rolling resistance, within +-1000 N/kN, (R,); None in a table by category alone
+
+    Free distances and resistances are 0.001 apart at least, as float32; D times R is 999 at most, C times that
+    20 000.
+
+    Raises `InvalidTable`.
+    """
+
+    cars: npt.NDArray[np.int64]
+    free_distance_m: Nodes
+    resistance_n_per_kn: Nodes | None = None
+
+    def __post_init__(self) -> None:
+        cars = np.array(self.cars)
+        if cars.dtype.kind not in "iu" or cars.ndim != 1 or not 1 <= len(cars) <= MOST_NUMBERS_OF_CARS:
+            raise InvalidTable(f"axes.cars must hold 1 to {MOST_NUMBERS_OF_CARS} whole numbers.")
+        if cars[0] < 1 or cars[-1] > MOST_CARS or not (cars[1:] > cars[:-1]).all():
+            raise InvalidTable(f"axes.cars is {cars.tolist()!r:.60}, but it must rise strictly, from 1 to {MOST_CARS}.")
+        cars = cars.astype(np.int64)
+        cars.setflags(write=False)
+        object.__setattr__(self, "cars", cars)
+        distance_m = _axis(self.free_distance_m, "axes.free_distance_m", (0.0, LONGEST_FREE_DISTANCE_M))
+        object.__setattr__(self, "free_distance_m", distance_m)
+        if self.resistance_n_per_kn is not None:
+            limits = (-LARGEST_RESISTANCE_N_PER_KN, LARGEST_RESISTANCE_N_PER_KN)
+            resistance = _axis(self.resistance_n_per_kn, "axes.resistance_n_per_kn", limits)
+            object.__setattr__(self, "resistance_n_per_kn", resistance)
+        count = int(np.prod(self.shape[1:]))
+        if count > MOST_NODES_OF_A_CUT or count * len(cars) > MOST_NODES:
+            raise InvalidTable(
+                f"axes give {count} nodes for each of {len(cars)} numbers of cars, but at most {MOST_NODES_OF_A_CUT} "
+                f"are allowed, and {MOST_NODES} in all: take fewer free distances or resistances."
+            )
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """(C, D), or (C, D, R) of a table by measured resistance: that of everything at its nodes."""
+        both = (len(self.cars), len(self.free_distance_m))
+        return both if self.resistance_n_per_kn is None else (*both, len(self.resistance_n_per_kn))
+
+
+def _axis(values: npt.ArrayLike, key: str, limits: tuple[float, float]) -> Nodes:
+    """The axis at `key`, checked."""
+    shape = np.shape(values)
+    if len(shape) != 1 or shape[0] < 1:
+        raise InvalidTable(f"{key} must hold one number at least, in one row.")
+    axis = nodes_of(values, key, shape)
+    if not (np.isfinite(axis).all() and limits[0] <= axis.min() and axis.max() <= limits[1]):
+        raise InvalidTable(f"{key} must hold numbers in [{limits[0]:g}, {limits[1]:g}].")
+    steps = np.diff(axis.astype(np.float32))
+    if (np.diff(axis) <= 0.0).any() or (steps < np.float32(LEAST_STEP)).any():
+        raise InvalidTable(f"{key} is {axis.tolist()!r:.60}, but it must rise, by {LEAST_STEP:g} at least.")
+    return axis
