@@ -17,8 +17,8 @@ class PracticeRules:
     point; None: no such rule. `lone_axle_s`: counters that contradict each other on a free section are put right after
     this time, if the next section counted the whole cut (filter of lone axles). `usual_base_m`, `longest_base_m`: no
     car has more between two axles, the latter if its cut has the mark long-base; a longer gap in a cut is a wrong
-    uncoupling. `coupled_gap_m`: the last and the first axle of two
-    coupled cars are no further apart. `slowest_m_s`: moving cuts are no slower.
+    uncoupling. `coupled_gap_m`: the last and the first axle of two coupled cars are no further apart. `bogie_m`:
+    between the axles of a bogie. `slowest_m_s`: moving cuts are no slower.
     """
 
     counters: bool = True
@@ -27,6 +27,7 @@ class PracticeRules:
     usual_base_m: float = 12.0
     longest_base_m: float = 30.0
     coupled_gap_m: float = 6.0
+    bogie_m: float = 1.85
     slowest_m_s: float = 2.0
 
     def __post_init__(self) -> None:
@@ -36,6 +37,7 @@ class PracticeRules:
         require_between("rules: longest_base_m", self.longest_base_m, 5.0, 60.0)
         require_between("rules: usual_base_m", self.usual_base_m, 2.0, self.longest_base_m)
         require_between("rules: coupled_gap_m", self.coupled_gap_m, 2.0, 20.0)
+        require_between("rules: bogie_m", self.bogie_m, 1.0, 4.0)
         require_between("rules: slowest_m_s", self.slowest_m_s, 0.1, 10.0)
 
     @property
