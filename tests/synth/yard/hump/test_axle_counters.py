@@ -125,7 +125,7 @@ def test_a_gap_is_judged_by_the_speeds_of_both_axles(
 
 
 @pytest.mark.parametrize(
-    ("gap_m", "after_m_s", "told_many"), [(5.5, 4.0, True), (6.5, 4.0, False), (12.0, 1.0, False), (4.5, 6.0, True)]
+    ("gap_m", "after_m_s", "told_many"), [(5.5, 4.0, True), (6.5, 4.0, False), (13.0, 1.0, False), (4.5, 6.0, True)]
 )
 def test_the_gap_between_two_cuts_tells_whether_they_are_coupled(
     gap_m: float, after_m_s: float, told_many: bool
