@@ -151,10 +151,10 @@ class SectionCounter:
         gap_m = speed_m_s * apart_s
         if ahead.cut == axle.cut and gap_m > ahead.base_m:
             yield from self._once(Kind.TOO_FEW_AXLES, axle.cut, ahead.still)
-        # The last two axles ahead are those of a bogie: measured by it at the joint, what comes later cannot deceive; half
-        # is left for speed that changes in the gap itself.
-        by_bogie_m = 0.5 * self._rules.bogie_m * apart_s / ahead.after_s
-        if ahead.cut != axle.cut and max(gap_m, by_bogie_m) < self._rules.coupled_gap_m:
+        # The last two axles ahead are those of a bogie: by its measure at the joint, no later braking deceives. Half of
+        # it is left for speeds that change in the gap itself.
+        near_by_bogie = 0.5 * self._rules.bogie_m * apart_s < self._rules.coupled_gap_m * ahead.after_s
+        if ahead.cut != axle.cut and gap_m < self._rules.coupled_gap_m and near_by_bogie:
             yield from self._once(Kind.TOO_MANY_AXLES, ahead.cut, axle.cut)
 
     def check(self, now_s: float, free_since_s: float, passed: Callable[[int], bool]) -> Iterator[Finding]:

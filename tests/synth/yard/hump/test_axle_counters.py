@@ -156,3 +156,11 @@ def test_a_lone_axle_is_dropped_only_after_quiet() -> None:
     for now_s, clear in ((100.1, False), (114.9, False), (115.1, True)):
         list(counter.check(now_s, 0.0, lambda cut: False))
         assert counter.is_clear == clear
+
+
+def test_an_axle_counted_twice_ahead_of_a_gap_is_no_division_by_zero() -> None:
+    counter = SectionCounter(8.0, True, PracticeRules(), True)
+    counter.expect(1, 2, 12.0)
+    counter.expect(2, 1, 12.0)
+    passes = [(0.0, True), (0.0, True), (1.0, True), (2.0, False), (2.0, False), (3.0, False)]
+    assert [finding.kind for finding in found(counter, passes)] == [Kind.CATCH_UP]
