@@ -116,7 +116,7 @@ def test_tasks_and_rules_refuse_what_cannot_be() -> None:
     with pytest.raises(PlantError, match="longest_base_m"):
         PracticeRules(longest_base_m=1.0)
     with pytest.raises(PlantError, match="usual_base_m"):
-        PracticeRules(usual_base_m=30.0)
+        PracticeRules(usual_base_m=31.0)
 
 
 def test_a_zone_brakes_from_its_begin_to_its_end() -> None:
