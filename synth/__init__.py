@@ -30,16 +30,32 @@ if TYPE_CHECKING:
     from synth.problem.criterion import Criterion
     from synth.problem.problem import Problem
     from synth.problem.resolution import Resolution
+    from synth.yard.hump.event_file import read_events, write_events
+    from synth.yard.hump.hump_control import HumpControl, Operation
+    from synth.yard.hump.hump_state import replayed
+    from synth.yard.hump.machine_record import machine_record, record_of_word
+    from synth.yard.hump.moving_cut import moving_cut
+    from synth.yard.hump.practice_rules import PracticeRules
+    from synth.yard.hump.reference_track import ReferenceTrack
+    from synth.yard.hump.route_table import RouteTable
+    from synth.yard.hump.sorting_list_file import load_sorting_list
+    from synth.yard.hump.train_population import TrainPopulation
 
 __all__ = [
     "Aim",
     "Criterion",
     "EntrySpeed",
     "FittedLines",
+    "HumpControl",
+    "Operation",
     "Plant",
+    "PracticeRules",
     "Problem",
+    "ReferenceTrack",
     "Resolution",
+    "RouteTable",
     "Simulated",
+    "TrainPopulation",
     "car_names",
     "fit",
     "load_car",
@@ -47,15 +63,22 @@ __all__ = [
     "load_hump",
     "load_position",
     "load_problem",
+    "load_sorting_list",
     "load_weight_categories",
+    "machine_record",
+    "moving_cut",
     "plot_passes",
     "plot_table",
     "position_names",
     "predict",
+    "read_events",
+    "record_of_word",
+    "replayed",
     "simulate",
     "solve",
     "tabulate",
     "trace",
+    "write_events",
 ]
 
 _LIBRARY = ("car_names", "load_car", "load_position", "load_weight_categories", "position_names")
@@ -69,6 +92,19 @@ _HOMES = {
     "Problem": "synth.problem.problem",
     "Resolution": "synth.problem.resolution",
     "load_hump": "synth.configuration.hump",
+    "HumpControl": "synth.yard.hump.hump_control",
+    "Operation": "synth.yard.hump.hump_control",
+    "PracticeRules": "synth.yard.hump.practice_rules",
+    "ReferenceTrack": "synth.yard.hump.reference_track",
+    "RouteTable": "synth.yard.hump.route_table",
+    "TrainPopulation": "synth.yard.hump.train_population",
+    "load_sorting_list": "synth.yard.hump.sorting_list_file",
+    "machine_record": "synth.yard.hump.machine_record",
+    "moving_cut": "synth.yard.hump.moving_cut",
+    "read_events": "synth.yard.hump.event_file",
+    "record_of_word": "synth.yard.hump.machine_record",
+    "replayed": "synth.yard.hump.hump_state",
+    "write_events": "synth.yard.hump.event_file",
 }
 """Where a public name is defined, if not in `synth.api`."""
 

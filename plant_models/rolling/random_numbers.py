@@ -22,6 +22,8 @@ class Purpose(IntEnum):
     EXIT_ERROR = 6
     FRICTION = 7
     RECORDS = 8
+    TRAIN = 9
+    TRAIN_CARS = 10
 
 
 def uniform_numbers(seed: int, purpose: Purpose, first: int, count: int, columns: int) -> NDArray[np.float64]:

@@ -1,0 +1,86 @@
+"""Random trains with random faults on random humps: what must never happen, and what the counters find.
+
+Every example is a hump, a train and faults of its own. `many_trains` humps 100 000 of them by hand.
+"""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from synth.yard.hump.axle_counters import AxleCounters
+from synth.yard.hump.cut_record import Mark
+from synth.yard.hump.event import Kind
+from synth.yard.hump.event_log import events_of_csv, to_log_csv
+from synth.yard.hump.hump_state import replayed
+from synth.yard.hump.misrouting import Misrouting
+from tests.synth.yard.hump.judged_trains import Humping, Scene, judgement, random_humping
+from tests.synth.yard.hump.many_trains import SCENES
+
+SEEDS = st.integers(0, 2**32 - 1)
+NEVER = ("thrown under", "lost", "silent counters", "other states")
+FOUND = ("catch-ups missed", "catch-ups false", "wrong uncouplings missed", "wrong uncouplings false")
+SENSORS_ARE_RIGHT = [name for name, scene in SCENES.items() if scene.faults == 0 or scene.points_alone]
+
+
+@pytest.mark.parametrize("name", SCENES)
+@settings(max_examples=40)
+@given(seed=SEEDS)
+def test_no_points_under_a_cut_no_cut_lost_no_silent_counter_and_the_log_replays(name: str, seed: int) -> None:
+    judged = judgement(random_humping(seed, SCENES[name]))
+    assert {key: judged[key] for key in NEVER} == dict.fromkeys(NEVER, 0)
+    assert judged["cuts"] > 0
+
+
+@pytest.mark.parametrize("name", SENSORS_ARE_RIGHT)
+@settings(max_examples=40)
+@given(seed=SEEDS)
+def test_with_right_sensors_none_is_missed_and_none_is_false(name: str, seed: int) -> None:
+    judged = judgement(random_humping(seed, SCENES[name]))
+    assert {key: judged[key] for key in FOUND} == dict.fromkeys(FOUND, 0)
+
+
+@settings(max_examples=20)
+@given(seed=SEEDS)
+def test_a_log_replays_from_its_file(seed: int) -> None:
+    humping = random_humping(seed, SCENES["all"])
+    events = humping.control.log.events
+    read = events_of_csv(to_log_csv(events), "log.csv")
+    assert read == events
+    assert replayed(read) == humping.control.state
+
+
+def total(scene: Scene, trains: int = 40) -> dict[str, int]:
+    """Sums over some trains."""
+    judged = [judgement(random_humping(seed, scene)) for seed in range(trains)]
+    return {key: sum(each[key] for each in judged) for key in judged[0]}
+
+
+def test_the_trains_are_no_easy_ones() -> None:
+    """There are catch-ups, wrong uncouplings, misrouted cuts, long cars and faults among them."""
+    counted = total(Scene(faults=3, wrong_share=0.15))
+    least = {"catch-ups": 100, "wrong uncouplings": 10, "misrouted": 30, "faults": 30}
+    assert all(counted[key] >= number for key, number in least.items()), counted
+    humpings = [random_humping(seed, Scene()) for seed in range(20)]
+    assert any(Mark.LONG_BASE in humping.cuts[0].marks for humping in humpings)
+    assert any(len({cut.lead for cut in humping.cuts}) == 2 for humping in humpings)
+
+
+def test_without_counters_points_are_thrown_under_cuts(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(AxleCounters, "is_clear", lambda self, element: True)
+    assert total(Scene(faults=3))["thrown under"] > 0
+
+
+def test_cuts_whose_misrouting_is_not_recorded_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Misrouting, "send", lambda self, cut, element, why, reachable, leader=0: ())
+    assert total(Scene(faults=3, points_alone=True))["lost"] > 0
+
+
+def test_a_missed_and_an_invented_catch_up_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    humping = random_humping(4, Scene())
+    true, told = humping.catch_ups()
+    assert true == told != set()
+    monkeypatch.setattr(Humping, "told", frozenset({(Kind.CATCH_UP, 9, 9, 0.0)}))
+    judged = judgement(humping)
+    assert (judged["catch-ups missed"], judged["catch-ups false"]) == (len(true), 1)
