@@ -154,7 +154,7 @@ def in_lanes(values: NDArray[Any]) -> NDArray[Any]:
 
 def side_by_side(part: Callable[[int, int], None], count: int, threads: int) -> None:
     """Call `part(first, last)` for all cuts, some at a time. Each is worked out alone, so threads change nothing."""
-    if count <= TOGETHER:
+    if count <= TOGETHER or threads == 1:
         part(0, count)
         return
     starts = range(0, count, TOGETHER)

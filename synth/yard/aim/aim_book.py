@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 
 import numpy as np
@@ -66,15 +66,18 @@ def aim_book(config: ResolvedAim, created: str, progress: Progress) -> AimBook:
     position = position_of(config)
     knowledges = tuple(knowledge_of(config, name) for name in config.aim.knowledge)
 
+    workers = min(config.simulation.threads or os.cpu_count() or 1, len(config.members))
+    scene = config.scene if workers == 1 else replace(config.scene, threads=1)
+
     def made_of(member: WeightCategory) -> list[MadeAim]:
-        found = aimed_speeds(config.scene, order_of(config, member, position), knowledges)
+        found = aimed_speeds(scene, order_of(config, member, position), knowledges)
         progress(f"category {member.name}: {told(config, found)}")
         return [
             MadeAim(member, name, speeds, table_of(config, speeds, name, generator, created))
             for name, speeds in zip(config.aim.knowledge, found, strict=True)
         ]
 
-    with ThreadPoolExecutor(config.simulation.threads or os.cpu_count() or 1) as pool:
+    with ThreadPoolExecutor(workers) as pool:
         return AimBook(config, created, tuple(made for each in pool.map(made_of, config.members) for made in each))
 
 

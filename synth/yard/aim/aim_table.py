@@ -41,7 +41,7 @@ class AimOrder:
     design_cuts: int
     report_cuts: int
     seed: int
-    checked_cuts: int = 5000
+    checked_cuts: int = 2000
 
     def __post_init__(self) -> None:
         require_between("aim: p_overspeed", self.requirement.p_overspeed, 1e-4, 0.9999)
@@ -104,8 +104,10 @@ def known_speeds(
 ) -> AimedSpeeds:
     """The table of one kind of knowledge."""
     nodes = knowledge.readings(spread) if isinstance(knowledge, ByReading) else None
-    made = [commands_of(order, knowledge, cuts, nodes) for cuts in by_cars]
-    errors = [errors_between(order, knowledge, cuts, nodes) for cuts in by_cars]
+    between = None if nodes is None else with_midways(nodes)
+    exact = [chosen(order, knowledge, cuts.design, cuts.thresholds_m_s, between) for cuts in by_cars]
+    made = [rounded_down(fine[:, :: 1 if nodes is None else 2]) for fine in exact]
+    errors = [errors_between(order, knowledge, cuts, nodes, fine) for cuts, fine in zip(by_cars, exact, strict=True)]
     figures = [
         figures_of(order, knowledge, cuts.report, commands, nodes) for cuts, commands in zip(by_cars, made, strict=True)
     ]
@@ -164,23 +166,21 @@ def chosen(
     return knowledge.commands_at(nodes, cuts, thresholds_m_s, order.requirement).speeds_m_s.T
 
 
-def commands_of(order: AimOrder, knowledge: ByCategory | ByReading, cuts: TableCuts, nodes: Floats | None) -> Floats:
-    """Commands (distances, readings), rounded down."""
-    exact = chosen(order, knowledge, cuts.design, cuts.thresholds_m_s, nodes)
-    return np.asarray(np.floor(exact / ROUNDED_M_S + 1e-9) * ROUNDED_M_S)
+def rounded_down(speeds_m_s: Floats) -> Floats:
+    """Speeds in whole millimetres a second, none of them faster."""
+    return np.asarray(np.floor(speeds_m_s / ROUNDED_M_S + 1e-9) * ROUNDED_M_S)
 
 
 def errors_between(
-    order: AimOrder, knowledge: ByCategory | ByReading, cuts: TableCuts, nodes: Floats | None
+    order: AimOrder, knowledge: ByCategory | ByReading, cuts: TableCuts, nodes: Floats | None, exact: Floats
 ) -> tuple[float, float]:
     """How far linear interpolation is above and below what is chosen midway between two distances, and between two
-    readings that are both the nearest of enough cuts."""
+    readings that are both the nearest of enough cuts; `exact` (distances, readings and midways)."""
     fine = chosen(order, ByCategory(), cuts.checked, cuts.checked_thresholds_m_s, None)
     errors = [0.5 * (fine[:-2:2] + fine[2::2]) - fine[1::2]]
     if nodes is not None and isinstance(knowledge, ByReading):
-        fine = chosen(order, knowledge, cuts.design, cuts.thresholds_m_s, with_midways(nodes))
         counted = np.bincount(nearest_node(knowledge, cuts.design, nodes), minlength=len(nodes)) >= FEWEST_IN_A_CELL
-        among = 0.5 * (fine[:, :-2:2] + fine[:, 2::2]) - fine[:, 1::2]
+        among = 0.5 * (exact[:, :-2:2] + exact[:, 2::2]) - exact[:, 1::2]
         errors.append(among[:, counted[:-1] & counted[1:]])
     found = np.concatenate([e[np.isfinite(e)] for e in errors] + [np.zeros(1)])
     return float(found.max()), float(-found.min()) + 0.0  # no zero with a sign
