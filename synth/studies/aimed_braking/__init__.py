@@ -1,1 +1,1 @@
-"""Aimed braking: the figures of S1 and of the prototypes beside ours, and which assumption moves them."""
+"""Aimed braking: the figures of Kozachenko and of the prototypes beside ours, and which assumption moves them."""

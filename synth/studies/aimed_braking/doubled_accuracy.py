@@ -1,4 +1,4 @@
-"""What regulators twice as accurate give on the axes of S1: S0 reports half of the over-speeds and gaps ÷ 1.5."""
+"""What regulators twice as accurate give: the dissertation reports half of the over-speeds and gaps ÷ 1.5."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from synth.yard.aim.position_models import NormalPosition
 from synth.yard.aim.scene import AimScene
 
 BEFORE, AFTER = 0.115, 0.055
-"""Middle of the shares of over-speeds that S0 reports: 10 to 13 %, and 5 to 6 %."""
+"""Middle of the shares of over-speeds that the dissertation reports: 10 to 13 %, and 5 to 6 %."""
 
 
 @dataclass(frozen=True)
 class Doubled:
-    """One category and distance from the crest: gap a car at S0's over-speeds of before with `coarse_std_m_s`, at those
+    """One category and distance from the crest: gap a car at the over-speeds of before with `coarse_std_m_s`, at those
     of after with half of it, and their ratio; the same at over-speeds of before; and the share above 2 m/s of both."""
 
     category: str

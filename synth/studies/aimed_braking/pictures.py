@@ -1,4 +1,4 @@
-"""The pictures of the study `aimed-braking`: the figures of S1 with their axes, inputs that count, ways to measure."""
+"""The pictures of the study `aimed-braking`: Kozachenko's figures, inputs that count, ways to measure."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ NORM_GAP_M, NORM_SHARE = 3.0, 0.1
 
 
 def curves(found: AimedBraking) -> Figure:
-    """Figure 1 of S1: speed and time of light cars over the distance from the crest."""
+    """Figure 1 of Kozachenko: speed and time of light cars over the distance from the crest."""
     rolls = len(found.curves.speed_m_s)
     figure = new_figure(9.0, 5.0, "Light single cars that leave the park position at 3.5 m/s",
                         f"{rolls} rolls, standard deviation of the exit speed 0.1 m/s")  # fmt: skip
@@ -50,7 +50,7 @@ def curves(found: AimedBraking) -> Figure:
 
 
 def over_speed(found: AimedBraking) -> Figure:
-    """Figure 2 of S1: over-speed and gap of light cars over the exit speed, 500 m from the crest."""
+    """Figure 2 of Kozachenko: over-speed and gap of light cars over the exit speed, 500 m from the crest."""
     each = next(o for o in found.over_speeds if o.category == "L" and o.metres == 500.0)
     figure = new_figure(9.0, 4.6, "Light single cars, 500 m from the crest", "bars: 95 % intervals")
     place(figure, left=0.7, right=0.4, bottom=0.6, top=0.85, w=0.25)
@@ -64,7 +64,7 @@ def over_speed(found: AimedBraking) -> Figure:
 
 
 def share_over_gap(found: AimedBraking) -> Figure:
-    """Figure 3 of S1: over-speed over gap by distance, light and heavy."""
+    """Figure 3 of Kozachenko: over-speed over gap by distance, light and heavy."""
     figure = new_figure(10.0, 5.2, "Over-speed over gap: one is had for the other",
                         "single cars; a point for each exit speed; the cross: 3 m at a share of 0.1")  # fmt: skip
     place(figure, left=0.7, right=0.4, bottom=0.6, top=0.85, w=0.25)
@@ -87,7 +87,7 @@ def trade_off(axes: Axes, each: OverSpeeds, i: int) -> None:
 
 
 def gap_over_distance(found: AimedBraking) -> Figure:
-    """Figures 4 and 5 of S1: gap at the share over the distance, by category, by knowledge, by cars."""
+    """Figures 4 and 5 of Kozachenko: gap at the share over the distance, by category, by knowledge, by cars."""
     figure = new_figure(12.5, 5.2, f"Mean gap a car at a share {found.p_overspeed:g} of over-speeds",
                         "bars: 95 % intervals; dashed: 3 m")  # fmt: skip
     place(figure, left=0.7, right=0.3, bottom=0.6, top=0.85, w=0.2)

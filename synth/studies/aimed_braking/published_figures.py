@@ -1,4 +1,4 @@
-"""The figures of S1 anew: curves, over-speed and gap over speed, one over the other, and the gap over the distance."""
+"""Kozachenko's figures anew: curves, over-speed and gap over speed, one over the other, gap over distance."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Aimed braking as S1 studies it, beside what S1, S0 and an independent prototype found.
+"""Aimed braking as Kozachenko studies it, beside what Kozachenko, the dissertation and an independent prototype found.
 
 Exit speeds are chosen for a share of over-speeds on some cuts and judged on others. The position adds a normal error to
-the commanded exit speed, as in S1. Every figure comes from independent replicates of both steps.
+the commanded exit speed, as in Kozachenko. Every figure comes from independent replicates of both steps.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ EXACT_WEIGHT = 1e-4
 """Relative error of a weigher that stands for exact weight."""
 
 COARSE_STD_M_S = 0.4
-"""Of the exit speed that S0's regulators had, nearly."""
+"""Of the exit speed that the dissertation's regulators had, nearly."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Options:
     """What is studied."""
 
     p_overspeed: float = option(0.1, "share of over-speeds that commands keep", (0.01, 0.5))
-    exit_std_m_s: float = option(0.1, "standard deviation of the exit speed, as in S1", (0.0, 1.0))
+    exit_std_m_s: float = option(0.1, "standard deviation of the exit speed, as in Kozachenko", (0.0, 1.0))
     metres: tuple[float, ...] = option(
         (360.0, 380.0, 400.0, 425.0, 450.0, 475.0, 500.0, 550.0, 600.0, 650.0, 700.0), "distances from the crest",
         (350.0, 900.0),

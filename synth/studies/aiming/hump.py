@@ -16,7 +16,7 @@ from synth.studies.aiming.recorded_cuts import ControlPoints
 from synth.yard.aim.scene import AimScene, MeasuredStretch
 
 POINTS = ControlPoints((200.0, 250.0, 305.0))
-"""The three control points of S1, between bunch and park position."""
+"""The three control points of Kozachenko, between bunch and park position."""
 
 
 def large_hump() -> AimScene:

@@ -1,4 +1,4 @@
-"""How far from the crest a norm of the gap is met: the "400 m" of S1."""
+"""How far from the crest a norm of the gap is met: the "400 m" of Kozachenko."""
 
 from __future__ import annotations
 

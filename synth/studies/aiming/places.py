@@ -26,7 +26,7 @@ class Places(Protocol):
 
 @dataclass(frozen=True)
 class FromCrest:
-    """Standing cars `metres` from the crest, as S1 counts. A cut that is too long for that couples as it is let go."""
+    """Standing cars `metres` from the crest, as Kozachenko counts. A cut too long for that couples as it is let go."""
 
     metres: tuple[float, ...]
 

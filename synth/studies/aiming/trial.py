@@ -21,7 +21,7 @@ from synth.yard.aim.scene import AimScene, SceneCuts
 Floats = NDArray[np.float64]
 
 HARD_M_S = (1.5, 2.0)
-"""Coupling speeds that S0 counts besides the limit."""
+"""Coupling speeds that the dissertation counts besides the limit."""
 
 FIGURES = 2 + len(HARD_M_S) + 2
 """Of a trial: gap a car, shares above the limit and above HARD_M_S, mean command, share that no command serves."""

@@ -1,1 +1,1 @@
-"""The control of a hump: what switches, retarders and signals do while a train is humped ([kozachenko-control], S0)."""
+"""The control of a hump: what its elements do while a train is humped ([kozachenko-control], [hump-computer-1970s])."""

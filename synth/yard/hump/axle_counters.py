@@ -1,4 +1,4 @@
-"""All axle counters of a hump: records follow their cuts from section to section (S0)."""
+"""All axle counters of a hump: records follow their cuts from section to section ([hump-computer-1970s])."""
 
 from __future__ import annotations
 

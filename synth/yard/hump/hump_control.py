@@ -1,4 +1,4 @@
-"""The control of a hump while a train rolls over it: one tick after the other ([kozachenko-control], S0)."""
+"""The control of a hump of a train, one tick after the other ([kozachenko-control], [hump-computer-1970s])."""
 
 from __future__ import annotations
 

@@ -22,7 +22,8 @@ class Counters(NamedTuple):
 @dataclass
 class HumpState:
     """Changeable parts of the vectors of the published model: position s, mode m and object N of switches, aspects of
-    signals, resistance and object of retarders, objects of sections; and of S0: counters, track of each cut, alarms.
+    signals, resistance and object of retarders, objects of sections; and of the hump
+    computer: counters, track of each cut, alarms.
 
     It changes by `apply` alone, so the events tell it completely.
     """

@@ -1,4 +1,4 @@
-"""The record of a cut as one word of 53 bits, the length that S0 gives; S0 lists the fields, their widths are ours.
+"""The record of a cut as one word of 53 bits, by the fields that [hump-computer-1970s] lists; the widths are ours.
 
 | field | bits | values |
 |---|---|---|

@@ -1,4 +1,4 @@
-"""The axle counters at the ends of one section, loaded from the records of the cuts and counted down (S0)."""
+"""The axle counters at the ends of one section, loaded from records and counted down ([hump-computer-1970s])."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Strobing: a computed speed is compared with the greatest and the least that is possible (S0)."""
+"""Strobing: a computed speed is compared with the greatest and the least that is possible ([hump-computer-1970s])."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which way points are to lie, and when they are thrown: the rules of the published model and of S0."""
+"""Which way points are to lie, and when they are thrown: as in [kozachenko-control], [hump-computer-1970s]."""
 
 from __future__ import annotations
 

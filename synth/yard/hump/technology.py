@@ -1,4 +1,4 @@
-"""What is done with cuts that cannot go where the list says: the rules of the published model and of S0."""
+"""What is done with cuts that cannot go where the list says ([kozachenko-control], [hump-computer-1970s])."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class OwnTrack:
 
 @dataclass(frozen=True)
 class RejectionOrCheapest:
-    """S0: to a rejection track, the first of `rejection` that can be reached; else to the track from which the cut is
+    """To a rejection track, the first of `rejection` that can be reached; else to the track from which the cut is
     brought to its own at least cost, of equal ones the one with the smaller number."""
 
     rejection: tuple[int, ...]
