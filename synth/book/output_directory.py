@@ -8,7 +8,7 @@ import json
 import os
 import re
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -122,17 +122,27 @@ def remove_leftovers(path: Path) -> None:
                 file.unlink(missing_ok=True)
 
 
-def remove_stale(path: Path, written: set[str]) -> tuple[str, ...]:
-    """Remove what an earlier tune left in `path` and this one did not write; names of odd files that were left alone.
+def maker_of_table(file: Path) -> str:
+    """Name of the program that made a controller table; `TableError` or `OSError` if it is none."""
+    return read_json(file).generator.name
 
-    `written` holds names relative to `path`, with slashes. Removed are tables that retarder-synth made, whole ones,
-    in tables/, pictures called as a tune calls them in plots/, and the report.
+
+def remove_stale(
+    path: Path,
+    written: set[str],
+    maker: Callable[[Path], str] = maker_of_table,
+    pictures: re.Pattern[str] = PICTURES,
+) -> tuple[str, ...]:
+    """Remove what an earlier run left in `path` and this one did not write; names of odd files that were left alone.
+
+    `written` holds names relative to `path`, with slashes. Removed are tables that retarder-synth made by the word of
+    `maker`, whole ones, in tables/, pictures called as in `pictures` in plots/, and the report.
     """
     odd = []
     for file in sorted(path.glob("tables/*.json")):
         if f"tables/{file.name}" not in written and file.is_file():
             try:
-                if read_json(file).generator.name == "retarder-synth":
+                if maker(file) == "retarder-synth":
                     file.unlink()
             except (OSError, TableError):
                 odd.append(f"tables/{file.name}")
@@ -140,7 +150,7 @@ def remove_stale(path: Path, written: set[str]) -> tuple[str, ...]:
         if f"tables/{file.name}" not in written and is_own_csv(file):
             file.unlink()
     for file in sorted(path.glob("plots/*")):
-        if f"plots/{file.name}" not in written and PICTURES.fullmatch(file.name) and file.is_file():
+        if f"plots/{file.name}" not in written and pictures.fullmatch(file.name) and file.is_file():
             file.unlink()
     report = path / "report.html"
     if report.name not in written and report.is_file() and b"retarder-synth" in report.read_bytes():

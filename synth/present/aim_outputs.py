@@ -7,7 +7,7 @@ from pathlib import Path
 
 from synth.book.forms.aim_file import is_aim_table
 from synth.book.forms.aim_forms import aim_c_form, aim_csv_form, aim_json_form, aim_st_form
-from synth.book.output_directory import AIM_PICTURES, SUMMARY, is_own_csv
+from synth.book.output_directory import AIM_PICTURES, SUMMARY, remove_stale
 from synth.book.summary import Document
 from synth.present.outputs import file_hashes
 from synth.present.plots.picture import Picture, save_picture
@@ -17,7 +17,7 @@ from synth.yard.aim.aim_book import AimBook, order_of
 from synth.yard.aim.aim_curves import aim_curves, runners
 from synth.yard.aim.aim_summary import aim_summary
 from synth.yard.aim.aimed_position import position_of
-from tuning_tables import TableError, write_atomically
+from tuning_tables import write_atomically
 from tuning_tables.aim.json_file import read_aim_json
 from tuning_tables.canonical import canonical_json
 
@@ -46,7 +46,7 @@ def write_aim(book: AimBook, verdict: AimBookVerdict, directory: Path, say: Say)
         report = directory / "report.html"
         write_atomically(report, aim_page(AimReport(book, verdict, hashes, pictures)).encode())
         hashes |= file_hashes(directory, [report])
-    for name in remove_stale_aims(directory, set(hashes)):
+    for name in remove_stale(directory, set(hashes), maker_of_aim_table, AIM_PICTURES):
         say(f"{name} was there before; it is no readable aim table and was left alone")
     summary = aim_summary(book, verdict, hashes)
     write_atomically(directory / SUMMARY, canonical_json(summary) + b"\n")
@@ -72,25 +72,6 @@ def drawn(book: AimBook) -> tuple[Picture, ...]:
     return tuple(aim_pictures(book, curves, rolled))
 
 
-def remove_stale_aims(path: Path, names: set[str]) -> tuple[str, ...]:
-    """Remove aim tables, their CSV, pictures and the report of an earlier aim in `path` that are not in `names`; names
-    of odd files that were left alone. Controller code always has the same names."""
-    odd = []
-    for file in sorted(path.glob("tables/*.json")):
-        if f"tables/{file.name}" in names or not file.is_file():
-            continue
-        try:
-            if is_aim_table(file) and read_aim_json(file).generator.name == "retarder-synth":
-                file.unlink()
-        except (OSError, TableError):
-            odd.append(f"tables/{file.name}")
-    for file in sorted(path.glob("tables/*.csv")):
-        if f"tables/{file.name}" not in names and is_own_csv(file):
-            file.unlink()
-    for file in sorted(path.glob("plots/*")):
-        if f"plots/{file.name}" not in names and AIM_PICTURES.fullmatch(file.name) and file.is_file():
-            file.unlink()
-    report = path / "report.html"
-    if report.name not in names and report.is_file() and b"retarder-synth" in report.read_bytes():
-        report.unlink()
-    return tuple(odd)
+def maker_of_aim_table(file: Path) -> str:
+    """Name of the program that made an aim table, none for what is something else; `TableError` or `OSError`."""
+    return read_aim_json(file).generator.name if is_aim_table(file) else ""
