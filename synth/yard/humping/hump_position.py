@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,7 +60,7 @@ class Arrivals:
 
     def chosen(self, which: NDArray[np.bool_] | Ints | slice) -> Arrivals:
         """Some of them."""
-        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        values: dict[str, Any] = {field.name: getattr(self, field.name) for field in fields(self)}
         return Arrivals(**{k: v[which] if isinstance(v, np.ndarray) else v for k, v in values.items()})
 
 
