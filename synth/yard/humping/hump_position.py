@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
@@ -13,6 +13,9 @@ from plant_models.frozen_arrays import frozen_arrays
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+OF_ALL = ("seed", "position")
+"""What all arrivals share."""
 
 
 @frozen_arrays
@@ -60,8 +63,8 @@ class Arrivals:
 
     def chosen(self, which: NDArray[np.bool_] | Ints | slice) -> Arrivals:
         """Some of them."""
-        values: dict[str, Any] = {field.name: getattr(self, field.name) for field in fields(self)}
-        return Arrivals(**{k: v[which] if isinstance(v, np.ndarray) else v for k, v in values.items()})
+        arrays: dict[str, Any] = {name: values[which] for name, values in vars(self).items() if name not in OF_ALL}
+        return Arrivals(**arrays, seed=self.seed, position=self.position)
 
 
 @frozen_arrays
