@@ -1,0 +1,1 @@
+"""Whole trains over the hump: cuts that roll on their routes one behind the other."""
