@@ -29,6 +29,7 @@ class Purpose(IntEnum):
     PASS_CLOCK = 13
     PASS_PATH = 14
     PASS_NOISE = 15
+    SPEED_READING = 21
 
 
 def uniform_numbers(seed: int, purpose: Purpose, first: int, count: int, columns: int) -> NDArray[np.float64]:
