@@ -30,6 +30,7 @@ class Purpose(IntEnum):
     PASS_PATH = 14
     PASS_NOISE = 15
     SPEED_READING = 21
+    STANDING = 22
 
 
 def uniform_numbers(seed: int, purpose: Purpose, first: int, count: int, columns: int) -> NDArray[np.float64]:
