@@ -24,6 +24,8 @@ class Purpose(IntEnum):
     RECORDS = 8
     TRAIN = 9
     TRAIN_CARS = 10
+    TRAIN_RESISTANCE = 11
+    TRAIN_WIND = 12
 
 
 def uniform_numbers(seed: int, purpose: Purpose, first: int, count: int, columns: int) -> NDArray[np.float64]:
