@@ -1,1 +1,1 @@
-"""Whole trains over the hump: cuts that roll on their routes one behind the other."""
+"""Humping of trains: cuts roll from the crest through the positions to their tracks, and meet on the way."""
