@@ -32,6 +32,7 @@ class Purpose(IntEnum):
     TRAIN_RESISTANCE = 16
     TRAIN_WIND = 17
     SPEED_READING = 21
+    STANDING = 22
 
 
 def uniform_numbers(seed: int, purpose: Purpose, first: int, count: int, columns: int) -> NDArray[np.float64]:

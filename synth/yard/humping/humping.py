@@ -27,8 +27,8 @@ class Asked:
     """A control is asked for the exit speeds of cut number `cut` of the trains `lanes` (n,) in `position`.
 
     `routes` (n,): the rows on which they roll. `start`: the cuts when their first axles are at the entrance. `ahead`:
-    who is ahead of them on each element. `free_m` (n,): where the standing cars begin. `memory`: what happened so far. Both
-    tell later times, too; a control may only look at what is over when it is asked.
+    who is ahead of them on each element. `free_m` (n,): where the standing cars begin. `memory`: what happened so far.
+    The last and `ahead` tell later times, too; a control may only look at what is over when it is asked.
     """
 
     cut: int
