@@ -1,0 +1,74 @@
+"""What is known of the resistance of cuts before they roll, as far as it is not certain: spreads, and what the air is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.frozen_arrays import frozen_arrays
+from plant_models.rolling.car_mix import AXLES_OF_A_CATEGORY
+from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts, bend_scales_m
+from synth.yard.humping.hump_routes import HumpRoutes
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class ResistancePrior:
+    """Before any measurement, (rows,): standard deviation of w0, and air of a cut per (m/s)². Head wind: normal.
+
+    `bends_v2_m_s2`, `bends_head_m` (routes, positions): standard deviations of the heads that all bends between a
+    position and the one before it take together, per (m/s)² and whatever the speed.
+    """
+
+    std_n_per_kn: Floats
+    air_n_per_kn: Floats
+    wind_mean_m_s: float
+    wind_std_m_s: float
+    bends_v2_m_s2: Floats
+    bends_head_m: Floats
+
+    def air_slope(self, rows: Ints, speed_m_s: Floats) -> Floats:
+        """How much more the air takes for each m/s that the wind is above its mean, N/kN, (n,)."""
+        return np.asarray(2.0 * self.air_n_per_kn[rows] * np.abs(speed_m_s + self.wind_mean_m_s))
+
+
+def resistance_prior(
+    routes: HumpRoutes, population: CutPopulation, known: DrawnCuts, category: Ints
+) -> ResistancePrior:
+    """The prior of cuts that a control knows as `known`, of the weight categories `category` (rows,).
+
+    The cars of a cut are independent: σ of its w0 is √Σ(q σ_car)²/Σq for masses q.
+    """
+    law, weather = population.law, population.weather
+    on_four_axles = known.mass_t * (AXLES_OF_A_CATEGORY / known.mix.axles[known.types])
+    std = np.zeros(known.mass_t.shape)
+    for place, member in enumerate(population.categories.members):
+        cars = (known.mass_t > 0.0) & (category == place)[:, None]
+        std[cars] = law.std_basic_n_per_kn(member.resistance, on_four_axles[cars], weather.temperature_c)
+    bends = bend_spreads(routes, population)
+    return ResistancePrior(
+        std_n_per_kn=np.sqrt(((known.shares * std) ** 2).sum(axis=1)),
+        air_n_per_kn=known.air_n_per_kn,
+        wind_mean_m_s=weather.head_wind_mean_m_s,
+        wind_std_m_s=weather.head_wind_std_m_s,
+        bends_v2_m_s2=bends[..., 0],
+        bends_head_m=bends[..., 1],
+    )
+
+
+def bend_spreads(routes: HumpRoutes, population: CutPopulation) -> Floats:
+    """Standard deviations of the heads of the bends ahead of each position, (routes, positions, 2)."""
+    spreads = np.zeros((*routes.entrance_m.shape, 2))
+    for row, route in enumerate(routes.routes):
+        bends = route.roll_track.bends
+        squares = (bend_scales_m(population.law, bends) * population.law.std_bend_draw) ** 2
+        middles = np.array([0.5 * (bend.from_m + bend.to_m) for bend in bends])
+        begins = np.concatenate(([0.0], routes.exit_m[row, :-1]))
+        for position, (begin, end) in enumerate(zip(begins, routes.entrance_m[row], strict=True)):
+            spreads[row, position] = squares[(middles > begin) & (middles < end)].sum(axis=0)
+    return np.sqrt(spreads)
