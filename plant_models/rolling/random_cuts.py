@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,10 +68,20 @@ class DrawnCuts:
         """Mass of each car over that of its cut, (n, cars)."""
         return self.mass_t / self.cut_mass_t[:, None]
 
-    @property
+    @cached_property
     def resistance_n_per_kn(self) -> Floats:
         """w0 of each cut: of its cars, weighted by mass, (n,)."""
-        return np.asarray((self.shares * self.basic_n_per_kn).sum(axis=1))
+        found = np.asarray((self.shares * self.basic_n_per_kn).sum(axis=1))
+        found.setflags(write=False)
+        return found
+
+    def resistance_at(self, law: ResistanceLaw, rows: NDArray[np.int64], speed_m_s: Floats) -> Floats:
+        """Resistance of the cuts `rows` on straight track of the hump slope at `speed_m_s`, air and wind included,
+        N/kN."""
+        against = speed_m_s + self.head_wind_m_s[rows]
+        air = self.air_n_per_kn[rows] * against * np.abs(against)
+        steady = self.resistance_n_per_kn[rows] + law.slope_extra_n_per_kn
+        return np.asarray(steady + law.linear_n_per_kn * speed_m_s + air)
 
     @property
     def reduced_gravity_m_s2(self) -> Floats:

@@ -34,6 +34,9 @@ class ResistanceLaw(Protocol):
         """Basic resistance of cars in the yard at standstill, one a number `u`; `resistance`: of their category;
         `mass_t`: of a 4-axle car of their axle load."""
 
+    def mean_basic_n_per_kn(self, resistance: RollingResistance, mass_t: Floats, temperature_c: float) -> Floats:
+        """Mean of `basic_n_per_kn`, as `mass_t`."""
+
     def bend_scale_m(self, bend: Bend) -> tuple[float, float]:
         """Energy head that the bend takes from a cut whose draw is 1: (per (m/s)², whatever the speed)."""
 
@@ -81,6 +84,10 @@ class HumpNormLaw:
         if resistance.std_n_per_kn == 0.0:
             return np.full(u.shape, resistance.mean_n_per_kn)
         return np.asarray(gammaincinv(resistance.shape, u) * resistance.scale_n_per_kn)
+
+    def mean_basic_n_per_kn(self, resistance: RollingResistance, mass_t: Floats, temperature_c: float) -> Floats:
+        """Mean of the category."""
+        return np.full(mass_t.shape, resistance.mean_n_per_kn)
 
     @property
     def bend_numbers(self) -> int:
@@ -134,9 +141,14 @@ class Tb10062Law:
     def basic_n_per_kn(self, resistance: RollingResistance, mass_t: Floats, temperature_c: float, u: Floats) -> Floats:
         """r at v = 0 and k = 1 by the quantiles of the normal law; the category does not count, the mass does."""
         q, t = mass_t, temperature_c
-        mean = 2.439 + (0.00008 * q - 0.01743) * t - 0.015 * q + 0.00017 * t**2
+        mean = self.mean_basic_n_per_kn(resistance, q, t)
         std = self.std_basic_n_per_kn(resistance, q, t)
         return np.asarray(np.maximum(mean + std * ndtri(u), self.least_n_per_kn))
+
+    def mean_basic_n_per_kn(self, resistance: RollingResistance, mass_t: Floats, temperature_c: float) -> Floats:
+        """r at v = 0 and k = 1 without its spread; what the cut-off adds is left out."""
+        q, t = mass_t, temperature_c
+        return np.asarray(2.439 + (0.00008 * q - 0.01743) * t - 0.015 * q + 0.00017 * t**2)
 
     def std_basic_n_per_kn(self, resistance: RollingResistance, mass_t: Floats, temperature_c: float) -> Floats:
         """As the norm says it; what the cut-off takes away is left out."""

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
+from synth.kernels.roll import exit_choices as kernel
 from synth.yard.humping.hump_routes import HumpRoutes, Mark
-from synth.yard.humping.motion import Cars, Moving, braked_evenly, even_duration_s, rolled_free
+from synth.yard.humping.motion import Cars, Moving, rolled_free
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -18,6 +19,9 @@ Bools = NDArray[np.bool_]
 
 BOTH_MARKS = np.array([Mark.FIRST_IN, Mark.LAST_OUT])
 """Intervals need no other times."""
+
+SLOWEST_M_S = 0.1
+"""No choice is slower."""
 
 
 @frozen_arrays
@@ -28,10 +32,6 @@ class Expected:
     cars: Cars
     first_axle_m: Floats
     last_axle_m: Floats
-
-    def chosen(self, which: Bools | Ints) -> Expected:
-        """Some of them."""
-        return Expected(self.cars.chosen(which), self.first_axle_m[which], self.last_axle_m[which])
 
 
 class Choices(Protocol):
@@ -77,127 +77,149 @@ class SpeedRange:
 
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
-class Forecast:
-    """n cuts with c choices each, from where they are until their last axles are out of the last position.
+class Compared:
+    """n cuts with c choices each, (n, c): least margins to the cuts ahead and behind, whether the cut can have that,
+    when its last axle is out of the last position, and all exit speeds added up."""
 
-    `first_in_s`, `last_out_s` (n, c, elements): NaN for what lies behind the cut or beyond the forecast, infinite
-    behind a stop. `speeds_m_s` (n, c, q): exit speeds of the next q positions; `able` (n, c): whether the cut can
-    have them. `arrival_s`, `arrival_m_s` (n, c): there.
-    """
-
-    first_in_s: Floats
-    last_out_s: Floats
-    speeds_m_s: Floats
+    ahead_s: Floats
+    behind_s: Floats
     able: Bools
     arrival_s: Floats
-    arrival_m_s: Floats
-
-    def choice(self, column: Ints) -> Forecast:
-        """One choice for each cut, (n,); arrays keep an axis of one choice."""
-        at = np.arange(len(column)), column
-        return Forecast(
-            self.first_in_s[at][:, None],
-            self.last_out_s[at][:, None],
-            self.speeds_m_s[at][:, None],
-            self.able[at][:, None],
-            self.arrival_s[at][:, None],
-            self.arrival_m_s[at][:, None],
-        )
-
-
-def from_crest(routes: HumpRoutes, expected: Expected, start: Moving, choices: tuple[Choices, ...]) -> Forecast:
-    """From the crest on, where the heads are at `start`; `choices` of the first positions."""
-    heads = heads_m(routes, expected)
-    end, times = rolled_free(expected.cars, start, entrance_m(routes, expected, 0), heads)
-    known = start.time_s[:, None] - (start.head_m[:, None] - heads) / start.speed_m_s[:, None]
-    times = np.where(heads <= start.head_m[:, None], known, times)
-    speeds = np.empty((len(heads), 1, 0))
-    able = np.ones((len(heads), 1), dtype=bool)
-    return through(
-        routes, expected, 0, Reached(end.speed_m_s[:, None], end.time_s[:, None], times[:, None], speeds, able), choices
-    )
-
-
-def from_entrance(
-    routes: HumpRoutes, expected: Expected, start: Moving, position: int, choices: tuple[Choices, ...]
-) -> Forecast:
-    """From the entrance of `position` on; `choices` of it and of those behind it."""
-    none = np.full((len(start.head_m), 1, 2 * routes.elements), np.nan)
-    speeds, able = np.empty((len(none), 1, 0)), np.ones((len(none), 1), dtype=bool)
-    reached = Reached(start.speed_m_s[:, None], start.time_s[:, None], none, speeds, able)
-    return through(routes, expected, position, reached, choices)
+    speeds_m_s: Floats
 
 
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
-class Reached:
-    """Cuts at the entrance of a position, (n, c): speed, time, and times of marks on the way there (n, c, marks)."""
+class Forecast:
+    """n cuts with one choice each: `first_in_s`, `last_out_s` (n, elements), NaN for what lies behind the cut or beyond
+    the last position, infinite behind a stop; `exit_m_s` (n, q) of the positions ahead."""
 
-    speed_m_s: Floats
-    time_s: Floats
-    times_s: Floats
-    speeds_m_s: Floats
-    able: Bools
+    first_in_s: Floats
+    last_out_s: Floats
+    exit_m_s: Floats
+
+
+class Ways:
+    """All ways that n cuts can go from where they are until their last axles are out of the last position: free rolls
+    and, for each position ahead, the choices of its exit speed. Build it with `from_crest` or `from_entrance`."""
+
+    def __init__(self, routes: HumpRoutes, legs: kernel.Legs) -> None:
+        self.routes, self.legs = routes, legs
+
+    def compared(self, free_from_s: Floats, free_by_s: Floats) -> Compared:
+        """Every combination of choices, beside neighbours who leave and need the elements at these times, (n,
+        elements)."""
+        legs = self.legs
+        shape = len(legs.time_s), int(np.prod(legs.choices))
+        ahead, behind, arrival = np.empty(shape), np.empty(shape), np.empty(shape)
+        able = np.empty(shape, dtype=np.bool_)
+        kernel.compare(legs, free_from_s, free_by_s, 0, shape[0], ahead, behind, able, arrival)
+        total = np.zeros((shape[0], 1))
+        for count, speeds in zip(legs.choices, legs.speeds_m_s, strict=True):
+            total = (total[:, :, None] + speeds[:, None, :count]).reshape(shape[0], -1)
+        return Compared(ahead, behind, able, arrival, total)
+
+    def followed(self, column: Ints | None = None) -> Forecast:
+        """The way with the combination `column` (n,) of the choices; None: the only one."""
+        legs, count = self.legs, len(self.legs.time_s)
+        at = np.zeros(count, dtype=np.int64) if column is None else column
+        taken = np.stack(np.unravel_index(at, tuple(legs.choices)))
+        times, arrival = np.empty((count, 2 * self.routes.elements)), np.empty(count)
+        kernel.follow(legs, taken, 0, count, times, arrival)
+        marks = times.reshape(count, -1, 2)
+        exits = legs.speeds_m_s[np.arange(len(taken))[:, None], np.arange(count), taken]
+        return Forecast(marks[:, :, 0].copy(), marks[:, :, 1].copy(), exits.T.copy())
+
+
+def from_crest(routes: HumpRoutes, expected: Expected, start: Moving, choices: tuple[Choices, ...]) -> Ways:
+    """From the crest on, where the heads are at `start`; `choices` of all positions."""
+    heads = heads_m(routes, expected)
+    end, times = rolled_free(expected.cars, start, entrance_m(routes, expected, 0), heads)
+    known = start.time_s[:, None] - (start.head_m[:, None] - heads) / start.speed_m_s[:, None]
+    before = np.where(heads <= start.head_m[:, None], known, times)
+    return through(routes, expected, end, before, 0, choices)
+
+
+def from_entrance(
+    routes: HumpRoutes, expected: Expected, start: Moving, position: int, choices: tuple[Choices, ...]
+) -> Ways:
+    """From the entrance of `position` on; `choices` of it and of all behind it."""
+    before = np.full((len(start.head_m), 2 * routes.elements), np.nan)
+    return through(routes, expected, start, before, position, choices)
 
 
 def through(
-    routes: HumpRoutes, expected: Expected, position: int, reached: Reached, choices: tuple[Choices, ...]
-) -> Forecast:
-    """Through as many positions as there are `choices`, all choices of the one with all of the next."""
+    routes: HumpRoutes, expected: Expected, start: Moving, before_s: Floats, position: int, choices: tuple[Choices, ...]
+) -> Ways:
+    """From `start` at the entrance of `position` through all positions behind it."""
+    count, marks, most = len(before_s), before_s.shape[1], len(choices)
+    heads, fastest, stretches = heads_m(routes, expected), start.speed_m_s, []
     for place, of_one in enumerate(choices):
-        reached = through_one(routes, expected, position + place, reached, of_one)
-    marks = reached.times_s.reshape(*reached.times_s.shape[:2], routes.elements, 2)
-    first_in, last_out = marks[..., 0], marks[..., 1]
-    unknown = np.isnan(last_out) & ~np.isnan(first_in)
-    last_out = np.where(unknown, reached.time_s[:, :, None], last_out)
-    return Forecast(first_in, last_out, reached.speeds_m_s, reached.able, reached.time_s, reached.speed_m_s)
+        stretches.append(stretch(routes, expected, position + place, heads, fastest, of_one))
+        fastest = stretches[-1].ends_m_s.max(axis=1)
+    counts = np.array([each.speeds_m_s.shape[1] for each in stretches])
+    wide = most, count, int(counts.max())
+    speeds, ends, ends_speed = (np.zeros(wide) for _ in range(3))
+    roll = np.full((*wide, marks), np.nan)
+    for place, (chosen, each) in enumerate(zip(counts, stretches, strict=True)):
+        speeds[place, :, :chosen], roll[place, :, :chosen] = each.speeds_m_s, each.roll_s
+        ends[place, :, :chosen], ends_speed[place, :, :chosen] = each.ends_s, each.ends_m_s
+    legs = kernel.Legs(
+        time_s=start.time_s.copy(),
+        speed_m_s=start.speed_m_s.copy(),
+        before_s=before_s,
+        choices=counts,
+        speeds_m_s=speeds,
+        won_m2_s2=np.stack([each.won_m2_s2 for each in stretches]),
+        path_m=np.stack([each.path_m for each in stretches]),
+        share=np.stack([each.share for each in stretches]),
+        roll_s=roll,
+        ends_s=ends,
+        ends_m_s=ends_speed,
+        most_entry_m_s=np.stack([np.broadcast_to(each.most_entry_m_s, count) for each in choices]),
+    )
+    return Ways(routes, legs)
 
 
-def through_one(routes: HumpRoutes, expected: Expected, position: int, reached: Reached, choices: Choices) -> Reached:
-    """Through `position` with each of the choices, and free to the next position."""
-    count, before = reached.speed_m_s.shape
-    heads = heads_m(routes, expected)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Stretch:
+    """A position and the free roll behind it, as `Legs` has them."""
+
+    speeds_m_s: Floats
+    won_m2_s2: Floats
+    path_m: Floats
+    share: Floats
+    roll_s: Floats
+    ends_s: Floats
+    ends_m_s: Floats
+
+
+def stretch(
+    routes: HumpRoutes, expected: Expected, position: int, heads_m: Floats, fastest_m_s: Floats, choices: Choices
+) -> Stretch:
+    """`position` with each of the `choices` for cuts that come with `fastest_m_s` (n,) at the most."""
+    count = len(heads_m)
     entrance = entrance_m(routes, expected, position)
     leaves = routes.exit_m[expected.cars.routes, position] + expected.last_axle_m
-    fastest = reached.speed_m_s.max(axis=1)
-    unbraked, _ = rolled_free(expected.cars, Moving(entrance, fastest, np.zeros(count)), leaves, np.empty((count, 0)))
-    won = unbraked.speed_m_s**2 - fastest**2
-    speeds = choices.speeds(np.maximum(unbraked.speed_m_s, 0.1))
+    start = Moving(entrance, fastest_m_s, np.zeros(count))
+    unbraked, _ = rolled_free(expected.cars, start, leaves, np.empty((count, 0)))
+    speeds = choices.speeds(np.maximum(unbraked.speed_m_s, SLOWEST_M_S))
     chosen = speeds.shape[1]
-    # the roll behind the position is the same whatever the speed at its entrance was
     each = np.repeat(np.arange(count), chosen)
     begins = Moving(leaves[each], speeds.reshape(-1), np.zeros(len(each)))
-    ends, roll = rolled_free(
-        expected.cars.chosen(each), begins, entrance_m(routes, expected, position + 1)[each], heads[each]
-    )
-    # the pass: every speed at the entrance with every choice
-    pair = np.repeat(np.arange(count), before * chosen)
-    enters = Moving(
-        entrance[pair], np.repeat(reached.speed_m_s.reshape(-1), chosen), np.repeat(reached.time_s.reshape(-1), chosen)
-    )
-    exits = np.broadcast_to(speeds[:, None], (count, before, chosen)).reshape(-1)
-    takes = even_duration_s(enters, leaves[pair], exits)
-    left, brake = braked_evenly(enters, leaves[pair], exits, takes, heads[pair])
-    limit = np.broadcast_to(choices.most_entry_m_s, count)[pair]
-    able = (exits**2 <= enters.speed_m_s**2 + won[pair] + 1e-6) & (enters.speed_m_s <= limit)
-    wide = (count, before, chosen, -1)
-    out = left.time_s.reshape(wide)
-    times = np.where(
-        np.isnan(roll).reshape(count, 1, chosen, -1),
-        brake.reshape(wide),
-        out + roll.reshape(count, 1, chosen, -1),
-    )
-    times = np.where(np.isnan(reached.times_s)[:, :, None], times, reached.times_s[:, :, None])
-    arrival = out[..., 0] + ends.time_s.reshape(count, 1, chosen)
-    shown = np.broadcast_to(reached.speeds_m_s[:, :, None], (*arrival.shape, reached.speeds_m_s.shape[2]))
-    new = np.broadcast_to(speeds[:, None, :, None], (*arrival.shape, 1))
-    columns = before * chosen
-    return Reached(
-        np.broadcast_to(ends.speed_m_s.reshape(count, 1, chosen), arrival.shape).reshape(count, columns).copy(),
-        arrival.reshape(count, columns),
-        times.reshape(count, columns, -1),
-        np.concatenate((shown, new), axis=3).reshape(count, columns, -1),
-        (able.reshape(arrival.shape) & reached.able[:, :, None]).reshape(count, columns),
+    ahead = entrance_m(routes, expected, position + 1)
+    ends, roll = rolled_free(expected.cars.chosen(each), begins, ahead[each], heads_m[each])
+    path = leaves - entrance
+    share = (heads_m - entrance[:, None]) / path[:, None]
+    return Stretch(
+        speeds_m_s=speeds,
+        won_m2_s2=unbraked.speed_m_s**2 - fastest_m_s**2,
+        path_m=path,
+        share=np.where((share > 0.0) & (share <= 1.0), share, np.nan),
+        roll_s=roll.reshape(count, chosen, -1),
+        ends_s=ends.time_s.reshape(count, chosen),
+        ends_m_s=ends.speed_m_s.reshape(count, chosen),
     )
 
 

@@ -27,8 +27,8 @@ class Asked:
     """A control is asked for the exit speeds of cut number `cut` of the trains `lanes` (n,) in `position`.
 
     `routes` (n,): the rows on which they roll. `start`: the cuts when their first axles are at the entrance. `ahead`:
-    who is ahead of them on each element. `free_m` (n,): where the standing cars begin. `memory`: what happened so far. Both
-    tell later times, too; a control may only look at what is over when it is asked.
+    who is ahead of them on each element. `free_m` (n,): where the standing cars begin. `memory`: what happened so far.
+    The last and `ahead` tell later times, too; a control may only look at what is over when it is asked.
     """
 
     cut: int
@@ -215,10 +215,11 @@ class OneCut:
         command = self.obeyed(control.command(asked), held, position)
         to = routes.exit_m[self.routes[held], position] + self.last_m[held]
         unbraked, _ = rolled_free(self.cars(held), start, to, np.empty((len(lanes), 0)))
-        mean = 0.5 * (start.speed_m_s + np.maximum(unbraked.speed_m_s, 0.0))
+        rows, fastest = self.rows[held], 0.5 * (start.speed_m_s + unbraked.speed_m_s)
+        mean = np.minimum(0.5 * (start.speed_m_s + command), fastest)
         passed = self.hump.positions[position].passed(
             Arrivals(
-                rows=self.rows[held],
+                rows=rows,
                 train=self.trains.first + lanes,
                 cut=np.full(len(lanes), self.cut),
                 position=position,
@@ -226,10 +227,11 @@ class OneCut:
                 unbraked_exit_m_s=unbraked.speed_m_s,
                 path_m=to - start.head_m,
                 commanded_m_s=command,
-                mass_t=self.trains.mass_t[self.rows[held]],
-                axles=self.trains.axles[self.rows[held]],
-                category=self.trains.category[self.rows[held]],
-                resistance_n_per_kn=self.trains.resistance_at(self.rows[held], mean),
+                mass_t=self.trains.mass_t[rows],
+                axles=self.trains.axles[rows],
+                category=self.trains.category[rows],
+                resistance_n_per_kn=self.trains.resistance_at(rows, mean),
+                unbraked_resistance_n_per_kn=self.trains.resistance_at(rows, fastest),
                 seed=self.trains.seed,
             )
         )

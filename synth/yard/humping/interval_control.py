@@ -12,7 +12,7 @@ from synth.yard.humping.aim_control import AimControl
 from synth.yard.humping.forecast import Choices, Expected, Forecast, Given, SpeedRange, from_crest, from_entrance
 from synth.yard.humping.hump_routes import HumpRoutes, Mark
 from synth.yard.humping.humping import Asked
-from synth.yard.humping.interval import IntervalRule, Neighbours
+from synth.yard.humping.interval import IntervalRule
 from synth.yard.humping.known_cuts import KnownCuts
 from synth.yard.humping.motion import Moving
 from synth.yard.humping.rollability import Rollability
@@ -78,17 +78,12 @@ class Feedback:
         resistance = self.rollability.resistance_n_per_kn(asked)
         expected = self.known.expected(rows, asked.routes, resistance)
         choices: tuple[Choices, ...] = (*self.ranges[asked.position :], self.known.aim(rows))
-        forecast = from_entrance(self.routes, expected, asked.start, asked.position, choices)
-        ahead, after = self.neighbours(asked).margins_s(forecast)
-        taken = forecast.choice(self.rule.best(forecast, ahead, after))
-        self.sight.decided(asked, resistance, taken)
-        return np.asarray(taken.speeds_m_s[:, 0, 0])
-
-    def neighbours(self, asked: Asked) -> Neighbours:
-        """The cuts ahead as they are known by now, the cut behind as planned."""
+        ways = from_entrance(self.routes, expected, asked.start, asked.position, choices)
         first_in = self.plan.first_in_s
         free_by = free_by_s(self.routes, self.known, first_in, asked.routes, asked.lanes, asked.cut)
-        return Neighbours(self.sight.free_from_s(asked), free_by)
+        taken = ways.followed(self.rule.best(ways.compared(self.sight.free_from_s(asked), free_by)))
+        self.sight.decided(asked, resistance, taken)
+        return np.asarray(taken.exit_m_s[:, 0])
 
 
 class Sight:
@@ -108,10 +103,10 @@ class Sight:
     def decided(self, asked: Asked, resistance_n_per_kn: Floats, taken: Forecast) -> None:
         """A cut was given its command, as in the forecast `taken`, and will be expected with this resistance."""
         lanes, cut, column = asked.lanes, asked.cut, 1 + 2 * asked.position
-        self.planned_m_s[lanes, cut, asked.position :] = taken.speeds_m_s[:, 0, :-1]
+        self.planned_m_s[lanes, cut, asked.position :] = taken.exit_m_s[:, :-1]
         self.resistance_n_per_kn[lanes, cut] = resistance_n_per_kn
         self.known_s[lanes, cut, column] = asked.start.time_s
-        self.out_s[lanes, cut, column] = taken.last_out_s[:, 0]
+        self.out_s[lanes, cut, column] = taken.last_out_s
 
     def learn(self, cut: int, memory: TrainMemory) -> None:
         """Add what was to be seen of the cut ahead of number `cut`, once."""
@@ -123,8 +118,9 @@ class Sight:
         start = Moving(0.5 * self.known.length_m[rows], memory.hump_speed_m_s[:, ahead], memory.crest_s[:, ahead])
         planned = (Given(self.plan.exit_m_s[:, ahead, q]) for q in range(self.plan.exit_m_s.shape[2]))
         expected = self.known.expected(rows, self.known.route[rows], self.known.mean_n_per_kn[rows])
-        forecast = from_crest(self.routes, expected, start, (*planned, self.known.aim(rows)))
-        self.known_s[:, ahead, 0], self.out_s[:, ahead, 0] = memory.crest_s[:, ahead], forecast.last_out_s[:, 0]
+        ways = from_crest(self.routes, expected, start, (*planned, self.known.aim(rows)))
+        self.known_s[:, ahead, 0] = memory.crest_s[:, ahead]
+        self.out_s[:, ahead, 0] = ways.followed().last_out_s
         for position in range(self.plan.exit_m_s.shape[2]):
             self.learn_pass(ahead, position, memory)
 
@@ -139,11 +135,11 @@ class Sight:
         speeds = [memory.exit_m_s[lanes, cut, position]]
         speeds += [self.planned_m_s[lanes, cut, q] for q in range(position + 1, self.planned_m_s.shape[2])]
         choices = (*(Given(speed) for speed in speeds), self.known.aim(rows))
-        forecast = from_entrance(self.routes, expected, start, position, choices)
+        ways = from_entrance(self.routes, expected, start, position, choices)
         ended = expected_end_s(self.routes, expected, start, speeds[0], position)
         shift = memory.end_s[lanes, cut, position] - ended
         self.known_s[lanes, cut, column] = memory.end_s[lanes, cut, position]
-        self.out_s[lanes, cut, column] = forecast.last_out_s[:, 0] + shift[:, None]
+        self.out_s[lanes, cut, column] = ways.followed().last_out_s + shift[:, None]
 
     def free_from_s(self, asked: Asked) -> Floats:
         """When the elements are free for the cut that asks, as far as that is known by now, (n, elements)."""

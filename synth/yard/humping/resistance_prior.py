@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.rolling.car_mix import AXLES_OF_A_CATEGORY
-from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts, bend_scales_m
+from plant_models.rolling.random_cuts import CutPopulation, bend_scales_m
 from synth.yard.humping.hump_routes import HumpRoutes
+from synth.yard.humping.train_cuts import TrainCuts
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -37,25 +38,26 @@ class ResistancePrior:
         return np.asarray(2.0 * self.air_n_per_kn[rows] * np.abs(speed_m_s + self.wind_mean_m_s))
 
 
-def resistance_prior(
-    routes: HumpRoutes, population: CutPopulation, known: DrawnCuts, category: Ints
-) -> ResistancePrior:
-    """The prior of cuts that a control knows as `known`, of the weight categories `category` (rows,).
+def resistance_prior(routes: HumpRoutes, trains: TrainCuts) -> ResistancePrior:
+    """The prior of the cuts of `trains`, of which a list tells mass, axles and cars.
 
-    The cars of a cut are independent: σ of its w0 is √Σ(q σ_car)²/Σq for masses q.
+    The cars of a cut are independent: σ of its w0 is that of one car, times √Σq²/Σq for masses q that go by axles.
     """
-    law, weather = population.law, population.weather
-    on_four_axles = known.mass_t * (AXLES_OF_A_CATEGORY / known.mix.axles[known.types])
-    std = np.zeros(known.mass_t.shape)
-    for place, member in enumerate(population.categories.members):
-        cars = (known.mass_t > 0.0) & (category == place)[:, None]
-        std[cars] = law.std_basic_n_per_kn(member.resistance, on_four_axles[cars], weather.temperature_c)
-    bends = bend_spreads(routes, population)
+    people = trains.population
+    on_four_axles = trains.mass_t * AXLES_OF_A_CATEGORY / trains.axles
+    std = np.empty(len(trains))
+    for place, member in enumerate(people.categories.members):
+        of_it = trains.category == place
+        std[of_it] = people.law.std_basic_n_per_kn(
+            member.resistance, on_four_axles[of_it], people.weather.temperature_c
+        )
+    shares = trains.car_axles / trains.axles[:, None]
+    bends = bend_spreads(routes, people)
     return ResistancePrior(
-        std_n_per_kn=np.sqrt(((known.shares * std) ** 2).sum(axis=1)),
-        air_n_per_kn=known.air_n_per_kn,
-        wind_mean_m_s=weather.head_wind_mean_m_s,
-        wind_std_m_s=weather.head_wind_std_m_s,
+        std_n_per_kn=std * np.sqrt((shares**2).sum(axis=1)),
+        air_n_per_kn=trains.drawn.air_n_per_kn,
+        wind_mean_m_s=people.weather.head_wind_mean_m_s,
+        wind_std_m_s=people.weather.head_wind_std_m_s,
         bends_v2_m_s2=bends[..., 0],
         bends_head_m=bends[..., 1],
     )

@@ -13,8 +13,9 @@ from synth.yard.humping.expected_way import ExpectedWay
 from synth.yard.humping.free_stretch import SHORTEST_M
 from synth.yard.humping.humping import Asked
 from synth.yard.humping.known_cuts import KnownCuts
-from synth.yard.humping.resistance_prior import ResistancePrior
+from synth.yard.humping.resistance_prior import ResistancePrior, resistance_prior
 from synth.yard.humping.speed_sensors import SpeedSensors
+from synth.yard.humping.train_cuts import TrainCuts
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -132,3 +133,8 @@ class MeasuredRollability:
         slope = self.prior.air_slope(rows, speed_m_s)
         mean = belief.resistance_n_per_kn + slope * belief.wind_m_s
         return Resistance(mean, np.sqrt(belief.variance(slope)))
+
+
+def measured_rollability(sensors: SpeedSensors, trains: TrainCuts, way: ExpectedWay) -> MeasuredRollability:
+    """For the cuts of `trains`."""
+    return MeasuredRollability(sensors, way, resistance_prior(sensors.routes, trains))

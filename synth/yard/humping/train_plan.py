@@ -15,7 +15,7 @@ from plant_models.frozen_arrays import frozen_arrays
 from synth.yard.humping.forecast import Given, SpeedRange, from_crest
 from synth.yard.humping.hump_routes import HumpRoutes, Mark
 from synth.yard.humping.hump_speed import HumpSpeedLimits, SpeedMethod, WholeTrain
-from synth.yard.humping.interval import CentredRule, EarlyRule, IntervalRule, Neighbours, possible
+from synth.yard.humping.interval import CentredRule, EarlyRule, IntervalRule, possible
 from synth.yard.humping.known_cuts import KnownCuts
 from synth.yard.humping.meeting import Ahead, LastUsers
 from synth.yard.humping.motion import Moving
@@ -133,12 +133,12 @@ class Sweep:
         start = Moving(0.5 * known.length_m[rows], self.hump_speed_m_s[:, cut], self.crest_s[:, cut])
         resistance = known.good_n_per_kn if planner.worst_pair else known.mean_n_per_kn
         expected = known.expected(rows, known.route[rows], resistance[rows])
-        forecast = from_crest(planner.routes, expected, start, (*planner.ranges, known.aim(rows)))
-        ahead, after = self.neighbours(cut).margins_s(forecast)
-        taken = forecast.choice(rule.best(forecast, ahead, after))
-        self.margin_s[:, cut] = np.where(possible(forecast), ahead, -np.inf).max(axis=1)
-        self.exit_m_s[:, cut] = taken.speeds_m_s[:, 0, :-1]
-        self.first_in_s[:, cut], self.last_out_s[:, cut] = taken.first_in_s[:, 0], taken.last_out_s[:, 0]
+        ways = from_crest(planner.routes, expected, start, (*planner.ranges, known.aim(rows)))
+        compared = ways.compared(*self.neighbours(cut))
+        taken = ways.followed(rule.best(compared))
+        self.margin_s[:, cut] = np.where(possible(compared), compared.ahead_s, -np.inf).max(axis=1)
+        self.exit_m_s[:, cut] = taken.exit_m_s[:, :-1]
+        self.first_in_s[:, cut], self.last_out_s[:, cut] = taken.first_in_s, taken.last_out_s
 
     def remember(self, cut: int) -> None:
         """Let the cuts behind know when cut number `cut` leaves the elements, at the latest where pairs are worst."""
@@ -148,13 +148,13 @@ class Sweep:
             start = Moving(0.5 * known.length_m[rows], self.hump_speed_m_s[:, cut], self.crest_s[:, cut])
             given = (Given(self.exit_m_s[:, cut, q]) for q in range(len(planner.ranges)))
             slow = known.expected(rows, known.route[rows], known.bad_n_per_kn[rows])
-            out = from_crest(planner.routes, slow, start, (*given, known.aim(rows))).last_out_s[:, 0]
+            out = from_crest(planner.routes, slow, start, (*given, known.aim(rows))).followed().last_out_s
         times = np.full((known.trains, planner.routes.elements, len(Mark)), np.nan)
         times[:, :, Mark.FIRST_IN], times[:, :, Mark.LAST_OUT] = self.first_in_s[:, cut], out
         self.users.add(cut, known.route[rows], times)
 
-    def neighbours(self, cut: int) -> Neighbours:
-        """Who is ahead, and who comes behind by the earlier plan."""
+    def neighbours(self, cut: int) -> tuple[Floats, Floats]:
+        """From when on the elements are free of the cuts ahead, and by when they must be left for those behind."""
         known, routes = self.known, self.planner.routes
         lanes = np.arange(known.trains)
         own = known.route[known.of_cut(cut)]
@@ -162,7 +162,7 @@ class Sweep:
         free_by = np.full((known.trains, routes.elements), np.inf)
         if self.before is not None:
             free_by = free_by_s(routes, known, self.before.first_in_s, own, lanes, cut)
-        return Neighbours(leaves_s(ahead) + throws_s(routes, own, ahead), free_by)
+        return leaves_s(ahead) + throws_s(routes, own, ahead), free_by
 
 
 def leaves_s(ahead: Ahead) -> Floats:

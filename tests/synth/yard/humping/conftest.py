@@ -31,6 +31,7 @@ def arriving(
         axles=np.full(n, 4),
         category=np.full(n, category),
         resistance_n_per_kn=np.full(n, 1.5),
+        unbraked_resistance_n_per_kn=np.full(n, 1.5),
         train=np.arange(n),
         cut=np.full(n, 4),
         seed=seed,

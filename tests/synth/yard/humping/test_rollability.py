@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from plant_models.library.catalogue import load_car, load_weight_categories
-from plant_models.rolling.car_mix import CarMix, MixedCar
-from plant_models.rolling.random_cuts import CutPopulation
-from plant_models.rolling.resistance_law import HumpNormLaw, Tb10062Law
-from plant_models.rolling.weather import Weather
 from synth.yard.free_roll import Rolled
 from synth.yard.humping.expected_way import ExpectedWay
 from synth.yard.humping.humping import Asked
-from synth.yard.humping.resistance_prior import ResistancePrior, resistance_prior
+from synth.yard.humping.resistance_prior import ResistancePrior
 from synth.yard.humping.rollability import MeasuredRollability
 from synth.yard.humping.speed_sensors import SpeedSensors
 from synth.yard.humping.train_memory import TrainMemory
