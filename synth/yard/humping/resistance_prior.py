@@ -1,4 +1,4 @@
-"""What is known of the resistance of cuts before they roll, as far as it is not certain: spreads, and what the air is."""
+"""How sure the resistance of cuts is before they roll: spreads of w0, wind and bends."""
 
 from __future__ import annotations
 

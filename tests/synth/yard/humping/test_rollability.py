@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -63,7 +63,7 @@ class WindySlope:
 
 
 @dataclass(frozen=True)
-class Rolled2:
+class CutsAsked:
     """Cuts with what was drawn for them, and the question that they put to the control at the second position."""
 
     n_per_kn: Floats
@@ -96,7 +96,7 @@ def roll(n_per_kn: Floats, wind_m_s: Floats, random: np.random.Generator, positi
     return found
 
 
-def rolled(n_per_kn: Floats, wind_m_s: Floats, seed: int, position: int = 1) -> Rolled2:
+def rolled(n_per_kn: Floats, wind_m_s: Floats, seed: int, position: int = 1) -> CutsAsked:
     """Cuts that come to `position`; STD of w0 and WIND are believed in."""
     count, random = len(n_per_kn), np.random.default_rng(seed)
     speeds = roll(n_per_kn, wind_m_s, random, position)
@@ -111,7 +111,7 @@ def rolled(n_per_kn: Floats, wind_m_s: Floats, seed: int, position: int = 1) -> 
     prior = ResistancePrior(np.full(count, STD), np.full(count, AIR), 0.0, WIND, spread, np.zeros((32, 3)))
     mean = tuple(WindySlope(np.full(count, MEAN), np.zeros(count), np.full(count, c)) for c in BENDS_M_S2)
     way = ExpectedWay(ByStretch(mean), np.full(count, MEAN), np.full(count, GRAVITY_M_S2))
-    return Rolled2(n_per_kn, wind_m_s, asked, MeasuredRollability(SpeedSensors(ROUTES, trains, STD_M_S), way, prior))
+    return CutsAsked(n_per_kn, wind_m_s, asked, MeasuredRollability(SpeedSensors(ROUTES, trains, STD_M_S), way, prior))
 
 
 @dataclass(frozen=True)
@@ -154,3 +154,60 @@ def test_measured_cuts_are_as_uncertain_as_they_say(position: int) -> None:
     gained = (told.mean_n_per_kn - cuts.ahead_n_per_kn).var() / (before.mean_n_per_kn - cuts.ahead_n_per_kn).var()
     assert gained == pytest.approx((told.std_n_per_kn**2).mean() / (before.std_n_per_kn**2).mean(), rel=0.1)
     assert gained < (0.75, 0.5, 0.3)[position]
+
+
+def test_one_cut_by_brute_force() -> None:
+    """Bayes' rule on 300 000 cuts, each weighted by the likelihood of what was read of one cut."""
+    one = rolled(np.array([2.4]), np.array([-2.0]), seed=11)
+    sensors, random, count = one.measured.sensors, np.random.default_rng(12), 300_000
+    first, second = (sensors.stretch(one.asked, position) for position in (0, 1))
+    n_per_kn, wind = MEAN + STD * random.standard_normal(count), WIND * random.standard_normal(count)
+    begins = 1.5 + np.zeros(count), second.from_m_s + STD_M_S * random.standard_normal(count)
+    weight, rows = np.zeros(count), np.arange(count)
+    for place, (stretch, begin) in enumerate(zip((first, second), begins, strict=True)):
+        slope = WindySlope(n_per_kn, wind, bends_drawn(random, count, place))
+        at, end = np.repeat(stretch.from_m, count), np.repeat(stretch.to_m, count)[:, None]
+        comes = slope.roll_on(rows, rows, at, begin, end).speed_m_s[:, 0]
+        weight -= 0.5 * ((comes - stretch.to_m_s) / STD_M_S) ** 2
+    weight = np.exp(weight - weight.max())
+    weight /= weight.sum()
+    assert 1.0 / (weight**2).sum() > 3_000  # cuts that count
+    speed = one.asked.start.speed_m_s
+    ahead = n_per_kn + AIR * ((speed + wind) * np.abs(speed + wind) - speed**2)
+    mean = (weight * ahead).sum()
+    std = np.sqrt((weight * (ahead - mean) ** 2).sum())
+    told = one.measured.expected(one.asked)
+    assert told.std_n_per_kn[0] == pytest.approx(std, rel=0.1)
+    assert told.mean_n_per_kn[0] == pytest.approx(mean, abs=0.2 * std)
+    before = one.measured.before_the_crest(np.zeros(1, dtype=np.int64))
+    alone = one.measured.on_the_way(before, np.zeros(1, dtype=np.int64), speed)
+    assert alone.std_n_per_kn[0] > 1.5 * std
+
+
+def test_nothing_later_is_looked_at() -> None:
+    count = 50
+    cuts = rolled(*drawn_cuts(count, 3), seed=4, position=2)
+    early = replace(cuts.asked, position=1, start=replace(cuts.asked.start, time_s=np.full(count, 15.0)))
+    found = cuts.measured.resistance_n_per_kn(early)
+    memory, later = cuts.asked.memory, (slice(None), slice(None), slice(1, None))
+    for array in (memory.entry_m_s, memory.exit_m_s, memory.begin_s, memory.end_s, memory.command_m_s):
+        array[later] = 1e3
+    memory.time_s[:], memory.end_m[:], memory.end_speed_m_s[:] = 1e3, 1e3, 1e3
+    assert cuts.measured.resistance_n_per_kn(early).tolist() == found.tolist()
+    memory.exit_m_s[:, :, 0] = 4.9
+    assert cuts.measured.resistance_n_per_kn(early).tolist() != found.tolist()
+    memory.end_s[:, :, 0] = 16.0  # the last axle is still in the first position: its exit speed is not read
+    waits = cuts.measured.expected(early)
+    only = replace(early, position=0, start=replace(early.start, speed_m_s=memory.entry_m_s[:, 0, 0]))
+    first = cuts.measured.measured(cuts.measured.before_the_crest(early.lanes), early.lanes, only, 0)
+    assert waits.mean_n_per_kn == pytest.approx(
+        cuts.measured.on_the_way(first, early.lanes, early.start.speed_m_s).mean_n_per_kn, abs=1e-12
+    )
+
+
+def test_a_cut_does_not_depend_on_the_others() -> None:
+    cuts = rolled(*drawn_cuts(40, 5), seed=6)
+    some = np.array([3, 17, 30])
+    few = replace(cuts.asked, lanes=some, routes=cuts.asked.routes[some], start=cuts.asked.start.chosen(some))
+    all_found = cuts.measured.resistance_n_per_kn(cuts.asked)
+    assert cuts.measured.resistance_n_per_kn(few).tolist() == all_found[some].tolist()
