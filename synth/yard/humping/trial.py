@@ -22,7 +22,7 @@ from synth.yard.humping.interval import CentredRule, IntervalRule
 from synth.yard.humping.interval_control import Feedback, OpenLoop, ProgramSpeeds
 from synth.yard.humping.known_cuts import BAD, KnownCuts, known_cuts, runner_n_per_kn
 from synth.yard.humping.outcomes import TrainOutcomes, outcomes
-from synth.yard.humping.rollability import CategoryMean, MeasuredRollability, Rollability
+from synth.yard.humping.rollability import CategoryMean, Rollability, measured_rollability
 from synth.yard.humping.route_rolling import rolling_on
 from synth.yard.humping.route_ways import RouteWays
 from synth.yard.humping.speed_sensors import SpeedSensors
@@ -194,7 +194,7 @@ class HumpTrial:
         reading = None
         if sensing is not None and sensing.for_aim:
             sensors = SpeedSensors(self.routes, trains, sensing.speed_std_m_s)
-            reading = ReadAhead(sensors, ExpectedWay(known.rolls, known.mean_n_per_kn, reduced_gravity_m_s2(trains)))
+            reading = ReadAhead(sensors, expected_way(trains, known))
         return AimControl(self.aim, self.routes, trains, reading)
 
     def control_of(self, trains: TrainCuts, known: KnownCuts, plan: TrainPlan, aim: AimControl) -> ExitSpeeds:
@@ -205,8 +205,13 @@ class HumpTrial:
         rollability: Rollability = CategoryMean(known)
         if sensing is not None and sensing.for_intervals:
             sensors = SpeedSensors(self.routes, trains, sensing.speed_std_m_s)
-            rollability = MeasuredRollability(sensors, trains)
+            rollability = measured_rollability(sensors, trains, expected_way(trains, known))
         return Feedback(self.routes, known, plan, self.planner.ranges, self.control.rule, rollability, aim)
+
+
+def expected_way(trains: TrainCuts, known: KnownCuts) -> ExpectedWay:
+    """The way of `trains` as it is expected before the train."""
+    return ExpectedWay(known.rolls, known.mean_n_per_kn, reduced_gravity_m_s2(trains))
 
 
 def reduced_gravity_m_s2(trains: TrainCuts) -> Floats:
