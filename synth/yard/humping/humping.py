@@ -264,18 +264,19 @@ class OneCut:
 
     def to_track(self, moving: Moving) -> None:
         """Free roll to the standing cars, and what the whole way was like."""
-        cut, memory, rolls = self.cut, self.memory, self.rolling.copy()
-        free = self.standing.free_m[self.lanes, self.routes]
-        end = self.free(moving, np.maximum(free, moving.head_m))
-        rolls &= self.rolling
+        cut, memory, standing = self.cut, self.memory, self.standing
+        end = self.free(moving, np.maximum(standing.free_m[self.lanes, self.routes], moving.head_m))
         met = meeting(self.hump.routes, self.routes, self.times, self.ahead())
         memory.unseparated[:, cut], memory.foul[:, cut] = met.unseparated, met.foul
-        free = self.standing.free_m[self.lanes, self.routes]
-        ended = np.where(rolls, self.still_s(moving, end), 0.0)
-        caught = self.standing.add(self.routes, np.where(rolls, end.head_m, free), self.length_m, ended)
-        memory.free_m[:, cut], memory.caught_on_track[:, cut] = free, rolls & caught
-        memory.end_m[rolls, cut], memory.end_speed_m_s[rolls, cut] = end.head_m[rolls], end.speed_m_s[rolls]
-        memory.end_time_s[rolls, cut] = ended[rolls]
+        memory.free_m[:, cut] = standing.free_m[self.lanes, self.routes]
+        rolls = self.rolling
+        lanes, still = self.lanes[rolls], Moving(end.head_m, end.speed_m_s, self.still_s(moving, end)).chosen(rolls)
+        closing = standing.add(lanes, self.cars(rolls), moving.chosen(rolls), still, self.length_m[rolls])
+        touches = ~np.isnan(closing)
+        memory.caught_on_track[lanes, cut] = touches
+        memory.end_m[lanes, cut], memory.end_time_s[lanes, cut] = still.head_m, still.time_s
+        memory.end_speed_m_s[lanes, cut] = np.where(touches, closing, still.speed_m_s)
+        standing.block(self.lanes[~rolls], self.routes[~rolls], self.length_m[~rolls])
 
     def still_s(self, moving: Moving, end: Moving) -> Floats:
         """When cuts that roll from `moving` to `end` are there, also those that stop of themselves."""

@@ -34,12 +34,11 @@ class TrainOutcomes:
 
     `train`: its number; `span_s`: from the first cut at the crest to the last, in which `span_m` and `span_cars` went
     over it, counted from middle to middle. (n, elements), by the numbers of the routes: `misrouted`, `contact`,
-    `unseparated`, `foul`. `caught`: cuts misrouted or in contact, but not in the last position
-    (`caught_in_last`). `caught_on_track`: cuts that came up with the one ahead on its track. `stopped`: on the way.
-    `judged`: all others, which reached a track; of these `overspeed` (n, 3) coupled in each class of speed, `gap_m` is
-    what they left free, all together. `speed_bins`,
-    `gap_bins`: histograms. `passes`, `strokes`, `error2_m2_s2` (n, positions): passes, commands to valves, and
-    squares of (exit less command) summed up.
+    `unseparated`, `foul`. `caught`: cuts misrouted or in contact, but not in the last position (`caught_in_last`).
+    `caught_on_track`: cuts that coupled to the one ahead while that rolled. `stopped`: on the way. `judged`: all
+    others, which reached a track; of these `overspeed` (n, 3) coupled in each class of speed, `gap_m` is what they left
+    free, all together. `speed_bins`, `gap_bins`: histograms. `passes`, `strokes`, `error2_m2_s2` (n, positions): passes,
+    commands to valves, and squares of (exit less command) summed up.
     """
 
     train: Ints
@@ -84,9 +83,11 @@ def outcomes(routes: HumpRoutes, trains: TrainCuts, memory: TrainMemory) -> Trai
     ends = memory.end_m
     last = routes.exit_m[memory.route].max(axis=2, initial=0.0, where=np.isfinite(routes.exit_m[memory.route]))
     stopped = ~caught & ~in_last & (ends < last)
-    judged = ~caught & ~in_last & ~stopped & ~memory.caught_on_track
+    judged = ~caught & ~in_last & ~stopped
     speed = np.where(judged, memory.end_speed_m_s, 0.0)
-    gap = np.where(judged & (memory.end_speed_m_s <= 0.0), np.maximum(memory.free_m - ends, 0.0), 0.0)
+    gap = np.where(
+        judged & (memory.end_speed_m_s <= 0.0) & ~memory.caught_on_track, np.maximum(memory.free_m - ends, 0.0), 0.0
+    )
     bounds = (*CLASSES_M_S, np.inf)
     over = [((speed > low) & (speed <= high)).sum(axis=1) for low, high in pairwise(bounds)]
     length, cars = trains.length_m.reshape(shape), trains.cars.reshape(shape)
