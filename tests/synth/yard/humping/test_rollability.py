@@ -80,7 +80,7 @@ class CutsAsked:
 
 
 def bends_drawn(random: np.random.Generator, count: int, position: int) -> Floats:
-    return BENDS_M_S2[position] * random.gamma(3.0, 1.0 / 3.0, count)
+    return np.asarray(BENDS_M_S2[position] * random.gamma(3.0, 1.0 / 3.0, count))
 
 
 def roll(n_per_kn: Floats, wind_m_s: Floats, random: np.random.Generator, position: int = 1) -> tuple[Floats, ...]:
