@@ -170,7 +170,9 @@ class HumpTrial:
         release = self.routes.exit_m[trains.route, -1] + trains.last_axle_m
         lanes = np.repeat(np.arange(trains.trains), trains.cuts)
         free = free_m[lanes, trains.route] - release
-        aim = self.aim.expected_m_s(trains.route, trains.category, trains.cars, free)
+        sensing = self.control.sensing
+        measured = sensing is not None and sensing.for_aim
+        aim = self.aim.expected_m_s(trains.route, trains.category, trains.cars, free, measured)
         gravity = reduced_gravity_m_s2(trains)
         head = self.usable_head_m(trains.mass_t, trains.axles, trains.category)
         least = np.sqrt(WORST_ENTRY_M_S**2 + 2.0 * gravity * self.worse_head_m(trains))
