@@ -79,7 +79,9 @@ def compare(legs, free_from_s, free_by_s, first, last, ahead_s, behind_s, able, 
     time, speed = np.empty(levels + 1), np.empty(levels + 1)
     ahead, behind = np.empty(levels + 1), np.empty(levels + 1)
     can, at = np.empty(levels + 1, np.bool_), np.zeros(levels, np.int64)
+    met, met_to = np.empty((levels, marks), np.int64), np.empty(levels, np.int64)
     for i in range(first, last):
+        list_marks(legs, i, met, met_to)
         time[0], speed[0], can[0] = legs.time_s[i], legs.speed_m_s[i], True
         ahead[0], behind[0] = math.inf, math.inf
         for s in range(marks):
@@ -106,13 +108,26 @@ def compare(legs, free_from_s, free_by_s, first, last, ahead_s, behind_s, able, 
                 k = at[level]
                 out = pass_end(legs, level, i, k, time[level], speed[level])
                 near, far = ahead[level], behind[level]
-                for s in range(marks):
+                for j in range(met_to[level]):
+                    s = met[level, j]
                     passed = mark_time(legs, level, i, k, s, time[level], speed[level], out)
                     near, far = nearer(passed, s, i, free_from_s, free_by_s, near, far)
                 ahead[level + 1], behind[level + 1] = near, far
                 can[level + 1] = can[level] and is_able(legs, level, i, k, speed[level])
                 time[level + 1], speed[level + 1] = out + legs.ends_s[level, i, k], legs.ends_m_s[level, i, k]
                 level += 1
+
+
+@kernel
+def list_marks(legs, i, met, met_to):
+    """Fill the marks that cut `i` meets on each stretch, `met` (q, s), and how many, `met_to` (q,)."""
+    for q in range(met.shape[0]):
+        count = 0
+        for s in range(met.shape[1]):
+            if not (math.isnan(legs.share[q, i, s]) and math.isnan(legs.roll_s[q, i, 0, s])):
+                met[q, count] = s
+                count += 1
+        met_to[q] = count
 
 
 @kernel

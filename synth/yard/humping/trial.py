@@ -44,7 +44,7 @@ USUAL_M_S = 4.0
 SPARE_M = 30.0
 """Room that a cut gets besides its length (assumed)."""
 
-BATCH = 100
+BATCH = 250
 """Trains that are humped side by side; no figure depends on it."""
 
 
