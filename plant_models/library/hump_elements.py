@@ -79,9 +79,14 @@ def retarder_from_row(cells: Cells) -> Retarder:
             zones = zones_of(position)
         except PlantError as error:
             raise ElementFault(cell.place, f"{error} A position of your own needs zones_m here.") from None
-    book, aim_tables = given(cells, "book", None), given(cells, "aim_tables", ())
+    book, exit_std = (given(cells, key, None) for key in ("book", "exit_std_m_s"))
+    aim_tables = given(cells, "aim_tables", ())
     counted = given(cells, "axle_counters", True)
-    return made(cells, "", lambda: Retarder(number, edge, zones, entry, leave, position, book, aim_tables, counted))
+    return made(
+        cells,
+        "",
+        lambda: Retarder(number, edge, zones, entry, leave, position, book, aim_tables, counted, exit_std),
+    )
 
 
 @cache
