@@ -31,7 +31,7 @@ def test_check_tells_what_is_there_and_what_is_missing(command: Command, file: P
     words = command("hump", "check", file).out
     assert "tracks: 2; switches: 1; retarder positions: 1" in words
     assert "retarders with a book of controller tables: none\n" in words
-    assert "without, whose exit speeds have a standard deviation of 0.15 m/s: 401\n" in words
+    assert "retarders without a book, standard deviation of their exit speeds 0.15 m/s: 401\n" in words
 
 
 def test_a_named_book_must_be_there(command: Command, file: Path) -> None:

@@ -98,6 +98,11 @@ class SectionCounter:
         """Axles of all records that have begun to come and are still to leave."""
         return sum(load.axles - load.left for load in self._begun()) if self._exits else 0
 
+    @property
+    def waits_for(self) -> tuple[int, ...]:
+        """Cuts of which an axle was counted and others are still to come or to leave."""
+        return tuple(load.cut for load in self._begun())
+
     def counted_all(self, cut: int) -> bool:
         """Whether all axles of `cut` came, or it is gone."""
         return all(load.came == load.axles for load in self._loads if load.cut == cut)
@@ -144,6 +149,8 @@ class SectionCounter:
         if before is None or before[1] <= before[0].in_s or out_s <= axle.in_s:
             return
         ahead, ahead_out_s = before
+        if max(ahead_out_s - ahead.in_s, out_s - axle.in_s) > self._length_m / self._rules.slowest_m_s:
+            return  # one of them stood on the section, or nearly; so its time tells no speed in the gap
         apart_s, speed_m_s = axle.in_s - ahead.in_s, self._length_m / (ahead_out_s - ahead.in_s)
         if axle.in_s > ahead_out_s:
             # The speed of the one ahead is from the begin of the gap, that of this one from its end.
