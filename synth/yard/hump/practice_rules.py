@@ -18,8 +18,8 @@ class PracticeRules:
     this time, if the next section counted the whole cut (filter of lone axles). `usual_base_m`, `longest_base_m`: no
     car has more between two axles, the latter if its cut has the mark long-base; a longer gap in a cut is a wrong
     uncoupling. `coupled_gap_m`: the last and the first axle of two coupled cars are no further apart. `bogie_m`:
-    between the axles of a bogie. `slowest_m_s`: moving cuts are no slower; the gap
-    next to an axle that was slower on the first section is not judged.
+    between the axles of a bogie. `slowest_m_s`: moving cuts are no slower; the gap next to an axle that was
+    slower on the first section is not judged.
     """
 
     counters: bool = True
