@@ -120,7 +120,8 @@ def next_edge(cells: Cells) -> Edge:
 
 def branch_from(cells: Cells, inside: str) -> Branch:
     """A branch of a switch, which must lead to an element."""
-    needed(cells, "to", inside)
+    if "to" not in cells:
+        raise ElementFault((), f"{inside}key to is missing; a switch must have two exits, name the element it leads to")
     edge = edge_from(cells, inside)
     turn, fouling = (needed(cells, key, inside) for key in ("turn_deg", "fouling_m"))
     return made(cells, inside, lambda: Branch(edge, turn, fouling))

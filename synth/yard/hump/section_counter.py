@@ -32,13 +32,15 @@ class Axle(NamedTuple):
 
 @dataclass
 class Load:
-    """A record that was handed to the section: its axles, the widest gap between two, how many came and left."""
+    """A record that was handed to the section: its axles, the widest gap between two, how many came and left, and how
+    long after the axle ahead its first one came."""
 
     cut: int
     axles: int
     base_m: float
     came: int = 0
     left: int = 0
+    first_after_s: float = float("inf")
 
     @property
     def begun(self) -> bool:
@@ -117,6 +119,8 @@ class SectionCounter:
         leader = self._loads[0]
         if load.came == 0 and leader is not load and self._exits:
             yield Finding(Kind.CATCH_UP, load.cut, leader.cut)
+        if load.came == 0:
+            load.first_after_s = time_s - before_s
         load.came += 1
         after_s = time_s - before_s if load.came > 1 else float("inf")
         self._within.append(Axle(load.cut, load.base_m, load.axles - load.came, time_s, after_s))
@@ -149,7 +153,7 @@ class SectionCounter:
         if before is None or before[1] <= before[0].in_s or out_s <= axle.in_s:
             return
         ahead, ahead_out_s = before
-        if max(ahead_out_s - ahead.in_s, out_s - axle.in_s) > self._length_m / self._rules.slowest_m_s:
+        if max(ahead_out_s - ahead.in_s, out_s - axle.in_s) > self._length_m / self._rules.crawl_m_s:
             return  # one of them stood on the section, or nearly; so its time tells no speed in the gap
         apart_s, speed_m_s = axle.in_s - ahead.in_s, self._length_m / (ahead_out_s - ahead.in_s)
         if axle.in_s > ahead_out_s:
@@ -185,8 +189,13 @@ class SectionCounter:
         if passed(begun[0].cut):
             self._loads.popleft()
             yield from self._put_right(begun[0].cut)
-        elif came == 1 and left == 0 and quiet_s > self._rules.patience_s:
-            begun[0].came = 0
+        elif (
+            came == 1
+            and left == 0
+            and quiet_s > self._rules.patience_s
+            and begun[0].first_after_s < self._rules.twice_s
+        ):
+            begun[0].came = 0  # the last axle of the cut ahead was counted twice; any other axle may stand there
             yield from self._put_right(begun[0].cut)
 
     def _put_right(self, cut: int) -> Iterator[Finding]:

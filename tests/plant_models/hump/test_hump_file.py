@@ -213,7 +213,7 @@ FAULTS = [
     ("to = 602", "to = 603", 22, "switch 1: an edge leads to 603, but there is no such element"),
     ("to = 602", "to = 1", 22, "switch 1: the way from it comes back to it"),
     ("to = 602", "to = 401", 22, "switch 1: both branches lead to retarder 401; a switch must have two exits"),
-    (", right = { to = 602 }", "", 22, "switch 1: right: key to is missing"),
+    (", right = { to = 602 }", "", 22, "switch 1: right: key to is missing; a switch must have two exits"),
     (', type = "turnout"', ', type = "turnouts"', 22, "did you mean turnout?"),
     ('{ number = 601, type = "track", track = 1 },\n', "", 28, "retarder 401: an edge leads to 601"),
     ("track = 1 }", "track = 2 }", 26, "section 602: track 2 ends here and in section 601"),
