@@ -18,8 +18,7 @@ class PracticeRules:
     this time, if the next section counted the whole cut (filter of lone axles). `usual_base_m`, `longest_base_m`: no
     car has more between two axles, the latter if its cut has the mark long-base; a longer gap in a cut is a wrong
     uncoupling. `coupled_gap_m`: the last and the first axle of two coupled cars are no further apart. `bogie_m`:
-    between the axles of a bogie. `slowest_m_s`: moving cuts are no slower. `twice_s`: an axle so soon behind the last
-    one of the cut ahead is that one, counted twice; it is dropped if nothing follows it.
+    between the axles of a bogie. `slowest_m_s`: moving cuts are no slower.
     """
 
     counters: bool = True
@@ -30,7 +29,6 @@ class PracticeRules:
     coupled_gap_m: float = 6.0
     bogie_m: float = 1.85
     slowest_m_s: float = 2.0
-    twice_s: float = 0.1
 
     def __post_init__(self) -> None:
         if self.fouling_m_s is not None:
@@ -41,12 +39,16 @@ class PracticeRules:
         require_between("rules: coupled_gap_m", self.coupled_gap_m, 2.0, 20.0)
         require_between("rules: bogie_m", self.bogie_m, 1.0, 4.0)
         require_between("rules: slowest_m_s", self.slowest_m_s, 0.1, 10.0)
-        require_between("rules: twice_s", self.twice_s, 0.0, 1.0)
 
     @property
     def crawl_m_s(self) -> float:
         """A gap next to an axle that was slower on the first section is not judged: it may have stood there."""
         return 0.5 * self.slowest_m_s
+
+    @property
+    def bogie_s(self) -> float:
+        """An axle that comes so soon behind another is of the same car."""
+        return self.bogie_m / self.slowest_m_s
 
     @property
     def patience_s(self) -> float:

@@ -193,9 +193,9 @@ class SectionCounter:
             came == 1
             and left == 0
             and quiet_s > self._rules.patience_s
-            and begun[0].first_after_s < self._rules.twice_s
+            and begun[0].first_after_s <= self._rules.bogie_s
         ):
-            begun[0].came = 0  # the last axle of the cut ahead was counted twice; any other axle may stand there
+            begun[0].came = 0  # it is of the cut ahead, one of whose axles was counted twice; another may stand there
             yield from self._put_right(begun[0].cut)
 
     def _put_right(self, cut: int) -> Iterator[Finding]:

@@ -36,8 +36,8 @@ SURE, NEAR = 1.25, 2.0
 """A gap within a cut that is wider than the rule asks for by the first factor is one for sure; so is one between two
 cuts that is wider by the second: speeds change while it passes."""
 
-SLOW_S, SLOW_M = 0.3, 0.4
-"""An object that moves less than that from so long before to so long after is slower than the rule's 1 m/s for sure."""
+SLOW_S, SLOW_M = 0.3, 0.25
+"""An object that moved less than that in so long, and moves no more in the next, is slower than the rule's 1 m/s."""
 
 
 @dataclass(frozen=True)
@@ -86,9 +86,9 @@ class Humping:
                 if event.kind is not Kind.COMMANDED or (event.element, number) not in self.track.truth.came_s:
                     continue
                 now, place = event.time_s, self.table.places[self.table.graph.leads[each.lead]][event.element]
-                moved_m = each.place_m(now + SLOW_S) - each.place_m(now - SLOW_S)
-                beyond_m = each.place_m(now) - place.at_m
-                if moved_m < SLOW_M and 0.0 < beyond_m < each.axles_m[-1] + FOULING_M:
+                before_m, now_m, after_m = (each.place_m(now + step * SLOW_S) for step in (-1, 0, 1))
+                slow, beyond_m = max(now_m - before_m, after_m - now_m) < SLOW_M, now_m - place.at_m
+                if slow and 0.0 < beyond_m < each.axles_m[-1] + FOULING_M:
                     yield now, event.element, number
 
     def lost(self) -> Iterator[tuple[int, int]]:
