@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-
-kernel: Any = njit(cache=True, nogil=True, error_model="numpy")
 
 
 class Legs(NamedTuple):
@@ -40,7 +39,29 @@ class Legs(NamedTuple):
     least_entry_m_s: Floats
 
 
-@kernel
+class Work(NamedTuple):
+    """Memory of one call of `compare` for q positions and s marks: what is known ahead of each position (q + 1,), the
+    choice that is looked at (q,), the marks of each stretch (q, s) and how many they are (q,)."""
+
+    time_s: Floats
+    speed_m_s: Floats
+    ahead_s: Floats
+    behind_s: Floats
+    able: NDArray[np.bool_]
+    at: Ints
+    met: Ints
+    met_to: Ints
+
+
+def work_for(legs: Legs) -> Work:
+    """Memory for `compare`."""
+    levels, marks = len(legs.choices), legs.before_s.shape[1]
+    floats = (np.empty(levels + 1) for _ in range(4))
+    able, at = np.empty(levels + 1, dtype=np.bool_), np.zeros(levels, dtype=np.int64)
+    return Work(*floats, able, at, np.empty((levels, marks), dtype=np.int64), np.empty(levels, dtype=np.int64))
+
+
+@borrowing_inline
 def mark_time(legs, q, i, k, s, time, speed, out):
     """When mark `s` is passed on stretch `q` that begins at `time` with `speed`, and whose pass ends at `out`; NaN if
     it is not there."""
@@ -54,7 +75,7 @@ def mark_time(legs, q, i, k, s, time, speed, out):
     return out + legs.roll_s[q, i, k, s]
 
 
-@kernel
+@borrowing_inline
 def pass_end(legs, q, i, k, time, speed):
     """When the pass ends; infinite where the cut stops."""
     exit_speed = legs.speeds_m_s[q, i, k]
@@ -63,7 +84,7 @@ def pass_end(legs, q, i, k, time, speed):
     return math.inf
 
 
-@kernel
+@borrowing_inline
 def is_able(legs, q, i, k, speed):
     """Whether the cut may come to the position with `speed` and can leave it with the choice `k`."""
     exit_speed = legs.speeds_m_s[q, i, k]
@@ -71,22 +92,21 @@ def is_able(legs, q, i, k, speed):
     return reached and legs.least_entry_m_s[q, i] <= speed <= legs.most_entry_m_s[q, i]
 
 
-@kernel
-def compare(legs, free_from_s, free_by_s, first, last, ahead_s, behind_s, able, arrival_s):
+@borrowing
+def compare(legs, free_from_s, free_by_s, first, last, work, ahead_s, behind_s, able, arrival_s):
     """Fill, for cuts `first` … `last` − 1 and every combination c of choices, the least margins to the cuts ahead and
     behind, whether the cut is able to, and when it arrives: all (m, c), the last position's choice running fastest."""
     levels, marks = len(legs.choices), legs.before_s.shape[1]
-    time, speed = np.empty(levels + 1), np.empty(levels + 1)
-    ahead, behind = np.empty(levels + 1), np.empty(levels + 1)
-    can, at = np.empty(levels + 1, np.bool_), np.zeros(levels, np.int64)
-    met, met_to = np.empty((levels, marks), np.int64), np.empty(levels, np.int64)
+    time, speed, ahead, behind = work.time_s, work.speed_m_s, work.ahead_s, work.behind_s
+    can, at, met, met_to = work.able, work.at, work.met, work.met_to
     for i in range(first, last):
         list_marks(legs, i, met, met_to)
         time[0], speed[0], can[0] = legs.time_s[i], legs.speed_m_s[i], True
         ahead[0], behind[0] = math.inf, math.inf
         for s in range(marks):
             ahead[0], behind[0] = nearer(legs.before_s[i, s], s, i, free_from_s, free_by_s, ahead[0], behind[0])
-        at[:] = 0
+        for q in range(levels):
+            at[q] = 0
         column, level = 0, 0
         while level >= 0:
             if level == levels:
@@ -118,7 +138,7 @@ def compare(legs, free_from_s, free_by_s, first, last, ahead_s, behind_s, able, 
                 level += 1
 
 
-@kernel
+@borrowing_inline
 def list_marks(legs, i, met, met_to):
     """Fill the marks that cut `i` meets on each stretch, `met` (q, s), and how many, `met_to` (q,)."""
     for q in range(met.shape[0]):
@@ -130,7 +150,7 @@ def list_marks(legs, i, met, met_to):
         met_to[q] = count
 
 
-@kernel
+@borrowing_inline
 def nearer(passed, s, i, free_from_s, free_by_s, ahead, behind):
     """Least margins so far, and that of a mark that is passed at `passed`."""
     if math.isnan(passed):
@@ -142,7 +162,7 @@ def nearer(passed, s, i, free_from_s, free_by_s, ahead, behind):
     return ahead, (margin if margin < behind else behind)
 
 
-@kernel
+@borrowing_inline
 def unknown_out(legs, i, e):
     """Whether the first axle comes to element `e` on the way that is forecast, but the last one does not leave it."""
     comes, leaves = not math.isnan(legs.before_s[i, 2 * e]), not math.isnan(legs.before_s[i, 2 * e + 1])
@@ -153,13 +173,14 @@ def unknown_out(legs, i, e):
     return comes and not leaves
 
 
-@kernel
+@borrowing
 def follow(legs, taken, first, last, times_s, arrival_s):
     """Fill the times of all marks (m, s) and of the arrival (m,) with the choices `taken` (q, m)."""
     levels, marks = len(legs.choices), legs.before_s.shape[1]
     for i in range(first, last):
         time, speed = legs.time_s[i], legs.speed_m_s[i]
-        times_s[i] = legs.before_s[i]
+        for s in range(marks):
+            times_s[i, s] = legs.before_s[i, s]
         for q in range(levels):
             k = taken[q, i]
             out = pass_end(legs, q, i, k, time, speed)

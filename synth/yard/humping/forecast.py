@@ -119,7 +119,8 @@ class Ways:
         shape = len(legs.time_s), int(np.prod(legs.choices))
         ahead, behind, arrival = np.empty(shape), np.empty(shape), np.empty(shape)
         able = np.empty(shape, dtype=np.bool_)
-        kernel.compare(legs, free_from_s, free_by_s, 0, shape[0], ahead, behind, able, arrival)
+        work = kernel.work_for(legs)
+        kernel.compare(legs, free_from_s, free_by_s, 0, shape[0], work, ahead, behind, able, arrival)
         total = np.zeros((shape[0], 1))
         for count, speeds in zip(legs.choices, legs.speeds_m_s, strict=True):
             total = (total[:, :, None] + speeds[:, None, :count]).reshape(shape[0], -1)
