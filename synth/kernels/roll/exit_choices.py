@@ -56,9 +56,16 @@ class Work(NamedTuple):
 def work_for(legs: Legs) -> Work:
     """Memory for `compare`."""
     levels, marks = len(legs.choices), legs.before_s.shape[1]
-    floats = (np.empty(levels + 1) for _ in range(4))
-    able, at = np.empty(levels + 1, dtype=np.bool_), np.zeros(levels, dtype=np.int64)
-    return Work(*floats, able, at, np.empty((levels, marks), dtype=np.int64), np.empty(levels, dtype=np.int64))
+    return Work(
+        time_s=np.empty(levels + 1),
+        speed_m_s=np.empty(levels + 1),
+        ahead_s=np.empty(levels + 1),
+        behind_s=np.empty(levels + 1),
+        able=np.empty(levels + 1, dtype=np.bool_),
+        at=np.zeros(levels, dtype=np.int64),
+        met=np.empty((levels, marks), dtype=np.int64),
+        met_to=np.empty(levels, dtype=np.int64),
+    )
 
 
 @borrowing_inline

@@ -17,9 +17,9 @@ from synth.yard.humping.free_tracks import FreeTracks
 from synth.yard.humping.hump_aim import HumpAim
 from synth.yard.humping.hump_position import HumpPosition
 from synth.yard.humping.hump_routes import HumpRoutes
-from synth.yard.humping.humping import ExitSpeeds, Hump, humped
+from synth.yard.humping.humping import ExitSpeeds, Hump, HumpSpeeds, humped
 from synth.yard.humping.interval import CentredRule, IntervalRule
-from synth.yard.humping.interval_control import Feedback, OpenLoop, ProgramSpeeds
+from synth.yard.humping.interval_control import Feedback, FeedbackSpeeds, OpenLoop, ProgramSpeeds
 from synth.yard.humping.known_cuts import BAD, KnownCuts, known_cuts, runner_n_per_kn
 from synth.yard.humping.outcomes import TrainOutcomes, outcomes
 from synth.yard.humping.rollability import CategoryMean, Rollability, measured_rollability
@@ -108,11 +108,13 @@ class Sensing:
 class Control:
     """`feedback`: exit speeds of the interval positions are chosen when a cut comes; else as planned before the train.
 
-    `sensing` None: the resistance of a cut is that of its category. `rule`: of the feedback.
+    `sensing` None: the resistance of a cut is that of its category. `slow_down_s`: a feedback slows the train down for
+    a cut that would come closer than this to those ahead of it; None: never. `rule`: of the feedback.
     """
 
     feedback: bool = True
     sensing: Sensing | None = None
+    slow_down_s: float | None = None
     rule: IntervalRule = CENTRED
 
 
@@ -163,7 +165,10 @@ class HumpTrial:
         rolls = rolling_on(self.ways, trains.population, trains.drawn, self.threads)
         hump = Hump(self.routes, self.positions, rolls)
         control = self.control_of(trains, known, plan, aim)
-        return trains, plan, humped(hump, trains, free_m, ProgramSpeeds(plan.hump_speed_m_s), control)
+        speeds: HumpSpeeds = ProgramSpeeds(plan.hump_speed_m_s)
+        if self.control.slow_down_s is not None and isinstance(control, Feedback):
+            speeds = FeedbackSpeeds(control, self.control.slow_down_s)
+        return trains, plan, humped(hump, trains, free_m, speeds, control)
 
     def known(self, trains: TrainCuts, free_m: Floats) -> KnownCuts:
         """What is known of trains before they are humped, and how they will be aimed if tracks stay as they are."""
@@ -208,7 +213,7 @@ class HumpTrial:
         if sensing is not None and sensing.for_intervals:
             sensors = SpeedSensors(self.routes, trains, sensing.speed_std_m_s)
             rollability = measured_rollability(sensors, trains, expected_way(trains, known))
-        return Feedback(self.routes, known, plan, self.planner.ranges, self.control.rule, rollability, aim)
+        return Feedback(self.planner, known, plan, self.control.rule, rollability, aim)
 
 
 def expected_way(trains: TrainCuts, known: KnownCuts) -> ExpectedWay:

@@ -16,7 +16,6 @@ from synth.yard.humping.aim_control import AimControl, ReadAhead
 from synth.yard.humping.aim_design import CARS, AimDesign, MeasuredAhead, hump_aim
 from synth.yard.humping.expected_way import ExpectedWay
 from synth.yard.humping.humping import Asked
-from synth.yard.humping.meeting import LastUsers
 from synth.yard.humping.motion import Cars, Moving, rolled_free
 from synth.yard.humping.resistance_prior import bend_spreads, resistance_prior
 from synth.yard.humping.rollability import MeasuredRollability, measured_rollability
@@ -51,8 +50,7 @@ def asked_on_the_way(made: TrainCuts, position: int) -> Asked:
             speed = EXITS_M_S[place] + 0.3 * random.standard_normal(len(made))
             memory.exit_m_s[:, 0, place], memory.end_s[:, 0, place] = speed, moving.time_s + 5.0
             moving = Moving(leaves, speed, moving.time_s + 5.0)
-    ahead = LastUsers(len(made), ROUTES).on(made.route, rows)
-    return Asked(0, position, rows, made.route, moving, ahead, np.full(len(made), 900.0), memory)
+    return Asked(0, position, rows, made.route, moving, np.full(len(made), 900.0), memory)
 
 
 @cache
