@@ -27,11 +27,13 @@ SLOWEST_M_S = 0.1
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Expected:
-    """Cuts as a control knows them, (n,): `cars` roll as it expects; first and last axles behind the head."""
+    """Cuts as a control knows them, (n,): `cars` roll as it expects; first and last axles behind the head;
+    `braked_m2_s2` (n, positions): most loss of v² to the brake of each position."""
 
     cars: Cars
     first_axle_m: Floats
     last_axle_m: Floats
+    braked_m2_s2: Floats
 
 
 class Choices(Protocol):
@@ -185,6 +187,7 @@ def through(
         ends_m_s=ends_speed,
         most_entry_m_s=np.stack([np.broadcast_to(each.most_entry_m_s, count) for each in choices]),
         least_entry_m_s=np.stack([np.broadcast_to(each.least_entry_m_s, count) for each in choices]),
+        braked_m2_s2=np.ascontiguousarray(expected.braked_m2_s2[:, position : position + most].T),
     )
     return Ways(routes, legs)
 

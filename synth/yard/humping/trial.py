@@ -123,8 +123,8 @@ class HumpTrial:
     """Trains from `source` over `routes`, whose `ways` are the routes as their cars feel them.
 
     `positions`: models in order from the crest, all but the last for intervals; `planner` with their ranges; `free`:
-    tracks before each train. `aim`: exit speeds of the last position; `usable_head_m`: energy head (rows,) that it can
-    be trusted to take from cuts, by mass, axles and category.
+    tracks before each train. `aim`: exit speeds of the last position; `usable_heads_m`: energy head (rows,) that
+    each position can be trusted to take from cuts, by mass, axles and category.
     """
 
     source: TrainSource
@@ -135,7 +135,7 @@ class HumpTrial:
     program: Program
     control: Control
     aim: HumpAim
-    usable_head_m: BrakeHead
+    usable_heads_m: tuple[BrakeHead, ...]
     free: FreeTracks
     threads: int = 0
 
@@ -179,10 +179,11 @@ class HumpTrial:
         measured = sensing is not None and sensing.for_aim
         aim = self.aim.expected_m_s(trains.route, trains.category, trains.cars, free, measured)
         gravity = reduced_gravity_m_s2(trains)
-        head = self.usable_head_m(trains.mass_t, trains.axles, trains.category)
+        heads = [brake(trains.mass_t, trains.axles, trains.category) for brake in self.usable_heads_m]
+        braked = 2.0 * gravity[:, None] * np.stack(heads, axis=1)
         least = np.sqrt(WORST_ENTRY_M_S**2 + 2.0 * gravity * self.worse_head_m(trains))
-        given = Given(aim, np.sqrt(aim**2 + 2.0 * gravity * head), least)
-        return known_cuts(trains, self.ways, given, self.threads)
+        given = Given(aim, np.sqrt(aim**2 + braked[:, -1]), least)
+        return known_cuts(trains, self.ways, given, braked, self.threads)
 
     def worse_head_m(self, trains: TrainCuts) -> Floats:
         """Energy head (rows,) that bad runners against the wind lose more than expected ahead of the last position."""
