@@ -94,12 +94,17 @@ def braked_evenly(
     lane, column = np.nonzero(on_way)
     share = (heads_m[lane, column] - start.head_m[lane]) / path[lane]
     before, after = start.speed_m_s[lane], exit_m_s[lane]
-    between = np.sqrt(before**2 + share * (after**2 - before**2))
+    between = even_speed_m_s(before, after, share)
     with np.errstate(divide="ignore", invalid="ignore"):
         passed = start.time_s[lane] + duration_s[lane] * (share * (before + after) / (before + between))
     times = np.full(heads_m.shape, np.nan)
     times[lane, column] = np.where(moves[lane], passed, np.inf)
     return Moving(np.where(moves, to_m, start.head_m), np.where(moves, exit_m_s, 0.0), end), times
+
+
+def even_speed_m_s(entry_m_s: Floats, exit_m_s: Floats, share: Floats) -> Floats:
+    """Speed after this share of a path on which a cut is braked at an even rate."""
+    return np.sqrt(entry_m_s**2 + share * (exit_m_s**2 - entry_m_s**2))
 
 
 def even_duration_s(start: Moving, to_m: Floats, exit_m_s: Floats) -> Floats:
