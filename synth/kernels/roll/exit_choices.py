@@ -21,8 +21,8 @@ class Legs(NamedTuple):
     position and the free roll behind it: `choices` (q,); `speeds_m_s` (q, m, k); `won_m2_s2` (q, m), gain of v² in the
     pass without brake; `path_m` (q, m) of the pass, of which `share` (q, m, s) is behind the cut at a mark; `roll_s`
     (q, m, k, s), times after the pass; `ends_s`, `ends_m_s` (q, m, k), duration of the roll and speed at its end;
-    `most_entry_m_s`, `least_entry_m_s`, `braked_m2_s2` (q, m), most loss of v² to the brake. `early` (q,): the brake works
-    as hard as that until the exit speed is reached, else evenly. NaN where a mark is not on that stretch.
+    `most_entry_m_s`, `least_entry_m_s`, `braked_m2_s2` (q, m), most loss of v² to the brake; `early` (q,): the brake
+    works as hard as that until the exit speed is reached, else evenly. NaN where a mark is not on that stretch.
     """
 
     time_s: Floats
