@@ -21,8 +21,8 @@ class Legs(NamedTuple):
     position and the free roll behind it: `choices` (q,); `speeds_m_s` (q, m, k); `won_m2_s2` (q, m), gain of v² in the
     pass without brake; `path_m` (q, m) of the pass, of which `share` (q, m, s) is behind the cut at a mark; `roll_s`
     (q, m, k, s), times after the pass; `ends_s`, `ends_m_s` (q, m, k), duration of the roll and speed at its end;
-    `most_entry_m_s`, `least_entry_m_s`, `braked_m2_s2` (q, m), most
-    loss of v² to the brake. NaN where a mark is not on that stretch.
+    `most_entry_m_s`, `least_entry_m_s`, `braked_m2_s2` (q, m), most loss of v² to the brake; `early` (q,): the brake
+    works as hard as that until the exit speed is reached, else evenly. NaN where a mark is not on that stretch.
     """
 
     time_s: Floats
@@ -39,6 +39,7 @@ class Legs(NamedTuple):
     most_entry_m_s: Floats
     least_entry_m_s: Floats
     braked_m2_s2: Floats
+    early: NDArray[np.bool_]
 
 
 class Work(NamedTuple):
@@ -75,22 +76,33 @@ def mark_time(legs, q, i, k, s, time, speed, out):
     """When mark `s` is passed on stretch `q` that begins at `time` with `speed`, and whose pass ends at `out`; NaN if
     it is not there."""
     share = legs.share[q, i, s]
-    if not math.isnan(share):
-        exit_speed = legs.speeds_m_s[q, i, k]
-        if not math.isfinite(out):
-            return math.inf
-        between = math.sqrt(speed * speed + share * (exit_speed * exit_speed - speed * speed))
-        return time + (out - time) * share * (speed + exit_speed) / (speed + between)
-    return out + legs.roll_s[q, i, k, s]
+    if math.isnan(share):
+        return out + legs.roll_s[q, i, k, s]
+    if not math.isfinite(out):
+        return math.inf
+    return time + time_to(legs, q, i, k, speed, share)
 
 
 @borrowing_inline
 def pass_end(legs, q, i, k, time, speed):
     """When the pass ends; infinite where the cut stops."""
-    exit_speed = legs.speeds_m_s[q, i, k]
-    if speed > 0.0 and exit_speed > 0.0:
-        return time + 2.0 * legs.path_m[q, i] / (speed + exit_speed)
+    if speed > 0.0 and legs.speeds_m_s[q, i, k] > 0.0:
+        return time + time_to(legs, q, i, k, speed, 1.0)
     return math.inf
+
+
+@borrowing_inline
+def time_to(legs, q, i, k, speed, share):
+    """How long a cut takes that comes with `speed` for this share of the path of the pass; v² falls evenly until the
+    exit speed is reached."""
+    path, exit_speed = legs.path_m[q, i], legs.speeds_m_s[q, i, k]
+    braked = 1.0
+    if legs.early[q]:
+        needed = speed * speed + legs.won_m2_s2[q, i] - exit_speed * exit_speed
+        braked = min(max(needed / legs.braked_m2_s2[q, i], 0.05), 1.0)
+    part = min(share / braked, 1.0)
+    between = math.sqrt(max(speed * speed + part * (exit_speed * exit_speed - speed * speed), 0.0))
+    return 2.0 * path * braked * part / (speed + between) + path * max(share - braked, 0.0) / exit_speed
 
 
 @borrowing_inline
