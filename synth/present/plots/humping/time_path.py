@@ -81,10 +81,9 @@ def subject_of(trace: TrainTrace) -> str:
         if any(alarm.kind is kind for alarm in trace.alarms)
     ]
     cars = sum(cut.cars for cut in trace.cuts)
-    return (
-        f"{counted(len(trace.cuts), 'cut')} of {counted(cars, 'car')}, mean hump speed "
-        f"{trace.mean_hump_speed_m_s:.2f} m/s; alarms: {', '.join(found) or 'none'}"
-    )
+    mean = trace.mean_hump_speed_m_s
+    pushed = f", mean hump speed {mean:.2f} m/s" if np.isfinite(mean) else ""
+    return f"{counted(len(trace.cuts), 'cut')} of {counted(cars, 'car')}{pushed}; alarms: {', '.join(found) or 'none'}"
 
 
 def bunch(routes: HumpRoutes, route: int) -> int:
