@@ -51,6 +51,7 @@ class Work(NamedTuple):
     ahead_s: Floats
     behind_s: Floats
     able: NDArray[np.bool_]
+    beyond_m_s: Floats
     at: Ints
     met: Ints
     met_to: Ints
@@ -65,6 +66,7 @@ def work_for(legs: Legs) -> Work:
         ahead_s=np.empty(levels + 1),
         behind_s=np.empty(levels + 1),
         able=np.empty(levels + 1, dtype=np.bool_),
+        beyond_m_s=np.zeros(levels + 1),
         at=np.zeros(levels, dtype=np.int64),
         met=np.empty((levels, marks), dtype=np.int64),
         met_to=np.empty(levels, dtype=np.int64),
@@ -107,20 +109,20 @@ def time_to(legs, q, i, k, speed, share):
 
 @borrowing_inline
 def is_able(legs, q, i, k, speed):
-    """Whether the cut may come to the position with `speed` and can leave it with the choice `k`."""
+    """Whether a cut that comes to the position with `speed` can leave it with the choice `k`."""
     exit_speed = legs.speeds_m_s[q, i, k]
     unbraked = speed * speed + legs.won_m2_s2[q, i] + 1e-6
-    reached = unbraked - legs.braked_m2_s2[q, i] <= exit_speed * exit_speed <= unbraked
-    return reached and legs.least_entry_m_s[q, i] <= speed <= legs.most_entry_m_s[q, i]
+    return unbraked - legs.braked_m2_s2[q, i] <= exit_speed * exit_speed <= unbraked
 
 
 @borrowing
-def compare(legs, free_from_s, free_by_s, first, last, work, ahead_s, behind_s, able, arrival_s):
+def compare(legs, free_from_s, free_by_s, first, last, work, ahead_s, behind_s, able, beyond_m_s, arrival_s):
     """Fill, for cuts `first` … `last` − 1 and every combination c of choices, the least margins to the cuts ahead and
-    behind, whether the cut is able to, and when it arrives: all (m, c), the last position's choice running fastest."""
+    behind, whether the cut is able to, how far its worst entry is beyond the limits, and when it arrives: all (m, c),
+    the last position's choice running fastest."""
     levels, marks = len(legs.choices), legs.before_s.shape[1]
     time, speed, ahead, behind = work.time_s, work.speed_m_s, work.ahead_s, work.behind_s
-    can, at, met, met_to = work.able, work.at, work.met, work.met_to
+    can, beyond, at, met, met_to = work.able, work.beyond_m_s, work.at, work.met, work.met_to
     for i in range(first, last):
         list_marks(legs, i, met, met_to)
         time[0], speed[0], can[0] = legs.time_s[i], legs.speed_m_s[i], True
@@ -137,7 +139,7 @@ def compare(legs, free_from_s, free_by_s, first, last, work, ahead_s, behind_s, 
                     if unknown_out(legs, i, e):
                         late = min(late, free_by_s[i, e] - time[level])
                 ahead_s[i, column], behind_s[i, column] = ahead[level], late
-                able[i, column], arrival_s[i, column] = can[level], time[level]
+                able[i, column], beyond_m_s[i, column], arrival_s[i, column] = can[level], beyond[level], time[level]
                 column += 1
                 level -= 1
                 at[level] += 1
@@ -156,6 +158,8 @@ def compare(legs, free_from_s, free_by_s, first, last, work, ahead_s, behind_s, 
                     near, far = nearer(passed, s, i, free_from_s, free_by_s, near, far)
                 ahead[level + 1], behind[level + 1] = near, far
                 can[level + 1] = can[level] and is_able(legs, level, i, k, speed[level])
+                slow, fast = legs.least_entry_m_s[level, i], legs.most_entry_m_s[level, i]
+                beyond[level + 1] = max(beyond[level], slow - speed[level], speed[level] - fast)
                 time[level + 1], speed[level + 1] = out + legs.ends_s[level, i, k], legs.ends_m_s[level, i, k]
                 level += 1
 

@@ -88,12 +88,14 @@ class SpeedRange:
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Compared:
-    """n cuts with c choices each, (n, c): least margins to the cuts ahead and behind, whether the cut can have that,
-    when its last axle is out of the last position, and all exit speeds added up."""
+    """n cuts with c choices each, (n, c): least margins to the cuts ahead and behind; whether the cut can have these
+    speeds; how far it comes beyond the limits of entry of some position, 0 if it does not; when its last axle is out of
+    the last position; all exit speeds added up."""
 
     ahead_s: Floats
     behind_s: Floats
     able: Bools
+    beyond_m_s: Floats
     arrival_s: Floats
     speeds_m_s: Floats
 
@@ -121,14 +123,14 @@ class Ways:
         elements)."""
         legs = self.legs
         shape = len(legs.time_s), int(np.prod(legs.choices))
-        ahead, behind, arrival = np.empty(shape), np.empty(shape), np.empty(shape)
+        ahead, behind, beyond, arrival = (np.empty(shape) for _ in range(4))
         able = np.empty(shape, dtype=np.bool_)
         work = kernel.work_for(legs)
-        kernel.compare(legs, free_from_s, free_by_s, 0, shape[0], work, ahead, behind, able, arrival)
+        kernel.compare(legs, free_from_s, free_by_s, 0, shape[0], work, ahead, behind, able, beyond, arrival)
         total = np.zeros((shape[0], 1))
         for count, speeds in zip(legs.choices, legs.speeds_m_s, strict=True):
             total = (total[:, :, None] + speeds[:, None, :count]).reshape(shape[0], -1)
-        return Compared(ahead, behind, able, arrival, total)
+        return Compared(ahead, behind, able, beyond, arrival, total)
 
     def followed(self, column: Ints | None = None) -> Forecast:
         """The way with the combination `column` (n,) of the choices; None: the only one."""
