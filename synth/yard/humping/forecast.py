@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from plant_models.frozen_arrays import frozen_arrays
 from synth.kernels.roll import exit_choices as kernel
 from synth.yard.humping.hump_routes import HumpRoutes, Mark
-from synth.yard.humping.motion import Cars, Moving, rolled_free
+from synth.yard.humping.motion import Cars, Moving, Push, rolled_free
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -144,12 +144,12 @@ class Ways:
         return Forecast(marks[:, :, 0].copy(), marks[:, :, 1].copy(), exits.T.copy())
 
 
-def from_crest(routes: HumpRoutes, expected: Expected, start: Moving, choices: tuple[Choices, ...]) -> Ways:
-    """From the crest on, where the heads are at `start`; `choices` of all positions."""
+def from_crest(routes: HumpRoutes, expected: Expected, start: Moving, push: Push, choices: tuple[Choices, ...]) -> Ways:
+    """From the crest on, where the heads are at `start` after the `push`; `choices` of all positions."""
     heads = heads_m(routes, expected)
     end, times = rolled_free(expected.cars, start, entrance_m(routes, expected, 0), heads)
-    known = start.time_s[:, None] - (start.head_m[:, None] - heads) / start.speed_m_s[:, None]
-    before = np.where(heads <= start.head_m[:, None], known, times)
+    known = push.times_s(start, heads)
+    before = np.where(np.isnan(known), times, known)
     return through(routes, expected, end, before, 0, choices)
 
 

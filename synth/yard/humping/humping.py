@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -12,8 +13,9 @@ from plant_models.frozen_arrays import frozen_arrays
 from synth.yard.humping.hump_position import Arrivals, HumpPosition
 from synth.yard.humping.hump_routes import OF_FIRST_AXLE, HumpRoutes, Mark
 from synth.yard.humping.meeting import Ahead, LastUsers, first_of, meeting
-from synth.yard.humping.motion import Cars, Moving, Rolls, braked_evenly, rolled_free
+from synth.yard.humping.motion import Cars, Moving, Push, Rolls, braked_evenly, rolled_free
 from synth.yard.humping.standing_cars import StandingCars
+from synth.yard.humping.tails import Tails
 from synth.yard.humping.train_cuts import TrainCuts
 from synth.yard.humping.train_memory import TrainMemory
 
@@ -108,16 +110,14 @@ class OneCut:
         """The cut when its middle is at the crest. The train is pushed at an even rate between two such moments."""
         memory, cut = self.memory, self.cut
         speed = speeds.speed(cut, memory)
-        if cut == 0:
-            time = np.zeros(len(speed))
-        else:
+        apart, time = self.length_m, np.zeros(len(speed))
+        if cut > 0:
             apart = 0.5 * (self.length_m + self.trains.length_m[self.rows - 1])
             time = memory.crest_s[:, cut - 1] + 2.0 * apart / (speed + memory.hump_speed_m_s[:, cut - 1])
         memory.crest_s[:, cut], memory.hump_speed_m_s[:, cut] = time, speed
         head = 0.5 * self.length_m
-        heads = self.heads_m(np.ones(len(speed), dtype=bool))
-        pushed = time[:, None] - (head[:, None] - heads) / speed[:, None]
-        self.note(np.where(heads <= head[:, None], pushed, np.nan), self.rolling)
+        push = Push(memory.hump_speed_m_s[:, cut - 1] if cut > 0 else speed, apart)
+        self.note(push.times_s(Moving(head, speed, time), self.heads_m(np.ones(len(speed), dtype=bool))), self.rolling)
         return Moving(head, speed, time)
 
     def heads_m(self, chosen: Bools) -> Floats:
@@ -141,18 +141,17 @@ class OneCut:
 
     def to_position(self, moving: Moving, position: int) -> Moving:
         """Free roll until the first axle is at the entrance of `position`."""
-        entrance = self.hump.routes.entrance_m[self.routes, position]
-        to = np.where(np.isfinite(entrance), entrance + self.first_m, moving.head_m)
-        return self.free(moving, np.maximum(to, moving.head_m))
+        return self.free(moving, lambda: self.hump.routes.entrance_m[self.routes, position] + self.first_m)
 
-    def free(self, moving: Moving, to_m: Floats) -> Moving:
-        """Free roll to `to_m`; cuts whose points cannot be thrown any more roll on behind those ahead of them."""
-        pending = self.rolling & (to_m > moving.head_m)
+    def free(self, moving: Moving, target_m: Callable[[], Floats]) -> Moving:
+        """Free roll to the target of the route; cuts whose points cannot be thrown any more follow those ahead."""
+        pending = self.rolling & (target_m() > moving.head_m)
         ended = moving
         known = self.times.copy()
         while pending.any():
             self.times[pending] = known[pending]
-            end, times = rolled_free(self.cars(pending), moving.chosen(pending), to_m[pending], self.heads_m(pending))
+            to = np.maximum(target_m(), moving.head_m)[pending]
+            end, times = rolled_free(self.cars(pending), moving.chosen(pending), to, self.heads_m(pending))
             self.note(times, pending)
             ended = merged(ended, end, pending)
             pending = pending & self.misroute()
@@ -186,25 +185,15 @@ class OneCut:
         self.rolling = self.rolling & ~touching
 
     def behind(self, lanes: Ints, leader: Ints, at: Ints) -> Floats:
-        """Times of cuts in contact from element `at` on: as their leaders pass, one length behind."""
-        trains, own = self.trains, self.times[lanes]
-        ahead = self.memory.time_s[lanes, leader]
-        rows = lanes * trains.cuts + leader
-        base = trains.last_axle_m[rows] - trains.first_axle_m[rows]
-        longer = (self.last_m - self.first_m)[lanes] / base
-        times = np.empty_like(own)
-        for first, last in ((Mark.FIRST_IN, Mark.LAST_IN), (Mark.FIRST_OUT, Mark.LAST_OUT),
-                            (Mark.FIRST_CLEAR, Mark.LAST_CLEAR)):  # fmt: skip
-            begins = ahead[:, :, last]
-            with np.errstate(invalid="ignore"):  # a leader that stopped is never past
-                takes = begins - ahead[:, :, first]
-            takes = np.where(np.isfinite(takes), takes, np.inf)
-            times[:, :, first], times[:, :, last] = begins, begins + longer[:, None] * takes
-        earlier = np.arange(own.shape[1])[None, :] < at[:, None]
-        kept = earlier[:, :, None] & ~np.isnan(own)
-        times = np.where(kept, own, times)
-        times[np.arange(len(lanes)), at, Mark.FIRST_IN] = own[np.arange(len(lanes)), at, Mark.FIRST_IN]
-        return np.where(np.isnan(times), np.inf, times)
+        """Times of cuts in contact from element `at` on: their first axles follow the last axles of their leaders."""
+        own, routes = self.times[lanes], self.hump.routes
+        rows = lanes * self.trains.cuts + leader
+        there, ended = self.trains.last_axle_m[rows], self.memory.end_time_s[lanes, leader]
+        ends = self.memory.end_m[lanes, leader] - there
+        tails = Tails(routes.place_m[self.routes[lanes]], self.memory.time_s[lanes, leader], ends, ended)
+        met = own[np.arange(len(lanes)), at]
+        since = np.fmin(met[:, Mark.FIRST_IN], met[:, Mark.FIRST_OUT])
+        return tails.followed(own, since, (self.last_m - self.first_m)[lanes])
 
     def through_position(self, moving: Moving, position: int, control: ExitSpeeds) -> Moving:
         """The pass of `position`: commanded by the control, or as the cut ahead that is still in it."""
@@ -263,7 +252,7 @@ class OneCut:
     def to_track(self, moving: Moving) -> None:
         """Free roll to the standing cars, and what the whole way was like."""
         cut, memory, standing = self.cut, self.memory, self.standing
-        end = self.free(moving, np.maximum(standing.free_m[self.lanes, self.routes], moving.head_m))
+        end = self.free(moving, lambda: standing.free_m[self.lanes, self.routes])
         met = meeting(self.hump.routes, self.routes, self.times, self.ahead())
         memory.unseparated[:, cut], memory.foul[:, cut] = met.unseparated, met.foul
         memory.free_m[:, cut] = standing.free_m[self.lanes, self.routes]

@@ -112,3 +112,21 @@ def even_duration_s(start: Moving, to_m: Floats, exit_m_s: Floats) -> Floats:
     both = start.speed_m_s + exit_m_s
     moves = (start.speed_m_s > 0.0) & (exit_m_s > 0.0)
     return np.where(moves, 2.0 * (to_m - start.head_m) / np.where(moves, both, 1.0), np.inf)
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Push:
+    """How n cuts are pushed before they are let go: at an even rate from the speed `before_m_s`, which the train had
+    `apart_m` before, when the cut ahead was let go; (n,) each."""
+
+    before_m_s: Floats
+    apart_m: Floats
+
+    def times_s(self, start: Moving, heads_m: Floats) -> Floats:
+        """When the heads pass `heads_m` (n, k) ahead of `start`, where they are let go; NaN for places behind it."""
+        left = start.head_m[:, None] - heads_m
+        now = start.speed_m_s[:, None]
+        gain = (now**2 - self.before_m_s[:, None] ** 2) / self.apart_m[:, None]
+        then = np.sqrt(np.maximum(now**2 - gain * np.clip(left, 0.0, self.apart_m[:, None]), 1e-6))
+        return np.where(left >= 0.0, start.time_s[:, None] - 2.0 * left / (now + then), np.nan)

@@ -11,7 +11,7 @@ from synth.yard.humping.humping import Asked
 from synth.yard.humping.known_cuts import KnownCuts
 from synth.yard.humping.motion import Moving
 from synth.yard.humping.train_memory import TrainMemory
-from synth.yard.humping.train_plan import LEADERS, TrainPlan, shared_needs
+from synth.yard.humping.train_plan import LEADERS, TrainPlan, push_of, shared_needs
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -52,7 +52,8 @@ class Sight:
         start = Moving(0.5 * known.length_m[rows], memory.hump_speed_m_s[:, ahead], memory.crest_s[:, ahead])
         planned = (Given(self.plan.exit_m_s[:, ahead, q]) for q in range(self.plan.exit_m_s.shape[2]))
         expected = known.expected(rows, known.route[rows], known.mean_n_per_kn[rows])
-        ways = from_crest(self.routes, expected, start, (*planned, known.aim_of(rows)))
+        push = push_of(known, memory.hump_speed_m_s, ahead)
+        ways = from_crest(self.routes, expected, start, push, (*planned, known.aim_of(rows)))
         self.known_s[:, ahead, 0], self.out_s[:, ahead, 0] = memory.crest_s[:, ahead], ways.followed().last_out_s
         for position in range(self.plan.exit_m_s.shape[2]):
             self.learn_pass(ahead, position, memory)

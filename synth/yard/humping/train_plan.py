@@ -18,7 +18,7 @@ from synth.yard.humping.hump_speed import HumpSpeedLimits, SpeedMethod, WholeTra
 from synth.yard.humping.interval import CentredRule, EarlyRule, IntervalRule, possible
 from synth.yard.humping.known_cuts import KnownCuts
 from synth.yard.humping.meeting import Ahead, LastUsers
-from synth.yard.humping.motion import Moving
+from synth.yard.humping.motion import Moving, Push
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -107,6 +107,11 @@ def apart_m(known: KnownCuts) -> Floats:
     return np.asarray(0.5 * (length + np.concatenate((length[:, :1], length[:, :-1]), axis=1)))
 
 
+def push_of(known: KnownCuts, speeds_m_s: Floats, cut: int) -> Push:
+    """How cut number `cut` of every train is pushed at the hump speeds (trains, cuts)."""
+    return Push(speeds_m_s[:, max(cut - 1, 0)], apart_m(known)[:, cut])
+
+
 class Sweep:
     """One sweep over all cuts, each planned behind those ahead of it.
 
@@ -147,7 +152,8 @@ class Sweep:
         start = Moving(0.5 * known.length_m[rows], self.hump_speed_m_s[:, cut], self.crest_s[:, cut])
         resistance = known.good_n_per_kn if planner.worst_pair else known.mean_n_per_kn
         expected = known.expected(rows, known.route[rows], resistance[rows])
-        ways = from_crest(planner.routes, expected, start, (*planner.ranges, known.aim_of(rows)))
+        push = push_of(known, self.hump_speed_m_s, cut)
+        ways = from_crest(planner.routes, expected, start, push, (*planner.ranges, known.aim_of(rows)))
         compared = ways.compared(*self.neighbours(cut))
         taken = ways.followed(rule.best(compared))
         margins = np.where(possible(compared), compared.ahead_s, -np.inf)
@@ -175,7 +181,8 @@ class Sweep:
             start = Moving(0.5 * known.length_m[rows], self.hump_speed_m_s[:, cut], self.crest_s[:, cut])
             given = (Given(self.exit_m_s[:, cut, q]) for q in range(len(planner.ranges)))
             slow = known.expected(rows, known.route[rows], known.bad_n_per_kn[rows])
-            out = from_crest(planner.routes, slow, start, (*given, known.aim_of(rows))).followed().last_out_s
+            push = push_of(known, self.hump_speed_m_s, cut)
+            out = from_crest(planner.routes, slow, start, push, (*given, known.aim_of(rows))).followed().last_out_s
         self.left_s[:, cut] = out
         times = np.full((known.trains, planner.routes.elements, len(Mark)), np.nan)
         times[:, :, Mark.FIRST_IN], times[:, :, Mark.LAST_OUT] = self.first_in_s[:, cut], out
