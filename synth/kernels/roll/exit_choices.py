@@ -200,8 +200,8 @@ def unknown_out(legs, i, e):
 
 
 @borrowing
-def follow(legs, taken, first, last, times_s, arrival_s):
-    """Fill the times of all marks (m, s) and of the arrival (m,) with the choices `taken` (q, m)."""
+def follow(legs, taken, first, last, times_s, ended_s):
+    """Fill the times of all marks (m, s) and of the ends of passes (m, q) with the choices `taken` (q, m)."""
     levels, marks = len(legs.choices), legs.before_s.shape[1]
     for i in range(first, last):
         time, speed = legs.time_s[i], legs.speed_m_s[i]
@@ -209,12 +209,11 @@ def follow(legs, taken, first, last, times_s, arrival_s):
             times_s[i, s] = legs.before_s[i, s]
         for q in range(levels):
             k = taken[q, i]
-            out = pass_end(legs, q, i, k, time, speed)
+            ended_s[i, q] = out = pass_end(legs, q, i, k, time, speed)
             for s in range(marks):
                 if math.isnan(times_s[i, s]):
                     times_s[i, s] = mark_time(legs, q, i, k, s, time, speed, out)
             time, speed = out + legs.ends_s[q, i, k], legs.ends_m_s[q, i, k]
-        arrival_s[i] = time
         for e in range(marks // 2):
             if unknown_out(legs, i, e):
                 times_s[i, 2 * e + 1] = time

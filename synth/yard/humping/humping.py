@@ -13,7 +13,7 @@ from plant_models.frozen_arrays import frozen_arrays
 from synth.yard.humping.hump_position import Arrivals, HumpPosition
 from synth.yard.humping.hump_routes import OF_FIRST_AXLE, HumpRoutes, Mark
 from synth.yard.humping.meeting import Ahead, LastUsers, first_of, meeting
-from synth.yard.humping.motion import Cars, Moving, Push, Rolls, braked_evenly, rolled_free
+from synth.yard.humping.motion import Cars, Moving, Push, Rolls, braked_evenly, merged, rolled_free
 from synth.yard.humping.standing_cars import StandingCars
 from synth.yard.humping.tails import Tails
 from synth.yard.humping.train_cuts import TrainCuts
@@ -140,22 +140,31 @@ class OneCut:
         return self.users.on(self.routes, self.lanes)
 
     def to_position(self, moving: Moving, position: int) -> Moving:
-        """Free roll until the first axle is at the entrance of `position`."""
-        return self.free(moving, lambda: self.hump.routes.entrance_m[self.routes, position] + self.first_m)
+        """Free roll until the first axle is at the entrance of `position`. Cuts whose routes have none stay where they
+        are, unless they are misrouted to one."""
 
-    def free(self, moving: Moving, target_m: Callable[[], Floats]) -> Moving:
-        """Free roll to the target of the route; cuts whose points cannot be thrown any more follow those ahead."""
-        pending = self.rolling & (target_m() > moving.head_m)
-        ended = moving
+        def to_m() -> Floats:
+            entrance = self.hump.routes.entrance_m[self.routes, position] + self.first_m
+            return np.where(np.isfinite(entrance), entrance, self.standing.free_m[self.lanes, self.routes])
+
         known = self.times.copy()
+        ended = self.free(moving, to_m)
+        stays = ~np.isfinite(self.hump.routes.entrance_m[self.routes, position])
+        self.times[stays] = known[stays]
+        self.touch()
+        return merged(ended, moving.chosen(stays), stays)
+
+    def free(self, moving: Moving, to_m: Callable[[], Floats]) -> Moving:
+        """Free roll to `to_m`, which tells places on the routes as they are; cuts whose points cannot be thrown any
+        more roll on behind those ahead of them."""
+        pending, ended, known = self.rolling, moving, self.times.copy()
         while pending.any():
             self.times[pending] = known[pending]
-            to = np.maximum(target_m(), moving.head_m)[pending]
+            to = np.maximum(to_m()[pending], moving.head_m[pending])
             end, times = rolled_free(self.cars(pending), moving.chosen(pending), to, self.heads_m(pending))
             self.note(times, pending)
             ended = merged(ended, end, pending)
             pending = pending & self.misroute()
-        self.touch()
         return ended
 
     def misroute(self) -> Bools:
@@ -228,13 +237,16 @@ class OneCut:
                 seed=self.trains.seed,
             )
         )
-        end, times = braked_evenly(start, to, passed.exit_m_s, passed.time_s, self.heads_m(held))
-        self.note(times, held)
+        known, sent = self.times.copy(), held
+        while sent.any():
+            self.times[held] = known[held]
+            end, times = braked_evenly(start, to, passed.exit_m_s, passed.time_s, self.heads_m(held))
+            self.note(times, held)
+            sent = self.misroute()
         place = lanes, self.cut, position
         memory.begin_s[place], memory.entry_m_s[place] = start.time_s, start.speed_m_s
         memory.command_m_s[place], memory.exit_m_s[place] = command, passed.exit_m_s
         memory.end_s[place], memory.strokes[place] = end.time_s, passed.switchings
-        self.misroute()
         self.touch()
         return merged(moving, end, held)
 
@@ -253,6 +265,7 @@ class OneCut:
         """Free roll to the standing cars, and what the whole way was like."""
         cut, memory, standing = self.cut, self.memory, self.standing
         end = self.free(moving, lambda: standing.free_m[self.lanes, self.routes])
+        self.touch()
         met = meeting(self.hump.routes, self.routes, self.times, self.ahead())
         memory.unseparated[:, cut], memory.foul[:, cut] = met.unseparated, met.foul
         memory.free_m[:, cut] = standing.free_m[self.lanes, self.routes]
@@ -274,10 +287,3 @@ class OneCut:
             almost, _ = rolled_free(self.cars(stops), moving.chosen(stops), near, np.empty((int(stops.sum()), 0)))
             times[stops] = almost.time_s
         return times
-
-
-def merged(all_lanes: Moving, some: Moving, which: Bools) -> Moving:
-    """`all_lanes`, of which those `which` are now as in `some`."""
-    head, speed, time = all_lanes.head_m.copy(), all_lanes.speed_m_s.copy(), all_lanes.time_s.copy()
-    head[which], speed[which], time[which] = some.head_m, some.speed_m_s, some.time_s
-    return Moving(head, speed, time)

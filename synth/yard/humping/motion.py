@@ -30,6 +30,13 @@ class Moving:
         return Moving(self.head_m[which], self.speed_m_s[which], self.time_s[which])
 
 
+def merged(all_lanes: Moving, some: Moving, which: NDArray[np.bool_]) -> Moving:
+    """`all_lanes`, of which those `which` are now as in `some`."""
+    head, speed, time = all_lanes.head_m.copy(), all_lanes.speed_m_s.copy(), all_lanes.time_s.copy()
+    head[which], speed[which], time[which] = some.head_m, some.speed_m_s, some.time_s
+    return Moving(head, speed, time)
+
+
 class Rolls(Protocol):
     """What rolls cuts, `rows`, on `routes`; see `RouteRolling`."""
 

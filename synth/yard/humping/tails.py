@@ -16,8 +16,8 @@ Floats = NDArray[np.float64]
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Tails:
-    """Last axles of n leaders: `place_m` and `time_s` (n, elements, marks) of their routes, `ends_m` (n,) where they stand
-    at last, from `ended_s` on. Between two places they move evenly."""
+    """Last axles of n leaders: `place_m`, `time_s` (n, elements, marks) of their routes, and the places `ends_m` (n,)
+    where they stand at last, from `ended_s` on. Between two places they move evenly."""
 
     place_m: Floats
     time_s: Floats

@@ -93,11 +93,12 @@ class Planner:
 
     def headways_s(self, found: TrainPlan) -> Floats:
         """What each cut needs behind those ahead of it at the crest, (trains, cuts, leaders): what it had less what it
-        had too much."""
+        had too much. Nothing behind a cut that is expected to stop on the way: no hump speed helps."""
         needs = np.full(found.margins_s.shape, -np.inf)
         for leader in range(1, min(LEADERS + 1, len(found.crest_s.T))):
             had = found.crest_s[:, leader:] - found.crest_s[:, :-leader]
-            needs[:, leader:, leader - 1] = had - found.margins_s[:, leader:, leader - 1] + self.least_s
+            margins = found.margins_s[:, leader:, leader - 1]
+            needs[:, leader:, leader - 1] = np.where(np.isfinite(margins), had - margins + self.least_s, -np.inf)
         return needs
 
 
@@ -170,8 +171,9 @@ class Sweep:
             other = known.route[known.of_cut(cut - leader)]
             shared, needs = shared_needs(routes, own, other)
             free = self.left_s[:, cut - leader] + needs
-            late = np.where(shared & ~np.isnan(free), first_in_s - free, np.inf)
-            self.margins_s[:, cut, leader - 1] = np.nanmin(late, axis=1)
+            late = np.full(free.shape, np.inf)  # also where the cut never comes: it needs nothing there
+            np.subtract(first_in_s, free, out=late, where=shared & np.isfinite(first_in_s) & ~np.isnan(free))
+            self.margins_s[:, cut, leader - 1] = late.min(axis=1)
 
     def remember(self, cut: int) -> None:
         """Let the cuts behind know when cut number `cut` leaves the elements, at the latest where pairs are worst."""
