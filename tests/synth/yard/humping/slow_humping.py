@@ -1,0 +1,297 @@
+"""Humping of one train, slowly: all cuts at once, step by step in time, by the rules of the model of humping.
+
+Only the length of a step is chosen. Within it each cut goes from mark to mark at times that are worked out, and a cut
+depends on cuts ahead of it alone, which have made the step before; so no decision hangs on the step.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import inf
+
+from plant_models.hump import HumpGraph, Retarder, RouteElement, Switch
+from tests.synth.yard.humping.slow_cut import SAME_S, Mode, MovingCut, Push
+from tests.synth.yard.humping.slow_fit import require_fit
+from tests.synth.yard.humping.slow_marks import LAST_OF, MarkAt, marks_of
+from tests.synth.yard.humping.slow_train import Kind, Mark, Passage, SlowEvent, SlowRun, SlowTrain
+from tests.synth.yard.humping.slow_way import SlowWay
+
+STEP_S = 0.02
+LONGEST_S = 7200.0
+SAME_M = 1e-9
+
+
+def humped_slowly(graph: HumpGraph, train: SlowTrain, step_s: float = STEP_S) -> SlowRun:
+    """Hump `train` over `graph` until every cut stands."""
+    return SlowHumping(graph, train).run(step_s)
+
+
+class SlowHumping:
+    """A train that is being humped."""
+
+    def __init__(self, graph: HumpGraph, train: SlowTrain) -> None:
+        self.routes, self.train = graph.routes(train.lead), train
+        for route in self.routes.values():
+            for cut in train.cuts:
+                require_fit(cut, route, train.free_to_m[route.track])
+        self.ways: dict[tuple[int, int], SlowWay] = {}
+        first = train.cuts[0]
+        self.now = first.crest_s - 0.5 * first.body.length_m / first.hump_speed_m_s
+        push = Push(train.cuts)
+        self.cuts = [
+            MovingCut(cut, self.routes[cut.track], self.way(i, cut.track), push, self.now)
+            for i, cut in enumerate(train.cuts)
+        ]
+        self.events: list[SlowEvent] = []
+        self.passages: dict[tuple[int, int, Mark], Passage] = {}
+        self.commands: dict[tuple[int, int], float] = {}
+        self.entered: set[tuple[int, int]] = set()
+        self.decisions: list[tuple[float, int, int, Mark, float]] = []
+        self.closest_s = inf
+
+    def way(self, i: int, track: int) -> SlowWay:
+        """What cut `i` feels on the route to `track`."""
+        if (i, track) not in self.ways:
+            self.ways[i, track] = SlowWay(self.train.cuts[i].body, self.routes[track], self.train)
+        return self.ways[i, track]
+
+    def run(self, step_s: float) -> SlowRun:
+        """Make steps until every cut stands."""
+        start, step = self.now, 0
+        while any(moving.mode is not Mode.STANDING for moving in self.cuts):
+            step += 1
+            until = start + step * step_s
+            for i, moving in enumerate(self.cuts):
+                if moving.mode is not Mode.STANDING:
+                    self.advance(i, moving, until)
+            if until > start + LONGEST_S:
+                raise RuntimeError(f"cuts still roll {LONGEST_S:g} s after the first one came to the crest")
+        return self.told()
+
+    def told(self) -> SlowRun:
+        """What came of it."""
+        for time_s, j, number, mark, delay_s in self.decisions:
+            passage = self.passages.get((j, number, mark))
+            if passage is not None:
+                self.closest_s = min(self.closest_s, abs(time_s - passage.time_s - delay_s))
+        events = [
+            replace(e, value=self.free_to(e.cut) - self.cuts[e.cut].x) if e.kind is Kind.GAP else e for e in self.events
+        ]
+        return SlowRun(
+            events=tuple(sorted(events, key=lambda e: (e.time_s, e.cut))),
+            passages=self.passages,
+            tracks=tuple(moving.route.track for moving in self.cuts),
+            heads_m=tuple(moving.x for moving in self.cuts),
+            in_contact=tuple(moving.leader is not None for moving in self.cuts),
+            closest_s=self.closest_s,
+        )
+
+    def advance(self, i: int, moving: MovingCut, until: float) -> None:
+        """Let cut `i` make its part of the step."""
+        moving.legs = [(moving.t, moving.x, moving.v, 0.0)]
+        while moving.mode not in (Mode.BEHIND, Mode.STANDING) and moving.t < until - SAME_S:
+            t, x, limit_m = moving.t, moving.x, self.limit(i)
+            arrived = moving.go(until, limit_m)
+            if moving.on_track and self.touches(i, t, x):
+                continue
+            if arrived and moving.x >= limit_m:
+                self.couple(i)
+            elif arrived:
+                self.arrive(i, moving.marks.pop(0))
+            elif moving.v <= 0.0:
+                self.stop(i)
+        if moving.leader is not None:
+            self.trail(i, moving.leader, until)
+
+    def user(self, i: int, number: int) -> int | None:
+        """The last cut ahead of `i` whose way leads over the element."""
+        return next((j for j in range(i - 1, -1, -1) if number in self.cuts[j].numbers), None)
+
+    def ahead_on_track(self, i: int) -> int | None:
+        """The last cut ahead of `i` for the same track."""
+        return self.user(i, self.cuts[i].route.elements[-1].number)
+
+    def free_to(self, i: int) -> float:
+        """Where cars begin on the track of cut `i` when all ahead of it stand."""
+        j = self.ahead_on_track(i)
+        return self.train.free_to_m[self.cuts[i].route.track] if j is None else self.cuts[j].tail_at(inf)
+
+    def limit(self, i: int) -> float:
+        """Where cut `i` would couple with standing cars now; infinite while the cars ahead of it roll."""
+        j = self.ahead_on_track(i) if self.cuts[i].on_track else None
+        stands = j is None or self.cuts[j].mode is Mode.STANDING
+        return self.free_to(i) if self.cuts[i].on_track and stands else inf
+
+    def touches(self, i: int, t: float, x: float) -> bool:
+        """Whether cut `i` came to a rolling cut since `t`, when its head was at `x`; then it rolls behind that one."""
+        moving, j = self.cuts[i], self.ahead_on_track(i)
+        if j is None or (self.cuts[j].mode is Mode.STANDING and self.cuts[j].t <= t):
+            return False
+        ahead = self.cuts[j]
+        gap, gap_then = ahead.tail_at(moving.t) - moving.x, ahead.tail_at(t) - x
+        if gap > 0.0:
+            return False
+        time_s = t + (moving.t - t) * (gap_then / (gap_then - gap) if gap_then > 0.0 else 0.0)
+        if ahead.mode is Mode.STANDING:
+            self.closest_s = min(self.closest_s, abs(time_s - ahead.t))
+            if time_s >= ahead.t:
+                return False
+        self.tell(time_s, Kind.TRACK_CONTACT, moving.route.elements[-1].number, i)
+        self.pin(i, j, moving.route.elements[-1].from_m)
+        return True
+
+    def couple(self, i: int) -> None:
+        """Cut `i` has come to standing cars."""
+        moving = self.cuts[i]
+        self.tell(moving.t, Kind.COUPLED, moving.route.elements[-1].number, i, moving.v)
+        moving.mode = Mode.STANDING
+
+    def stop(self, i: int) -> None:
+        """Cut `i` stands where nothing is ahead of it."""
+        moving = self.cuts[i]
+        moving.mode = Mode.STANDING if moving.leader is None else Mode.BEHIND
+        if moving.leader is not None:
+            return
+        last = moving.route.elements[-1]
+        first_axle = moving.x - moving.body.first_axle_m
+        under = [e.number for e in moving.route.elements if e.from_m <= first_axle]
+        gap = moving.x >= last.from_m
+        self.tell(moving.t, Kind.GAP if gap else Kind.STOPPED, last.number if gap else under[-1], i)
+
+    def arrive(self, i: int, at: MarkAt) -> None:
+        """Cut `i` has come to a mark by itself."""
+        moving = self.cuts[i]
+        element = moving.route.elements[at.order]
+        pinned = False
+        if at.mark is Mark.FIRST_FROM:
+            pinned = self.enter(i, element, moving.t)
+        elif at.mark is Mark.FIRST_TO:
+            pinned = self.meet(i, element, Mark.LAST_TO, moving.t)
+        elif at.mark is Mark.FIRST_FOULING:
+            self.foul(i, element, moving.t)
+        elif at.mark is Mark.ENTRANCE:
+            self.brake(i, element)
+        elif at.mark is Mark.EXIT and moving.mode is Mode.BRAKED:
+            moving.mode, moving.v = Mode.ROLLING, moving.v_out
+        elif at.mark is Mark.TRACK:
+            moving.on_track = True
+            pinned = self.touches(i, moving.t, moving.x)
+        if not pinned or at.mark is Mark.TRACK:
+            self.passages[i, element.number, at.mark] = Passage(moving.t, moving.v)
+        if moving.leader is not None and not moving.owes_marks:
+            moving.mode = Mode.BEHIND
+
+    def passed(self, j: int, number: int, mark: Mark, time_s: float, delay_s: float = 0.0) -> bool:
+        """Whether the last axle of cut `j` was at `mark` by `time_s`, and `delay_s` before that."""
+        self.decisions.append((time_s, j, number, mark, delay_s))
+        passage = self.passages.get((j, number, mark))
+        return passage is not None and passage.time_s + delay_s <= time_s
+
+    def enter(self, i: int, element: RouteElement, time_s: float) -> bool:
+        """The first axle of cut `i` comes to the section of `element`; True if it is now behind the last user."""
+        moving, number = self.cuts[i], element.number
+        self.entered.add((i, number))
+        j = self.user(i, number)
+        if isinstance(element.vertex, Retarder):
+            self.commands[i, number] = self.planned(i, number)
+        if j is None or element is moving.route.elements[-1]:
+            return False
+        if not self.passed(j, number, Mark.LAST_TO, time_s):
+            self.tell(time_s, Kind.NOT_SEPARATED, number, i)
+            if isinstance(element.vertex, Retarder):
+                self.commands[i, number] = self.commands.get((j, number), self.planned(j, number))
+        at = moving.route.elements.index(element)
+        if isinstance(element.vertex, Switch) and self.cuts[j].route.elements[at].position != element.position:
+            delay_s = element.vertex.relay_s + element.vertex.throw_s
+            if not self.passed(j, number, Mark.LAST_TO, time_s, delay_s):
+                self.tell(time_s, Kind.MISROUTED, number, i)
+                track = self.cuts[j].route.track
+                moving.reroute(at, self.routes[track], self.way(i, track))
+        return moving.leader is None and self.meet(i, element, Mark.LAST_FROM, time_s)
+
+    def meet(self, i: int, element: RouteElement, joint: Mark, time_s: float) -> bool:
+        """Whether cut `i` is at a joint before the last axle of the last user; then it rolls behind that one."""
+        j = self.user(i, element.number)
+        if j is None or self.cuts[i].leader is not None or self.passed(j, element.number, joint, time_s):
+            return False
+        self.tell(time_s, Kind.CONTACT, element.number, i)
+        self.pin(i, j, element.from_m if joint is Mark.LAST_FROM else element.to_m)
+        return True
+
+    def pin(self, i: int, j: int, place_m: float) -> None:
+        """From `place_m` on cut `i` rolls behind cut `j`; joints before that its last axle comes to by itself."""
+        moving = self.cuts[i]
+        moving.leader, moving.on_track = self.cuts[j], False
+        behind = [each for each in marks_of(moving.body, moving.route) if each.mark in LAST_OF]
+        moving.follow = [each for each in behind if each.place_m >= place_m - SAME_M]
+        own = set(LAST_OF.values())
+        moving.marks = [
+            each
+            for each in moving.marks
+            if each.mark in (Mark.ENTRANCE, Mark.EXIT) or (each.mark in own and each.place_m < place_m - SAME_M)
+        ]
+        if not moving.owes_marks:
+            moving.mode = Mode.BEHIND
+
+    def trail(self, i: int, ahead: MovingCut, until: float) -> None:
+        """Let cut `i` come to joints with the last axle of the cut that it rolls behind."""
+        moving, j = self.cuts[i], self.cuts.index(ahead)
+        waits = False
+        while moving.follow:
+            at = moving.follow[0]
+            element = moving.route.elements[at.order]
+            passage = self.passages.get((j, element.number, LAST_OF[at.mark]))
+            waits = passage is not None and passage.time_s > until
+            if passage is None or waits:
+                break
+            moving.follow.pop(0)
+            time_s, speed_m_s = passage.time_s, passage.speed_m_s
+            self.passages[i, element.number, at.mark] = passage
+            behind = Passage(time_s + moving.body.base_m / speed_m_s, speed_m_s)
+            self.passages[i, element.number, LAST_OF[at.mark]] = behind
+            if at.mark is Mark.FIRST_FROM and (i, element.number) not in self.entered:
+                track = moving.route.track
+                self.enter(i, element, time_s)
+                if moving.route.track != track:
+                    marks = [m for m in marks_of(moving.body, moving.route) if m.mark in LAST_OF]
+                    moving.follow = [m for m in marks if m > at]
+            elif at.mark is Mark.FIRST_FOULING:
+                self.foul(i, element, time_s)
+        if ahead.mode is Mode.STANDING and moving.mode is Mode.BEHIND and not waits:
+            moving.mode, moving.t, moving.x, moving.v = Mode.STANDING, ahead.t, ahead.tail_at(inf), 0.0
+
+    def foul(self, i: int, element: RouteElement, time_s: float) -> None:
+        """The first axle of cut `i` comes to its fouling point behind a switch."""
+        j = self.user(i, element.number)
+        if j is None or self.cuts[j].route.element(element.number).position == element.position:
+            return
+        if not self.passed(j, element.number, Mark.LAST_FOULING, time_s):
+            self.tell(time_s, Kind.FOULED, element.number, i)
+
+    def planned(self, i: int, number: int) -> float:
+        """The command of cut `i` for the position, as it was given."""
+        return self.cuts[i].cut.exit_speeds_m_s[self.position(i, number)]
+
+    def position(self, i: int, number: int) -> int:
+        """How many positions are ahead of this one."""
+        positions = [e.number for e in self.cuts[i].route.elements if isinstance(e.vertex, Retarder)]
+        return positions.index(number)
+
+    def brake(self, i: int, element: RouteElement) -> None:
+        """The first axle of cut `i` is at the entrance of a position: brake evenly to the exit."""
+        moving, vertex = self.cuts[i], element.vertex
+        assert isinstance(vertex, Retarder)
+        exit_m = element.at_m + vertex.exit_m + moving.body.last_axle_m
+        unbraked = moving.unbraked_energy(exit_m)
+        if unbraked <= 0.0:
+            return
+        heads, place = moving.cut.brake_heads_m, self.position(i, element.number)
+        least = unbraked - moving.way.gravity * heads[place] if heads else 0.0
+        command = self.commands.get((i, element.number), self.planned(i, element.number))
+        energy = min(max(0.5 * command**2, least), unbraked)
+        moving.mode, moving.v_out = Mode.BRAKED, (2.0 * energy) ** 0.5
+        moving.a = (energy - 0.5 * moving.v**2) / (exit_m - moving.x)
+
+    def tell(self, time_s: float, kind: Kind, element: int, cut: int, value: float = 0.0) -> None:
+        """Note an event."""
+        self.events.append(SlowEvent(time_s, kind, element, cut, value))
