@@ -20,6 +20,9 @@ TRACK_M = 400.0
 POINTS_M, JOINT_AHEAD_M, JOINT_BEHIND_M, FOULING_M, THROW_S, RELAY_S = 46.0, 6.0, 5.0, 26.0, 0.6, 0.2
 ENTRANCE_M, BRAKED_M = 86.0, 20.0
 
+POOR_SHARE = 0.15
+"""Share of cuts of random trains that have four times their resistance."""
+
 
 def bare_cut(
     track: int, crest_s: float, speed_m_s: float, exits_m_s: Sequence[float] = (9.0,), cars: int = 1
@@ -104,11 +107,12 @@ def crest_times_s(bodies: Sequence[SlowBody], speeds_m_s: Sequence[float]) -> li
 
 
 def random_train(graph: HumpGraph, drawn: Sequence[DrawnCuts], seed: int, tracks: Sequence[int]) -> SlowTrain:
-    """One cut of each of `drawn`, to random `tracks`, at hump speeds of 1.6 to 3.2 m/s and random commands, so that
-    cuts catch up with each other."""
+    """One cut of each of `drawn`, to random `tracks`, at hump speeds of 1.6 to 3.2 m/s and random commands; some
+    cuts roll so badly that they stop and foul. So cuts meet in every way."""
     rng, lead = np.random.default_rng(seed), graph.leads[0]
     routes = graph.routes(lead)
     bodies = [slow_body(each, 0, routes) for each in drawn]
+    bodies = [replace(b, w0_n_per_kn=b.w0_n_per_kn * (4.0 if rng.random() < POOR_SHARE else 1.0)) for b in bodies]
     speeds = np.clip(rng.uniform(1.8, 3.0) + np.cumsum(rng.uniform(-0.2, 0.2, len(drawn))), 1.6, 3.2).tolist()
     crests = crest_times_s(bodies, speeds)
     cuts = [

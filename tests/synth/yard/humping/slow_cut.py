@@ -156,3 +156,13 @@ class MovingCut:
             if v == 0.0:
                 return 0.0
         return 0.5 * v * v
+
+
+def first_root(begin: float, middle: float, end: float) -> float:
+    """Where the parabola through these values at 0, 1/2 and 1 first comes to 0; `end` is at most 0."""
+    if begin <= 0.0:
+        return 0.0
+    bend, slope = 2.0 * (begin - 2.0 * middle + end), 4.0 * middle - 3.0 * begin - end
+    # without cancellation, whatever the signs: the smaller root that is not negative
+    root = sqrt(max(slope * slope - 4.0 * bend * begin, 0.0))
+    return min(2.0 * begin / (root - slope), 1.0)

@@ -10,7 +10,7 @@ from dataclasses import replace
 from math import inf
 
 from plant_models.hump import HumpGraph, Retarder, RouteElement, Switch
-from tests.synth.yard.humping.slow_cut import SAME_S, Mode, MovingCut, Push
+from tests.synth.yard.humping.slow_cut import SAME_S, Mode, MovingCut, Push, first_root
 from tests.synth.yard.humping.slow_fit import require_fit
 from tests.synth.yard.humping.slow_marks import LAST_OF, MarkAt, marks_of
 from tests.synth.yard.humping.slow_train import Kind, Mark, Passage, SlowEvent, SlowRun, SlowTrain
@@ -128,10 +128,12 @@ class SlowHumping:
         if j is None or (self.cuts[j].mode is Mode.STANDING and self.cuts[j].t <= t):
             return False
         ahead = self.cuts[j]
-        gap, gap_then = ahead.tail_at(moving.t) - moving.x, ahead.tail_at(t) - x
+        middle = 0.5 * (t + moving.t)
+        gap = ahead.tail_at(moving.t) - moving.x
         if gap > 0.0:
             return False
-        time_s = t + (moving.t - t) * (gap_then / (gap_then - gap) if gap_then > 0.0 else 0.0)
+        share = first_root(ahead.tail_at(t) - x, ahead.tail_at(middle) - moving.place_at(middle), gap)
+        time_s = t + (moving.t - t) * share
         if ahead.mode is Mode.STANDING:
             self.closest_s = min(self.closest_s, abs(time_s - ahead.t))
             if time_s >= ahead.t:
