@@ -19,6 +19,7 @@ LEFT_TRACK, RIGHT_TRACK = 1, 2
 TRACK_M = 400.0
 POINTS_M, JOINT_AHEAD_M, JOINT_BEHIND_M, FOULING_M, THROW_S, RELAY_S = 46.0, 6.0, 5.0, 26.0, 0.6, 0.2
 ENTRANCE_M, BRAKED_M = 86.0, 20.0
+SECTION, SECTION_FROM_M, SECTION_TO_M = 603, 10.0, 30.0
 
 POOR_SHARE = 0.15
 """Share of cuts of random trains that have four times their resistance."""
@@ -59,6 +60,22 @@ def one_switch(grade_permille: float = 0.0) -> HumpGraph:
         last_section(602, RIGHT_TRACK, grade_permille),
     )
     return HumpGraph(vertices, (LEAD,))
+
+
+def with_section_ahead(graph: HumpGraph) -> HumpGraph:
+    """`one_switch` with a section from 10 to 30 m between the crest and the switch."""
+    rest = [vertex for vertex in graph.vertices if vertex.number != LEAD]
+    section = TrackSection(SECTION, edge(SWITCH, POINTS_M - SECTION_FROM_M), SECTION_TO_M - SECTION_FROM_M)
+    return HumpGraph((Signal(LEAD, edge(SECTION, SECTION_FROM_M)), section, *rest), (LEAD,))
+
+
+def with_falling_left(graph: HumpGraph, grade_permille: float) -> HumpGraph:
+    """`one_switch` whose left branch falls."""
+    switch = graph.vertex(SWITCH)
+    assert isinstance(switch, Switch)
+    left = replace(switch.left, edge=edge(601, switch.left.edge.length_m, grade_permille))
+    rest = [vertex for vertex in graph.vertices if vertex.number != SWITCH]
+    return HumpGraph((replace(switch, left=left), *rest), (LEAD,))
 
 
 def without_positions(graph: HumpGraph) -> HumpGraph:

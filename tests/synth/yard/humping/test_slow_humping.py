@@ -1,49 +1,41 @@
-"""The slow simulator of humping against trains that are worked out by hand: cars without resistance on flat track.
-
-The first axle of such a car is 5.5 m behind the crest when it is let go, the last one 5.5 m ahead of it.
-"""
+"""The slow simulator against trains that are worked out by hand: joints, points, contacts, fouling, stops."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import inf, sqrt
 
 import pytest
 
+from tests.synth.yard.humping.by_hand import (
+    BASE_M,
+    FIRST_BEHIND_M,
+    FOULING_PLACE_M,
+    FREE,
+    FROM_M,
+    HALF_M,
+    LENGTH_M,
+    REDUCED_GRAVITY,
+    TO_M,
+    TRACK_FROM_M,
+    alarms,
+    run,
+    stopping,
+)
 from tests.synth.yard.humping.made_slow_trains import (
-    BRAKED_M,
-    ENTRANCE_M,
     LEAD,
     LEFT_TRACK,
-    POSITION,
+    POINTS_M,
     RIGHT_TRACK,
+    SECTION,
     SWITCH,
     bare_cut,
     one_switch,
     straight,
+    with_falling_left,
+    with_section_ahead,
 )
 from tests.synth.yard.humping.slow_humping import humped_slowly
-from tests.synth.yard.humping.slow_train import Kind, Mark, SlowCut, SlowRun, SlowTrain
-
-FREE = {LEFT_TRACK: 300.0, RIGHT_TRACK: 300.0}
-REDUCED_GRAVITY = 9.81 / (1.0 + 0.42 * 2 / 80.0)
-FIRST_BEHIND_M, BASE_M, HALF_M, LENGTH_M = 5.5, 11.0, 7.0, 14.0
-FROM_M, TO_M, FOULING_PLACE_M, TRACK_FROM_M = 40.0, 51.0, 72.0, 86.0
-
-
-def run(*cuts: SlowCut, free_to_m: dict[int, float] | None = None) -> SlowRun:
-    return humped_slowly(one_switch(), SlowTrain(cuts, LEAD, free_to_m or FREE))
-
-
-def alarms(found: SlowRun) -> set[tuple[str, int, int]]:
-    """What happened but couplings and gaps."""
-    return {each for each in found.outcome() if each[0] not in (Kind.COUPLED.value, Kind.GAP.value)}
-
-
-def stopping(cut: SlowCut, path_m: float) -> SlowCut:
-    """The cut with the resistance that stops it `path_m` behind the place where it is let go."""
-    w0 = 1e3 * 0.5 * cut.hump_speed_m_s**2 / (REDUCED_GRAVITY * path_m)
-    return replace(cut, body=replace(cut.body, w0_n_per_kn=w0))
+from tests.synth.yard.humping.slow_train import Kind, Mark, SlowTrain
 
 
 def test_two_like_cuts_keep_their_interval_and_come_to_joints_as_worked_out() -> None:
@@ -144,13 +136,46 @@ def test_contact_at_the_entry_joint() -> None:
 
 
 def test_contact_at_the_exit_joint_leaves_the_times_at_the_entry_joint() -> None:
-    found = run(bare_cut(LEFT_TRACK, 0.0, 2.0), bare_cut(LEFT_TRACK, 15.0, 4.0))
+    """The last axle of the second cut, of two cars, comes to the entry joint by itself, although later."""
+    found = run(bare_cut(LEFT_TRACK, 0.0, 2.0), bare_cut(LEFT_TRACK, 17.0, 4.0, cars=2))
     assert alarms(found) == {("not separated", SWITCH, 1), ("contact", SWITCH, 1)}
-    assert found.of(Kind.CONTACT)[0].time_s == pytest.approx(15.0 + 45.5 / 4.0, abs=1e-9)
-    assert found.time_s(1, SWITCH, Mark.FIRST_FROM) == pytest.approx(15.0 + 34.5 / 4.0, abs=1e-9)
-    assert found.time_s(1, SWITCH, Mark.LAST_FROM) == pytest.approx(15.0 + 45.5 / 4.0, abs=1e-9)
+    assert found.of(Kind.CONTACT)[0].time_s == pytest.approx(17.0 + (TO_M - 12.5) / 4.0, abs=1e-9)
+    assert found.time_s(1, SWITCH, Mark.FIRST_FROM) == pytest.approx(17.0 + (FROM_M - 12.5) / 4.0, abs=1e-9)
+    assert found.time_s(1, SWITCH, Mark.LAST_FROM) == pytest.approx(17.0 + (FROM_M + 12.5) / 4.0, abs=1e-9)
     assert found.time_s(1, SWITCH, Mark.FIRST_TO) == pytest.approx(28.25, abs=1e-9)
-    assert found.time_s(1, SWITCH, Mark.LAST_TO) == pytest.approx(28.25 + 5.5, abs=1e-9)
+    assert found.time_s(1, SWITCH, Mark.LAST_TO) == pytest.approx(28.25 + 25.0 / 2.0, abs=1e-9)
+
+
+def test_a_cut_in_contact_goes_the_way_of_the_cut_ahead() -> None:
+    """It touches at the section ahead of the switch, and is misrouted there behind the cut ahead."""
+    cuts = (bare_cut(LEFT_TRACK, 0.0, 2.0), bare_cut(RIGHT_TRACK, 6.0, 4.0))
+    found = humped_slowly(with_section_ahead(one_switch()), SlowTrain(cuts, LEAD, FREE))
+    split = {("not separated", element, 1) for element in (SECTION, SWITCH)}
+    assert alarms(found) == {("contact", SECTION, 1), ("misrouted", SWITCH, 1), *split}
+    assert found.tracks == (LEFT_TRACK, LEFT_TRACK)
+    for element, place in ((SWITCH, FROM_M), (601, TRACK_FROM_M)):
+        ahead_s = (place + FIRST_BEHIND_M) / 2.0
+        assert found.time_s(1, element, Mark.FIRST_FROM) == pytest.approx(ahead_s, abs=1e-9)
+        assert found.time_s(1, element, Mark.LAST_FROM) == pytest.approx(ahead_s + BASE_M / 2.0, abs=1e-9)
+    assert found.heads_m == pytest.approx((300.0, 286.0), abs=1e-9)
+
+
+def test_a_misrouted_cut_still_leaves_what_is_behind_it() -> None:
+    cuts = (bare_cut(LEFT_TRACK, 0.0, 4.0), bare_cut(RIGHT_TRACK, 7.5, 4.0, cars=2))
+    found = humped_slowly(with_section_ahead(one_switch()), SlowTrain(cuts, LEAD, FREE))
+    assert alarms(found) == {("not separated", SECTION, 1), ("misrouted", SWITCH, 1)}
+    assert found.time_s(1, SECTION, Mark.LAST_TO) == pytest.approx(7.5 + 42.5 / 4.0, abs=1e-9)
+
+
+def test_a_misrouted_cut_rolls_on_the_track_where_it_is() -> None:
+    """The left branch falls; the second cut should go right, and rolls as the one ahead of it."""
+    cuts = (bare_cut(LEFT_TRACK, 0.0, 4.0), bare_cut(RIGHT_TRACK, 6.0, 4.0))
+    found = humped_slowly(with_falling_left(one_switch(), 8.0), SlowTrain(cuts, LEAD, FREE))
+    assert alarms(found) == {("misrouted", SWITCH, 1)}
+    for (_, element, mark), passage in [each for each in found.passages.items() if each[0][0] == 0]:
+        assert found.time_s(1, element, mark) == pytest.approx(passage.time_s + 6.0, abs=1e-4)
+    energy = 8.0 + REDUCED_GRAVITY * 8e-3 * 0.5 * (TRACK_FROM_M - POINTS_M + TRACK_FROM_M - BASE_M - POINTS_M)
+    assert found.passages[0, 601, Mark.FIRST_FROM].speed_m_s == pytest.approx(sqrt(2.0 * energy), abs=1e-6)
 
 
 def test_a_third_cut_rolls_behind_one_that_rolls_behind_another() -> None:
@@ -184,83 +209,3 @@ def test_a_cut_that_stops_blocks_what_it_stands_on(path_m: float, happened: set[
     if path_m == 47.0:
         assert found.time_s(1, SWITCH, Mark.FIRST_FROM) == pytest.approx(100.0 + 34.5 / 4.0, abs=1e-9)
         assert found.time_s(1, SWITCH, Mark.FIRST_TO) == inf
-
-
-def test_a_cut_leaves_a_gap_and_the_next_one_couples_with_it() -> None:
-    slow = stopping(bare_cut(LEFT_TRACK, 0.0, 2.0), 200.0)
-    found = run(slow, bare_cut(LEFT_TRACK, 300.0, 4.0), stopping(bare_cut(LEFT_TRACK, 400.0, 2.0), 100.0))
-    assert found.outcome() == {("gap", 601, 0), ("coupled", 601, 1), ("gap", 601, 2)}
-    assert [event.value for event in found.of(Kind.GAP)] == pytest.approx([93.0, 179.0 - 107.0], abs=1e-6)
-    assert found.of(Kind.COUPLED)[0].value == pytest.approx(4.0, abs=1e-9)
-    assert found.heads_m == pytest.approx((207.0, 193.0, 107.0), abs=1e-6)
-
-
-@pytest.mark.parametrize(("interval_s", "time_s"), [(38.0, 69.0), (17.0, 36.75)])
-def test_contact_on_the_track_while_the_cut_ahead_rolls(interval_s: float, time_s: float) -> None:
-    """On the way, and where the head comes to the track and the cut ahead still reaches back there."""
-    found = run(bare_cut(LEFT_TRACK, 0.0, 2.0), bare_cut(LEFT_TRACK, interval_s, 4.0))
-    assert [event.time_s for event in found.of(Kind.TRACK_CONTACT)] == pytest.approx([time_s], abs=1e-9)
-    assert [event.cut for event in found.of(Kind.COUPLED)] == [0]
-    assert found.heads_m == pytest.approx((300.0, 286.0), abs=1e-9)
-
-
-@pytest.mark.parametrize(("free_to_m", "kind"), [(143.99, Kind.COUPLED), (145.01, Kind.TRACK_CONTACT)])
-def test_it_is_a_coupling_once_the_cut_ahead_stands(free_to_m: float, kind: Kind) -> None:
-    """The cut ahead would be reached at 69 s, when its head is at 145 m."""
-    free = {**FREE, LEFT_TRACK: free_to_m}
-    found = run(bare_cut(LEFT_TRACK, 0.0, 2.0), bare_cut(LEFT_TRACK, 38.0, 4.0), free_to_m=free)
-    assert [event.kind for event in found.events if event.cut == 1] == [kind]
-    assert found.heads_m == pytest.approx((free_to_m, free_to_m - LENGTH_M), abs=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("command_m_s", "heads_m", "exit_m_s"),
-    [(2.0, (), 2.0), (6.0, (), 4.0), (2.0, (1.0,), 2.0), (2.0, (0.3,), sqrt(16.0 - 0.6 * REDUCED_GRAVITY))],
-)
-def test_a_position_brakes_evenly(command_m_s: float, heads_m: tuple[float, ...], exit_m_s: float) -> None:
-    """To the command, at most to the unbraked exit speed, at least to what full brake leaves."""
-    found = run(replace(bare_cut(RIGHT_TRACK, 0.0, 4.0, (command_m_s,)), brake_heads_m=heads_m))
-    begin, end = (found.passages[0, POSITION, mark] for mark in (Mark.ENTRANCE, Mark.EXIT))
-    assert begin.time_s == pytest.approx((ENTRANCE_M - FIRST_BEHIND_M) / 4.0, abs=1e-9)
-    path = BRAKED_M + BASE_M
-    assert end.speed_m_s == pytest.approx(exit_m_s, abs=1e-9)
-    assert end.time_s - begin.time_s == pytest.approx(2.0 * path / (4.0 + exit_m_s), abs=1e-9)
-    within = found.passages[0, POSITION, Mark.FIRST_TO]
-    speed = sqrt(16.0 + (exit_m_s**2 - 16.0) * 22.0 / path)
-    assert within.speed_m_s == pytest.approx(speed, abs=1e-9)
-    assert within.time_s - begin.time_s == pytest.approx(2.0 * 22.0 / (4.0 + speed), abs=1e-9)
-
-
-@pytest.mark.parametrize(("interval_s", "exit_m_s", "third_m_s"), [(8.0, 2.0, 2.0), (12.0, 3.0, 3.5)])
-def test_cuts_that_are_not_separated_get_the_command_of_the_first(
-    interval_s: float, exit_m_s: float, third_m_s: float
-) -> None:
-    cuts = [bare_cut(RIGHT_TRACK, k * interval_s, 4.0, (command,)) for k, command in enumerate((2.0, 3.0, 3.5))]
-    found = run(*cuts)
-    exits = [found.passages[i, POSITION, Mark.EXIT].speed_m_s for i in range(3)]
-    assert exits == pytest.approx([2.0, exit_m_s, third_m_s], abs=1e-9)
-    assert [event.cut for event in found.of(Kind.NOT_SEPARATED)] == ([1, 2] if exit_m_s == 2.0 else [])
-
-
-def test_a_long_cut_comes_to_the_first_joint_while_it_is_pushed() -> None:
-    """Seven cars: the first axle is at the joint before the middle is at the crest, while the train gets faster."""
-    cuts = (bare_cut(LEFT_TRACK, 0.0, 2.0), bare_cut(LEFT_TRACK, 40.0, 2.8, cars=7))
-    found = run(*cuts)
-    to_go = 0.5 * 7 * LENGTH_M - 1.5 - FROM_M
-    grows = 0.8 / 40.0
-    seconds = (2.8 - sqrt(2.8**2 - 2.0 * grows * to_go)) / grows
-    assert found.time_s(1, SWITCH, Mark.FIRST_FROM) == pytest.approx(40.0 - seconds, abs=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("cut", "free_to_m", "sentence"),
-    [
-        (bare_cut(LEFT_TRACK, 0.0, 2.0, ()), FREE, "fewer commands"),
-        (bare_cut(RIGHT_TRACK, 0.0, 2.0, (0.0,)), FREE, "more than 0"),
-        (bare_cut(RIGHT_TRACK, 0.0, 2.0, (2.0,), cars=13), FREE, "longer than the way"),
-        (bare_cut(RIGHT_TRACK, 0.0, 2.0, (2.0,)), {LEFT_TRACK: 50.0, RIGHT_TRACK: 300.0}, "on the last section"),
-    ],
-)
-def test_what_the_model_does_not_speak_of_is_refused(cut: SlowCut, free_to_m: dict[int, float], sentence: str) -> None:
-    with pytest.raises(ValueError, match=sentence):
-        humped_slowly(one_switch(), SlowTrain((cut,), LEAD, free_to_m))
