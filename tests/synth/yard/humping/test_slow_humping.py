@@ -25,6 +25,7 @@ from tests.synth.yard.humping.made_slow_trains import (
     LEAD,
     LEFT_TRACK,
     POINTS_M,
+    POSITION,
     RIGHT_TRACK,
     SECTION,
     SWITCH,
@@ -148,12 +149,12 @@ def test_contact_at_the_exit_joint_leaves_the_times_at_the_entry_joint() -> None
 
 def test_a_cut_in_contact_goes_the_way_of_the_cut_ahead() -> None:
     """It touches at the section ahead of the switch, and is misrouted there behind the cut ahead."""
-    cuts = (bare_cut(LEFT_TRACK, 0.0, 2.0), bare_cut(RIGHT_TRACK, 6.0, 4.0))
+    cuts = (bare_cut(RIGHT_TRACK, 0.0, 2.0), bare_cut(LEFT_TRACK, 6.0, 4.0))
     found = humped_slowly(with_section_ahead(one_switch()), SlowTrain(cuts, LEAD, FREE))
-    split = {("not separated", element, 1) for element in (SECTION, SWITCH)}
+    split = {("not separated", element, 1) for element in (SECTION, SWITCH, POSITION)}
     assert alarms(found) == {("contact", SECTION, 1), ("misrouted", SWITCH, 1), *split}
-    assert found.tracks == (LEFT_TRACK, LEFT_TRACK)
-    for element, place in ((SWITCH, FROM_M), (601, TRACK_FROM_M)):
+    assert found.tracks == (RIGHT_TRACK, RIGHT_TRACK)
+    for element, place in ((SWITCH, FROM_M), (POSITION, 85.0), (602, 110.0)):
         ahead_s = (place + FIRST_BEHIND_M) / 2.0
         assert found.time_s(1, element, Mark.FIRST_FROM) == pytest.approx(ahead_s, abs=1e-9)
         assert found.time_s(1, element, Mark.LAST_FROM) == pytest.approx(ahead_s + BASE_M / 2.0, abs=1e-9)

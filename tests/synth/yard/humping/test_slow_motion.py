@@ -16,6 +16,7 @@ from plant_models.rolling.weather import Weather
 from synth.yard.free_roll import rolling_cuts
 from tests.plant_models.rolling.populations import MIX, WINDY, population
 from tests.synth.yard.humping.made_slow_trains import random_train, slow_body, without_positions
+from tests.synth.yard.humping.slow_cut import first_root
 from tests.synth.yard.humping.slow_humping import STEP_S, humped_slowly
 from tests.synth.yard.humping.slow_marks import FIRST_AXLE, marks_of
 from tests.synth.yard.humping.slow_train import Mark, SlowCut, SlowRun, SlowTrain
@@ -139,3 +140,13 @@ def test_first_axles_and_marks_agree() -> None:
         behind = body.first_axle_m if each.mark in FIRST_AXLE else body.last_axle_m
         if each.mark is not Mark.TRACK:
             assert each.head_m - each.place_m == pytest.approx(behind)
+
+
+@pytest.mark.parametrize(
+    ("bend", "slope", "begin", "root"),
+    [(0.0, -2.0, 1.0, 0.5), (-4.0, 1.0, 1.5, 0.75), (1.0, -2.5, 1.0, 0.5), (0.0, 1.0, -0.5, 0.0)],
+)
+def test_the_first_root_of_a_gap(bend: float, slope: float, begin: float, root: float) -> None:
+    """Gaps that close evenly, ever faster, ever slower, and one that was closed before."""
+    at = [begin + slope * x + bend * x * x for x in (0.0, 0.5, 1.0)]
+    assert first_root(*at) == pytest.approx(root, abs=1e-12)
