@@ -73,6 +73,12 @@ class Route:
         assert isinstance(last, TrackSection)
         return self.length_m - last.standing_m
 
+    @property
+    def yard_from_m(self) -> float:
+        """Where the yard begins: behind the last retarder, else with the last section."""
+        ends = [each.at_m + each.vertex.exit_m for each in self.elements if isinstance(each.vertex, Retarder)]
+        return ends[-1] if ends else self.elements[-1].at_m
+
     def fouling_m(self, switch: int) -> float:
         """Fouling point, from the crest, of the branch that the route takes at `switch`."""
         element = self.element(switch)

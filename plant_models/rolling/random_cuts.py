@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,10 +28,11 @@ MOST_CARS = 60
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class DrawnCuts:
-    """n cuts of `cars` cars each; arrays of shape (n, cars), of cuts (n,), of bends (n, bends).
+    """n cuts of up to `cars` cars each; arrays of shape (n, cars), of cuts (n,), of bends (n, bends).
 
-    `types`: places in the mix; `basic_n_per_kn`: resistance of each car in the yard at standstill; `head_wind_m_s`:
-    against the cut; `bend_v2_m_s2`, `bend_head_m`: head that a bend takes, per (m/s)² and whatever the speed;
+    `types`: places in the mix; `mass_t`: 0 where a cut has no more cars; `basic_n_per_kn`: resistance of each car in
+    the yard at standstill; `head_wind_m_s`: against the cut; `bend_v2_m_s2`, `bend_head_m`: head that a bend takes, per
+    (m/s)² and whatever the speed; of cuts that were drawn for no track, the draws themselves (`on_bends`);
     `air_n_per_kn`: resistance of the air of the whole cut per (m/s)² of relative speed.
     """
 
@@ -48,8 +50,13 @@ class DrawnCuts:
 
     @property
     def cars(self) -> int:
-        """Cars of each cut."""
+        """Cars of the longest cut, or more."""
         return int(self.types.shape[1])
+
+    @property
+    def cars_of_cut(self) -> NDArray[np.int64]:
+        """Cars of each cut, (n,)."""
+        return np.asarray(np.count_nonzero(self.mass_t, axis=1))
 
     @property
     def cut_mass_t(self) -> Floats:
@@ -61,21 +68,31 @@ class DrawnCuts:
         """Mass of each car over that of its cut, (n, cars)."""
         return self.mass_t / self.cut_mass_t[:, None]
 
-    @property
+    @cached_property
     def resistance_n_per_kn(self) -> Floats:
         """w0 of each cut: of its cars, weighted by mass, (n,)."""
-        return np.asarray((self.shares * self.basic_n_per_kn).sum(axis=1))
+        found = np.asarray((self.shares * self.basic_n_per_kn).sum(axis=1))
+        found.setflags(write=False)
+        return found
+
+    def resistance_at(self, law: ResistanceLaw, rows: NDArray[np.int64], speed_m_s: Floats) -> Floats:
+        """Resistance of the cuts `rows` on straight track of the hump slope at `speed_m_s`, air and wind included,
+        N/kN."""
+        against = speed_m_s + self.head_wind_m_s[rows]
+        air = self.air_n_per_kn[rows] * against * np.abs(against)
+        steady = self.resistance_n_per_kn[rows] + law.slope_extra_n_per_kn
+        return np.asarray(steady + law.linear_n_per_kn * speed_m_s + air)
 
     @property
     def reduced_gravity_m_s2(self) -> Floats:
         """g' of each cut, (n,)."""
-        axles = self.mix.axles[self.types].sum(axis=1)
+        axles = np.where(self.mass_t > 0.0, self.mix.axles[self.types], 0).sum(axis=1)
         return np.asarray(GRAVITY_M_S2 / (1.0 + ROTATING_MASS_PER_AXLE_T * axles / self.cut_mass_t))
 
     @property
     def car_lengths_m(self) -> Floats:
-        """Length over couplers of each car, (n, cars)."""
-        return np.array([c.car.length_m for c in self.mix.cars])[self.types]
+        """Length over couplers of each car, (n, cars); 0 where there is none."""
+        return np.where(self.mass_t > 0.0, np.array([c.car.length_m for c in self.mix.cars])[self.types], 0.0)
 
     @property
     def car_fronts_m(self) -> Floats:
@@ -90,7 +107,8 @@ class DrawnCuts:
     @property
     def last_axle_m(self) -> Floats:
         """How far the last axle is behind the head, (n,)."""
-        return np.asarray(self.car_lengths_m.sum(axis=1) - self.overhangs_m[self.types[:, -1]])
+        last = self.types[np.arange(len(self)), self.cars_of_cut - 1]
+        return np.asarray(self.car_lengths_m.sum(axis=1) - self.overhangs_m[last])
 
     @property
     def overhangs_m(self) -> Floats:
@@ -101,6 +119,15 @@ class DrawnCuts:
         """Some of these cuts."""
         arrays = {f.name: getattr(self, f.name)[which] for f in fields(self) if f.name != "mix"}
         return DrawnCuts(mix=self.mix, **arrays)
+
+    def on_bends(self, law: ResistanceLaw, bends: Sequence[Bend]) -> DrawnCuts:
+        """These cuts, whose bends are draws, with the heads that `bends` take from them by `law`."""
+        v2, head = bend_scales_m(law, bends).T
+        return replace(
+            self,
+            bend_v2_m_s2=self.bend_v2_m_s2[:, : len(bends)] * v2,
+            bend_head_m=self.bend_head_m[:, : len(bends)] * head,
+        )
 
 
 @dataclass(frozen=True)
@@ -126,35 +153,33 @@ class CutPopulation:
         on_four_axles = mass * (AXLES_OF_A_CATEGORY / mix.axles[types])
         basic = self.law.basic_n_per_kn(category.resistance, on_four_axles, self.weather.temperature_c, u[..., 2])
         wind = ndtri(uniform_numbers(seed, Purpose.WIND, first, count, 1)[:, 0])
-        v2, head = bend_heads_m(self.law, self.bends, seed, first, count)
+        draws = bend_draws(self.law, len(self.bends), seed, first, count)
         return DrawnCuts(
             mix=mix,
             types=types,
             mass_t=mass,
             basic_n_per_kn=basic,
-            head_wind_m_s=self.weather.head_wind_mean_m_s + self.weather.head_wind_std_m_s * wind,
-            bend_v2_m_s2=v2,
-            bend_head_m=head,
-            air_n_per_kn=self.weather.air_n_per_kn(1.0) * drag_areas_m2(mix, types) / mass.sum(axis=1),
-        )
+            head_wind_m_s=self.weather.head_winds_m_s(wind),
+            bend_v2_m_s2=draws,
+            bend_head_m=draws,
+            air_n_per_kn=air_n_per_kn(mix, self.weather, types, mass),
+        ).on_bends(self.law, self.bends)
 
 
-def drag_areas_m2(mix: CarMix, types: NDArray[np.int64]) -> Floats:
-    """C_x1·S_1 + Σ C_xj·S_j of each cut, (n,): cars behind the first count by their following share."""
-    areas = np.array([c.drag_area_m2 for c in mix.cars])[types]
-    return np.asarray(areas[:, 0] + mix.following_share * areas[:, 1:].sum(axis=1))
+def air_n_per_kn(mix: CarMix, weather: Weather, types: NDArray[np.int64], mass_t: Floats) -> Floats:
+    """Resistance of the air of cuts per (m/s)², (n,), from C_x1·S_1 + Σ C_xj·S_j: cars behind the first count by their
+    following share, those of mass 0 not at all."""
+    areas = np.where(mass_t > 0.0, np.array([c.drag_area_m2 for c in mix.cars])[types], 0.0)
+    felt = areas[:, 0] + mix.following_share * areas[:, 1:].sum(axis=1)
+    return np.asarray(weather.air_n_per_kn(1.0) * felt / mass_t.sum(axis=1))
 
 
-def bend_heads_m(
-    law: ResistanceLaw, bends: tuple[Bend, ...], seed: int, first: int, count: int
-) -> tuple[Floats, Floats]:
-    """Heads that each bend takes from each cut: (per (m/s)², whatever the speed), each (count, bends)."""
-    u = uniform_numbers(seed, Purpose.BENDS, first, count, len(bends) * law.bend_numbers)
-    rows: Iterator[tuple[Floats, Floats]] = (
-        law.bend_heads_m(bend, numbers)
-        for bend, numbers in zip(bends, np.split(u, max(len(bends), 1), axis=1), strict=False)
-    )
-    v2, head = np.zeros((count, len(bends))), np.zeros((count, len(bends)))
-    for place, (of_v2, whatever) in enumerate(rows):
-        v2[:, place], head[:, place] = of_v2, whatever
-    return v2, head
+def bend_draws(law: ResistanceLaw, bends: int, seed: int, first: int, count: int) -> Floats:
+    """Draws of cuts for that many bends along their way, (count, bends)."""
+    u = uniform_numbers(seed, Purpose.BENDS, first, count, bends * law.bend_numbers)
+    return law.bend_draws(u.reshape(count, bends, law.bend_numbers))
+
+
+def bend_scales_m(law: ResistanceLaw, bends: Sequence[Bend]) -> Floats:
+    """Heads that bends take from a draw of 1: (per (m/s)², whatever the speed), (bends, 2)."""
+    return np.array([law.bend_scale_m(bend) for bend in bends]).reshape(-1, 2)

@@ -24,6 +24,15 @@ class Purpose(IntEnum):
     RECORDS = 8
     TRAIN = 9
     TRAIN_CARS = 10
+    POSITION_ERROR = 11
+    CUT_FRICTION = 12
+    PASS_CLOCK = 13
+    PASS_PATH = 14
+    PASS_NOISE = 15
+    SPEED_READING = 21
+    STANDING = 22
+    TRAIN_RESISTANCE = 16
+    TRAIN_WIND = 17
 
 
 def uniform_numbers(seed: int, purpose: Purpose, first: int, count: int, columns: int) -> NDArray[np.float64]:

@@ -33,13 +33,22 @@ class ResistanceLaw(Protocol):
         """Basic resistance of cars in the yard at standstill, one a number `u`; `resistance`: of their category;
         `mass_t`: of a 4-axle car of their axle load."""
 
-    def bend_heads_m(self, bend: Bend, u: Floats) -> tuple[Floats, Floats]:
-        """Energy head that the bend takes from a cut: (per (m/s)², whatever the speed), each as `u` without its last
-        axis of `bend_numbers`."""
+    def mean_basic_n_per_kn(self, resistance: RollingResistance, mass_t: Floats, temperature_c: float) -> Floats:
+        """Mean of `basic_n_per_kn`, as `mass_t`."""
+
+    def bend_scale_m(self, bend: Bend) -> tuple[float, float]:
+        """Energy head that the bend takes from a cut whose draw is 1: (per (m/s)², whatever the speed)."""
+
+    def bend_draws(self, u: Floats) -> Floats:
+        """By how much more than its scale a bend takes, as `u` without its last axis of `bend_numbers`."""
 
     @property
     def bend_numbers(self) -> int:
         """Uniform numbers that a bend needs."""
+
+    @property
+    def mean_bend_draw(self) -> float:
+        """Mean of `bend_draws`."""
 
 
 @dataclass(frozen=True)
@@ -68,16 +77,28 @@ class HumpNormLaw:
             return np.full(u.shape, resistance.mean_n_per_kn)
         return np.asarray(gammaincinv(resistance.shape, u) * resistance.scale_n_per_kn)
 
+    def mean_basic_n_per_kn(self, resistance: RollingResistance, mass_t: Floats, temperature_c: float) -> Floats:
+        """Mean of the category."""
+        return np.full(mass_t.shape, resistance.mean_n_per_kn)
+
     @property
     def bend_numbers(self) -> int:
         """The order K."""
         return self.erlang_order
 
-    def bend_heads_m(self, bend: Bend, u: Floats) -> tuple[Floats, Floats]:
-        """C of one bend for each row of `u`, shape (…, K)."""
+    @property
+    def mean_bend_draw(self) -> float:
+        """The order K, too."""
+        return float(self.erlang_order)
+
+    def bend_scale_m(self, bend: Bend) -> tuple[float, float]:
+        """m/K."""
         mean = self.per_switch_m_s2 * bend.switches + self.per_degree_m_s2 * bend.turn_deg
-        drawn = -np.log(u).sum(axis=-1) * (mean / self.erlang_order)
-        return drawn, np.zeros_like(drawn)
+        return mean / self.erlang_order, 0.0
+
+    def bend_draws(self, u: Floats) -> Floats:
+        """C·K/m of one bend for each row of `u`, shape (…, K)."""
+        return np.asarray(-np.log(u).sum(axis=-1))
 
 
 @dataclass(frozen=True)
@@ -94,6 +115,7 @@ class Tb10062Law:
     linear_n_per_kn = 0.1
     slope_extra_n_per_kn = 0.39
     bend_numbers = 1
+    mean_bend_draw = 1.0
 
     def __post_init__(self) -> None:
         require_between("resistance: least_n_per_kn", self.least_n_per_kn, 0.0, 2.0)
@@ -101,11 +123,19 @@ class Tb10062Law:
     def basic_n_per_kn(self, resistance: RollingResistance, mass_t: Floats, temperature_c: float, u: Floats) -> Floats:
         """r at v = 0 and k = 1 by the quantiles of the normal law; the category does not count, the mass does."""
         q, t = mass_t, temperature_c
-        mean = 2.439 + (0.00008 * q - 0.01743) * t - 0.015 * q + 0.00017 * t**2
+        mean = self.mean_basic_n_per_kn(resistance, q, t)
         std = 0.602 - (0.0012 + 0.00002 * q) * t - 0.003 * q + 0.00002 * t**2
         return np.asarray(np.maximum(mean + std * ndtri(u), self.least_n_per_kn))
 
-    def bend_heads_m(self, bend: Bend, u: Floats) -> tuple[Floats, Floats]:
-        """The same head for every cut."""
-        head = np.full(u.shape[:-1], 24e-3 * bend.switches + 8e-3 * bend.turn_deg)
-        return np.zeros_like(head), head
+    def mean_basic_n_per_kn(self, resistance: RollingResistance, mass_t: Floats, temperature_c: float) -> Floats:
+        """r at v = 0 and k = 1 without its spread; what the cut-off adds is left out."""
+        q, t = mass_t, temperature_c
+        return np.asarray(2.439 + (0.00008 * q - 0.01743) * t - 0.015 * q + 0.00017 * t**2)
+
+    def bend_scale_m(self, bend: Bend) -> tuple[float, float]:
+        """The head of every cut."""
+        return 0.0, 24e-3 * bend.switches + 8e-3 * bend.turn_deg
+
+    def bend_draws(self, u: Floats) -> Floats:
+        """1 for every cut."""
+        return np.ones(u.shape[:-1])

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from plant_models.cut import GRAVITY_M_S2, ROTATING_MASS_PER_AXLE_T
 from plant_models.frozen_arrays import frozen_arrays
-from plant_models.hump import Retarder, Route
+from plant_models.hump import Route
 from plant_models.library import load_car, load_weight_categories
 from plant_models.rolling.car_mix import CarMix, MixedCar
 from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts
@@ -92,7 +92,7 @@ def roll_runners(
         air_n_per_kn=weather.air_n_per_kn(DRAG_AREA_M2) / mass[:, 0],
     )
     population = CutPopulation(mix, load_weight_categories(), law, weather, track.bends)
-    rolling = rolling_cuts(population, track, yard_from_m(route), cuts)
+    rolling = rolling_cuts(population, track, route.yard_from_m, cuts)
     ahead = 0.5 * car.length_m
     middle = np.arange(step_m, route.length_m - ahead, step_m)
     start, speed = np.full(count, ahead), np.full(count, hump_speed_m_s)
@@ -113,9 +113,3 @@ def runner_roll(runner: DesignRunner, route: Route, at_m: Floats, speed_m_s: Flo
     axles = at[:, None] + 0.5 * offsets[-1] - offsets
     head = speed**2 / (2.0 * runner.reduced_gravity_m_s2) - route.roll_track.fall_m(axles).mean(axis=1)
     return RunnerRoll(runner, at, speed, head, float(stop_m))
-
-
-def yard_from_m(route: Route) -> float:
-    """Where the yard begins: behind the last retarder, else with the last section."""
-    ends = [element.at_m + element.vertex.exit_m for element in route.elements if isinstance(element.vertex, Retarder)]
-    return ends[-1] if ends else route.elements[-1].at_m

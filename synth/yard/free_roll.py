@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -15,7 +14,7 @@ from numpy.typing import NDArray
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.rolling.car_mix import CarMix
 from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts
-from plant_models.rolling.roll_track import RollTrack
+from plant_models.rolling.roll_track import Bend, RollTrack
 from synth.kernels.roll import free_roll as kernel
 from synth.kernels.roll.felt_track import LANES, Cuts, Way
 
@@ -68,29 +67,21 @@ class RollingCuts:
 
     def longest_step_m(self, of_a_car_m: float) -> float:
         """The longest step of these cuts, where that of a single car is `of_a_car_m`."""
-        return of_a_car_m * min(math.sqrt(self.cuts.cars), LONGEST_STEPS)
+        return of_a_car_m * float(self.arrays.long_steps.max())
 
     def roll_on(self, start_m: Floats, speed_m_s: Floats, stations_m: Floats, step_m: float = STEP_M) -> Rolled:
         """Roll each cut from the head position `start_m` (n,) with `speed_m_s` (n,) over `stations_m` (n, k), which
         increase from there on."""
-        count, longest = len(stations_m), self.longest_step_m(step_m)
-        start, begins, at = in_lanes(start_m), in_lanes(0.5 * speed_m_s**2), in_lanes(stations_m.T)
-        energy, time, stop = np.empty_like(at), np.empty_like(at), np.empty_like(start)
-
-        def part(first: int, last: int) -> None:
-            kernel.roll_on(self.way, self.arrays, start, begins, at, longest, energy, time, stop, first, last)
-
-        side_by_side(part, len(start), self.threads)
-        return Rolled(np.sqrt(2.0 * energy[:, :count].T), time[:, :count].T.copy(), stop[:count].copy())
+        return roll_lanes(self.way, self.arrays, start_m, speed_m_s, stations_m, step_m, self.threads)
 
     def roll_back(self, arrival_m: Floats, speed_m_s: float, start_m: Floats, step_m: float = STEP_M) -> Floats:
         """The highest speeds (n,) at `start_m` (n,) with which the cuts have at most `speed_m_s` at `arrival_m` (n,),
         or stop before; 0 where even a cut from rest arrives faster."""
-        arrival, start, longest = in_lanes(arrival_m), in_lanes(start_m), self.longest_step_m(step_m)
+        arrival, start = in_lanes(arrival_m), in_lanes(start_m)
         ends, energy = np.full_like(start, 0.5 * speed_m_s**2), np.empty_like(start)
 
         def part(first: int, last: int) -> None:
-            kernel.roll_back(self.way, self.arrays, arrival, ends, start, longest, energy, first, last)
+            kernel.roll_back(self.way, self.arrays, arrival, ends, start, step_m, energy, first, last)
 
         side_by_side(part, len(start), self.threads)
         return np.asarray(np.sqrt(2.0 * energy[: len(self)]))
@@ -102,7 +93,32 @@ def rolling_cuts(
     """`cuts` of `population` on `track`; behind `yard_from_m` they roll in the yard, where snow lies and no extra
     resistance of the slope counts."""
     way, first_m = way_of(population, track, yard_from_m, cuts.mix)
-    return RollingCuts(cuts, way, arrays_of(population, cuts, way, first_m), threads)
+    return RollingCuts(cuts, way, arrays_of(population, track.bends, cuts, way, first_m), threads)
+
+
+def roll_lanes(
+    way: Way,
+    lanes: Cuts,
+    start_m: Floats,
+    speed_m_s: Floats,
+    stations_m: Floats,
+    step_m: float,
+    threads: int,
+    prepare: Callable[[int, int], None] | None = None,
+) -> Rolled:
+    """Roll `lanes` from `start_m` (n,) with `speed_m_s` (n,) over `stations_m` (n, k); `prepare(first, last)` is called
+    before the lanes from `first` to `last` − 1 are rolled."""
+    count = len(stations_m)
+    start, begins, at = in_lanes(start_m), in_lanes(0.5 * speed_m_s**2), in_lanes(stations_m.T)
+    energy, time, stop = np.empty_like(at), np.empty_like(at), np.empty_like(start)
+
+    def part(first: int, last: int) -> None:
+        if prepare is not None:
+            prepare(first, last)
+        kernel.roll_on(way, lanes, start, begins, at, step_m, energy, time, stop, first, last)
+
+    side_by_side(part, len(start), threads)
+    return Rolled(np.sqrt(2.0 * energy[:, :count].T), time[:, :count].T.copy(), stop[:count].copy())
 
 
 def way_of(
@@ -124,26 +140,37 @@ def way_of(
         slopes = np.where(nodes[:-1] >= car.length_m, np.diff(fall[row]) / node_m, np.inf)
         gentlest[row] = np.minimum.accumulate(np.append(slopes, np.inf))
     summed = np.cumsum(fall, axis=1) - 0.5 * (fall + fall[:, :1])
-    bends = np.array([(bend.from_m, bend.to_m) for bend in track.bends]).reshape(-1, 2)
-    return Way(1.0 / node_m, fall, node_m * summed, gentlest, bends), first
+    return Way(1.0 / node_m, fall, node_m * summed, gentlest), first
 
 
-def arrays_of(population: CutPopulation, cuts: DrawnCuts, way: Way, first_m: float) -> Cuts:
-    """What the kernel needs of `cuts`."""
+def arrays_of(population: CutPopulation, bends: tuple[Bend, ...], cuts: DrawnCuts, way: Way, first_m: float) -> Cuts:
+    """What the kernel needs of `cuts` and of the bends on their track."""
+    ends = np.array([(bend.from_m, bend.to_m) for bend in bends]).reshape(-1, 2)
+    cars = in_lanes(cuts.cars_of_cut)
     return Cuts(
+        cars_of_pack=cars.reshape(-1, LANES).max(axis=1),
         rows=in_lanes(cuts.types.T * way.fall_m.shape[1]),
         shares=in_lanes(cuts.shares.T),
         nodes=in_lanes((cuts.car_fronts_m.T + first_m) * way.nodes_per_m),
         middles_m=in_lanes((cuts.car_fronts_m + 0.5 * cuts.car_lengths_m).T),
         length_m=in_lanes(cuts.car_lengths_m.sum(axis=1)),
+        long_steps=long_steps(cars),
         gravity_m_s2=in_lanes(cuts.reduced_gravity_m_s2),
         constant=in_lanes(1e-3 * cuts.resistance_n_per_kn),
         linear=float(population.law.linear_n_per_kn),
         air=in_lanes(1e-3 * cuts.air_n_per_kn),
         wind_m_s=in_lanes(cuts.head_wind_m_s),
+        bends_from_m=ends[:, :1].repeat(LANES, axis=1),
+        bends_to_m=ends[:, 1:].repeat(LANES, axis=1),
+        bends_per_m=(1.0 / (ends[:, 1:] - ends[:, :1])).repeat(LANES, axis=1),
         bend_v2=in_lanes(cuts.bend_v2_m_s2.T),
         bend_head=in_lanes(cuts.bend_head_m.T),
     )
+
+
+def long_steps(cars: NDArray[np.int64]) -> Floats:
+    """Longest steps of cuts of so many cars, over that of a single car."""
+    return np.asarray(np.minimum(np.sqrt(cars), LONGEST_STEPS))
 
 
 def in_lanes(values: NDArray[Any]) -> NDArray[Any]:

@@ -19,10 +19,12 @@ answer lies between the least and the largest speed of its nodes, so within the 
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.aim.aim_table import AimTable
+from tuning_tables.aim.axes import AimAxes
 
 Floats = npt.NDArray[np.float32]
 Indices = npt.NDArray[np.intp]
@@ -30,8 +32,32 @@ Place = tuple[Indices, Indices, Floats]
 """The node below, the node above, and the part of the way."""
 
 
+class AimNodes(Protocol):
+    """What the rule looks at; an `AimTable` has it, and so may speeds that were never written to a file."""
+
+    @property
+    def axes(self) -> AimAxes:
+        """Cars, free distances, resistances."""
+
+    @property
+    def is_measured(self) -> bool:
+        """Whether the measured resistance of a cut is asked for."""
+
+    @property
+    def distance_nodes(self) -> Floats:
+        """Free distances, (D,)."""
+
+    @property
+    def resistance_nodes(self) -> Floats:
+        """Resistances, (R,); one 0 by category alone."""
+
+    @property
+    def speed_nodes(self) -> Floats:
+        """Exit speeds, (C, D, R), NaN for none."""
+
+
 def aim_exit_speed(
-    table: AimTable, cars: int, free_distance_m: float, resistance_n_per_kn: float | None = None
+    table: AimNodes, cars: int, free_distance_m: float, resistance_n_per_kn: float | None = None
 ) -> float | None:
     """The exit speed in m/s, a float32 number, for a cut of so many cars; None where the table has no answer.
 
@@ -44,7 +70,7 @@ def aim_exit_speed(
 
 
 def aim_exit_speeds(
-    table: AimTable, cars: npt.ArrayLike, free_distance_m: npt.ArrayLike, resistance_n_per_kn: npt.ArrayLike = np.nan
+    table: AimNodes, cars: npt.ArrayLike, free_distance_m: npt.ArrayLike, resistance_n_per_kn: npt.ArrayLike = np.nan
 ) -> Floats:
     """`aim_exit_speed` for whole arrays at once: float32 of the shape that they broadcast to, NaN for no answer."""
     numbers = np.asarray(cars)
@@ -80,7 +106,7 @@ def _between(nodes: Floats, values: Floats) -> Place:
     return below, above, (clamped - nodes[below]) / span
 
 
-def _for_row(table: AimTable, row: Indices, way: Place, share: Place, beyond: npt.NDArray[np.bool_]) -> Floats:
+def _for_row(table: AimNodes, row: Indices, way: Place, share: Place, beyond: npt.NDArray[np.bool_]) -> Floats:
     """Rules 3 to 5 for one listed number of cars each."""
     near, far, part = way
     near = np.where(beyond, far - 1, near)

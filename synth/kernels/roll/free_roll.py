@@ -16,7 +16,7 @@ from synth.kernels.vector.borrowing import borrowing
 @borrowing
 def roll_on(way, cuts, start_m, energy, stations_m, step_m, energy_at, time_at_s, stop_m, first, last):
     """Roll cuts `first` … `last` − 1, multiples of `LANES`, from `start_m` (n,) with `energy` (n,) over the increasing
-    `stations_m` (k, n).
+    `stations_m` (k, n), by steps of `step_m` for a single car.
 
     Fills `energy_at` and `time_at_s` (k, n), heads at the stations: 0 and infinite behind a stop; `stop_m` (n,): where
     the cut stops, infinite if it rolls at the last station.
@@ -25,16 +25,16 @@ def roll_on(way, cuts, start_m, energy, stations_m, step_m, energy_at, time_at_s
     for i in range(first, last, LANES):
         lanes, x, e = lanes_from(cuts, i), packs.load16(start_m, i), packs.load16(energy, i)
         v, time = packs.root(e + e), packs.choose(x == x, 0.0, x)
-        fall, total = fall_at(way, cuts, i, x)
+        fall, total = fall_at(way, cuts, lanes, x)
         stopped = packs.choose(e <= 0.0, x, math.inf)
         for k in range(stations_m.shape[0]):
             target = packs.load16(stations_m, k * stations_m.shape[1] + i)
-            longest = even_steps(target - x, step_m)
+            longest = even_steps(target - x, lanes.long_steps * step_m)
             limit, moving = longest, (target > x) & (stopped == math.inf)
             while packs.holds_anywhere(moving):
                 left = target - x
                 h = next_step(longest, left, limit, e)
-                beyond, total_beyond = fall_at(way, cuts, i, x + h)
+                beyond, total_beyond = fall_at(way, cuts, lanes, x + h)
                 v2, head, early_v2, early_head = bends_between(way, cuts, lanes, x, h)
                 more = (total_beyond - total) / h - 0.5 * (fall + beyond) - early_head
                 later, more_e = stepped(
@@ -74,13 +74,13 @@ def roll_back(way, cuts, arrival_m, energy, start_m, step_m, energy_at_start, fi
     for i in range(first, last, LANES):
         lanes, x, e = lanes_from(cuts, i), packs.load16(arrival_m, i), packs.load16(energy, i)
         v, target = packs.root(e + e), packs.load16(start_m, i)
-        fall, total = fall_at(way, cuts, i, x)
-        longest = even_steps(x - target, step_m)
+        fall, total = fall_at(way, cuts, lanes, x)
+        longest = even_steps(x - target, lanes.long_steps * step_m)
         limit, moving = longest, x > target
         while packs.holds_anywhere(moving):
             left = x - target
             h = next_step(longest, left, limit, e)
-            before, total_before = fall_at(way, cuts, i, x - h)
+            before, total_before = fall_at(way, cuts, lanes, x - h)
             v2, head, early_v2, early_head = bends_between(way, cuts, lanes, x - h, h)
             more = (total - total_before) / h - 0.5 * (fall + before) - early_head
             earlier, _ = stepped(

@@ -129,7 +129,7 @@ def finely(case: RollCase, cars: int, seed: int, count: int) -> RollingCuts:
     """Cuts on the track by fine nodes."""
     people, drawn = case.population, case.drawn(cars, seed, count)
     way, first_m = way_of(people, case.track, PARK_EXIT_M, drawn.mix, REFERENCE_NODE_M)
-    return RollingCuts(drawn, way, arrays_of(people, drawn, way, first_m))
+    return RollingCuts(drawn, way, arrays_of(people, case.track.bends, drawn, way, first_m))
 
 
 def stations_of(case: RollCase, start_m: Floats) -> Floats:

@@ -18,7 +18,8 @@ from synth.simulation.random_passes import random_passes
 from synth.studies.aiming.trial import Cuts
 from synth.studies.side_by_side import side_by_side
 from synth.studies.tuned_table import CREATED
-from synth.yard.aim.table_position import TableClass, TablePosition, entry_speeds_m_s, table_position
+from synth.yard.aim.table_position import TablePosition, entry_speeds_m_s, table_position
+from synth.yard.table_class import TableClass
 from tuning_tables import ControllerTable, from_json, to_json
 
 POSITION = "rnz-2m-park"

@@ -114,11 +114,7 @@ class SceneCuts:
 
     def resistance_at(self, speed_m_s: Floats, rows: NDArray[np.int64]) -> Floats:
         """Resistance of the cuts `rows` on straight track at `speed_m_s`, air and wind included, N/kN."""
-        cuts, law = self.rolling.cuts, self.scene.population.law
-        against = speed_m_s + cuts.head_wind_m_s[rows]
-        air = cuts.air_n_per_kn[rows] * against * np.abs(against)
-        steady = cuts.resistance_n_per_kn[rows] + law.slope_extra_n_per_kn
-        return np.asarray(steady + law.linear_n_per_kn * speed_m_s + air)
+        return self.rolling.cuts.resistance_at(self.scene.population.law, rows, speed_m_s)
 
     @cached_property
     def measured_speeds_m_s(self) -> tuple[Floats, Floats]:

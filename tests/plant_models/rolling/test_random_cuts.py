@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import stats
 
 from plant_models import Cut, PlantError, couple
 from plant_models.rolling.car_mix import CarMix, MixedCar
-from plant_models.rolling.random_cuts import MOST_CARS, DrawnCuts
-from plant_models.rolling.resistance_law import HumpNormLaw, Tb10062Law
+from plant_models.rolling.random_cuts import MOST_CARS, DrawnCuts, air_n_per_kn, bend_draws
+from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
 from plant_models.rolling.roll_track import Bend
 from plant_models.rolling.weather import Weather
 from tests.plant_models.rolling.populations import CATEGORIES, GONDOLA, LONG_TANK, MIX, TANK, WINDY, population
@@ -154,3 +156,32 @@ def test_a_single_gondola_has_the_inertia_of_the_retarders_cut() -> None:
     drawn = population(CarMix((MixedCar(GONDOLA, 1.0, 11.6),))).draw(LIGHT, 1, 1, 0, 1)
     cut = Cut("Л", float(drawn.cut_mass_t[0]), GONDOLA.axle_offsets_m, 2)
     assert drawn.reduced_gravity_m_s2[0] == pytest.approx(cut.reduced_gravity_m_s2, rel=1e-14)
+
+
+def test_a_car_of_mass_0_is_none() -> None:
+    """A cut that is filled up to five cars is the cut of two: by each value that a roll takes from it."""
+    people = population(bends=BENDS)
+    two, five = people.draw(MIDDLE, 2, 5, 0, 200), people.draw(MIDDLE, 5, 5, 0, 200)
+    mass = five.mass_t.copy()
+    mass[:, 2:] = 0.0
+    filled = replace(five, mass_t=mass, air_n_per_kn=air_n_per_kn(five.mix, people.weather, five.types, mass))
+    assert np.all(filled.cars_of_cut == 2)
+    for name in (
+        "cut_mass_t",
+        "resistance_n_per_kn",
+        "reduced_gravity_m_s2",
+        "first_axle_m",
+        "last_axle_m",
+        "air_n_per_kn",
+    ):
+        np.testing.assert_allclose(getattr(filled, name), getattr(two, name), rtol=1e-14, err_msg=name)
+    np.testing.assert_array_equal(filled.car_lengths_m.sum(axis=1), two.car_lengths_m.sum(axis=1))
+    assert not filled.shares[:, 2:].any()
+
+
+@pytest.mark.parametrize("law", [HumpNormLaw(), Tb10062Law()])
+def test_draws_on_a_track_are_the_heads_that_a_population_of_it_has(law: ResistanceLaw) -> None:
+    there, bare = population(law=law, bends=BENDS), population(law=law)
+    draws = bend_draws(law, 5, 5, 0, 200)
+    nowhere = replace(bare.draw(MIDDLE, 1, 5, 0, 200), bend_v2_m_s2=draws, bend_head_m=draws)
+    same(nowhere.on_bends(law, BENDS), there.draw(MIDDLE, 1, 5, 0, 200))

@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 from plant_models import PlantError, RollingResistance
-from plant_models.rolling.resistance_law import HumpNormLaw, Tb10062Law
+from plant_models.rolling.resistance_law import Floats, HumpNormLaw, ResistanceLaw, Tb10062Law
 from plant_models.rolling.roll_track import Bend
 from tests.plant_models.rolling.populations import CATEGORIES
 
@@ -23,6 +23,12 @@ QUANTILES = {
     "Т": (0.63, 0.72, 1.20, 1.86, 2.02),
 }
 """At −2 σ of a normal law, 5, 50 and 95 %, and +2 σ of a normal law; N/kN, worked out apart from this program."""
+
+
+def heads_m(law: ResistanceLaw, bend: Bend, u: Floats) -> tuple[Floats, Floats]:
+    """What `bend` takes for each row of `u`: per (m/s)², whatever the speed."""
+    draws, (v2, head) = law.bend_draws(u), law.bend_scale_m(bend)
+    return draws * v2, draws * head
 
 
 @pytest.mark.parametrize("name", PUBLISHED)
@@ -50,9 +56,10 @@ def test_the_head_of_a_bend_has_an_erlang_law(order: int) -> None:
     law, bend = HumpNormLaw(erlang_order=order), Bend(10.0, 30.0, 2, 9.46)
     assert law.bend_numbers == order
     mean = 0.56e-3 * 2 + 0.23e-3 * 9.46
-    drawn, whatever = law.bend_heads_m(bend, np.random.default_rng(3).random((50_000, order)))
+    drawn, whatever = heads_m(law, bend, np.random.default_rng(3).random((50_000, order)))
     assert stats.kstest(drawn, stats.erlang(order, scale=mean / order).cdf).pvalue > 0.01
     assert drawn.mean() == pytest.approx(mean, rel=0.02)
+    assert law.mean_bend_draw * law.bend_scale_m(bend)[0] == pytest.approx(mean, rel=1e-12)
     assert drawn.std() == pytest.approx(mean / np.sqrt(order), rel=0.03)
     assert not whatever.any()
 
@@ -62,7 +69,7 @@ def test_the_head_of_five_switches_spreads_as_worked_out(order: int, std: float)
     """5 switches of 4.73° and two curves of 11.5° at 5 m/s: worked out apart from this program."""
     bends = [*[Bend(0.0, 10.0, 1, 4.73)] * 5, *[Bend(0.0, 10.0, 0, 23.0 / 2)] * 2]
     law, rng = HumpNormLaw(erlang_order=order), np.random.default_rng(5)
-    heads = np.sum([25.0 * law.bend_heads_m(bend, rng.random((40_000, order)))[0] for bend in bends], axis=0)
+    heads = np.sum([25.0 * heads_m(law, bend, rng.random((40_000, order)))[0] for bend in bends], axis=0)
     assert heads.mean() == pytest.approx(0.338, abs=0.003)
     assert heads.std() == pytest.approx(std, rel=0.03)
 
@@ -100,7 +107,7 @@ def test_tb_10062_spreads_normally_down_to_its_least_value() -> None:
 
 
 def test_tb_10062_takes_heads_whatever_the_speed() -> None:
-    v2, head = Tb10062Law().bend_heads_m(Bend(0.0, 50.0, 4, 25.0), np.full((3, 1), 0.7))
+    v2, head = heads_m(Tb10062Law(), Bend(0.0, 50.0, 4, 25.0), np.full((3, 1), 0.7))
     np.testing.assert_allclose(head, 0.296)
     assert not v2.any()
 

@@ -12,7 +12,7 @@ from plant_models.library.hump_entry import load_hump
 from synth.present.plots.figure_file import draw
 from synth.present.plots.hump.hump_picture import hump_picture
 from synth.present.plots.hump.plan_layout import plan_layout
-from synth.yard.design_runners import DESIGN_RUNNERS, DesignRunner, roll_runners, yard_from_m
+from synth.yard.design_runners import DESIGN_RUNNERS, DesignRunner, roll_runners
 
 
 def in_time(route: Route, runner: DesignRunner, until_m: float) -> float:
@@ -63,7 +63,7 @@ def test_the_bad_runner_stops_and_the_others_do_not() -> None:
     # at the crest the light car has more energy for its weight: its wheels are the larger part of it
     assert good.energy_head_m[0] < bad.energy_head_m[0]
     assert (good.energy_head_m[10 : len(bad.at_m)] > bad.energy_head_m[10:]).all()
-    assert yard_from_m(route) == 316.0 + 11.0
+    assert route.yard_from_m == 316.0 + 11.0
 
 
 def test_a_plan_gives_each_track_a_row_and_each_element_its_metres() -> None:

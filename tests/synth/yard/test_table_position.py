@@ -14,7 +14,8 @@ from synth.simulation.closed_loop import close_loop
 from synth.simulation.random_passes import random_passes
 from synth.yard.aim.position_models import SampledExits
 from synth.yard.aim.scene import AimScene
-from synth.yard.aim.table_position import TableClass, TablePosition, entry_speeds_m_s
+from synth.yard.aim.table_position import TablePosition, entry_speeds_m_s
+from synth.yard.table_class import TableClass
 from tests.synth.yard.conftest import HEAVY, LIGHT
 
 TARGETS = (1.5, 2.0, 3.0)
@@ -78,7 +79,7 @@ def test_cuts_without_a_class_are_named(scene: AimScene, position: TablePosition
 
 def test_one_target_is_no_choice(position: TablePosition) -> None:
     first = position.classes[0]
-    with pytest.raises(PlantError, match="1 targets; an aim needs two or more"):
+    with pytest.raises(PlantError, match="1 targets; a position that is commanded needs two or more"):
         TableClass(first.plant, (1.5,), first.controllers[:1])
 
 

@@ -61,7 +61,29 @@ def test_a_seed_is_a_train_and_a_longer_train_begins_with_the_shorter() -> None:
 
 def test_a_share_of_none_is_never_chosen() -> None:
     shares = {1: 0.0, 2: 1.0, 3: 0.0, 4: 1.0, 5: 0.0}
-    assert {chosen(shares, u) for u in (2.0**-53, 0.25, 0.5, 0.75, 1.0 - 2.0**-53)} == {2, 4}
+    u = np.array([2.0**-53, 0.25, 0.5, 0.75, 1.0 - 2.0**-53])
+    assert set(chosen(shares, u).tolist()) == {2, 4}
+    assert set(chosen(shares, u, np.full(5, 2)).tolist()) == {4}
+    assert set(chosen(shares, u, np.full(5, 4)).tolist()) == {2}
+
+
+def test_cuts_that_follow_each_other_go_to_different_tracks() -> None:
+    """By the shares of the others: behind track 1, track 2 has 0.3 of 0.5 (four standard deviations)."""
+    some = replace(POPULATION, track_shares={1: 0.5, 2: 0.3, 3: 0.2})
+    drawn = some.drawn(3, 0, 100, 40).track.reshape(100, 40)
+    ahead, behind = drawn[:, :-1].ravel(), drawn[:, 1:].ravel()
+    assert not np.any(ahead == behind)
+    after = behind[ahead == 1]
+    assert abs(np.mean(after == 2) - 0.6) < 4.0 * (0.24 / len(after)) ** 0.5
+    first = some.drawn(3, 0, 4000, 1).track
+    assert abs(np.mean(first == 1) - 0.5) < 4.0 * (0.25 / 4000) ** 0.5
+    assert {cut.track for cut in replace(POPULATION, track_shares={7: 1.0, 8: 0.0}).train(1, 20).cuts} == {7}
+
+
+def test_a_train_is_the_same_whatever_is_drawn_beside_it() -> None:
+    whole, part = POPULATION.drawn(5, 0, 60, 40), POPULATION.drawn(5, 23, 31, 40)
+    for name in ("cars", "category", "track", "types", "mass_t"):
+        np.testing.assert_array_equal(getattr(part, name), getattr(whole, name)[23 * 40 : 54 * 40], err_msg=name)
 
 
 @pytest.mark.parametrize(

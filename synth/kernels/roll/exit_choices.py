@@ -1,0 +1,157 @@
+"""Kernel of forecasts: all choices of exit speeds of a few positions, compared by the margins to the neighbours."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+kernel: Any = njit(cache=True, nogil=True, error_model="numpy")
+
+
+class Legs(NamedTuple):
+    """m cuts ahead of q positions, each with k exit speeds at most; s = 2 · elements marks: first axle in, last out.
+
+    `time_s`, `speed_m_s` (m,) at the first entrance, `before_s` (m, s) times of marks that are over by then. Of a
+    position and the free roll behind it: `choices` (q,); `speeds_m_s` (q, m, k); `won_m2_s2` (q, m), gain of v² in the
+    pass without brake; `path_m` (q, m) of the pass, of which `share` (q, m, s) is behind the cut at a mark; `roll_s`
+    (q, m, k, s), times after the pass; `ends_s`, `ends_m_s` (q, m, k), duration of the roll and speed at its end;
+    `most_entry_m_s` (q, m). NaN where a mark is not on that stretch.
+    """
+
+    time_s: Floats
+    speed_m_s: Floats
+    before_s: Floats
+    choices: Ints
+    speeds_m_s: Floats
+    won_m2_s2: Floats
+    path_m: Floats
+    share: Floats
+    roll_s: Floats
+    ends_s: Floats
+    ends_m_s: Floats
+    most_entry_m_s: Floats
+
+
+@kernel
+def mark_time(legs, q, i, k, s, time, speed, out):
+    """When mark `s` is passed on stretch `q` that begins at `time` with `speed`, and whose pass ends at `out`; NaN if
+    it is not there."""
+    share = legs.share[q, i, s]
+    if not math.isnan(share):
+        exit_speed = legs.speeds_m_s[q, i, k]
+        if not math.isfinite(out):
+            return math.inf
+        between = math.sqrt(speed * speed + share * (exit_speed * exit_speed - speed * speed))
+        return time + (out - time) * share * (speed + exit_speed) / (speed + between)
+    return out + legs.roll_s[q, i, k, s]
+
+
+@kernel
+def pass_end(legs, q, i, k, time, speed):
+    """When the pass ends; infinite where the cut stops."""
+    exit_speed = legs.speeds_m_s[q, i, k]
+    if speed > 0.0 and exit_speed > 0.0:
+        return time + 2.0 * legs.path_m[q, i] / (speed + exit_speed)
+    return math.inf
+
+
+@kernel
+def is_able(legs, q, i, k, speed):
+    """Whether the cut may come to the position with `speed` and can leave it with the choice `k`."""
+    exit_speed = legs.speeds_m_s[q, i, k]
+    reached = exit_speed * exit_speed <= speed * speed + legs.won_m2_s2[q, i] + 1e-6
+    return reached and speed <= legs.most_entry_m_s[q, i]
+
+
+@kernel
+def compare(legs, free_from_s, free_by_s, first, last, ahead_s, behind_s, able, arrival_s):
+    """Fill, for cuts `first` … `last` − 1 and every combination c of choices, the least margins to the cuts ahead and
+    behind, whether the cut is able to, and when it arrives: all (m, c), the last position's choice running fastest."""
+    levels, marks = len(legs.choices), legs.before_s.shape[1]
+    time, speed = np.empty(levels + 1), np.empty(levels + 1)
+    ahead, behind = np.empty(levels + 1), np.empty(levels + 1)
+    can, at = np.empty(levels + 1, np.bool_), np.zeros(levels, np.int64)
+    for i in range(first, last):
+        time[0], speed[0], can[0] = legs.time_s[i], legs.speed_m_s[i], True
+        ahead[0], behind[0] = math.inf, math.inf
+        for s in range(marks):
+            ahead[0], behind[0] = nearer(legs.before_s[i, s], s, i, free_from_s, free_by_s, ahead[0], behind[0])
+        at[:] = 0
+        column, level = 0, 0
+        while level >= 0:
+            if level == levels:
+                late = behind[level]
+                for e in range(marks // 2):
+                    if unknown_out(legs, i, e):
+                        late = min(late, free_by_s[i, e] - time[level])
+                ahead_s[i, column], behind_s[i, column] = ahead[level], late
+                able[i, column], arrival_s[i, column] = can[level], time[level]
+                column += 1
+                level -= 1
+                at[level] += 1
+            elif at[level] == legs.choices[level]:
+                at[level] = 0
+                level -= 1
+                if level >= 0:
+                    at[level] += 1
+            else:
+                k = at[level]
+                out = pass_end(legs, level, i, k, time[level], speed[level])
+                near, far = ahead[level], behind[level]
+                for s in range(marks):
+                    passed = mark_time(legs, level, i, k, s, time[level], speed[level], out)
+                    near, far = nearer(passed, s, i, free_from_s, free_by_s, near, far)
+                ahead[level + 1], behind[level + 1] = near, far
+                can[level + 1] = can[level] and is_able(legs, level, i, k, speed[level])
+                time[level + 1], speed[level + 1] = out + legs.ends_s[level, i, k], legs.ends_m_s[level, i, k]
+                level += 1
+
+
+@kernel
+def nearer(passed, s, i, free_from_s, free_by_s, ahead, behind):
+    """Least margins so far, and that of a mark that is passed at `passed`."""
+    if math.isnan(passed):
+        return ahead, behind
+    if s % 2 == 0:
+        margin = passed - free_from_s[i, s // 2]
+        return (margin if margin < ahead else ahead), behind
+    margin = free_by_s[i, s // 2] - passed
+    return ahead, (margin if margin < behind else behind)
+
+
+@kernel
+def unknown_out(legs, i, e):
+    """Whether the first axle comes to element `e` on the way that is forecast, but the last one does not leave it."""
+    comes, leaves = not math.isnan(legs.before_s[i, 2 * e]), not math.isnan(legs.before_s[i, 2 * e + 1])
+    for q in range(len(legs.choices)):
+        comes = comes or not math.isnan(legs.share[q, i, 2 * e]) or not math.isnan(legs.roll_s[q, i, 0, 2 * e])
+        leaves = leaves or not math.isnan(legs.share[q, i, 2 * e + 1])
+        leaves = leaves or not math.isnan(legs.roll_s[q, i, 0, 2 * e + 1])
+    return comes and not leaves
+
+
+@kernel
+def follow(legs, taken, first, last, times_s, arrival_s):
+    """Fill the times of all marks (m, s) and of the arrival (m,) with the choices `taken` (q, m)."""
+    levels, marks = len(legs.choices), legs.before_s.shape[1]
+    for i in range(first, last):
+        time, speed = legs.time_s[i], legs.speed_m_s[i]
+        times_s[i] = legs.before_s[i]
+        for q in range(levels):
+            k = taken[q, i]
+            out = pass_end(legs, q, i, k, time, speed)
+            for s in range(marks):
+                if math.isnan(times_s[i, s]):
+                    times_s[i, s] = mark_time(legs, q, i, k, s, time, speed, out)
+            time, speed = out + legs.ends_s[q, i, k], legs.ends_m_s[q, i, k]
+        arrival_s[i] = time
+        for e in range(marks // 2):
+            if unknown_out(legs, i, e):
+                times_s[i, 2 * e + 1] = time

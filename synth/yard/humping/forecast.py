@@ -1,0 +1,238 @@
+"""What a control expects of cuts: when they come to each element and leave it, for every choice of exit speeds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.frozen_arrays import frozen_arrays
+from synth.kernels.roll import exit_choices as kernel
+from synth.yard.humping.hump_routes import HumpRoutes, Mark
+from synth.yard.humping.motion import Cars, Moving, rolled_free
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+BOTH_MARKS = np.array([Mark.FIRST_IN, Mark.LAST_OUT])
+"""Intervals need no other times."""
+
+SLOWEST_M_S = 0.1
+"""No choice is slower."""
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Expected:
+    """Cuts as a control knows them, (n,): `cars` roll as it expects; first and last axles behind the head."""
+
+    cars: Cars
+    first_axle_m: Floats
+    last_axle_m: Floats
+
+
+class Choices(Protocol):
+    """Exit speeds of a position that are compared."""
+
+    @property
+    def most_entry_m_s(self) -> Floats | float:
+        """Fastest that a cut may come to the position."""
+
+    def speeds(self, most_m_s: Floats) -> Floats:
+        """(n, choices); a cut cannot be faster than `most_m_s` (n,)."""
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Given:
+    """One exit speed for each cut, `speed_m_s` (n,)."""
+
+    speed_m_s: Floats
+    most_entry_m_s: Floats | float = np.inf
+
+    def speeds(self, most_m_s: Floats) -> Floats:
+        """(n, 1)."""
+        return np.minimum(self.speed_m_s, most_m_s)[:, None]
+
+
+@dataclass(frozen=True)
+class SpeedRange:
+    """Exit speeds that a position may be commanded, and how many of them a control compares; `most_entry_m_s`:
+    fastest that a cut may come to it."""
+
+    low_m_s: float
+    high_m_s: float
+    choices: int = 7
+    most_entry_m_s: float = np.inf
+
+    def speeds(self, most_m_s: Floats) -> Floats:
+        """(n, choices) evenly between both ends; where a cut is slower, up to its speed `most_m_s` (n,)."""
+        high = np.minimum(self.high_m_s, most_m_s)
+        low = np.minimum(self.low_m_s, high)
+        return np.asarray(low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, self.choices))
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """n cuts with c choices each, (n, c): least margins to the cuts ahead and behind, whether the cut can have that,
+    when its last axle is out of the last position, and all exit speeds added up."""
+
+    ahead_s: Floats
+    behind_s: Floats
+    able: Bools
+    arrival_s: Floats
+    speeds_m_s: Floats
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Forecast:
+    """n cuts with one choice each: `first_in_s`, `last_out_s` (n, elements), NaN for what lies behind the cut or beyond
+    the last position, infinite behind a stop; `exit_m_s` (n, q) of the positions ahead."""
+
+    first_in_s: Floats
+    last_out_s: Floats
+    exit_m_s: Floats
+
+
+class Ways:
+    """All ways that n cuts can go from where they are until their last axles are out of the last position: free rolls
+    and, for each position ahead, the choices of its exit speed. Build it with `from_crest` or `from_entrance`."""
+
+    def __init__(self, routes: HumpRoutes, legs: kernel.Legs) -> None:
+        self.routes, self.legs = routes, legs
+
+    def compared(self, free_from_s: Floats, free_by_s: Floats) -> Compared:
+        """Every combination of choices, beside neighbours who leave and need the elements at these times, (n,
+        elements)."""
+        legs = self.legs
+        shape = len(legs.time_s), int(np.prod(legs.choices))
+        ahead, behind, arrival = np.empty(shape), np.empty(shape), np.empty(shape)
+        able = np.empty(shape, dtype=np.bool_)
+        kernel.compare(legs, free_from_s, free_by_s, 0, shape[0], ahead, behind, able, arrival)
+        total = np.zeros((shape[0], 1))
+        for count, speeds in zip(legs.choices, legs.speeds_m_s, strict=True):
+            total = (total[:, :, None] + speeds[:, None, :count]).reshape(shape[0], -1)
+        return Compared(ahead, behind, able, arrival, total)
+
+    def followed(self, column: Ints | None = None) -> Forecast:
+        """The way with the combination `column` (n,) of the choices; None: the only one."""
+        legs, count = self.legs, len(self.legs.time_s)
+        at = np.zeros(count, dtype=np.int64) if column is None else column
+        taken = np.stack(np.unravel_index(at, tuple(legs.choices)))
+        times, arrival = np.empty((count, 2 * self.routes.elements)), np.empty(count)
+        kernel.follow(legs, taken, 0, count, times, arrival)
+        marks = times.reshape(count, -1, 2)
+        exits = legs.speeds_m_s[np.arange(len(taken))[:, None], np.arange(count), taken]
+        return Forecast(marks[:, :, 0].copy(), marks[:, :, 1].copy(), exits.T.copy())
+
+
+def from_crest(routes: HumpRoutes, expected: Expected, start: Moving, choices: tuple[Choices, ...]) -> Ways:
+    """From the crest on, where the heads are at `start`; `choices` of all positions."""
+    heads = heads_m(routes, expected)
+    end, times = rolled_free(expected.cars, start, entrance_m(routes, expected, 0), heads)
+    known = start.time_s[:, None] - (start.head_m[:, None] - heads) / start.speed_m_s[:, None]
+    before = np.where(heads <= start.head_m[:, None], known, times)
+    return through(routes, expected, end, before, 0, choices)
+
+
+def from_entrance(
+    routes: HumpRoutes, expected: Expected, start: Moving, position: int, choices: tuple[Choices, ...]
+) -> Ways:
+    """From the entrance of `position` on; `choices` of it and of all behind it."""
+    before = np.full((len(start.head_m), 2 * routes.elements), np.nan)
+    return through(routes, expected, start, before, position, choices)
+
+
+def through(
+    routes: HumpRoutes, expected: Expected, start: Moving, before_s: Floats, position: int, choices: tuple[Choices, ...]
+) -> Ways:
+    """From `start` at the entrance of `position` through all positions behind it."""
+    count, marks, most = len(before_s), before_s.shape[1], len(choices)
+    heads, fastest, stretches = heads_m(routes, expected), start.speed_m_s, []
+    for place, of_one in enumerate(choices):
+        stretches.append(stretch(routes, expected, position + place, heads, fastest, of_one))
+        fastest = stretches[-1].ends_m_s.max(axis=1)
+    counts = np.array([each.speeds_m_s.shape[1] for each in stretches])
+    wide = most, count, int(counts.max())
+    speeds, ends, ends_speed = (np.zeros(wide) for _ in range(3))
+    roll = np.full((*wide, marks), np.nan)
+    for place, (chosen, each) in enumerate(zip(counts, stretches, strict=True)):
+        speeds[place, :, :chosen], roll[place, :, :chosen] = each.speeds_m_s, each.roll_s
+        ends[place, :, :chosen], ends_speed[place, :, :chosen] = each.ends_s, each.ends_m_s
+    legs = kernel.Legs(
+        time_s=start.time_s.copy(),
+        speed_m_s=start.speed_m_s.copy(),
+        before_s=before_s,
+        choices=counts,
+        speeds_m_s=speeds,
+        won_m2_s2=np.stack([each.won_m2_s2 for each in stretches]),
+        path_m=np.stack([each.path_m for each in stretches]),
+        share=np.stack([each.share for each in stretches]),
+        roll_s=roll,
+        ends_s=ends,
+        ends_m_s=ends_speed,
+        most_entry_m_s=np.stack([np.broadcast_to(each.most_entry_m_s, count) for each in choices]),
+    )
+    return Ways(routes, legs)
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Stretch:
+    """A position and the free roll behind it, as `Legs` has them."""
+
+    speeds_m_s: Floats
+    won_m2_s2: Floats
+    path_m: Floats
+    share: Floats
+    roll_s: Floats
+    ends_s: Floats
+    ends_m_s: Floats
+
+
+def stretch(
+    routes: HumpRoutes, expected: Expected, position: int, heads_m: Floats, fastest_m_s: Floats, choices: Choices
+) -> Stretch:
+    """`position` with each of the `choices` for cuts that come with `fastest_m_s` (n,) at the most."""
+    count = len(heads_m)
+    entrance = entrance_m(routes, expected, position)
+    leaves = routes.exit_m[expected.cars.routes, position] + expected.last_axle_m
+    start = Moving(entrance, fastest_m_s, np.zeros(count))
+    unbraked, _ = rolled_free(expected.cars, start, leaves, np.empty((count, 0)))
+    speeds = choices.speeds(np.maximum(unbraked.speed_m_s, SLOWEST_M_S))
+    chosen = speeds.shape[1]
+    each = np.repeat(np.arange(count), chosen)
+    begins = Moving(leaves[each], speeds.reshape(-1), np.zeros(len(each)))
+    ahead = entrance_m(routes, expected, position + 1)
+    ends, roll = rolled_free(expected.cars.chosen(each), begins, ahead[each], heads_m[each])
+    path = leaves - entrance
+    share = (heads_m - entrance[:, None]) / path[:, None]
+    return Stretch(
+        speeds_m_s=speeds,
+        won_m2_s2=unbraked.speed_m_s**2 - fastest_m_s**2,
+        path_m=path,
+        share=np.where((share > 0.0) & (share <= 1.0), share, np.nan),
+        roll_s=roll.reshape(count, chosen, -1),
+        ends_s=ends.time_s.reshape(count, chosen),
+        ends_m_s=ends.speed_m_s.reshape(count, chosen),
+    )
+
+
+def heads_m(routes: HumpRoutes, expected: Expected) -> Floats:
+    """Where the heads are when first axles come in and last axles go out, (n, elements · 2)."""
+    places = routes.place_m[expected.cars.routes][:, :, BOTH_MARKS]
+    axles = np.stack((expected.first_axle_m, expected.last_axle_m), axis=1)
+    return np.asarray((places + axles[:, None, :]).reshape(len(places), -1))
+
+
+def entrance_m(routes: HumpRoutes, expected: Expected, position: int) -> Floats:
+    """Where the heads are at the entrance of `position`, or, behind the last one, when the last axles are out of it."""
+    rows = expected.cars.routes
+    if position == routes.positions:
+        return np.asarray(routes.exit_m[rows, position - 1] + expected.last_axle_m)
+    return np.asarray(routes.entrance_m[rows, position] + expected.first_axle_m)

@@ -1,0 +1,122 @@
+"""What the last position of each route is commanded: aim tables by group of routes and weight category."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.errors import PlantError
+from plant_models.frozen_arrays import frozen_arrays
+from plant_models.library.weight_category import WeightCategories
+from tuning_tables.aim import AimAxes, AimTable
+from tuning_tables.aim.exit_speed import AimNodes, aim_exit_speeds
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class AimGrid:
+    """Exit speeds (cars, distances), or (cars, distances, resistances), at the nodes of `axes`, NaN for none.
+
+    They are asked by the rule of aim tables, but are in no file: a simulation makes them for itself.
+    """
+
+    axes: AimAxes
+    exit_speed_m_s: Floats
+    distance_nodes: NDArray[np.float32] = field(init=False, repr=False)
+    resistance_nodes: NDArray[np.float32] = field(init=False, repr=False)
+    speed_nodes: NDArray[np.float32] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        if self.exit_speed_m_s.shape != self.axes.shape:
+            raise ValueError(f"aim: speeds have the shape {self.exit_speed_m_s.shape}, their axes {self.axes.shape}")
+        resistance = self.axes.resistance_n_per_kn
+        nodes = {
+            "distance_nodes": self.axes.free_distance_m.astype(np.float32),
+            "resistance_nodes": np.zeros(1, np.float32) if resistance is None else resistance.astype(np.float32),
+            "speed_nodes": self.exit_speed_m_s.astype(np.float32).reshape(*self.axes.shape[:2], -1),
+        }
+        for name, array in nodes.items():
+            object.__setattr__(self, name, array)
+
+    @property
+    def is_measured(self) -> bool:
+        """Whether the measured resistance of a cut is asked for."""
+        return self.axes.resistance_n_per_kn is not None
+
+
+@dataclass(frozen=True)
+class CategoryAim:
+    """Exit speeds for one weight category: `by_category` alone; `measured`, where a cut's resistance was read.
+
+    `mean_n_per_kn`: the mean reading of such cuts.
+    """
+
+    by_category: AimNodes
+    measured: AimNodes | None = None
+    mean_n_per_kn: float = np.nan
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class HumpAim:
+    """Exit speeds of the last position: `tables`, by group of routes and by place of the weight category in its set.
+
+    `group` (routes,): the group of each route. `lowest_m_s` is commanded where no speed is known to be safe.
+    """
+
+    group: Ints
+    tables: tuple[tuple[CategoryAim, ...], ...]
+    lowest_m_s: float
+
+    def command_m_s(
+        self, routes: Ints, category: Ints, cars: Ints, free_distance_m: Floats, reading_n_per_kn: Floats | None = None
+    ) -> Floats:
+        """Exit speeds for cuts on `routes`, (n,) all of them; a reading that is NaN was not made.
+
+        The rule is that of aim tables (`tuning_tables.aim`), with one difference: longer cuts than the longest listed
+        are commanded as those.
+        """
+        speeds = np.full(len(routes), np.nan)
+        together = self.group[routes] * len(self.tables[0]) + category
+        for key in np.unique(together):
+            rows = np.flatnonzero(together == key)
+            table = self.tables[key // len(self.tables[0])][key % len(self.tables[0])]
+            speeds[rows] = answer(table.by_category, cars[rows], free_distance_m[rows])
+            if reading_n_per_kn is None or table.measured is None:
+                continue
+            read = rows[~np.isnan(reading_n_per_kn[rows])]
+            speeds[read] = answer(table.measured, cars[read], free_distance_m[read], reading_n_per_kn[read])
+        return np.where(np.isnan(speeds), self.lowest_m_s, speeds)
+
+    def expected_m_s(self, routes: Ints, category: Ints, cars: Ints, free_distance_m: Floats) -> Floats:
+        """What is expected before the train: by category, or, where cuts are measured, for the mean reading."""
+        means = np.array([[table.mean_n_per_kn for table in group] for group in self.tables])
+        return self.command_m_s(routes, category, cars, free_distance_m, means[self.group[routes], category])
+
+
+def answer(nodes: AimNodes, cars: Ints, free_distance_m: Floats, reading_n_per_kn: Floats | None = None) -> Floats:
+    """What the rule answers, NaN for nothing; more cars than listed count as the most that are."""
+    reading = np.full(len(cars), np.nan) if reading_n_per_kn is None else reading_n_per_kn
+    listed = np.minimum(cars, nodes.axes.cars[-1])
+    return aim_exit_speeds(nodes, listed, free_distance_m, reading).astype(np.float64)
+
+
+def aim_of_tables(tables: Sequence[AimTable], categories: WeightCategories, routes: int) -> HumpAim:
+    """The aim tables of one position, by category alone, on all `routes`; `PlantError` where a category has none."""
+    chosen = []
+    for member in categories.members:
+        own = [table for table in tables if table.category.number == member.number and not table.is_measured]
+        if len(own) != 1:
+            raise PlantError(
+                f"aim tables: {len(own)} by category alone for the weight category {member.name} (number "
+                f"{member.number}); give exactly one for each category of the train"
+            )
+        chosen.append(CategoryAim(own[0]))
+    lowest = min(table.bounds_m_s[0] for table in tables)
+    return HumpAim(np.zeros(routes, dtype=np.int64), (tuple(chosen),), lowest)

@@ -1,0 +1,95 @@
+"""A retarder position of the hump: what it makes of cuts that arrive with an order for their exit speed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.cut import GRAVITY_M_S2, ROTATING_MASS_PER_AXLE_T
+from plant_models.frozen_arrays import frozen_arrays
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+OF_ALL = ("seed", "position")
+"""What all arrivals share."""
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Arrivals:
+    """m cuts, one entry each, that come to a position, the first of their way being `position` 0.
+
+    The pass begins when the first axle is at the entrance, with `entry_m_s`, and ends `path_m` later, when the last
+    axle is at the exit; there a cut that nothing brakes has `unbraked_exit_m_s`, 0 if it stops before. `commanded_m_s`:
+    the exit speed ordered. `category`: place among the weight categories. `resistance_n_per_kn`: basic resistance and
+    air at the mean speed between entry and order; `unbraked_resistance_n_per_kn`: at that of the unbraked pass. `seed`,
+    `train`, `cut`: whose random numbers they have; `rows` is the caller's.
+    """
+
+    rows: Ints
+    entry_m_s: Floats
+    unbraked_exit_m_s: Floats
+    path_m: Floats
+    commanded_m_s: Floats
+    mass_t: Floats
+    axles: Ints
+    category: Ints
+    resistance_n_per_kn: Floats
+    unbraked_resistance_n_per_kn: Floats
+    train: Ints
+    cut: Ints
+    seed: int
+    position: int
+
+    def __post_init__(self) -> None:
+        for name, values in vars(self).items():
+            if isinstance(values, np.ndarray) and values.shape != self.rows.shape:
+                raise ValueError(f"arrivals: {name} has the shape {values.shape}; the rows have {self.rows.shape}")
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    @property
+    def reduced_gravity_m_s2(self) -> Floats:
+        """g' of each cut, (m,)."""
+        return np.asarray(GRAVITY_M_S2 * self.mass_t / (self.mass_t + ROTATING_MASS_PER_AXLE_T * self.axles))
+
+    @property
+    def keys(self) -> tuple[Ints, Ints, Ints]:
+        """What tells the random numbers of the passes apart: train, cut, position."""
+        return self.train, self.cut, np.full_like(self.cut, self.position)
+
+    def chosen(self, which: NDArray[np.bool_] | Ints | slice) -> Arrivals:
+        """Some of them."""
+        arrays: dict[str, Any] = {name: values[which] for name, values in vars(self).items() if name not in OF_ALL}
+        return Arrivals(**arrays, seed=self.seed, position=self.position)
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Passed:
+    """How m cuts passed: `exit_m_s` when the last axle is at the exit, `time_s` after the first was at the entrance.
+
+    A cut that stops has speed 0 and infinite time. `switchings`: commands to the valves, 0 where no valve is modelled.
+    """
+
+    exit_m_s: Floats
+    time_s: Floats
+    switchings: Ints
+
+
+class HumpPosition(Protocol):
+    """A position under its controller. What a cut does there does not depend on the others of `arrivals`."""
+
+    def passed(self, arrivals: Arrivals) -> Passed:
+        """How they pass."""
+
+
+def evenly_braked_s(arrivals: Arrivals, exit_m_s: Floats) -> Floats:
+    """Time of passes whose v² changes evenly along the path: 2·path/(entry + exit); infinite where the cut stops."""
+    moves = (exit_m_s > 0.0) & (arrivals.entry_m_s > 0.0)
+    return np.where(moves, 2.0 * arrivals.path_m / np.where(moves, arrivals.entry_m_s + exit_m_s, 1.0), np.inf)

@@ -1,0 +1,102 @@
+"""Hump speeds of a train from the headways that its pairs of cuts need at the crest: pair by pair, or all together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.errors import require, require_between
+
+Floats = NDArray[np.float64]
+
+SHORT_COSTS = 1e3
+"""Seconds of humping that one second less than a needed headway is worth: no headway is given up to be faster."""
+
+
+@dataclass(frozen=True)
+class HumpSpeedLimits:
+    """Speeds over the crest, m/s, that uncoupling, signals and the locomotive allow; `steps_m_s` rise.
+
+    `acceleration_m_s2`: most of the locomotive with its train, either way (assumed; 0.02 to 0.1 are usual).
+    """
+
+    steps_m_s: tuple[float, ...]
+    acceleration_m_s2: float = 0.05
+
+    def __post_init__(self) -> None:
+        require(len(self.steps_m_s) > 0, "hump speed: there is no step; give one at least")
+        require(
+            list(self.steps_m_s) == sorted(set(self.steps_m_s)),
+            f"hump speed: steps_m_s is {self.steps_m_s}; the steps must rise",
+        )
+        for step in self.steps_m_s:
+            require_between("hump speed: a step", step, 0.3, 4.0)
+        require_between("hump speed: acceleration_m_s2", self.acceleration_m_s2, 0.005, 1.0)
+
+    def reachable(self, apart_m: Floats) -> NDArray[np.bool_]:
+        """(…, steps, steps): from which step to which the train can change on `apart_m`; to a neighbour always."""
+        steps = np.array(self.steps_m_s)
+        change = np.abs(steps[:, None] ** 2 - steps[None, :] ** 2)
+        places = np.arange(len(steps))
+        near = np.abs(places[:, None] - places[None, :]) <= 1
+        return np.asarray(near | (change <= 2.0 * self.acceleration_m_s2 * apart_m[..., None, None]))
+
+
+class SpeedMethod(Protocol):
+    """From headways to speeds."""
+
+    def speeds(self, apart_m: Floats, headway_s: Floats, limits: HumpSpeedLimits) -> Floats:
+        """Speeds (trains, cuts) such that cuts, whose middles are `apart_m` from those ahead of them (trains, cuts),
+        come `headway_s` later at least, as far as the limits allow; the first cut has no headway."""
+
+
+@dataclass(frozen=True)
+class WholeTrain:
+    """The speeds with which the whole train is over the crest the soonest: a dynamic programme over the steps.
+
+    Time between two cuts: 2·apart/(v1 + v2), the train being pushed at an even rate in between.
+    """
+
+    def speeds(self, apart_m: Floats, headway_s: Floats, limits: HumpSpeedLimits) -> Floats:
+        """See `SpeedMethod`."""
+        steps = np.array(limits.steps_m_s)
+        mean = 0.5 * (steps[:, None] + steps[None, :])
+        trains, cuts = apart_m.shape
+        cost, came = np.zeros((trains, len(steps))), np.zeros((trains, cuts, len(steps)), dtype=np.int64)
+        for cut in range(1, cuts):
+            time = apart_m[:, cut, None, None] / mean
+            short = np.maximum(headway_s[:, cut, None, None] - time, 0.0)
+            total = cost[:, :, None] + np.where(limits.reachable(apart_m[:, cut]), time + SHORT_COSTS * short, np.inf)
+            came[:, cut] = total.argmin(axis=1)
+            cost = np.take_along_axis(total, came[:, cut, None, :], axis=1)[:, 0]
+        at, speeds = cost.argmin(axis=1), np.empty((trains, cuts))
+        for cut in range(cuts - 1, -1, -1):
+            speeds[:, cut] = steps[at]
+            at = np.take_along_axis(came[:, cut], at[:, None], axis=1)[:, 0]
+        return speeds
+
+
+@dataclass(frozen=True)
+class PairByPair:
+    """Each cut as fast as the pair with the cut ahead allows ([hump-computer-1970s], after Шафит), then slower where
+    the locomotive could not brake for those behind, or not gather speed."""
+
+    def speeds(self, apart_m: Floats, headway_s: Floats, limits: HumpSpeedLimits) -> Floats:
+        """See `SpeedMethod`."""
+        steps = np.array(limits.steps_m_s)
+        trains, cuts = apart_m.shape
+        at = np.full((trains, cuts), len(steps) - 1)
+        for cut in range(1, cuts):
+            time = apart_m[:, cut, None] / (0.5 * (steps[at[:, cut - 1], None] + steps))
+            enough = time >= headway_s[:, cut, None] - 1e-9
+            at[:, cut] = np.where(enough.any(axis=1), len(steps) - 1 - enough[:, ::-1].argmax(axis=1), 0)
+        for order in (range(cuts - 1, 0, -1), range(1, cuts)):
+            for cut in order:
+                one, other = (cut, cut - 1) if order.step < 0 else (cut - 1, cut)
+                allowed = limits.reachable(apart_m[:, cut])[np.arange(trains), at[:, one]]
+                fastest = len(steps) - 1 - allowed[:, ::-1].argmax(axis=1)
+                at[:, other] = np.minimum(at[:, other], fastest)
+        return np.asarray(steps[at])

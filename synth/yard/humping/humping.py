@@ -1,0 +1,279 @@
+"""Trains over the hump: cut after cut of many trains at once, each through free rolls and positions to its track."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.frozen_arrays import frozen_arrays
+from synth.yard.humping.hump_position import Arrivals, HumpPosition
+from synth.yard.humping.hump_routes import OF_FIRST_AXLE, HumpRoutes, Mark
+from synth.yard.humping.meeting import Ahead, LastUsers, first_of, meeting
+from synth.yard.humping.motion import Cars, Moving, Rolls, braked_evenly, rolled_free
+from synth.yard.humping.train_cuts import TrainCuts
+from synth.yard.humping.train_memory import TrainMemory
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """A control is asked for the exit speeds of cut number `cut` of the trains `lanes` (n,) in `position`.
+
+    `routes` (n,): the rows on which they roll. `start`: the cuts when their first axles are at the entrance. `ahead`:
+    who is ahead of them on each element. `free_m` (n,): where the standing cars begin. `memory`: what happened so far.
+    The last and `ahead` tell later times, too; a control may only look at what is over when it is asked.
+    """
+
+    cut: int
+    position: int
+    lanes: Ints
+    routes: Ints
+    start: Moving
+    ahead: Ahead
+    free_m: Floats
+    memory: TrainMemory
+
+
+class ExitSpeeds(Protocol):
+    """Commands the exit speeds of the positions."""
+
+    def command(self, asked: Asked) -> Floats:
+        """Exit speeds (n,), m/s."""
+
+
+class HumpSpeeds(Protocol):
+    """Chooses the speeds at which the trains are pushed over the crest."""
+
+    def speed(self, cut: int, memory: TrainMemory) -> Floats:
+        """Speed of the trains (trains,) when the middle of cut number `cut` is at the crest, m/s."""
+
+
+@dataclass(frozen=True)
+class Hump:
+    """A hump for trains: its routes, its positions in order from the crest, and what rolls its cuts."""
+
+    routes: HumpRoutes
+    positions: tuple[HumpPosition, ...]
+    rolls: Rolls
+
+
+def humped(hump: Hump, trains: TrainCuts, free_m: Floats, speeds: HumpSpeeds, control: ExitSpeeds) -> TrainMemory:
+    """Hump all `trains`; `free_m` (trains, routes): where the standing cars of each track begin before the train."""
+    memory = TrainMemory(trains.trains, trains.cuts, hump.routes)
+    users, free = LastUsers(trains.trains, hump.routes), free_m.copy()
+    for cut in range(trains.cuts):
+        OneCut(hump, trains, cut, memory, users, free).run(speeds, control)
+    return memory
+
+
+class OneCut:
+    """Cut number `cut` of every train while it rolls."""
+
+    def __init__(
+        self, hump: Hump, trains: TrainCuts, cut: int, memory: TrainMemory, users: LastUsers, free_m: Floats
+    ) -> None:
+        self.hump, self.trains, self.cut, self.memory, self.users, self.free_m = (
+            hump, trains, cut, memory, users, free_m,
+        )  # fmt: skip
+        self.lanes = np.arange(trains.trains)
+        self.rows = self.lanes * trains.cuts + cut
+        self.routes = trains.route[self.rows].copy()
+        self.first_m, self.last_m = trains.first_axle_m[self.rows], trains.last_axle_m[self.rows]
+        self.length_m = trains.length_m[self.rows]
+        self.times = np.full((trains.trains, hump.routes.elements, len(Mark)), np.nan)
+        self.rolling = np.ones(trains.trains, dtype=bool)
+
+    def run(self, speeds: HumpSpeeds, control: ExitSpeeds) -> None:
+        """All the way from the crest to the track; then the memory and the users of the elements know it."""
+        moving = self.released(speeds)
+        for position in range(self.hump.routes.positions):
+            moving = self.to_position(moving, position)
+            moving = self.through_position(moving, position, control)
+        self.to_track(moving)
+        self.memory.route[:, self.cut] = self.routes
+        self.memory.time_s[:, self.cut] = self.times
+        self.users.add(self.cut, self.routes, self.times)
+
+    def released(self, speeds: HumpSpeeds) -> Moving:
+        """The cut when its middle is at the crest. The train is pushed at an even rate between two such moments."""
+        memory, cut = self.memory, self.cut
+        speed = speeds.speed(cut, memory)
+        if cut == 0:
+            time = np.zeros(len(speed))
+        else:
+            apart = 0.5 * (self.length_m + self.trains.length_m[self.rows - 1])
+            time = memory.crest_s[:, cut - 1] + 2.0 * apart / (speed + memory.hump_speed_m_s[:, cut - 1])
+        memory.crest_s[:, cut], memory.hump_speed_m_s[:, cut] = time, speed
+        head = 0.5 * self.length_m
+        heads = self.heads_m(np.ones(len(speed), dtype=bool))
+        pushed = time[:, None] - (head[:, None] - heads) / speed[:, None]
+        self.note(np.where(heads <= head[:, None], pushed, np.nan), self.rolling)
+        return Moving(head, speed, time)
+
+    def heads_m(self, chosen: Bools) -> Floats:
+        """Where the heads are at each mark of their routes, (n, elements · marks)."""
+        axle = np.where(OF_FIRST_AXLE, self.first_m[chosen, None], self.last_m[chosen, None])
+        places = self.hump.routes.place_m[self.routes[chosen]] + axle[:, None, :]
+        return np.asarray(places.reshape(len(places), -1))
+
+    def cars(self, chosen: Bools) -> Cars:
+        """The cuts `chosen` on their routes."""
+        return Cars(self.hump.rolls, self.rows[chosen], self.routes[chosen])
+
+    def note(self, times: Floats, chosen: Bools) -> None:
+        """Add the times (n, elements · marks) of the cuts `chosen`, where they are not NaN."""
+        times = times.reshape(len(times), *self.times.shape[1:])
+        self.times[chosen] = np.where(np.isnan(times), self.times[chosen], times)
+
+    def ahead(self) -> Ahead:
+        """Who is ahead, on the routes as they are."""
+        return self.users.on(self.routes, self.lanes)
+
+    def to_position(self, moving: Moving, position: int) -> Moving:
+        """Free roll until the first axle is at the entrance of `position`."""
+        entrance = self.hump.routes.entrance_m[self.routes, position]
+        to = np.where(np.isfinite(entrance), entrance + self.first_m, moving.head_m)
+        return self.free(moving, np.maximum(to, moving.head_m))
+
+    def free(self, moving: Moving, to_m: Floats) -> Moving:
+        """Free roll to `to_m`; cuts whose points cannot be thrown any more roll on behind those ahead of them."""
+        pending = self.rolling & (to_m > moving.head_m)
+        ended = moving
+        known = self.times.copy()
+        while pending.any():
+            self.times[pending] = known[pending]
+            end, times = rolled_free(self.cars(pending), moving.chosen(pending), to_m[pending], self.heads_m(pending))
+            self.note(times, pending)
+            ended = merged(ended, end, pending)
+            pending = pending & self.misroute()
+        self.touch()
+        return ended
+
+    def misroute(self) -> Bools:
+        """Send the cuts whose points are too late the way of those ahead; returned: which."""
+        ahead = self.ahead()
+        late = meeting(self.hump.routes, self.routes, self.times, ahead).late
+        at = first_of(late)
+        sent = self.rolling & (at < late.shape[1])
+        lanes = self.lanes[sent]
+        self.memory.misrouted_at[lanes, self.cut] = np.minimum(self.memory.misrouted_at[lanes, self.cut], at[sent])
+        self.routes[sent] = self.memory.route[lanes, ahead.cut[sent, at[sent]]]
+        return np.asarray(sent)
+
+    def touch(self) -> None:
+        """Cuts in contact roll behind those ahead of them from there on."""
+        ahead = self.ahead()
+        found = meeting(self.hump.routes, self.routes, self.times, ahead)
+        at = first_of(found.contact)
+        touching = self.rolling & (at < found.contact.shape[1])
+        if not touching.any():
+            return
+        lanes = self.lanes[touching]
+        leader = ahead.cut[touching, at[touching]]
+        self.memory.contact_at[lanes, self.cut] = at[touching]
+        self.routes[touching] = self.memory.route[lanes, leader]
+        self.times[touching] = self.behind(lanes, leader, at[touching])
+        self.rolling = self.rolling & ~touching
+
+    def behind(self, lanes: Ints, leader: Ints, at: Ints) -> Floats:
+        """Times of cuts in contact from element `at` on: as their leaders pass, one length behind."""
+        trains, own = self.trains, self.times[lanes]
+        ahead = self.memory.time_s[lanes, leader]
+        rows = lanes * trains.cuts + leader
+        base = trains.last_axle_m[rows] - trains.first_axle_m[rows]
+        longer = (self.last_m - self.first_m)[lanes] / base
+        times = np.empty_like(own)
+        for first, last in ((Mark.FIRST_IN, Mark.LAST_IN), (Mark.FIRST_OUT, Mark.LAST_OUT),
+                            (Mark.FIRST_CLEAR, Mark.LAST_CLEAR)):  # fmt: skip
+            begins = ahead[:, :, last]
+            takes = np.nan_to_num(begins - ahead[:, :, first], nan=np.inf)
+            times[:, :, first], times[:, :, last] = begins, begins + longer[:, None] * takes
+        earlier = np.arange(own.shape[1])[None, :] < at[:, None]
+        kept = earlier[:, :, None] & ~np.isnan(own)
+        times = np.where(kept, own, times)
+        times[np.arange(len(lanes)), at, Mark.FIRST_IN] = own[np.arange(len(lanes)), at, Mark.FIRST_IN]
+        return np.where(np.isnan(times), np.inf, times)
+
+    def through_position(self, moving: Moving, position: int, control: ExitSpeeds) -> Moving:
+        """The pass of `position`: commanded by the control, or as the cut ahead that is still in it."""
+        routes, memory = self.hump.routes, self.memory
+        held = self.rolling & np.isfinite(routes.entrance_m[self.routes, position]) & (moving.speed_m_s > 0.0)
+        if not held.any():
+            return moving
+        lanes = self.lanes[held]
+        start = moving.chosen(held)
+        ahead = self.users.on(self.routes[held], lanes)
+        free = self.free_m[lanes, self.routes[held]]
+        asked = Asked(self.cut, position, lanes, self.routes[held], start, ahead, free, memory)
+        command = self.obeyed(control.command(asked), held, position)
+        to = routes.exit_m[self.routes[held], position] + self.last_m[held]
+        unbraked, _ = rolled_free(self.cars(held), start, to, np.empty((len(lanes), 0)))
+        rows, fastest = self.rows[held], 0.5 * (start.speed_m_s + unbraked.speed_m_s)
+        mean = np.minimum(0.5 * (start.speed_m_s + command), fastest)
+        passed = self.hump.positions[position].passed(
+            Arrivals(
+                rows=rows,
+                train=self.trains.first + lanes,
+                cut=np.full(len(lanes), self.cut),
+                position=position,
+                entry_m_s=start.speed_m_s,
+                unbraked_exit_m_s=unbraked.speed_m_s,
+                path_m=to - start.head_m,
+                commanded_m_s=command,
+                mass_t=self.trains.mass_t[rows],
+                axles=self.trains.axles[rows],
+                category=self.trains.category[rows],
+                resistance_n_per_kn=self.trains.resistance_at(rows, mean),
+                unbraked_resistance_n_per_kn=self.trains.resistance_at(rows, fastest),
+                seed=self.trains.seed,
+            )
+        )
+        end, times = braked_evenly(start, to, passed.exit_m_s, passed.time_s, self.heads_m(held))
+        self.note(times, held)
+        place = lanes, self.cut, position
+        memory.begin_s[place], memory.entry_m_s[place] = start.time_s, start.speed_m_s
+        memory.command_m_s[place], memory.exit_m_s[place] = command, passed.exit_m_s
+        memory.end_s[place], memory.strokes[place] = end.time_s, passed.switchings
+        self.misroute()
+        self.touch()
+        return merged(moving, end, held)
+
+    def obeyed(self, command: Floats, held: Bools, position: int) -> Floats:
+        """Two cuts on a retarder: the mode of the first one rules."""
+        element = self.hump.routes.retarder[self.routes[held], position]
+        ahead = self.ahead()
+        met = meeting(self.hump.routes, self.routes, self.times, ahead)
+        own = np.arange(len(element))
+        both = met.unseparated[held][own, element]
+        first = ahead.cut[held][own, element]
+        ruling = self.memory.command_m_s[self.lanes[held], np.maximum(first, 0), position]
+        return np.where(both & np.isfinite(ruling), ruling, command)
+
+    def to_track(self, moving: Moving) -> None:
+        """Free roll to the standing cars, and what the whole way was like."""
+        lanes, cut, memory = self.lanes, self.cut, self.memory
+        free = np.maximum(self.free_m[lanes, self.routes], moving.head_m)
+        moving = self.free(moving, free)
+        free = np.maximum(self.free_m[lanes, self.routes], moving.head_m)
+        met = meeting(self.hump.routes, self.routes, self.times, self.ahead())
+        memory.unseparated[:, cut], memory.foul[:, cut] = met.unseparated, met.foul
+        memory.free_m[:, cut] = free
+        rolls = self.rolling
+        memory.end_m[rolls, cut] = moving.head_m[rolls]
+        memory.end_speed_m_s[rolls, cut], memory.end_time_s[rolls, cut] = moving.speed_m_s[rolls], moving.time_s[rolls]
+        tail = np.where(rolls, moving.head_m - self.length_m, free - self.length_m)
+        self.free_m[lanes, self.routes] = np.minimum(tail, free)
+
+
+def merged(all_lanes: Moving, some: Moving, which: Bools) -> Moving:
+    """`all_lanes`, of which those `which` are now as in `some`."""
+    head, speed, time = all_lanes.head_m.copy(), all_lanes.speed_m_s.copy(), all_lanes.time_s.copy()
+    head[which], speed[which], time[which] = some.head_m, some.speed_m_s, some.time_s
+    return Moving(head, speed, time)

@@ -1,0 +1,109 @@
+"""Heads of cuts on their way: free over the track, or braked at an even rate, and when they pass given places."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.frozen_arrays import frozen_arrays
+from synth.yard.free_roll import Rolled
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Moving:
+    """Where the heads of n cuts are, how fast, and when: (n,) each. A cut that stopped has speed 0 and time infinite;
+    `head_m` is then where it stands."""
+
+    head_m: Floats
+    speed_m_s: Floats
+    time_s: Floats
+
+    def chosen(self, which: NDArray[np.bool_] | Ints) -> Moving:
+        """Some of them."""
+        return Moving(self.head_m[which], self.speed_m_s[which], self.time_s[which])
+
+
+class Rolls(Protocol):
+    """What rolls cuts, `rows`, on `routes`; see `RouteRolling`."""
+
+    def roll_on(
+        self,
+        rows: Ints,
+        routes: Ints,
+        start_m: Floats,
+        speed_m_s: Floats,
+        stations_m: Floats,
+        resistance_n_per_kn: Floats | None = None,
+    ) -> Rolled: ...
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Cars:
+    """Which cuts move, on which routes, (n,) each; `resistance_n_per_kn`: taken for their own, None: their own."""
+
+    rolls: Rolls
+    rows: Ints
+    routes: Ints
+    resistance_n_per_kn: Floats | None = None
+
+    def chosen(self, which: NDArray[np.bool_] | Ints) -> Cars:
+        """Some of them."""
+        own = self.resistance_n_per_kn
+        return Cars(self.rolls, self.rows[which], self.routes[which], None if own is None else own[which])
+
+
+def rolled_free(cars: Cars, start: Moving, to_m: Floats, heads_m: Floats) -> tuple[Moving, Floats]:
+    """Where the cuts are when their heads are at `to_m` (n,), and when their heads pass `heads_m` (n, k) on the way.
+
+    NaN for places that are not on the way, infinite for those behind a stop.
+    """
+    on_way = (heads_m > start.head_m[:, None]) & (heads_m <= to_m[:, None])
+    used = np.flatnonzero(on_way.any(axis=0))
+    places = np.clip(heads_m[:, used], start.head_m[:, None], to_m[:, None])
+    order = np.argsort(places, axis=1, kind="stable")
+    stations = np.concatenate((np.take_along_axis(places, order, axis=1), to_m[:, None]), axis=1)
+    rolled = cars.rolls.roll_on(
+        cars.rows, cars.routes, start.head_m, start.speed_m_s, stations, cars.resistance_n_per_kn
+    )
+    times = np.full(heads_m.shape, np.nan)
+    passed = np.empty(places.shape)
+    np.put_along_axis(passed, order, rolled.time_s[:, :-1], axis=1)
+    times[:, used] = np.where(on_way[:, used], start.time_s[:, None] + passed, np.nan)
+    stops = np.isfinite(rolled.stop_m)
+    head = np.where(stops, np.minimum(rolled.stop_m, to_m), to_m)
+    return Moving(head, rolled.speed_m_s[:, -1], start.time_s + rolled.time_s[:, -1]), times
+
+
+def braked_evenly(
+    start: Moving, to_m: Floats, exit_m_s: Floats, duration_s: Floats, heads_m: Floats
+) -> tuple[Moving, Floats]:
+    """As `rolled_free` for cuts whose energy falls evenly to that of `exit_m_s` at `to_m`, where they are `duration_s`
+    later: times in between are in proportion."""
+    path = to_m - start.head_m
+    moves = (start.speed_m_s > 0.0) & (exit_m_s > 0.0)
+    end = np.where(moves, start.time_s + duration_s, np.inf)
+    on_way = (heads_m > start.head_m[:, None]) & (heads_m <= to_m[:, None])
+    lane, column = np.nonzero(on_way)
+    share = (heads_m[lane, column] - start.head_m[lane]) / path[lane]
+    before, after = start.speed_m_s[lane], exit_m_s[lane]
+    between = np.sqrt(before**2 + share * (after**2 - before**2))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        passed = start.time_s[lane] + duration_s[lane] * (share * (before + after) / (before + between))
+    times = np.full(heads_m.shape, np.nan)
+    times[lane, column] = np.where(moves[lane], passed, np.inf)
+    return Moving(np.where(moves, to_m, start.head_m), np.where(moves, exit_m_s, 0.0), end), times
+
+
+def even_duration_s(start: Moving, to_m: Floats, exit_m_s: Floats) -> Floats:
+    """How long cuts take that are braked at an even rate; infinite where they stop."""
+    both = start.speed_m_s + exit_m_s
+    moves = (start.speed_m_s > 0.0) & (exit_m_s > 0.0)
+    return np.where(moves, 2.0 * (to_m - start.head_m) / np.where(moves, both, 1.0), np.inf)

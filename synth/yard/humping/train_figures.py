@@ -1,0 +1,103 @@
+"""Figures of many trains with their 95 % intervals: a train is the unit that is drawn, its cuts are not independent."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import betaincinv, stdtrit
+
+from synth.yard.humping.outcomes import TrainOutcomes
+
+Floats = NDArray[np.float64]
+
+CONFIDENCE = 0.95
+FEWEST_TRAINS = 2
+
+
+@dataclass(frozen=True)
+class TrainFigure:
+    """A figure of `n` cuts (or trains), with its 95 % interval, NaN where the trains are too few.
+
+    `enough_n`: how many would tell it within `wanted` either way, N = t²·p(1 − p)/ε² times what cuts of one train have
+    in common; NaN for what is no share.
+    """
+
+    name: str
+    unit: str
+    value: float
+    low95: float
+    high95: float
+    n: int
+    enough_n: float = float("nan")
+
+
+def ratio(hits: Floats, base: Floats) -> tuple[float, float, float]:
+    """Σ hits / Σ base over trains, with the interval of a ratio: Student's, linearised, trains being independent."""
+    trains, total = len(base), float(base.sum())
+    if total == 0.0:
+        return float("nan"), float("nan"), float("nan")
+    value = float(hits.sum()) / total
+    if trains < FEWEST_TRAINS:
+        return value, float("nan"), float("nan")
+    residual = (hits - value * base) / (total / trains)
+    half = float(stdtrit(trains - 1, 0.5 + 0.5 * CONFIDENCE)) * float(residual.std(ddof=1)) / np.sqrt(trains)
+    return value, value - half, value + half
+
+
+def share(hits: Floats, base: Floats) -> tuple[float, float, float, float]:
+    """Share of cuts with its interval, and how much larger its variance is than that of independent cuts.
+
+    Korn and Graubard, Survey Methodology 24 (1998): the exact interval (Clopper and Pearson) of as many independent
+    cuts as these are worth, with Student's quantile for few trains; valid for rare events, too, also if there was none.
+    """
+    trains, total, found = len(base), float(base.sum()), float(hits.sum())
+    if total == 0.0:
+        return float("nan"), float("nan"), float("nan"), float("nan")
+    p = found / total
+    effect = 1.0
+    if trains >= FEWEST_TRAINS and 0.0 < p < 1.0:
+        residual = (hits - p * base) / (total / trains)
+        effect = max(float(residual.var(ddof=1)) / trains * total / (p * (1.0 - p)), 1.0)
+    few = 1.0
+    if trains >= FEWEST_TRAINS:
+        few = float(stdtrit(trains - 1, 0.975) / stdtrit(max(total - 1.0, 1.0), 0.975)) ** 2
+    n = total / (effect * few)
+    k = p * n
+    tail = 0.5 * (1.0 - CONFIDENCE)
+    low = float(betaincinv(k, n - k + 1.0, tail)) if k > 0.0 else 0.0
+    high = float(betaincinv(k + 1.0, n - k, 1.0 - tail)) if k < n else 1.0
+    return p, low, high, effect
+
+
+def train_figures(found: TrainOutcomes, wanted_share: float = 0.005) -> tuple[TrainFigure, ...]:
+    """The figures that are told of trains; `wanted_share`: for `enough_n` of shares."""
+    cuts, judged = found.cuts.astype(float), found.judged.astype(float)
+
+    def part(name: str, hits: NDArray[np.int64], base: Floats) -> TrainFigure:
+        p, low, high, effect = share(hits.astype(float), base)
+        enough = 1.959964**2 * p * (1.0 - p) / wanted_share**2 * effect
+        return TrainFigure(name, "1", p, low, high, int(base.sum()), enough)
+
+    def mean(name: str, unit: str, sums: Floats, base: Floats) -> TrainFigure:
+        return TrainFigure(name, unit, *ratio(sums, base), len(base))
+
+    passes = found.passes.sum(axis=1).astype(float)
+    figures = [
+        mean("hump_speed", "m/s", found.span_m, found.span_s),
+        mean("cars_per_hour", "1/h", 3600.0 * found.span_cars, found.span_s),
+        part("catch_ups", found.caught, cuts),
+        part("misrouted", found.misrouted.sum(axis=1), cuts),
+        part("contacts", found.contact.sum(axis=1), cuts),
+        part("caught_on_track", found.caught_on_track, cuts),
+        part("stopped_on_the_way", found.stopped, cuts),
+        mean("unseparated_elements_per_cut", "1", found.unseparated.sum(axis=1).astype(float), cuts),
+        part("overspeed", found.overspeed.sum(axis=1), judged),
+        part("overspeed_to_1_5", found.overspeed[:, 0], judged),
+        part("overspeed_to_2", found.overspeed[:, 1], judged),
+        part("overspeed_above_2", found.overspeed[:, 2], judged),
+        mean("gap_per_cut", "m", found.gap_m, judged),
+        mean("strokes_per_pass", "1", found.strokes.sum(axis=1).astype(float), passes),
+    ]
+    return tuple(figures)

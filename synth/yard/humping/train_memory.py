@@ -1,0 +1,35 @@
+"""What happened to the cuts of many trains so far: written cut by cut, read by the control of those that follow."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.yard.humping.hump_routes import HumpRoutes, Mark
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+class TrainMemory:
+    """Arrays (trains, cuts, …), NaN or −1 where nothing happened yet.
+
+    `route`: rows of the routes that the cuts went, at last. `crest_s`, `hump_speed_m_s`. `time_s` (…, elements, marks).
+    (…, positions): `begin_s` and `entry_m_s` of a pass, `command_m_s`, `exit_m_s`, `end_s`, `strokes` of valves.
+    Columns of elements, the number of elements where none: `misrouted_at`, `contact_at`. (…, elements): `unseparated`,
+    `foul`. At the track: `free_m` that the cut found, head at its end `end_m` with `end_speed_m_s` at `end_time_s`.
+    """
+
+    def __init__(self, trains: int, cuts: int, routes: HumpRoutes) -> None:
+        shape, elements, positions = (trains, cuts), routes.elements, routes.positions
+        self.route = np.full(shape, -1)
+        self.crest_s, self.hump_speed_m_s = np.full(shape, np.nan), np.full(shape, np.nan)
+        self.time_s = np.full((*shape, elements, len(Mark)), np.nan)
+        self.begin_s, self.entry_m_s, self.command_m_s, self.exit_m_s, self.end_s = (
+            np.full((*shape, positions), np.nan) for _ in range(5)
+        )
+        self.strokes = np.zeros((*shape, positions), dtype=np.int64)
+        self.misrouted_at, self.contact_at = np.full(shape, elements), np.full(shape, elements)
+        self.unseparated, self.foul = np.zeros((*shape, elements), bool), np.zeros((*shape, elements), bool)
+        self.caught_on_track = np.zeros(shape, bool)
+        self.free_m, self.end_m, self.end_speed_m_s, self.end_time_s = (np.full(shape, np.nan) for _ in range(4))

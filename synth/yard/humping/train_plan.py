@@ -1,0 +1,192 @@
+"""The plan of a train before it is humped: hump speeds pair by pair, exit speeds of the interval positions.
+
+Every pair is simulated, and the hump speeds are the fastest with which some choice of exit speeds keeps the cut behind
+from the cut ahead by the least interval. Then the exit speeds are chosen anew, each cut in the middle between both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.frozen_arrays import frozen_arrays
+from synth.yard.humping.forecast import Given, SpeedRange, from_crest
+from synth.yard.humping.hump_routes import HumpRoutes, Mark
+from synth.yard.humping.hump_speed import HumpSpeedLimits, SpeedMethod, WholeTrain
+from synth.yard.humping.interval import CentredRule, EarlyRule, IntervalRule, possible
+from synth.yard.humping.known_cuts import KnownCuts
+from synth.yard.humping.meeting import Ahead, LastUsers
+from synth.yard.humping.motion import Moving
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+WHOLE_TRAIN = WholeTrain()
+
+FOLLOWERS = 3
+"""Cuts behind that a cut looks at: a long one leaves late what not the next cut, but the one after it needs."""
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class TrainPlan:
+    """The plan of some trains, (trains, cuts): `crest_s`, `hump_speed_m_s`, `margin_s`: the
+    largest to the cut ahead that some choice of exit speeds gives.
+
+    `exit_m_s` (…, positions): of the interval positions. `first_in_s`, `last_out_s` (…, elements): of the
+    elements up to the end of the last position.
+    """
+
+    crest_s: Floats
+    hump_speed_m_s: Floats
+    margin_s: Floats
+    exit_m_s: Floats
+    first_in_s: Floats
+    last_out_s: Floats
+
+
+@dataclass(frozen=True)
+class Planner:
+    """Plans trains on `routes`. `ranges`: choices of the interval positions, from the crest on.
+
+    `least_s`: the interval that a pair must keep at its worst element; `early_s`: of it, what a cut keeps to the cut
+    ahead when those behind wait for it. `worst_pair`: a bad runner ahead and a good one behind (2.3 and 97.7 % of their
+    categories), not two mean ones. Headways and speeds are worked out from one another in so many `fits`;
+    in the `repairs` that follow headways only grow, where speeds that changed elsewhere had made a pair too close.
+    """
+
+    routes: HumpRoutes
+    limits: HumpSpeedLimits
+    ranges: tuple[SpeedRange, ...]
+    least_s: float = 0.5
+    early_s: float = 0.2
+    worst_pair: bool = False
+    method: SpeedMethod = WHOLE_TRAIN
+    fits: int = 2
+    repairs: int = 3
+
+    def plan(self, known: KnownCuts) -> TrainPlan:
+        """The plan with the fastest hump speeds that keep the interval."""
+        speeds = np.full((known.trains, known.cuts), self.limits.steps_m_s[len(self.limits.steps_m_s) // 2])
+        needs_s = np.zeros_like(speeds)
+        for turn in range(self.fits + self.repairs):
+            found = Sweep(self, known, speeds, None).run(EarlyRule(self.early_s))
+            enough = self.headways_s(found)
+            # a headway may have shrunk because another one was long; so those that were found are kept in the end
+            needs_s = enough if turn < self.fits else np.maximum(needs_s, enough)
+            speeds = self.method.speeds(apart_m(known), needs_s, self.limits)
+        return self.at_speeds(known, speeds)
+
+    def constant(self, known: KnownCuts, speed_m_s: float) -> TrainPlan:
+        """The plan where all cuts are pushed at one speed."""
+        return self.at_speeds(known, np.full((known.trains, known.cuts), speed_m_s))
+
+    def at_speeds(self, known: KnownCuts, speeds_m_s: Floats) -> TrainPlan:
+        """The plan with given hump speeds (trains, cuts): exit speeds in the middle between both neighbours."""
+        found = Sweep(self, known, speeds_m_s, None).run(EarlyRule(self.early_s))
+        return Sweep(self, known, speeds_m_s, found).run(CentredRule())
+
+    def headways_s(self, found: TrainPlan) -> Floats:
+        """What each cut needs behind the cut ahead at the crest: what it had less what it had too much."""
+        had = np.diff(found.crest_s, axis=1, prepend=0.0)
+        return np.asarray(had - found.margin_s + self.least_s)
+
+
+def apart_m(known: KnownCuts) -> Floats:
+    """From the middle of each cut to that of the cut ahead, (trains, cuts)."""
+    length = known.length_m.reshape(known.trains, known.cuts)
+    return np.asarray(0.5 * (length + np.concatenate((length[:, :1], length[:, :-1]), axis=1)))
+
+
+class Sweep:
+    """One sweep over all cuts, each planned behind those ahead of it.
+
+    `speeds_m_s` (trains, cuts): hump speeds. `before`: an earlier plan, which tells when the cuts behind come.
+    """
+
+    def __init__(self, planner: Planner, known: KnownCuts, speeds_m_s: Floats, before: TrainPlan | None) -> None:
+        self.planner, self.known, self.before = planner, known, before
+        routes, shape = planner.routes, (known.trains, known.cuts)
+        self.users = LastUsers(known.trains, routes)
+        self.hump_speed_m_s, self.margin_s = speeds_m_s, np.zeros(shape)
+        mean = 0.5 * (speeds_m_s[:, 1:] + speeds_m_s[:, :-1])
+        self.crest_s = np.zeros(shape)
+        self.crest_s[:, 1:] = np.cumsum(apart_m(known)[:, 1:] / mean, axis=1)
+        self.exit_m_s = np.zeros((*shape, len(planner.ranges)))
+        self.first_in_s, self.last_out_s = (np.full((*shape, routes.elements), np.nan) for _ in range(2))
+
+    def run(self, rule: IntervalRule) -> TrainPlan:
+        """Plan all cuts by `rule`."""
+        for cut in range(self.known.cuts):
+            self.one(cut, rule)
+            self.remember(cut)
+        return TrainPlan(
+            self.crest_s, self.hump_speed_m_s, self.margin_s, self.exit_m_s, self.first_in_s, self.last_out_s
+        )
+
+    def one(self, cut: int, rule: IntervalRule) -> None:
+        """Plan cut number `cut` of every train."""
+        known, planner = self.known, self.planner
+        rows = known.of_cut(cut)
+        start = Moving(0.5 * known.length_m[rows], self.hump_speed_m_s[:, cut], self.crest_s[:, cut])
+        resistance = known.good_n_per_kn if planner.worst_pair else known.mean_n_per_kn
+        expected = known.expected(rows, known.route[rows], resistance[rows])
+        ways = from_crest(planner.routes, expected, start, (*planner.ranges, known.aim(rows)))
+        compared = ways.compared(*self.neighbours(cut))
+        taken = ways.followed(rule.best(compared))
+        self.margin_s[:, cut] = np.where(possible(compared), compared.ahead_s, -np.inf).max(axis=1)
+        self.exit_m_s[:, cut] = taken.exit_m_s[:, :-1]
+        self.first_in_s[:, cut], self.last_out_s[:, cut] = taken.first_in_s, taken.last_out_s
+
+    def remember(self, cut: int) -> None:
+        """Let the cuts behind know when cut number `cut` leaves the elements, at the latest where pairs are worst."""
+        known, planner = self.known, self.planner
+        rows, out = known.of_cut(cut), self.last_out_s[:, cut]
+        if planner.worst_pair:
+            start = Moving(0.5 * known.length_m[rows], self.hump_speed_m_s[:, cut], self.crest_s[:, cut])
+            given = (Given(self.exit_m_s[:, cut, q]) for q in range(len(planner.ranges)))
+            slow = known.expected(rows, known.route[rows], known.bad_n_per_kn[rows])
+            out = from_crest(planner.routes, slow, start, (*given, known.aim(rows))).followed().last_out_s
+        times = np.full((known.trains, planner.routes.elements, len(Mark)), np.nan)
+        times[:, :, Mark.FIRST_IN], times[:, :, Mark.LAST_OUT] = self.first_in_s[:, cut], out
+        self.users.add(cut, known.route[rows], times)
+
+    def neighbours(self, cut: int) -> tuple[Floats, Floats]:
+        """From when on the elements are free of the cuts ahead, and by when they must be left for those behind."""
+        known, routes = self.known, self.planner.routes
+        lanes = np.arange(known.trains)
+        own = known.route[known.of_cut(cut)]
+        ahead = self.users.on(own, lanes)
+        free_by = np.full((known.trains, routes.elements), np.inf)
+        if self.before is not None:
+            free_by = free_by_s(routes, known, self.before.first_in_s, own, lanes, cut)
+        return leaves_s(ahead) + throws_s(routes, own, ahead), free_by
+
+
+def leaves_s(ahead: Ahead) -> Floats:
+    """When the cuts ahead leave the elements; −∞ where nobody is."""
+    return np.where(ahead.cut >= 0, ahead.time_s[:, :, Mark.LAST_OUT], -np.inf)
+
+
+def throws_s(routes: HumpRoutes, own: Ints, ahead: Ahead) -> Floats:
+    """What the points need behind the cuts ahead: a throw where they lie otherwise."""
+    points = routes.points[own]
+    parts = (ahead.cut >= 0) & (points >= 0) & (points != ahead.points)
+    return np.where(parts, routes.throw_s[own], 0.0)
+
+
+def free_by_s(routes: HumpRoutes, known: KnownCuts, first_in_s: Floats, own: Ints, lanes: Ints, cut: int) -> Floats:
+    """When cut number `cut` of the trains `lanes`, on the routes `own` (n,), must have left each element: when the next
+    of the `FOLLOWERS` behind it comes there, less the throw of the points; (n, elements). `first_in_s` (trains, cuts,
+    elements): when cuts come."""
+    free_by = np.full((len(own), routes.elements), np.inf)
+    column = np.arange(routes.elements)[None, :]
+    for follower in range(cut + 1, min(cut + 1 + FOLLOWERS, known.cuts)):
+        other = known.route[lanes * known.cuts + follower]
+        shared = column < routes.shared(own, other)[:, None]
+        parts = shared & (routes.points[own] != routes.points[other])
+        comes = first_in_s[lanes, follower] - np.where(parts, routes.throw_s[own], 0.0)
+        free_by = np.where(shared & ~np.isnan(comes), np.minimum(free_by, comes), free_by)
+    return free_by

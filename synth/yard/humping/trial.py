@@ -1,0 +1,191 @@
+"""A trial: all that trains over a hump depend on, and the trains themselves, batch by batch."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.cut import GRAVITY_M_S2, ROTATING_MASS_PER_AXLE_T
+from plant_models.errors import require, require_between
+from synth.yard.humping.aim_control import AimControl, ReadAhead
+from synth.yard.humping.expected_way import ExpectedWay
+from synth.yard.humping.free_tracks import FreeTracks
+from synth.yard.humping.hump_aim import HumpAim
+from synth.yard.humping.hump_position import HumpPosition
+from synth.yard.humping.hump_routes import HumpRoutes
+from synth.yard.humping.humping import ExitSpeeds, Hump, humped
+from synth.yard.humping.interval import CentredRule, IntervalRule
+from synth.yard.humping.interval_control import Feedback, OpenLoop, ProgramSpeeds
+from synth.yard.humping.known_cuts import KnownCuts, known_cuts
+from synth.yard.humping.outcomes import TrainOutcomes, outcomes
+from synth.yard.humping.rollability import CategoryMean, MeasuredRollability, Rollability
+from synth.yard.humping.route_rolling import rolling_on
+from synth.yard.humping.route_ways import RouteWays
+from synth.yard.humping.speed_sensors import SpeedSensors
+from synth.yard.humping.train_cuts import TrainCuts
+from synth.yard.humping.train_memory import TrainMemory
+from synth.yard.humping.train_plan import Planner, TrainPlan
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+CENTRED = CentredRule()
+
+BATCH = 100
+"""Trains that are humped side by side; no figure depends on it."""
+
+
+class TrainSource(Protocol):
+    """Where trains come from: a population, or one list again and again."""
+
+    def trains(self, first: int, count: int) -> TrainCuts:
+        """Trains `first` … `first + count − 1`; each is the same whatever the others."""
+
+
+class BrakeHead(Protocol):
+    """What a position can take from cuts."""
+
+    def __call__(self, mass_t: Floats, axles: Ints, category: Ints) -> Floats:
+        """Energy head (rows,), metres."""
+
+
+class Program(Protocol):
+    """How hump speeds and the exit speeds before the train are found."""
+
+    def plan(self, planner: Planner, known: KnownCuts) -> TrainPlan:
+        """The plan of some trains."""
+
+
+@dataclass(frozen=True)
+class SimulatedPairs:
+    """Hump speeds from simulated pairs of cuts, by the method of the planner."""
+
+    def plan(self, planner: Planner, known: KnownCuts) -> TrainPlan:
+        """See `Program`."""
+        return planner.plan(known)
+
+
+@dataclass(frozen=True)
+class ConstantSpeed:
+    """One hump speed for all cuts."""
+
+    speed_m_s: float
+
+    def __post_init__(self) -> None:
+        require_between("hump speed: constant_m_s", self.speed_m_s, 0.3, 4.0)
+
+    def plan(self, planner: Planner, known: KnownCuts) -> TrainPlan:
+        """See `Program`."""
+        return planner.constant(known, self.speed_m_s)
+
+
+@dataclass(frozen=True)
+class Sensing:
+    """What the control measures of cuts on their way: speeds at both ends of every free stretch (`SpeedSensors`).
+
+    `for_aim`, `for_intervals`: what the resistance so read is used for.
+    """
+
+    speed_std_m_s: float = 0.1
+    for_aim: bool = True
+    for_intervals: bool = True
+
+
+@dataclass(frozen=True)
+class Control:
+    """`feedback`: exit speeds of the interval positions are chosen when a cut comes; else as planned before the train.
+
+    `sensing` None: the resistance of a cut is that of its category. `rule`: of the feedback.
+    """
+
+    feedback: bool = True
+    sensing: Sensing | None = None
+    rule: IntervalRule = CENTRED
+
+
+@dataclass(frozen=True)
+class HumpTrial:
+    """Trains from `source` over `routes`, whose `ways` are the routes as their cars feel them.
+
+    `positions`: models in order from the crest, all but the last for intervals; `planner` with their ranges; `free`:
+    tracks before each train. `aim`: exit speeds of the last position; `usable_head_m`: energy head (rows,) that it can
+    be trusted to take from cuts, by mass, axles and category.
+    """
+
+    source: TrainSource
+    routes: HumpRoutes
+    ways: RouteWays
+    positions: tuple[HumpPosition, ...]
+    planner: Planner
+    program: Program
+    control: Control
+    aim: HumpAim
+    usable_head_m: BrakeHead
+    free: FreeTracks
+    threads: int = 0
+
+    def __post_init__(self) -> None:
+        require(
+            len(self.positions) == self.routes.positions == len(self.planner.ranges) + 1,
+            f"hump trial: {len(self.positions)} position models and {len(self.planner.ranges)} ranges of exit speeds; "
+            f"the hump has {self.routes.positions} positions, and ranges belong to all but the last",
+        )
+        require(
+            bool(np.isfinite(self.routes.entrance_m).all()),
+            "hump trial: some routes have fewer positions than others; that cannot be humped yet",
+        )
+
+    def batch(self, first: int, count: int) -> TrainOutcomes:
+        """What the trains `first` … `first + count − 1` come to."""
+        trains, _, memory = self.humped(first, count)
+        return outcomes(self.routes, trains, memory)
+
+    def humped(self, first: int, count: int) -> tuple[TrainCuts, TrainPlan, TrainMemory]:
+        """The same trains with their plan and all that happened to them."""
+        trains = self.source.trains(first, count)
+        free_m = self.free.free_m(self.routes, trains.seed, first, count)
+        known = self.known(trains, free_m)
+        aim = self.aim_of(trains, known)
+        plan = self.program.plan(self.planner, known)
+        rolls = rolling_on(self.ways, trains.population, trains.drawn, self.threads)
+        hump = Hump(self.routes, self.positions, rolls)
+        control = self.control_of(trains, known, plan, aim)
+        return trains, plan, humped(hump, trains, free_m, ProgramSpeeds(plan.hump_speed_m_s), control)
+
+    def known(self, trains: TrainCuts, free_m: Floats) -> KnownCuts:
+        """What is known of trains before they are humped, and how they will be aimed if tracks stay as they are."""
+        release = self.routes.exit_m[trains.route, -1] + trains.last_axle_m
+        lanes = np.repeat(np.arange(trains.trains), trains.cuts)
+        free = free_m[lanes, trains.route] - release
+        aim = self.aim.expected_m_s(trains.route, trains.category, trains.cars, free)
+        gravity = reduced_gravity_m_s2(trains)
+        head = self.usable_head_m(trains.mass_t, trains.axles, trains.category)
+        return known_cuts(trains, self.ways, aim, np.sqrt(aim**2 + 2.0 * gravity * head), self.threads)
+
+    def aim_of(self, trains: TrainCuts, known: KnownCuts) -> AimControl:
+        """The control of the last position for these trains."""
+        sensing = self.control.sensing
+        reading = None
+        if sensing is not None and sensing.for_aim:
+            sensors = SpeedSensors(self.routes, trains, sensing.speed_std_m_s)
+            reading = ReadAhead(sensors, ExpectedWay(known.rolls, known.mean_n_per_kn, reduced_gravity_m_s2(trains)))
+        return AimControl(self.aim, self.routes, trains, reading)
+
+    def control_of(self, trains: TrainCuts, known: KnownCuts, plan: TrainPlan, aim: AimControl) -> ExitSpeeds:
+        """The control of all positions for these trains."""
+        if not self.control.feedback:
+            return OpenLoop(plan, aim)
+        sensing = self.control.sensing
+        rollability: Rollability = CategoryMean(known)
+        if sensing is not None and sensing.for_intervals:
+            sensors = SpeedSensors(self.routes, trains, sensing.speed_std_m_s)
+            rollability = MeasuredRollability(sensors, trains)
+        return Feedback(self.routes, known, plan, self.planner.ranges, self.control.rule, rollability, aim)
+
+
+def reduced_gravity_m_s2(trains: TrainCuts) -> Floats:
+    """g' of each cut by its list, (rows,)."""
+    return np.asarray(GRAVITY_M_S2 / (1.0 + ROTATING_MASS_PER_AXLE_T * trains.axles / trains.mass_t))
