@@ -97,20 +97,26 @@ def without_positions(graph: HumpGraph) -> HumpGraph:
     return HumpGraph(tuple(vertices), graph.leads)
 
 
-def slow_body(drawn: DrawnCuts, i: int, routes: Mapping[int, Route]) -> SlowBody:
-    """The numbers of one drawn cut; it meets the bends of every route with the heads of its bends, in order."""
+def heads_in_order(drawn: DrawnCuts, i: int, routes: Mapping[int, Route]) -> dict[int, Heads]:
+    """A drawn cut meets the bends of every route with the heads of its own, in order."""
+    heads: Heads = tuple(zip(drawn.bend_v2_m_s2[i].tolist(), drawn.bend_head_m[i].tolist(), strict=True))
+    return {track: heads[: len(route.roll_track.bends)] for track, route in routes.items()}
+
+
+def slow_body(drawn: DrawnCuts, i: int, bend_heads: Mapping[int, Heads]) -> SlowBody:
+    """The numbers of one drawn cut, whose row may have room for more cars; heads of bends by track."""
     cars = []
     for place, mass_t in zip(drawn.types[i], drawn.mass_t[i], strict=True):
         car = drawn.mix.cars[place].car
         overhang = (car.length_m - car.axle_offsets_m[-1]) / 2.0
-        cars.append(SlowCar(car.length_m, float(mass_t), tuple(overhang + a for a in car.axle_offsets_m)))
-    heads: Heads = tuple(zip(drawn.bend_v2_m_s2[i].tolist(), drawn.bend_head_m[i].tolist(), strict=True))
+        if mass_t > 0.0:
+            cars.append(SlowCar(car.length_m, float(mass_t), tuple(overhang + a for a in car.axle_offsets_m)))
     return SlowBody(
         tuple(cars),
         float((drawn.mass_t[i] * drawn.basic_n_per_kn[i]).sum() / drawn.mass_t[i].sum()),
         float(drawn.head_wind_m_s[i]),
         float(drawn.air_n_per_kn[i]),
-        {track: heads[: len(route.roll_track.bends)] for track, route in routes.items()},
+        bend_heads,
     )
 
 
@@ -128,7 +134,7 @@ def random_train(graph: HumpGraph, drawn: Sequence[DrawnCuts], seed: int, tracks
     cuts roll so badly that they stop and foul. So cuts meet in every way."""
     rng, lead = np.random.default_rng(seed), graph.leads[0]
     routes = graph.routes(lead)
-    bodies = [slow_body(each, 0, routes) for each in drawn]
+    bodies = [slow_body(each, 0, heads_in_order(each, 0, routes)) for each in drawn]
     bodies = [replace(b, w0_n_per_kn=b.w0_n_per_kn * (4.0 if rng.random() < POOR_SHARE else 1.0)) for b in bodies]
     speeds = np.clip(rng.uniform(1.8, 3.0) + np.cumsum(rng.uniform(-0.2, 0.2, len(drawn))), 1.6, 3.2).tolist()
     crests = crest_times_s(bodies, speeds)

@@ -8,7 +8,7 @@ from enum import Enum
 from math import inf, sqrt
 
 from plant_models.hump import Route
-from tests.synth.yard.humping.slow_marks import LAST_AXLE, MarkAt, marks_of
+from tests.synth.yard.humping.slow_marks import LAST_AXLE, LAST_OF, MarkAt, marks_of
 from tests.synth.yard.humping.slow_train import Mark, SlowCut
 from tests.synth.yard.humping.slow_way import SlowWay
 
@@ -55,7 +55,7 @@ class MovingCut:
     """The head is at `x` with speed `v` at time `t`.
 
     `leader`: the cut behind which it rolls, from a contact on; `follow`: the marks to which its first axle
-    then comes with the last axle of that cut.
+    then comes with the last axle of that cut. `adopted`: the cut whose way it goes since it was misrouted.
     """
 
     def __init__(self, cut: SlowCut, route: Route, way: SlowWay, push: Push, start_s: float) -> None:
@@ -67,7 +67,8 @@ class MovingCut:
         self.marks = marks_of(cut.body, route)
         self.follow: list[MarkAt] = []
         self.leader: MovingCut | None = None
-        self.on_track, self.misrouted = False, False
+        self.adopted: MovingCut | None = None
+        self.on_track = False
         self.legs: list[tuple[float, float, float, float]] = []
 
     @property
@@ -89,17 +90,21 @@ class MovingCut:
         """Where its end is."""
         return self.place_at(time_s) - self.body.length_m
 
-    def reroute(self, order: int, route: Route, way: SlowWay) -> None:
-        """Go another way from the element `order` on, whose first mark has just been passed."""
+    def reroute(self, order: int, route: Route, way: SlowWay, *, entered: bool) -> None:
+        """Go another way from the element `order` on; `entered`: its first mark has just been passed."""
 
         def is_next(each: MarkAt) -> bool:
-            return each.order > order or (each.order == order and each.mark is not Mark.FIRST_FROM)
+            return each.order > order or (each.order == order and not (entered and each.mark is Mark.FIRST_FROM))
 
-        self.route, self.way, self.misrouted = route, way, True
+        self.route, self.way = route, way
         self.numbers = {element.number for element in route.elements}
+        new = [each for each in marks_of(self.body, route) if is_next(each)]
         self.marks = [each for each in self.marks if each.order < order]
         if self.leader is None:
-            self.marks = sorted([*self.marks, *filter(is_next, marks_of(self.body, route))])
+            self.marks = sorted([*self.marks, *new])
+        else:
+            kept = [each for each in self.follow if each.order < order]
+            self.follow = sorted([*kept, *(each for each in new if each.mark in LAST_OF)])
 
     def go(self, until: float, limit_m: float) -> bool:
         """Move on to the next mark or to `limit_m` (True), or until `until`, or to a stop (speed 0)."""

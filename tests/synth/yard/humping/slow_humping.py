@@ -207,9 +207,16 @@ class SlowHumping:
             delay_s = element.vertex.relay_s + element.vertex.throw_s
             if not self.passed(j, number, Mark.LAST_TO, time_s, delay_s):
                 self.tell(time_s, Kind.MISROUTED, number, i)
-                track = self.cuts[j].route.track
-                moving.reroute(at, self.routes[track], self.way(i, track))
+                moving.adopted = self.cuts[j]
+                self.reroute(i, at, self.cuts[j].route.track, entered=True)
         return moving.leader is None and self.meet(i, element, Mark.LAST_FROM, time_s)
+
+    def reroute(self, i: int, order: int, track: int, *, entered: bool) -> None:
+        """Send cut `i` to `track` from its element `order` on, and all behind it that go its way."""
+        self.cuts[i].reroute(order, self.routes[track], self.way(i, track), entered=entered)
+        for k in range(i + 1, len(self.cuts)):
+            if self.cuts[k].adopted is self.cuts[i]:
+                self.reroute(k, order, track, entered=False)
 
     def meet(self, i: int, element: RouteElement, joint: Mark, time_s: float) -> bool:
         """Whether cut `i` is at a joint before the last axle of the last user; then it rolls behind that one."""
@@ -249,14 +256,12 @@ class SlowHumping:
             moving.follow.pop(0)
             time_s, speed_m_s = passage.time_s, passage.speed_m_s
             self.passages[i, element.number, at.mark] = passage
-            behind = Passage(time_s + moving.body.base_m / speed_m_s, speed_m_s)
+            # at the speed with which the axles of the cut ahead passed the place
+            takes = (time_s - self.passages[j, element.number, at.mark].time_s) / ahead.body.base_m
+            behind = Passage(time_s + moving.body.base_m * takes, speed_m_s)
             self.passages[i, element.number, LAST_OF[at.mark]] = behind
             if at.mark is Mark.FIRST_FROM and (i, element.number) not in self.entered:
-                track = moving.route.track
                 self.enter(i, element, time_s)
-                if moving.route.track != track:
-                    marks = [m for m in marks_of(moving.body, moving.route) if m.mark in LAST_OF]
-                    moving.follow = [m for m in marks if m > at]
             elif at.mark is Mark.FIRST_FOULING:
                 self.foul(i, element, time_s)
         if ahead.mode is Mode.STANDING and moving.mode is Mode.BEHIND and not waits:

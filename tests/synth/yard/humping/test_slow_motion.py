@@ -15,7 +15,7 @@ from plant_models.rolling.resistance_law import HumpNormLaw, Tb10062Law
 from plant_models.rolling.weather import Weather
 from synth.yard.free_roll import rolling_cuts
 from tests.plant_models.rolling.populations import MIX, WINDY, population
-from tests.synth.yard.humping.made_slow_trains import random_train, slow_body, without_positions
+from tests.synth.yard.humping.made_slow_trains import heads_in_order, random_train, slow_body, without_positions
 from tests.synth.yard.humping.slow_cut import first_root
 from tests.synth.yard.humping.slow_humping import STEP_S, humped_slowly
 from tests.synth.yard.humping.slow_marks import FIRST_AXLE, marks_of
@@ -58,7 +58,7 @@ def test_energy_is_kept_without_resistance(cars: int) -> None:
     """v²/2 − g'·fall to 1e-4 of itself, the fall taken from the track's own law and not from the simulator."""
     route = FREE_ROLLING.route(LEAD, 9)
     body = replace(
-        slow_body(drawn_cut(population(bends=route.roll_track.bends), 3, cars, 2), 0, {9: route}),
+        slow_body(drawn_cut(population(bends=route.roll_track.bends), 3, cars, 2), 0, {}),
         w0_n_per_kn=0.0, air_n_per_kn=0.0, bend_heads=None,
     )  # fmt: skip
     cut = SlowCut(body, 9, 0.0, 2.0)
@@ -90,7 +90,7 @@ def test_a_cut_rolls_as_in_the_rolling_issue(
     snow = 0.3
     people = population(MIX, law, replace(WINDY, snow_n_per_kn=snow), route.roll_track.bends)
     drawn = drawn_cut(people, 10 * track + cars, cars, heaviness)
-    cut = SlowCut(slow_body(drawn, 0, {track: route}), track, 0.0, 2.0)
+    cut = SlowCut(slow_body(drawn, 0, heads_in_order(drawn, 0, {track: route})), track, 0.0, 2.0)
     train = replace(
         alone(FREE_ROLLING, cut), linear_n_per_kn=law.linear_n_per_kn, slope_n_per_kn=law.slope_extra_n_per_kn,
         yard_n_per_kn=snow,
@@ -135,7 +135,7 @@ def test_half_the_step_gives_the_same_events_and_times(seed: int) -> None:
 def test_first_axles_and_marks_agree() -> None:
     """A mark of a first axle is at the head's place less the overhang: what the comparison above rests on."""
     route = FREE_ROLLING.route(LEAD, 1)
-    body = slow_body(drawn_cut(population(bends=route.roll_track.bends), 1, 2, 1), 0, {1: route})
+    body = slow_body(drawn_cut(population(bends=route.roll_track.bends), 1, 2, 1), 0, {})
     for each in marks_of(body, route):
         behind = body.first_axle_m if each.mark in FIRST_AXLE else body.last_axle_m
         if each.mark is not Mark.TRACK:
