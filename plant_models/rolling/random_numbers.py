@@ -29,10 +29,10 @@ class Purpose(IntEnum):
     PASS_CLOCK = 13
     PASS_PATH = 14
     PASS_NOISE = 15
-    SPEED_READING = 21
-    STANDING = 22
     TRAIN_RESISTANCE = 16
     TRAIN_WIND = 17
+    SPEED_READING = 21
+    STANDING = 22
 
 
 def uniform_numbers(seed: int, purpose: Purpose, first: int, count: int, columns: int) -> NDArray[np.float64]:

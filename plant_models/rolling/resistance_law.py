@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -50,6 +51,13 @@ class ResistanceLaw(Protocol):
     def mean_bend_draw(self) -> float:
         """Mean of `bend_draws`."""
 
+    @property
+    def std_bend_draw(self) -> float:
+        """Standard deviation of `bend_draws`."""
+
+    def std_basic_n_per_kn(self, resistance: RollingResistance, mass_t: Floats, temperature_c: float) -> Floats:
+        """Standard deviation of `basic_n_per_kn`, as `mass_t`."""
+
 
 @dataclass(frozen=True)
 class HumpNormLaw:
@@ -91,6 +99,15 @@ class HumpNormLaw:
         """The order K, too."""
         return float(self.erlang_order)
 
+    @property
+    def std_bend_draw(self) -> float:
+        """√K."""
+        return math.sqrt(self.erlang_order)
+
+    def std_basic_n_per_kn(self, resistance: RollingResistance, mass_t: Floats, temperature_c: float) -> Floats:
+        """That of the category."""
+        return np.full(mass_t.shape, resistance.std_n_per_kn)
+
     def bend_scale_m(self, bend: Bend) -> tuple[float, float]:
         """m/K."""
         mean = self.per_switch_m_s2 * bend.switches + self.per_degree_m_s2 * bend.turn_deg
@@ -116,6 +133,7 @@ class Tb10062Law:
     slope_extra_n_per_kn = 0.39
     bend_numbers = 1
     mean_bend_draw = 1.0
+    std_bend_draw = 0.0
 
     def __post_init__(self) -> None:
         require_between("resistance: least_n_per_kn", self.least_n_per_kn, 0.0, 2.0)
@@ -124,13 +142,18 @@ class Tb10062Law:
         """r at v = 0 and k = 1 by the quantiles of the normal law; the category does not count, the mass does."""
         q, t = mass_t, temperature_c
         mean = self.mean_basic_n_per_kn(resistance, q, t)
-        std = 0.602 - (0.0012 + 0.00002 * q) * t - 0.003 * q + 0.00002 * t**2
+        std = self.std_basic_n_per_kn(resistance, q, t)
         return np.asarray(np.maximum(mean + std * ndtri(u), self.least_n_per_kn))
 
     def mean_basic_n_per_kn(self, resistance: RollingResistance, mass_t: Floats, temperature_c: float) -> Floats:
         """r at v = 0 and k = 1 without its spread; what the cut-off adds is left out."""
         q, t = mass_t, temperature_c
         return np.asarray(2.439 + (0.00008 * q - 0.01743) * t - 0.015 * q + 0.00017 * t**2)
+
+    def std_basic_n_per_kn(self, resistance: RollingResistance, mass_t: Floats, temperature_c: float) -> Floats:
+        """As the norm says it; what the cut-off takes away is left out."""
+        q, t = mass_t, temperature_c
+        return np.asarray(0.602 - (0.0012 + 0.00002 * q) * t - 0.003 * q + 0.00002 * t**2)
 
     def bend_scale_m(self, bend: Bend) -> tuple[float, float]:
         """The head of every cut."""

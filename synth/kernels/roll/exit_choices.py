@@ -22,7 +22,7 @@ class Legs(NamedTuple):
     position and the free roll behind it: `choices` (q,); `speeds_m_s` (q, m, k); `won_m2_s2` (q, m), gain of v² in the
     pass without brake; `path_m` (q, m) of the pass, of which `share` (q, m, s) is behind the cut at a mark; `roll_s`
     (q, m, k, s), times after the pass; `ends_s`, `ends_m_s` (q, m, k), duration of the roll and speed at its end;
-    `most_entry_m_s` (q, m). NaN where a mark is not on that stretch.
+    `most_entry_m_s`, `least_entry_m_s` (q, m). NaN where a mark is not on that stretch.
     """
 
     time_s: Floats
@@ -37,6 +37,7 @@ class Legs(NamedTuple):
     ends_s: Floats
     ends_m_s: Floats
     most_entry_m_s: Floats
+    least_entry_m_s: Floats
 
 
 @kernel
@@ -67,7 +68,7 @@ def is_able(legs, q, i, k, speed):
     """Whether the cut may come to the position with `speed` and can leave it with the choice `k`."""
     exit_speed = legs.speeds_m_s[q, i, k]
     reached = exit_speed * exit_speed <= speed * speed + legs.won_m2_s2[q, i] + 1e-6
-    return reached and speed <= legs.most_entry_m_s[q, i]
+    return reached and legs.least_entry_m_s[q, i] <= speed <= legs.most_entry_m_s[q, i]
 
 
 @kernel

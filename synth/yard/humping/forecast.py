@@ -41,6 +41,10 @@ class Choices(Protocol):
     def most_entry_m_s(self) -> Floats | float:
         """Fastest that a cut may come to the position."""
 
+    @property
+    def least_entry_m_s(self) -> Floats | float:
+        """Slowest that it may come, so that worse runners than expected come, too."""
+
     def speeds(self, most_m_s: Floats) -> Floats:
         """(n, choices); a cut cannot be faster than `most_m_s` (n,)."""
 
@@ -52,6 +56,7 @@ class Given:
 
     speed_m_s: Floats
     most_entry_m_s: Floats | float = np.inf
+    least_entry_m_s: Floats | float = 0.0
 
     def speeds(self, most_m_s: Floats) -> Floats:
         """(n, 1)."""
@@ -60,13 +65,14 @@ class Given:
 
 @dataclass(frozen=True)
 class SpeedRange:
-    """Exit speeds that a position may be commanded, and how many of them a control compares; `most_entry_m_s`:
-    fastest that a cut may come to it."""
+    """Exit speeds that a position may be commanded, and how many of them a control compares; `most_entry_m_s`,
+    `least_entry_m_s`: how fast a cut may come to it."""
 
     low_m_s: float
     high_m_s: float
     choices: int = 7
     most_entry_m_s: float = np.inf
+    least_entry_m_s: float = 0.0
 
     def speeds(self, most_m_s: Floats) -> Floats:
         """(n, choices) evenly between both ends; where a cut is slower, up to its speed `most_m_s` (n,)."""
@@ -177,6 +183,7 @@ def through(
         ends_s=ends,
         ends_m_s=ends_speed,
         most_entry_m_s=np.stack([np.broadcast_to(each.most_entry_m_s, count) for each in choices]),
+        least_entry_m_s=np.stack([np.broadcast_to(each.least_entry_m_s, count) for each in choices]),
     )
     return Ways(routes, legs)
 

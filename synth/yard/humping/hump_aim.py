@@ -87,11 +87,12 @@ class HumpAim:
         for key in np.unique(together):
             rows = np.flatnonzero(together == key)
             table = self.tables[key // len(self.tables[0])][key % len(self.tables[0])]
-            speeds[rows] = answer(table.by_category, cars[rows], free_distance_m[rows])
-            if reading_n_per_kn is None or table.measured is None:
-                continue
-            read = rows[~np.isnan(reading_n_per_kn[rows])]
-            speeds[read] = answer(table.measured, cars[read], free_distance_m[read], reading_n_per_kn[read])
+            if reading_n_per_kn is not None and table.measured is not None:
+                told = ~np.isnan(reading_n_per_kn[rows])
+                read, rows = rows[told], rows[~told]
+                speeds[read] = answer(table.measured, cars[read], free_distance_m[read], reading_n_per_kn[read])
+            if len(rows):
+                speeds[rows] = answer(table.by_category, cars[rows], free_distance_m[rows])
         return np.where(np.isnan(speeds), self.lowest_m_s, speeds)
 
     def expected_m_s(self, routes: Ints, category: Ints, cars: Ints, free_distance_m: Floats) -> Floats:

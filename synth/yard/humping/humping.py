@@ -13,12 +13,16 @@ from synth.yard.humping.hump_position import Arrivals, HumpPosition
 from synth.yard.humping.hump_routes import OF_FIRST_AXLE, HumpRoutes, Mark
 from synth.yard.humping.meeting import Ahead, LastUsers, first_of, meeting
 from synth.yard.humping.motion import Cars, Moving, Rolls, braked_evenly, rolled_free
+from synth.yard.humping.standing_cars import StandingCars
 from synth.yard.humping.train_cuts import TrainCuts
 from synth.yard.humping.train_memory import TrainMemory
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
+
+NEARLY_M = 0.05
+"""A cut that stops of itself is taken to stand when it has so much to go: the last of it takes time, but no place."""
 
 
 @frozen_arrays
@@ -67,9 +71,9 @@ class Hump:
 def humped(hump: Hump, trains: TrainCuts, free_m: Floats, speeds: HumpSpeeds, control: ExitSpeeds) -> TrainMemory:
     """Hump all `trains`; `free_m` (trains, routes): where the standing cars of each track begin before the train."""
     memory = TrainMemory(trains.trains, trains.cuts, hump.routes)
-    users, free = LastUsers(trains.trains, hump.routes), free_m.copy()
+    users, standing = LastUsers(trains.trains, hump.routes), StandingCars(free_m)
     for cut in range(trains.cuts):
-        OneCut(hump, trains, cut, memory, users, free).run(speeds, control)
+        OneCut(hump, trains, cut, memory, users, standing).run(speeds, control)
     return memory
 
 
@@ -77,10 +81,10 @@ class OneCut:
     """Cut number `cut` of every train while it rolls."""
 
     def __init__(
-        self, hump: Hump, trains: TrainCuts, cut: int, memory: TrainMemory, users: LastUsers, free_m: Floats
+        self, hump: Hump, trains: TrainCuts, cut: int, memory: TrainMemory, users: LastUsers, standing: StandingCars
     ) -> None:
-        self.hump, self.trains, self.cut, self.memory, self.users, self.free_m = (
-            hump, trains, cut, memory, users, free_m,
+        self.hump, self.trains, self.cut, self.memory, self.users, self.standing = (
+            hump, trains, cut, memory, users, standing,
         )  # fmt: skip
         self.lanes = np.arange(trains.trains)
         self.rows = self.lanes * trains.cuts + cut
@@ -193,7 +197,9 @@ class OneCut:
         for first, last in ((Mark.FIRST_IN, Mark.LAST_IN), (Mark.FIRST_OUT, Mark.LAST_OUT),
                             (Mark.FIRST_CLEAR, Mark.LAST_CLEAR)):  # fmt: skip
             begins = ahead[:, :, last]
-            takes = np.nan_to_num(begins - ahead[:, :, first], nan=np.inf)
+            with np.errstate(invalid="ignore"):  # a leader that stopped is never past
+                takes = begins - ahead[:, :, first]
+            takes = np.where(np.isfinite(takes), takes, np.inf)
             times[:, :, first], times[:, :, last] = begins, begins + longer[:, None] * takes
         earlier = np.arange(own.shape[1])[None, :] < at[:, None]
         kept = earlier[:, :, None] & ~np.isnan(own)
@@ -210,7 +216,7 @@ class OneCut:
         lanes = self.lanes[held]
         start = moving.chosen(held)
         ahead = self.users.on(self.routes[held], lanes)
-        free = self.free_m[lanes, self.routes[held]]
+        free = self.standing.free_m[lanes, self.routes[held]]
         asked = Asked(self.cut, position, lanes, self.routes[held], start, ahead, free, memory)
         command = self.obeyed(control.command(asked), held, position)
         to = routes.exit_m[self.routes[held], position] + self.last_m[held]
@@ -258,18 +264,29 @@ class OneCut:
 
     def to_track(self, moving: Moving) -> None:
         """Free roll to the standing cars, and what the whole way was like."""
-        lanes, cut, memory = self.lanes, self.cut, self.memory
-        free = np.maximum(self.free_m[lanes, self.routes], moving.head_m)
-        moving = self.free(moving, free)
-        free = np.maximum(self.free_m[lanes, self.routes], moving.head_m)
+        cut, memory, standing = self.cut, self.memory, self.standing
+        end = self.free(moving, np.maximum(standing.free_m[self.lanes, self.routes], moving.head_m))
         met = meeting(self.hump.routes, self.routes, self.times, self.ahead())
         memory.unseparated[:, cut], memory.foul[:, cut] = met.unseparated, met.foul
-        memory.free_m[:, cut] = free
+        memory.free_m[:, cut] = standing.free_m[self.lanes, self.routes]
         rolls = self.rolling
-        memory.end_m[rolls, cut] = moving.head_m[rolls]
-        memory.end_speed_m_s[rolls, cut], memory.end_time_s[rolls, cut] = moving.speed_m_s[rolls], moving.time_s[rolls]
-        tail = np.where(rolls, moving.head_m - self.length_m, free - self.length_m)
-        self.free_m[lanes, self.routes] = np.minimum(tail, free)
+        lanes, still = self.lanes[rolls], Moving(end.head_m, end.speed_m_s, self.still_s(moving, end)).chosen(rolls)
+        closing = standing.add(lanes, self.cars(rolls), moving.chosen(rolls), still, self.length_m[rolls])
+        touches = ~np.isnan(closing)
+        memory.caught_on_track[lanes, cut] = touches
+        memory.end_m[lanes, cut], memory.end_time_s[lanes, cut] = still.head_m, still.time_s
+        memory.end_speed_m_s[lanes, cut] = np.where(touches, closing, still.speed_m_s)
+        standing.block(self.lanes[~rolls], self.routes[~rolls], self.length_m[~rolls])
+
+    def still_s(self, moving: Moving, end: Moving) -> Floats:
+        """When cuts that roll from `moving` to `end` are there, also those that stop of themselves."""
+        times = end.time_s.copy()
+        stops = self.rolling & (end.speed_m_s <= 0.0) & (end.head_m > moving.head_m)
+        if stops.any():
+            near = np.maximum(end.head_m[stops] - NEARLY_M, moving.head_m[stops])
+            almost, _ = rolled_free(self.cars(stops), moving.chosen(stops), near, np.empty((int(stops.sum()), 0)))
+            times[stops] = almost.time_s
+        return times
 
 
 def merged(all_lanes: Moving, some: Moving, which: Bools) -> Moving:

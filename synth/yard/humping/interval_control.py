@@ -77,7 +77,7 @@ class Feedback:
         rows = asked.lanes * self.known.cuts + asked.cut
         resistance = self.rollability.resistance_n_per_kn(asked)
         expected = self.known.expected(rows, asked.routes, resistance)
-        choices: tuple[Choices, ...] = (*self.ranges[asked.position :], self.known.aim(rows))
+        choices: tuple[Choices, ...] = (*self.ranges[asked.position :], self.known.aim_of(rows))
         ways = from_entrance(self.routes, expected, asked.start, asked.position, choices)
         first_in = self.plan.first_in_s
         free_by = free_by_s(self.routes, self.known, first_in, asked.routes, asked.lanes, asked.cut)
@@ -118,7 +118,7 @@ class Sight:
         start = Moving(0.5 * self.known.length_m[rows], memory.hump_speed_m_s[:, ahead], memory.crest_s[:, ahead])
         planned = (Given(self.plan.exit_m_s[:, ahead, q]) for q in range(self.plan.exit_m_s.shape[2]))
         expected = self.known.expected(rows, self.known.route[rows], self.known.mean_n_per_kn[rows])
-        ways = from_crest(self.routes, expected, start, (*planned, self.known.aim(rows)))
+        ways = from_crest(self.routes, expected, start, (*planned, self.known.aim_of(rows)))
         self.known_s[:, ahead, 0] = memory.crest_s[:, ahead]
         self.out_s[:, ahead, 0] = ways.followed().last_out_s
         for position in range(self.plan.exit_m_s.shape[2]):
@@ -134,7 +134,7 @@ class Sight:
         start = Moving(head, memory.entry_m_s[lanes, cut, position], memory.begin_s[lanes, cut, position])
         speeds = [memory.exit_m_s[lanes, cut, position]]
         speeds += [self.planned_m_s[lanes, cut, q] for q in range(position + 1, self.planned_m_s.shape[2])]
-        choices = (*(Given(speed) for speed in speeds), self.known.aim(rows))
+        choices = (*(Given(speed) for speed in speeds), self.known.aim_of(rows))
         ways = from_entrance(self.routes, expected, start, position, choices)
         ended = expected_end_s(self.routes, expected, start, speeds[0], position)
         shift = memory.end_s[lanes, cut, position] - ended

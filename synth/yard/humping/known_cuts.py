@@ -24,8 +24,8 @@ Ints = NDArray[np.int64]
 @dataclass(frozen=True, eq=False)
 class KnownCuts:
     """All cuts of some trains, a row each: `rolls` with mean bends and wind; resistance: `mean_n_per_kn`, and that of
-    good and of bad runners, `good_n_per_kn` and `bad_n_per_kn` (rows,). `aim_m_s`: the exit speed of the last position
-    by the aim, as it is expected before the train, and `most_entry_m_s` there."""
+    good and of bad runners, `good_n_per_kn` and `bad_n_per_kn` (rows,). `aim` (rows,): exit speeds of the
+    last position as they are expected before the train, and how fast cuts may come to it."""
 
     rolls: Rolls
     trains: int
@@ -37,8 +37,7 @@ class KnownCuts:
     mean_n_per_kn: Floats
     good_n_per_kn: Floats
     bad_n_per_kn: Floats
-    aim_m_s: Floats
-    most_entry_m_s: Floats
+    aim: Given
 
     def of_cut(self, cut: int) -> Ints:
         """Rows of cut number `cut` of every train."""
@@ -49,19 +48,19 @@ class KnownCuts:
         cars = Cars(self.rolls, rows, routes, resistance_n_per_kn)
         return Expected(cars, self.first_axle_m[rows], self.last_axle_m[rows])
 
-    def aim(self, rows: Ints) -> Given:
+    def aim_of(self, rows: Ints) -> Given:
         """What the last position is expected to make of the cuts `rows`."""
-        return Given(self.aim_m_s[rows], self.most_entry_m_s[rows])
+        aim = self.aim
+        most, least = (np.broadcast_to(m, len(aim.speed_m_s)) for m in (aim.most_entry_m_s, aim.least_entry_m_s))
+        return Given(aim.speed_m_s[rows], most[rows], least[rows])
 
 
 GOOD, BAD = 0.023, 0.977
 """Quantiles of runners that are good and bad: two standard deviations from the mean of a normal law."""
 
 
-def known_cuts(
-    trains: TrainCuts, ways: RouteWays, aim_m_s: Floats, most_entry_m_s: Floats, threads: int = 0
-) -> KnownCuts:
-    """`trains` as they are known before they roll on `ways`, with the exit speeds that they will be aimed with."""
+def known_cuts(trains: TrainCuts, ways: RouteWays, aim: Given, threads: int = 0) -> KnownCuts:
+    """`trains` as they are known before they roll on `ways`; `aim` (rows,): what they will be aimed with."""
     drawn = expected(trains)
     rolls = rolling_on(ways, trains.population, drawn, threads)
     return KnownCuts(
@@ -75,8 +74,7 @@ def known_cuts(
         mean_n_per_kn=drawn.resistance_n_per_kn,
         good_n_per_kn=runner_n_per_kn(trains, drawn, GOOD),
         bad_n_per_kn=runner_n_per_kn(trains, drawn, BAD),
-        aim_m_s=aim_m_s,
-        most_entry_m_s=most_entry_m_s,
+        aim=aim,
     )
 
 

@@ -34,11 +34,11 @@ class TrainOutcomes:
 
     `train`: its number; `span_s`: from the first cut at the crest to the last, in which `span_m` and `span_cars` went
     over it, counted from middle to middle. (n, elements), by the numbers of the routes: `misrouted`, `contact`,
-    `unseparated`, `foul`. `caught`: cuts misrouted or in contact ahead of the tracks. `caught_on_track`: cuts that came
-    up with the one ahead on its track. `stopped`: on the way. `judged`: all others that reached a track, of which
-    `overspeed` (n, 3) coupled in each class of speed, `gap_m` is what they left free, all together. `speed_bins`,
-    `gap_bins`: histograms. `passes`, `strokes`, `error2_m2_s2` (n, positions): passes, commands to valves, and
-    squares of (exit less command) summed up.
+    `unseparated`, `foul`. `caught`: cuts misrouted or in contact, but not in the last position (`caught_in_last`).
+    `caught_on_track`: cuts that coupled to the one ahead while that rolled. `stopped`: on the way. `judged`: all
+    others, which reached a track; of these `overspeed` (n, 3) coupled in each class of speed, `gap_m` is what they left
+    free, all together. `speed_bins`, `gap_bins`: histograms. `passes`, `strokes`, `error2_m2_s2` (n, positions): passes,
+    commands to valves, and squares of (exit less command) summed up.
     """
 
     train: Ints
@@ -52,6 +52,7 @@ class TrainOutcomes:
     unseparated: Ints
     foul: Ints
     caught: Ints
+    caught_in_last: Ints
     caught_on_track: Ints
     stopped: Ints
     judged: Ints
@@ -76,13 +77,17 @@ def outcomes(routes: HumpRoutes, trains: TrainCuts, memory: TrainMemory) -> Trai
     """What is to be told of `trains` that were humped."""
     shape = trains.trains, trains.cuts
     none = routes.elements
-    caught = (memory.misrouted_at < none) | (memory.contact_at < none)
+    last_retarder = routes.retarder[memory.route].max(axis=2)
+    in_last = (memory.misrouted_at == none) & (memory.contact_at == last_retarder)
+    caught = ((memory.misrouted_at < none) | (memory.contact_at < none)) & ~in_last
     ends = memory.end_m
     last = routes.exit_m[memory.route].max(axis=2, initial=0.0, where=np.isfinite(routes.exit_m[memory.route]))
-    stopped = ~caught & (ends < last)
-    judged = ~caught & ~stopped & ~memory.caught_on_track
+    stopped = ~caught & ~in_last & (ends < last)
+    judged = ~caught & ~in_last & ~stopped
     speed = np.where(judged, memory.end_speed_m_s, 0.0)
-    gap = np.where(judged & (memory.end_speed_m_s <= 0.0), np.maximum(memory.free_m - ends, 0.0), 0.0)
+    gap = np.where(
+        judged & (memory.end_speed_m_s <= 0.0) & ~memory.caught_on_track, np.maximum(memory.free_m - ends, 0.0), 0.0
+    )
     bounds = (*CLASSES_M_S, np.inf)
     over = [((speed > low) & (speed <= high)).sum(axis=1) for low, high in pairwise(bounds)]
     length, cars = trains.length_m.reshape(shape), trains.cars.reshape(shape)
@@ -100,7 +105,8 @@ def outcomes(routes: HumpRoutes, trains: TrainCuts, memory: TrainMemory) -> Trai
         unseparated=over_elements(routes, memory.route, memory.unseparated),
         foul=over_elements(routes, memory.route, memory.foul),
         caught=caught.sum(axis=1),
-        caught_on_track=(memory.caught_on_track & ~caught).sum(axis=1),
+        caught_in_last=in_last.sum(axis=1),
+        caught_on_track=(memory.caught_on_track & ~caught & ~in_last).sum(axis=1),
         stopped=stopped.sum(axis=1),
         judged=judged.sum(axis=1),
         overspeed=np.stack(over, axis=1),

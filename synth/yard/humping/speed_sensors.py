@@ -65,16 +65,22 @@ class SpeedSensors:
         require_between("speed sensors: std_m_s", self.std_m_s, 1e-4, 2.0)
 
     def stretch(self, asked: Asked, position: int) -> StretchSpeeds:
-        """The free stretch ahead of `position`, which is the one asked for or one before it."""
+        """The free stretch ahead of `position`, which is the one asked for or one before it. What is not over when the
+        control is asked is not read."""
         trains, memory, lanes, cut = self.trains, asked.memory, asked.lanes, asked.cut
-        rows = lanes * trains.cuts + cut
-        comes = asked.start.speed_m_s if position == asked.position else memory.entry_m_s[lanes, cut, position]
+        rows, now = lanes * trains.cuts + cut, asked.start.time_s
+        comes = asked.start.speed_m_s
+        if position < asked.position:
+            place = lanes, cut, position
+            comes = np.where(memory.begin_s[place] <= now, memory.entry_m_s[place], 0.0)
         ends = self.routes.entrance_m[asked.routes, position] + trains.first_axle_m[rows]
         if position == 0:
             begins, leaves, std = 0.5 * trains.length_m[rows], memory.hump_speed_m_s[lanes, cut], 0.0
         else:
+            place = lanes, cut, position - 1
             begins = self.routes.exit_m[asked.routes, position - 1] + trains.last_axle_m[rows]
-            leaves, std = self.read(asked, 2 * position - 1, memory.exit_m_s[lanes, cut, position - 1]), self.std_m_s
+            left = np.where(memory.end_s[place] <= now, memory.exit_m_s[place], 0.0)
+            leaves, std = self.read(asked, 2 * position - 1, left), self.std_m_s
         return StretchSpeeds(begins, leaves, ends, self.read(asked, 2 * position, comes), std, self.std_m_s)
 
     def read(self, asked: Asked, place: int, speed_m_s: Floats) -> Floats:

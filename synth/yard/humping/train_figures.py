@@ -90,6 +90,7 @@ def train_figures(found: TrainOutcomes, wanted_share: float = 0.005) -> tuple[Tr
         part("catch_ups", found.caught, cuts),
         part("misrouted", found.misrouted.sum(axis=1), cuts),
         part("contacts", found.contact.sum(axis=1), cuts),
+        part("contacts_in_last_position", found.caught_in_last, cuts),
         part("caught_on_track", found.caught_on_track, cuts),
         part("stopped_on_the_way", found.stopped, cuts),
         mean("unseparated_elements_per_cut", "1", found.unseparated.sum(axis=1).astype(float), cuts),

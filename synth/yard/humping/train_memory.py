@@ -17,7 +17,9 @@ class TrainMemory:
     `route`: rows of the routes that the cuts went, at last. `crest_s`, `hump_speed_m_s`. `time_s` (…, elements, marks).
     (…, positions): `begin_s` and `entry_m_s` of a pass, `command_m_s`, `exit_m_s`, `end_s`, `strokes` of valves.
     Columns of elements, the number of elements where none: `misrouted_at`, `contact_at`. (…, elements): `unseparated`,
-    `foul`. At the track: `free_m` that the cut found, head at its end `end_m` with `end_speed_m_s` at `end_time_s`.
+    `foul`. At the track: `free_m` that the cut found, head at its end `end_m` with `end_speed_m_s` at
+    `end_time_s`; where it is `caught_on_track`, because it touched the cut ahead while that still rolled, the speed is
+    the difference of both.
     """
 
     def __init__(self, trains: int, cuts: int, routes: HumpRoutes) -> None:

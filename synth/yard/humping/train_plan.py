@@ -133,7 +133,7 @@ class Sweep:
         start = Moving(0.5 * known.length_m[rows], self.hump_speed_m_s[:, cut], self.crest_s[:, cut])
         resistance = known.good_n_per_kn if planner.worst_pair else known.mean_n_per_kn
         expected = known.expected(rows, known.route[rows], resistance[rows])
-        ways = from_crest(planner.routes, expected, start, (*planner.ranges, known.aim(rows)))
+        ways = from_crest(planner.routes, expected, start, (*planner.ranges, known.aim_of(rows)))
         compared = ways.compared(*self.neighbours(cut))
         taken = ways.followed(rule.best(compared))
         self.margin_s[:, cut] = np.where(possible(compared), compared.ahead_s, -np.inf).max(axis=1)
@@ -148,7 +148,7 @@ class Sweep:
             start = Moving(0.5 * known.length_m[rows], self.hump_speed_m_s[:, cut], self.crest_s[:, cut])
             given = (Given(self.exit_m_s[:, cut, q]) for q in range(len(planner.ranges)))
             slow = known.expected(rows, known.route[rows], known.bad_n_per_kn[rows])
-            out = from_crest(planner.routes, slow, start, (*given, known.aim(rows))).followed().last_out_s
+            out = from_crest(planner.routes, slow, start, (*given, known.aim_of(rows))).followed().last_out_s
         times = np.full((known.trains, planner.routes.elements, len(Mark)), np.nan)
         times[:, :, Mark.FIRST_IN], times[:, :, Mark.LAST_OUT] = self.first_in_s[:, cut], out
         self.users.add(cut, known.route[rows], times)

@@ -12,6 +12,7 @@ from plant_models.cut import GRAVITY_M_S2, ROTATING_MASS_PER_AXLE_T
 from plant_models.errors import require, require_between
 from synth.yard.humping.aim_control import AimControl, ReadAhead
 from synth.yard.humping.expected_way import ExpectedWay
+from synth.yard.humping.forecast import Given
 from synth.yard.humping.free_tracks import FreeTracks
 from synth.yard.humping.hump_aim import HumpAim
 from synth.yard.humping.hump_position import HumpPosition
@@ -19,13 +20,13 @@ from synth.yard.humping.hump_routes import HumpRoutes
 from synth.yard.humping.humping import ExitSpeeds, Hump, humped
 from synth.yard.humping.interval import CentredRule, IntervalRule
 from synth.yard.humping.interval_control import Feedback, OpenLoop, ProgramSpeeds
-from synth.yard.humping.known_cuts import KnownCuts, known_cuts
+from synth.yard.humping.known_cuts import BAD, KnownCuts, known_cuts, runner_n_per_kn
 from synth.yard.humping.outcomes import TrainOutcomes, outcomes
-from synth.yard.humping.rollability import CategoryMean, MeasuredRollability, Rollability
+from synth.yard.humping.rollability import CategoryMean, Rollability, measured_rollability
 from synth.yard.humping.route_rolling import rolling_on
 from synth.yard.humping.route_ways import RouteWays
 from synth.yard.humping.speed_sensors import SpeedSensors
-from synth.yard.humping.train_cuts import TrainCuts
+from synth.yard.humping.train_cuts import TrainCuts, expected
 from synth.yard.humping.train_memory import TrainMemory
 from synth.yard.humping.train_plan import Planner, TrainPlan
 
@@ -33,6 +34,15 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 CENTRED = CentredRule()
+
+WORST_ENTRY_M_S = 1.0
+"""Assumed: bad runners against the wind come to the last position with this at least."""
+
+USUAL_M_S = 4.0
+"""Speed at which the wind is counted in that."""
+
+SPARE_M = 30.0
+"""Room that a cut gets besides its length (assumed)."""
 
 BATCH = 100
 """Trains that are humped side by side; no figure depends on it."""
@@ -146,7 +156,7 @@ class HumpTrial:
     def humped(self, first: int, count: int) -> tuple[TrainCuts, TrainPlan, TrainMemory]:
         """The same trains with their plan and all that happened to them."""
         trains = self.source.trains(first, count)
-        free_m = self.free.free_m(self.routes, trains.seed, first, count)
+        free_m = with_room(self.routes, trains, self.free.free_m(self.routes, trains.seed, first, count))
         known = self.known(trains, free_m)
         aim = self.aim_of(trains, known)
         plan = self.program.plan(self.planner, known)
@@ -163,7 +173,20 @@ class HumpTrial:
         aim = self.aim.expected_m_s(trains.route, trains.category, trains.cars, free)
         gravity = reduced_gravity_m_s2(trains)
         head = self.usable_head_m(trains.mass_t, trains.axles, trains.category)
-        return known_cuts(trains, self.ways, aim, np.sqrt(aim**2 + 2.0 * gravity * head), self.threads)
+        least = np.sqrt(WORST_ENTRY_M_S**2 + 2.0 * gravity * self.worse_head_m(trains))
+        given = Given(aim, np.sqrt(aim**2 + 2.0 * gravity * head), least)
+        return known_cuts(trains, self.ways, given, self.threads)
+
+    def worse_head_m(self, trains: TrainCuts) -> Floats:
+        """Energy head (rows,) that bad runners against the wind lose more than expected ahead of the last position."""
+        begins = self.routes.exit_m[:, -2] if self.routes.positions > 1 else np.zeros(len(self.routes.routes))
+        stretch = (self.routes.entrance_m[:, -1] - begins)[trains.route]
+        drawn = expected(trains)
+        weather = trains.population.weather
+        wind = np.array([weather.head_wind_mean_m_s, weather.head_wind_mean_m_s + 2.0 * weather.head_wind_std_m_s])
+        against = (USUAL_M_S + wind) * np.abs(USUAL_M_S + wind)
+        worse = runner_n_per_kn(trains, drawn, BAD) - drawn.resistance_n_per_kn
+        return np.asarray(1e-3 * stretch * (worse + drawn.air_n_per_kn * (against[1] - against[0])))
 
     def aim_of(self, trains: TrainCuts, known: KnownCuts) -> AimControl:
         """The control of the last position for these trains."""
@@ -171,7 +194,7 @@ class HumpTrial:
         reading = None
         if sensing is not None and sensing.for_aim:
             sensors = SpeedSensors(self.routes, trains, sensing.speed_std_m_s)
-            reading = ReadAhead(sensors, ExpectedWay(known.rolls, known.mean_n_per_kn, reduced_gravity_m_s2(trains)))
+            reading = ReadAhead(sensors, expected_way(trains, known))
         return AimControl(self.aim, self.routes, trains, reading)
 
     def control_of(self, trains: TrainCuts, known: KnownCuts, plan: TrainPlan, aim: AimControl) -> ExitSpeeds:
@@ -182,10 +205,25 @@ class HumpTrial:
         rollability: Rollability = CategoryMean(known)
         if sensing is not None and sensing.for_intervals:
             sensors = SpeedSensors(self.routes, trains, sensing.speed_std_m_s)
-            rollability = MeasuredRollability(sensors, trains)
+            rollability = measured_rollability(sensors, trains, expected_way(trains, known))
         return Feedback(self.routes, known, plan, self.planner.ranges, self.control.rule, rollability, aim)
+
+
+def expected_way(trains: TrainCuts, known: KnownCuts) -> ExpectedWay:
+    """The way of `trains` as it is expected before the train."""
+    return ExpectedWay(known.rolls, known.mean_n_per_kn, reduced_gravity_m_s2(trains))
 
 
 def reduced_gravity_m_s2(trains: TrainCuts) -> Floats:
     """g' of each cut by its list, (rows,)."""
     return np.asarray(GRAVITY_M_S2 / (1.0 + ROTATING_MASS_PER_AXLE_T * trains.axles / trains.mass_t))
+
+
+def with_room(routes: HumpRoutes, trains: TrainCuts, free_m: Floats) -> Floats:
+    """`free_m` (trains, routes), but where a train brings more cars than there is room for, all room that they need:
+    nobody sends cuts to a full track. As much as the track has, where that is less."""
+    train = np.repeat(np.arange(trains.trains), trains.cuts)
+    needs = np.zeros(free_m.shape)
+    np.add.at(needs, (train, trains.route), trains.length_m + SPARE_M)
+    begins = np.array([route.yard_from_m for route in routes.routes])
+    return np.asarray(np.clip(begins + needs, free_m, routes.length_m))

@@ -158,7 +158,7 @@ def test_command_by_hand() -> None:
     trains = AlikeCuts(4, np.zeros(4, dtype=np.int64), np.ones(4, dtype=np.int64))
     own, mean = np.array([0.5, 1.5, 3.0, 1.0]), np.full(4, 1.3)
     memory = TrainMemory(4, 1, ROUTES)
-    memory.exit_m_s[:, 0, 1] = [5.0, 4.0, 3.0, np.nan]  # the last speed was not read
+    memory.exit_m_s[:, 0, 1], memory.end_s[:, 0, 1] = [5.0, 4.0, 3.0, np.nan], 50.0  # the last speed was not read
     slope = EvenSlope(own)
     begin, end = ROUTES.exit_m[0, 1] + LAST_M, ROUTES.entrance_m[0, 2] + FIRST_M
     rows = np.arange(4)
@@ -181,7 +181,7 @@ def test_readings_scatter_as_they_say() -> None:
     trains = AlikeCuts(count, np.zeros(count, dtype=np.int64), np.ones(count, dtype=np.int64))
     own, gravity = np.full(count, 2.0), np.full(count, GRAVITY_M_S2)
     memory = TrainMemory(count, 1, ROUTES)
-    memory.exit_m_s[:, 0, 1] = 5.0
+    memory.exit_m_s[:, 0, 1], memory.end_s[:, 0, 1] = 5.0, 50.0
     length = ROUTES.entrance_m[0, 2] + FIRST_M - ROUTES.exit_m[0, 1] - LAST_M
     square = 25.0 + 2.0 * GRAVITY_M_S2 * (GRADE - 0.002) * length
     asked = asked_at(ROUTES, 2, memory, np.full(count, np.sqrt(square)), np.full(count, 500.0))
