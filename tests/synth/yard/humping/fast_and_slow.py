@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,8 +25,18 @@ Floats = NDArray[np.float64]
 HEADS_M = (0.9, 0.9, 0.5)
 """Energy heads of the full brakes of the positions."""
 
-POOR_SHARE = 0.12
-"""Share of cuts with four times their resistance: they stop, block and foul."""
+
+@dataclass(frozen=True)
+class Hardness:
+    """How hard the trains are: share of cuts with four times their resistance, which stop and foul, and the least free
+    length of the last section of a track."""
+
+    poor_share: float
+    room_m: float
+
+
+ORDINARY, HARD = Hardness(0.0, 250.0), Hardness(0.12, 60.0)
+"""Trains whose cuts reach tracks with room for all, and trains in which anything happens."""
 
 
 @dataclass(frozen=True)
@@ -109,37 +118,24 @@ class BothTrains:
 
 
 def both_trains(
-    graph: HumpGraph, people: CutPopulation, tracks: tuple[int, ...], seed: int, count: int, cuts: int
+    graph: HumpGraph,
+    people: CutPopulation,
+    tracks: tuple[int, ...],
+    seed: int,
+    count: int,
+    cuts: int,
+    hardness: Hardness = ORDINARY,
 ) -> BothTrains:
     """`count` trains of `cuts` cuts of one to three cars for few `tracks`, at speeds and commands of all kinds."""
     routes, rng = hump_routes(graph, graph.leads[0]), np.random.default_rng(seed)
     shares = {category.number: 1.0 for category in people.categories.members}
     lists = TrainPopulation(people.mix, people.categories, shares, dict.fromkeys(tracks, 1.0), 1.8, 3)
     made = trains(lists, people, routes.routes, seed, 0, count, cuts)
-    poor = np.where(rng.random(len(made)) < POOR_SHARE, 4.0, 1.0)
+    poor = np.where(rng.random(len(made)) < hardness.poor_share, 4.0, 1.0)
     made = replace(made, drawn=replace(made.drawn, basic_n_per_kn=made.drawn.basic_n_per_kn * poor[:, None]))
     speed = rng.uniform(1.6, 3.0, (count, 1)) + np.cumsum(rng.uniform(-0.15, 0.15, (count, cuts)), axis=1)
     low, high = np.array([(3.0, 6.0), (2.5, 5.0), (0.8, 2.0)])[: routes.positions].T
     exits = rng.uniform(low, high, (count, cuts, routes.positions))
     begins = np.array([route.elements[-1].from_m for route in routes.routes])
-    free = rng.uniform(begins + 60.0, routes.length_m, (count, len(begins)))
+    free = rng.uniform(begins + hardness.room_m, routes.length_m, (count, len(begins)))
     return BothTrains(graph, routes, made, np.clip(speed, 1.4, 3.3), exits, free)
-
-
-def fast_outcome(both: BothTrains, memory: TrainMemory, train: int) -> Iterator[tuple[str, int, int]]:
-    """(kind, element, cut) of what the layered simulator noted of a train, in the words of the slow one."""
-    routes = both.routes
-    for cut in range(both.cuts.cuts):
-        row = memory.route[train, cut]
-
-        def number(column: int, row: int = row) -> int:
-            return routes.numbers[routes.vertex[row, column]]
-
-        for kind, columns in (("misrouted", memory.misrouted_at), ("contact", memory.contact_at)):
-            if columns[train, cut] < routes.elements:
-                yield kind, number(columns[train, cut]), cut
-        for kind, found in (("not separated", memory.unseparated), ("fouled", memory.foul)):
-            for column in np.flatnonzero(found[train, cut]):
-                yield kind, number(int(column)), cut
-        if memory.caught_on_track[train, cut]:
-            yield "contact on the track", routes.routes[row].elements[-1].number, cut

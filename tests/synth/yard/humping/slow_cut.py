@@ -16,13 +16,15 @@ SAME_S = 1e-12
 
 
 class Mode(Enum):
-    """What moves the cut: the locomotive, its weight, a position, the cut ahead, or nothing."""
+    """What moves the cut: the locomotive, its weight, a position, the cut ahead on its way or on its track, or
+    nothing."""
 
     PUSHED = 0
     ROLLING = 1
     BRAKED = 2
     BEHIND = 3
-    STANDING = 4
+    TOWED = 4
+    STANDING = 5
 
 
 class Push:
@@ -89,6 +91,11 @@ class MovingCut:
     def tail_at(self, time_s: float) -> float:
         """Where its end is."""
         return self.place_at(time_s) - self.body.length_m
+
+    def towed(self, ahead: MovingCut, time_s: float) -> None:
+        """Roll behind the cut ahead on the track, head at tail."""
+        self.leader, self.mode, self.on_track = ahead, Mode.TOWED, False
+        self.t, self.x, self.v = time_s, ahead.tail_at(time_s), ahead.v
 
     def reroute(self, order: int, route: Route, way: SlowWay, *, entered: bool) -> None:
         """Go another way from the element `order` on; `entered`: its first mark has just been passed."""

@@ -13,7 +13,8 @@ from plant_models.hump import HumpGraph, Retarder, RouteElement, Switch
 from tests.synth.yard.humping.slow_cut import SAME_S, Mode, MovingCut, Push, first_root
 from tests.synth.yard.humping.slow_fit import require_fit
 from tests.synth.yard.humping.slow_marks import LAST_OF, MarkAt, marks_of
-from tests.synth.yard.humping.slow_train import Kind, Mark, Passage, SlowEvent, SlowRun, SlowTrain
+from tests.synth.yard.humping.slow_record import SlowRecord
+from tests.synth.yard.humping.slow_train import Kind, Mark, Passage, SlowRun, SlowTrain
 from tests.synth.yard.humping.slow_way import SlowWay
 
 STEP_S = 0.02
@@ -26,7 +27,7 @@ def humped_slowly(graph: HumpGraph, train: SlowTrain, step_s: float = STEP_S) ->
     return SlowHumping(graph, train).run(step_s)
 
 
-class SlowHumping:
+class SlowHumping(SlowRecord):
     """A train that is being humped."""
 
     def __init__(self, graph: HumpGraph, train: SlowTrain) -> None:
@@ -42,12 +43,9 @@ class SlowHumping:
             MovingCut(cut, self.routes[cut.track], self.way(i, cut.track), push, self.now)
             for i, cut in enumerate(train.cuts)
         ]
-        self.events: list[SlowEvent] = []
-        self.passages: dict[tuple[int, int, Mark], Passage] = {}
+        super().__init__()
         self.commands: dict[tuple[int, int], float] = {}
         self.entered: set[tuple[int, int]] = set()
-        self.decisions: list[tuple[float, int, int, Mark, float]] = []
-        self.closest_s = inf
 
     def way(self, i: int, track: int) -> SlowWay:
         """What cut `i` feels on the route to `track`."""
@@ -70,10 +68,6 @@ class SlowHumping:
 
     def told(self) -> SlowRun:
         """What came of it."""
-        for time_s, j, number, mark, delay_s in self.decisions:
-            passage = self.passages.get((j, number, mark))
-            if passage is not None:
-                self.closest_s = min(self.closest_s, abs(time_s - passage.time_s - delay_s))
         events = [
             replace(e, value=self.free_to(e.cut) - self.cuts[e.cut].x) if e.kind is Kind.GAP else e for e in self.events
         ]
@@ -83,13 +77,13 @@ class SlowHumping:
             tracks=tuple(moving.route.track for moving in self.cuts),
             heads_m=tuple(moving.x for moving in self.cuts),
             in_contact=tuple(moving.leader is not None for moving in self.cuts),
-            closest_s=self.closest_s,
+            closest_s=self.closest(),
         )
 
     def advance(self, i: int, moving: MovingCut, until: float) -> None:
         """Let cut `i` make its part of the step."""
         moving.legs = [(moving.t, moving.x, moving.v, 0.0)]
-        while moving.mode not in (Mode.BEHIND, Mode.STANDING) and moving.t < until - SAME_S:
+        while moving.mode not in (Mode.BEHIND, Mode.TOWED, Mode.STANDING) and moving.t < until - SAME_S:
             t, x, limit_m = moving.t, moving.x, self.limit(i)
             arrived = moving.go(until, limit_m)
             if moving.on_track and self.touches(i, t, x):
@@ -100,7 +94,9 @@ class SlowHumping:
                 self.arrive(i, moving.marks.pop(0))
             elif moving.v <= 0.0:
                 self.stop(i)
-        if moving.leader is not None:
+        if moving.mode is Mode.TOWED:
+            self.tow(i, until)
+        elif moving.leader is not None:
             self.trail(i, moving.leader, until)
 
     def user(self, i: int, number: int) -> int | None:
@@ -135,11 +131,11 @@ class SlowHumping:
         share = first_root(ahead.tail_at(t) - x, ahead.tail_at(middle) - moving.place_at(middle), gap)
         time_s = t + (moving.t - t) * share
         if ahead.mode is Mode.STANDING:
-            self.closest_s = min(self.closest_s, abs(time_s - ahead.t))
+            self.margins_s.append(abs(time_s - ahead.t))
             if time_s >= ahead.t:
                 return False
         self.tell(time_s, Kind.TRACK_CONTACT, moving.route.elements[-1].number, i)
-        self.pin(i, j, moving.route.elements[-1].from_m)
+        moving.towed(ahead, time_s)
         return True
 
     def couple(self, i: int) -> None:
@@ -180,14 +176,8 @@ class SlowHumping:
             pinned = self.touches(i, moving.t, moving.x)
         if not pinned or at.mark is Mark.TRACK:
             self.passages[i, element.number, at.mark] = Passage(moving.t, moving.v)
-        if moving.leader is not None and not moving.owes_marks:
+        if moving.mode not in (Mode.BEHIND, Mode.TOWED) and moving.leader is not None and not moving.owes_marks:
             moving.mode = Mode.BEHIND
-
-    def passed(self, j: int, number: int, mark: Mark, time_s: float, delay_s: float = 0.0) -> bool:
-        """Whether the last axle of cut `j` was at `mark` by `time_s`, and `delay_s` before that."""
-        self.decisions.append((time_s, j, number, mark, delay_s))
-        passage = self.passages.get((j, number, mark))
-        return passage is not None and passage.time_s + delay_s <= time_s
 
     def enter(self, i: int, element: RouteElement, time_s: float) -> bool:
         """The first axle of cut `i` comes to the section of `element`; True if it is now behind the last user."""
@@ -267,6 +257,22 @@ class SlowHumping:
         if ahead.mode is Mode.STANDING and moving.mode is Mode.BEHIND and not waits:
             moving.mode, moving.t, moving.x, moving.v = Mode.STANDING, ahead.t, ahead.tail_at(inf), 0.0
 
+    def tow(self, i: int, until: float) -> None:
+        """Let cut `i`, whose head is at the tail of the cut ahead on its track, come to its last joints."""
+        moving = self.cuts[i]
+        assert moving.leader is not None
+        if until - moving.t <= SAME_S:
+            return
+        x, x_then = moving.leader.tail_at(until), moving.x
+        while moving.marks and moving.marks[0].head_m <= x:
+            at = moving.marks.pop(0)
+            share = (at.head_m - x_then) / max(x - x_then, SAME_M)
+            time_s, speed_m_s = moving.t + share * (until - moving.t), (x - x_then) / (until - moving.t)
+            self.passages[i, moving.route.elements[at.order].number, at.mark] = Passage(time_s, speed_m_s)
+        moving.t, moving.x = until, x
+        if moving.leader.mode is Mode.STANDING:
+            moving.mode, moving.t, moving.v = Mode.STANDING, moving.leader.t, 0.0
+
     def foul(self, i: int, element: RouteElement, time_s: float) -> None:
         """The first axle of cut `i` comes to its fouling point behind a switch."""
         j = self.user(i, element.number)
@@ -298,7 +304,3 @@ class SlowHumping:
         energy = min(max(0.5 * command**2, least), unbraked)
         moving.mode, moving.v_out = Mode.BRAKED, (2.0 * energy) ** 0.5
         moving.a = (energy - 0.5 * moving.v**2) / (exit_m - moving.x)
-
-    def tell(self, time_s: float, kind: Kind, element: int, cut: int, value: float = 0.0) -> None:
-        """Note an event."""
-        self.events.append(SlowEvent(time_s, kind, element, cut, value))
