@@ -23,6 +23,9 @@ MARKS = {
     LayeredMark.LAST_CLEAR: Mark.LAST_FOULING,
 }
 
+ALMOST_STANDS_M = 0.1
+"""Twice what the layered simulator leaves out of the last of a roll."""
+
 COMPARED = (Kind.NOT_SEPARATED, Kind.MISROUTED, Kind.CONTACT, Kind.FOULED, Kind.TRACK_CONTACT)
 
 
@@ -72,8 +75,9 @@ def counted(outcome: Outcome, run: SlowRun) -> Outcome:
     """What is compared of an outcome.
 
     The layered model says nothing of the points behind a contact, and does not look whether a cut comes up on the track
-    with one that rolls there in contact with a third.
+    with one that rolls there in contact with a third. Neither counts a contact with a cut that all but stands.
     """
+    nearly = {event.cut for event in run.of(Kind.TRACK_CONTACT) if event.value < ALMOST_STANDS_M}
     cuts, in_contact = judged(run), {event.cut for event in run.of(Kind.CONTACT)}
     behind_contact = behind(run, in_contact)
     return {
@@ -81,7 +85,7 @@ def counted(outcome: Outcome, run: SlowRun) -> Outcome:
         for kind, element, cut in outcome
         if cut in cuts
         and not (kind == Kind.MISROUTED.value and cut in in_contact)
-        and not (kind == Kind.TRACK_CONTACT.value and cut in behind_contact)
+        and not (kind == Kind.TRACK_CONTACT.value and cut in behind_contact | nearly)
     }
 
 

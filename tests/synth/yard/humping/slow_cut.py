@@ -159,6 +159,17 @@ class MovingCut:
             self.legs.append((self.t, self.x, self.v, (v - self.v) / seconds))
         self.t, self.x, self.v = self.t + seconds, x, v
 
+    def brake(self, command_m_s: float, exit_m: float, full_head_m: float) -> None:
+        """Brake evenly until the head is at `exit_m`: to the command, or as far as the full brake does; freely where the
+        cut would not get there without braking."""
+        unbraked = self.unbraked_energy(exit_m)
+        if unbraked <= 0.0:
+            return
+        least = unbraked - self.way.gravity * full_head_m
+        energy = min(max(0.5 * command_m_s**2, least), unbraked)
+        self.mode, self.v_out = Mode.BRAKED, sqrt(2.0 * energy)
+        self.a = (energy - 0.5 * self.v**2) / (exit_m - self.x)
+
     def unbraked_energy(self, to_m: float, step_m: float = 0.2) -> float:
         """v²/2 with which its head would be at `to_m` if it rolled there freely; 0 where it would not get there."""
         steps = max(1, round((to_m - self.x) / step_m))

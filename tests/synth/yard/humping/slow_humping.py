@@ -68,9 +68,11 @@ class SlowHumping(SlowRecord):
 
     def told(self) -> SlowRun:
         """What came of it."""
-        events = [
-            replace(e, value=self.free_to(e.cut) - self.cuts[e.cut].x) if e.kind is Kind.GAP else e for e in self.events
-        ]
+        events = []
+        for event in self.events:
+            stood_m = self.cuts[event.cut].x
+            ends = {Kind.GAP: self.free_to(event.cut) - stood_m, Kind.TRACK_CONTACT: stood_m - event.value}
+            events.append(replace(event, value=ends.get(event.kind, event.value)))
         return SlowRun(
             events=tuple(sorted(events, key=lambda e: (e.time_s, e.cut))),
             passages=self.passages,
@@ -134,8 +136,8 @@ class SlowHumping(SlowRecord):
             self.margins_s.append(abs(time_s - ahead.t))
             if time_s >= ahead.t:
                 return False
-        self.tell(time_s, Kind.TRACK_CONTACT, moving.route.elements[-1].number, i)
         moving.towed(ahead, time_s)
+        self.tell(time_s, Kind.TRACK_CONTACT, moving.route.elements[-1].number, i, moving.x)
         return True
 
     def couple(self, i: int) -> None:
@@ -291,16 +293,9 @@ class SlowHumping(SlowRecord):
         return positions.index(number)
 
     def brake(self, i: int, element: RouteElement) -> None:
-        """The first axle of cut `i` is at the entrance of a position: brake evenly to the exit."""
-        moving, vertex = self.cuts[i], element.vertex
+        """The first axle of cut `i` is at the entrance of a position."""
+        moving, vertex, heads = self.cuts[i], element.vertex, self.cuts[i].cut.brake_heads_m
         assert isinstance(vertex, Retarder)
-        exit_m = element.at_m + vertex.exit_m + moving.body.last_axle_m
-        unbraked = moving.unbraked_energy(exit_m)
-        if unbraked <= 0.0:
-            return
-        heads, place = moving.cut.brake_heads_m, self.position(i, element.number)
-        least = unbraked - moving.way.gravity * heads[place] if heads else 0.0
         command = self.commands.get((i, element.number), self.planned(i, element.number))
-        energy = min(max(0.5 * command**2, least), unbraked)
-        moving.mode, moving.v_out = Mode.BRAKED, (2.0 * energy) ** 0.5
-        moving.a = (energy - 0.5 * moving.v**2) / (exit_m - moving.x)
+        full_head_m = heads[self.position(i, element.number)] if heads else inf
+        moving.brake(command, element.at_m + vertex.exit_m + moving.body.last_axle_m, full_head_m)

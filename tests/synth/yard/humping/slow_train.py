@@ -108,7 +108,7 @@ class Mark(IntEnum):
 
 
 class Kind(Enum):
-    """What happens to cuts, as the model of humping names it; `COUPLED` and `GAP` tell m/s and metres."""
+    """What happens to cuts, as the model of humping names it."""
 
     NOT_SEPARATED = "not separated"
     MISROUTED = "misrouted"
@@ -122,7 +122,8 @@ class Kind(Enum):
 
 @dataclass(frozen=True)
 class SlowEvent:
-    """`kind` at the element of this number; `value`: speed of a coupling in m/s, gap in metres, else 0."""
+    """`kind` at the element of this number; `value`: speed of a coupling in m/s; metres of a gap, or that both
+    cuts rolled on after a contact on the track; else 0."""
 
     time_s: float
     kind: Kind

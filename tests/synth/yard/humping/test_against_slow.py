@@ -10,7 +10,7 @@ from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10
 from plant_models.rolling.weather import Weather
 from tests.plant_models.rolling.populations import MIX, population
 from tests.synth.yard.humping.agreement import agreement, judged
-from tests.synth.yard.humping.fast_and_slow import both_trains
+from tests.synth.yard.humping.fast_and_slow import HARD, both_trains
 from tests.synth.yard.humping.slow_humping import humped_slowly
 from tests.synth.yard.humping.slow_train import Kind
 
@@ -46,3 +46,16 @@ def test_both_simulators_tell_the_same_of_small_trains(law: ResistanceLaw, weath
         compared += len(judged(run))
     assert kinds >= {Kind.NOT_SEPARATED, Kind.MISROUTED, Kind.CONTACT, Kind.TRACK_CONTACT, Kind.COUPLED, Kind.GAP}
     assert compared > 0.8 * TRAINS * CUTS
+
+
+def test_both_simulators_see_the_same_cuts_foul() -> None:
+    """Cuts that stop short of a fouling point are rare, so the layered simulator looks for them first."""
+    both = both_trains(load_hump("large").graph, population(MIX, HumpNormLaw(), Weather()), TRACKS, 5, 800, CUTS, HARD)
+    memory = both.fast()
+    fouling = np.flatnonzero(memory.foul.any(axis=(1, 2))).tolist()
+    assert len(fouling) >= 3
+    for train in fouling[:3]:
+        run = humped_slowly(both.graph, both.slow(train))
+        assert run.of(Kind.FOULED), train
+        assert run.of(Kind.STOPPED), train
+        assert not agreement(both, memory, run, train).differing, train

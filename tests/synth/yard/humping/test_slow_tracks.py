@@ -12,6 +12,7 @@ from tests.synth.yard.humping.by_hand import (
     FIRST_BEHIND_M,
     FREE,
     FROM_M,
+    HALF_M,
     LENGTH_M,
     REDUCED_GRAVITY,
     run,
@@ -46,6 +47,7 @@ def test_contact_on_the_track_while_the_cut_ahead_rolls(interval_s: float, time_
     """On the way, and where the head comes to the track and the cut ahead still reaches back there."""
     found = run(bare_cut(LEFT_TRACK, 0.0, 2.0), bare_cut(LEFT_TRACK, interval_s, 4.0))
     assert [event.time_s for event in found.of(Kind.TRACK_CONTACT)] == pytest.approx([time_s], abs=1e-9)
+    assert found.of(Kind.TRACK_CONTACT)[0].value == pytest.approx(300.0 - (HALF_M + 2.0 * time_s), abs=1e-9)
     assert [event.cut for event in found.of(Kind.COUPLED)] == [0]
     assert found.heads_m == pytest.approx((300.0, 286.0), abs=1e-9)
 
