@@ -1,4 +1,4 @@
-"""A retarder of the hump: where it brakes, which position of the library it is, and what its controller loads."""
+"""A retarder of the hump: where it brakes, which position of the library it is, and what controls it."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ class Retarder:
 
     `zones_m`: (begin, end) of each braking zone from the entrance, in order. The insulated section reaches from
     `entry_joint_m` ahead of the entrance to `exit_joint_m` behind it, the last zone included. `position`: name in the
-    library of retarder positions. `book`, `aim_tables`: files of the controller tables and of the aim tables, as the
-    hump's file names them; None and () where they are not given yet. Raises `PlantError`.
+    library of retarder positions. Its controller is told by one of two: `book`, the file of its tables as the hump's
+    file names it, or `exit_std_m_s` (m/s) where no more is known: the standard deviation of its exit speeds from the
+    commanded ones, 0 for an ideal one. `aim_tables`: files of aim tables, beside either. Raises `PlantError`.
     """
 
     number: int
@@ -29,6 +30,7 @@ class Retarder:
     book: str | None = None
     aim_tables: tuple[str, ...] = ()
     axle_counters: bool = True
+    exit_std_m_s: float | None = None
 
     def __post_init__(self) -> None:
         RETARDERS.checked(self.number)
@@ -49,6 +51,18 @@ class Retarder:
             f"exit_joint_m is {self.exit_joint_m:g}; it must not be before the end of the last zone, "
             f"{self.zones_m[-1][1]:g} m",
         )
+
+        require(
+            self.book is not None or self.exit_std_m_s is not None,
+            "nothing controls it; give book, the file of its tables, or exit_std_m_s, the standard deviation of its "
+            "exit speeds, 0 to 1",
+        )
+        require(
+            self.book is None or self.exit_std_m_s is None,
+            "book and exit_std_m_s are both given; give the one that tells what controls it",
+        )
+        if self.exit_std_m_s is not None:
+            require_between("exit_std_m_s", self.exit_std_m_s, 0.0, 1.0)
 
     @property
     def exit_m(self) -> float:

@@ -128,6 +128,7 @@ ELEMENTS: Final[Mapping[str, Schema]] = {
         "zones_m": Key("m", pairs),
         "book": Key("", text),
         "aim_tables": Key("", texts),
+        "exit_std_m_s": Key("m/s", number),
         "next": EDGE,
     },
     "section": {
@@ -139,6 +140,9 @@ ELEMENTS: Final[Mapping[str, Schema]] = {
     },
 }
 """What a row of each kind may hold; any table of it may name a `type`, whose keys stand for those that it has not."""
+
+CONTROLLERS: Final = ("book", "exit_std_m_s")
+"""What tells the controller of a retarder: one of these in a table. A row that has one takes none from its type."""
 
 
 @dataclass
@@ -181,6 +185,11 @@ def checked_cells(
             cells[name] = checked_cell(value, name, expected, where, own)
         else:
             cells[name] = checked_cells(value, expected, where, own, types)
+    if all(key in cells for key in CONTROLLERS):
+        told = " and ".join(CONTROLLERS)
+        raise HumpFileFault(
+            (*place, CONTROLLERS[0]), f"{told} are both given; give the one that tells what controls the retarder"
+        )
     return merged(below, cells)
 
 
@@ -224,6 +233,8 @@ def checked_cell(raw: object, name: str, key: Key, place: Place, origin: Origin)
 def merged(below: Cells, above: Cells) -> Cells:
     """`above`, and from `below` what it has not, in tables too."""
     result = dict(below)
+    if any(key in above for key in CONTROLLERS):
+        result = {key: cell for key, cell in result.items() if key not in CONTROLLERS}
     for name, cell in above.items():
         under = result.get(name)
         result[name] = merged(under, cell) if isinstance(under, dict) and isinstance(cell, dict) else cell

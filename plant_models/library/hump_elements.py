@@ -79,9 +79,14 @@ def retarder_from_row(cells: Cells) -> Retarder:
             zones = zones_of(position)
         except PlantError as error:
             raise ElementFault(cell.place, f"{error} A position of your own needs zones_m here.") from None
-    book, aim_tables = given(cells, "book", None), given(cells, "aim_tables", ())
+    book, exit_std = (given(cells, key, None) for key in ("book", "exit_std_m_s"))
+    aim_tables = given(cells, "aim_tables", ())
     counted = given(cells, "axle_counters", True)
-    return made(cells, "", lambda: Retarder(number, edge, zones, entry, leave, position, book, aim_tables, counted))
+    return made(
+        cells,
+        "",
+        lambda: Retarder(number, edge, zones, entry, leave, position, book, aim_tables, counted, exit_std),
+    )
 
 
 @cache
@@ -115,7 +120,8 @@ def next_edge(cells: Cells) -> Edge:
 
 def branch_from(cells: Cells, inside: str) -> Branch:
     """A branch of a switch, which must lead to an element."""
-    needed(cells, "to", inside)
+    if "to" not in cells:
+        raise ElementFault((), f"{inside}key to is missing; a switch must have two exits, name the element it leads to")
     edge = edge_from(cells, inside)
     turn, fouling = (needed(cells, key, inside) for key in ("turn_deg", "fouling_m"))
     return made(cells, inside, lambda: Branch(edge, turn, fouling))

@@ -8,6 +8,7 @@ from typing import Any, Final
 from plant_models.hump import GROUPS
 from plant_models.library.data_file import number, number_or_pairs, pairs
 from plant_models.library.hump_cells import (
+    CONTROLLERS,
     ELEMENTS,
     Key,
     Schema,
@@ -100,11 +101,12 @@ def table_schema(schema: Schema) -> Json:
     properties = {
         key: cell_schema(value) if isinstance(value, Key) else table_schema(value) for key, value in schema.items()
     }
-    return {
+    found: Json = {
         "type": "object",
         "additionalProperties": False,
         "properties": {"type": PRINTABLE, **ORIGIN, **properties},
     }
+    return found | {"not": {"required": list(CONTROLLERS)}} if all(key in schema for key in CONTROLLERS) else found
 
 
 def cell_schema(key: Key) -> Json:

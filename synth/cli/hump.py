@@ -50,7 +50,11 @@ def check_words(found: dict[str, Any]) -> list[str]:
         "without a source"
         if any(numbers.values())
         else "  the file does not tell where its numbers are from",
-        f"  retarders without a controller book: {ranges(found['retarders_without_book']) or 'none'}",
+        f"  retarders with a book of controller tables: {ranges(found['retarders_with_book']) or 'none'}",
+        *(
+            f"  retarders without a book, standard deviation of their exit speeds {std} m/s: {ranges(numbers)}"
+            for std, numbers in found["retarders_by_exit_std_m_s"].items()
+        ),
         f"  retarders without aim tables: {ranges(found['retarders_without_aim_tables']) or 'none'}",
     ]
 

@@ -28,10 +28,20 @@ def checked_document(hump: HumpEntry) -> dict[str, Any]:
         "routes": len(routes),
         "route_length_m": [min(r.length_m for r in routes), max(r.length_m for r in routes)],
         "switches_on_a_route": [min(len(r.positions) for r in routes), max(len(r.positions) for r in routes)],
-        "retarders_without_book": [each.number for each in graph.retarders if each.book is None],
+        "retarders_with_book": [each.number for each in graph.retarders if each.book is not None],
+        "retarders_by_exit_std_m_s": retarders_by_exit_std(graph),
         "retarders_without_aim_tables": [each.number for each in graph.retarders if not each.aim_tables],
         "numbers": counted(hump.provenance),
     }
+
+
+def retarders_by_exit_std(graph: HumpGraph) -> dict[str, list[int]]:
+    """Retarders of whose controller only the standard deviation of the exit speeds is known, by that (m/s)."""
+    found: dict[str, list[int]] = {}
+    for each in sorted(graph.retarders, key=lambda each: (each.exit_std_m_s or 0.0, each.number)):
+        if each.exit_std_m_s is not None:
+            found.setdefault(f"{each.exit_std_m_s:g}", []).append(each.number)
+    return found
 
 
 def counted(numbers: tuple[SourcedValue, ...]) -> dict[str, int]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, TypeVar
 
 import numpy as np
@@ -33,6 +34,10 @@ class TableController:
 
     def law(self) -> regulator.Rule:
         """The rule as the kernel takes it."""
+        return self._law
+
+    @cached_property
+    def _law(self) -> regulator.Rule:
         none = fixed(np.empty((0, 0)), np.float64)
         table = self.table
         there = np.where(table.has_line[:, :, None], table.coefficients, np.float32(np.nan))

@@ -25,17 +25,17 @@ def test_check_tells_what_is_there_and_what_is_missing(command: Command, file: P
     run = command("hump", "check", file, "--json")
     found = json.loads(run.out)
     assert (run.code, found["tracks"], found["switches"], found["retarders"]) == (0, 2, 1, 1)
-    assert found["retarders_without_book"] == found["retarders_without_aim_tables"] == [401]
-    assert found["numbers"] == {"cited": 1, "assumed": 22, "without_source": 0}
+    assert (found["retarders_with_book"], found["retarders_by_exit_std_m_s"]) == ([], {"0.15": [401]})
+    assert found["retarders_without_aim_tables"] == [401]
+    assert found["numbers"] == {"cited": 1, "assumed": 23, "without_source": 0}
     words = command("hump", "check", file).out
     assert "tracks: 2; switches: 1; retarder positions: 1" in words
-    assert "retarders without a controller book: 401" in words
+    assert "retarders with a book of controller tables: none\n" in words
+    assert "retarders without a book, standard deviation of their exit speeds 0.15 m/s: 401\n" in words
 
 
 def test_a_named_book_must_be_there(command: Command, file: Path) -> None:
-    file.write_text(
-        SMALL.replace('position = "knp-5-bunch"', 'position = "knp-5-bunch"\nbook = "b.h5"\naim_tables = ["a.json"]')
-    )
+    file.write_text(SMALL.replace("exit_std_m_s = 0.15", 'book = "b.h5"\naim_tables = ["a.json"]'))
     run = command("hump", "check", file)
     assert run.code == 2
     assert run.sentence == f"{file}: retarder 401: book names b.h5, and there is no such file; make it, or take it out"
@@ -43,7 +43,9 @@ def test_a_named_book_must_be_there(command: Command, file: Path) -> None:
     assert "aim_tables names a.json" in command("hump", "check", file).sentence
     file.with_name("a.json").touch()
     found = json.loads(command("hump", "check", file, "--json").out)
-    assert found["retarders_without_book"] == found["retarders_without_aim_tables"] == []
+    assert (found["retarders_with_book"], found["retarders_by_exit_std_m_s"]) == ([401], {})
+    assert found["retarders_without_aim_tables"] == []
+    assert "retarders with a book of controller tables: 401\n" in command("hump", "check", file).out
 
 
 def test_routes(command: Command, file: Path) -> None:

@@ -131,13 +131,14 @@ def element_from(tree: RailmlTree, number: int, element: Xml.Element, edge: Edge
 
 
 def retarder_from(tree: RailmlTree, number: int, element: Xml.Element, edge: Edge) -> Retarder:
-    """A retarder with its zones and files."""
+    """A retarder with its zones and its controller."""
     zones = tuple((tree.number(e, "posBegin"), tree.number(e, "posEnd")) for e in element.findall(own("zone")))
     joints = tree.number(element, "entryJoint"), tree.number(element, "exitJoint")
     book = None if element.get("book") is None else tree.text(element, "book")
+    exit_std = None if element.get("exitStd") is None else tree.number(element, "exitStd")
     files = tuple(tree.text(e, "file") for e in element.findall(own("aimTables")))
     counted = tree.truth(element, "axleCounters")
-    return Retarder(number, edge, zones, *joints, tree.text(element, "position"), book, files, counted)
+    return Retarder(number, edge, zones, *joints, tree.text(element, "position"), book, files, counted, exit_std)
 
 
 @dataclass(frozen=True)

@@ -177,12 +177,14 @@ def write_own(infrastructure: Xml.Element, hump: HumpEntry) -> None:
 
 
 def write_retarder(parent: Xml.Element, retarder: Retarder) -> None:
-    """A retarder with its zones and files."""
+    """A retarder with its zones and its controller."""
     told = own_below(parent, "retarder", number=retarder.number, netElementRef=net_element(retarder, 0),
                      position=retarder.position, entryJoint=retarder.entry_joint_m, exitJoint=retarder.exit_joint_m,
                      axleCounters=yes(retarder.axle_counters))  # fmt: skip
     if retarder.book is not None:
         told.set("book", retarder.book)
+    if retarder.exit_std_m_s is not None:
+        told.set("exitStd", str(retarder.exit_std_m_s))
     for begin, end in retarder.zones_m:
         own_below(told, "zone", posBegin=begin, posEnd=end)
     for file in retarder.aim_tables:

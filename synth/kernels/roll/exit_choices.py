@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-
-kernel: Any = njit(cache=True, nogil=True, error_model="numpy")
 
 
 class Legs(NamedTuple):
@@ -22,7 +21,8 @@ class Legs(NamedTuple):
     position and the free roll behind it: `choices` (q,); `speeds_m_s` (q, m, k); `won_m2_s2` (q, m), gain of v² in the
     pass without brake; `path_m` (q, m) of the pass, of which `share` (q, m, s) is behind the cut at a mark; `roll_s`
     (q, m, k, s), times after the pass; `ends_s`, `ends_m_s` (q, m, k), duration of the roll and speed at its end;
-    `most_entry_m_s`, `least_entry_m_s` (q, m). NaN where a mark is not on that stretch.
+    `most_entry_m_s`, `least_entry_m_s`, `braked_m2_s2` (q, m), most
+    loss of v² to the brake. NaN where a mark is not on that stretch.
     """
 
     time_s: Floats
@@ -38,9 +38,39 @@ class Legs(NamedTuple):
     ends_m_s: Floats
     most_entry_m_s: Floats
     least_entry_m_s: Floats
+    braked_m2_s2: Floats
 
 
-@kernel
+class Work(NamedTuple):
+    """Memory of one call of `compare` for q positions and s marks: what is known ahead of each position (q + 1,), the
+    choice that is looked at (q,), the marks of each stretch (q, s) and how many they are (q,)."""
+
+    time_s: Floats
+    speed_m_s: Floats
+    ahead_s: Floats
+    behind_s: Floats
+    able: NDArray[np.bool_]
+    at: Ints
+    met: Ints
+    met_to: Ints
+
+
+def work_for(legs: Legs) -> Work:
+    """Memory for `compare`."""
+    levels, marks = len(legs.choices), legs.before_s.shape[1]
+    return Work(
+        time_s=np.empty(levels + 1),
+        speed_m_s=np.empty(levels + 1),
+        ahead_s=np.empty(levels + 1),
+        behind_s=np.empty(levels + 1),
+        able=np.empty(levels + 1, dtype=np.bool_),
+        at=np.zeros(levels, dtype=np.int64),
+        met=np.empty((levels, marks), dtype=np.int64),
+        met_to=np.empty(levels, dtype=np.int64),
+    )
+
+
+@borrowing_inline
 def mark_time(legs, q, i, k, s, time, speed, out):
     """When mark `s` is passed on stretch `q` that begins at `time` with `speed`, and whose pass ends at `out`; NaN if
     it is not there."""
@@ -54,7 +84,7 @@ def mark_time(legs, q, i, k, s, time, speed, out):
     return out + legs.roll_s[q, i, k, s]
 
 
-@kernel
+@borrowing_inline
 def pass_end(legs, q, i, k, time, speed):
     """When the pass ends; infinite where the cut stops."""
     exit_speed = legs.speeds_m_s[q, i, k]
@@ -63,28 +93,30 @@ def pass_end(legs, q, i, k, time, speed):
     return math.inf
 
 
-@kernel
+@borrowing_inline
 def is_able(legs, q, i, k, speed):
     """Whether the cut may come to the position with `speed` and can leave it with the choice `k`."""
     exit_speed = legs.speeds_m_s[q, i, k]
-    reached = exit_speed * exit_speed <= speed * speed + legs.won_m2_s2[q, i] + 1e-6
+    unbraked = speed * speed + legs.won_m2_s2[q, i] + 1e-6
+    reached = unbraked - legs.braked_m2_s2[q, i] <= exit_speed * exit_speed <= unbraked
     return reached and legs.least_entry_m_s[q, i] <= speed <= legs.most_entry_m_s[q, i]
 
 
-@kernel
-def compare(legs, free_from_s, free_by_s, first, last, ahead_s, behind_s, able, arrival_s):
+@borrowing
+def compare(legs, free_from_s, free_by_s, first, last, work, ahead_s, behind_s, able, arrival_s):
     """Fill, for cuts `first` … `last` − 1 and every combination c of choices, the least margins to the cuts ahead and
     behind, whether the cut is able to, and when it arrives: all (m, c), the last position's choice running fastest."""
     levels, marks = len(legs.choices), legs.before_s.shape[1]
-    time, speed = np.empty(levels + 1), np.empty(levels + 1)
-    ahead, behind = np.empty(levels + 1), np.empty(levels + 1)
-    can, at = np.empty(levels + 1, np.bool_), np.zeros(levels, np.int64)
+    time, speed, ahead, behind = work.time_s, work.speed_m_s, work.ahead_s, work.behind_s
+    can, at, met, met_to = work.able, work.at, work.met, work.met_to
     for i in range(first, last):
+        list_marks(legs, i, met, met_to)
         time[0], speed[0], can[0] = legs.time_s[i], legs.speed_m_s[i], True
         ahead[0], behind[0] = math.inf, math.inf
         for s in range(marks):
             ahead[0], behind[0] = nearer(legs.before_s[i, s], s, i, free_from_s, free_by_s, ahead[0], behind[0])
-        at[:] = 0
+        for q in range(levels):
+            at[q] = 0
         column, level = 0, 0
         while level >= 0:
             if level == levels:
@@ -106,7 +138,8 @@ def compare(legs, free_from_s, free_by_s, first, last, ahead_s, behind_s, able, 
                 k = at[level]
                 out = pass_end(legs, level, i, k, time[level], speed[level])
                 near, far = ahead[level], behind[level]
-                for s in range(marks):
+                for j in range(met_to[level]):
+                    s = met[level, j]
                     passed = mark_time(legs, level, i, k, s, time[level], speed[level], out)
                     near, far = nearer(passed, s, i, free_from_s, free_by_s, near, far)
                 ahead[level + 1], behind[level + 1] = near, far
@@ -115,7 +148,19 @@ def compare(legs, free_from_s, free_by_s, first, last, ahead_s, behind_s, able, 
                 level += 1
 
 
-@kernel
+@borrowing_inline
+def list_marks(legs, i, met, met_to):
+    """Fill the marks that cut `i` meets on each stretch, `met` (q, s), and how many, `met_to` (q,)."""
+    for q in range(met.shape[0]):
+        count = 0
+        for s in range(met.shape[1]):
+            if not (math.isnan(legs.share[q, i, s]) and math.isnan(legs.roll_s[q, i, 0, s])):
+                met[q, count] = s
+                count += 1
+        met_to[q] = count
+
+
+@borrowing_inline
 def nearer(passed, s, i, free_from_s, free_by_s, ahead, behind):
     """Least margins so far, and that of a mark that is passed at `passed`."""
     if math.isnan(passed):
@@ -127,7 +172,7 @@ def nearer(passed, s, i, free_from_s, free_by_s, ahead, behind):
     return ahead, (margin if margin < behind else behind)
 
 
-@kernel
+@borrowing_inline
 def unknown_out(legs, i, e):
     """Whether the first axle comes to element `e` on the way that is forecast, but the last one does not leave it."""
     comes, leaves = not math.isnan(legs.before_s[i, 2 * e]), not math.isnan(legs.before_s[i, 2 * e + 1])
@@ -138,13 +183,14 @@ def unknown_out(legs, i, e):
     return comes and not leaves
 
 
-@kernel
+@borrowing
 def follow(legs, taken, first, last, times_s, arrival_s):
     """Fill the times of all marks (m, s) and of the arrival (m,) with the choices `taken` (q, m)."""
     levels, marks = len(legs.choices), legs.before_s.shape[1]
     for i in range(first, last):
         time, speed = legs.time_s[i], legs.speed_m_s[i]
-        times_s[i] = legs.before_s[i]
+        for s in range(marks):
+            times_s[i, s] = legs.before_s[i, s]
         for q in range(levels):
             k = taken[q, i]
             out = pass_end(legs, q, i, k, time, speed)

@@ -20,23 +20,15 @@ def position_of(config: ResolvedAim) -> PositionModel:
 
 def tabled(config: ResolvedAim, book: Path, tuned_with: Path | None) -> PositionModel:
     """The closed loops of the tables in `book`, for every category and number of cars that is asked for."""
-    from synth.book.forms.table_file import read_tables
-    from synth.configuration.config_file import BUILT_IN, load_config
-    from synth.yard.aim.table_position import table_position
+    from synth.yard.aim.table_position import TablePosition
+    from synth.yard.book_classes import book_classes, unfitting
 
-    (file,) = read_tables(book)
-    for table in file.tables:
-        if table.retarder.name != config.position_name:
-            raise InputError(
-                f"{config.place}: aim.tables names {book}, whose table {table.id} is for the position "
-                f"{table.retarder.name}, but position.name is {config.position_name}; give a book of that position"
-            )
-    plant = load_config(tuned_with)
+    named = f"{config.place}: aim.tables"
+    position = TablePosition(book_classes(named, book, tuned_with, config.position_name))
     try:
-        position = table_position(file.tables, plant, str(tuned_with or BUILT_IN))
         for member in config.members:
             for cars in config.cars:
                 position.able(config.scene.draw(member, cars, config.simulation.seed, 0, 1))
     except PlantError as fault:
-        raise InputError(f"{config.place}: aim.tables names {book}, which does not fit: {fault}") from None
+        raise InputError(unfitting(named, book, fault)) from None
     return position

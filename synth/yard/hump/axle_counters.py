@@ -120,6 +120,14 @@ class AxleCounters:
         left = {number: section.exit or section.entry for number, section in self._sections.items()}
         return {number: axles for number, axles in left.items() if axles}
 
+    def unfinished(self) -> dict[int, list[int]]:
+        """By cut, the sections that have counted an axle of it and still wait for others."""
+        waiting: dict[int, list[int]] = {}
+        for number, section in self._sections.items():
+            for cut in section.waits_for:
+                waiting.setdefault(cut, []).append(number)
+        return waiting
+
     def _following(self, element: int) -> tuple[int, ...]:
         branches = (0, 1) if self._table.is_switch(element) else (0,)
         found = (self._table.next_counted(element, branch) for branch in branches)

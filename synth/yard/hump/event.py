@@ -101,7 +101,7 @@ class Why(IntEnum):
     COUPLED = 4
     """It was not uncoupled from its leader."""
     NOT_SEEN = 5
-    """It was not found on any track at the end of the train."""
+    """It, or a part of it, was not found on any track at the end of the train."""
 
 
 class Event(NamedTuple):

@@ -94,13 +94,18 @@ class HumpControl:
         self.retarders.brake()
 
     def finish(self) -> None:
-        """The train is humped: close the signals, and record cuts that were not found and counters not at zero."""
+        """The train is humped: close the signals, record cuts that were not found, or not with all axles, and counters
+        that are not at zero."""
         for lead in sorted(self._last):
             self._show(lead, Aspect.STOP)
+        unfinished = self.counters.unfinished()
         for cut in self.store.cuts:
+            lead, waiting = self._table.graph.leads[cut.lead], unfinished.get(cut.serial)
             if cut.serial not in self.state.arrived:
-                element = self._seen.get(cut.serial, self._table.graph.leads[cut.lead])
-                self._journal.tell(Kind.MISROUTED, element, cut.serial, Why.NOT_SEEN)
+                self._journal.tell(Kind.MISROUTED, self._seen.get(cut.serial, lead), cut.serial, Why.NOT_SEEN)
+            elif waiting and cut.serial not in self.state.misrouted:
+                ahead = min(waiting, key=lambda element: self._table.places[lead][element].from_m)
+                self._journal.tell(Kind.MISROUTED, ahead, cut.serial, Why.NOT_SEEN)
         for element, axles in self.counters.left_over().items():
             self._journal.tell(Kind.COUNTERS_LEFT, element, value=axles)
 

@@ -41,6 +41,16 @@ class PracticeRules:
         require_between("rules: slowest_m_s", self.slowest_m_s, 0.1, 10.0)
 
     @property
+    def crawl_m_s(self) -> float:
+        """A gap next to an axle that was slower on the first section is not judged: it may have stood there."""
+        return 0.5 * self.slowest_m_s
+
+    @property
+    def bogie_s(self) -> float:
+        """An axle that comes so soon behind another is of the same car."""
+        return self.bogie_m / self.slowest_m_s
+
+    @property
     def patience_s(self) -> float:
         """How long a free section may wait for axles of a cut before they count as missing."""
         return self.longest_base_m / self.slowest_m_s

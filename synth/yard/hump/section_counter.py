@@ -32,13 +32,15 @@ class Axle(NamedTuple):
 
 @dataclass
 class Load:
-    """A record that was handed to the section: its axles, the widest gap between two, how many came and left."""
+    """A record that was handed to the section: its axles, the widest gap between two, how many came and left, and how
+    long after the axle ahead its first one came."""
 
     cut: int
     axles: int
     base_m: float
     came: int = 0
     left: int = 0
+    first_after_s: float = float("inf")
 
     @property
     def begun(self) -> bool:
@@ -98,6 +100,11 @@ class SectionCounter:
         """Axles of all records that have begun to come and are still to leave."""
         return sum(load.axles - load.left for load in self._begun()) if self._exits else 0
 
+    @property
+    def waits_for(self) -> tuple[int, ...]:
+        """Cuts of which an axle was counted and others are still to come or to leave."""
+        return tuple(load.cut for load in self._begun())
+
     def counted_all(self, cut: int) -> bool:
         """Whether all axles of `cut` came, or it is gone."""
         return all(load.came == load.axles for load in self._loads if load.cut == cut)
@@ -112,6 +119,8 @@ class SectionCounter:
         leader = self._loads[0]
         if load.came == 0 and leader is not load and self._exits:
             yield Finding(Kind.CATCH_UP, load.cut, leader.cut)
+        if load.came == 0:
+            load.first_after_s = time_s - before_s
         load.came += 1
         after_s = time_s - before_s if load.came > 1 else float("inf")
         self._within.append(Axle(load.cut, load.base_m, load.axles - load.came, time_s, after_s))
@@ -144,6 +153,8 @@ class SectionCounter:
         if before is None or before[1] <= before[0].in_s or out_s <= axle.in_s:
             return
         ahead, ahead_out_s = before
+        if max(ahead_out_s - ahead.in_s, out_s - axle.in_s) > self._length_m / self._rules.crawl_m_s:
+            return  # one of them stood on the section, or nearly; so its time tells no speed in the gap
         apart_s, speed_m_s = axle.in_s - ahead.in_s, self._length_m / (ahead_out_s - ahead.in_s)
         if axle.in_s > ahead_out_s:
             # The speed of the one ahead is from the begin of the gap, that of this one from its end.
@@ -178,8 +189,13 @@ class SectionCounter:
         if passed(begun[0].cut):
             self._loads.popleft()
             yield from self._put_right(begun[0].cut)
-        elif came == 1 and left == 0 and quiet_s > self._rules.patience_s:
-            begun[0].came = 0
+        elif (
+            came == 1
+            and left == 0
+            and quiet_s > self._rules.patience_s
+            and begun[0].first_after_s <= self._rules.bogie_s
+        ):
+            begun[0].came = 0  # it is of the cut ahead, one of whose axles was counted twice; another may stand there
             yield from self._put_right(begun[0].cut)
 
     def _put_right(self, cut: int) -> Iterator[Finding]:

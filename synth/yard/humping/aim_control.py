@@ -75,4 +75,4 @@ class AimControl:
 
     def expected_m_s(self, routes: Ints, category: Ints, cars: Ints, free_distance_m: Floats) -> Floats:
         """Exit speeds (n,) as they are expected before the train; see `HumpAim`."""
-        return self.aim.expected_m_s(routes, category, cars, free_distance_m)
+        return self.aim.expected_m_s(routes, category, cars, free_distance_m, self.reading is not None)

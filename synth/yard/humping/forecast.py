@@ -27,11 +27,13 @@ SLOWEST_M_S = 0.1
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Expected:
-    """Cuts as a control knows them, (n,): `cars` roll as it expects; first and last axles behind the head."""
+    """Cuts as a control knows them, (n,): `cars` roll as it expects; first and last axles behind the head;
+    `braked_m2_s2` (n, positions): most loss of v² to the brake of each position."""
 
     cars: Cars
     first_axle_m: Floats
     last_axle_m: Floats
+    braked_m2_s2: Floats
 
 
 class Choices(Protocol):
@@ -119,7 +121,8 @@ class Ways:
         shape = len(legs.time_s), int(np.prod(legs.choices))
         ahead, behind, arrival = np.empty(shape), np.empty(shape), np.empty(shape)
         able = np.empty(shape, dtype=np.bool_)
-        kernel.compare(legs, free_from_s, free_by_s, 0, shape[0], ahead, behind, able, arrival)
+        work = kernel.work_for(legs)
+        kernel.compare(legs, free_from_s, free_by_s, 0, shape[0], work, ahead, behind, able, arrival)
         total = np.zeros((shape[0], 1))
         for count, speeds in zip(legs.choices, legs.speeds_m_s, strict=True):
             total = (total[:, :, None] + speeds[:, None, :count]).reshape(shape[0], -1)
@@ -184,6 +187,7 @@ def through(
         ends_m_s=ends_speed,
         most_entry_m_s=np.stack([np.broadcast_to(each.most_entry_m_s, count) for each in choices]),
         least_entry_m_s=np.stack([np.broadcast_to(each.least_entry_m_s, count) for each in choices]),
+        braked_m2_s2=np.ascontiguousarray(expected.braked_m2_s2[:, position : position + most].T),
     )
     return Ways(routes, legs)
 

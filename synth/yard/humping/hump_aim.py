@@ -95,10 +95,13 @@ class HumpAim:
                 speeds[rows] = answer(table.by_category, cars[rows], free_distance_m[rows])
         return np.where(np.isnan(speeds), self.lowest_m_s, speeds)
 
-    def expected_m_s(self, routes: Ints, category: Ints, cars: Ints, free_distance_m: Floats) -> Floats:
-        """What is expected before the train: by category, or, where cuts are measured, for the mean reading."""
-        means = np.array([[table.mean_n_per_kn for table in group] for group in self.tables])
-        return self.command_m_s(routes, category, cars, free_distance_m, means[self.group[routes], category])
+    def expected_m_s(self, routes: Ints, category: Ints, cars: Ints, free_distance_m: Floats, measured: bool) -> Floats:
+        """What is expected before the train: for the mean reading where cuts will be `measured`, else by category."""
+        reading = None
+        if measured:
+            means = np.array([[table.mean_n_per_kn for table in group] for group in self.tables])
+            reading = means[self.group[routes], category]
+        return self.command_m_s(routes, category, cars, free_distance_m, reading)
 
 
 def answer(nodes: AimNodes, cars: Ints, free_distance_m: Floats, reading_n_per_kn: Floats | None = None) -> Floats:

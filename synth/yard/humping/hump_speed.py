@@ -49,29 +49,37 @@ class SpeedMethod(Protocol):
     """From headways to speeds."""
 
     def speeds(self, apart_m: Floats, headway_s: Floats, limits: HumpSpeedLimits) -> Floats:
-        """Speeds (trains, cuts) such that cuts, whose middles are `apart_m` from those ahead of them (trains, cuts),
-        come `headway_s` later at least, as far as the limits allow; the first cut has no headway."""
+        """Speeds (trains, cuts) over the crest. `apart_m` (trains, cuts): from the middle of each cut to that ahead.
+        `headway_s` (trains, cuts, leaders): how much later than the cut 1, 2, … ahead of it a cut must come, as far as
+        the limits allow that; −∞ where there is none."""
 
 
 @dataclass(frozen=True)
 class WholeTrain:
     """The speeds with which the whole train is over the crest the soonest: a dynamic programme over the steps.
 
-    Time between two cuts: 2·apart/(v1 + v2), the train being pushed at an even rate in between.
+    Time between two cuts: 2·apart/(v1 + v2), the train being pushed at an even rate in between. Its state is the speed
+    alone: headways behind cuts farther ahead count along the best way to that speed.
     """
 
     def speeds(self, apart_m: Floats, headway_s: Floats, limits: HumpSpeedLimits) -> Floats:
         """See `SpeedMethod`."""
         steps = np.array(limits.steps_m_s)
         mean = 0.5 * (steps[:, None] + steps[None, :])
-        trains, cuts = apart_m.shape
+        trains, cuts, leaders = headway_s.shape
         cost, came = np.zeros((trains, len(steps))), np.zeros((trains, cuts, len(steps)), dtype=np.int64)
+        since = np.zeros((trains, len(steps), leaders))  # from the cut 0, 1, … ahead of the last one to the last one
         for cut in range(1, cuts):
             time = apart_m[:, cut, None, None] / mean
-            short = np.maximum(headway_s[:, cut, None, None] - time, 0.0)
+            short = np.zeros((trains, len(steps), len(steps)))
+            for leader in range(min(leaders, cut)):
+                short = np.maximum(short, headway_s[:, cut, leader, None, None] - time - since[:, :, leader, None])
             total = cost[:, :, None] + np.where(limits.reachable(apart_m[:, cut]), time + SHORT_COSTS * short, np.inf)
-            came[:, cut] = total.argmin(axis=1)
-            cost = np.take_along_axis(total, came[:, cut, None, :], axis=1)[:, 0]
+            came[:, cut] = best = total.argmin(axis=1)
+            cost = np.take_along_axis(total, best[:, None, :], axis=1)[:, 0]
+            took = np.take_along_axis(time, best[:, None, :], axis=1)[:, 0]
+            since = np.take_along_axis(since, best[:, :, None], axis=1) + took[:, :, None]
+            since = np.concatenate((np.zeros((trains, len(steps), 1)), since[:, :, :-1]), axis=2)
         at, speeds = cost.argmin(axis=1), np.empty((trains, cuts))
         for cut in range(cuts - 1, -1, -1):
             speeds[:, cut] = steps[at]
@@ -81,18 +89,22 @@ class WholeTrain:
 
 @dataclass(frozen=True)
 class PairByPair:
-    """Each cut as fast as the pair with the cut ahead allows ([hump-computer-1970s], after Шафит), then slower where
-    the locomotive could not brake for those behind, or not gather speed."""
+    """Each cut as fast as the pairs with the cuts ahead of it allow ([hump-computer-1970s], after Шафит), then slower
+    where the locomotive could not brake for those behind, or not gather speed."""
 
     def speeds(self, apart_m: Floats, headway_s: Floats, limits: HumpSpeedLimits) -> Floats:
         """See `SpeedMethod`."""
         steps = np.array(limits.steps_m_s)
-        trains, cuts = apart_m.shape
+        trains, cuts, leaders = headway_s.shape
         at = np.full((trains, cuts), len(steps) - 1)
+        since = np.zeros((trains, leaders))
         for cut in range(1, cuts):
             time = apart_m[:, cut, None] / (0.5 * (steps[at[:, cut - 1], None] + steps))
-            enough = time >= headway_s[:, cut, None] - 1e-9
+            needs = (headway_s[:, cut] - since)[:, : min(leaders, cut)].max(axis=1, initial=0.0)
+            enough = time >= needs[:, None] - 1e-9
             at[:, cut] = np.where(enough.any(axis=1), len(steps) - 1 - enough[:, ::-1].argmax(axis=1), 0)
+            since = since + time[np.arange(trains), at[:, cut], None]
+            since = np.concatenate((np.zeros((trains, 1)), since[:, :-1]), axis=1)
         for order in (range(cuts - 1, 0, -1), range(1, cuts)):
             for cut in order:
                 one, other = (cut, cut - 1) if order.step < 0 else (cut - 1, cut)

@@ -30,9 +30,9 @@ NEARLY_M = 0.05
 class Asked:
     """A control is asked for the exit speeds of cut number `cut` of the trains `lanes` (n,) in `position`.
 
-    `routes` (n,): the rows on which they roll. `start`: the cuts when their first axles are at the entrance. `ahead`:
-    who is ahead of them on each element. `free_m` (n,): where the standing cars begin. `memory`: what happened so far.
-    The last and `ahead` tell later times, too; a control may only look at what is over when it is asked.
+    `routes` (n,): the rows on which they roll. `start`: the cuts when their first axles are at the entrance. `free_m`
+    (n,): where the standing cars begin, or will begin if the cut that still rolls there couples. `memory`: what
+    happened so far. It tells later times, too; a control may only look at what is over when it is asked.
     """
 
     cut: int
@@ -40,7 +40,6 @@ class Asked:
     lanes: Ints
     routes: Ints
     start: Moving
-    ahead: Ahead
     free_m: Floats
     memory: TrainMemory
 
@@ -215,9 +214,8 @@ class OneCut:
             return moving
         lanes = self.lanes[held]
         start = moving.chosen(held)
-        ahead = self.users.on(self.routes[held], lanes)
-        free = self.standing.free_m[lanes, self.routes[held]]
-        asked = Asked(self.cut, position, lanes, self.routes[held], start, ahead, free, memory)
+        free = self.standing.seen_m(lanes, self.routes[held], start.time_s)
+        asked = Asked(self.cut, position, lanes, self.routes[held], start, free, memory)
         command = self.obeyed(control.command(asked), held, position)
         to = routes.exit_m[self.routes[held], position] + self.last_m[held]
         unbraked, _ = rolled_free(self.cars(held), start, to, np.empty((len(lanes), 0)))

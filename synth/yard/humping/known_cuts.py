@@ -25,7 +25,8 @@ Ints = NDArray[np.int64]
 class KnownCuts:
     """All cuts of some trains, a row each: `rolls` with mean bends and wind; resistance: `mean_n_per_kn`, and that of
     good and of bad runners, `good_n_per_kn` and `bad_n_per_kn` (rows,). `aim` (rows,): exit speeds of the
-    last position as they are expected before the train, and how fast cuts may come to it."""
+    last position as they are expected before the train, and how fast cuts may come to it. `braked_m2_s2` (rows,
+    positions): most loss of v² to the brake of each position."""
 
     rolls: Rolls
     trains: int
@@ -38,6 +39,7 @@ class KnownCuts:
     good_n_per_kn: Floats
     bad_n_per_kn: Floats
     aim: Given
+    braked_m2_s2: Floats
 
     def of_cut(self, cut: int) -> Ints:
         """Rows of cut number `cut` of every train."""
@@ -46,7 +48,7 @@ class KnownCuts:
     def expected(self, rows: Ints, routes: Ints, resistance_n_per_kn: Floats) -> Expected:
         """The cuts `rows` on `routes`, with the resistance (n,) that is expected of them."""
         cars = Cars(self.rolls, rows, routes, resistance_n_per_kn)
-        return Expected(cars, self.first_axle_m[rows], self.last_axle_m[rows])
+        return Expected(cars, self.first_axle_m[rows], self.last_axle_m[rows], self.braked_m2_s2[rows])
 
     def aim_of(self, rows: Ints) -> Given:
         """What the last position is expected to make of the cuts `rows`."""
@@ -59,8 +61,9 @@ GOOD, BAD = 0.023, 0.977
 """Quantiles of runners that are good and bad: two standard deviations from the mean of a normal law."""
 
 
-def known_cuts(trains: TrainCuts, ways: RouteWays, aim: Given, threads: int = 0) -> KnownCuts:
-    """`trains` as they are known before they roll on `ways`; `aim` (rows,): what they will be aimed with."""
+def known_cuts(trains: TrainCuts, ways: RouteWays, aim: Given, braked_m2_s2: Floats, threads: int = 0) -> KnownCuts:
+    """`trains` as they are known before they roll on `ways`; `aim` (rows,): what they will be aimed with;
+    `braked_m2_s2` (rows, positions): most loss of v² to the brakes."""
     drawn = expected(trains)
     rolls = rolling_on(ways, trains.population, drawn, threads)
     return KnownCuts(
@@ -75,6 +78,7 @@ def known_cuts(trains: TrainCuts, ways: RouteWays, aim: Given, threads: int = 0)
         good_n_per_kn=runner_n_per_kn(trains, drawn, GOOD),
         bad_n_per_kn=runner_n_per_kn(trains, drawn, BAD),
         aim=aim,
+        braked_m2_s2=braked_m2_s2,
     )
 
 

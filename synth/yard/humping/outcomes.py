@@ -37,8 +37,8 @@ class TrainOutcomes:
     `unseparated`, `foul`. `caught`: cuts misrouted or in contact, but not in the last position (`caught_in_last`).
     `caught_on_track`: cuts that coupled to the one ahead while that rolled. `stopped`: on the way. `judged`: all
     others, which reached a track; of these `overspeed` (n, 3) coupled in each class of speed, `gap_m` is what they left
-    free, all together. `speed_bins`, `gap_bins`: histograms. `passes`, `strokes`, `error2_m2_s2` (n, positions): passes,
-    commands to valves, and squares of (exit less command) summed up.
+    free, all together. `speed_bins`, `gap_bins`: histograms. `passes`, `strokes`, `error2_m2_s2` (n, positions):
+    passes, commands to valves, and squares of (exit less command) summed up.
     """
 
     train: Ints

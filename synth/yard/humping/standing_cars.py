@@ -16,13 +16,19 @@ Bools = NDArray[np.bool_]
 class StandingCars:
     """Arrays (trains, routes): `free_m`, where the standing cars of each track begin, metres from the crest; of the
     last cut there: its row, −1 for none, its last free roll from `head_m`, `speed_m_s`, `time_s` to `end_m`, `still_s`,
-    when it stopped, and its `length_m`."""
+    when it stopped, its `length_m`, and `found_m`, what was free before it."""
 
     def __init__(self, free_m: Floats) -> None:
         self.free_m, self.row = free_m.copy(), np.full(free_m.shape, -1)
+        self.found_m = free_m.copy()
         self.head_m, self.speed_m_s, self.time_s, self.end_m, self.still_s, self.length_m = (
             np.zeros(free_m.shape) for _ in range(6)
         )
+
+    def seen_m(self, lanes: Ints, routes: Ints, now_s: Floats) -> Floats:
+        """Where the standing cars begin, (n,), as far as one knows at `now_s`: a cut that rolls is taken to couple."""
+        at = lanes, routes
+        return np.where(self.still_s[at] <= now_s, self.free_m[at], self.found_m[at] - self.length_m[at])
 
     def block(self, lanes: Ints, routes: Ints, length_m: Floats) -> None:
         """Cuts (n,) that do not come by themselves stand at the end of those ahead."""
@@ -43,6 +49,7 @@ class StandingCars:
                 OnTrack(cars.chosen(met), start.chosen(met), end.head_m[met]),
                 self.length_m[ahead],
             )
+        self.found_m[at] = self.free_m[at]
         self.row[at], self.end_m[at], self.length_m[at] = cars.rows, end.head_m, length_m
         self.head_m[at], self.speed_m_s[at], self.time_s[at] = start.head_m, start.speed_m_s, start.time_s
         self.still_s[at] = np.maximum(self.still_s[at], end.time_s)

@@ -11,9 +11,10 @@ from plant_models.frozen_arrays import frozen_arrays
 from synth.kernels.loop.closed_loop import Draws
 from synth.simulation.closed_loop import ClosedLoop
 from synth.simulation.keyed_passes import keyed_passes
+from synth.simulation.random_passes import RandomPasses
 from synth.yard.humping.class_choice import ClassChoice
 from synth.yard.humping.hump_position import Arrivals, Floats, Ints, Passed
-from synth.yard.table_class import TableClass, chosen_draws, draws
+from synth.yard.table_class import TableClass, chosen_draws, draws, taken
 
 
 @dataclass(frozen=True)
@@ -39,46 +40,18 @@ class TableHumpPosition:
         """See `HumpPosition`; `PlantError` for a cut that has no class."""
         exits, times = np.empty(len(arrivals)), np.empty(len(arrivals))
         switchings = np.empty(len(arrivals), dtype=np.int64)
-        found = self.choice.of(arrivals)
+        found, passes = self.choice.of(arrivals), self._passes(arrivals)
         for place in np.unique(found):
             rows = np.flatnonzero(found == place)
-            passed = self._of_class(self.choice.classes[place], arrivals.chosen(rows))
+            passed = class_passed(self.choice.classes[place], arrivals.chosen(rows), taken(passes, rows))
             exits[rows], times[rows], switchings[rows] = passed.exit_m_s, passed.time_s, passed.switchings
         return Passed(exits, times, switchings)
 
-    def _of_class(self, of_class: TableClass, cuts: Arrivals) -> Passed:
-        """The passes of cuts that all have this class."""
-        targets = of_class.targets_m_s
-        place = np.interp(cuts.commanded_m_s, targets, np.arange(len(targets)))
-        low, high = np.floor(place).astype(np.int64), np.ceil(place).astype(np.int64)
-        looped = self._loops(of_class, cuts, low, high).between(place - low)
-        exit_m, speed = of_class.plant.exit_m, np.minimum(looped.exit_m_s, cuts.unbraked_exit_m_s)
-        faster = (loop_entry_m_s(exit_m, cuts) + speed) / (cuts.entry_m_s + speed)
-        time = np.where(speed > 0.0, looped.time_s, np.inf) * (cuts.path_m / exit_m) * faster
-        return Passed(speed, time, looped.switchings)
-
-    def _loops(self, of_class: TableClass, cuts: Arrivals, low: Ints, high: Ints) -> Looped:
-        """The passes of all cuts under their targets, at the places `low` and `high` (n,)."""
-        loop = of_class.loops[0]
-        own, of_cut = cuts.keys, (cuts.train, cuts.cut)
-        cells = len(loop.path.gravity_m_s2) - loop.path.approach_cells
-        passes = keyed_passes(cuts.seed, own, own if self.friction_anew else of_cut, cells)
-        resistance = loop_resistance_n_kn(loop, cuts)
-        entry = loop_entry_m_s(loop.plant.exit_m, cuts)
-        drawn = draws(loop, passes, of_class.brakes(passes, cuts.mass_t, cuts.axles), entry, resistance)
-        ahead_s, shape = approach_s(loop, drawn), (2, len(cuts))
-        speed, time = np.empty(shape), np.empty(shape)
-        stalled, switchings = np.empty(shape, dtype=np.bool_), np.empty(shape, dtype=np.int64)
-        for k in np.unique(np.concatenate((low, high))):
-            rows = np.flatnonzero((low == k) | (high == k))
-            sample = of_class.loops[k].run(of_class.controllers[k], chosen_draws(drawn, rows))
-            behind_s = sample.transit_time_s - ahead_s[rows]
-            for side, wanted in enumerate((low, high)):
-                here = wanted[rows] == k
-                at = side, rows[here]
-                speed[at], time[at] = sample.exit_speed_m_s[here], behind_s[here]
-                stalled[at], switchings[at] = sample.stalled[here], sample.switchings[here]
-        return Looped(speed, time, stalled, switchings)
+    def _passes(self, arrivals: Arrivals) -> RandomPasses:
+        """The random numbers of the cuts, as many along the path as the class with the most cells needs."""
+        own, of_cut = arrivals.keys, (arrivals.train, arrivals.cut)
+        cells = max(braked_cells(of_class.loops[0]) for of_class in self.choice.classes)
+        return keyed_passes(arrivals.seed, own, own if self.friction_anew else of_cut, cells)
 
 
 @frozen_arrays
@@ -97,6 +70,39 @@ class Looped:
         share = np.where(self.stalled.any(axis=0), nearer, share)
         speed, time = (low + share * (high - low) for low, high in (self.exit_m_s, self.time_s))
         return Passed(speed, time, self.switchings[nearer, np.arange(len(share))])
+
+
+def class_passed(its: TableClass, cuts: Arrivals, passes: RandomPasses) -> Passed:
+    """How cuts pass that all have the class `its`."""
+    targets = its.targets_m_s
+    place = np.interp(cuts.commanded_m_s, targets, np.arange(len(targets)))
+    low, high = np.floor(place).astype(np.int64), np.ceil(place).astype(np.int64)
+    looped = looped_under(its, cuts, passes, low, high).between(place - low)
+    exit_m, speed = its.plant.exit_m, np.minimum(looped.exit_m_s, cuts.unbraked_exit_m_s)
+    faster = (loop_entry_m_s(exit_m, cuts) + speed) / (cuts.entry_m_s + speed)
+    time = np.where(speed > 0.0, looped.time_s, np.inf) * (cuts.path_m / exit_m) * faster
+    return Passed(speed, time, looped.switchings)
+
+
+def looped_under(its: TableClass, cuts: Arrivals, passes: RandomPasses, low: Ints, high: Ints) -> Looped:
+    """The passes of all cuts under their targets, at the places `low` and `high` (n,)."""
+    loop = its.loops[0]
+    resistance = loop_resistance_n_kn(loop, cuts)
+    entry = loop_entry_m_s(loop.plant.exit_m, cuts)
+    drawn = draws(loop, passes, its.brakes(passes, cuts.mass_t, cuts.axles), entry, resistance)
+    ahead_s, shape = approach_s(loop, drawn), (2, len(cuts))
+    speed, time = np.empty(shape), np.empty(shape)
+    stalled, switchings = np.empty(shape, dtype=np.bool_), np.empty(shape, dtype=np.int64)
+    for k in np.unique(np.concatenate((low, high))):
+        rows = np.flatnonzero((low == k) | (high == k))
+        sample = its.loops[k].run(its.controllers[k], chosen_draws(drawn, rows))
+        behind_s = sample.transit_time_s - ahead_s[rows]
+        for side, wanted in enumerate((low, high)):
+            here = wanted[rows] == k
+            at = side, rows[here]
+            speed[at], time[at] = sample.exit_speed_m_s[here], behind_s[here]
+            stalled[at], switchings[at] = sample.stalled[here], sample.switchings[here]
+    return Looped(speed, time, stalled, switchings)
 
 
 def loop_entry_m_s(exit_m: float, cuts: Arrivals) -> Floats:
@@ -135,3 +141,8 @@ def approach_s(loop: ClosedLoop, drawn: Draws) -> Floats:
         next_speed = np.sqrt(np.maximum(speed**2 + 2.0 * free * gap, 0.0))
         time, speed = time + 2.0 * gap / (speed + next_speed), next_speed
     return time
+
+
+def braked_cells(loop: ClosedLoop) -> int:
+    """Path cells in which the brake may act."""
+    return len(loop.path.gravity_m_s2) - loop.path.approach_cells

@@ -25,6 +25,9 @@ Ints = NDArray[np.int64]
 
 WHOLE_TRAIN = WholeTrain()
 
+LEADERS = 4
+"""Cuts ahead whose headways are told one by one."""
+
 FOLLOWERS = 3
 """Cuts behind that a cut looks at: a long one leaves late what not the next cut, but the one after it needs."""
 
@@ -32,8 +35,8 @@ FOLLOWERS = 3
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class TrainPlan:
-    """The plan of some trains, (trains, cuts): `crest_s`, `hump_speed_m_s`, `margin_s`: the
-    largest to the cut ahead that some choice of exit speeds gives.
+    """The plan of some trains, (trains, cuts): `crest_s`, `hump_speed_m_s`, `margin_s`: the largest to those ahead that
+    some choice of exit speeds gives; with it, `margins_s` (…, leaders) to the cut 1, 2, … ahead.
 
     `exit_m_s` (…, positions): of the interval positions. `first_in_s`, `last_out_s` (…, elements): of the
     elements up to the end of the last position.
@@ -42,6 +45,7 @@ class TrainPlan:
     crest_s: Floats
     hump_speed_m_s: Floats
     margin_s: Floats
+    margins_s: Floats
     exit_m_s: Floats
     first_in_s: Floats
     last_out_s: Floats
@@ -70,11 +74,10 @@ class Planner:
     def plan(self, known: KnownCuts) -> TrainPlan:
         """The plan with the fastest hump speeds that keep the interval."""
         speeds = np.full((known.trains, known.cuts), self.limits.steps_m_s[len(self.limits.steps_m_s) // 2])
-        needs_s = np.zeros_like(speeds)
+        needs_s = np.full((known.trains, known.cuts, LEADERS), -np.inf)
         for turn in range(self.fits + self.repairs):
             found = Sweep(self, known, speeds, None).run(EarlyRule(self.early_s))
             enough = self.headways_s(found)
-            # a headway may have shrunk because another one was long; so those that were found are kept in the end
             needs_s = enough if turn < self.fits else np.maximum(needs_s, enough)
             speeds = self.method.speeds(apart_m(known), needs_s, self.limits)
         return self.at_speeds(known, speeds)
@@ -89,9 +92,13 @@ class Planner:
         return Sweep(self, known, speeds_m_s, found).run(CentredRule())
 
     def headways_s(self, found: TrainPlan) -> Floats:
-        """What each cut needs behind the cut ahead at the crest: what it had less what it had too much."""
-        had = np.diff(found.crest_s, axis=1, prepend=0.0)
-        return np.asarray(had - found.margin_s + self.least_s)
+        """What each cut needs behind those ahead of it at the crest, (trains, cuts, leaders): what it had less what it
+        had too much."""
+        needs = np.full(found.margins_s.shape, -np.inf)
+        for leader in range(1, min(LEADERS + 1, len(found.crest_s.T))):
+            had = found.crest_s[:, leader:] - found.crest_s[:, :-leader]
+            needs[:, leader:, leader - 1] = had - found.margins_s[:, leader:, leader - 1] + self.least_s
+        return needs
 
 
 def apart_m(known: KnownCuts) -> Floats:
@@ -111,11 +118,12 @@ class Sweep:
         routes, shape = planner.routes, (known.trains, known.cuts)
         self.users = LastUsers(known.trains, routes)
         self.hump_speed_m_s, self.margin_s = speeds_m_s, np.zeros(shape)
+        self.margins_s = np.full((*shape, LEADERS), np.inf)
         mean = 0.5 * (speeds_m_s[:, 1:] + speeds_m_s[:, :-1])
         self.crest_s = np.zeros(shape)
         self.crest_s[:, 1:] = np.cumsum(apart_m(known)[:, 1:] / mean, axis=1)
         self.exit_m_s = np.zeros((*shape, len(planner.ranges)))
-        self.first_in_s, self.last_out_s = (np.full((*shape, routes.elements), np.nan) for _ in range(2))
+        self.first_in_s, self.last_out_s, self.left_s = (np.full((*shape, routes.elements), np.nan) for _ in range(3))
 
     def run(self, rule: IntervalRule) -> TrainPlan:
         """Plan all cuts by `rule`."""
@@ -123,7 +131,13 @@ class Sweep:
             self.one(cut, rule)
             self.remember(cut)
         return TrainPlan(
-            self.crest_s, self.hump_speed_m_s, self.margin_s, self.exit_m_s, self.first_in_s, self.last_out_s
+            self.crest_s,
+            self.hump_speed_m_s,
+            self.margin_s,
+            self.margins_s,
+            self.exit_m_s,
+            self.first_in_s,
+            self.last_out_s,
         )
 
     def one(self, cut: int, rule: IntervalRule) -> None:
@@ -136,9 +150,22 @@ class Sweep:
         ways = from_crest(planner.routes, expected, start, (*planner.ranges, known.aim_of(rows)))
         compared = ways.compared(*self.neighbours(cut))
         taken = ways.followed(rule.best(compared))
-        self.margin_s[:, cut] = np.where(possible(compared), compared.ahead_s, -np.inf).max(axis=1)
+        margins = np.where(possible(compared), compared.ahead_s, -np.inf)
+        self.margin_s[:, cut] = margins.max(axis=1)
+        self.measure(cut, ways.followed(margins.argmax(axis=1)).first_in_s)
         self.exit_m_s[:, cut] = taken.exit_m_s[:, :-1]
         self.first_in_s[:, cut], self.last_out_s[:, cut] = taken.first_in_s, taken.last_out_s
+
+    def measure(self, cut: int, first_in_s: Floats) -> None:
+        """Note the margins of cut number `cut` to each of the cuts ahead, if it comes at `first_in_s`."""
+        known, routes = self.known, self.planner.routes
+        own = known.route[known.of_cut(cut)]
+        for leader in range(1, min(LEADERS, cut) + 1):
+            other = known.route[known.of_cut(cut - leader)]
+            shared, needs = shared_needs(routes, own, other)
+            free = self.left_s[:, cut - leader] + needs
+            late = np.where(shared & ~np.isnan(free), first_in_s - free, np.inf)
+            self.margins_s[:, cut, leader - 1] = np.nanmin(late, axis=1)
 
     def remember(self, cut: int) -> None:
         """Let the cuts behind know when cut number `cut` leaves the elements, at the latest where pairs are worst."""
@@ -149,6 +176,7 @@ class Sweep:
             given = (Given(self.exit_m_s[:, cut, q]) for q in range(len(planner.ranges)))
             slow = known.expected(rows, known.route[rows], known.bad_n_per_kn[rows])
             out = from_crest(planner.routes, slow, start, (*given, known.aim_of(rows))).followed().last_out_s
+        self.left_s[:, cut] = out
         times = np.full((known.trains, planner.routes.elements, len(Mark)), np.nan)
         times[:, :, Mark.FIRST_IN], times[:, :, Mark.LAST_OUT] = self.first_in_s[:, cut], out
         self.users.add(cut, known.route[rows], times)
@@ -182,11 +210,16 @@ def free_by_s(routes: HumpRoutes, known: KnownCuts, first_in_s: Floats, own: Int
     of the `FOLLOWERS` behind it comes there, less the throw of the points; (n, elements). `first_in_s` (trains, cuts,
     elements): when cuts come."""
     free_by = np.full((len(own), routes.elements), np.inf)
-    column = np.arange(routes.elements)[None, :]
     for follower in range(cut + 1, min(cut + 1 + FOLLOWERS, known.cuts)):
-        other = known.route[lanes * known.cuts + follower]
-        shared = column < routes.shared(own, other)[:, None]
-        parts = shared & (routes.points[own] != routes.points[other])
-        comes = first_in_s[lanes, follower] - np.where(parts, routes.throw_s[own], 0.0)
+        shared, needs = shared_needs(routes, own, known.route[lanes * known.cuts + follower])
+        comes = first_in_s[lanes, follower] - needs
         free_by = np.where(shared & ~np.isnan(comes), np.minimum(free_by, comes), free_by)
     return free_by
+
+
+def shared_needs(routes: HumpRoutes, one: Ints, other: Ints) -> tuple[NDArray[np.bool_], Floats]:
+    """(which elements the routes `one` and `other` (n,) share, what the points need between two cuts on them), each
+    (n, elements)."""
+    shared = np.arange(routes.elements)[None, :] < routes.shared(one, other)[:, None]
+    parts = shared & (routes.points[one] != routes.points[other])
+    return shared, np.where(parts, routes.throw_s[one], 0.0)

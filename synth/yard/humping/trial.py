@@ -17,9 +17,9 @@ from synth.yard.humping.free_tracks import FreeTracks
 from synth.yard.humping.hump_aim import HumpAim
 from synth.yard.humping.hump_position import HumpPosition
 from synth.yard.humping.hump_routes import HumpRoutes
-from synth.yard.humping.humping import ExitSpeeds, Hump, humped
+from synth.yard.humping.humping import ExitSpeeds, Hump, HumpSpeeds, humped
 from synth.yard.humping.interval import CentredRule, IntervalRule
-from synth.yard.humping.interval_control import Feedback, OpenLoop, ProgramSpeeds
+from synth.yard.humping.interval_control import Feedback, FeedbackSpeeds, OpenLoop, ProgramSpeeds
 from synth.yard.humping.known_cuts import BAD, KnownCuts, known_cuts, runner_n_per_kn
 from synth.yard.humping.outcomes import TrainOutcomes, outcomes
 from synth.yard.humping.rollability import CategoryMean, Rollability, measured_rollability
@@ -44,7 +44,7 @@ USUAL_M_S = 4.0
 SPARE_M = 30.0
 """Room that a cut gets besides its length (assumed)."""
 
-BATCH = 100
+BATCH = 250
 """Trains that are humped side by side; no figure depends on it."""
 
 
@@ -108,11 +108,13 @@ class Sensing:
 class Control:
     """`feedback`: exit speeds of the interval positions are chosen when a cut comes; else as planned before the train.
 
-    `sensing` None: the resistance of a cut is that of its category. `rule`: of the feedback.
+    `sensing` None: the resistance of a cut is that of its category. `slow_down_s`: a feedback slows the train down for
+    a cut that would come closer than this to those ahead of it; None: never. `rule`: of the feedback.
     """
 
     feedback: bool = True
     sensing: Sensing | None = None
+    slow_down_s: float | None = None
     rule: IntervalRule = CENTRED
 
 
@@ -121,8 +123,8 @@ class HumpTrial:
     """Trains from `source` over `routes`, whose `ways` are the routes as their cars feel them.
 
     `positions`: models in order from the crest, all but the last for intervals; `planner` with their ranges; `free`:
-    tracks before each train. `aim`: exit speeds of the last position; `usable_head_m`: energy head (rows,) that it can
-    be trusted to take from cuts, by mass, axles and category.
+    tracks before each train. `aim`: exit speeds of the last position; `usable_heads_m`: energy head (rows,) that
+    each position can be trusted to take from cuts, by mass, axles and category.
     """
 
     source: TrainSource
@@ -133,7 +135,7 @@ class HumpTrial:
     program: Program
     control: Control
     aim: HumpAim
-    usable_head_m: BrakeHead
+    usable_heads_m: tuple[BrakeHead, ...]
     free: FreeTracks
     threads: int = 0
 
@@ -163,19 +165,25 @@ class HumpTrial:
         rolls = rolling_on(self.ways, trains.population, trains.drawn, self.threads)
         hump = Hump(self.routes, self.positions, rolls)
         control = self.control_of(trains, known, plan, aim)
-        return trains, plan, humped(hump, trains, free_m, ProgramSpeeds(plan.hump_speed_m_s), control)
+        speeds: HumpSpeeds = ProgramSpeeds(plan.hump_speed_m_s)
+        if self.control.slow_down_s is not None and isinstance(control, Feedback):
+            speeds = FeedbackSpeeds(control, self.control.slow_down_s)
+        return trains, plan, humped(hump, trains, free_m, speeds, control)
 
     def known(self, trains: TrainCuts, free_m: Floats) -> KnownCuts:
         """What is known of trains before they are humped, and how they will be aimed if tracks stay as they are."""
         release = self.routes.exit_m[trains.route, -1] + trains.last_axle_m
         lanes = np.repeat(np.arange(trains.trains), trains.cuts)
         free = free_m[lanes, trains.route] - release
-        aim = self.aim.expected_m_s(trains.route, trains.category, trains.cars, free)
+        sensing = self.control.sensing
+        measured = sensing is not None and sensing.for_aim
+        aim = self.aim.expected_m_s(trains.route, trains.category, trains.cars, free, measured)
         gravity = reduced_gravity_m_s2(trains)
-        head = self.usable_head_m(trains.mass_t, trains.axles, trains.category)
+        heads = [brake(trains.mass_t, trains.axles, trains.category) for brake in self.usable_heads_m]
+        braked = 2.0 * gravity[:, None] * np.stack(heads, axis=1)
         least = np.sqrt(WORST_ENTRY_M_S**2 + 2.0 * gravity * self.worse_head_m(trains))
-        given = Given(aim, np.sqrt(aim**2 + 2.0 * gravity * head), least)
-        return known_cuts(trains, self.ways, given, self.threads)
+        given = Given(aim, np.sqrt(aim**2 + braked[:, -1]), least)
+        return known_cuts(trains, self.ways, given, braked, self.threads)
 
     def worse_head_m(self, trains: TrainCuts) -> Floats:
         """Energy head (rows,) that bad runners against the wind lose more than expected ahead of the last position."""
@@ -206,7 +214,7 @@ class HumpTrial:
         if sensing is not None and sensing.for_intervals:
             sensors = SpeedSensors(self.routes, trains, sensing.speed_std_m_s)
             rollability = measured_rollability(sensors, trains, expected_way(trains, known))
-        return Feedback(self.routes, known, plan, self.planner.ranges, self.control.rule, rollability, aim)
+        return Feedback(self.planner, known, plan, self.control.rule, rollability, aim)
 
 
 def expected_way(trains: TrainCuts, known: KnownCuts) -> ExpectedWay:

@@ -19,7 +19,7 @@ def switch(number: int, left: int, right: int) -> Switch:
 
 
 def retarder(number: int, to: int) -> Retarder:
-    return Retarder(number, edge(to), ((0.0, 12.0), (14.0, 26.0)), 2.0, 28.0, "knp-5-bunch")
+    return Retarder(number, edge(to), ((0.0, 12.0), (14.0, 26.0)), 2.0, 28.0, "knp-5-bunch", exit_std_m_s=0.15)
 
 
 def track(number: int, of: int, length_m: float = 600.0) -> TrackSection:

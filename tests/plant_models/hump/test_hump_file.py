@@ -55,6 +55,7 @@ position = "knp-5-bunch"
 entry_joint_m = 1
 exit_joint_m = 28
 next = { to = 601, length_m = 40, grade_permille = 8, curves = [[30, 40, -14]], radars_m = [[0, 27]] }
+exit_std_m_s = 0.15
 """
 
 
@@ -72,6 +73,35 @@ def test_a_row_counts_before_its_type() -> None:
     assert retarder.zones_m == ((0.0, 12.475), (14.475, 26.95))  # those of the library's position
     assert [(c.from_m, c.to_m, c.turn_deg) for c in retarder.next.curves] == [(30.0, 40.0, -14.0)]
     assert graph.route(201, 2).free_to_m == 42.0 + 60.0 + 280.0
+
+
+BOOK, STD = 'book = "b.h5"\n', "exit_std_m_s = 0.3\n"
+
+
+def with_controllers(of_type: str, of_row: str) -> str:
+    """`SMALL`, its retarder of a type that has these keys of controllers, its row with those."""
+    typed = SMALL.replace("[type.track]", f"[type.bunch]\n{of_type}\n[type.track]")
+    return typed.replace("exit_std_m_s = 0.15\n", of_row + 'type = "bunch"\n')
+
+
+@pytest.mark.parametrize(
+    ("of_type", "of_row", "told"),
+    [(STD, BOOK, ("b.h5", None)), (BOOK, STD, (None, 0.3)), (STD, "", (None, 0.3)), (BOOK + STD, "", None)],
+)
+def test_the_controller_of_a_row_counts_before_that_of_its_type(
+    of_type: str, of_row: str, told: tuple[str | None, float | None] | None
+) -> None:
+    if told is None:
+        with pytest.raises(TypeFileError, match=r"line 16: type.bunch: book and exit_std_m_s are both given"):
+            read(with_controllers(of_type, of_row))
+        return
+    (retarder,) = read(with_controllers(of_type, of_row)).graph.retarders
+    assert (retarder.book, retarder.exit_std_m_s) == told
+
+
+def test_the_accuracy_of_a_retarder_has_its_origin() -> None:
+    (value,) = (value for value in read(SMALL).provenance if value.key.endswith("exit_std_m_s"))
+    assert (value.value, value.unit, value.confidence, value.assumed) == (0.15, "m/s", "L", True)
 
 
 def test_every_number_has_its_origin() -> None:
@@ -183,7 +213,7 @@ FAULTS = [
     ("to = 602", "to = 603", 22, "switch 1: an edge leads to 603, but there is no such element"),
     ("to = 602", "to = 1", 22, "switch 1: the way from it comes back to it"),
     ("to = 602", "to = 401", 22, "switch 1: both branches lead to retarder 401; a switch must have two exits"),
-    (", right = { to = 602 }", "", 22, "switch 1: right: key to is missing"),
+    (", right = { to = 602 }", "", 22, "switch 1: right: key to is missing; a switch must have two exits"),
     (', type = "turnout"', ', type = "turnouts"', 22, "did you mean turnout?"),
     ('{ number = 601, type = "track", track = 1 },\n', "", 28, "retarder 401: an edge leads to 601"),
     ("track = 1 }", "track = 2 }", 26, "section 602: track 2 ends here and in section 601"),
@@ -195,6 +225,10 @@ FAULTS = [
     ("exit_joint_m = 28", "exit_joint_m = 41", 29, "retarder 401: its insulated section ends 41 m behind it"),
     ("[[30, 40, -14]]", "[[30, 41, -14]]", 34, "curves: one ends at 41 m; it must not be beyond"),
     ("[[30, 40, -14]]", "[[30, 40]]", 34, "it must be a list of [from_m, to_m, turn_deg]"),
+    ("exit_std_m_s = 0.15\n", "", 29, "retarder 401: nothing controls it; give book, the file of its tables, or exit"),
+    ("= 0.15\n", "= 0.15\nbook = 'b.h5'\n", 36, "retarder 401: book and exit_std_m_s are both given; give the one"),
+    ("exit_std_m_s = 0.15", "exit_std_m_s = 1.1", 35, "retarder 401: exit_std_m_s is 1.1; it must be a finite number"),
+    ("exit_std_m_s = 0.15", "exit_std_m_s = -0.1", 35, "it must be a finite number from 0 to 1"),
     ("[type.track]", "[type.spare]\n[type.track]", 15, "no element names the type spare"),
 ]  # fmt: skip
 """What is changed into what, the line that the message tells, and words of it."""
@@ -294,6 +328,8 @@ def test_what_the_schema_refuses_the_reader_refuses_too() -> None:
     validator = jsonschema.Draft202012Validator(schema)
     for name in hump_names():
         validator.validate(tomllib.loads(BUILT_IN.file(HUMPS, name).text))
+    assert validator.is_valid(tomllib.loads(SMALL))
+    assert not validator.is_valid(tomllib.loads(SMALL + BOOK))
     refused = sound = 0
     for tree in changed_trees(1, 400):
         if validator.is_valid(tree):

@@ -16,4 +16,5 @@ def test_the_file_on_the_page() -> None:
     assert hump.graph.incidence[1] == (2, 3)
     assert [route.code for route in hump.graph.routes(201).values()] == ["00", "01", "10", "11"]
     assert hump.graph.route(201, 2).free_to_m == 40 + 34 + 34 + 400 - 120
+    assert [each.exit_std_m_s for each in hump.graph.retarders] == [0.15]
     assert all(value.assumed or value.source.startswith("data sheet") for value in hump.provenance)

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import random
 import re
+from dataclasses import replace
 
 import pytest
 
+from plant_models.hump import HumpGraph, Retarder
 from plant_models.library.hump_entry import HumpEntry, hump_names, load_hump
 from synth.configuration.railml.read import from_railml
 from synth.configuration.railml.write import to_railml
 from synth.faults.input_error import InputError
-from tests.plant_models.hump.random_humps import random_hump, small_hump
+from tests.plant_models.hump.random_humps import random_hump, small_hump, small_vertices
 
 
 def written(hump: HumpEntry) -> str:
@@ -38,6 +40,14 @@ def test_random_humps_come_back_equal() -> None:
         assert ignored == ()
 
 
+def test_books_and_aim_tables_come_back() -> None:
+    changes = {"book": "b.h5", "exit_std_m_s": None, "aim_tables": ("a.json", "b.json")}
+    vertices = [replace(v, **changes) if isinstance(v, Retarder) else v for v in small_vertices()]  # type: ignore[arg-type]  # of these fields
+    graph = HumpGraph(tuple(vertices), (201,))
+    read, _ = from_railml(written(HumpEntry("small", "Small", (), graph)), "small", "x.railml")
+    assert read.graph == graph != small_hump()
+
+
 def test_what_is_not_read_is_told() -> None:
     more = '<speeds><speedSection id="a"/></speeds><speeds/><lamp xmlns="urn:other"/><functionalInfrastructure>'
     text = small().replace("<functionalInfrastructure>", f"<functionalInfrastructure>{more}").replace(more, more[:-26])
@@ -51,6 +61,10 @@ FAULTS = [
     ('length="60.0"', 'length="-60.0"', "netElement ne_1_left: length_m is -60.0"),
     ('length="60.0"', 'length="sixty"', "length is 'sixty'; it must be a finite number"),
     ('length="60.0"', 'length="inf"', "length is 'inf'"),
+    ('exitStd="0.15"', "", "retarder 401: nothing controls it; give book"),
+    ('exitStd="0.15"', 'exitStd="0.15" book="b.h5"', "retarder 401: book and exit_std_m_s are both given"),
+    ('exitStd="0.15"', 'exitStd="two"', "exitStd is 'two'; it must be a finite number"),
+    ('exitStd="0.15"', 'exitStd="2"', "exit_std_m_s is 2.0; it must be a finite number from 0 to 1"),
     ('gradient="-45.0"', 'gradient="-61"', "netElement ne_201: grades: a grade is 61.0"),
     ('throw="0.6" ', "", "switch 1: the attribute throw is missing"),
     ('axleCounters="true"', 'axleCounters="yes"', "axleCounters is 'yes'; it must be true or false"),

@@ -19,7 +19,9 @@ class Building:
     def retarder(self, to: int) -> int:
         self.retarders += 1
         zones = ((0.0, 12.0),)
-        self.vertices.append(Retarder(self.retarders, edge(to, 40.0), zones, 2.0, 14.0, "knp-5-bunch"))
+        self.vertices.append(
+            Retarder(self.retarders, edge(to, 40.0), zones, 2.0, 14.0, "knp-5-bunch", exit_std_m_s=0.15)
+        )
         return self.retarders
 
     def grow(self, levels: int, below: int) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -30,10 +30,14 @@ from tests.synth.yard.hump.made_trains import (
     record,
     uncoupled,
 )
+from tests.synth.yard.hump.queue_of_cuts import FOULING_M, random_stalls
 
 SURE, NEAR = 1.25, 2.0
 """A gap within a cut that is wider than the rule asks for by the first factor is one for sure; so is one between two
 cuts that is wider by the second: speeds change while it passes."""
+
+SLOW_S, SLOW_M = 0.3, 0.25
+"""An object that moved less than that in so long, and moves no more in the next, is slower than the rule's 1 m/s."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +47,8 @@ class Scene:
     faults: int = 0
     points_alone: bool = False
     wrong_share: float = 0.0
+    stalled_share: float = 0.0
+    """Of the objects that roll."""
     published: bool = False
     """The published model alone: it knows which object is where, and has neither counters nor rules of practice."""
 
@@ -58,6 +64,8 @@ class Humping:
     faults: Sequence[Fault]
     control: HumpControl
     track: ReferenceTrack
+    rules: PracticeRules = field(default_factory=PracticeRules)
+    stalled: int = 0
 
     @property
     def told(self) -> frozenset[tuple[Kind, int, int, float]]:
@@ -69,6 +77,19 @@ class Humping:
         late = {fault.switch for fault in self.faults if isinstance(fault, LateSwitch)}
         truth = self.track.truth
         return [*truth.thrown_under, *(each for each in truth.moved_under if each[1] not in late)]
+
+    def thrown_beside(self) -> Iterator[tuple[float, int, int]]:
+        """Points that were commanded to move while an object behind them stood or crawled, its last axle short of the
+        fouling point: (time, switch, object), from the tables of the motions alone."""
+        for event in self.control.log.events:
+            for number, each in enumerate(self.objects):
+                if event.kind is not Kind.COMMANDED or (event.element, number) not in self.track.truth.came_s:
+                    continue
+                now, place = event.time_s, self.table.places[self.table.graph.leads[each.lead]][event.element]
+                before_m, now_m, after_m = (each.place_m(now + step * SLOW_S) for step in (-1, 0, 1))
+                slow, beyond_m = max(now_m - before_m, after_m - now_m) < SLOW_M, now_m - place.at_m
+                if slow and 0.0 < beyond_m < each.axles_m[-1] + FOULING_M:
+                    yield now, event.element, number
 
     def lost(self) -> Iterator[tuple[int, int]]:
         """(cut, element): cuts, or parts of them, that ended elsewhere than on their track and are not recorded."""
@@ -154,6 +175,7 @@ def random_humping(seed: int, scene: Scene) -> Humping:
     cuts: list[CutRecord] = []
     rolling: list[Rolling] = []
     objects: list[MovingCut] = []
+    stalled = 0
     base_m = LONG_M if random.random() < 0.3 else USUAL_M
     marks = frozenset({Mark.LONG_BASE}) if base_m == LONG_M else frozenset()
     for place, lead in enumerate(table.graph.leads):
@@ -166,12 +188,14 @@ def random_humping(seed: int, scene: Scene) -> Humping:
         ]
         rolls = uncoupled(train, *random_uncoupling(train, random, scene.wrong_share))
         cuts, rolling = cuts + train, rolling + rolls
-        objects += moving(rolls, train, table, random, 0.2, base_m)
+        stalls = random_stalls([each.axles_m(base_m) for each in rolls], table, lead, random, scene.stalled_share)
+        objects += moving(rolls, train, table, random, 0.2, base_m, stalls)
+        stalled += len(stalls)
     until_s = max(float(each.times_s[-1]) for each in objects)
     faults = random_faults(table, random, int(random.integers(0, scene.faults + 1)), until_s, scene.points_alone)
-    operation = Operation(rules=PUBLISHED_MODEL) if scene.published else None
-    control, track = humped(table, cuts, objects, faults, operation, sees_axles=not scene.published)
-    return Humping(table, cuts, rolling, objects, faults, control, track)
+    rules = PUBLISHED_MODEL if scene.published else PracticeRules()
+    control, track = humped(table, cuts, objects, faults, Operation(rules=rules), sees_axles=not scene.published)
+    return Humping(table, cuts, rolling, objects, faults, control, track, rules, stalled)
 
 
 def joined(graph: HumpGraph) -> bool:
@@ -192,6 +216,8 @@ def judgement(humping: Humping) -> Counter[str]:
             "faults": len(humping.faults),
             "misrouted": len(humping.control.state.misrouted),
             "thrown under": len(humping.thrown_under()),
+            "thrown beside": len(list(humping.thrown_beside())) if humping.rules.fouling_m_s else 0,
+            "stalled": humping.stalled,
             "lost": len(list(humping.lost())),
             "silent counters": len(humping.silent_counters()),
             "other states": int(not humping.replays()),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -23,15 +23,12 @@ from synth.yard.hump.reference_faults import (
 from synth.yard.hump.reference_track import ReferenceTrack
 from synth.yard.hump.route_table import RouteTable
 from synth.yard.hump.sorting_list import SortingList
+from tests.synth.yard.hump.queue_of_cuts import NO_STALLS, Queue, Stall
 
 TICK_S = 0.1
 GRID_M = 10.0
-FASTER_M_S2 = 0.6
-"""No cut that was held up gets faster than by this; 60 permille give 0.59 m/s²."""
-
-COUPLED_M, APART_M = 3.5, 9.0
-"""Between the last axle of a car and the first of the next one, coupled and uncoupled at least."""
-
+COUPLED_M = 3.5
+"""Between the last axle of a car and the first of the next one, coupled."""
 
 USUAL_M, LONG_M = 8.65, 20.5
 """From the first axle of a car to its third one; sections of random humps are 18 m long, shorter than the long car."""
@@ -59,6 +56,11 @@ class Rolling:
         """The number by which the geometry knows it."""
         return self.parts[0][0]
 
+    def axles_m(self, base_m: float) -> NDArray[np.float64]:
+        """Where its axles are, behind the first."""
+        axles = sum(count for _, _, count in self.parts)
+        return axle_places(axles // 4 + 1, base_m)[:axles]
+
 
 def uncoupled(cuts: Sequence[CutRecord], splits: dict[int, int], kept: dict[int, int]) -> list[Rolling]:
     """What rolls: `splits`: a cut comes apart behind so many of its axles; `kept`: so many first axles of a cut stay
@@ -85,31 +87,26 @@ def moving(
     random: np.random.Generator,
     close: float,
     base_m: float = USUAL_M,
+    stalls: Mapping[int, Stall] = NO_STALLS,
 ) -> list[MovingCut]:
     """Objects that follow each other and never overlap, their speed a random walk of at most 0.5 m/s in 10 m from 2 to
-    7 m/s unless a cut ahead holds them up; `close`: share that comes close behind."""
+    7 m/s unless a cut ahead holds them up; `close`: share that comes close behind; `stalls`: by place in the list.
+    """
     leads = {cut.serial: cut.lead for cut in cuts}
     lead = table.graph.leads[leads[rolling[0].cut]]
     end_m = max(e.from_m for e in table.places[lead].values()) + 40.0 + 14.0 * sum(cut.cars for cut in cuts)
     grid = np.arange(0.0, end_m + GRID_M, GRID_M)
     found: list[MovingCut] = []
+    queue = Queue()
     start_s = 0.0
-    for each in rolling:
-        axles = axle_places(max(1, sum(count for _, _, count in each.parts) // 4 + 1), base_m)
-        axles = axles[: sum(count for _, _, count in each.parts)]
+    for number, each in enumerate(rolling):
+        axles = each.axles_m(base_m)
         fast = random.uniform(2.5, 7.0)
         speeds = np.clip(fast + np.cumsum(random.uniform(-0.5, 0.5, len(grid) - 1)), 2.0, 7.0)
         steps = np.diff(grid) / speeds
         times = start_s + np.concatenate([[0.0], np.cumsum(steps)])
-        if found:
-            ahead = found[-1]
-            leaves = np.interp(grid + ahead.axles_m[-1] + APART_M, ahead.places_m, ahead.times_s)
-            wish, times[0] = times.copy(), max(times[0], leaves[0])
-            for k in range(1, len(grid)):
-                had = GRID_M / (times[k - 1] - times[k - 2]) if k > 1 else speeds[0]
-                fastest = min(7.0, (had**2 + 2.0 * FASTER_M_S2 * GRID_M) ** 0.5)
-                times[k] = max(wish[k], leaves[k], times[k - 1] + GRID_M / fastest)
-        found.append(MovingCut(each.cut, axles, times, grid.copy(), leads[each.cut]))
+        places, times = queue.behind(grid, times, axles, stalls.get(number))
+        found.append(MovingCut(each.cut, axles, times, places, leads[each.cut]))
         pause = random.uniform(0.5, 3.0) if random.random() < close else random.uniform(9.0, 16.0)
         start_s = float(times[0]) + (axles[-1] + COUPLED_M) / 2.0 + pause
     return found

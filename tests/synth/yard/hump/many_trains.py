@@ -13,12 +13,16 @@ SCENES = {
     "uncoupling": Scene(wrong_share=0.15),
     "sensors and points": Scene(faults=3),
     "all": Scene(faults=3, wrong_share=0.1),
+    "stalled": Scene(stalled_share=0.1),
+    "stalled, points": Scene(faults=3, points_alone=True, stalled_share=0.1),
+    "stalled, all": Scene(faults=3, wrong_share=0.1, stalled_share=0.1),
     "published model, points": Scene(faults=3, points_alone=True, published=True),
+    "stalled, published model, points": Scene(faults=3, points_alone=True, stalled_share=0.1, published=True),
 }
 
 
 def main(first: int, last: int) -> None:
-    """Print the counts of every scene; each gets every sixth seed."""
+    """Print the counts of every scene; the seeds go round among them."""
     for place, (name, scene) in enumerate(SCENES.items()):
         counts: Counter[str] = Counter()
         for seed in range(first + place, last, len(SCENES)):

@@ -140,6 +140,26 @@ def test_the_gap_between_two_cuts_tells_whether_they_are_coupled(
     assert findings == ([Finding(Kind.TOO_MANY_AXLES, 1, 2)] if told_many else [])
 
 
+@pytest.mark.parametrize(("stands_s", "told_few"), [(0.0, True), (5.9, True), (6.1, False), (60.0, False)])
+def test_an_axle_that_stood_on_the_section_tells_nothing_of_a_gap(stands_s: float, told_few: bool) -> None:
+    """Two axles of a cut, 24 m apart over 8 m at 4 m/s, the second one with a stop; at 1 m/s it would take 8 s."""
+    counter = SectionCounter(8.0, True, PracticeRules(), True)
+    counter.expect(1, 2, 12.0)
+    findings = list(found(counter, [(0.0, True), (2.0, False), (6.0, True), (8.0 + stands_s, False)]))
+    assert findings == ([Finding(Kind.TOO_FEW_AXLES, 1, 1)] if told_few else [])
+
+
+def test_a_part_of_a_cut_that_stays_behind_is_recorded_at_the_end() -> None:
+    """Cut 1 comes apart; its first car goes home to track 2, its second one stands at 150 m, ahead of switch 2."""
+    rest = moving_cut(1, axle_places(1).tolist(), 7.1, [(150.0, 5.0)])
+    control, _ = humped(TABLE, [record(1, 2, cars=2)], [rolling(1, 0.0), rest])
+    assert control.state.arrived == {1: [2]}
+    assert told(control, Kind.MISROUTED) == [(Kind.MISROUTED, 2, 1, Why.NOT_SEEN)]
+    assert sorted(control.counters.left_over()) == [2, 602]
+    whole, _ = humped(TABLE, [record(1, 2, cars=2)], [rolling(1, 0.0), rolling(1, 7.1)])
+    assert told(whole, Kind.MISROUTED) == []
+
+
 def test_an_axle_that_nobody_announced_is_a_fault() -> None:
     counter = SectionCounter(8.0, True, PracticeRules(), False)
     assert list(found(counter, [(0.0, True)])) == [Finding(Kind.COUNTER_FAULT, 0, 1.0)]
@@ -148,12 +168,18 @@ def test_an_axle_that_nobody_announced_is_a_fault() -> None:
     assert list(found(counter, [(0.0, False)])) == [Finding(Kind.COUNTER_FAULT, 1, -1.0)]
 
 
-def test_a_lone_axle_is_dropped_only_after_quiet() -> None:
-    """The section is told free from 0 s on, falsely; the first axle of a cut comes at 100 s."""
+@pytest.mark.parametrize(("after_s", "dropped"), [(0.0, True), (0.92, True), (0.93, False), (2.0, False)])
+def test_a_lone_axle_is_dropped_only_close_behind_the_cut_ahead_and_after_quiet(after_s: float, dropped: bool) -> None:
+    """The section is told free from 0 s on, falsely. The one axle of cut 1 comes at 99 s, then one of cut 2.
+
+    The axles of a bogie, 1.85 m apart, need 0.925 s at 2 m/s, and no longer."""
     counter = SectionCounter(8.0, True, PracticeRules(), False)
-    counter.expect(1, 4, 12.0)
-    list(counter.axle_in(100.0))
-    for now_s, clear in ((100.1, False), (114.9, False), (115.1, True)):
+    counter.expect(1, 1, 12.0)
+    counter.expect(2, 4, 12.0)
+    list(counter.axle_in(99.0))
+    list(counter.axle_in(99.0 + after_s))
+    list(counter.axle_out(102.0))
+    for now_s, clear in ((102.1, False), (116.9, False), (117.1, dropped)):
         list(counter.check(now_s, 0.0, lambda cut: False))
         assert counter.is_clear == clear
 

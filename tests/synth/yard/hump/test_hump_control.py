@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from plant_models.errors import PlantError
@@ -187,6 +188,17 @@ def test_a_falsely_free_section_throws_no_points_under_a_cut() -> None:
 
     assert throws(PracticeRules()) == []
     assert throws(PUBLISHED_MODEL) == [(1, 0)]
+
+
+def test_no_points_are_thrown_under_a_cut_that_stands_with_one_axle_on_a_falsely_free_section() -> None:
+    """Cut 2, to the other side, comes before cut 1 has left, and stands with its first axle 0.5 m behind the joint."""
+    places, times = np.array([0.0, 34.0, 34.5, 34.51, 500.0]), np.array([5.2, 12.0, 12.1, 52.1, 150.0])
+    stands = MovingCut(2, axle_places(1), times, places)
+    cuts = [record(1, 2), record(2, 1)]
+    control, track = humped(TABLE, cuts, [rolling(1, 0.0), stands], [FalselyFree(1, 10.0, 80.0)])
+    assert not track.truth.thrown_under
+    assert 2 in control.state.misrouted
+    assert {event.element for event in told(control, Kind.COUNTER_FAULT)} == {1}
 
 
 def test_two_faults_of_one_section_can_deceive() -> None:

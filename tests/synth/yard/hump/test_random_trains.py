@@ -5,6 +5,9 @@ Every example is a hump, a train and faults of its own. `many_trains` humps 100 
 
 from __future__ import annotations
 
+from itertools import pairwise
+
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -17,17 +20,19 @@ from synth.yard.hump.hump_state import replayed
 from synth.yard.hump.misrouting import Misrouting
 from tests.synth.yard.hump.judged_trains import Humping, Scene, judgement, random_humping
 from tests.synth.yard.hump.many_trains import SCENES
+from tests.synth.yard.hump.queue_of_cuts import APART_M
 
 SEEDS = st.integers(0, 2**32 - 1)
-NEVER = ("thrown under", "lost", "silent counters", "other states")
-FOUND = ("catch-ups missed", "catch-ups false", "wrong uncouplings missed", "wrong uncouplings false")
+NEVER = ("thrown under", "thrown beside", "lost", "silent counters", "other states")
+CATCH_UPS = ("catch-ups missed", "catch-ups false")
+UNCOUPLINGS = ("wrong uncouplings missed", "wrong uncouplings false")
 SENSORS_ARE_RIGHT = [name for name, scene in SCENES.items() if scene.faults == 0 or scene.points_alone]
 
 
 @pytest.mark.parametrize("name", SCENES)
 @settings(max_examples=40)
 @given(seed=SEEDS)
-def test_no_points_under_a_cut_no_cut_lost_no_silent_counter_and_the_log_replays(name: str, seed: int) -> None:
+def test_no_points_under_or_beside_a_cut_none_lost_no_silent_counter_and_the_log_replays(name: str, seed: int) -> None:
     judged = judgement(random_humping(seed, SCENES[name]))
     assert {key: judged[key] for key in NEVER} == dict.fromkeys(NEVER, 0)
     assert judged["cuts"] > 0
@@ -37,8 +42,10 @@ def test_no_points_under_a_cut_no_cut_lost_no_silent_counter_and_the_log_replays
 @settings(max_examples=40)
 @given(seed=SEEDS)
 def test_with_right_sensors_none_is_missed_and_none_is_false(name: str, seed: int) -> None:
+    """A gap in which a cut stalls tells nothing: where cuts stall, uncouplings are not judged."""
     judged = judgement(random_humping(seed, SCENES[name]))
-    assert {key: judged[key] for key in FOUND} == dict.fromkeys(FOUND, 0)
+    found = CATCH_UPS if SCENES[name].stalled_share else CATCH_UPS + UNCOUPLINGS
+    assert {key: judged[key] for key in found} == dict.fromkeys(found, 0)
 
 
 @settings(max_examples=20)
@@ -70,6 +77,30 @@ def test_the_trains_are_no_easy_ones() -> None:
 def test_without_counters_points_are_thrown_under_cuts(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(AxleCounters, "is_clear", lambda self, element: True)
     assert total(Scene(faults=3))["thrown under"] > 0
+
+
+def test_without_the_fouling_rule_points_are_thrown_beside_cuts() -> None:
+    scene = SCENES["stalled, published model, points"]
+    assert sum(len(list(random_humping(seed, scene).thrown_beside())) for seed in range(120)) > 0
+    assert total(scene)["thrown beside"] == 0  # it is not asked for there
+
+
+def test_cuts_stall_in_the_trains_and_objects_never_overlap() -> None:
+    stalled = stood = 0
+    for seed in range(40):
+        humping = random_humping(seed, SCENES["stalled"])
+        stalled += humping.stalled
+        for ahead, behind in pairwise(humping.objects):
+            if ahead.lead != behind.lead:
+                continue
+            times = np.union1d(ahead.times_s, behind.times_s)
+            gaps = np.array([ahead.place_m(t) - ahead.axles_m[-1] - behind.place_m(t) for t in times])
+            # A table begins at the crest, and ends behind all joints or where its object stands.
+            assert np.all(gaps[(times >= behind.times_s[0]) & (times <= ahead.times_s[-1])] > 0.0)
+            if ahead.places_m[-1] < max(each.places_m[-1] for each in humping.objects if each.lead == ahead.lead):
+                stood += 1
+                assert behind.places_m[-1] <= ahead.places_m[-1] - ahead.axles_m[-1] - APART_M + 1e-9
+    assert (stalled > 20, stood > 5) == (True, True), (stalled, stood)
 
 
 def test_cuts_whose_misrouting_is_not_recorded_are_found(monkeypatch: pytest.MonkeyPatch) -> None:

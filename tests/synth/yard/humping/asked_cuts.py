@@ -12,7 +12,6 @@ from plant_models.library import load_hump
 from synth.yard.free_roll import Rolled
 from synth.yard.humping.hump_routes import HumpRoutes, hump_routes
 from synth.yard.humping.humping import Asked
-from synth.yard.humping.meeting import LastUsers
 from synth.yard.humping.motion import Moving
 from synth.yard.humping.train_memory import TrainMemory
 
@@ -84,5 +83,4 @@ def asked_at(routes: HumpRoutes, position: int, memory: TrainMemory, comes_m_s: 
     lanes = np.arange(len(comes_m_s))
     own = np.zeros(len(lanes), dtype=np.int64)
     start = Moving(routes.entrance_m[own, position] + FIRST_M, comes_m_s, np.full(len(lanes), 100.0))
-    ahead = LastUsers(len(lanes), routes).on(own, lanes)
-    return Asked(0, position, lanes, own, start, ahead, free_m, memory)
+    return Asked(0, position, lanes, own, start, free_m, memory)

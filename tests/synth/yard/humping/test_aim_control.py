@@ -96,12 +96,13 @@ def test_a_reading_is_the_resistance_where_nothing_else_differs() -> None:
     assert found.value == pytest.approx(cuts.rolling.cuts.resistance_n_per_kn, abs=2e-3)
 
 
-def test_expected_speed_is_that_of_the_mean_reading() -> None:
+def test_expected_speed_is_that_of_the_mean_reading_where_cuts_are_measured() -> None:
     place = np.zeros(1, dtype=np.int64)
-    table = aim().tables[0][2]
     asked = place, place + 2, place + 3, np.array([150.0])
-    assert aim().expected_m_s(*asked) == aim().command_m_s(*asked, np.array([table.mean_n_per_kn]))
-    assert aim().expected_m_s(*asked) > aim().command_m_s(*asked)
+    mean = np.array([aim().tables[0][2].mean_n_per_kn])
+    assert aim().expected_m_s(*asked, measured=True) == aim().command_m_s(*asked, mean)
+    assert aim().expected_m_s(*asked, measured=False) == aim().command_m_s(*asked)
+    assert aim().command_m_s(*asked, mean) > aim().command_m_s(*asked)
 
 
 def test_routes_share_speeds_where_their_tracks_are_alike() -> None:

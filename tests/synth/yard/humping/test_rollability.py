@@ -75,7 +75,8 @@ class CutsAsked:
     def ahead_n_per_kn(self) -> Floats:
         """Resistance with the wind's part at the speed of the question."""
         speed = self.asked.start.speed_m_s
-        return self.n_per_kn + AIR * ((speed + self.wind_m_s) * np.abs(speed + self.wind_m_s) - speed**2)
+        against = speed + self.wind_m_s
+        return np.asarray(self.n_per_kn + AIR * (against * np.abs(against) - speed**2))
 
 
 def bends_drawn(random: np.random.Generator, count: int, position: int) -> Floats:
