@@ -55,7 +55,9 @@ def one_switch(grade_permille: float = 0.0) -> HumpGraph:
     vertices: tuple[Vertex, ...] = (
         Signal(LEAD, edge(SWITCH, POINTS_M, grade_permille)),
         Switch(SWITCH, left, right, JOINT_AHEAD_M, JOINT_BEHIND_M, THROW_S, RELAY_S),
-        Retarder(POSITION, edge(602, 24.0, grade_permille), ((0.0, BRAKED_M),), 1.0, 22.0, "knp-5-bunch"),
+        Retarder(
+            POSITION, edge(602, 24.0, grade_permille), ((0.0, BRAKED_M),), 1.0, 22.0, "knp-5-bunch", exit_std_m_s=0.0
+        ),
         last_section(601, LEFT_TRACK, grade_permille),
         last_section(602, RIGHT_TRACK, grade_permille),
     )

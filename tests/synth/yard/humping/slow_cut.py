@@ -160,8 +160,10 @@ class MovingCut:
         self.t, self.x, self.v = self.t + seconds, x, v
 
     def brake(self, command_m_s: float, exit_m: float, full_head_m: float) -> None:
-        """Brake evenly until the head is at `exit_m`: to the command, or as far as the full brake does; freely where the
-        cut would not get there without braking."""
+        """Brake evenly until the head is at `exit_m`: to the command, or as far as the full brake does.
+
+        A cut that would not even get there without braking rolls freely.
+        """
         unbraked = self.unbraked_energy(exit_m)
         if unbraked <= 0.0:
             return

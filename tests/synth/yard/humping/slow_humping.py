@@ -38,10 +38,9 @@ class SlowHumping(SlowRecord):
         self.ways: dict[tuple[int, int], SlowWay] = {}
         first = train.cuts[0]
         self.now = first.crest_s - 0.5 * first.body.length_m / first.hump_speed_m_s
-        push = Push(train.cuts)
+        push, routes = Push(train.cuts), self.routes
         self.cuts = [
-            MovingCut(cut, self.routes[cut.track], self.way(i, cut.track), push, self.now)
-            for i, cut in enumerate(train.cuts)
+            MovingCut(c, routes[c.track], self.way(i, c.track), push, self.now) for i, c in enumerate(train.cuts)
         ]
         super().__init__()
         self.commands: dict[tuple[int, int], float] = {}
