@@ -21,8 +21,8 @@ class Legs(NamedTuple):
     position and the free roll behind it: `choices` (q,); `speeds_m_s` (q, m, k); `won_m2_s2` (q, m), gain of v² in the
     pass without brake; `path_m` (q, m) of the pass, of which `share` (q, m, s) is behind the cut at a mark; `roll_s`
     (q, m, k, s), times after the pass; `ends_s`, `ends_m_s` (q, m, k), duration of the roll and speed at its end;
-    `most_entry_m_s`, `least_entry_m_s`, `braked_m2_s2` (q, m), most
-    loss of v² to the brake. NaN where a mark is not on that stretch.
+    `most_entry_m_s`, `least_entry_m_s`, `braked_m2_s2` (q, m), most loss of v² to the brake; `early` (q,): the brake
+    works as hard as that until the exit speed is reached, else evenly. NaN where a mark is not on that stretch.
     """
 
     time_s: Floats
@@ -39,6 +39,7 @@ class Legs(NamedTuple):
     most_entry_m_s: Floats
     least_entry_m_s: Floats
     braked_m2_s2: Floats
+    early: NDArray[np.bool_]
 
 
 class Work(NamedTuple):
@@ -50,6 +51,7 @@ class Work(NamedTuple):
     ahead_s: Floats
     behind_s: Floats
     able: NDArray[np.bool_]
+    beyond_m_s: Floats
     at: Ints
     met: Ints
     met_to: Ints
@@ -64,6 +66,7 @@ def work_for(legs: Legs) -> Work:
         ahead_s=np.empty(levels + 1),
         behind_s=np.empty(levels + 1),
         able=np.empty(levels + 1, dtype=np.bool_),
+        beyond_m_s=np.zeros(levels + 1),
         at=np.zeros(levels, dtype=np.int64),
         met=np.empty((levels, marks), dtype=np.int64),
         met_to=np.empty(levels, dtype=np.int64),
@@ -75,40 +78,51 @@ def mark_time(legs, q, i, k, s, time, speed, out):
     """When mark `s` is passed on stretch `q` that begins at `time` with `speed`, and whose pass ends at `out`; NaN if
     it is not there."""
     share = legs.share[q, i, s]
-    if not math.isnan(share):
-        exit_speed = legs.speeds_m_s[q, i, k]
-        if not math.isfinite(out):
-            return math.inf
-        between = math.sqrt(speed * speed + share * (exit_speed * exit_speed - speed * speed))
-        return time + (out - time) * share * (speed + exit_speed) / (speed + between)
-    return out + legs.roll_s[q, i, k, s]
+    if math.isnan(share):
+        return out + legs.roll_s[q, i, k, s]
+    if not math.isfinite(out):
+        return math.inf
+    return time + time_to(legs, q, i, k, speed, share)
 
 
 @borrowing_inline
 def pass_end(legs, q, i, k, time, speed):
     """When the pass ends; infinite where the cut stops."""
-    exit_speed = legs.speeds_m_s[q, i, k]
-    if speed > 0.0 and exit_speed > 0.0:
-        return time + 2.0 * legs.path_m[q, i] / (speed + exit_speed)
+    if speed > 0.0 and legs.speeds_m_s[q, i, k] > 0.0:
+        return time + time_to(legs, q, i, k, speed, 1.0)
     return math.inf
 
 
 @borrowing_inline
+def time_to(legs, q, i, k, speed, share):
+    """How long a cut takes that comes with `speed` for this share of the path of the pass; v² falls evenly until the
+    exit speed is reached."""
+    path, exit_speed = legs.path_m[q, i], legs.speeds_m_s[q, i, k]
+    braked = 1.0
+    if legs.early[q]:
+        needed = speed * speed + legs.won_m2_s2[q, i] - exit_speed * exit_speed
+        braked = min(max(needed / legs.braked_m2_s2[q, i], 0.05), 1.0)
+    part = min(share / braked, 1.0)
+    between = math.sqrt(max(speed * speed + part * (exit_speed * exit_speed - speed * speed), 0.0))
+    return 2.0 * path * braked * part / (speed + between) + path * max(share - braked, 0.0) / exit_speed
+
+
+@borrowing_inline
 def is_able(legs, q, i, k, speed):
-    """Whether the cut may come to the position with `speed` and can leave it with the choice `k`."""
+    """Whether a cut that comes to the position with `speed` can leave it with the choice `k`."""
     exit_speed = legs.speeds_m_s[q, i, k]
     unbraked = speed * speed + legs.won_m2_s2[q, i] + 1e-6
-    reached = unbraked - legs.braked_m2_s2[q, i] <= exit_speed * exit_speed <= unbraked
-    return reached and legs.least_entry_m_s[q, i] <= speed <= legs.most_entry_m_s[q, i]
+    return unbraked - legs.braked_m2_s2[q, i] <= exit_speed * exit_speed <= unbraked
 
 
 @borrowing
-def compare(legs, free_from_s, free_by_s, first, last, work, ahead_s, behind_s, able, arrival_s):
+def compare(legs, free_from_s, free_by_s, first, last, work, ahead_s, behind_s, able, beyond_m_s, arrival_s):
     """Fill, for cuts `first` … `last` − 1 and every combination c of choices, the least margins to the cuts ahead and
-    behind, whether the cut is able to, and when it arrives: all (m, c), the last position's choice running fastest."""
+    behind, whether the cut is able to, how far its worst entry is beyond the limits, and when it arrives: all (m, c),
+    the last position's choice running fastest."""
     levels, marks = len(legs.choices), legs.before_s.shape[1]
     time, speed, ahead, behind = work.time_s, work.speed_m_s, work.ahead_s, work.behind_s
-    can, at, met, met_to = work.able, work.at, work.met, work.met_to
+    can, beyond, at, met, met_to = work.able, work.beyond_m_s, work.at, work.met, work.met_to
     for i in range(first, last):
         list_marks(legs, i, met, met_to)
         time[0], speed[0], can[0] = legs.time_s[i], legs.speed_m_s[i], True
@@ -125,7 +139,7 @@ def compare(legs, free_from_s, free_by_s, first, last, work, ahead_s, behind_s, 
                     if unknown_out(legs, i, e):
                         late = min(late, free_by_s[i, e] - time[level])
                 ahead_s[i, column], behind_s[i, column] = ahead[level], late
-                able[i, column], arrival_s[i, column] = can[level], time[level]
+                able[i, column], beyond_m_s[i, column], arrival_s[i, column] = can[level], beyond[level], time[level]
                 column += 1
                 level -= 1
                 at[level] += 1
@@ -144,6 +158,8 @@ def compare(legs, free_from_s, free_by_s, first, last, work, ahead_s, behind_s, 
                     near, far = nearer(passed, s, i, free_from_s, free_by_s, near, far)
                 ahead[level + 1], behind[level + 1] = near, far
                 can[level + 1] = can[level] and is_able(legs, level, i, k, speed[level])
+                slow, fast = legs.least_entry_m_s[level, i], legs.most_entry_m_s[level, i]
+                beyond[level + 1] = max(beyond[level], slow - speed[level], speed[level] - fast)
                 time[level + 1], speed[level + 1] = out + legs.ends_s[level, i, k], legs.ends_m_s[level, i, k]
                 level += 1
 
@@ -184,8 +200,8 @@ def unknown_out(legs, i, e):
 
 
 @borrowing
-def follow(legs, taken, first, last, times_s, arrival_s):
-    """Fill the times of all marks (m, s) and of the arrival (m,) with the choices `taken` (q, m)."""
+def follow(legs, taken, first, last, times_s, ended_s):
+    """Fill the times of all marks (m, s) and of the ends of passes (m, q) with the choices `taken` (q, m)."""
     levels, marks = len(legs.choices), legs.before_s.shape[1]
     for i in range(first, last):
         time, speed = legs.time_s[i], legs.speed_m_s[i]
@@ -193,12 +209,11 @@ def follow(legs, taken, first, last, times_s, arrival_s):
             times_s[i, s] = legs.before_s[i, s]
         for q in range(levels):
             k = taken[q, i]
-            out = pass_end(legs, q, i, k, time, speed)
+            ended_s[i, q] = out = pass_end(legs, q, i, k, time, speed)
             for s in range(marks):
                 if math.isnan(times_s[i, s]):
                     times_s[i, s] = mark_time(legs, q, i, k, s, time, speed, out)
             time, speed = out + legs.ends_s[q, i, k], legs.ends_m_s[q, i, k]
-        arrival_s[i] = time
         for e in range(marks // 2):
             if unknown_out(legs, i, e):
                 times_s[i, 2 * e + 1] = time

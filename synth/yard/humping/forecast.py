@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from plant_models.frozen_arrays import frozen_arrays
 from synth.kernels.roll import exit_choices as kernel
 from synth.yard.humping.hump_routes import HumpRoutes, Mark
-from synth.yard.humping.motion import Cars, Moving, rolled_free
+from synth.yard.humping.motion import Cars, Moving, Push, rolled_free
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -28,12 +28,14 @@ SLOWEST_M_S = 0.1
 @dataclass(frozen=True, eq=False)
 class Expected:
     """Cuts as a control knows them, (n,): `cars` roll as it expects; first and last axles behind the head;
-    `braked_m2_s2` (n, positions): most loss of v² to the brake of each position."""
+    `braked_m2_s2` (n, positions): most loss of v² to the brake of each position; `early` (positions,): it brakes so
+    hard until the exit speed is reached, else evenly."""
 
     cars: Cars
     first_axle_m: Floats
     last_axle_m: Floats
     braked_m2_s2: Floats
+    early: Bools
 
 
 class Choices(Protocol):
@@ -86,12 +88,14 @@ class SpeedRange:
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Compared:
-    """n cuts with c choices each, (n, c): least margins to the cuts ahead and behind, whether the cut can have that,
-    when its last axle is out of the last position, and all exit speeds added up."""
+    """n cuts with c choices each, (n, c): least margins to the cuts ahead and behind; whether the cut can have these
+    speeds; how far it comes beyond the limits of entry of some position, 0 if it does not; when its last axle is out of
+    the section of the last position; all exit speeds added up."""
 
     ahead_s: Floats
     behind_s: Floats
     able: Bools
+    beyond_m_s: Floats
     arrival_s: Floats
     speeds_m_s: Floats
 
@@ -100,16 +104,19 @@ class Compared:
 @dataclass(frozen=True, eq=False)
 class Forecast:
     """n cuts with one choice each: `first_in_s`, `last_out_s` (n, elements), NaN for what lies behind the cut or beyond
-    the last position, infinite behind a stop; `exit_m_s` (n, q) of the positions ahead."""
+    the last position, infinite behind a stop; (n, q) of the positions ahead: `exit_m_s`, and `ended_s`, when the passes
+    end."""
 
     first_in_s: Floats
     last_out_s: Floats
     exit_m_s: Floats
+    ended_s: Floats
 
 
 class Ways:
-    """All ways that n cuts can go from where they are until their last axles are out of the last position: free rolls
-    and, for each position ahead, the choices of its exit speed. Build it with `from_crest` or `from_entrance`."""
+    """All ways that n cuts can go from where they are until their last axles are out of the last position's section:
+    free rolls and, for each position ahead, the choices of its exit speed. Build it with `from_crest` or
+    `from_entrance`."""
 
     def __init__(self, routes: HumpRoutes, legs: kernel.Legs) -> None:
         self.routes, self.legs = routes, legs
@@ -119,33 +126,34 @@ class Ways:
         elements)."""
         legs = self.legs
         shape = len(legs.time_s), int(np.prod(legs.choices))
-        ahead, behind, arrival = np.empty(shape), np.empty(shape), np.empty(shape)
+        ahead, behind, beyond, arrival = (np.empty(shape) for _ in range(4))
         able = np.empty(shape, dtype=np.bool_)
         work = kernel.work_for(legs)
-        kernel.compare(legs, free_from_s, free_by_s, 0, shape[0], work, ahead, behind, able, arrival)
+        kernel.compare(legs, free_from_s, free_by_s, 0, shape[0], work, ahead, behind, able, beyond, arrival)
         total = np.zeros((shape[0], 1))
         for count, speeds in zip(legs.choices, legs.speeds_m_s, strict=True):
             total = (total[:, :, None] + speeds[:, None, :count]).reshape(shape[0], -1)
-        return Compared(ahead, behind, able, arrival, total)
+        return Compared(ahead, behind, able, beyond, arrival, total)
 
     def followed(self, column: Ints | None = None) -> Forecast:
         """The way with the combination `column` (n,) of the choices; None: the only one."""
         legs, count = self.legs, len(self.legs.time_s)
         at = np.zeros(count, dtype=np.int64) if column is None else column
         taken = np.stack(np.unravel_index(at, tuple(legs.choices)))
-        times, arrival = np.empty((count, 2 * self.routes.elements)), np.empty(count)
-        kernel.follow(legs, taken, 0, count, times, arrival)
+        times, ended = np.empty((count, 2 * self.routes.elements)), np.empty((count, len(taken)))
+        kernel.follow(legs, taken, 0, count, times, ended)
         marks = times.reshape(count, -1, 2)
         exits = legs.speeds_m_s[np.arange(len(taken))[:, None], np.arange(count), taken]
-        return Forecast(marks[:, :, 0].copy(), marks[:, :, 1].copy(), exits.T.copy())
+        return Forecast(marks[:, :, 0].copy(), marks[:, :, 1].copy(), exits.T.copy(), ended)
 
 
-def from_crest(routes: HumpRoutes, expected: Expected, start: Moving, choices: tuple[Choices, ...]) -> Ways:
-    """From the crest on, where the heads are at `start`; `choices` of all positions."""
+def from_crest(routes: HumpRoutes, expected: Expected, start: Moving, push: Push, choices: tuple[Choices, ...]) -> Ways:
+    """From the crest on, where the heads are at `start` after the `push`; `choices` of all positions."""
     heads = heads_m(routes, expected)
-    end, times = rolled_free(expected.cars, start, entrance_m(routes, expected, 0), heads)
-    known = start.time_s[:, None] - (start.head_m[:, None] - heads) / start.speed_m_s[:, None]
-    before = np.where(heads <= start.head_m[:, None], known, times)
+    to = np.maximum(entrance_m(routes, expected, 0), start.head_m)
+    end, times = rolled_free(expected.cars, start, to, heads)
+    known = push.times_s(start, heads)
+    before = np.where(np.isnan(known), times, known)
     return through(routes, expected, end, before, 0, choices)
 
 
@@ -163,9 +171,10 @@ def through(
     """From `start` at the entrance of `position` through all positions behind it."""
     count, marks, most = len(before_s), before_s.shape[1], len(choices)
     heads, fastest, stretches = heads_m(routes, expected), start.speed_m_s, []
-    for place, of_one in enumerate(choices):
-        stretches.append(stretch(routes, expected, position + place, heads, fastest, of_one))
-        fastest = stretches[-1].ends_m_s.max(axis=1)
+    begins = np.maximum(entrance_m(routes, expected, position), start.head_m)
+    for place, of_one in enumerate(choices, position):
+        stretches.append(stretch(routes, expected, place, heads, Moving(begins, fastest, np.zeros(count)), of_one))
+        fastest, begins = stretches[-1].ends_m_s.max(axis=1), entrance_m(routes, expected, place + 1)
     counts = np.array([each.speeds_m_s.shape[1] for each in stretches])
     wide = most, count, int(counts.max())
     speeds, ends, ends_speed = (np.zeros(wide) for _ in range(3))
@@ -187,6 +196,7 @@ def through(
         ends_m_s=ends_speed,
         most_entry_m_s=np.stack([np.broadcast_to(each.most_entry_m_s, count) for each in choices]),
         least_entry_m_s=np.stack([np.broadcast_to(each.least_entry_m_s, count) for each in choices]),
+        early=np.ascontiguousarray(expected.early[position : position + most]),
         braked_m2_s2=np.ascontiguousarray(expected.braked_m2_s2[:, position : position + most].T),
     )
     return Ways(routes, legs)
@@ -207,13 +217,11 @@ class Stretch:
 
 
 def stretch(
-    routes: HumpRoutes, expected: Expected, position: int, heads_m: Floats, fastest_m_s: Floats, choices: Choices
+    routes: HumpRoutes, expected: Expected, position: int, heads_m: Floats, start: Moving, choices: Choices
 ) -> Stretch:
-    """`position` with each of the `choices` for cuts that come with `fastest_m_s` (n,) at the most."""
+    """`position` with each of the `choices` for cuts that come as at `start`, at the fastest."""
     count = len(heads_m)
-    entrance = entrance_m(routes, expected, position)
     leaves = routes.exit_m[expected.cars.routes, position] + expected.last_axle_m
-    start = Moving(entrance, fastest_m_s, np.zeros(count))
     unbraked, _ = rolled_free(expected.cars, start, leaves, np.empty((count, 0)))
     speeds = choices.speeds(np.maximum(unbraked.speed_m_s, SLOWEST_M_S))
     chosen = speeds.shape[1]
@@ -221,11 +229,11 @@ def stretch(
     begins = Moving(leaves[each], speeds.reshape(-1), np.zeros(len(each)))
     ahead = entrance_m(routes, expected, position + 1)
     ends, roll = rolled_free(expected.cars.chosen(each), begins, ahead[each], heads_m[each])
-    path = leaves - entrance
-    share = (heads_m - entrance[:, None]) / path[:, None]
+    path = leaves - start.head_m
+    share = (heads_m - start.head_m[:, None]) / path[:, None]
     return Stretch(
         speeds_m_s=speeds,
-        won_m2_s2=unbraked.speed_m_s**2 - fastest_m_s**2,
+        won_m2_s2=unbraked.speed_m_s**2 - start.speed_m_s**2,
         path_m=path,
         share=np.where((share > 0.0) & (share <= 1.0), share, np.nan),
         roll_s=roll.reshape(count, chosen, -1),
@@ -242,8 +250,12 @@ def heads_m(routes: HumpRoutes, expected: Expected) -> Floats:
 
 
 def entrance_m(routes: HumpRoutes, expected: Expected, position: int) -> Floats:
-    """Where the heads are at the entrance of `position`, or, behind the last one, when the last axles are out of it."""
+    """Where the heads are when the passes of `position` begin: at its entrance, but not before the last axles are out
+    of the position before it. Behind the last position: when they are out of its section."""
     rows = expected.cars.routes
     if position == routes.positions:
-        return np.asarray(routes.exit_m[rows, position - 1] + expected.last_axle_m)
-    return np.asarray(routes.entrance_m[rows, position] + expected.first_axle_m)
+        return np.asarray(routes.place_m[rows, routes.retarder[rows, -1], Mark.LAST_OUT] + expected.last_axle_m)
+    out = np.full(len(rows), -np.inf)
+    if position > 0:
+        out = routes.exit_m[rows, position - 1] + expected.last_axle_m
+    return np.asarray(np.maximum(routes.entrance_m[rows, position] + expected.first_axle_m, out))

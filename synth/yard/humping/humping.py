@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -12,8 +13,9 @@ from plant_models.frozen_arrays import frozen_arrays
 from synth.yard.humping.hump_position import Arrivals, HumpPosition
 from synth.yard.humping.hump_routes import OF_FIRST_AXLE, HumpRoutes, Mark
 from synth.yard.humping.meeting import Ahead, LastUsers, first_of, meeting
-from synth.yard.humping.motion import Cars, Moving, Rolls, braked_evenly, rolled_free
+from synth.yard.humping.motion import Cars, Moving, Push, Rolls, braked_evenly, merged, rolled_free
 from synth.yard.humping.standing_cars import StandingCars
+from synth.yard.humping.tails import Tails
 from synth.yard.humping.train_cuts import TrainCuts
 from synth.yard.humping.train_memory import TrainMemory
 
@@ -108,16 +110,14 @@ class OneCut:
         """The cut when its middle is at the crest. The train is pushed at an even rate between two such moments."""
         memory, cut = self.memory, self.cut
         speed = speeds.speed(cut, memory)
-        if cut == 0:
-            time = np.zeros(len(speed))
-        else:
+        apart, time = self.length_m, np.zeros(len(speed))
+        if cut > 0:
             apart = 0.5 * (self.length_m + self.trains.length_m[self.rows - 1])
             time = memory.crest_s[:, cut - 1] + 2.0 * apart / (speed + memory.hump_speed_m_s[:, cut - 1])
         memory.crest_s[:, cut], memory.hump_speed_m_s[:, cut] = time, speed
         head = 0.5 * self.length_m
-        heads = self.heads_m(np.ones(len(speed), dtype=bool))
-        pushed = time[:, None] - (head[:, None] - heads) / speed[:, None]
-        self.note(np.where(heads <= head[:, None], pushed, np.nan), self.rolling)
+        push = Push(memory.hump_speed_m_s[:, cut - 1] if cut > 0 else speed, apart)
+        self.note(push.times_s(Moving(head, speed, time), self.heads_m(np.ones(len(speed), dtype=bool))), self.rolling)
         return Moving(head, speed, time)
 
     def heads_m(self, chosen: Bools) -> Floats:
@@ -140,23 +140,31 @@ class OneCut:
         return self.users.on(self.routes, self.lanes)
 
     def to_position(self, moving: Moving, position: int) -> Moving:
-        """Free roll until the first axle is at the entrance of `position`."""
-        entrance = self.hump.routes.entrance_m[self.routes, position]
-        to = np.where(np.isfinite(entrance), entrance + self.first_m, moving.head_m)
-        return self.free(moving, np.maximum(to, moving.head_m))
+        """Free roll until the first axle is at the entrance of `position`. Cuts whose routes have none stay where they
+        are, unless they are misrouted to one."""
 
-    def free(self, moving: Moving, to_m: Floats) -> Moving:
-        """Free roll to `to_m`; cuts whose points cannot be thrown any more roll on behind those ahead of them."""
-        pending = self.rolling & (to_m > moving.head_m)
-        ended = moving
+        def to_m() -> Floats:
+            entrance = self.hump.routes.entrance_m[self.routes, position] + self.first_m
+            return np.where(np.isfinite(entrance), entrance, self.standing.free_m[self.lanes, self.routes])
+
         known = self.times.copy()
+        ended = self.free(moving, to_m)
+        stays = ~np.isfinite(self.hump.routes.entrance_m[self.routes, position])
+        self.times[stays] = known[stays]
+        self.touch()
+        return merged(ended, moving.chosen(stays), stays)
+
+    def free(self, moving: Moving, to_m: Callable[[], Floats]) -> Moving:
+        """Free roll to `to_m`, which tells places on the routes as they are; cuts whose points cannot be thrown any
+        more roll on behind those ahead of them."""
+        pending, ended, known = self.rolling, moving, self.times.copy()
         while pending.any():
             self.times[pending] = known[pending]
-            end, times = rolled_free(self.cars(pending), moving.chosen(pending), to_m[pending], self.heads_m(pending))
+            to = np.maximum(to_m()[pending], moving.head_m[pending])
+            end, times = rolled_free(self.cars(pending), moving.chosen(pending), to, self.heads_m(pending))
             self.note(times, pending)
             ended = merged(ended, end, pending)
             pending = pending & self.misroute()
-        self.touch()
         return ended
 
     def misroute(self) -> Bools:
@@ -186,25 +194,15 @@ class OneCut:
         self.rolling = self.rolling & ~touching
 
     def behind(self, lanes: Ints, leader: Ints, at: Ints) -> Floats:
-        """Times of cuts in contact from element `at` on: as their leaders pass, one length behind."""
-        trains, own = self.trains, self.times[lanes]
-        ahead = self.memory.time_s[lanes, leader]
-        rows = lanes * trains.cuts + leader
-        base = trains.last_axle_m[rows] - trains.first_axle_m[rows]
-        longer = (self.last_m - self.first_m)[lanes] / base
-        times = np.empty_like(own)
-        for first, last in ((Mark.FIRST_IN, Mark.LAST_IN), (Mark.FIRST_OUT, Mark.LAST_OUT),
-                            (Mark.FIRST_CLEAR, Mark.LAST_CLEAR)):  # fmt: skip
-            begins = ahead[:, :, last]
-            with np.errstate(invalid="ignore"):  # a leader that stopped is never past
-                takes = begins - ahead[:, :, first]
-            takes = np.where(np.isfinite(takes), takes, np.inf)
-            times[:, :, first], times[:, :, last] = begins, begins + longer[:, None] * takes
-        earlier = np.arange(own.shape[1])[None, :] < at[:, None]
-        kept = earlier[:, :, None] & ~np.isnan(own)
-        times = np.where(kept, own, times)
-        times[np.arange(len(lanes)), at, Mark.FIRST_IN] = own[np.arange(len(lanes)), at, Mark.FIRST_IN]
-        return np.where(np.isnan(times), np.inf, times)
+        """Times of cuts in contact from element `at` on: their first axles follow the last axles of their leaders."""
+        own, routes = self.times[lanes], self.hump.routes
+        rows = lanes * self.trains.cuts + leader
+        there, ended = self.trains.last_axle_m[rows], self.memory.end_time_s[lanes, leader]
+        ends = self.memory.end_m[lanes, leader] - there
+        tails = Tails(routes.place_m[self.routes[lanes]], self.memory.time_s[lanes, leader], ends, ended)
+        met = own[np.arange(len(lanes)), at]
+        since = np.fmin(met[:, Mark.FIRST_IN], met[:, Mark.FIRST_OUT])
+        return tails.followed(own, since, (self.last_m - self.first_m)[lanes])
 
     def through_position(self, moving: Moving, position: int, control: ExitSpeeds) -> Moving:
         """The pass of `position`: commanded by the control, or as the cut ahead that is still in it."""
@@ -239,13 +237,16 @@ class OneCut:
                 seed=self.trains.seed,
             )
         )
-        end, times = braked_evenly(start, to, passed.exit_m_s, passed.time_s, self.heads_m(held))
-        self.note(times, held)
+        known, sent = self.times.copy(), held
+        while sent.any():
+            self.times[held] = known[held]
+            end, times = braked_evenly(start, to, passed.exit_m_s, passed.time_s, self.heads_m(held))
+            self.note(times, held)
+            sent = self.misroute()
         place = lanes, self.cut, position
         memory.begin_s[place], memory.entry_m_s[place] = start.time_s, start.speed_m_s
         memory.command_m_s[place], memory.exit_m_s[place] = command, passed.exit_m_s
         memory.end_s[place], memory.strokes[place] = end.time_s, passed.switchings
-        self.misroute()
         self.touch()
         return merged(moving, end, held)
 
@@ -263,7 +264,8 @@ class OneCut:
     def to_track(self, moving: Moving) -> None:
         """Free roll to the standing cars, and what the whole way was like."""
         cut, memory, standing = self.cut, self.memory, self.standing
-        end = self.free(moving, np.maximum(standing.free_m[self.lanes, self.routes], moving.head_m))
+        end = self.free(moving, lambda: standing.free_m[self.lanes, self.routes])
+        self.touch()
         met = meeting(self.hump.routes, self.routes, self.times, self.ahead())
         memory.unseparated[:, cut], memory.foul[:, cut] = met.unseparated, met.foul
         memory.free_m[:, cut] = standing.free_m[self.lanes, self.routes]
@@ -285,10 +287,3 @@ class OneCut:
             almost, _ = rolled_free(self.cars(stops), moving.chosen(stops), near, np.empty((int(stops.sum()), 0)))
             times[stops] = almost.time_s
         return times
-
-
-def merged(all_lanes: Moving, some: Moving, which: Bools) -> Moving:
-    """`all_lanes`, of which those `which` are now as in `some`."""
-    head, speed, time = all_lanes.head_m.copy(), all_lanes.speed_m_s.copy(), all_lanes.time_s.copy()
-    head[which], speed[which], time[which] = some.head_m, some.speed_m_s, some.time_s
-    return Moving(head, speed, time)

@@ -55,8 +55,16 @@ class CentredRule:
         return np.asarray(np.where(possible(compared), margin - 1e-6 * compared.speeds_m_s, -np.inf).argmax(axis=1))
 
 
+NEARLY_M_S = 0.1
+"""Choices whose worst entry is so near to the best one are all possible, so that the margins decide."""
+
+
 def possible(compared: Compared) -> Bools:
-    """Choices that the cut can have, and with which it arrives; all, where there is none."""
-    arrives = np.isfinite(compared.arrival_s)
-    both, none = compared.able & arrives, ~compared.able.any(axis=1, keepdims=True)
-    return np.asarray(np.where(both.any(axis=1, keepdims=True), both, compared.able | none))
+    """Choices that the cut can have and with which it arrives; of these, those within the limits of entry, or, where
+    none is, nearest to them. All, where there is none."""
+    arrives, able = np.isfinite(compared.arrival_s), compared.able
+    both, none = able & arrives, ~able.any(axis=1, keepdims=True)
+    found = np.where(both.any(axis=1, keepdims=True), both, able | none)
+    beyond = np.where(found, compared.beyond_m_s, np.inf)
+    least = beyond.min(axis=1, keepdims=True)
+    return np.asarray(found & (beyond <= np.where(least > 0.0, least + NEARLY_M_S, 0.0)))

@@ -13,7 +13,7 @@ from synth.yard.humping.forecast import Choices, from_crest, from_entrance
 from synth.yard.humping.humping import Asked
 from synth.yard.humping.interval import IntervalRule, possible
 from synth.yard.humping.known_cuts import KnownCuts
-from synth.yard.humping.motion import Moving
+from synth.yard.humping.motion import Moving, Push
 from synth.yard.humping.rollability import Rollability
 from synth.yard.humping.sight import Sight
 from synth.yard.humping.train_memory import TrainMemory
@@ -128,7 +128,8 @@ class FeedbackSpeeds:
         time = now + 2.0 * apart_m / (speed_m_s + memory.hump_speed_m_s[lanes, cut - 1])
         expected = known.expected(rows, own, known.mean_n_per_kn[rows])
         start = Moving(0.5 * known.length_m[rows], speed_m_s, time)
-        ways = from_crest(routes, expected, start, (*feedback.planner.ranges, known.aim_of(rows)))
+        push = Push(memory.hump_speed_m_s[lanes, cut - 1], apart_m)
+        ways = from_crest(routes, expected, start, push, (*feedback.planner.ranges, known.aim_of(rows)))
         free_from = feedback.sight.free_from_s(cut, lanes, own, now, memory)
         compared = ways.compared(free_from, np.full(free_from.shape, np.inf))
         return np.asarray(np.where(possible(compared), compared.ahead_s, -np.inf).max(axis=1))

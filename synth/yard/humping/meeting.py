@@ -89,4 +89,4 @@ def meeting(routes: HumpRoutes, rows: Ints, time_s: Floats, ahead: Ahead) -> Mee
 
 def first_of(found: Bools) -> Ints:
     """Column of the first True of each row; the number of columns where there is none."""
-    return np.asarray(np.where(found.any(axis=1), found.argmax(axis=1), found.shape[1]))
+    return np.asarray(np.concatenate((found, np.ones((len(found), 1), bool)), axis=1).argmax(axis=1))

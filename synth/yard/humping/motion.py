@@ -30,6 +30,13 @@ class Moving:
         return Moving(self.head_m[which], self.speed_m_s[which], self.time_s[which])
 
 
+def merged(all_lanes: Moving, some: Moving, which: NDArray[np.bool_]) -> Moving:
+    """`all_lanes`, of which those `which` are now as in `some`."""
+    head, speed, time = all_lanes.head_m.copy(), all_lanes.speed_m_s.copy(), all_lanes.time_s.copy()
+    head[which], speed[which], time[which] = some.head_m, some.speed_m_s, some.time_s
+    return Moving(head, speed, time)
+
+
 class Rolls(Protocol):
     """What rolls cuts, `rows`, on `routes`; see `RouteRolling`."""
 
@@ -94,7 +101,7 @@ def braked_evenly(
     lane, column = np.nonzero(on_way)
     share = (heads_m[lane, column] - start.head_m[lane]) / path[lane]
     before, after = start.speed_m_s[lane], exit_m_s[lane]
-    between = np.sqrt(before**2 + share * (after**2 - before**2))
+    between = even_speed_m_s(before, after, share)
     with np.errstate(divide="ignore", invalid="ignore"):
         passed = start.time_s[lane] + duration_s[lane] * (share * (before + after) / (before + between))
     times = np.full(heads_m.shape, np.nan)
@@ -102,8 +109,31 @@ def braked_evenly(
     return Moving(np.where(moves, to_m, start.head_m), np.where(moves, exit_m_s, 0.0), end), times
 
 
+def even_speed_m_s(entry_m_s: Floats, exit_m_s: Floats, share: Floats) -> Floats:
+    """Speed after this share of a path on which a cut is braked at an even rate."""
+    return np.sqrt(entry_m_s**2 + share * (exit_m_s**2 - entry_m_s**2))
+
+
 def even_duration_s(start: Moving, to_m: Floats, exit_m_s: Floats) -> Floats:
     """How long cuts take that are braked at an even rate; infinite where they stop."""
     both = start.speed_m_s + exit_m_s
     moves = (start.speed_m_s > 0.0) & (exit_m_s > 0.0)
     return np.where(moves, 2.0 * (to_m - start.head_m) / np.where(moves, both, 1.0), np.inf)
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Push:
+    """How n cuts are pushed before they are let go: at an even rate from the speed `before_m_s`, which the train had
+    `apart_m` before, when the cut ahead was let go; (n,) each."""
+
+    before_m_s: Floats
+    apart_m: Floats
+
+    def times_s(self, start: Moving, heads_m: Floats) -> Floats:
+        """When the heads pass `heads_m` (n, k) ahead of `start`, where they are let go; NaN for places behind it."""
+        left = start.head_m[:, None] - heads_m
+        now = start.speed_m_s[:, None]
+        gain = (now**2 - self.before_m_s[:, None] ** 2) / self.apart_m[:, None]
+        then = np.sqrt(np.maximum(now**2 - gain * np.clip(left, 0.0, self.apart_m[:, None]), 1e-6))
+        return np.where(left >= 0.0, start.time_s[:, None] - 2.0 * left / (now + then), np.nan)

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.yard.humping.forecast import Expected, Forecast, Given, from_crest, from_entrance
+from synth.yard.humping.forecast import Forecast, Given, entrance_m, from_crest, from_entrance
 from synth.yard.humping.hump_routes import HumpRoutes, Mark
 from synth.yard.humping.humping import Asked
 from synth.yard.humping.known_cuts import KnownCuts
 from synth.yard.humping.motion import Moving
 from synth.yard.humping.train_memory import TrainMemory
-from synth.yard.humping.train_plan import LEADERS, TrainPlan, shared_needs
+from synth.yard.humping.train_plan import LEADERS, TrainPlan, push_of, shared_needs
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -52,7 +52,8 @@ class Sight:
         start = Moving(0.5 * known.length_m[rows], memory.hump_speed_m_s[:, ahead], memory.crest_s[:, ahead])
         planned = (Given(self.plan.exit_m_s[:, ahead, q]) for q in range(self.plan.exit_m_s.shape[2]))
         expected = known.expected(rows, known.route[rows], known.mean_n_per_kn[rows])
-        ways = from_crest(self.routes, expected, start, (*planned, known.aim_of(rows)))
+        push = push_of(known, memory.hump_speed_m_s, ahead)
+        ways = from_crest(self.routes, expected, start, push, (*planned, known.aim_of(rows)))
         self.known_s[:, ahead, 0], self.out_s[:, ahead, 0] = memory.crest_s[:, ahead], ways.followed().last_out_s
         for position in range(self.plan.exit_m_s.shape[2]):
             self.learn_pass(ahead, position, memory)
@@ -63,16 +64,16 @@ class Sight:
         rows, ended = lanes * self.known.cuts + cut, memory.end_s[lanes, cut, position]
         routes = self.routes_by(lanes, np.full(len(lanes), cut), ended, memory)
         expected = self.known.expected(rows, routes, self.resistance_n_per_kn[lanes, cut, position])
-        head = self.routes.entrance_m[routes, position] + expected.first_axle_m
+        head = np.maximum(entrance_m(self.routes, expected, position), 0.5 * self.known.length_m[rows])
         start = Moving(head, memory.entry_m_s[lanes, cut, position], memory.begin_s[lanes, cut, position])
         exits = memory.exit_m_s[lanes, cut, position]
         later = range(position + 1, self.plan.exit_m_s.shape[2])
         next_m_s = (Given(self.chosen_m_s[lanes, cut, position, q]) for q in later)
         choices = (Given(exits), *next_m_s, self.known.aim_of(rows))
-        ways = from_entrance(self.routes, expected, start, position, choices)
-        shift = ended - evenly_ended_s(self.routes, expected, start, exits, position)
+        told = from_entrance(self.routes, expected, start, position, choices).followed()
+        shift = ended - told.ended_s[:, 0]
         self.known_s[lanes, cut, 2 + 2 * position] = ended
-        self.out_s[lanes, cut, 2 + 2 * position] = ways.followed().last_out_s + shift[:, None]
+        self.out_s[lanes, cut, 2 + 2 * position] = told.last_out_s + shift[:, None]
 
     def routes_by(self, lanes: Ints, cut: Ints, now_s: Floats, memory: TrainMemory) -> Ints:
         """Routes (n,) on which the cuts (n,) are at `now_s`, as far as one can see: their own until they are misrouted,
@@ -104,9 +105,3 @@ class Sight:
             newer = (self.known_s[lanes, cut, version, None] <= now) & ~np.isnan(told)
             best = np.where(newer, told, best)
         return np.asarray(np.where(left <= now, left, np.maximum(best, now)))
-
-
-def evenly_ended_s(routes: HumpRoutes, expected: Expected, start: Moving, exit_m_s: Floats, position: int) -> Floats:
-    """When a pass at an even rate would end."""
-    path = routes.exit_m[expected.cars.routes, position] + expected.last_axle_m - start.head_m
-    return np.asarray(start.time_s + 2.0 * path / (start.speed_m_s + exit_m_s))

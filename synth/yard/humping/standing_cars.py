@@ -16,7 +16,7 @@ Bools = NDArray[np.bool_]
 class StandingCars:
     """Arrays (trains, routes): `free_m`, where the standing cars of each track begin, metres from the crest; of the
     last cut there: its row, −1 for none, its last free roll from `head_m`, `speed_m_s`, `time_s` to `end_m`, `still_s`,
-    when it stopped, its `length_m`, and `found_m`, what was free before it."""
+    when it stopped, its `length_m`, and `found_m`, what was seen to be free when it began to roll there."""
 
     def __init__(self, free_m: Floats) -> None:
         self.free_m, self.row = free_m.copy(), np.full(free_m.shape, -1)
@@ -49,7 +49,7 @@ class StandingCars:
                 OnTrack(cars.chosen(met), start.chosen(met), end.head_m[met]),
                 self.length_m[ahead],
             )
-        self.found_m[at] = self.free_m[at]
+        self.found_m[at] = self.seen_m(lanes, cars.routes, start.time_s)
         self.row[at], self.end_m[at], self.length_m[at] = cars.rows, end.head_m, length_m
         self.head_m[at], self.speed_m_s[at], self.time_s[at] = start.head_m, start.speed_m_s, start.time_s
         self.still_s[at] = np.maximum(self.still_s[at], end.time_s)

@@ -18,7 +18,7 @@ from synth.yard.humping.hump_speed import HumpSpeedLimits, SpeedMethod, WholeTra
 from synth.yard.humping.interval import CentredRule, EarlyRule, IntervalRule, possible
 from synth.yard.humping.known_cuts import KnownCuts
 from synth.yard.humping.meeting import Ahead, LastUsers
-from synth.yard.humping.motion import Moving
+from synth.yard.humping.motion import Moving, Push
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -93,11 +93,12 @@ class Planner:
 
     def headways_s(self, found: TrainPlan) -> Floats:
         """What each cut needs behind those ahead of it at the crest, (trains, cuts, leaders): what it had less what it
-        had too much."""
+        had too much. Nothing behind a cut that is expected to stop on the way: no hump speed helps."""
         needs = np.full(found.margins_s.shape, -np.inf)
         for leader in range(1, min(LEADERS + 1, len(found.crest_s.T))):
             had = found.crest_s[:, leader:] - found.crest_s[:, :-leader]
-            needs[:, leader:, leader - 1] = had - found.margins_s[:, leader:, leader - 1] + self.least_s
+            margins = found.margins_s[:, leader:, leader - 1]
+            needs[:, leader:, leader - 1] = np.where(np.isfinite(margins), had - margins + self.least_s, -np.inf)
         return needs
 
 
@@ -105,6 +106,11 @@ def apart_m(known: KnownCuts) -> Floats:
     """From the middle of each cut to that of the cut ahead, (trains, cuts)."""
     length = known.length_m.reshape(known.trains, known.cuts)
     return np.asarray(0.5 * (length + np.concatenate((length[:, :1], length[:, :-1]), axis=1)))
+
+
+def push_of(known: KnownCuts, speeds_m_s: Floats, cut: int) -> Push:
+    """How cut number `cut` of every train is pushed at the hump speeds (trains, cuts)."""
+    return Push(speeds_m_s[:, max(cut - 1, 0)], apart_m(known)[:, cut])
 
 
 class Sweep:
@@ -147,7 +153,8 @@ class Sweep:
         start = Moving(0.5 * known.length_m[rows], self.hump_speed_m_s[:, cut], self.crest_s[:, cut])
         resistance = known.good_n_per_kn if planner.worst_pair else known.mean_n_per_kn
         expected = known.expected(rows, known.route[rows], resistance[rows])
-        ways = from_crest(planner.routes, expected, start, (*planner.ranges, known.aim_of(rows)))
+        push = push_of(known, self.hump_speed_m_s, cut)
+        ways = from_crest(planner.routes, expected, start, push, (*planner.ranges, known.aim_of(rows)))
         compared = ways.compared(*self.neighbours(cut))
         taken = ways.followed(rule.best(compared))
         margins = np.where(possible(compared), compared.ahead_s, -np.inf)
@@ -164,8 +171,9 @@ class Sweep:
             other = known.route[known.of_cut(cut - leader)]
             shared, needs = shared_needs(routes, own, other)
             free = self.left_s[:, cut - leader] + needs
-            late = np.where(shared & ~np.isnan(free), first_in_s - free, np.inf)
-            self.margins_s[:, cut, leader - 1] = np.nanmin(late, axis=1)
+            late = np.full(free.shape, np.inf)  # also where the cut never comes: it needs nothing there
+            np.subtract(first_in_s, free, out=late, where=shared & np.isfinite(first_in_s) & ~np.isnan(free))
+            self.margins_s[:, cut, leader - 1] = late.min(axis=1)
 
     def remember(self, cut: int) -> None:
         """Let the cuts behind know when cut number `cut` leaves the elements, at the latest where pairs are worst."""
@@ -175,7 +183,8 @@ class Sweep:
             start = Moving(0.5 * known.length_m[rows], self.hump_speed_m_s[:, cut], self.crest_s[:, cut])
             given = (Given(self.exit_m_s[:, cut, q]) for q in range(len(planner.ranges)))
             slow = known.expected(rows, known.route[rows], known.bad_n_per_kn[rows])
-            out = from_crest(planner.routes, slow, start, (*given, known.aim_of(rows))).followed().last_out_s
+            push = push_of(known, self.hump_speed_m_s, cut)
+            out = from_crest(planner.routes, slow, start, push, (*given, known.aim_of(rows))).followed().last_out_s
         self.left_s[:, cut] = out
         times = np.full((known.trains, planner.routes.elements, len(Mark)), np.nan)
         times[:, :, Mark.FIRST_IN], times[:, :, Mark.LAST_OUT] = self.first_in_s[:, cut], out

@@ -20,7 +20,7 @@ from synth.yard.humping.hump_routes import HumpRoutes
 from synth.yard.humping.humping import ExitSpeeds, Hump, HumpSpeeds, humped
 from synth.yard.humping.interval import CentredRule, IntervalRule
 from synth.yard.humping.interval_control import Feedback, FeedbackSpeeds, OpenLoop, ProgramSpeeds
-from synth.yard.humping.known_cuts import BAD, KnownCuts, known_cuts, runner_n_per_kn
+from synth.yard.humping.known_cuts import BAD, Brakes, KnownCuts, known_cuts, runner_n_per_kn
 from synth.yard.humping.outcomes import TrainOutcomes, outcomes
 from synth.yard.humping.rollability import CategoryMean, Rollability, measured_rollability
 from synth.yard.humping.route_rolling import rolling_on
@@ -183,7 +183,8 @@ class HumpTrial:
         braked = 2.0 * gravity[:, None] * np.stack(heads, axis=1)
         least = np.sqrt(WORST_ENTRY_M_S**2 + 2.0 * gravity * self.worse_head_m(trains))
         given = Given(aim, np.sqrt(aim**2 + braked[:, -1]), least)
-        return known_cuts(trains, self.ways, given, braked, self.threads)
+        early = np.array([position.brakes_early for position in self.positions])
+        return known_cuts(trains, self.ways, given, Brakes(braked, early), self.threads)
 
     def worse_head_m(self, trains: TrainCuts) -> Floats:
         """Energy head (rows,) that bad runners against the wind lose more than expected ahead of the last position."""

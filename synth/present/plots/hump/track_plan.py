@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
+
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
@@ -15,8 +17,9 @@ MOST_NUMBERED = 64
 """Of the elements of a kind, whose numbers are still legible."""
 
 
-def draw_plan(axes: Axes, graph: HumpGraph, layout: PlanLayout) -> None:
-    """Draw the plan into `axes`, which are dressed already; x in metres from the crest."""
+def draw_plan(axes: Axes, graph: HumpGraph, layout: PlanLayout, unnumbered: Container[int] = ()) -> None:
+    """Draw the plan into `axes`, which are dressed already; x in metres from the crest. `unnumbered`: switches that go
+    without their numbers."""
     for vertex in graph.vertices:
         x, y = layout.at[vertex.number]
         for edge in vertex.edges:
@@ -33,7 +36,7 @@ def draw_plan(axes: Axes, graph: HumpGraph, layout: PlanLayout) -> None:
         draw_retarder(axes, each, layout)
     for each_switch in graph.switches:
         draw_switch(axes, each_switch, layout)
-        if len(graph.switches) <= MOST_NUMBERED:
+        if len(graph.switches) <= MOST_NUMBERED and each_switch.number not in unnumbered:
             number_switch(axes, each_switch.number, layout, graph)
     for signal in graph.signals:
         x, y = layout.at[signal.number]
