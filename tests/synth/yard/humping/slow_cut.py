@@ -8,7 +8,7 @@ from enum import Enum
 from math import inf, sqrt
 
 from plant_models.hump import Route
-from tests.synth.yard.humping.slow_marks import LAST_AXLE, LAST_OF, MarkAt, marks_of
+from tests.synth.yard.humping.slow_marks import MarkAt, marks_of
 from tests.synth.yard.humping.slow_train import Mark, SlowCut
 from tests.synth.yard.humping.slow_way import SlowWay
 
@@ -16,15 +16,13 @@ SAME_S = 1e-12
 
 
 class Mode(Enum):
-    """What moves the cut: the locomotive, its weight, a position, the cut ahead on its way or on its track, or
-    nothing."""
+    """What moves the cut: the locomotive, its weight, a position, the cut ahead, or nothing."""
 
     PUSHED = 0
     ROLLING = 1
     BRAKED = 2
-    BEHIND = 3
-    TOWED = 4
-    STANDING = 5
+    TOWED = 3
+    STANDING = 4
 
 
 class Push:
@@ -56,8 +54,8 @@ class Push:
 class MovingCut:
     """The head is at `x` with speed `v` at time `t`.
 
-    `leader`: the cut behind which it rolls, from a contact on; `follow`: the marks to which its first axle
-    then comes with the last axle of that cut. `adopted`: the cut whose way it goes since it was misrouted.
+    `leader`: the cut behind which it rolls, from a contact on. `adopted`: the cut whose way it goes since it was
+    misrouted.
     """
 
     def __init__(self, cut: SlowCut, route: Route, way: SlowWay, push: Push, start_s: float) -> None:
@@ -67,23 +65,17 @@ class MovingCut:
         self.v, self.a, self.v_out = push.speed_m_s(start_s), 0.0, 0.0
         self.numbers = {element.number for element in route.elements}
         self.marks = marks_of(cut.body, route)
-        self.follow: list[MarkAt] = []
         self.leader: MovingCut | None = None
         self.adopted: MovingCut | None = None
-        self.on_track = False
+        self.on_track, self.lag_m = False, 0.0
         self.legs: list[tuple[float, float, float, float]] = []
-
-    @property
-    def owes_marks(self) -> bool:
-        """Whether its last axle has still to come to joints by itself."""
-        return any(each.mark in LAST_AXLE for each in self.marks)
 
     def place_at(self, time_s: float) -> float:
         """Where the head is at a time of the step that is being made."""
-        if self.leader is not None:
-            return self.leader.tail_at(time_s)
         if self.mode is Mode.STANDING and time_s >= self.t:
             return self.x
+        if self.leader is not None:
+            return self.leader.place_at(time_s) - self.lag_m
         leg = max(bisect_right(self.legs, (time_s, inf, inf, inf)) - 1, 0)
         t, x, v, a = self.legs[leg]
         return x + (v + 0.5 * a * (time_s - t)) * (time_s - t)
@@ -92,10 +84,10 @@ class MovingCut:
         """Where its end is."""
         return self.place_at(time_s) - self.body.length_m
 
-    def towed(self, ahead: MovingCut, time_s: float) -> None:
-        """Roll behind the cut ahead on the track, head at tail."""
-        self.leader, self.mode, self.on_track = ahead, Mode.TOWED, False
-        self.t, self.x, self.v = time_s, ahead.tail_at(time_s), ahead.v
+    def towed(self, ahead: MovingCut, time_s: float, lag_m: float) -> None:
+        """Roll behind the cut ahead from now on, with the head `lag_m` behind its head."""
+        self.leader, self.mode, self.on_track, self.lag_m = ahead, Mode.TOWED, False, lag_m
+        self.t, self.x, self.v = time_s, ahead.place_at(time_s) - lag_m, ahead.v
 
     def reroute(self, order: int, route: Route, way: SlowWay, *, entered: bool) -> None:
         """Go another way from the element `order` on; `entered`: its first mark has just been passed."""
@@ -106,12 +98,7 @@ class MovingCut:
         self.route, self.way = route, way
         self.numbers = {element.number for element in route.elements}
         new = [each for each in marks_of(self.body, route) if is_next(each)]
-        self.marks = [each for each in self.marks if each.order < order]
-        if self.leader is None:
-            self.marks = sorted([*self.marks, *new])
-        else:
-            kept = [each for each in self.follow if each.order < order]
-            self.follow = sorted([*kept, *(each for each in new if each.mark in LAST_OF)])
+        self.marks = sorted([*(each for each in self.marks if each.order < order), *new])
 
     def go(self, until: float, limit_m: float) -> bool:
         """Move on to the next mark or to `limit_m` (True), or until `until`, or to a stop (speed 0)."""

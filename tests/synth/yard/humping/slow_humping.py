@@ -12,7 +12,7 @@ from math import inf
 from plant_models.hump import HumpGraph, Retarder, RouteElement, Switch
 from tests.synth.yard.humping.slow_cut import SAME_S, Mode, MovingCut, Push, first_root
 from tests.synth.yard.humping.slow_fit import require_fit
-from tests.synth.yard.humping.slow_marks import LAST_OF, MarkAt, marks_of
+from tests.synth.yard.humping.slow_marks import MarkAt
 from tests.synth.yard.humping.slow_record import SlowRecord
 from tests.synth.yard.humping.slow_train import Kind, Mark, Passage, SlowRun, SlowTrain
 from tests.synth.yard.humping.slow_way import SlowWay
@@ -84,7 +84,7 @@ class SlowHumping(SlowRecord):
     def advance(self, i: int, moving: MovingCut, until: float) -> None:
         """Let cut `i` make its part of the step."""
         moving.legs = [(moving.t, moving.x, moving.v, 0.0)]
-        while moving.mode not in (Mode.BEHIND, Mode.TOWED, Mode.STANDING) and moving.t < until - SAME_S:
+        while moving.mode not in (Mode.TOWED, Mode.STANDING) and moving.t < until - SAME_S:
             t, x, limit_m = moving.t, moving.x, self.limit(i)
             arrived = moving.go(until, limit_m)
             if moving.on_track and self.touches(i, t, x):
@@ -95,10 +95,8 @@ class SlowHumping(SlowRecord):
                 self.arrive(i, moving.marks.pop(0))
             elif moving.v <= 0.0:
                 self.stop(i)
-        if moving.mode is Mode.TOWED:
-            self.tow(i, until)
-        elif moving.leader is not None:
-            self.trail(i, moving.leader, until)
+        if moving.mode is Mode.TOWED and moving.leader is not None:
+            self.tow(i, moving, moving.leader, until)
 
     def user(self, i: int, number: int) -> int | None:
         """The last cut ahead of `i` whose way leads over the element."""
@@ -135,7 +133,7 @@ class SlowHumping(SlowRecord):
             self.margins_s.append(abs(time_s - ahead.t))
             if time_s >= ahead.t:
                 return False
-        moving.towed(ahead, time_s)
+        moving.towed(ahead, time_s, ahead.body.length_m)
         self.tell(time_s, Kind.TRACK_CONTACT, moving.route.elements[-1].number, i, moving.x)
         return True
 
@@ -148,9 +146,7 @@ class SlowHumping(SlowRecord):
     def stop(self, i: int) -> None:
         """Cut `i` stands where nothing is ahead of it."""
         moving = self.cuts[i]
-        moving.mode = Mode.STANDING if moving.leader is None else Mode.BEHIND
-        if moving.leader is not None:
-            return
+        moving.mode = Mode.STANDING
         last = moving.route.elements[-1]
         first_axle = moving.x - moving.body.first_axle_m
         under = [e.number for e in moving.route.elements if e.from_m <= first_axle]
@@ -161,11 +157,11 @@ class SlowHumping(SlowRecord):
         """Cut `i` has come to a mark by itself."""
         moving = self.cuts[i]
         element = moving.route.elements[at.order]
-        pinned = False
+        held_up = False
         if at.mark is Mark.FIRST_FROM:
-            pinned = self.enter(i, element, moving.t)
+            held_up = self.enter(i, element, moving.t)
         elif at.mark is Mark.FIRST_TO:
-            pinned = self.meet(i, element, Mark.LAST_TO, moving.t)
+            held_up = self.meet(i, element, Mark.LAST_TO, moving.t)
         elif at.mark is Mark.FIRST_FOULING:
             self.foul(i, element, moving.t)
         elif at.mark is Mark.ENTRANCE:
@@ -174,11 +170,11 @@ class SlowHumping(SlowRecord):
             moving.mode, moving.v = Mode.ROLLING, moving.v_out
         elif at.mark is Mark.TRACK:
             moving.on_track = True
-            pinned = self.touches(i, moving.t, moving.x)
-        if not pinned or at.mark is Mark.TRACK:
+            held_up = self.touches(i, moving.t, moving.x)
+        if not held_up or at.mark is Mark.TRACK:
             self.passages[i, element.number, at.mark] = Passage(moving.t, moving.v)
-        if moving.mode not in (Mode.BEHIND, Mode.TOWED) and moving.leader is not None and not moving.owes_marks:
-            moving.mode = Mode.BEHIND
+        else:
+            moving.marks = sorted([at, *moving.marks])
 
     def enter(self, i: int, element: RouteElement, time_s: float) -> bool:
         """The first axle of cut `i` comes to the section of `element`; True if it is now behind the last user."""
@@ -215,64 +211,27 @@ class SlowHumping(SlowRecord):
         if j is None or self.cuts[i].leader is not None or self.passed(j, element.number, joint, time_s):
             return False
         self.tell(time_s, Kind.CONTACT, element.number, i)
-        self.pin(i, j, element.from_m if joint is Mark.LAST_FROM else element.to_m)
+        ahead = self.cuts[j]
+        self.cuts[i].towed(ahead, time_s, ahead.body.last_axle_m - self.cuts[i].body.first_axle_m)
         return True
 
-    def pin(self, i: int, j: int, place_m: float) -> None:
-        """From `place_m` on cut `i` rolls behind cut `j`; joints before that its last axle comes to by itself."""
-        moving = self.cuts[i]
-        moving.leader, moving.on_track = self.cuts[j], False
-        behind = [each for each in marks_of(moving.body, moving.route) if each.mark in LAST_OF]
-        moving.follow = [each for each in behind if each.place_m >= place_m - SAME_M]
-        own = set(LAST_OF.values())
-        moving.marks = [
-            each
-            for each in moving.marks
-            if each.mark in (Mark.ENTRANCE, Mark.EXIT) or (each.mark in own and each.place_m < place_m - SAME_M)
-        ]
-        if not moving.owes_marks:
-            moving.mode = Mode.BEHIND
-
-    def trail(self, i: int, ahead: MovingCut, until: float) -> None:
-        """Let cut `i` come to joints with the last axle of the cut that it rolls behind."""
-        moving, j = self.cuts[i], self.cuts.index(ahead)
-        waits = False
-        while moving.follow:
-            at = moving.follow[0]
+    def tow(self, i: int, moving: MovingCut, ahead: MovingCut, until: float) -> None:
+        """Let cut `i`, which rolls behind the cut ahead, come to its marks."""
+        if until - moving.t <= SAME_S:
+            return
+        x, x_then, t = moving.place_at(until), moving.x, moving.t
+        while moving.marks and moving.marks[0].head_m <= x:
+            at = moving.marks.pop(0)
             element = moving.route.elements[at.order]
-            passage = self.passages.get((j, element.number, LAST_OF[at.mark]))
-            waits = passage is not None and passage.time_s > until
-            if passage is None or waits:
-                break
-            moving.follow.pop(0)
-            time_s, speed_m_s = passage.time_s, passage.speed_m_s
-            self.passages[i, element.number, at.mark] = passage
-            # at the speed with which the axles of the cut ahead passed the place
-            takes = (time_s - self.passages[j, element.number, at.mark].time_s) / ahead.body.base_m
-            behind = Passage(time_s + moving.body.base_m * takes, speed_m_s)
-            self.passages[i, element.number, LAST_OF[at.mark]] = behind
+            time_s = t + max(at.head_m - x_then, 0.0) / max(x - x_then, SAME_M) * (until - t)
             if at.mark is Mark.FIRST_FROM and (i, element.number) not in self.entered:
                 self.enter(i, element, time_s)
             elif at.mark is Mark.FIRST_FOULING:
                 self.foul(i, element, time_s)
-        if ahead.mode is Mode.STANDING and moving.mode is Mode.BEHIND and not waits:
-            moving.mode, moving.t, moving.x, moving.v = Mode.STANDING, ahead.t, ahead.tail_at(inf), 0.0
-
-    def tow(self, i: int, until: float) -> None:
-        """Let cut `i`, whose head is at the tail of the cut ahead on its track, come to its last joints."""
-        moving = self.cuts[i]
-        assert moving.leader is not None
-        if until - moving.t <= SAME_S:
-            return
-        x, x_then = moving.leader.tail_at(until), moving.x
-        while moving.marks and moving.marks[0].head_m <= x:
-            at = moving.marks.pop(0)
-            share = (at.head_m - x_then) / max(x - x_then, SAME_M)
-            time_s, speed_m_s = moving.t + share * (until - moving.t), (x - x_then) / (until - moving.t)
-            self.passages[i, moving.route.elements[at.order].number, at.mark] = Passage(time_s, speed_m_s)
+            self.passages[i, element.number, at.mark] = Passage(time_s, (x - x_then) / (until - t))
         moving.t, moving.x = until, x
-        if moving.leader.mode is Mode.STANDING:
-            moving.mode, moving.t, moving.v = Mode.STANDING, moving.leader.t, 0.0
+        if ahead.mode is Mode.STANDING:
+            moving.mode, moving.t, moving.x, moving.v = Mode.STANDING, ahead.t, ahead.tail_at(inf), 0.0
 
     def foul(self, i: int, element: RouteElement, time_s: float) -> None:
         """The first axle of cut `i` comes to its fouling point behind a switch."""

@@ -8,8 +8,6 @@ from plant_models.hump import Retarder, Route, RouteElement, Signal, Switch
 from tests.synth.yard.humping.slow_train import Mark, SlowBody
 
 FIRST_AXLE = frozenset({Mark.FIRST_FROM, Mark.FIRST_TO, Mark.FIRST_FOULING, Mark.ENTRANCE})
-LAST_OF = {Mark.FIRST_FROM: Mark.LAST_FROM, Mark.FIRST_TO: Mark.LAST_TO, Mark.FIRST_FOULING: Mark.LAST_FOULING}
-LAST_AXLE = frozenset(LAST_OF.values())
 
 
 @dataclass(frozen=True, order=True)

@@ -122,7 +122,7 @@ def test_a_slow_cut_behind_the_switch_fouls_the_other_branch(interval_s: float, 
 
 
 def test_contact_at_the_entry_joint() -> None:
-    """From there on it is at joints with the last axle of the cut ahead, and its own last axle by that one's speed."""
+    """From there on it is at joints with the last axle of the cut ahead, and its own last axle is its base behind."""
     found = run(bare_cut(LEFT_TRACK, 0.0, 2.0), bare_cut(LEFT_TRACK, 14.0, 4.0))
     assert alarms(found) == {("not separated", SWITCH, 1), ("contact", SWITCH, 1)}
     assert found.of(Kind.CONTACT)[0].time_s == pytest.approx(14.0 + 34.5 / 4.0, abs=1e-9)
@@ -136,13 +136,13 @@ def test_contact_at_the_entry_joint() -> None:
     assert found.heads_m == pytest.approx((300.0, 286.0), abs=1e-9)
 
 
-def test_contact_at_the_exit_joint_leaves_the_times_at_the_entry_joint() -> None:
-    """The last axle of the second cut, of two cars, comes to the entry joint by itself, although later."""
+def test_contact_at_the_exit_joint() -> None:
+    """What is behind that joint has passed; the last axle of the second cut, of two cars, is still to come."""
     found = run(bare_cut(LEFT_TRACK, 0.0, 2.0), bare_cut(LEFT_TRACK, 17.0, 4.0, cars=2))
     assert alarms(found) == {("not separated", SWITCH, 1), ("contact", SWITCH, 1)}
     assert found.of(Kind.CONTACT)[0].time_s == pytest.approx(17.0 + (TO_M - 12.5) / 4.0, abs=1e-9)
     assert found.time_s(1, SWITCH, Mark.FIRST_FROM) == pytest.approx(17.0 + (FROM_M - 12.5) / 4.0, abs=1e-9)
-    assert found.time_s(1, SWITCH, Mark.LAST_FROM) == pytest.approx(17.0 + (FROM_M + 12.5) / 4.0, abs=1e-9)
+    assert found.time_s(1, SWITCH, Mark.LAST_FROM) == pytest.approx((FROM_M + 25.0 + FIRST_BEHIND_M) / 2.0, abs=1e-9)
     assert found.time_s(1, SWITCH, Mark.FIRST_TO) == pytest.approx(28.25, abs=1e-9)
     assert found.time_s(1, SWITCH, Mark.LAST_TO) == pytest.approx(28.25 + 25.0 / 2.0, abs=1e-9)
 
