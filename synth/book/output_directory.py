@@ -32,7 +32,8 @@ class Layout:
 
 TUNE_LAYOUT: Final = Layout("tune", "retarder-summary", ("tables", "c", "plots"))
 AIM_LAYOUT: Final = Layout("aim", "aim-summary", ("tables", "c", "st", "plots"))
-LAYOUTS: Final = (TUNE_LAYOUT, AIM_LAYOUT)
+TRAINS_LAYOUT: Final = Layout("hump simulate", "hump-trial-summary", ("batches", "inputs", "plots"))
+LAYOUTS: Final = (TUNE_LAYOUT, AIM_LAYOUT, TRAINS_LAYOUT)
 LEFTOVER = re.compile(r"\..+\.[0-9a-f]{16}\.part")
 PICTURES = re.compile(
     r"(rms-by-controller|feasibility|switchings|degree-study|(exit-density|surfaces|policy-map|sample-passes)-.+)"
@@ -42,6 +43,9 @@ PICTURES = re.compile(
 
 AIM_PICTURES = re.compile(r"aim-(track|gaps|commands-by-cars|commands-by-resistance|chances-.+)\.(png|svg)")
 """Those of an aim."""
+
+TRAIN_PICTURES = re.compile(r"hump-[a-z-]+\.(png|svg)")
+"""Those of humped trains."""
 
 SWEEP_LEDGER, SWEPT_CONFIG = "sweep/ledger.jsonl", "config.toml"
 """What is in every directory of a sweep, and beside every book of one."""

@@ -18,6 +18,7 @@ from synth.cli.arguments import (
     whole_number,
     with_names,
 )
+from synth.cli.init_commands import add_init_command
 from synth.cli.yard_commands import add_yard_commands
 
 app = typer.Typer(
@@ -246,35 +247,7 @@ def export(
     return export_command(source, form, output, AskedCode(prefix, self_test, split), as_json)
 
 
-TypeName = "[NAME]"
-"""Of an option that may stand without a name: `arguments.with_names`."""
-
-
-@app.command()
-def init(
-    retarder: Annotated[
-        str | None,
-        typer.Option(metavar=TypeName, help="File of a retarder type. With the name of a position: its configuration."),
-    ] = None,
-    position: Annotated[str | None, typer.Option(metavar=TypeName, help="File of a position.")] = None,
-    car: Annotated[str | None, typer.Option(metavar=TypeName, help="File of a car type.")] = None,
-    sensor: Annotated[str | None, typer.Option(metavar=TypeName, help="File of a sensor.")] = None,
-    weight_categories: Annotated[
-        str | None, typer.Option(metavar=TypeName, help="File of a set of weight categories.")
-    ] = None,
-    aim: Annotated[
-        str | None,
-        typer.Option(metavar=TypeName, help="Aim configuration. With the name of a track or car mix: its file."),
-    ] = None,
-    show_list: Annotated[bool, typer.Option("--list", help="Only list what the library holds.")] = False,
-    as_json: Json = False,
-) -> int:
-    """Print a commented configuration to start from, or the file of one type."""
-    from synth.cli.init import init_command
-
-    types = {"retarders": retarder, "positions": position, "cars": car, "sensors": sensor, "aim": aim}
-    types["weight_categories"] = weight_categories
-    return init_command(types, show_list, as_json)
+add_init_command(app)
 
 
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True, "help_option_names": []})

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from synth.cli import OK
+from synth.yard.hump.number_ranges import ranges
 
 if TYPE_CHECKING:
     from plant_models.hump import HumpGraph, Route
@@ -63,17 +64,6 @@ def span(ends: Sequence[float], unit: str) -> str:
     """'5 switches', or '3 to 5 switches'."""
     low, high = ends
     return f"{low:g}{unit}" if low == high else f"{low:g} to {high:g}{unit}"
-
-
-def ranges(numbers: Sequence[int]) -> str:
-    """Increasing numbers with runs as '401 to 408'."""
-    runs: list[list[int]] = []
-    for number in numbers:
-        if runs and number == runs[-1][1] + 1:
-            runs[-1][1] = number
-        else:
-            runs.append([number, number])
-    return ", ".join(str(first) if first == last else f"{first} to {last}" for first, last in runs)
 
 
 def routes_command(source: Path, as_json: bool) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -14,7 +15,8 @@ def init_command(types: dict[str, str | None], show_list: bool, as_json: bool) -
 
     `types`: by folder of the library, the type that is asked for; '' for a usual one, None for none. A position under
     "retarders" asks for a configuration with it: so the option --retarder was, before there were files of types. Under
-    "aim" '' asks for an aim configuration, a name for the file of a track or a car mix.
+    "aim" '' asks for an aim configuration, a name for the file of a track or a car mix; under "hump" '' asks for a hump
+    trial configuration, a name for the file of a hump.
     """
     if show_list:
         return print_list(as_json)
@@ -32,11 +34,13 @@ def asked_for(types: dict[str, str | None]) -> tuple[str, str]:
     from synth.faults.input_error import InputError
 
     asked = [kind for kind in KINDS if types.get(kind.folder) is not None]
-    aim = types.get("aim")
-    if len(asked) + (aim is not None) > 1:
+    aim, hump = types.get("aim"), types.get("hump")
+    if len(asked) + (aim is not None) + (hump is not None) > 1:
         raise InputError("init prints one file at a time; give one of its options")
     if aim is not None:
         return aim_file(aim)
+    if hump is not None:
+        return hump_file(hump)
     if not asked:
         return "configuration", default_config_toml()
     (kind,) = asked
@@ -62,6 +66,21 @@ def aim_file(name: str) -> tuple[str, str]:
             return "type", type_toml(kind, name)
     known = (*BUILT_IN.names(TRACKS), *BUILT_IN.names(CAR_MIXES))
     raise InputError(f"init --aim {name}: the library has no such track or car mix; {near_miss(name, known)}")
+
+
+def hump_file(name: str) -> tuple[str, str]:
+    """As `asked_for`: a hump trial configuration, or the file of the hump `name`."""
+    from plant_models.library.hump_entry import hump_names
+    from plant_models.library.near_miss import near_miss
+    from synth.configuration.hump import hump_text
+    from synth.configuration.humping.template import default_trial_toml
+    from synth.faults.input_error import InputError
+
+    if not name:
+        return "configuration", default_trial_toml()
+    if name not in hump_names():
+        raise InputError(f"init --hump {name}: the library has no such hump; {near_miss(name, hump_names())}")
+    return "type", hump_text(Path(name))
 
 
 def print_list(as_json: bool) -> int:

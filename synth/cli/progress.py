@@ -21,6 +21,7 @@ class Progress:
         self._cases = cases
         self._noun = noun
         self._done = 0
+        self._before = 0
         self._started = time.monotonic()
         self._console = Console(stderr=True, highlight=False, soft_wrap=True)
         columns = (TextColumn(word), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
@@ -36,14 +37,21 @@ class Progress:
     ) -> None:
         self._bar.stop()
 
+    def begin(self, there: int) -> None:
+        """So many cases are there already, from an earlier run."""
+        self._done = self._before = there
+        if there:
+            self.note(f"{there} of {self._cases} {self._noun} are there already")
+
     def done(self, sentence: str) -> None:
         """`sentence` tells of a finished case, or of a study beside the cases."""
         if "study" not in sentence:
             self._done = min(self._done + 1, self._cases)
         self._bar.update(self._task, completed=self._done)
         elapsed = time.monotonic() - self._started
-        left = elapsed / max(self._done, 1) * (self._cases - self._done)
-        rate = pace(elapsed, self._done, left, self._noun)
+        own = self._done - self._before
+        left = elapsed / max(own, 1) * (self._cases - self._done)
+        rate = pace(elapsed, own, left, self._noun)
         self.note(f"[{self._done:{len(str(self._cases))}}/{self._cases}] {sentence}; {rate}")
 
     def note(self, sentence: str) -> None:

@@ -34,6 +34,12 @@ LENGTHS = {
     "cars": "a list of 1 to 64 numbers of cars",
     "free_distances_m": "a list of 1 to 100 distances",
     "knowledge": "a list of 'category', 'measured' or both",
+    "category_shares": "a table of 1 to 31 shares, {L = 0.3, T = 0.7}",
+    "track_shares": "a table of 1 to 199 shares, {1 = 2.0, 2 = 1.0}",
+    "position": "at most 10 tables [[position]]",
+    "lowest_m_s": "a list of at most 10 speeds",
+    "highest_m_s": "a list of at most 10 speeds",
+    "most_entry_m_s": "a list of at most 10 speeds",
 }
 """What a list that is too long or too short must be, by its key."""
 
@@ -70,8 +76,9 @@ def allowed(fault: ErrorDetails, root: type[Section]) -> str:
         return str(context["expected"])
     if kind in ("too_short", "too_long"):
         return LENGTHS.get(str(fault["loc"][-1]), "a list of 1 to 1000 [[cut]] tables")
-    if fault["loc"] == ("cut",):
-        return "a list of tables: write [[cut]], not [cut]"
+    if fault["loc"] in (("cut",), ("position",)):
+        name = fault["loc"][0]
+        return f"a list of tables: write [[{name}]], not [{name}]"
     return ALLOWED.get(kind, fault["msg"])
 
 

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from plant_models.library import BUILT_IN
 from plant_models.library.hump_entry import HumpEntry, hump_from, hump_names
 from plant_models.library.hump_entry import load_hump as load_of_library
 from plant_models.library.near_miss import near_miss
+from plant_models.library.type_file import HUMPS
 from synth.configuration.plant_fault import in_file
 from synth.configuration.railml.read import from_railml
 from synth.configuration.toml_file import read_text, toml_tree
@@ -31,7 +33,15 @@ def load_hump(source: Path | str) -> HumpEntry:
 
 
 def read_hump(source: Path) -> ReadHump:
-    """The hump in the file `source`, or the one of that name in the library; `InputError` on any fault."""
+    """The same with what was read over; the files that its retarders name must be there."""
+    read = read_graph(source)
+    if source.exists():
+        require_files(read.entry, source)
+    return read
+
+
+def read_graph(source: Path) -> ReadHump:
+    """The hump in the file `source`, or the one of that name in the library, whatever files it names."""
     name = str(source)
     if name in hump_names() and not source.exists():
         with in_file(name):
@@ -42,8 +52,14 @@ def read_hump(source: Path) -> ReadHump:
     text = read_text(source)
     railml = source.suffix in RAILML_SUFFIXES
     hump, ignored = from_railml(text, source.stem, name) if railml else (parse_hump(text, source.stem, name), ())
-    require_files(hump, source)
     return ReadHump(hump, ignored)
+
+
+def hump_text(source: Path) -> str:
+    """The text of the file `source`, or of the hump of that name in the library."""
+    if str(source) in hump_names() and not source.exists():
+        return BUILT_IN.file(HUMPS, str(source)).text
+    return read_text(source)
 
 
 def parse_hump(text: str, name: str, file: str) -> HumpEntry:

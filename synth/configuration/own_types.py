@@ -162,7 +162,7 @@ def references_in(tree: Tree) -> Iterator[tuple[dict[str, Any], str, Kind, str]]
 
 
 def references_of_position(tree: Tree, prefix: str) -> Iterator[tuple[dict[str, Any], str, Kind, str]]:
-    """The places that name a position and the types there, and those of an aim configuration."""
+    """The places that name a position and the types there, and those of an aim or hump trial configuration."""
     for section, key, kind in (
         ("position", "name", POSITIONS),
         ("retarder", "name", POSITIONS),
@@ -170,6 +170,7 @@ def references_of_position(tree: Tree, prefix: str) -> Iterator[tuple[dict[str, 
         ("sensor", "type", SENSORS),
         ("track", "name", TRACKS),
         ("cuts", "mix", CAR_MIXES),
+        ("cars", "mix", CAR_MIXES),
     ):
         table = tree.get(section)
         if isinstance(table, dict):

@@ -17,8 +17,7 @@ from importlib import import_module
 from typing import Any
 
 from synth.faults.input_error import InputError
-from synth.sweep.plan import UnitOrder
-from synth.sweep.work import Answer, Begun, Work, answer
+from synth.sweep.work import Answer, Begun, Order, Work, answer
 
 ANSWER_WITHIN_S = 15
 AHEAD = 2
@@ -41,12 +40,12 @@ class DaskCluster:
     distributed: Any
     work: Work = answer
 
-    def answers(self, orders: Sequence[UnitOrder], begun: Begun) -> Generator[Answer]:
+    def answers(self, orders: Sequence[Order], begun: Begun) -> Generator[Answer]:
         """As they are ready; units whose workers die again and again are answered with the reason."""
         # A run of its own: what a run that was killed has asked for must not be taken for ours.
         run = os.urandom(4).hex()
         waiting = deque(orders)
-        given: dict[str, UnitOrder] = {}
+        given: dict[str, Order] = {}
         try:
             finished = self.distributed.as_completed(loop=self.client.loop)
             while waiting or given:
@@ -70,7 +69,7 @@ class DaskCluster:
         """Threads of all workers that are connected now."""
         return sum(self.client.nthreads().values())
 
-    def answer_of(self, future: Any, order: UnitOrder) -> Answer:
+    def answer_of(self, future: Any, order: Order) -> Answer:
         """The answer, or why there is none."""
         if future.status == "finished":
             found: Answer = future.result()

@@ -1,4 +1,4 @@
-"""Processes on this machine, each with one unit at a time.
+"""Processes on this machine, each with one order at a time.
 
 Processes and not threads: a kernel that crashes, or the system that kills for want of memory, ends one worker and not
 the sweep; what a unit leaves in memory ends with its worker; and Python between the kernels runs on every core.
@@ -20,8 +20,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnProcess
 from typing import Any
 
-from synth.sweep.plan import UnitOrder
-from synth.sweep.work import Answer, Begun, Work, answer
+from synth.sweep.work import Answer, Begun, Order, Work, answer
 
 TRIES = 2
 """How often a unit is given to a worker before the death of its worker counts as its fault."""
@@ -33,7 +32,7 @@ class Worker:
 
     process: SpawnProcess
     pipe: Connection
-    order: UnitOrder | None = None
+    order: Order | None = None
 
 
 @dataclass(frozen=True)
@@ -43,7 +42,7 @@ class LocalWorkers:
     count: int
     work: Work = answer
 
-    def answers(self, orders: Sequence[UnitOrder], begun: Begun) -> Generator[Answer]:
+    def answers(self, orders: Sequence[Order], begun: Begun) -> Generator[Answer]:
         """As they are ready. A unit whose worker dies is given to another one once, then answered with the reason."""
         waiting = deque(orders)
         tries = dict.fromkeys((order.key for order in orders), 0)
@@ -98,7 +97,7 @@ def interrupts_ignored() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
 
 
-def hand_out(worker: Worker, order: UnitOrder, tries: dict[str, int], begun: Begun) -> None:
+def hand_out(worker: Worker, order: Order, tries: dict[str, int], begun: Begun) -> None:
     """Give an order to a worker; if it has just died, that is found when its answer is looked for."""
     tries[order.key] += 1
     worker.order = order

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from synth.kernels.cache import kernel_fingerprint
 
-WITHOUT_RESULTS = ("synth/checker/", "synth/cli/", "synth/studies/in_the_loop/", "synth/plots/", "synth/report/")
+WITHOUT_RESULTS = ("synth/checker/", "synth/cli/", "synth/studies/in_the_loop/", "synth/present/")
 """Parts that show or check results and make none."""
 
 PATTERNS = ("plant_models/**/*.py", "plant_models/**/*.toml", "synth/**/*.py", "tuning_tables/**/*.py")

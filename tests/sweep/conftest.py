@@ -20,6 +20,7 @@ from synth.sweep.run import run_sweep, task_of
 from synth.sweep.sweep_directory import held
 from synth.sweep.sweep_file import load_sweep
 from synth.sweep.work import Engine, InThisProcess
+from synth.yard.humping.trial import BATCH
 
 EPOCH = "1700000000"
 PLANT = """\
@@ -42,6 +43,22 @@ tables = true
 [[sweep.cut]]
 car = "gondola-4"
 mass_per_car_t = { from = 22, to = 30, step = 4 }
+"""
+TRIAL = f"""\
+hump = "medium"
+[trains]
+number = {2 * BATCH + 40}
+cuts = 3
+most_cars = 3
+[hump_speed]
+step_m_s = 0.4
+[exit_speeds]
+choices = 3
+[aim]
+design_cuts = 200
+[output]
+plots = false
+report = false
 """
 COMMAND = [sys.executable, "-c", "import sys; from synth.cli import main; raise SystemExit(main(sys.argv[1:]))"]
 
@@ -137,6 +154,24 @@ def serial(config: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
         outcome = run(config, directory, InThisProcess())
     assert outcome.failures == ()
     return directory
+
+
+@pytest.fixture(scope="session")
+def trial(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The configuration: two full batches and a bit."""
+    path = tmp_path_factory.mktemp("trains") / "trial.toml"
+    path.write_text(TRIAL, encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="session")
+def humped(trial: Path) -> Path:
+    """The directory of the trial, humped in one process by the command; not to be changed."""
+    out = trial.parent / "out"
+    process = begin("hump", "simulate", trial, "-o", out)
+    assert process.communicate(timeout=300) is not None
+    assert process.returncode == 0
+    return out
 
 
 Ran = tuple[int, str, str]

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from synth.kernels.cache import cache_in_use
 from synth.sweep.plan import UnitOrder
+from synth.sweep.trains.batch import BatchOrder, answer_batch
 from synth.sweep.work import Answer, answer
 
 POISONED = "gondola-4-26t"
@@ -49,3 +50,12 @@ def caching(order: UnitOrder) -> Answer:
     assert directory is not None
     (directory / f"{os.getpid()}.nbi").touch()
     return Answer(order.key, None, str(directory))
+
+
+def batch_dying_once(order: BatchOrder) -> Answer:
+    """The first batch that is asked for takes its process with it, the first time."""
+    mark = Path(os.environ["DIED_ONCE"])
+    if not mark.exists():
+        mark.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return answer_batch(order)

@@ -72,3 +72,19 @@ def test_killed_worker_and_killed_driver(
     assert second.returncode == 0, said
     assert before.isdisjoint(event["unit"] for event in events(out, STARTED)[begun:])
     assert contents(out) == contents(serial)
+
+
+def test_trains_on_a_cluster_whose_worker_and_driver_are_killed(
+    trial: Path, humped: Path, tmp_path: Path, cluster: tuple[str, list[int]]
+) -> None:
+    address, workers = cluster
+    out = tmp_path / "out"
+    first = begin("hump", "simulate", trial, "-o", out, "--scheduler", address)
+    wait_until(lambda: (out / "batches").is_dir(), first)
+    os.kill(workers[0], signal.SIGKILL)
+    wait_until(lambda: list((out / "batches").glob("*.npz")), first)
+    kill_and_reap(first)
+    second = begin("hump", "simulate", trial, "-o", out, "--scheduler", address)
+    assert second.communicate(timeout=300) is not None
+    assert second.returncode == 0
+    assert contents(out) == contents(humped)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from synth.book.printed_numbers import ABSENT
 from synth.present.report.markup import Cell, Markup, head_row, table
@@ -36,19 +37,40 @@ def figure_table(figures: Sequence[TrainFigure]) -> Markup:
     return table("Figures", (head_row(*HEAD),), [(cells(figure), "") for figure in figures], kind="cases")
 
 
-def cells(figure: TrainFigure) -> list[str | Cell]:
-    """The row of a figure. A share is of cuts, a mean of trains."""
-    is_share = not math.isnan(figure.enough_n)
-    scale, unit = (100.0, "%") if is_share else (1.0, "" if figure.unit == "1" else figure.unit)
+@dataclass(frozen=True)
+class ShownFigure:
+    """A figure in words: shares in per cent."""
+
+    title: str
+    value: str
+    interval: str
+    unit: str
+
+
+def shown_figure(figure: TrainFigure) -> ShownFigure:
+    """`figure` as it is shown."""
+    scale, unit = (100.0, "%") if is_share(figure) else (1.0, "" if figure.unit == "1" else figure.unit)
     value, low, high = (printed(scale * number) for number in (figure.value, figure.low95, figure.high95))
+    interval = ABSENT if ABSENT in (low, high) else f"[{low}, {high}]"
+    return ShownFigure(TITLES.get(figure.name, figure.name.replace("_", " ")), value, interval, unit)
+
+
+def is_share(figure: TrainFigure) -> bool:
+    """A share is of cuts, a mean of trains."""
+    return not math.isnan(figure.enough_n)
+
+
+def cells(figure: TrainFigure) -> list[str | Cell]:
+    """The row of a figure."""
+    shown = shown_figure(figure)
     return [
-        Cell(TITLES.get(figure.name, figure.name.replace("_", " ")), note=figure.name),
-        value,
-        ABSENT if ABSENT in (low, high) else f"[{low}, {high}]",
-        unit,
+        Cell(shown.title, note=figure.name),
+        shown.value,
+        shown.interval,
+        shown.unit,
         str(figure.n),
-        "cuts" if is_share else "trains",
-        f"{math.ceil(figure.enough_n)}" if is_share and figure.enough_n > 0.0 else ABSENT,
+        "cuts" if is_share(figure) else "trains",
+        f"{math.ceil(figure.enough_n)}" if is_share(figure) and figure.enough_n > 0.0 else ABSENT,
     ]
 
 

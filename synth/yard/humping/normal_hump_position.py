@@ -15,7 +15,7 @@ from plant_models.library.weight_category import WeightCategories
 from plant_models.retarder import RetarderPosition
 from plant_models.rolling.keyed_numbers import keyed_uniform
 from plant_models.rolling.random_numbers import Purpose
-from synth.yard.humping.hump_position import Arrivals, Floats, Passed, evenly_braked_s
+from synth.yard.humping.hump_position import Arrivals, Floats, Ints, Passed, evenly_braked_s
 
 SLOWEST_M_S = 0.3
 """A regulator lets a cut go before it is slower than this, whatever its error."""
@@ -25,17 +25,22 @@ SLOWEST_M_S = 0.3
 class LibraryBrake:
     """Full brake of `position` for cuts as they arrive: each may be given the stages of its category.
 
-    Axles stand as in cuts of whole cars of the type `car`.
+    Axles stand as in cuts of whole cars of the type `car`. `share`: of the brake, 1 where it has all its supply.
     """
 
     position: RetarderPosition
     categories: WeightCategories
     car: Car
+    share: float = 1.0
 
     def __call__(self, arrivals: Arrivals) -> Floats:
         """Energy head of the full brake, m."""
-        allowed = np.array([member.allowed_stage for member in self.categories.members])[arrivals.category]
-        return full_brake_head_m(self.position, self.car, arrivals.mass_t, arrivals.axles, allowed)
+        return self.head_m(arrivals.mass_t, arrivals.axles, arrivals.category)
+
+    def head_m(self, mass_t: Floats, axles: Ints, category: Ints) -> Floats:
+        """The same of any cuts (n,)."""
+        allowed = np.array([member.allowed_stage for member in self.categories.members])[category]
+        return np.asarray(self.share * full_brake_head_m(self.position, self.car, mass_t, axles, allowed))
 
 
 @dataclass(frozen=True)

@@ -157,18 +157,21 @@ class HumpTrial:
 
     def humped(self, first: int, count: int) -> tuple[TrainCuts, TrainPlan, TrainMemory]:
         """The same trains with their plan and all that happened to them."""
-        trains = self.source.trains(first, count)
-        free_m = with_room(self.routes, trains, self.free.free_m(self.routes, trains.seed, first, count))
-        known = self.known(trains, free_m)
-        aim = self.aim_of(trains, known)
-        plan = self.program.plan(self.planner, known)
+        trains, free_m, known, plan = self.planned(first, count)
         rolls = rolling_on(self.ways, trains.population, trains.drawn, self.threads)
         hump = Hump(self.routes, self.positions, rolls)
-        control = self.control_of(trains, known, plan, aim)
+        control = self.control_of(trains, known, plan, self.aim_of(trains, known))
         speeds: HumpSpeeds = ProgramSpeeds(plan.hump_speed_m_s)
         if self.control.slow_down_s is not None and isinstance(control, Feedback):
             speeds = FeedbackSpeeds(control, self.control.slow_down_s)
         return trains, plan, humped(hump, trains, free_m, speeds, control)
+
+    def planned(self, first: int, count: int) -> tuple[TrainCuts, Floats, KnownCuts, TrainPlan]:
+        """The same trains before they are humped: with their free tracks, what is known of them, and their plan."""
+        trains = self.source.trains(first, count)
+        free_m = with_room(self.routes, trains, self.free.free_m(self.routes, trains.seed, first, count))
+        known = self.known(trains, free_m)
+        return trains, free_m, known, self.program.plan(self.planner, known)
 
     def known(self, trains: TrainCuts, free_m: Floats) -> KnownCuts:
         """What is known of trains before they are humped, and how they will be aimed if tracks stay as they are."""

@@ -1,0 +1,178 @@
+"""`retarder-synth hump simulate`, `hump report`, `hump speed`: faults of input are told before a train is humped."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from synth.cli import LIMITS_MISSED, OK, say
+from synth.cli.processors import available
+from synth.faults.input_error import InputError
+
+if TYPE_CHECKING:
+    from synth.configuration.humping.trial_file import TrialFile
+    from synth.present.humping_outputs import TrialResult
+    from synth.sweep.trains.batch import BatchOrder
+    from synth.sweep.work import Engine
+    from synth.yard.humping.resolved_trial import ResolvedTrial
+
+FEW_BATCHES = 6
+"""So many batches for each processor are humped in this process, by its threads: workers have to load first."""
+
+
+@dataclass(frozen=True)
+class AskedTrains:
+    """What the command line says besides the configuration; None: as configured."""
+
+    number: int | None
+    seed: int | None
+    sorting_list: Path | None
+
+
+def asked_file(source: Path | None, asked: AskedTrains) -> TrialFile:
+    """The configuration with what the command line says."""
+    from synth.configuration.humping.trial_file import read_trial_file
+
+    return read_trial_file(source).with_trains(asked.number, asked.seed, asked.sorting_list)
+
+
+def simulate_command(
+    source: Path | None, asked: AskedTrains, output: Path, workers: int | None, scheduler: str | None, as_json: bool
+) -> int:
+    """Hump the trains of `source` into the directory `output`; the exit code."""
+    from synth.book.creation_time import require_date
+    from synth.book.output_directory import TRAINS_LAYOUT, output_directory
+
+    if workers is not None and scheduler is not None:
+        raise InputError("hump simulate: --workers and --scheduler are both given; leave one out")
+    file = asked_file(source, asked)
+    require_date()
+    from synth.yard.humping.resolved_trial import resolve_trial
+
+    config = resolve_trial(file)
+    with output_directory(output, TRAINS_LAYOUT) as directory:
+        for warning in config.warnings:
+            say(f"warning: {warning}")
+        result = simulated(file, config, directory, workers, scheduler)
+    return told(result, output, as_json) if result is not None else LIMITS_MISSED
+
+
+def simulated(
+    file: TrialFile, config: ResolvedTrial, directory: Path, workers: int | None, scheduler: str | None
+) -> TrialResult | None:
+    """The work itself; None where a batch could not be humped, which is told."""
+    from synth.book.creation_time import creation_time
+    from synth.cli.progress import Progress
+    from synth.kernels.cache import guarded
+    from synth.present.humping_outputs import judged, write_trains
+    from synth.sweep.trains.batch import orders_of
+    from synth.sweep.trains.train_run import BatchFailed, BatchFiles, missing_of, run_trains
+    from synth.sweep.trains.trial_inputs import write_inputs
+    from synth.yard.humping.made_trial import made_trial
+
+    started, number = time.monotonic(), config.settings.trains.number
+    trial = guarded(made_trial, config)
+    orders = list(orders_of(trial, config.trains_sha256, number))
+    files = BatchFiles(directory, config.routes.numbers, config.trains_sha256)
+    with Progress(len(orders), "humping", "batches") as progress:
+        missing = missing_of(orders, files, progress)
+        progress.begin(len(orders) - len(missing))
+        engine = engine_for(missing, workers, scheduler)
+        try:
+            found = run_trains(orders, missing, files, engine, progress)
+        except BatchFailed as fault:
+            say(f"{fault}; what was humped before is kept in {directory}")
+            return None
+        except KeyboardInterrupt:
+            say(f"batches of trains that were humped are kept in {directory}; the same command goes on")
+            raise
+        progress.note(f"{number} trains humped after {time.monotonic() - started:.1f} s")
+        result = judged(config, trial, found, creation_time())
+        write_trains(result, write_inputs(file, config, directory), directory, progress.note)
+        progress.note(f"all files written after {time.monotonic() - started:.1f} s")
+    return result
+
+
+def engine_for(missing: list[BatchOrder], workers: int | None, scheduler: str | None) -> Engine:
+    """The cluster that was named, processes, or for a few batches this process with its threads."""
+    from synth.sweep.trains.batch import answer_batch, answer_batch_here
+
+    if scheduler is not None:
+        from synth.sweep.dask_cluster import connect
+
+        cluster = connect(scheduler, answer_batch)
+        say(f"the scheduler at {scheduler} has {cluster.threads()} threads of workers; more may join")
+        return cluster
+    if workers is None and len(missing) < FEW_BATCHES * available():
+        from synth.sweep.work import InThisProcess
+
+        return InThisProcess(answer_batch_here)
+    from synth.sweep.local_workers import LocalWorkers
+
+    return LocalWorkers(max(1, min(workers or available(), len(missing))), answer_batch)
+
+
+def told(result: TrialResult, output: Path, as_json: bool) -> int:
+    """The end of a run on stdout; the exit code."""
+    if as_json:
+        sys.stdout.write((output / "summary.json").read_text(encoding="utf-8"))
+    else:
+        from synth.cli.train_figure_table import print_trains
+
+        print_trains(result, output)
+    return OK if result.verdict.accepted else LIMITS_MISSED
+
+
+def report_command(path: Path, as_json: bool) -> int:
+    """Make figures, pictures and pages anew from the trains in the directory `path`; the exit code."""
+    from synth.book.creation_time import creation_time, require_date
+    from synth.book.output_directory import TRAINS_LAYOUT, output_directory
+    from synth.present.humping_outputs import TRAINS, judged, write_trains
+    from synth.sweep.trains.trial_inputs import input_files
+    from synth.yard.humping.made_trial import made_trial
+    from synth.yard.humping.outcome_file import from_npz
+    from synth.yard.humping.resolved_trial import load_trial
+
+    require_date()
+    source, trains = path / "inputs" / "config.toml", path / TRAINS
+    for file in (source, trains):
+        if not file.is_file():
+            raise InputError(f"{path}: there is no {file.relative_to(path)} in it; give what 'hump simulate' left")
+    config = load_trial(source)
+    found = from_npz(trains.read_bytes(), str(trains), config.trains_sha256)
+    with output_directory(path, TRAINS_LAYOUT) as directory:
+        result = judged(config, made_trial(config), found, creation_time())
+        write_trains(result, input_files(directory), directory, say)
+    return told(result, path, as_json)
+
+
+def speed_command(source: Path | None, asked: AskedTrains, train: int, output: Path, as_json: bool) -> int:
+    """Write the program of hump speeds of one train into the directory `output`."""
+    from synth.book.output_directory import make_directory
+    from synth.kernels.cache import guarded
+    from synth.yard.humping.made_trial import made_trial
+    from synth.yard.humping.resolved_trial import resolve_trial
+    from synth.yard.humping.speed_program import speed_program
+
+    config = resolve_trial(asked_file(source, asked))
+    make_directory(output)
+    for warning in config.warnings:
+        say(f"warning: {warning}")
+    from synth.present.speed_program_outputs import program_document, write_program
+
+    trial = guarded(made_trial, config)
+    program = guarded(speed_program, trial, train - 1)
+    files = write_program(program, output)
+    if as_json:
+        print(json.dumps(program_document(program, files), indent=1, ensure_ascii=False))
+        return OK
+    print(
+        f"train {train}: cuts: {len(program.rows)}; over the crest in {program.rows[-1].time_s:.0f} s at "
+        f"{program.mean_m_s:.2f} m/s, {program.cars_per_hour:.0f} cars an hour"
+    )
+    print(*files, sep="\n")
+    return OK

@@ -1,0 +1,60 @@
+"""The command `init`, its options and their help; what it does is in `synth.cli.init`.
+
+Annotations are not postponed here: typer would compile every one of them anew at each start.
+"""
+
+from collections.abc import Callable
+from inspect import Parameter, signature
+from typing import Annotated
+
+import typer
+
+from synth.cli.arguments import Json
+
+FILES = {
+    "retarder": ("retarders", "File of a retarder type. With the name of a position: its configuration."),
+    "position": ("positions", "File of a position."),
+    "car": ("cars", "File of a car type."),
+    "sensor": ("sensors", "File of a sensor."),
+    "weight_categories": ("weight_categories", "File of a set of weight categories."),
+    "aim": ("aim", "Aim configuration. With the name of a track or car mix: its file."),
+    "hump": ("hump", "Hump trial configuration. With the name of a hump: its file."),
+}
+"""Options that ask for a file: what `init_command` calls it, and the help."""
+
+
+def add_init_command(app: typer.Typer) -> None:
+    """Add the command to `app`."""
+    app.command()(with_file_options(init))
+
+
+def with_file_options(command: Callable[..., int]) -> Callable[..., int]:
+    """`command`, whose keywords are those of `FILES` for the parser; each may stand without a name
+    (`arguments.with_names`)."""
+    options = [
+        Parameter(
+            name,
+            Parameter.KEYWORD_ONLY,
+            default=None,
+            annotation=Annotated[str | None, typer.Option(metavar="[NAME]", help=words)],
+        )
+        for name, (_, words) in FILES.items()
+    ]
+    own = [each for each in signature(command).parameters.values() if each.kind is not Parameter.VAR_KEYWORD]
+    own = [each.replace(kind=Parameter.KEYWORD_ONLY) for each in own]
+    parameters = [*options, *own]
+    # mypy knows no such attribute, though every callable may have it
+    command.__signature__ = signature(command).replace(parameters=parameters)  # type: ignore[attr-defined]
+    command.__annotations__ = {each.name: each.annotation for each in parameters}
+    return command
+
+
+def init(
+    show_list: Annotated[bool, typer.Option("--list", help="Only list what the library holds.")] = False,
+    as_json: Json = False,
+    **files: str | None,
+) -> int:
+    """Print a commented configuration to start from, or the file of one type."""
+    from synth.cli.init import init_command
+
+    return init_command({FILES[name][0]: given for name, given in files.items()}, show_list, as_json)

@@ -1,0 +1,1 @@
+"""The configuration of a hump trial: trains, hump speeds, exit speeds, positions."""

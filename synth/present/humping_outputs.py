@@ -1,0 +1,123 @@
+"""What a hump trial leaves in its directory besides its batches: data, figures, pictures, pages, last the summary."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from synth.book.output_directory import SUMMARY, TRAIN_PICTURES, remove_stale
+from synth.book.summary import Document
+from synth.present.hump_page.hump_page import hump_page
+from synth.present.outputs import file_hashes
+from synth.present.plots.picture import Picture, save_picture
+from synth.present.report.humping_report import HumpingReport, humping_page
+from synth.yard.humping.outcome_file import to_npz
+from synth.yard.humping.outcomes import TrainOutcomes
+from synth.yard.humping.resolved_trial import ResolvedTrial
+from synth.yard.humping.speed_program import locomotive_csv, speed_program, uncoupler_csv
+from synth.yard.humping.traced_train import traced_train
+from synth.yard.humping.train_figures import TrainFigure, train_figures
+from synth.yard.humping.train_trace import TrainTrace
+from synth.yard.humping.trial import HumpTrial
+from synth.yard.humping.trial_acceptance import TrialVerdict, judge_trains
+from synth.yard.humping.trial_summary import figures_csv, trial_summary
+from tuning_tables import write_atomically
+from tuning_tables.canonical import canonical_json
+
+TRAINS, FIGURES, PROGRAM, SHEET = "trains.npz", "figures.csv", "locomotive.csv", "uncoupler.csv"
+PLAYER, REPORT = "hump.html", "report.html"
+SHOWN_TRAIN = 0
+"""The train that is drawn and played, and whose program is written."""
+
+Say = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class TrialResult:
+    """What trains of `trial`, which was made of `config`, have come to: `found`, with figures and verdict."""
+
+    config: ResolvedTrial
+    trial: HumpTrial
+    found: TrainOutcomes
+    figures: tuple[TrainFigure, ...]
+    verdict: TrialVerdict
+    created: str
+
+
+def judged(config: ResolvedTrial, trial: HumpTrial, found: TrainOutcomes, created: str) -> TrialResult:
+    """`found` with what it is worth."""
+    figures = train_figures(found)
+    return TrialResult(config, trial, found, figures, judge_trains(figures, config.settings.acceptance), created)
+
+
+def write_trains(result: TrialResult, inputs: list[Path], directory: Path, say: Say) -> Document:
+    """Write everything; the summary as written, which lists `inputs` too. Raises `OSError`."""
+    config, output = result.config, result.config.settings.output
+    files = [*inputs, *write_data(result, directory)]
+    pictures: tuple[Picture, ...] = ()
+    if output.plots or output.report:
+        trace = traced_train(result.trial, SHOWN_TRAIN)
+        pictures = drawn(result, trace)
+        say(f"{len(pictures)} pictures drawn")
+        if output.plots:
+            files += (file for picture in pictures for file in save_picture(picture, directory / "plots"))
+        if output.report:
+            files.append(directory / PLAYER)
+            write_atomically(files[-1], hump_page(config.hump, trace, category_names(config)).encode())
+    hashes = file_hashes(directory, files)
+    if output.report:
+        page = directory / REPORT
+        write_atomically(page, humping_page(report_of(result, pictures, hashes)).encode())
+        hashes |= file_hashes(directory, [page])
+    remove_stale(directory, set(hashes), pictures=TRAIN_PICTURES)
+    if PLAYER not in hashes:
+        (directory / PLAYER).unlink(missing_ok=True)
+    summary = trial_summary(config, result.found, result.figures, result.verdict, result.created, hashes)
+    write_atomically(directory / SUMMARY, canonical_json(summary) + b"\n")
+    return summary
+
+
+def write_data(result: TrialResult, directory: Path) -> list[Path]:
+    """Write the outcomes by train, the figures, and the program of the shown train; the files."""
+    config, program = result.config, speed_program(result.trial, SHOWN_TRAIN)
+    contents = {
+        TRAINS: to_npz(result.found, config.routes.numbers, config.trains_sha256),
+        FIGURES: figures_csv(result.figures),
+        PROGRAM: locomotive_csv(program),
+        SHEET: uncoupler_csv(program),
+    }
+    for name, content in contents.items():
+        write_atomically(directory / name, content)
+    return [directory / name for name in contents]
+
+
+def category_names(config: ResolvedTrial) -> tuple[str, ...]:
+    """Names of the weight categories in their places."""
+    return tuple(member.name for member in config.categories.members)
+
+
+def drawn(result: TrialResult, trace: TrainTrace) -> tuple[Picture, ...]:
+    """All pictures."""
+    from synth.present.plots.humping.humping_pictures import outcome_pictures, train_pictures  # matplotlib
+
+    config = result.config
+    shown = train_pictures(trace, category_names(config))
+    return (*outcome_pictures(config.hump, config.routes, result.found), *shown)
+
+
+def report_of(result: TrialResult, pictures: tuple[Picture, ...], hashes: Mapping[str, str]) -> HumpingReport:
+    """The page of `result`."""
+    config, limits = result.config, result.config.settings.acceptance.model_dump(exclude_none=True)
+    return HumpingReport(
+        title=config.title,
+        created=result.created,
+        config_sha256=config.sha256,
+        verdict=f"{len(result.found)} trains of {int(result.found.cuts.sum())} cuts: {result.verdict.sentence}.",
+        accepted=result.verdict.accepted if limits else None,
+        figures=result.figures,
+        pictures=pictures,
+        parameters=config.parameters,
+        player=PLAYER,
+        file_hashes=hashes,
+    )

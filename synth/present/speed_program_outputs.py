@@ -1,0 +1,45 @@
+"""What `hump speed` leaves: the program of a train for the locomotive, the uncoupler's sheet, and a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+
+from synth.book.summary import Document, plain
+from synth.present.plots.picture import save_drawing
+from synth.yard.humping.speed_program import SpeedProgram, locomotive_csv, uncoupler_csv
+from tuning_tables import write_atomically
+
+
+def write_program(program: SpeedProgram, directory: Path) -> list[Path]:
+    """Write the files of `program`; raises `OSError`."""
+    from synth.present.plots.humping.hump_speed_program import PushedTrain
+    from synth.present.plots.humping.humping_pictures import program_picture
+
+    stem = f"train-{program.number + 1}"
+    contents = {f"{stem}-locomotive.csv": locomotive_csv(program), f"{stem}-uncoupler.csv": uncoupler_csv(program)}
+    for name, content in contents.items():
+        write_atomically(directory / name, content)
+    time, speed, length = (
+        np.array([getattr(row, key) for row in program.rows]) for key in ("time_s", "hump_speed_m_s", "length_m")
+    )
+    picture = program_picture(PushedTrain(program.number, time, speed, length))
+    drawn = save_drawing(picture.drawing, directory, f"{stem}-hump-speed")
+    return [*(directory / name for name in contents), *drawn]
+
+
+def program_document(program: SpeedProgram, files: Sequence[Path]) -> Document:
+    """The program for programs."""
+    document: Document = plain(
+        {
+            "train": program.number + 1,
+            "mean_hump_speed_m_s": program.mean_m_s,
+            "cars_per_hour": program.cars_per_hour,
+            "cuts": [asdict(row) for row in program.rows],
+            "files": [str(file) for file in files],
+        }
+    )
+    return document

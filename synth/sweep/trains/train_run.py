@@ -1,0 +1,112 @@
+"""A run of a hump trial: batches that are not there yet are humped, and stored one by one; then all are joined."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+from synth.sweep.trains.batch import BatchOrder
+from synth.sweep.work import Engine
+from synth.yard.humping.outcome_file import from_npz, to_npz
+from synth.yard.humping.outcomes import TrainOutcomes, joined
+from tuning_tables import DamagedTable, write_atomically
+from tuning_tables.seal import seal_of, unsealed
+
+FOLDER = "batches"
+
+
+class BatchWatcher(Protocol):
+    """Is told how far a run is."""
+
+    def note(self, sentence: str) -> None:
+        """Something besides the batches."""
+
+    def done(self, sentence: str) -> None:
+        """A batch is humped."""
+
+
+class BatchFailed(Exception):
+    """A batch could not be humped; what came before it is stored."""
+
+
+@dataclass(frozen=True)
+class BatchFiles:
+    """The stored batches of a trial below `directory`, each under a seal; `numbers` of the elements by column."""
+
+    directory: Path
+    numbers: tuple[int, ...]
+    trains_sha256: str
+
+    def file(self, key: str) -> Path:
+        """The file of one batch."""
+        return self.directory / FOLDER / f"{key}.npz"
+
+    def store(self, key: str, found: TrainOutcomes) -> None:
+        """Write a batch, complete or not at all; raises `OSError`."""
+        body = to_npz(found, self.numbers, self.trains_sha256)
+        write_atomically(self.file(key), body + seal_of(body))
+
+    def stored(self, key: str) -> TrainOutcomes:
+        """A batch; `FileNotFoundError`, or `DamagedTable` where a byte has changed."""
+        path = self.file(key)
+        return from_npz(unsealed(path.read_bytes(), str(path)), str(path), self.trains_sha256)
+
+    def has(self, key: str) -> bool:
+        """Whether a batch is there; `DamagedTable` where a byte has changed."""
+        path = self.file(key)
+        try:
+            unsealed(path.read_bytes(), str(path))
+        except FileNotFoundError:
+            return False
+        return True
+
+    def keep_only(self, keys: Sequence[str]) -> None:
+        """Remove the batches of other trials."""
+        kept = {self.file(key) for key in keys}
+        for file in (self.directory / FOLDER).glob("*-*-*.npz"):
+            if file not in kept:
+                file.unlink(missing_ok=True)
+
+
+def missing_of(orders: Sequence[BatchOrder], files: BatchFiles, watcher: BatchWatcher) -> list[BatchOrder]:
+    """The batches that are not there, or not whole."""
+    missing = []
+    for order in orders:
+        try:
+            if files.has(order.key):
+                continue
+        except DamagedTable:
+            watcher.note(f"{files.file(order.key)} is damaged; {order.name} are humped again")
+        missing.append(order)
+    return missing
+
+
+def run_trains(
+    orders: Sequence[BatchOrder],
+    missing: Sequence[BatchOrder],
+    files: BatchFiles,
+    engine: Engine,
+    watcher: BatchWatcher,
+) -> TrainOutcomes:
+    """All trains of `orders`; those `missing` are humped by `engine` and stored as they come.
+
+    `BatchFailed` tells why one could not be humped. What was stored before stays.
+    """
+    names = {order.key: order.name for order in missing}
+    with closing(engine.answers(missing, lambda order: None)) as answers:
+        for answer in answers:
+            if answer.result is None:
+                raise BatchFailed(f"{names[answer.key]}: {answer.reason}")
+            files.store(answer.key, answer.result)
+            watcher.done(f"{names[answer.key]}: {words(answer.result)}")
+    files.keep_only([order.key for order in orders])
+    return joined([files.stored(order.key) for order in orders])
+
+
+def words(found: TrainOutcomes) -> str:
+    """A batch in a line."""
+    speed = found.span_m.sum() / found.span_s.sum()
+    return f"{speed:.2f} m/s, {int(found.caught.sum())} of {int(found.cuts.sum())} cuts caught up"

@@ -1,0 +1,88 @@
+"""All inputs of a trial in one folder, so that what ran can be told and repeated when the files it came from are gone.
+
+inputs/config.toml               the configuration, with what the command line said
+inputs/hump.toml or hump.railml  the hump
+inputs/train.csv                 the sorting list, if there was one
+inputs/tables/position-N.h5      the book of a position, position-N.toml what it was tuned with
+inputs/types/                    the user's own types
+"""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Any, Final
+
+from plant_models.library import Library, TypeFile
+from synth.book.output_directory import make_directory
+from synth.configuration.hump import RAILML_SUFFIXES, hump_text
+from synth.configuration.humping.trial_file import TrialFile
+from synth.configuration.own_types import with_own_types
+from synth.configuration.toml_file import read_text, toml_tree
+from synth.sweep.toml_text import toml_text
+from synth.yard.humping.position_choice import PositionChoice
+from synth.yard.humping.resolved_trial import ResolvedTrial
+from tuning_tables import write_atomically
+
+FOLDER: Final = "inputs"
+CONFIG, LIST, TABLES, TYPES = "config.toml", "train.csv", "tables", "types"
+
+
+def write_inputs(file: TrialFile, config: ResolvedTrial, directory: Path) -> list[Path]:
+    """Write the inputs of `config`, which was resolved from `file`, into the folder of `directory`; the files."""
+    folder = directory / FOLDER
+    if folder.exists():
+        shutil.rmtree(folder)
+    make_directory(folder)
+    tree: dict[str, Any] = config.settings.model_dump(mode="json", exclude_none=True, exclude_unset=True)
+    own: dict[str, TypeFile] = {str(each): each for each in file.library.own}
+    contents: dict[str, bytes] = {}
+    suffix = file.hump_source.suffix if file.hump_source.suffix in RAILML_SUFFIXES else ".toml"
+    tree["hump"] = f"hump{suffix}"
+    contents[tree["hump"]] = hump_text(file.hump_source).encode("utf-8")
+    if file.settings.trains.list is not None:
+        tree.setdefault("trains", {})["list"] = LIST
+        contents[LIST] = (file.folder / file.settings.trains.list).read_bytes()
+    told = (position_tree(choice, contents, own) for choice in config.positions)
+    tree["position"] = [each for each in told if len(each) > 1]
+    if own:
+        tree["library"] = [f"{TYPES}/"]
+    for type_file in own.values():
+        contents[f"{TYPES}/{type_file.kind.folder}/{type_file.name}.toml"] = type_file.text.encode("utf-8")
+    contents[CONFIG] = toml_text(tree).encode("utf-8")
+    for name, content in contents.items():
+        make_directory((folder / name).parent)
+        write_atomically(folder / name, content)
+    return input_files(directory)
+
+
+def input_files(directory: Path) -> list[Path]:
+    """The files that `write_inputs` has left below `directory`."""
+    return sorted(path for path in (directory / FOLDER).rglob("*") if path.is_file())
+
+
+def position_tree(choice: PositionChoice, contents: dict[str, bytes], own: dict[str, TypeFile]) -> dict[str, Any]:
+    """A position as [[position]] tells it; its files are added to `contents`, the types that they name to `own`."""
+    found: dict[str, Any] = {"number": choice.number}
+    if choice.out_of_service:
+        found["out_of_service"] = True
+    if choice.supply_share != 1.0:
+        found["supply_share"] = choice.supply_share
+    if choice.std_set_by_user:
+        found["exit_std_m_s"] = choice.exit_std_m_s
+    if choice.book is not None:
+        found["tables"] = f"{TABLES}/position-{choice.number}{choice.book.suffix}"
+        contents[found["tables"]] = choice.book.read_bytes()
+    if choice.tuned_with is not None:
+        found["tables_config"] = f"{TABLES}/position-{choice.number}.toml"
+        tree, library = with_own_types(
+            toml_tree(read_text(choice.tuned_with), str(choice.tuned_with)), str(choice.tuned_with)
+        )
+        own |= {str(each): each for each in library.own}
+        contents[found["tables_config"]] = toml_text(relocated(tree, library)).encode("utf-8")
+    return found
+
+
+def relocated(tree: dict[str, Any], library: Library) -> dict[str, Any]:
+    """The configuration in `tree` as it stands in the folder of tables."""
+    return {**tree, "library": [f"../{TYPES}/"]} if library.own else tree

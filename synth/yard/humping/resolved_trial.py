@@ -1,0 +1,195 @@
+"""A hump trial configuration with every default filled in: hump, trains, positions, and the origin of each number."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from plant_models.errors import require
+from plant_models.library import (
+    CAR_MIXES,
+    WEIGHT_CATEGORIES,
+    Library,
+    SourcedValue,
+    WeightCategories,
+    load_weight_categories,
+)
+from plant_models.library.car_mix_entry import CarMixEntry, load_car_mix
+from plant_models.library.data_file import keyed
+from plant_models.library.hump_entry import HumpEntry
+from plant_models.rolling.random_cuts import CutPopulation
+from synth.configuration.config_file import load_config
+from synth.configuration.humping.settings import HumpTrialSettings
+from synth.configuration.humping.trial_file import TrialFile, read_trial_file
+from synth.configuration.plant_fault import in_file
+from synth.configuration.position_choice import require_held
+from synth.configuration.railml.write import to_railml
+from synth.configuration.resolved_config import range_warnings
+from synth.yard.hump.sorting_list import SortingList
+from synth.yard.hump.train_population import TrainPopulation
+from synth.yard.humping.asked_speeds import ExitRange, exit_ranges, require_speeds
+from synth.yard.humping.asked_trains import category_shares, mix_of, population_of, trains_of, with_room
+from synth.yard.humping.hump_routes import HumpRoutes, hump_routes
+from synth.yard.humping.position_choice import PositionChoice, position_choices
+from synth.yard.humping.trial_parameters import (
+    CHANGES_NO_TRAIN,
+    position_values,
+    range_values,
+    share_values,
+    trial_numbers,
+)
+from tuning_tables.canonical import canonical_json
+
+KEY_OF_PLANT_MESSAGE: Final = {
+    "weather: ": "weather.",
+    "resistance: ": "resistance.",
+    "car mix: ": "cars.",
+    "car mix: no car": "cars.mix: no car",
+    "train: ": "trains.",
+    "tracks: ": "tracks.",
+    "hump speed: ": "hump_speed.",
+}
+"""How the plant's messages begin, and the key path in a hump trial configuration that this means."""
+
+
+@dataclass(frozen=True)
+class ResolvedTrial:
+    """Everything that humped trains depend on.
+
+    `trains`: a population, or the humped cuts of a sorting list. `ranges_m_s`: of each position but the last.
+    `library`: with the user's own types. `parameters`: every number with unit, range, source and whether it is assumed;
+    `warnings`: sentences about values outside their sensible range; `place`: what messages call the file.
+    """
+
+    place: str
+    title: str
+    hump: HumpEntry
+    routes: HumpRoutes
+    people: CutPopulation
+    trains: TrainPopulation | SortingList
+    positions: tuple[PositionChoice, ...]
+    ranges_m_s: tuple[ExitRange, ...]
+    settings: HumpTrialSettings
+    library: Library
+    parameters: tuple[SourcedValue, ...]
+    notes: tuple[str, ...]
+    warnings: tuple[str, ...]
+    names: dict[str, Any]
+
+    @property
+    def categories(self) -> WeightCategories:
+        """The weight categories of the cuts."""
+        return self.people.categories
+
+    @property
+    def canonical_json(self) -> str:
+        """What the figures depend on, in one form: the same for the same figures, whatever files are called."""
+        return canonical_json(self._tree(())).decode("utf-8")
+
+    @property
+    def sha256(self) -> str:
+        """SHA-256 of `canonical_json` in UTF-8, hexadecimal."""
+        return hashlib.sha256(self.canonical_json.encode()).hexdigest()
+
+    @property
+    def trains_sha256(self) -> str:
+        """The same of what each single train depends on: not how many there are, nor how they are judged."""
+        return hashlib.sha256(canonical_json(self._tree(CHANGES_NO_TRAIN))).hexdigest()
+
+    def _tree(self, without: tuple[str, ...]) -> dict[str, Any]:
+        numbers = {v.key: v.value for v in self.parameters if not v.key.startswith(("hump.", *without))}
+        return {"format": "hump-trial", "version": 1, **self.names, "numbers": numbers}
+
+
+def load_trial(source: Path | None) -> ResolvedTrial:
+    """The configuration or hump `source`, or the built-in default; `InputError` on any fault."""
+    return resolve_trial(read_trial_file(source))
+
+
+def resolve_trial(file: TrialFile) -> ResolvedTrial:
+    """Fill in the library's values; `InputError` names file, key and value of whatever does not fit."""
+    place, library = file.place, file.library
+    settings = file.settings
+    require_held(f"{place}: cars.mix", CAR_MIXES, settings.cars.mix, library)
+    require_held(f"{place}: weight_categories", WEIGHT_CATEGORIES, settings.weight_categories, library)
+    with in_file(place, lambda sentence: keyed(sentence, KEY_OF_PLANT_MESSAGE)):
+        routes = hump_routes(file.hump.graph, lead_of(file))
+        mix = mix_of(load_car_mix(settings.cars.mix, library), settings)
+        settings = with_room(settings, mix, routes)
+        categories = load_weight_categories(settings.weight_categories, library)
+        positions = position_choices(routes.routes, settings.position, file.hump_source.parent, file.folder)
+        ranges = exit_ranges(settings, positions[:-1])
+        people = population_of(mix, categories, settings)
+        shares = category_shares(settings, categories)
+        trains = trains_of(settings, file.folder, people, shares, routes)
+        require_speeds(settings)
+    parameters = (
+        *trial_numbers(settings, file.hump, mix, categories),
+        *(() if isinstance(trains, SortingList) else share_values(settings, shares)),
+        *range_values(settings.exit_speeds, ranges),
+        *position_values(positions, file.hump),
+    )
+    return ResolvedTrial(
+        place=place,
+        title=settings.title or f"Trains over: {file.hump.title}",
+        hump=file.hump,
+        routes=routes,
+        people=people,
+        trains=trains,
+        positions=positions,
+        ranges_m_s=ranges,
+        settings=settings,
+        library=library,
+        parameters=parameters,
+        notes=(*file.hump.notes, *mix.notes),
+        warnings=tuple(range_warnings(parameters)),
+        names=names_of(file, routes.lead, mix, categories, trains, positions),
+    )
+
+
+def lead_of(file: TrialFile) -> int:
+    """The crest that trains come over."""
+    leads, asked = file.hump.graph.leads, file.settings.lead
+    if asked is None:
+        return leads[0]
+    require(asked in leads, f"lead is {asked}; the signals at the crests of the hump are {', '.join(map(str, leads))}")
+    return asked
+
+
+def names_of(
+    file: TrialFile, lead: int, mix: CarMixEntry, categories: WeightCategories, trains: object,
+    positions: tuple[PositionChoice, ...],
+) -> dict[str, Any]:  # fmt: skip
+    """What trains depend on besides numbers; files by their content."""
+    settings = file.settings
+    return {
+        "hump_sha256": hashlib.sha256(to_railml(file.hump)).hexdigest(),
+        "lead": lead,
+        "mix": [car.car.name for car in mix.mix.cars],
+        "categories": [[member.number, member.name] for member in categories.members],
+        "law": settings.resistance.law,
+        "list": [cut_line(cut) for cut in trains.cuts] if isinstance(trains, SortingList) else None,
+        "one_wind_a_train": settings.trains.one_wind_a_train,
+        "standing": settings.tracks.standing,
+        "method": settings.hump_speed.method,
+        "worst_pair": settings.hump_speed.worst_pair,
+        "feedback": settings.exit_speeds.feedback,
+        "known": [settings.exit_speeds.knowledge, settings.aim.knowledge],
+        "positions": [position_names(each) for each in positions],
+    }
+
+
+def cut_line(cut: Any) -> list[Any]:
+    """What a train depends on of a cut of the list."""
+    return [cut.cars, cut.axles, cut.mass_t, cut.category, cut.track, cut.length_m]
+
+
+def position_names(choice: PositionChoice) -> dict[str, Any]:
+    """What a position depends on besides numbers."""
+    found: dict[str, Any] = {"site": choice.site, "out_of_service": choice.out_of_service}
+    if choice.book is not None:
+        found["book_sha256"] = hashlib.sha256(choice.book.read_bytes()).hexdigest()
+        found["tuned_with_sha256"] = load_config(choice.tuned_with).sha256
+    return found

@@ -1,0 +1,115 @@
+"""The program of a train before it is humped: for the locomotive's remote control, and the uncoupler's sheet."""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.yard.humping.train_cuts import TrainCuts
+from synth.yard.humping.train_plan import TrainPlan
+from synth.yard.humping.trial import HumpTrial
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ProgramRow:
+    """Cut number `cut` of the train, from 1. `time_s`, `pushed_m`: when its middle is at the crest, since that of the
+    first cut was there; `exit_m_s`: of all positions, the last one by the aim as it is expected."""
+
+    cut: int
+    cars: int
+    axles: int
+    mass_t: float
+    length_m: float
+    category: str
+    track: int
+    hump_speed_m_s: float
+    time_s: float
+    pushed_m: float
+    exit_m_s: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class SpeedProgram:
+    """The program of the train `number`, from 0, of a trial."""
+
+    number: int
+    rows: tuple[ProgramRow, ...]
+
+    @property
+    def mean_m_s(self) -> float:
+        """From the first cut at the crest to the last."""
+        return self.rows[-1].pushed_m / self.rows[-1].time_s
+
+    @property
+    def cars_per_hour(self) -> float:
+        """The same in cars, counted from middle to middle of the cuts."""
+        cars = sum(row.cars for row in self.rows) - 0.5 * (self.rows[0].cars + self.rows[-1].cars)
+        return 3600.0 * cars / self.rows[-1].time_s
+
+
+def speed_program(trial: HumpTrial, number: int) -> SpeedProgram:
+    """The program of train `number` of `trial`; nothing is humped."""
+    trains, _, known, plan = trial.planned(number, 1)
+    return program_of(number, trains, plan, known.aim.speed_m_s)
+
+
+def program_of(number: int, trains: TrainCuts, plan: TrainPlan, aim_m_s: Floats) -> SpeedProgram:
+    """The program that `plan` has for its only train."""
+    middle = np.cumsum(trains.length_m) - 0.5 * trains.length_m
+    members = trains.population.categories.members
+    rows = tuple(
+        ProgramRow(
+            cut=cut + 1,
+            cars=int(trains.cars[cut]),
+            axles=int(trains.axles[cut]),
+            mass_t=float(trains.mass_t[cut]),
+            length_m=float(trains.length_m[cut]),
+            category=members[trains.category[cut]].latin,
+            track=int(trains.track[cut]),
+            hump_speed_m_s=float(plan.hump_speed_m_s[0, cut]),
+            time_s=float(plan.crest_s[0, cut] - plan.crest_s[0, 0]),
+            pushed_m=float(middle[cut] - middle[0]),
+            exit_m_s=(*(float(speed) for speed in plan.exit_m_s[0, cut]), float(aim_m_s[cut])),
+        )
+        for cut in range(trains.cuts)
+    )
+    return SpeedProgram(number, rows)
+
+
+def locomotive_csv(program: SpeedProgram) -> bytes:
+    """For the locomotive: the speed that it has at each moment; in between it changes evenly."""
+    return csv_bytes(
+        ("cut", "time_s", "pushed_m", "speed_m_s"),
+        [(r.cut, f"{r.time_s:.2f}", f"{r.pushed_m:.2f}", f"{r.hump_speed_m_s:.2f}") for r in program.rows],
+    )
+
+
+def uncoupler_csv(program: SpeedProgram) -> bytes:
+    """For the uncoupler and the hump operator: every cut with what is to be done with it."""
+    positions = len(program.rows[0].exit_m_s)
+    exits = tuple(f"exit_{place}_m_s" for place in range(1, positions + 1))
+    head = ("cut", "cars", "axles", "mass_t", "length_m", "category", "track", "hump_speed_m_s", "time_s", *exits)
+    return csv_bytes(
+        head,
+        [
+            (
+                r.cut, r.cars, r.axles, f"{r.mass_t:.1f}", f"{r.length_m:.2f}", r.category, r.track,
+                f"{r.hump_speed_m_s:.2f}", f"{r.time_s:.1f}", *(f"{speed:.2f}" for speed in r.exit_m_s),
+            )
+            for r in program.rows
+        ],
+    )  # fmt: skip
+
+
+def csv_bytes(head: tuple[str, ...], rows: list[tuple[object, ...]]) -> bytes:
+    """CSV of RFC 4180 in UTF-8."""
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\r\n")
+    writer.writerows([head, *rows])
+    return text.getvalue().encode()

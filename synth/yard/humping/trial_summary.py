@@ -1,0 +1,94 @@
+"""summary.json and figures.csv of a hump trial: the figures for programs, and the hashes of the files beside them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from importlib.metadata import version
+
+from synth.book.output_directory import TRAINS_LAYOUT
+from synth.book.summary import Document, plain
+from synth.yard.humping.outcomes import TrainOutcomes
+from synth.yard.humping.resolved_trial import ResolvedTrial
+from synth.yard.humping.speed_program import csv_bytes
+from synth.yard.humping.train_figures import TrainFigure
+from synth.yard.humping.trial_acceptance import TrialVerdict
+
+VERSION = 1
+
+Figures = Sequence[TrainFigure]
+
+
+def trial_summary(
+    config: ResolvedTrial, found: TrainOutcomes, figures: Figures, verdict: TrialVerdict, created: str,
+    file_hashes: Mapping[str, str],
+) -> Document:  # fmt: skip
+    """The document; `file_hashes`: SHA-256 by file name, all files but summary.json itself."""
+    document = {
+        "format": TRAINS_LAYOUT.form,
+        "version": VERSION,
+        "created": created,
+        "generator": {"name": "retarder-synth", "version": version("retarder-synth"), "config_sha256": config.sha256},
+        "title": config.title,
+        "config": json.loads(config.canonical_json),
+        "trains_sha256": config.trains_sha256,
+        "warnings": config.warnings,
+        "parameters_assumed": [value.key for value in config.parameters if value.assumed],
+        "accepted": verdict.accepted,
+        "verdict": verdict.sentence,
+        "missed_limits": verdict.missed,
+        "undecided_limits": verdict.undecided,
+        "trains": len(found),
+        "cuts": int(found.cuts.sum()),
+        "cars": int(found.cars.sum()),
+        "figures": {figure.name: figure_of(figure) for figure in figures},
+        "elements": elements_of(config, found),
+        "positions": positions_of(config, found),
+        "files": dict(file_hashes),
+    }
+    plain_document: Document = plain(document)
+    return plain_document
+
+
+def figure_of(figure: TrainFigure) -> Document:
+    """A figure with its 95 % interval; `enough_n`: see `TrainFigure`."""
+    return {
+        "value": figure.value,
+        "ci95": [figure.low95, figure.high95],
+        "unit": figure.unit,
+        "n": figure.n,
+        "enough_n": figure.enough_n,
+    }
+
+
+def elements_of(config: ResolvedTrial, found: TrainOutcomes) -> Document:
+    """Counts of cuts at each element where there was one at all, by its number."""
+    counts = {
+        name: getattr(found, name).sum(axis=0) for name in ("misrouted", "contact", "unseparated", "foul")
+    }  # fmt: skip
+    return {
+        str(number): {name: int(each[column]) for name, each in counts.items()}
+        for column, number in enumerate(config.routes.numbers)
+        if any(each[column] for each in counts.values())
+    }
+
+
+def positions_of(config: ResolvedTrial, found: TrainOutcomes) -> list[Document]:
+    """Passes of each position, and how exactly cuts left it."""
+    passes, error2 = found.passes.sum(axis=0), found.error2_m2_s2.sum(axis=0)
+    return [
+        {
+            "number": choice.number,
+            "site": choice.site,
+            "passes": int(passes[place]),
+            "rms_of_exit_less_command_m_s": float((error2[place] / passes[place]) ** 0.5) if passes[place] else None,
+            "strokes_per_pass": float(found.strokes[:, place].sum() / passes[place]) if passes[place] else None,
+        }
+        for place, choice in enumerate(config.positions)
+    ]
+
+
+def figures_csv(figures: Figures) -> bytes:
+    """The figures as CSV, a row each."""
+    rows = [(f.name, f.unit, repr(float(f.value)), repr(float(f.low95)), repr(float(f.high95)), f.n) for f in figures]
+    return csv_bytes(("figure", "unit", "value", "low95", "high95", "n"), list(rows))

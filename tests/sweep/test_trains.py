@@ -1,0 +1,171 @@
+"""Large runs of trains: the same bytes however they are split, killed, or damaged, and nothing is humped twice."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from synth.sweep.local_workers import LocalWorkers
+from synth.sweep.trains.batch import BatchOrder, answer_batch, orders_of
+from synth.sweep.trains.train_run import BatchFailed, BatchFiles, missing_of, run_trains
+from synth.sweep.work import Answer, InThisProcess
+from synth.yard.humping.made_trial import made_trial
+from synth.yard.humping.outcome_file import to_npz
+from synth.yard.humping.outcomes import joined
+from synth.yard.humping.resolved_trial import load_trial
+from synth.yard.humping.trial import BATCH
+from tests.sweep import poison
+from tests.sweep.conftest import Ran, begin, contents, kill_and_reap, wait_until
+
+
+def files_of(out: Path, trial: Path) -> BatchFiles:
+    """The stored batches in `out`."""
+    config = load_trial(trial)
+    return BatchFiles(out, config.routes.numbers, config.trains_sha256)
+
+
+def test_workers_change_no_byte(command: Callable[..., Ran], trial: Path, humped: Path, tmp_path: Path) -> None:
+    for workers in (1, 3):
+        out = tmp_path / f"out-{workers}"
+        assert command("hump", "simulate", trial, "-o", out, "--workers", workers)[0] == 0
+        assert contents(out) == contents(humped)
+
+
+def test_batches_of_any_size_are_the_same_trains(trial: Path, humped: Path) -> None:
+    """As one batch, one by one, and in uneven parts: the arrays of the file that the command wrote."""
+    config = load_trial(trial)
+    made = made_trial(config)
+    numbers, sha = config.routes.numbers, config.trains_sha256
+    written = files_of(humped, trial)
+    first = written.stored(next(iter(orders_of(made, sha, BATCH))).key)
+    some = joined([made.batch(0, 1), made.batch(1, 6), made.batch(7, BATCH - 7)])
+    assert to_npz(some, numbers, sha) == to_npz(first, numbers, sha)
+
+
+def test_a_killed_run_goes_on_to_the_same_bytes(trial: Path, humped: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    run = begin("hump", "simulate", trial, "-o", out, "--workers", "1")
+    wait_until(lambda: list((out / "batches").glob("*.npz")), run)
+    kill_and_reap(run)
+    kept = {path.name: path.stat().st_mtime_ns for path in (out / "batches").glob("*.npz")}
+    assert not (out / "summary.json").exists()
+    assert kept
+    (out / "batches" / f".x.npz.{'0' * 16}.part").touch()
+    again = begin("hump", "simulate", trial, "-o", out, "--workers", "2")
+    _, said = again.communicate(timeout=300)
+    assert again.returncode == 0
+    if len(kept) < 3:
+        assert f"{len(kept)} of 3 batches are there already" in said
+    assert {name: (out / "batches" / name).stat().st_mtime_ns for name in kept} == kept
+    assert contents(out) == contents(humped)
+
+
+def test_a_worker_that_is_killed_loses_nothing(
+    trial: Path, humped: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("DIED_ONCE", str(tmp_path / "mark"))
+    config = load_trial(trial)
+    (tmp_path / "batches").mkdir()
+    files = files_of(tmp_path, trial)
+    orders = list(orders_of(made_trial(config), config.trains_sha256, config.settings.trains.number))
+    watcher = Told()
+    run_trains(orders, orders, files, LocalWorkers(2, poison.batch_dying_once), watcher)
+    assert (tmp_path / "mark").exists()
+    for order in orders:
+        assert files.file(order.key).read_bytes() == files_of(humped, trial).file(order.key).read_bytes()
+    assert len(watcher.ended) == 3
+
+
+def test_a_batch_that_cannot_be_humped_is_told_and_the_others_stay(trial: Path, tmp_path: Path) -> None:
+    config = load_trial(trial)
+    (tmp_path / "batches").mkdir()
+    files = files_of(tmp_path, trial)
+    orders = list(orders_of(made_trial(config), config.trains_sha256, config.settings.trains.number))
+
+    def refusing(order: BatchOrder) -> Answer:
+        return answer_batch(order) if order.first == 0 else Answer(order.key, None, "no cars")
+
+    with pytest.raises(BatchFailed, match=f"trains {BATCH + 1} to {2 * BATCH}: no cars"):
+        run_trains(orders, orders, files, InThisProcess(refusing), Told())
+    assert [order.first for order in missing_of(orders, files, Told())] == [BATCH, 2 * BATCH]
+
+
+def test_a_worker_of_another_version_is_refused(trial: Path) -> None:
+    config = load_trial(trial)
+    order = next(iter(orders_of(made_trial(config), config.trains_sha256, 1)))
+    answer = answer_batch(replace(order, software="0" * 64))
+    assert answer.result is None
+    assert "another version of retarder-synth" in answer.reason
+
+
+def test_more_trains_keep_those_that_are_there_and_another_trial_keeps_none(
+    command: Callable[..., Ran], trial: Path, humped: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    assert command("hump", "simulate", trial, "-o", out, "--trains", BATCH)[0] == 0
+    _, _, said = command("hump", "simulate", trial, "-o", out)
+    assert "1 of 3 batches are there already" in said
+    assert contents(out) == contents(humped)
+    assert command("hump", "simulate", trial, "-o", out, "--trains", 2, "--seed", 1)[0] == 0
+    assert [path.name.split("-")[1:] for path in (out / "batches").iterdir()] == [["0", "2.npz"]]
+
+
+def test_a_damaged_batch_is_humped_again(
+    command: Callable[..., Ran], trial: Path, humped: Path, tmp_path: Path
+) -> None:
+    out = Path(shutil.copytree(humped, tmp_path / "out"))
+    victim = sorted((out / "batches").iterdir())[0]
+    content = bytearray(victim.read_bytes())
+    content[100] ^= 1
+    victim.write_bytes(bytes(content))
+    code, _, said = command("hump", "simulate", trial, "-o", out)
+    assert code == 0
+    assert f"{victim} is damaged; trains " in said
+    assert contents(out) == contents(humped)
+
+
+def test_report_makes_the_same_files_again(command: Callable[..., Ran], humped: Path, tmp_path: Path) -> None:
+    out = Path(shutil.copytree(humped, tmp_path / "elsewhere"))
+    for name in ("summary.json", "figures.csv", "locomotive.csv"):
+        (out / name).unlink()
+    code, told, _ = command("hump", "report", out, "--json")
+    assert code == 0
+    assert json.loads(told) == json.loads((humped / "summary.json").read_bytes())
+    assert contents(out) == contents(humped)
+    config = out / "inputs" / "config.toml"
+    config.write_text(config.read_text(encoding="utf-8").replace("cuts = 3", "cuts = 4"), encoding="utf-8")
+    code, _, said = command("hump", "report", out)
+    assert code == 3
+    assert "they are of another trial" in said
+
+
+def test_ctrl_c_keeps_what_is_humped(trial: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    run = begin("hump", "simulate", trial, "-o", out, "--trains", 400 * BATCH, "--workers", "1")
+    wait_until(lambda: list((out / "batches").glob("*.npz")), run)
+    os.kill(run.pid, signal.SIGINT)
+    _, said = run.communicate(timeout=60)
+    assert run.returncode == 130
+    assert "the same command goes on" in said
+    assert "Traceback" not in said
+
+
+class Told:
+    """A watcher that keeps what it is told."""
+
+    def __init__(self) -> None:
+        self.notes: list[str] = []
+        self.ended: list[str] = []
+
+    def note(self, sentence: str) -> None:
+        self.notes.append(sentence)
+
+    def done(self, sentence: str) -> None:
+        self.ended.append(sentence)
