@@ -56,9 +56,9 @@ def share(hits: Floats, base: Floats) -> tuple[float, float, float, float]:
     Korn and Graubard, Survey Methodology 24 (1998): the exact interval (Clopper and Pearson) of as many independent
     cuts as these are worth, with Student's quantile for few trains; valid for rare events, too, also if there was none.
     It covered the truth in 95 to 100 % of 1000 sets of 20 to 1000 trains with 40 cuts and shares of 0.001 to 0.1, where
-    the cuts of a train are independent. Where they have a correlation of 0.1: in 94 to 95 % of the sets where 80 hits or
-    more are expected, 92 to 94 % of those with 40, but only 78 to 83 % of those with 4 to 8: so few hits do not tell how
-    they cluster, and the upper end is then too low.
+    the cuts of a train are independent. Where they have a correlation of 0.1: in 94 to 95 % of the sets with 80
+    expected hits or more, in 92 to 94 % with 40, but only in 78 to 83 % with 4 to 8. So few hits do not tell how they
+    cluster, and the upper end is then too low.
     """
     trains, total, found = len(base), float(base.sum()), float(hits.sum())
     if total == 0.0:
