@@ -187,3 +187,19 @@ def test_cuts_couple_to_those_that_stand() -> None:
     np.testing.assert_allclose(memory.free_m, memory.end_m)
     assert memory.end_time_s[0, 0] == pytest.approx((300.0 - HALF_M) / 3.0)
     assert not memory.caught_on_track.any()
+
+
+@pytest.mark.parametrize(("stops_m", "foul"), [(70.0, True), (85.0, False)])
+def test_a_cut_that_stands_short_of_the_fouling_point_is_fouled(stops_m: float, foul: bool) -> None:
+    """The first one stops with its head there, its last axle 12 m behind it: out of the switch at 51 m, and ahead of
+    the fouling point at 72 m, or beyond. The second one comes late enough for the points to be thrown."""
+    resisted = 9.0 / (2.0 * GRAVITY_M_S2 * (stops_m - HALF_M))
+    memory = Scene(
+        one_switch(),
+        np.array([[LEFT_TRACK, RIGHT_TRACK]]),
+        Orders(np.array([[3.0, 0.3]])),
+        resisted=np.array([[resisted, 0.0]]),
+    ).run()
+    assert memory.end_m[0, 0] == pytest.approx(stops_m)
+    assert (memory.route[0, 1], memory.contact_at[0, 1]) == (1 - memory.route[0, 0], 2)
+    assert memory.foul[0, 1].tolist() == [foul, False]
