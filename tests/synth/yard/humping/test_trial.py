@@ -14,7 +14,7 @@ from plant_models.rolling.weather import Weather
 from synth.yard.humping.hump_routes import hump_routes
 from synth.yard.humping.hump_speed import PairByPair
 from synth.yard.humping.outcomes import TrainOutcomes, joined
-from synth.yard.humping.train_figures import train_figures
+from synth.yard.humping.train_figures import ratio, train_figures
 from synth.yard.humping.trial import ConstantSpeed, Control, Sensing
 from tests.plant_models.hump.random_humps import random_hump, small_hump
 from tests.synth.yard.humping.made_trials import Day
@@ -121,3 +121,30 @@ def test_a_constant_speed_is_kept() -> None:
     length = trains.length_m.reshape(20, -1)
     apart = 0.5 * (length[:, 1:] + length[:, :-1])
     np.testing.assert_allclose(np.diff(memory.crest_s, axis=1), apart / 2.5, rtol=1e-12)
+
+
+def test_a_feedback_only_slows_the_train_down_and_within_what_the_locomotive_can() -> None:
+    """A program that is too fast makes it do so; it never falls below the lowest step."""
+    day = Day(cuts=25, program=ConstantSpeed(3.2), control=Control(slow_down_s=0.5))
+    trains, plan, memory = day.on().humped(0, 30)
+    slower = memory.hump_speed_m_s < plan.hump_speed_m_s - 1e-9
+    assert 0.02 < slower.mean() < 0.8
+    assert (memory.hump_speed_m_s <= plan.hump_speed_m_s + 1e-9).all()
+    assert (memory.hump_speed_m_s >= day.steps_m_s[0] - 1e-9).all()
+    length = trains.length_m.reshape(30, -1)
+    apart = 0.5 * (length[:, 1:] + length[:, :-1])
+    gain = np.diff(memory.hump_speed_m_s**2, axis=1)
+    assert (gain <= 2.0 * day.acceleration_m_s2 * apart + 1e-9).all()
+    assert (gain >= -2.0 * day.acceleration_m_s2 * apart - 1e-9).all()
+
+
+def test_at_too_high_a_speed_a_feedback_catches_less() -> None:
+    """The same trains at a speed that is too high: commanded anew they are caught less, and slowed down still less."""
+    caught = {}
+    for name, control in (("open", Control(False)), ("closed", Control()), ("slowed", Control(slow_down_s=0.5))):
+        day = Day(cuts=25, std_m_s=0.4, program=ConstantSpeed(3.2), control=control)
+        caught[name] = day.on().batch(0, 60).caught
+    base = np.full(60, 25.0)
+    for better, worse in (("closed", "open"), ("slowed", "closed")):
+        _, _, high = ratio((caught[better] - caught[worse]).astype(float), base)
+        assert high < 0.0, better
