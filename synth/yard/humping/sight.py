@@ -61,6 +61,8 @@ class Sight:
     def learn_pass(self, cut: int, position: int, memory: TrainMemory) -> None:
         """Add what the speed after a pass told; the next exit speeds are those that were chosen before it."""
         lanes = np.flatnonzero(np.isfinite(memory.end_s[:, cut, position]))
+        if len(lanes) == 0:
+            return
         rows, ended = lanes * self.known.cuts + cut, memory.end_s[lanes, cut, position]
         routes = self.routes_by(lanes, np.full(len(lanes), cut), ended, memory)
         expected = self.known.expected(rows, routes, self.resistance_n_per_kn[lanes, cut, position])

@@ -11,6 +11,7 @@ from plant_models import PlantError
 from plant_models.hump import HumpGraph
 from plant_models.rolling.resistance_law import Tb10062Law
 from plant_models.rolling.weather import Weather
+from synth.yard.humping.free_tracks import DrawnFree
 from synth.yard.humping.hump_routes import hump_routes
 from synth.yard.humping.hump_speed import PairByPair
 from synth.yard.humping.outcomes import TrainOutcomes, joined
@@ -70,6 +71,9 @@ ODD = {
     "tb 10062": Day(law=Tb10062Law()),
     "pairs": Day(method=PairByPair(), control=MEASURED),
     "constant": Day(program=ConstantSpeed(2.5), control=Control(False)),
+    "full tracks": Day(
+        cuts=20, cars_mean=8.0, most_cars=60, tracks={1: 1.0, 2: 1.0}, free=DrawnFree(0.0, 0.0), control=MEASURED
+    ),
     "no brake": Day(heads_m=(0.0, 0.0, 0.0), control=MEASURED),
 }
 
