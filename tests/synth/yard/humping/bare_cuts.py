@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from plant_models.hump import Branch, Edge, HumpGraph, Retarder, Signal, Switch, TrackSection
 from synth.yard.free_roll import Rolled
+from synth.yard.humping.asked import Asked
 from synth.yard.humping.hump_position import Arrivals
 from synth.yard.humping.hump_routes import HumpRoutes, hump_routes
-from synth.yard.humping.humping import Asked, Hump, humped
+from synth.yard.humping.humping import Hump, humped
 from synth.yard.humping.normal_hump_position import NormalHumpPosition
 from synth.yard.humping.train_memory import TrainMemory
 

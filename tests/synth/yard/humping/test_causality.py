@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from synth.yard.humping.asked import Asked, ExitSpeeds
 from synth.yard.humping.hump_position import Arrivals, HumpPosition, Passed
-from synth.yard.humping.humping import Asked, ExitSpeeds, Hump, humped
+from synth.yard.humping.humping import Hump, humped
 from synth.yard.humping.interval_control import Feedback, FeedbackSpeeds
 from synth.yard.humping.rollability import Rollability
 from synth.yard.humping.route_rolling import rolling_on
