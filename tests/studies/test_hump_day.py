@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from plant_models.hump import Switch
+from plant_models.library.catalogue import load_weight_categories
 from synth.studies.aiming.trial import Value
 from synth.studies.humping.base_trial import (
     FEEDBACK,
@@ -19,13 +20,17 @@ from synth.studies.humping.base_trial import (
     with_planner,
     with_stds,
 )
+from synth.studies.humping.books import FRICTION, SUPPLY, TablePositions
 from synth.studies.humping.day_figures import Pair, difference, fewer_catch_ups
 from synth.studies.humping.frontier import REPLICATES, Sums, decided, drawn_weights
 from synth.studies.humping.runs import Group, measured
 from synth.studies.humping.sensitivity import on_graph, on_section, thrown_in, with_king_switch, with_switches
+from synth.yard.humping.class_choice import ClassChoice
 from synth.yard.humping.hump_routes import Mark
 from synth.yard.humping.outcomes import TrainOutcomes
+from synth.yard.humping.table_hump_position import TableHumpPosition
 from synth.yard.humping.trial import HumpTrial
+from tests.synth.yard.humping.coarse_book import coarse_classes, coming
 
 TRAINS = 4
 
@@ -172,3 +177,24 @@ def test_feedback_that_is_worse_is_told(trial: HumpTrial) -> None:
     found = pair.found({pair.open: good, pair.feedback: bad})
     assert found.fewer.value == pytest.approx(-1.5 / 8)
     assert found.fewer.ci95[1] < 0.0
+
+
+def test_tables_on_a_weaker_plant_brake_less_and_stay_the_same_tables() -> None:
+    """A brake of less friction takes the same share less work, at all stages; the energy it takes tells."""
+    classes = coarse_classes()
+    made = TablePositions((classes,), load_weight_categories())
+    entry = np.full(200, 4.0)
+    cuts = coming(classes[0], entry, np.full(200, 1.5), np.full(200, 1.5))
+
+    def left(positions: TablePositions) -> float:
+        position = TableHumpPosition(ClassChoice(positions.classes[0], positions.categories))
+        return float(position.passed(cuts).exit_m_s.mean())
+
+    weaker = made.changed({FRICTION: 0.15})
+    assert [c.controllers for c in weaker.classes[0]] == [c.controllers for c in classes]
+    full = left(made)
+    assert full == pytest.approx(1.5, abs=0.15)
+    free = float(cuts.unbraked_exit_m_s.mean())
+    for values in ({FRICTION: 0.15}, {SUPPLY: 0.3}):
+        assert full + 0.5 < left(made.changed(values)) < free
+    assert left(made.changed({FRICTION: 1.0})) == full

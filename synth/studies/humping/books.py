@@ -42,12 +42,12 @@ class Book:
     entry_m_s: tuple[float, float]
     targets_m_s: tuple[float, ...]
 
-    def config(self, categories: tuple[str, ...], cars: tuple[int, ...]) -> ResolvedConfig:
+    def config(self) -> ResolvedConfig:
         """The configuration that a user would write."""
         classes = "".join(
-            f'[[cut]]\nlabel = "{name}-{count}"\ncar = "gondola-4"\ncars = {count}\nmass_t = {MASSES_T[name] * count}\n'
-            for name in categories
-            for count in cars
+            f'[[cut]]\nlabel = "{name}-{count}"\ncar = "gondola-4"\ncars = {count}\nmass_t = {mass * count}\n'
+            for name, mass in MASSES_T.items()
+            for count in CARS
         )
         low, high = self.entry_m_s
         text = (
@@ -56,9 +56,9 @@ class Book:
         )
         return parse_config(text, f"book of {self.position}")
 
-    def classes(self, categories: tuple[str, ...], cars: tuple[int, ...]) -> tuple[TableClass, ...]:
+    def classes(self) -> tuple[TableClass, ...]:
         """The classes with their tables, as they are read back."""
-        config = self.config(categories, cars)
+        config = self.config()
         origin, passes = origin_of(config.sha256, CREATED), validation_passes(config)
         setups = [class_setup(config, label, plant, passes, origin) for label, plant in config.plants()]
         made = side_by_side(lambda setup: tables_of(config, setup), setups)
@@ -112,10 +112,10 @@ def keyed(plant: Plant, values: Mapping[str, float]) -> dict[str, float]:
     return {slope if key == FRICTION else key: now * v if key == FRICTION else v for key, v in values.items()}
 
 
-def table_positions(trial: HumpTrial, categories: tuple[str, ...], cars: tuple[int, ...]) -> TablePositions:
+def table_positions(trial: HumpTrial) -> TablePositions:
     """The books of all positions of `trial`; the same book is tuned once."""
     assert isinstance(trial.source, DrawnSource)
-    of_book = {book: book.classes(categories, cars) for book in dict.fromkeys(BOOKS)}
+    of_book = {book: book.classes() for book in dict.fromkeys(BOOKS)}
     return TablePositions(tuple(of_book[book] for book in BOOKS), trial.source.people.categories)
 
 
@@ -123,7 +123,7 @@ def table_pairs(day: Day, stds_m_s: tuple[float, ...], tell: Tell) -> list[Pair]
     """A pair for our tables, as tuned and on plants that they were not tuned for, beside normal positions."""
     aimed = replace(day, std_m_s=TABLES_STD_M_S, more=f"[exit_speeds]\nhighest_m_s = [{HIGHEST_M_S}, {HIGHEST_M_S}]\n")
     base = aimed.trial()
-    made = table_positions(base, tuple(MASSES_T), CARS)
+    made = table_positions(base)
     tell("books tuned")
     rows = [
         Pair(f"normal, σ {std:g}, commands for σ {TABLES_STD_M_S:g}", with_stds(base, (std,) * 3)) for std in stds_m_s

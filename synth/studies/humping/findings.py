@@ -83,25 +83,37 @@ class HumpDay(Findings):
                 map(coupling_cells, self.couplings),
             ),
         }  # fmt: skip
+        found["feedback"] = self.feedback_table()
         if self.tables_beside:
             found["tables"] = pair_table("our tables", "positions", self.tables_beside)
         for curve in self.curves:
             found[f"curve-{curve.std_m_s:g}-{curve.control.replace(', ', '-').replace(' ', '-')}"] = curve_table(curve)
         return found
 
+    def feedback_table(self) -> MarkdownTable:
+        """How often feedback was better and worse than open loop."""
+        rows = self.compared()
+        better, worse = [n for n, f in rows if f.ci95[0] > 0.0], [n for n, f in rows if f.ci95[1] < 0.0]
+        cells = (str(len(rows)), str(len(better)), str(len(rows) - len(better) - len(worse)), str(len(worse)))
+        return table(
+            "feedback beside open loop: share of catch-ups in all positions, paired by train",
+            (
+                "variants compared",
+                "better beyond its interval",
+                "no difference told",
+                "worse beyond its interval",
+                "where",
+            ),
+            [(*cells, "; ".join(worse) or ABSENT)],
+        )
+
     def sentences(self) -> tuple[str, ...]:
-        """How much was simulated, and whether feedback was ever worse."""
+        """How much was simulated."""
         at = self.inputs
-        rows = list(self.compared())
-        worse = [name for name, fewer in rows if fewer.ci95[1] < 0.0]
-        verdict = "in none of them worse beyond its interval" if not worse else f"worse in: {'; '.join(worse)}"
-        better = sum(fewer.ci95[0] > 0.0 for _, fewer in rows)
         return (
             f"{at.trains} trains of {at.cuts} cuts for every variant ({at.table_trains} where positions run tables), "
             f"the same trains with the same draws, seed {at.seed}; least interval of the programs {at.least_s:g} s "
             "where nothing else is told",
-            f"feedback beside open loop, catch-ups in all positions, paired by train, {len(rows)} variants: better "
-            f"beyond its interval in {better}, {verdict}",
         )
 
     def faults(self) -> tuple[str, ...]:
