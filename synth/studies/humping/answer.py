@@ -6,12 +6,10 @@ from collections.abc import Iterator
 
 from synth.studies.humping.couplings import FREE, AimedFigures
 from synth.studies.humping.day_figures import DayFigures, metres, share, speed, whole
-from synth.studies.humping.frontier import OPEN_LOOP, WITH_FEEDBACK, WITH_SLOWING, AtLimit, Curve
+from synth.studies.humping.frontier import OPEN_LOOP, WITH_MEASURED, WITH_SLOWING, AtLimit, Curve
 from synth.studies.markdown_table import ABSENT, MarkdownTable, table
 
 UNDECIDED = "not decidable with these trains"
-
-CONTROLS = (OPEN_LOOP, WITH_FEEDBACK, WITH_SLOWING)
 
 
 def answer_table(curves: tuple[Curve, ...], couplings: tuple[AimedFigures, ...]) -> MarkdownTable:
@@ -23,25 +21,31 @@ def answer_table(curves: tuple[Curve, ...], couplings: tuple[AimedFigures, ...])
 
 
 def rows(curves: tuple[Curve, ...], couplings: tuple[AimedFigures, ...]) -> Iterator[tuple[str, ...]]:
-    """The rows. Couplings are those of positions that all have this exactness, with commands chosen for it; they were
-    not run with a train that is slowed down."""
+    """The rows. Couplings are those of positions that all have this exactness, with commands chosen for it and, where
+    resistance is measured, by it; they were not run with a train that is slowed down."""
     for curve in sorted(curves, key=lambda c: -c.std_m_s):
-        if curve.control not in CONTROLS:
-            continue
-        own = [each for each in couplings if each.aimed.std_m_s == each.aimed.aim_std_m_s == curve.std_m_s]
-        usual = max(each.aimed.p_overspeed for each in own)
-        days = {e.aimed.free: day_of(e, curve.control) for e in own if e.aimed.p_overspeed == usual}
-        wide = days[FREE[-1]]
         told = [ABSENT] * (2 + len(FREE))
-        if wide is not None:
-            gaps = [metres(day.gap_m) for free in FREE if (day := days[free]) is not None]
+        if curve.control != WITH_SLOWING:
+            days = days_of(curve, couplings)
+            wide, gaps = days[FREE[-1]], [metres(days[free].gap_m) for free in FREE]
             told = [share(wide.overspeed), share(wide.classes[-1]), *gaps]
         yield f"{curve.std_m_s:g}", curve.control, *(cars_cell(at) for at in curve.at_limits), *told
 
 
-def day_of(each: AimedFigures, control: str) -> DayFigures | None:
-    """The figures with this control."""
-    return {OPEN_LOOP: each.found.open_loop, WITH_FEEDBACK: each.found.feedback}.get(control)
+def days_of(curve: Curve, couplings: tuple[AimedFigures, ...]) -> dict[tuple[float, float], DayFigures]:
+    """Figures of a control by the free shares of the tracks."""
+    own = [
+        each
+        for each in couplings
+        if each.aimed.std_m_s == each.aimed.aim_std_m_s == curve.std_m_s
+        and each.aimed.measured == (curve.control == WITH_MEASURED)
+    ]
+    usual = max(each.aimed.p_overspeed for each in own)
+    return {
+        each.aimed.free: each.found.open_loop if curve.control == OPEN_LOOP else each.found.feedback
+        for each in own
+        if each.aimed.p_overspeed == usual
+    }
 
 
 def cars_cell(at: AtLimit) -> str:

@@ -26,6 +26,9 @@ OPEN, FEEDBACK = Control(feedback=False), Control(feedback=True)
 SPEED_STD_M_S = 0.03
 """Error of the speeds by which resistance is measured; assumed, as in the study `yard-chain`."""
 
+READING = Sensing(SPEED_STD_M_S, for_intervals=False)
+"""The last position aims by the resistance that was measured of a cut."""
+
 MEASURED = Control(feedback=True, sensing=Sensing(SPEED_STD_M_S, for_aim=False))
 """Feedback that knows the resistance of a cut from its free roll."""
 
@@ -58,8 +61,8 @@ LOCOMOTIVE = Locomotive()
 class Day:
     """What a trial is made from: trains, their seed, and the exactness of all positions.
 
-    `aim_std_m_s`: that with which the exit speeds of the last position are chosen, None: its own. `more`: further text
-    of the configuration, `positions`: of each position.
+    `aim_std_m_s`: that with which the exit speeds of the last position are chosen, None: its own; `measured`: on
+    readings of the resistance of each cut. `more`: further text of the configuration, `positions`: of each position.
     """
 
     seed: int
@@ -68,6 +71,7 @@ class Day:
     aim_std_m_s: float | None = None
     p_overspeed: float = 0.1
     design_cuts: int = 2000
+    measured: bool = False
     more: str = ""
     positions: tuple[str, str, str] = ("", "", "")
 
@@ -79,9 +83,10 @@ class Day:
             f"[[position]]\nnumber = {number}\nexit_std_m_s = {std}\n{more}\n"
             for number, more in enumerate(self.positions, start=1)
         )
+        known = f'knowledge = "measured"\n[sensors]\nspeed_std_m_s = {SPEED_STD_M_S}\n' if self.measured else ""
         return (
             f"[trains]\nseed = {self.seed}\ncuts = {self.cuts}\n"
-            f"[aim]\np_overspeed = {self.p_overspeed}\ndesign_cuts = {self.design_cuts}\n{self.more}\n{places}"
+            f"[aim]\np_overspeed = {self.p_overspeed}\ndesign_cuts = {self.design_cuts}\n{known}{self.more}\n{places}"
         )
 
     def trial(self) -> HumpTrial:

@@ -50,6 +50,7 @@ def coupling_rows(couplings: tuple[AimedFigures, ...]) -> Iterator[Row]:
     of = {
         (each.aimed.std_m_s, each.aimed.aim_std_m_s, each.aimed.p_overspeed, each.aimed.free): each.found.feedback
         for each in couplings
+        if not each.aimed.measured
     }
     usual = next(each.aimed.p_overspeed for each in couplings)
     halved = SHARES[1] * std

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from synth.studies.humping.base_trial import Day, with_free
+from synth.studies.humping.base_trial import READING, Day, with_free
 from synth.studies.humping.day_figures import Pair, PairFigures
 from synth.studies.study import Tell
 from synth.yard.humping.free_tracks import DrawnFree
@@ -21,19 +21,21 @@ CAREFUL = 0.05
 @dataclass(frozen=True)
 class Aimed:
     """All positions have the error `std_m_s`; the last one's commands were chosen for `aim_std_m_s` and a share of
-    over-speeds. Tracks are free on a share of their length between both of `free`."""
+    over-speeds. Tracks are free on a share of their length between both of `free`. `measured`: commands follow the
+    measured resistance of a cut, not the mean of its category."""
 
     std_m_s: float
     aim_std_m_s: float
     p_overspeed: float
     free: tuple[float, float]
+    measured: bool = False
 
     @property
     def name(self) -> str:
         """Tells it from the others."""
         return (
             f"σ {self.std_m_s:.3g}, commands for σ {self.aim_std_m_s:.3g} and {self.p_overspeed:g}, free "
-            f"{self.free[0]:g}–{self.free[1]:g}"
+            f"{self.free[0]:g}–{self.free[1]:g}{', measured' * self.measured}"
         )
 
 
@@ -54,11 +56,12 @@ def coupling_pairs(day: Day, stds_m_s: tuple[float, ...], tell: Tell) -> dict[Ai
         for part in SHARES
         for aim_std, p in ((day.std_m_s, usual), (day.std_m_s * part, usual), (day.std_m_s * part, CAREFUL))
     ]
+    known = [*((*way, False) for way in ways), *((std, std, usual, m) for m in (False, True) for std in stds_m_s)]
     pairs: dict[Aimed, Pair] = {}
-    for std, aim_std, p in dict.fromkeys([*ways, *((std, std, usual) for std in stds_m_s)]):
-        made = Day(day.seed, day.cuts, std, aim_std, p, day.design_cuts).trial()
+    for std, aim_std, p, measured in dict.fromkeys(known):
+        made = Day(day.seed, day.cuts, std, aim_std, p, day.design_cuts, measured).trial()
         for free in FREE:
-            aimed = Aimed(std, aim_std, p, free)
-            pairs[aimed] = Pair(aimed.name, with_free(made, DrawnFree(*free)))
+            aimed = Aimed(std, aim_std, p, free, measured)
+            pairs[aimed] = Pair(aimed.name, with_free(made, DrawnFree(*free)), READING if measured else None)
     tell("commands chosen for every exactness")
     return pairs

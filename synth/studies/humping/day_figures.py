@@ -13,7 +13,7 @@ from synth.studies.humping.runs import Group
 from synth.studies.markdown_table import ABSENT, plus_minus, span
 from synth.yard.humping.outcomes import TrainOutcomes
 from synth.yard.humping.train_figures import TrainFigure, train_figures
-from synth.yard.humping.trial import Floats, HumpTrial
+from synth.yard.humping.trial import Floats, HumpTrial, Sensing
 
 PERCENT = 100.0
 
@@ -69,17 +69,18 @@ def value_of(figure: TrainFigure) -> Value:
 
 @dataclass(frozen=True)
 class Pair:
-    """A trial run with feedback and open loop, by one program; `name` tells it from others."""
+    """A trial run with feedback and open loop, by one program; `name` tells it from others; `sensing` of both."""
 
     name: str
     trial: HumpTrial
+    sensing: Sensing | None = None
 
     @property
     def group(self) -> Group:
         """Both trials."""
-        return Group(
-            {self.open: replace(self.trial, control=OPEN), self.feedback: replace(self.trial, control=FEEDBACK)}
-        )
+        open_loop, feedback = (replace(control, sensing=self.sensing) for control in (OPEN, FEEDBACK))
+        trial = self.trial
+        return Group({self.open: replace(trial, control=open_loop), self.feedback: replace(trial, control=feedback)})
 
     @property
     def open(self) -> str:

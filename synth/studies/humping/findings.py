@@ -78,7 +78,7 @@ class HumpDay(Findings):
             ),
             "couplings": table(
                 "couplings and gaps with feedback; shares of the cuts that reached their track, %",
-                ("σ, m/s", "commands for", "share asked", "tracks free", "over-speeds", "to 1.5 m/s", "1.5 to 2 m/s",
+                ("σ, m/s", "commands for", "resistance", "share asked", "tracks free", "over-speeds", "to 1.5 m/s", "1.5 to 2 m/s",
                  "above 2 m/s", "gap a cut, m", "open loop: over-speeds", "gap, m"),
                 map(coupling_cells, self.couplings),
             ),
@@ -187,7 +187,8 @@ def coupling_cells(each: AimedFigures) -> tuple[str, ...]:
     """The cells of a row."""
     aimed, day, opened = each.aimed, each.found.feedback, each.found.open_loop
     return (
-        f"{aimed.std_m_s:.3g}", f"σ {aimed.aim_std_m_s:.3g}", f"{100 * aimed.p_overspeed:g} %",
+        f"{aimed.std_m_s:.3g}", f"σ {aimed.aim_std_m_s:.3g}",
+        "measured" if aimed.measured else "category", f"{100 * aimed.p_overspeed:g} %",
         f"{aimed.free[0]:g}–{aimed.free[1]:g}", share(day.overspeed), *map(share, day.classes), metres(day.gap_m),
         share(opened.overspeed), metres(opened.gap_m),
     )  # fmt: skip
