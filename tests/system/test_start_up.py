@@ -28,12 +28,14 @@ def modules_after(*arguments: str) -> set[str]:
     return set(ran.stderr.split())
 
 
-@pytest.mark.parametrize("arguments", [["--help"], ["tune", "--help"], ["aim", "--help"], ["--version"]])
+@pytest.mark.parametrize(
+    "arguments", [["--help"], ["tune", "--help"], ["aim", "--help"], ["hump", "simulate", "--help"], ["--version"]]
+)
 def test_help_imports_nothing_numeric(arguments: list[str]) -> None:
     assert modules_after(*arguments).isdisjoint(HEAVY | {"numpy"})
 
 
-@pytest.mark.parametrize("arguments", [["init"], ["init", "--aim"]])
+@pytest.mark.parametrize("arguments", [["init"], ["init", "--aim"], ["init", "--hump"]])
 def test_init_needs_no_solver(arguments: list[str]) -> None:
     assert modules_after(*arguments).isdisjoint(HEAVY)
 

@@ -119,6 +119,10 @@ class ExitSpeedSettings(Section):
     highest_m_s: tuple[float, ...] | None = Field(None, max_length=10, strict=False)
     most_entry_m_s: tuple[float, ...] | None = Field(None, max_length=10, strict=False)
     choices: int = setting(7, "1", 2, 30, "exit speeds that are compared in each position")
+    usable_share: float = setting(
+        0.85, "1", 0.1, 1.0, "of the full brake of each position, what the control counts upon",
+        f"{JUDGEMENT}: friction one standard deviation of 0.15 below its mean",
+    )  # fmt: skip
 
 
 class TrialAimSettings(Section):

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from plant_models.errors import require, require_between
 from synth.configuration.humping.settings import EXIT_RANGE_M_S, HumpTrialSettings
+from synth.yard.humping.position_choice import PositionChoice
 
 ExitRange = tuple[float, float, float]
 """Lowest and highest exit speed of a position for intervals, and fastest entry."""
 
 
-def exit_ranges(settings: HumpTrialSettings, count: int) -> tuple[ExitRange, ...]:
-    """Of the positions but the last; `PlantError` unless each list has a number for each of them."""
-    given, lists = settings.exit_speeds, []
+def exit_ranges(settings: HumpTrialSettings, positions: Sequence[PositionChoice]) -> tuple[ExitRange, ...]:
+    """Of `positions`, which are all but the last; `PlantError` unless each list has a number for each of them, and
+    tables for them where there is a book. By default ranges end at the highest table."""
+    given, lists, count = settings.exit_speeds, [], len(positions)
     for key, default in (
         ("lowest_m_s", EXIT_RANGE_M_S[0]),
         ("highest_m_s", EXIT_RANGE_M_S[1]),
@@ -29,6 +33,15 @@ def exit_ranges(settings: HumpTrialSettings, count: int) -> tuple[ExitRange, ...
         for place, number in enumerate(numbers if default or getattr(given, key) is not None else ()):
             require_between(f"exit_speeds.{key}[{place}]", number, 0.3, 12.0)
         lists.append(numbers)
+    tops = [np.inf if each.top_target_m_s is None else each.top_target_m_s for each in positions]
+    if given.highest_m_s is None:
+        lists[1] = tuple(min(pair) for pair in zip(lists[1], tops, strict=True))
+    for place, (high, top) in enumerate(zip(lists[1], tops, strict=True)):
+        require(
+            high <= top,
+            f"exit_speeds.highest_m_s[{place}] is {high:g}; the book of position {place + 1} has tables for all its "
+            f"classes up to {top:g}: lower it, or tune a book for faster cuts",
+        )
     for place, (low, high, _) in enumerate(zip(*lists, strict=True)):
         require(
             low < high,

@@ -46,6 +46,7 @@ def made_trial(config: ResolvedTrial, threads: int = 0) -> HumpTrial:
     """
     brakes = tuple(brake_of(each, config) for each in config.positions)
     positions = tuple(position_of(each, brake, config) for each, brake in zip(config.positions, brakes, strict=True))
+    usable = config.settings.exit_speeds.usable_share
     return HumpTrial(
         source=source_of(config),
         routes=config.routes,
@@ -55,10 +56,7 @@ def made_trial(config: ResolvedTrial, threads: int = 0) -> HumpTrial:
         program=program_of(config),
         control=control_of(config),
         aim=hump_aim(config.routes, design_of(config, threads)),
-        usable_heads_m=tuple(
-            usable_brake(brake, site_of(each, config)).head_m
-            for each, brake in zip(config.positions, brakes, strict=True)
-        ),
+        usable_heads_m=tuple(replace(brake, share=usable * brake.share).head_m for brake in brakes),
         free=free_of(config),
         threads=threads,
     )
@@ -91,11 +89,6 @@ def brake_of(choice: PositionChoice, config: ResolvedTrial) -> LibraryBrake:
     """The full brake of a position."""
     share = 0.0 if choice.out_of_service else choice.supply_share
     return LibraryBrake(site_of(choice, config).position, config.categories, usual_car(config), share)
-
-
-def usable_brake(brake: LibraryBrake, site: PositionEntry) -> LibraryBrake:
-    """What is left of `brake` where the friction of a cut is two standard deviations below its mean."""
-    return replace(brake, share=brake.share * max(1.0 - 2.0 * site.friction.common_cv, 0.0))
 
 
 def position_of(choice: PositionChoice, brake: LibraryBrake, config: ResolvedTrial) -> HumpPosition:

@@ -48,7 +48,8 @@ class Rolls(Protocol):
         speed_m_s: Floats,
         stations_m: Floats,
         resistance_n_per_kn: Floats | None = None,
-    ) -> Rolled: ...
+    ) -> Rolled:
+        """Over `stations_m` (n, k), from the heads at `start_m` (n,) with `speed_m_s` (n,)."""
 
 
 @frozen_arrays

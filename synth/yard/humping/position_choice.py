@@ -9,6 +9,7 @@ from typing import TypeVar
 
 from plant_models.errors import PlantError, require, require_between
 from plant_models.hump import Retarder, Route
+from synth.book.forms.table_file import read_tables
 from synth.configuration.humping.settings import HumpPositionSettings
 
 T = TypeVar("T")
@@ -22,6 +23,7 @@ class PositionChoice:
 
     Its controller: `exit_std_m_s`, or `book` with the configuration `tuned_with` (None: the built-in one). Out of
     service it brakes nothing. `supply_share`: of the full brake power. `std_set_by_user`: not by the hump file.
+    `top_target_m_s`: highest speed that the book has a table for in every class; None without a book.
     """
 
     number: int
@@ -32,6 +34,7 @@ class PositionChoice:
     out_of_service: bool
     supply_share: float
     std_set_by_user: bool
+    top_target_m_s: float | None
 
     @property
     def files(self) -> tuple[Path, ...]:
@@ -104,7 +107,18 @@ def choice_of(
         "its own configuration: change it there (tables_config)",
     )
     by_user = settings.exit_std_m_s is not None
-    return PositionChoice(number, site, std, book, tuned_with, settings.out_of_service, supply, by_user)
+    out, top = settings.out_of_service, None if book is None else top_target_m_s(book)
+    return PositionChoice(number, site, std, book, tuned_with, out, supply, by_user, top)
+
+
+def top_target_m_s(book: Path) -> float:
+    """Highest target that every class of the tables in `book` has."""
+    (file,) = read_tables(book)
+    tops: dict[object, float] = {}
+    for table in file.tables:
+        key = table.cut.category, table.cut.mass_t, table.cut.axle_offsets_m
+        tops[key] = max(tops.get(key, 0.0), table.target_speed_m_s)
+    return min(tops.values())
 
 
 def require_consistent(key: str, settings: HumpPositionSettings) -> None:

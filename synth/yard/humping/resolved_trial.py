@@ -120,7 +120,7 @@ def resolve_trial(file: TrialFile) -> ResolvedTrial:
         settings = with_room(settings, mix, routes)
         categories = load_weight_categories(settings.weight_categories, library)
         positions = position_choices(routes.routes, settings.position, file.hump_source.parent, file.folder)
-        ranges = exit_ranges(settings, len(positions) - 1)
+        ranges = exit_ranges(settings, positions[:-1])
         people = population_of(mix, categories, settings)
         shares = category_shares(settings, categories)
         trains = trains_of(settings, file.folder, people, shares, routes)

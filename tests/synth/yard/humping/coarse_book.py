@@ -47,12 +47,17 @@ mass_t = 50
 
 def coarse_classes() -> tuple[TableClass, ...]:
     """One and two light gondolas at a park position, with tables that were written and read back."""
+    return table_classes(coarse_tables(), parse_config(PARK, "coarse.toml"), "coarse.toml")
+
+
+def coarse_tables() -> list[ControllerTable]:
+    """The tables alone."""
     config, made = parse_config(PARK, "coarse.toml"), []
     for label, plant in config.plants():
         setup = class_setup(config, label, plant, validation_passes(config), origin_of(config.sha256, CREATED))
         aims = [Aim(target, config.criterion) for target in config.targets_of(label)]
         made += [from_json(to_json(tuned_table(setup, found).table)) for found in solutions(setup.design, aims)]
-    return table_classes(made, config, "coarse.toml")
+    return made
 
 
 def estimating(of_class: TableClass) -> TableClass:

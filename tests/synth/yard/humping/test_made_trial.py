@@ -11,12 +11,16 @@ import pytest
 from synth.configuration.hump import hump_text
 from synth.configuration.humping.trial_file import parse_trial_file
 from synth.faults.input_error import InputError
+from synth.sweep.trains.trial_inputs import write_inputs
 from synth.yard.humping.hump_position import Arrivals
 from synth.yard.humping.hump_speed import PairByPair
 from synth.yard.humping.made_trial import kinds_of_cuts, made_trial
-from synth.yard.humping.resolved_trial import resolve_trial
+from synth.yard.humping.resolved_trial import load_trial, resolve_trial
 from synth.yard.humping.speed_program import locomotive_csv, speed_program, uncoupler_csv
 from synth.yard.humping.trial import HumpTrial
+from tests.synth.yard.humping.coarse_book import PARK, coarse_tables
+from tests.system.conftest import changed
+from tuning_tables import write_book
 
 SMALL = """\
 hump = "medium"
@@ -105,6 +109,47 @@ def test_books_must_have_a_class_for_every_kind_of_cut() -> None:
     config = resolve_trial(parse_trial_file(SMALL, "trial.toml"))
     places = range(len(config.categories.members))
     assert kinds_of_cuts(config) == {(place, axles) for place in places for axles in (4, 8, 12)}
+
+
+BOOKED = """\
+category_shares = { L = 1.0 }
+[[position]]
+number = 3
+tables = "park.h5"
+tables_config = "park.toml"
+"""
+
+
+def test_a_position_with_a_book_runs_its_tables(tmp_path: Path) -> None:
+    """Its errors are those of tables, and the folder of inputs gives the same trains without the files."""
+    write_book(coarse_tables(), tmp_path / "park.h5")
+    (tmp_path / "park.toml").write_text(PARK, encoding="utf-8")
+    text = changed(SMALL, ("most_cars = 3\n", "most_cars = 2\n"), ("[aim]\ndesign_cuts = 200\n", ""))
+    file = parse_trial_file(text + BOOKED, str(tmp_path / "trial.toml"))
+    config = resolve_trial(file)
+    assert (config.positions[2].top_target_m_s, config.positions[2].exit_std_m_s) == (3.0, None)
+    trial = made_trial(config)
+    found = trial.batch(0, 4)
+    assert (found.strokes[:, :2] == 0).all()
+    assert (found.strokes[:, 2] > 0).all()
+    write_inputs(file, config, tmp_path / "out")
+    for name in ("park.h5", "park.toml"):
+        (tmp_path / name).unlink()
+    again = load_trial(tmp_path / "out" / "inputs" / "config.toml")
+    assert (again.sha256, again.trains_sha256) == (config.sha256, config.trains_sha256)
+    np.testing.assert_array_equal(made_trial(again).batch(0, 4).strokes, found.strokes)
+
+
+def test_books_that_lack_a_class_or_targets_are_refused(tmp_path: Path) -> None:
+    write_book(coarse_tables(), tmp_path / "park.h5")
+    (tmp_path / "park.toml").write_text(PARK, encoding="utf-8")
+    place = str(tmp_path / "trial.toml")
+    heavy = changed(SMALL, ("[aim]\ndesign_cuts = 200\n", "")) + changed(BOOKED, ("L = 1.0", "T = 1.0"))
+    with pytest.raises(InputError, match=r"position 3 names .*park.h5, which does not fit: tables: none for cuts of"):
+        made_trial(resolve_trial(parse_trial_file(heavy, place)))
+    ahead = "[exit_speeds]\nhighest_m_s = [7.0, 6.5]\n[[position]]\nnumber = 2\ntables = 'park.h5'\n"
+    with pytest.raises(InputError, match=r"highest_m_s\[1\] is 6.5; the book of position 2 has tables .* up to 3:"):
+        resolve_trial(parse_trial_file(SMALL + ahead, place))
 
 
 def test_a_position_that_no_library_has_is_refused(tmp_path: Path) -> None:
