@@ -78,8 +78,8 @@ class HumpDay(Findings):
             ),
             "couplings": table(
                 "couplings and gaps with feedback; shares of the cuts that reached their track, %",
-                ("σ, m/s", "commands for", "resistance", "share asked", "tracks free", "over-speeds", "to 1.5 m/s", "1.5 to 2 m/s",
-                 "above 2 m/s", "gap a cut, m", "open loop: over-speeds", "gap, m"),
+                ("σ, m/s", "commands for", "resistance", "share asked", "tracks free", "over-speeds", "to 1.5 m/s",
+                 "1.5 to 2 m/s", "above 2 m/s", "gap a cut, m", "open loop: over-speeds", "gap, m"),
                 map(coupling_cells, self.couplings),
             ),
         }  # fmt: skip
