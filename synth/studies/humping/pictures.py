@@ -40,10 +40,9 @@ def catch_ups(found: HumpDay) -> Figure:
         dress(axes, f"σ {std:g} m/s", "mean hump speed, m/s", "share of cuts" if std == stds[0] else "")
         for k, curve in enumerate(each for each in found.curves if each.std_m_s == std):
             line(axes, curve, k)
-        axes.set_yscale("log")
-        axes.set_ylim(LEAST_SHARE, 0.5)
         for at in found.curves[0].at_limits:
             axes.axhline(at.limit, color=GREY, linewidth=0.8, linestyle=":")
+    panels[0].set(yscale="log", ylim=(LEAST_SHARE, 0.5))  # after all are dressed, which share this axis
     legend_below(figure, panels[0].get_legend_handles_labels()[0], 4)
     return figure
 
