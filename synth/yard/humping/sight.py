@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.yard.humping.asked import Asked
 from synth.yard.humping.forecast import Forecast, Given, entrance_m, from_crest, from_entrance
 from synth.yard.humping.hump_routes import HumpRoutes, Mark
-from synth.yard.humping.humping import Asked
 from synth.yard.humping.known_cuts import KnownCuts
 from synth.yard.humping.motion import Moving
 from synth.yard.humping.train_memory import TrainMemory

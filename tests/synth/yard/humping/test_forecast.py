@@ -9,9 +9,10 @@ import pytest
 from numpy.typing import NDArray
 
 from plant_models.rolling.weather import Weather
+from synth.yard.humping.asked import Asked
 from synth.yard.humping.forecast import Expected, Given, SpeedRange, Ways, from_crest
 from synth.yard.humping.hump_routes import HumpRoutes, Mark
-from synth.yard.humping.humping import Asked, Hump, humped
+from synth.yard.humping.humping import Hump, humped
 from synth.yard.humping.motion import Cars, Moving, Push
 from synth.yard.humping.normal_hump_position import NormalHumpPosition
 from synth.yard.humping.route_rolling import rolling_on
