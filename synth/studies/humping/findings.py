@@ -36,6 +36,13 @@ class Inputs:
     seed: int
     least_s: float
 
+    def table(self) -> MarkdownTable:
+        """How much was simulated."""
+        heads = ("trains of a variant", "where positions run tables", "cuts of a train", "cuts of a variant",
+                 "least interval where nothing else is told, s", "seed")  # fmt: skip
+        numbers = (self.trains, self.table_trains, self.cuts, self.trains * self.cuts, self.least_s, self.seed)
+        return table("size of the study", heads, [tuple(f"{number:g}" for number in numbers)])
+
 
 @dataclass(frozen=True)
 class HumpDay(Findings):
@@ -83,7 +90,7 @@ class HumpDay(Findings):
                 map(coupling_cells, self.couplings),
             ),
         }  # fmt: skip
-        found["feedback"] = self.feedback_table()
+        found["feedback"], found["size"] = self.feedback_table(), self.inputs.table()
         if self.tables_beside:
             found["tables"] = pair_table("our tables", "positions", self.tables_beside)
         for curve in self.curves:
