@@ -78,16 +78,23 @@ class Planner:
         """The plan with the fastest hump speeds that keep the interval; of all turns, the best one for each train."""
         speeds = np.full((known.trains, known.cuts), self.limits.steps_m_s[len(self.limits.steps_m_s) // 2])
         needs_s = np.full((known.trains, known.cuts, LEADERS), -np.inf)
-        best, least_cost = speeds, np.full(known.trains, np.inf)
+        best, first_in_s, least_cost = speeds, None, np.full(known.trains, np.inf)
         for turn in range(self.fits + self.repairs + 1):
+            if turn > 0:
+                speeds = self.method.speeds(apart_m(known), needs_s, self.limits)
             found = Sweep(self, known, speeds, None).run(EarlyRule(self.early_s))
             cost = self.cost_s(found)
-            best = np.where((cost < least_cost)[:, None], speeds, best)
+            better = cost < least_cost
+            best = np.where(better[:, None], speeds, best)
+            first_in_s = (
+                found.first_in_s
+                if first_in_s is None
+                else np.where(better[:, None, None], found.first_in_s, first_in_s)
+            )
             least_cost = np.minimum(cost, least_cost)
             enough = self.headways_s(found)
             needs_s = enough if turn < self.fits else np.maximum(needs_s, enough)
-            speeds = self.method.speeds(apart_m(known), needs_s, self.limits)
-        return self.at_speeds(known, best)
+        return Sweep(self, known, best, first_in_s).run(CentredRule())
 
     def cost_s(self, found: TrainPlan) -> Floats:
         """What each train costs (trains,): its time over the crest, and much more for intervals that are too short."""
@@ -101,7 +108,7 @@ class Planner:
     def at_speeds(self, known: KnownCuts, speeds_m_s: Floats) -> TrainPlan:
         """The plan with given hump speeds (trains, cuts): exit speeds in the middle between both neighbours."""
         found = Sweep(self, known, speeds_m_s, None).run(EarlyRule(self.early_s))
-        return Sweep(self, known, speeds_m_s, found).run(CentredRule())
+        return Sweep(self, known, speeds_m_s, found.first_in_s).run(CentredRule())
 
     def headways_s(self, found: TrainPlan) -> Floats:
         """What each cut needs behind those ahead of it at the crest, (trains, cuts, leaders): what it had less what it
@@ -128,11 +135,12 @@ def push_of(known: KnownCuts, speeds_m_s: Floats, cut: int) -> Push:
 class Sweep:
     """One sweep over all cuts, each planned behind those ahead of it.
 
-    `speeds_m_s` (trains, cuts): hump speeds. `before`: an earlier plan, which tells when the cuts behind come.
+    `speeds_m_s` (trains, cuts): hump speeds. `before_s` (trains, cuts, elements): when the cuts behind
+    come by an earlier sweep.
     """
 
-    def __init__(self, planner: Planner, known: KnownCuts, speeds_m_s: Floats, before: TrainPlan | None) -> None:
-        self.planner, self.known, self.before = planner, known, before
+    def __init__(self, planner: Planner, known: KnownCuts, speeds_m_s: Floats, before_s: Floats | None) -> None:
+        self.planner, self.known, self.before_s = planner, known, before_s
         routes, shape = planner.routes, (known.trains, known.cuts)
         self.users = LastUsers(known.trains, routes)
         self.hump_speed_m_s, self.margin_s = speeds_m_s, np.zeros(shape)
@@ -209,8 +217,8 @@ class Sweep:
         own = known.route[known.of_cut(cut)]
         ahead = self.users.on(own, lanes)
         free_by = np.full((known.trains, routes.elements), np.inf)
-        if self.before is not None:
-            free_by = free_by_s(routes, known, self.before.first_in_s, own, lanes, cut)
+        if self.before_s is not None:
+            free_by = free_by_s(routes, known, self.before_s, own, lanes, cut)
         return leaves_s(ahead) + throws_s(routes, own, ahead), free_by
 
 
