@@ -8,10 +8,10 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.yard.humping.asked import Asked
 from synth.yard.humping.expected_way import ExpectedWay
 from synth.yard.humping.hump_aim import HumpAim
 from synth.yard.humping.hump_routes import HumpRoutes
-from synth.yard.humping.humping import Asked
 from synth.yard.humping.speed_sensors import SpeedSensors
 
 Floats = NDArray[np.float64]

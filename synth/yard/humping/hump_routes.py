@@ -71,6 +71,11 @@ class HumpRoutes:
         """Most positions of a route."""
         return int(self.entrance_m.shape[1])
 
+    @property
+    def release_m(self) -> Floats:
+        """Where the last position of each route ends, (routes,); 0 where it has none."""
+        return np.asarray(self.exit_m.max(axis=1, initial=0.0, where=np.isfinite(self.exit_m)))
+
     def of_tracks(self, tracks: Ints) -> Ints:
         """Rows of the routes to `tracks`; each must be reached."""
         own = self.tracks

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from synth.yard.humping.asked import Asked, ExitSpeeds, HumpSpeeds
 from synth.yard.humping.hump_position import Arrivals, HumpPosition
 from synth.yard.humping.hump_routes import OF_FIRST_AXLE, HumpRoutes, Mark
 from synth.yard.humping.meeting import Ahead, LastUsers, first_of, meeting
 from synth.yard.humping.motion import Cars, Moving, Push, Rolls, braked_evenly, merged, rolled_free
 from synth.yard.humping.standing_cars import StandingCars
-from synth.yard.humping.tails import Tails
+from synth.yard.humping.tails import Tails, stations_of
 from synth.yard.humping.train_cuts import TrainCuts
 from synth.yard.humping.train_memory import TrainMemory
 
@@ -25,39 +24,6 @@ Bools = NDArray[np.bool_]
 
 NEARLY_M = 0.05
 """A cut that stops of itself is taken to stand when it has so much to go: the last of it takes time, but no place."""
-
-
-@frozen_arrays
-@dataclass(frozen=True, eq=False)
-class Asked:
-    """A control is asked for the exit speeds of cut number `cut` of the trains `lanes` (n,) in `position`.
-
-    `routes` (n,): the rows on which they roll. `start`: the cuts when their first axles are at the entrance. `free_m`
-    (n,): where the standing cars begin, or will begin if the cut that still rolls there couples. `memory`: what
-    happened so far. It tells later times, too; a control may only look at what is over when it is asked.
-    """
-
-    cut: int
-    position: int
-    lanes: Ints
-    routes: Ints
-    start: Moving
-    free_m: Floats
-    memory: TrainMemory
-
-
-class ExitSpeeds(Protocol):
-    """Commands the exit speeds of the positions."""
-
-    def command(self, asked: Asked) -> Floats:
-        """Exit speeds (n,), m/s."""
-
-
-class HumpSpeeds(Protocol):
-    """Chooses the speeds at which the trains are pushed over the crest."""
-
-    def speed(self, cut: int, memory: TrainMemory) -> Floats:
-        """Speed of the trains (trains,) when the middle of cut number `cut` is at the crest, m/s."""
 
 
 @dataclass(frozen=True)
@@ -94,6 +60,7 @@ class OneCut:
         self.length_m = trains.length_m[self.rows]
         self.times = np.full((trains.trains, hump.routes.elements, len(Mark)), np.nan)
         self.rolling = np.ones(trains.trains, dtype=bool)
+        self.halt_s = np.full(trains.trains, np.inf)
 
     def run(self, speeds: HumpSpeeds, control: ExitSpeeds) -> None:
         """All the way from the crest to the track; then the memory and the users of the elements know it."""
@@ -104,7 +71,7 @@ class OneCut:
         self.to_track(moving)
         self.memory.route[:, self.cut] = self.routes
         self.memory.time_s[:, self.cut] = self.times
-        self.users.add(self.cut, self.routes, self.times)
+        self.users.add(self.cut, self.routes, np.where(np.isnan(self.times), np.inf, self.times))
 
     def released(self, speeds: HumpSpeeds) -> Moving:
         """The cut when its middle is at the crest. The train is pushed at an even rate between two such moments."""
@@ -151,8 +118,10 @@ class OneCut:
         ended = self.free(moving, to_m)
         stays = ~np.isfinite(self.hump.routes.entrance_m[self.routes, position])
         self.times[stays] = known[stays]
+        ended = merged(ended, moving.chosen(stays), stays)
+        self.halt(moving, ended)
         self.touch()
-        return merged(ended, moving.chosen(stays), stays)
+        return ended
 
     def free(self, moving: Moving, to_m: Callable[[], Floats]) -> Moving:
         """Free roll to `to_m`, which tells places on the routes as they are; cuts whose points cannot be thrown any
@@ -195,14 +164,28 @@ class OneCut:
 
     def behind(self, lanes: Ints, leader: Ints, at: Ints) -> Floats:
         """Times of cuts in contact from element `at` on: their first axles follow the last axles of their leaders."""
-        own, routes = self.times[lanes], self.hump.routes
+        own, own_routes, memory = self.times[lanes], self.routes[lanes], self.memory
         rows = lanes * self.trains.cuts + leader
-        there, ended = self.trains.last_axle_m[rows], self.memory.end_time_s[lanes, leader]
-        ends = self.memory.end_m[lanes, leader] - there
-        tails = Tails(routes.place_m[self.routes[lanes]], self.memory.time_s[lanes, leader], ends, ended)
+        there, ends = self.trains.last_axle_m[rows], memory.end_m[lanes, leader]
+        start = self.last_roll(lanes, leader, own_routes)
+        places, when = stations_of(Cars(self.hump.rolls, rows, own_routes), start, ends)
+        last = np.concatenate((places, ends[:, None]), axis=1) - there[:, None]
+        ended = np.concatenate((when, memory.end_time_s[lanes, leader, None]), axis=1)
+        tails = Tails(self.hump.routes.place_m[own_routes], memory.time_s[lanes, leader], last, ended)
         met = own[np.arange(len(lanes)), at]
         since = np.fmin(met[:, Mark.FIRST_IN], met[:, Mark.FIRST_OUT])
         return tails.followed(own, since, (self.last_m - self.first_m)[lanes])
+
+    def last_roll(self, lanes: Ints, cut: Ints, routes: Ints) -> Moving:
+        """Where the cuts (n,) of the trains `lanes` began their last free rolls: at the last position, else the crest;
+        NaN where they did not come to that."""
+        memory, rows = self.memory, lanes * self.trains.cuts + cut
+        last = np.isfinite(self.hump.routes.entrance_m[routes]).sum(axis=1) - 1
+        crest = Moving(0.5 * self.trains.length_m[rows], memory.hump_speed_m_s[lanes, cut], memory.crest_s[lanes, cut])
+        held = last >= 0
+        at = lanes[held], cut[held], last[held]
+        leaves = self.hump.routes.release_m[routes[held]] + self.trains.last_axle_m[rows[held]]
+        return merged(crest, Moving(leaves, memory.exit_m_s[at], memory.end_s[at]), held)
 
     def through_position(self, moving: Moving, position: int, control: ExitSpeeds) -> Moving:
         """The pass of `position`: commanded by the control, or as the cut ahead that is still in it."""
@@ -241,14 +224,30 @@ class OneCut:
         while sent.any():
             self.times[held] = known[held]
             end, times = braked_evenly(start, to, passed.exit_m_s, passed.time_s, self.heads_m(held))
+            end, times = self.stopped_within(held, start, to, end, times)
             self.note(times, held)
             sent = self.misroute()
         place = lanes, self.cut, position
         memory.begin_s[place], memory.entry_m_s[place] = start.time_s, start.speed_m_s
         memory.command_m_s[place], memory.exit_m_s[place] = command, passed.exit_m_s
         memory.end_s[place], memory.strokes[place] = end.time_s, passed.switchings
+        ended = merged(moving, end, held)
+        self.halt(moving, ended)
         self.touch()
-        return merged(moving, end, held)
+        return ended
+
+    def stopped_within(
+        self, held: Bools, start: Moving, to_m: Floats, end: Moving, times: Floats
+    ) -> tuple[Moving, Floats]:
+        """Cuts `held` that stop in a position roll on as far as they would without brake, which is open for them."""
+        stops = end.speed_m_s <= 0.0
+        if not stops.any():
+            return end, times
+        which = held.copy()
+        which[held] = stops
+        rolled, passed = rolled_free(self.cars(which), start.chosen(stops), to_m[stops], self.heads_m(which))
+        times[stops] = passed
+        return merged(end, Moving(rolled.head_m, np.zeros(len(passed)), rolled.time_s + np.inf), stops), times
 
     def obeyed(self, command: Floats, held: Bools, position: int) -> Floats:
         """Two cuts on a retarder: the mode of the first one rules."""
@@ -265,12 +264,14 @@ class OneCut:
         """Free roll to the standing cars, and what the whole way was like."""
         cut, memory, standing = self.cut, self.memory, self.standing
         end = self.free(moving, lambda: standing.free_m[self.lanes, self.routes])
+        self.halt(moving, end)
         self.touch()
         met = meeting(self.hump.routes, self.routes, self.times, self.ahead())
         memory.unseparated[:, cut], memory.foul[:, cut] = met.unseparated, met.foul
         memory.free_m[:, cut] = standing.free_m[self.lanes, self.routes]
         rolls = self.rolling
-        lanes, still = self.lanes[rolls], Moving(end.head_m, end.speed_m_s, self.still_s(moving, end)).chosen(rolls)
+        ended = np.where(end.speed_m_s > 0.0, end.time_s, self.halt_s)
+        lanes, still = self.lanes[rolls], Moving(end.head_m, end.speed_m_s, ended).chosen(rolls)
         closing = standing.add(lanes, self.cars(rolls), moving.chosen(rolls), still, self.length_m[rolls])
         touches = ~np.isnan(closing)
         memory.caught_on_track[lanes, cut] = touches
@@ -278,12 +279,10 @@ class OneCut:
         memory.end_speed_m_s[lanes, cut] = np.where(touches, closing, still.speed_m_s)
         standing.block(self.lanes[~rolls], self.routes[~rolls], self.length_m[~rolls])
 
-    def still_s(self, moving: Moving, end: Moving) -> Floats:
-        """When cuts that roll from `moving` to `end` are there, also those that stop of themselves."""
-        times = end.time_s.copy()
-        stops = self.rolling & (end.speed_m_s <= 0.0) & (end.head_m > moving.head_m)
+    def halt(self, moving: Moving, ended: Moving) -> None:
+        """Note when cuts that rolled freely from `moving` stopped of themselves where they `ended`."""
+        stops = self.rolling & (moving.speed_m_s > 0.0) & (ended.speed_m_s <= 0.0)
         if stops.any():
-            near = np.maximum(end.head_m[stops] - NEARLY_M, moving.head_m[stops])
+            near = np.maximum(ended.head_m[stops] - NEARLY_M, moving.head_m[stops])
             almost, _ = rolled_free(self.cars(stops), moving.chosen(stops), near, np.empty((int(stops.sum()), 0)))
-            times[stops] = almost.time_s
-        return times
+            self.halt_s[stops] = almost.time_s

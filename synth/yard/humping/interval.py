@@ -17,6 +17,11 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 
+NONE_S = -1e6
+"""Margins behind a cut that blocks the way are infinitely short; where all choices have such, a possible one is
+taken."""
+
+
 class IntervalRule(Protocol):
     """Which choice of exit speeds is taken."""
 
@@ -35,7 +40,7 @@ class EarlyRule:
         able = possible(compared)
         enough = able & (compared.ahead_s >= self.ahead_s)
         early = np.where(enough, -compared.arrival_s, -np.inf).argmax(axis=1)
-        most = np.where(able, compared.ahead_s, -np.inf).argmax(axis=1)
+        most = np.where(able, np.maximum(compared.ahead_s, NONE_S), -np.inf).argmax(axis=1)
         return np.asarray(np.where(enough.any(axis=1), early, most))
 
 
@@ -51,7 +56,7 @@ class CentredRule:
 
     def best(self, compared: Compared) -> Ints:
         """See above."""
-        margin = np.minimum(np.minimum(compared.ahead_s, compared.behind_s), self.ample_s)
+        margin = np.clip(np.minimum(compared.ahead_s, compared.behind_s), NONE_S, self.ample_s)
         return np.asarray(np.where(possible(compared), margin - 1e-6 * compared.speeds_m_s, -np.inf).argmax(axis=1))
 
 

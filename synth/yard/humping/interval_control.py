@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
 from synth.yard.humping.aim_control import AimControl
+from synth.yard.humping.asked import Asked
 from synth.yard.humping.forecast import Choices, from_crest, from_entrance
-from synth.yard.humping.humping import Asked
 from synth.yard.humping.interval import IntervalRule, possible
 from synth.yard.humping.known_cuts import KnownCuts
 from synth.yard.humping.motion import Moving, Push

@@ -35,9 +35,15 @@ class LastUsers:
         return Ahead(cut, self.points[lane, vertex], self.time_s[lane, vertex])
 
     def add(self, cut: int, routes: Ints, time_s: Floats) -> None:
-        """Cut number `cut` of every train went by `routes` (trains,), `time_s` (trains, elements, marks)."""
+        """Cut number `cut` of every train went by `routes` (trains,), `time_s` (trains, elements, marks).
+
+        The first element that it never comes to is taken, too: a cut that stands between two is in the way to that.
+        What is not known, NaN, is not taken.
+        """
         entered = (self.routes.vertex[routes] >= 0) & np.isfinite(time_s[:, :, Mark.FIRST_IN])
-        lane, element = np.nonzero(entered)
+        before = np.concatenate((np.ones((len(entered), 1), dtype=bool), entered[:, :-1]), axis=1)
+        stands = before & np.isinf(time_s[:, :, Mark.FIRST_IN]) & (self.routes.vertex[routes] >= 0)
+        lane, element = np.nonzero(entered | stands)
         vertex = self.routes.vertex[routes][lane, element]
         self.cut[lane, vertex] = cut
         self.points[lane, vertex] = self.routes.points[routes][lane, element]

@@ -81,7 +81,7 @@ def outcomes(routes: HumpRoutes, trains: TrainCuts, memory: TrainMemory) -> Trai
     in_last = (memory.misrouted_at == none) & (memory.contact_at == last_retarder)
     caught = ((memory.misrouted_at < none) | (memory.contact_at < none)) & ~in_last
     ends = memory.end_m
-    last = routes.exit_m[memory.route].max(axis=2, initial=0.0, where=np.isfinite(routes.exit_m[memory.route]))
+    last = routes.release_m[memory.route]
     stopped = ~caught & ~in_last & (ends < last)
     judged = ~caught & ~in_last & ~stopped
     speed = np.where(judged, memory.end_speed_m_s, 0.0)

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
+from synth.yard.humping.asked import Asked
 from synth.yard.humping.expected_way import ExpectedWay
 from synth.yard.humping.free_stretch import SHORTEST_M
-from synth.yard.humping.humping import Asked
 from synth.yard.humping.known_cuts import KnownCuts
 from synth.yard.humping.resistance_prior import ResistancePrior, resistance_prior
 from synth.yard.humping.speed_sensors import SpeedSensors

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.yard.humping.asked import Asked
 from synth.yard.humping.forecast import Forecast, Given, entrance_m, from_crest, from_entrance
 from synth.yard.humping.hump_routes import HumpRoutes, Mark
-from synth.yard.humping.humping import Asked
 from synth.yard.humping.known_cuts import KnownCuts
 from synth.yard.humping.motion import Moving
 from synth.yard.humping.train_memory import TrainMemory
@@ -61,6 +61,8 @@ class Sight:
     def learn_pass(self, cut: int, position: int, memory: TrainMemory) -> None:
         """Add what the speed after a pass told; the next exit speeds are those that were chosen before it."""
         lanes = np.flatnonzero(np.isfinite(memory.end_s[:, cut, position]))
+        if len(lanes) == 0:
+            return
         rows, ended = lanes * self.known.cuts + cut, memory.end_s[lanes, cut, position]
         routes = self.routes_by(lanes, np.full(len(lanes), cut), ended, memory)
         expected = self.known.expected(rows, routes, self.resistance_n_per_kn[lanes, cut, position])

@@ -12,9 +12,9 @@ from scipy.special import ndtri
 from plant_models.errors import require_between
 from plant_models.rolling.keyed_numbers import keyed_uniform
 from plant_models.rolling.random_numbers import Purpose
+from synth.yard.humping.asked import Asked
 from synth.yard.humping.free_stretch import StretchSpeeds
 from synth.yard.humping.hump_routes import HumpRoutes
-from synth.yard.humping.humping import Asked
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

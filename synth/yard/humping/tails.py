@@ -9,20 +9,24 @@ from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
 from synth.yard.humping.hump_routes import OF_FIRST_AXLE
+from synth.yard.humping.motion import Cars, Moving, rolled_free
 
 Floats = NDArray[np.float64]
+
+STATIONS = 40
+"""Places on the last free roll of a leader where its time is worked out."""
 
 
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Tails:
-    """Last axles of n leaders: `place_m`, `time_s` (n, elements, marks) of their routes, and the places `ends_m` (n,)
-    where they stand at last, from `ended_s` on. Between two places they move evenly."""
+    """Last axles of n leaders: `place_m`, `time_s` (n, elements, marks) of their routes, and further places `last_m`
+    (n, k) where they are at `last_s`, the last one being where they stand. Between two places they move evenly."""
 
     place_m: Floats
     time_s: Floats
-    ends_m: Floats
-    ended_s: Floats
+    last_m: Floats
+    last_s: Floats
 
     def followed(self, own_s: Floats, since_s: Floats, base_m: Floats) -> Floats:
         """Times of marks (n, elements, marks) of cuts that have `own_s` until they touch, at `since_s` (n,), and follow
@@ -41,9 +45,23 @@ class Tails:
 
     def track_of(self, row: int) -> tuple[Floats, Floats]:
         """(places, times) of one last axle, in order; it comes no farther than the last place."""
-        place = np.append(self.place_m[row][:, ~OF_FIRST_AXLE], self.ends_m[row])
-        when = np.append(self.time_s[row][:, ~OF_FIRST_AXLE], self.ended_s[row])
+        place = np.append(self.place_m[row][:, ~OF_FIRST_AXLE], self.last_m[row])
+        when = np.append(self.time_s[row][:, ~OF_FIRST_AXLE], self.last_s[row])
         known = np.isfinite(place) & np.isfinite(when)
         order = np.argsort(place[known], kind="stable")
         rising = np.maximum.accumulate(when[known][order])
         return place[known][order], rising
+
+
+def stations_of(cars: Cars, start: Moving, end_m: Floats) -> tuple[Floats, Floats]:
+    """(places of the heads, times) of cuts (n,) on their last free rolls from `start` to `end_m`, (n, `STATIONS`); NaN
+    for cuts that did not come to that by themselves."""
+    heads, when = np.full((2, len(end_m), STATIONS), np.nan)
+    rolls = np.flatnonzero(np.isfinite(start.time_s) & np.isfinite(end_m) & (start.speed_m_s > 0.0))
+    if len(rolls):
+        begins, to = start.head_m[rolls], np.maximum(end_m[rolls], start.head_m[rolls])
+        heads[rolls] = begins[:, None] + (to - begins)[:, None] * np.linspace(0.0, 1.0, STATIONS + 1)[None, :-1]
+        _, times = rolled_free(cars.chosen(rolls), start.chosen(rolls), to, heads[rolls])
+        times[:, 0] = start.time_s[rolls]
+        when[rolls] = times
+    return heads, when

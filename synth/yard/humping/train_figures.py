@@ -34,7 +34,11 @@ class TrainFigure:
 
 
 def ratio(hits: Floats, base: Floats) -> tuple[float, float, float]:
-    """Σ hits / Σ base over trains, with the interval of a ratio: Student's, linearised, trains being independent."""
+    """Σ hits / Σ base over trains, with the interval of a ratio: Student's, linearised, trains being independent.
+
+    It covered the truth in 94 to 96 % of 1000 sets of at least 20 trains that had 80 hits or more together; of rare
+    hits it covers less: these are told by `share`.
+    """
     trains, total = len(base), float(base.sum())
     if total == 0.0:
         return float("nan"), float("nan"), float("nan")
@@ -51,6 +55,10 @@ def share(hits: Floats, base: Floats) -> tuple[float, float, float, float]:
 
     Korn and Graubard, Survey Methodology 24 (1998): the exact interval (Clopper and Pearson) of as many independent
     cuts as these are worth, with Student's quantile for few trains; valid for rare events, too, also if there was none.
+    It covered the truth in 95 to 100 % of 1000 sets of 20 to 1000 trains with 40 cuts and shares of 0.001 to 0.1, where
+    the cuts of a train are independent. Where they have a correlation of 0.1: in 94 to 95 % of the sets with 80
+    expected hits or more, in 92 to 94 % with 40, but only in 78 to 83 % with 4 to 8. So few hits do not tell how they
+    cluster, and the upper end is then too low.
     """
     trains, total, found = len(base), float(base.sum()), float(hits.sum())
     if total == 0.0:

@@ -28,6 +28,9 @@ WHOLE_TRAIN = WholeTrain()
 LEADERS = 4
 """Cuts ahead whose headways are told one by one."""
 
+SHORT_COSTS, NEARLY_S = 60.0, 0.05
+"""Seconds over the crest that a second of an interval is worth, and what it may be too short."""
+
 FOLLOWERS = 3
 """Cuts behind that a cut looks at: a long one leaves late what not the next cut, but the one after it needs."""
 
@@ -72,15 +75,24 @@ class Planner:
     repairs: int = 3
 
     def plan(self, known: KnownCuts) -> TrainPlan:
-        """The plan with the fastest hump speeds that keep the interval."""
+        """The plan with the fastest hump speeds that keep the interval; of all turns, the best one for each train."""
         speeds = np.full((known.trains, known.cuts), self.limits.steps_m_s[len(self.limits.steps_m_s) // 2])
         needs_s = np.full((known.trains, known.cuts, LEADERS), -np.inf)
-        for turn in range(self.fits + self.repairs):
+        best, least_cost = speeds, np.full(known.trains, np.inf)
+        for turn in range(self.fits + self.repairs + 1):
             found = Sweep(self, known, speeds, None).run(EarlyRule(self.early_s))
+            cost = self.cost_s(found)
+            best = np.where((cost < least_cost)[:, None], speeds, best)
+            least_cost = np.minimum(cost, least_cost)
             enough = self.headways_s(found)
             needs_s = enough if turn < self.fits else np.maximum(needs_s, enough)
             speeds = self.method.speeds(apart_m(known), needs_s, self.limits)
-        return self.at_speeds(known, speeds)
+        return self.at_speeds(known, best)
+
+    def cost_s(self, found: TrainPlan) -> Floats:
+        """What each train costs (trains,): its time over the crest, and much more for intervals that are too short."""
+        short = np.maximum(self.least_s - found.margin_s - NEARLY_S, 0.0)
+        return np.asarray(found.crest_s[:, -1] + SHORT_COSTS * np.where(np.isfinite(short), short, 0.0).sum(axis=1))
 
     def constant(self, known: KnownCuts, speed_m_s: float) -> TrainPlan:
         """The plan where all cuts are pushed at one speed."""

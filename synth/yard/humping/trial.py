@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 from plant_models.cut import GRAVITY_M_S2, ROTATING_MASS_PER_AXLE_T
 from plant_models.errors import require, require_between
 from synth.yard.humping.aim_control import AimControl, ReadAhead
+from synth.yard.humping.asked import ExitSpeeds, HumpSpeeds
 from synth.yard.humping.expected_way import ExpectedWay
 from synth.yard.humping.forecast import Given
 from synth.yard.humping.free_tracks import FreeTracks
 from synth.yard.humping.hump_aim import HumpAim
 from synth.yard.humping.hump_position import HumpPosition
 from synth.yard.humping.hump_routes import HumpRoutes
-from synth.yard.humping.humping import ExitSpeeds, Hump, HumpSpeeds, humped
+from synth.yard.humping.humping import Hump, humped
 from synth.yard.humping.interval import CentredRule, IntervalRule
 from synth.yard.humping.interval_control import Feedback, FeedbackSpeeds, OpenLoop, ProgramSpeeds
 from synth.yard.humping.known_cuts import BAD, Brakes, KnownCuts, known_cuts, runner_n_per_kn

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.library import load_hump
 from synth.yard.free_roll import Rolled
+from synth.yard.humping.asked import Asked
 from synth.yard.humping.hump_routes import HumpRoutes, hump_routes
-from synth.yard.humping.humping import Asked
 from synth.yard.humping.motion import Moving
 from synth.yard.humping.train_memory import TrainMemory
 

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from plant_models.hump import HumpGraph
 from plant_models.rolling.random_cuts import CutPopulation
 from synth.yard.hump.train_population import TrainPopulation
+from synth.yard.humping.asked import Asked
 from synth.yard.humping.hump_position import Arrivals
 from synth.yard.humping.hump_routes import HumpRoutes, hump_routes
-from synth.yard.humping.humping import Asked, Hump, humped
+from synth.yard.humping.humping import Hump, humped
 from synth.yard.humping.normal_hump_position import NormalHumpPosition
 from synth.yard.humping.route_rolling import route_rolling
 from synth.yard.humping.train_cuts import TrainCuts, trains

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from plant_models.library.hump_entry import HumpEntry, load_hump
 from plant_models.rolling.weather import Weather
 from synth.yard.hump.train_population import TrainPopulation
+from synth.yard.humping.asked import Asked
 from synth.yard.humping.hump_position import Arrivals
 from synth.yard.humping.hump_routes import hump_routes
-from synth.yard.humping.humping import Asked, Hump, humped
+from synth.yard.humping.humping import Hump, humped
 from synth.yard.humping.normal_hump_position import NormalHumpPosition
 from synth.yard.humping.route_rolling import route_rolling
 from synth.yard.humping.train_cuts import TrainCuts

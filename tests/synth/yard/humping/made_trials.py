@@ -1,4 +1,4 @@
-"""Trials of humps, whose every part a test may choose: positions of a given error, and one exit speed as the aim."""
+"""Trials of humps, whose every part a test may choose: positions of a given error, and an aim by distance alone."""
 
 from __future__ import annotations
 
@@ -74,10 +74,10 @@ class DrawnTrains:
         return trains(self.lists, self.people, self.routes.routes, self.seed, first, count, self.cuts)
 
 
-def one_speed(routes: HumpRoutes, speed_m_s: float) -> HumpAim:
-    """Commands one exit speed to all cuts."""
-    axes = AimAxes(np.array([1, 2]), np.array([0.0, 1000.0]))
-    grid = AimGrid(axes, np.full((2, 2), speed_m_s))
+def even_aim(routes: HumpRoutes, near_m_s: float, far_m_s: float) -> HumpAim:
+    """Commands all cuts exit speeds that rise evenly with 1000 m of free distance."""
+    axes = AimAxes(np.array([1, 2]), np.linspace(0.0, 1000.0, 101))
+    grid = AimGrid(axes, np.tile(np.linspace(near_m_s, far_m_s, 101), (2, 1)))
     tables = (tuple(CategoryAim(grid) for _ in CATEGORIES.members),)
     return HumpAim(np.zeros(len(routes.routes), dtype=np.int64), tables, 0.5)
 
@@ -94,6 +94,7 @@ class Day:
     law: ResistanceLaw = field(default_factory=HumpNormLaw)
     std_m_s: float = 0.15
     aim_m_s: float = 1.4
+    aim_far_m_s: float | None = None
     steps_m_s: tuple[float, ...] = STEPS_M_S
     acceleration_m_s2: float = 0.05
     control: Control = field(default_factory=Control)
@@ -126,7 +127,7 @@ class Day:
             planner=Planner(routes, limits, ranges, worst_pair=self.worst_pair, method=self.method),
             program=self.program,
             control=self.control,
-            aim=one_speed(routes, self.aim_m_s),
+            aim=even_aim(routes, self.aim_m_s, self.aim_far_m_s or self.aim_m_s),
             usable_heads_m=tuple(UsableHead(0.8 * head) for head in heads),
             free=self.free,
             threads=self.threads,

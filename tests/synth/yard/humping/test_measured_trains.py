@@ -14,8 +14,8 @@ from synth.yard.aim.knowledge import ByCategory, Requirement
 from synth.yard.aim.position_models import NormalPosition
 from synth.yard.humping.aim_control import AimControl, ReadAhead
 from synth.yard.humping.aim_design import CARS, AimDesign, MeasuredAhead, hump_aim
+from synth.yard.humping.asked import Asked
 from synth.yard.humping.expected_way import ExpectedWay
-from synth.yard.humping.humping import Asked
 from synth.yard.humping.motion import Cars, Moving, rolled_free
 from synth.yard.humping.resistance_prior import bend_spreads, resistance_prior
 from synth.yard.humping.rollability import MeasuredRollability, measured_rollability

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from plant_models.hump import HumpGraph
 from synth.yard.hump.train_population import TrainPopulation
+from synth.yard.humping.asked import Asked
 from synth.yard.humping.hump_routes import HumpRoutes, hump_routes
-from synth.yard.humping.humping import Asked, Hump, humped
+from synth.yard.humping.humping import Hump, humped
 from synth.yard.humping.normal_hump_position import NormalHumpPosition
 from synth.yard.humping.route_rolling import route_rolling
 from synth.yard.humping.train_cuts import TrainCuts, trains

@@ -9,8 +9,8 @@ import pytest
 from numpy.typing import NDArray
 
 from synth.yard.free_roll import Rolled
+from synth.yard.humping.asked import Asked
 from synth.yard.humping.expected_way import ExpectedWay
-from synth.yard.humping.humping import Asked
 from synth.yard.humping.resistance_prior import ResistancePrior
 from synth.yard.humping.rollability import MeasuredRollability
 from synth.yard.humping.speed_sensors import SpeedSensors

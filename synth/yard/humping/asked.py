@@ -1,0 +1,49 @@
+"""What a control of a humped train is asked, and what it answers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.frozen_arrays import frozen_arrays
+from synth.yard.humping.motion import Moving
+from synth.yard.humping.train_memory import TrainMemory
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """A control is asked for the exit speeds of cut number `cut` of the trains `lanes` (n,) in `position`.
+
+    `routes` (n,): the rows on which they roll. `start`: the cuts when their first axles are at the entrance. `free_m`
+    (n,): where the standing cars begin, or will begin if the cut that still rolls there couples. `memory`: what
+    happened so far. It tells later times, too; a control may only look at what is over when it is asked.
+    """
+
+    cut: int
+    position: int
+    lanes: Ints
+    routes: Ints
+    start: Moving
+    free_m: Floats
+    memory: TrainMemory
+
+
+class ExitSpeeds(Protocol):
+    """Commands the exit speeds of the positions."""
+
+    def command(self, asked: Asked) -> Floats:
+        """Exit speeds (n,), m/s."""
+
+
+class HumpSpeeds(Protocol):
+    """Chooses the speeds at which the trains are pushed over the crest."""
+
+    def speed(self, cut: int, memory: TrainMemory) -> Floats:
+        """Speed of the trains (trains,) when the middle of cut number `cut` is at the crest, m/s."""
