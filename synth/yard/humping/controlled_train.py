@@ -73,7 +73,7 @@ def controlled_train(
     control = HumpControl(table, sorting_list_of(routes, trains, memory, lane), track, operation)
     first, last = floor((passages.begins_s - LEAD_IN_S) / tick_s), floor(passages.ends_s / tick_s) + 1
     for tick in range(first, last + 1):
-        control.tick(tick * tick_s)
+        control.tick(round(tick * tick_s, 6))
     control.finish()
     return ControlledTrain(control.log.events, tuple(track.disagreements))
 
