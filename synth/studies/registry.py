@@ -137,6 +137,14 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.friction_known",
     ),
     Study(
+        "hump-day",
+        "How fast can trains be humped, and at what price in catch-ups, over-speeds and gaps?",
+        180.0,
+        "hump-day.md",
+        "synth.studies.humping.study",
+        "synth.studies.humping.pictures",
+    ),
+    Study(
         "integration-error",
         "What do the time steps of the closed loop cost in accuracy?",
         8.0,

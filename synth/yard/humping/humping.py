@@ -166,15 +166,17 @@ class OneCut:
         """Times of cuts in contact from element `at` on: their first axles follow the last axles of their leaders."""
         own, own_routes, memory = self.times[lanes], self.routes[lanes], self.memory
         rows = lanes * self.trains.cuts + leader
-        there, ends = self.trains.last_axle_m[rows], memory.end_m[lanes, leader]
+        there, base = self.trains.last_axle_m[rows], (self.last_m - self.first_m)[lanes]
+        ends, still = memory.tail_m[lanes, leader], memory.still_s[lanes, leader]
         start = self.last_roll(lanes, leader, own_routes)
-        places, when = stations_of(Cars(self.hump.rolls, rows, own_routes), start, ends)
-        last = np.concatenate((places, ends[:, None]), axis=1) - there[:, None]
-        ended = np.concatenate((when, memory.end_time_s[lanes, leader, None]), axis=1)
+        places, when = stations_of(Cars(self.hump.rolls, rows, own_routes), start, ends + there)
+        last = np.concatenate((places - there[:, None], ends[:, None]), axis=1)
+        ended = np.concatenate((when, still[:, None]), axis=1)
         tails = Tails(self.hump.routes.place_m[own_routes], memory.time_s[lanes, leader], last, ended)
+        memory.tail_m[lanes, self.cut], memory.still_s[lanes, self.cut] = ends - base, still
         met = own[np.arange(len(lanes)), at]
         since = np.fmin(met[:, Mark.FIRST_IN], met[:, Mark.FIRST_OUT])
-        return tails.followed(own, since, (self.last_m - self.first_m)[lanes])
+        return tails.followed(own, since, base)
 
     def last_roll(self, lanes: Ints, cut: Ints, routes: Ints) -> Moving:
         """Where the cuts (n,) of the trains `lanes` began their last free rolls: at the last position, else the crest;
@@ -276,6 +278,7 @@ class OneCut:
         touches = ~np.isnan(closing)
         memory.caught_on_track[lanes, cut] = touches
         memory.end_m[lanes, cut], memory.end_time_s[lanes, cut] = still.head_m, still.time_s
+        memory.tail_m[lanes, cut], memory.still_s[lanes, cut] = still.head_m - self.last_m[rolls], still.time_s
         memory.end_speed_m_s[lanes, cut] = np.where(touches, closing, still.speed_m_s)
         standing.block(self.lanes[~rolls], self.routes[~rolls], self.length_m[~rolls])
 

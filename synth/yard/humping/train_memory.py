@@ -19,7 +19,7 @@ class TrainMemory:
     Columns of elements, the number of elements where none: `misrouted_at`, `contact_at`. (…, elements): `unseparated`,
     `foul`. At the track: `free_m` that the cut found, head at its end `end_m` with `end_speed_m_s` at
     `end_time_s`; where it is `caught_on_track`, because it touched the cut ahead while that still rolled, the speed is
-    the difference of both.
+    the difference of both. `tail_m`: where the last axle stands at last, from `still_s` on, also of cuts in contact.
     """
 
     def __init__(self, trains: int, cuts: int, routes: HumpRoutes) -> None:
@@ -34,4 +34,5 @@ class TrainMemory:
         self.misrouted_at, self.contact_at = np.full(shape, elements), np.full(shape, elements)
         self.unseparated, self.foul = np.zeros((*shape, elements), bool), np.zeros((*shape, elements), bool)
         self.caught_on_track = np.zeros(shape, bool)
+        self.tail_m, self.still_s = np.full(shape, np.nan), np.full(shape, np.nan)
         self.free_m, self.end_m, self.end_speed_m_s, self.end_time_s = (np.full(shape, np.nan) for _ in range(4))

@@ -28,8 +28,8 @@ WHOLE_TRAIN = WholeTrain()
 LEADERS = 4
 """Cuts ahead whose headways are told one by one."""
 
-SHORT_COSTS, NEARLY_S = 60.0, 0.05
-"""Seconds over the crest that a second of an interval is worth, and what it may be too short."""
+SHORT_COSTS, NEARLY_S, MOST_SHORT_S = 60.0, 0.05, 30.0
+"""Seconds over the crest that a second of an interval is worth; what it may be too short; and most that counts."""
 
 FOLLOWERS = 3
 """Cuts behind that a cut looks at: a long one leaves late what not the next cut, but the one after it needs."""
@@ -91,8 +91,8 @@ class Planner:
 
     def cost_s(self, found: TrainPlan) -> Floats:
         """What each train costs (trains,): its time over the crest, and much more for intervals that are too short."""
-        short = np.maximum(self.least_s - found.margin_s - NEARLY_S, 0.0)
-        return np.asarray(found.crest_s[:, -1] + SHORT_COSTS * np.where(np.isfinite(short), short, 0.0).sum(axis=1))
+        short = np.clip(self.least_s - found.margin_s - NEARLY_S, 0.0, MOST_SHORT_S)
+        return np.asarray(found.crest_s[:, -1] + SHORT_COSTS * short.sum(axis=1))
 
     def constant(self, known: KnownCuts, speed_m_s: float) -> TrainPlan:
         """The plan where all cuts are pushed at one speed."""

@@ -1,0 +1,86 @@
+"""The day of a hump: how fast trains can be humped, and what it costs in catch-ups, over-speeds and gaps.
+
+Every variant humps the same trains with the same draws. Nothing is tuned to a published figure.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from synth.studies.humping.base_trial import FEEDBACK, Day
+from synth.studies.humping.beside import PUBLISHED_SPEEDS_M_S
+from synth.studies.humping.books import table_pairs
+from synth.studies.humping.causes import causes
+from synth.studies.humping.couplings import AimedFigures, coupling_pairs
+from synth.studies.humping.day_figures import Pair
+from synth.studies.humping.disturbances import disturbance_pairs
+from synth.studies.humping.findings import HumpDay, Inputs
+from synth.studies.humping.frontier import Frontier, frontier_groups
+from synth.studies.humping.programs import program_pairs
+from synth.studies.humping.runs import measured
+from synth.studies.humping.sensitivity import sensitivity_pairs
+from synth.studies.options import option
+from synth.studies.study import Method, Tell
+
+TODAY_STD_M_S, ASKED_STD_M_S = 0.35, 0.15
+"""Errors of the exit speed: of regulators as the computer of the 1970s had them, and as it asks for."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """What is studied."""
+
+    trains: int = option(100, "trains of every variant", (2, 10**6))
+    table_trains: int = option(50, "trains where positions run tables; 0: no tables are tuned", (0, 10**6))
+    cuts: int = option(40, "cuts of a train", (2, 999))
+    stds_m_s: tuple[float, ...] = option((0.03, 0.15, 0.35), "errors of the interval positions", (0.0, 1.0))
+    least_s: tuple[float, ...] = option(
+        (3.0, 2.0, 1.4, 1.0, 0.6, 0.3, 0.0, -0.4, -1.0, -2.0), "least intervals of the programs, falling", (-10.0, 10.0)
+    )
+    limits: tuple[float, ...] = option((0.001, 0.005), "shares of catch-ups that may not be passed", (1e-5, 0.5))
+    design_cuts: int = option(2000, "cuts that exit speeds of the last position are chosen on", (200, 200_000))
+    workers: int = option(2, "processes; they change no result", (1, 1000))
+    seed: int = option(17, "of all draws", (0, 10**9))
+
+
+def run(options: Options, tell: Tell) -> HumpDay:
+    """All parts."""
+    asked = Day(options.seed, options.cuts, ASKED_STD_M_S, design_cuts=options.design_cuts)
+    today = replace(asked, std_m_s=TODAY_STD_M_S)
+    base, worse = asked.trial(), today.trial()
+    aimed = coupling_pairs(today, options.stds_m_s, tell)
+    pairs = {
+        "programs": program_pairs(worse),
+        "disturbances": disturbance_pairs(asked, base, tell),
+        "sensitivity": sensitivity_pairs(base),
+        "couplings": list(aimed.values()),
+    }
+    groups = [pair.group for of_part in pairs.values() for pair in of_part]
+    outcomes = measured(
+        [*frontier_groups(base, options.stds_m_s, options.least_s), *groups], options.trains, options.workers, tell
+    )
+    found = {part: tuple(pair.found(outcomes) for pair in of_part) for part, of_part in pairs.items()}
+    frontier = Frontier(outcomes, options.stds_m_s, options.least_s, options.limits, PUBLISHED_SPEEDS_M_S, options.seed)
+    tables: list[Pair] = []
+    if options.table_trains:
+        tables = table_pairs(asked, options.stds_m_s, tell)
+        outcomes |= measured([pair.group for pair in tables], options.table_trains, options.workers, tell)
+    return HumpDay(
+        inputs=Inputs(options.trains, options.table_trains, options.cuts, options.seed, base.planner.least_s),
+        curves=frontier.curves(),
+        gains=frontier.gains(),
+        programs=found["programs"],
+        couplings=tuple(map(AimedFigures, aimed, found["couplings"])),
+        causes=causes(replace(worse, control=FEEDBACK), TODAY_STD_M_S, options.trains),
+        disturbances=found["disturbances"],
+        sensitivity=found["sensitivity"],
+        tables_beside=tuple(pair.found(outcomes) for pair in tables),
+    )
+
+
+METHOD = Method(
+    Options,
+    Options(trains=3, table_trains=0, cuts=6, stds_m_s=(0.35,), least_s=(0.5, -0.5), design_cuts=200),
+    HumpDay,
+    run,
+)
