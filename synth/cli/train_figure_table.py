@@ -18,6 +18,6 @@ def print_trains(result: TrialResult, directory: Path) -> None:
         print(f"{title:<46}{shown.value:>8}  {shown.interval}")
     if settings.acceptance.model_dump(exclude_none=True):
         print(f"{'accepted' if result.verdict.accepted else 'not accepted'}: {result.verdict.sentence}")
-    names = "summary.json, figures.csv, trains.npz, locomotive.csv, uncoupler.csv, inputs/, batches/"
+    names = "summary.json, figures.csv, trains.npz, locomotive.csv, uncoupler.csv, events.csv, inputs/, batches/"
     pages = ", report.html, hump.html" * settings.output.report
     print(f"{directory}: {names}{', plots/' * settings.output.plots}{pages}")

@@ -12,11 +12,12 @@ from synth.present.hump_page.hump_page import hump_page
 from synth.present.outputs import file_hashes
 from synth.present.plots.picture import Picture, save_picture
 from synth.present.report.humping_report import HumpingReport, humping_page
+from synth.yard.hump.event_log import to_log_csv
 from synth.yard.humping.outcome_file import to_npz
 from synth.yard.humping.outcomes import TrainOutcomes
 from synth.yard.humping.resolved_trial import ResolvedTrial
 from synth.yard.humping.speed_program import locomotive_csv, speed_program, uncoupler_csv
-from synth.yard.humping.traced_train import traced_train
+from synth.yard.humping.traced_train import one_train
 from synth.yard.humping.train_figures import TrainFigure, train_figures
 from synth.yard.humping.train_trace import TrainTrace
 from synth.yard.humping.trial import HumpTrial
@@ -26,9 +27,10 @@ from tuning_tables import write_atomically
 from tuning_tables.canonical import canonical_json
 
 TRAINS, FIGURES, PROGRAM, SHEET = "trains.npz", "figures.csv", "locomotive.csv", "uncoupler.csv"
+LOG = "events.csv"
 PLAYER, REPORT = "hump.html", "report.html"
 SHOWN_TRAIN = 0
-"""The train that is drawn and played, and whose program is written."""
+"""The train that is drawn and played, and whose program and log are written."""
 
 Say = Callable[[str], None]
 
@@ -54,10 +56,13 @@ def judged(config: ResolvedTrial, trial: HumpTrial, found: TrainOutcomes, create
 def write_trains(result: TrialResult, inputs: list[Path], directory: Path, say: Say) -> Document:
     """Write everything; the summary as written, which lists `inputs` too. Raises `OSError`."""
     config, output = result.config, result.config.settings.output
-    files = [*inputs, *write_data(result, directory)]
+    shown = one_train(result.trial, SHOWN_TRAIN)
+    control = shown.controlled()
+    files = [*inputs, *write_data(result, directory), directory / LOG]
+    write_atomically(files[-1], to_log_csv(control.events).encode())
     pictures: tuple[Picture, ...] = ()
     if output.plots or output.report:
-        trace = traced_train(result.trial, SHOWN_TRAIN)
+        trace = shown.traced()
         pictures = drawn(result, trace)
         say(f"{len(pictures)} pictures drawn")
         if output.plots:
@@ -68,7 +73,7 @@ def write_trains(result: TrialResult, inputs: list[Path], directory: Path, say: 
     hashes = file_hashes(directory, files)
     if output.report:
         page = directory / REPORT
-        write_atomically(page, humping_page(report_of(result, pictures, hashes)).encode())
+        write_atomically(page, humping_page(report_of(result, pictures, len(control.disagreements), hashes)).encode())
         hashes |= file_hashes(directory, [page])
     remove_stale(directory, set(hashes), pictures=TRAIN_PICTURES)
     if PLAYER not in hashes:
@@ -106,8 +111,10 @@ def drawn(result: TrialResult, trace: TrainTrace) -> tuple[Picture, ...]:
     return (*outcome_pictures(config.hump, config.routes, result.found), *shown)
 
 
-def report_of(result: TrialResult, pictures: tuple[Picture, ...], hashes: Mapping[str, str]) -> HumpingReport:
-    """The page of `result`."""
+def report_of(
+    result: TrialResult, pictures: tuple[Picture, ...], otherwise: int, hashes: Mapping[str, str]
+) -> HumpingReport:
+    """The page of `result`; `otherwise`: see `HumpingReport`."""
     config, limits = result.config, result.config.settings.acceptance.model_dump(exclude_none=True)
     return HumpingReport(
         title=config.title,
@@ -119,5 +126,7 @@ def report_of(result: TrialResult, pictures: tuple[Picture, ...], hashes: Mappin
         pictures=pictures,
         parameters=config.parameters,
         player=PLAYER,
+        log=LOG,
+        otherwise=otherwise,
         file_hashes=hashes,
     )

@@ -72,7 +72,15 @@ def test_every_file_is_whole_and_listed(humped: Path) -> None:
     assert files - batches - {"summary.json"} == set(summary["files"])
     for name, digest in summary["files"].items():
         assert hashlib.sha256((humped / name).read_bytes()).hexdigest() == digest, name
-    assert {"trains.npz", "figures.csv", "locomotive.csv", "uncoupler.csv", "report.html", "hump.html"} <= files
+    assert {
+        "trains.npz",
+        "figures.csv",
+        "locomotive.csv",
+        "uncoupler.csv",
+        "events.csv",
+        "report.html",
+        "hump.html",
+    } <= files
     for plot in (humped / "plots").iterdir():
         assert TRAIN_PICTURES.fullmatch(plot.name)
         if plot.suffix == ".svg":
@@ -80,6 +88,7 @@ def test_every_file_is_whole_and_listed(humped: Path) -> None:
     page = (humped / "report.html").read_text(encoding="utf-8")
     assert page.endswith("</html>\n")
     assert 'href="hump.html"' in page
+    assert 'href="events.csv"' in page
     assert summary["generator"]["config_sha256"] in page
 
 

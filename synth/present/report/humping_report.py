@@ -36,7 +36,8 @@ class HumpingReport:
     """What a run of humped trains leaves: `verdict` in a sentence, `accepted` None where nothing was asked.
 
     `parameters`: all inputs with their origins; `player`: name of the file beside the report that plays a train, ''
-    for none; `file_hashes`: SHA-256 of the files by name.
+    for none; `log`: name of that with the log of the hump control for the same train, and `otherwise`, over how many
+    switches cuts went otherwise than its points lay; `file_hashes`: SHA-256 of the files by name.
     """
 
     title: str
@@ -48,6 +49,8 @@ class HumpingReport:
     pictures: tuple[Picture, ...]
     parameters: tuple[SourcedValue, ...]
     player: str
+    log: str
+    otherwise: int
     file_hashes: Mapping[str, str]
 
 
@@ -58,11 +61,14 @@ def humping_page(report: HumpingReport) -> str:
 
 
 def verdict_box(report: HumpingReport) -> Markup:
-    """The box at the head of the page, and the way to the page that plays a train."""
+    """The box at the head of the page, and the ways to the page that plays a train and to its log."""
     style = "" if report.accepted is None else " accepted" if report.accepted else " refused"
     parts = [element("p", report.verdict)]
     if report.player:
         parts.append(element("p", element("a", "Play a train on the plan", href=report.player)))
+    lay = f"; its points lay otherwise than cuts went {report.otherwise} times" if report.otherwise else ""
+    log = element("a", "Event log of the hump control for the first train", href=report.log)
+    parts.append(element("p", log, lay))
     return element("div", *parts, class_=f"verdict{style}")
 
 

@@ -36,6 +36,12 @@ class ReferencePoints:
         self._news.append((switch, MOVING))
         return True
 
+    def lay(self, switch: int, position: int) -> None:
+        """Points lie so at once, wherever they were."""
+        if self._moving.pop(switch, None) is not None or self._lies[switch] != position:
+            self._lies[switch] = position
+            self._news.append((switch, position))
+
     def lies(self, switch: int, time_s: float) -> int:
         """Position at `time_s`; points on their way count as where they were."""
         moving = self._moving.get(switch)

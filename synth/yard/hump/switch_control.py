@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from synth.yard.hump.axle_counters import AxleCounters
 from synth.yard.hump.event import Block, Kind
+from synth.yard.hump.hump_state import MOVING
 from synth.yard.hump.journal import Journal
 from synth.yard.hump.models import TrackGeometry
 from synth.yard.hump.practice_rules import PracticeRules
@@ -34,8 +35,10 @@ class SwitchControl:
         cut = self._store.next_over(switch, behind)
         self._wanted.pop(switch, None)
         if cut is not None:
-            position = self._store.position(switch, cut)
-            if self._journal.state.commanded.get(switch) != position:
+            position, lies = self._store.position(switch, cut), self._journal.state.position(switch)
+            if lies == MOVING:
+                lies = self._journal.state.commanded.get(switch, MOVING)
+            if lies != position:
                 self._wanted[switch] = position, cut
 
     def throw_waiting(self) -> None:

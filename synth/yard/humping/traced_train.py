@@ -2,14 +2,42 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
+from synth.yard.humping.controlled_train import ControlledTrain, controlled_train
 from synth.yard.humping.humping import Hump
 from synth.yard.humping.route_rolling import rolling_on
+from synth.yard.humping.train_cuts import TrainCuts
+from synth.yard.humping.train_memory import TrainMemory
 from synth.yard.humping.train_trace import TrainTrace, train_trace
 from synth.yard.humping.trial import HumpTrial
 
 
-def traced_train(trial: HumpTrial, number: int) -> TrainTrace:
+@dataclass(frozen=True)
+class OneTrain:
+    """A train of `trial`, alone in `trains`, and what happened to it."""
+
+    trial: HumpTrial
+    trains: TrainCuts
+    memory: TrainMemory
+
+    def traced(self) -> TrainTrace:
+        """Its cuts on their ways."""
+        trial = self.trial
+        rolls = rolling_on(trial.ways, self.trains.population, self.trains.drawn, trial.threads)
+        return train_trace(Hump(trial.routes, trial.positions, rolls), self.trains, self.memory, 0)
+
+    def controlled(self) -> ControlledTrain:
+        """What the hump control records of it."""
+        return controlled_train(self.trial.routes, self.trains, self.memory, 0)
+
+
+def one_train(trial: HumpTrial, number: int) -> OneTrain:
     """The train `number`, from 0, of `trial`: the same as in every batch."""
     trains, _, memory = trial.humped(number, 1)
-    rolls = rolling_on(trial.ways, trains.population, trains.drawn, trial.threads)
-    return train_trace(Hump(trial.routes, trial.positions, rolls), trains, memory, 0)
+    return OneTrain(trial, trains, memory)
+
+
+def traced_train(trial: HumpTrial, number: int) -> TrainTrace:
+    """Its cuts on their ways."""
+    return one_train(trial, number).traced()

@@ -154,6 +154,14 @@ def test_a_stuck_switch_misroutes_a_cut_and_tells_where_and_why() -> None:
     assert control.state.arrived == {1: [2]}
 
 
+def test_points_that_did_not_obey_are_commanded_again_for_the_next_cut() -> None:
+    """Switch 2 is stuck at the first command alone: cut 1 to track 3 goes to track 2, cut 2 to track 3."""
+    cuts = [record(1, 3), record(2, 3)]
+    control, _ = humped(TABLE, cuts, [rolling(1, 5.0), rolling(2, 40.0)], [StuckSwitch(2, 0.0, 1.0)])
+    assert control.state.arrived == {1: [2], 2: [3]}
+    assert [(cut, position) for switch, cut, position in commands(control) if switch == 2] == [(1, 1.0), (2, 1.0)]
+
+
 def test_a_late_switch_that_still_comes_in_time_misroutes_nobody() -> None:
     """Cut 1 comes on the section at 6.8 s and to the points at 8 s; they were commanded at 0 s."""
     for extra_s, track, why in ((6.2, 2, []), (7.8, 1, [Why.OFF_ROUTE])):

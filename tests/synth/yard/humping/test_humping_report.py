@@ -56,6 +56,8 @@ def report() -> HumpingReport:
         pictures=tuple(outcome_pictures(humped.entry, humped.hump.routes, found)),
         parameters=humped.entry.provenance[:20],
         player="hump.html",
+        log="events.csv",
+        otherwise=0,
         file_hashes={"figures.csv": "0" * 64},
     )
 
@@ -108,7 +110,7 @@ def test_the_page_holds_pictures_parameters_and_files(report: HumpingReport) -> 
 def test_the_page_loads_nothing(report: HumpingReport) -> None:
     page, tables = read(report)
     outside = [each for each in tables.loads if not each.startswith(("data:", "#"))]
-    assert outside == ["hump.html"]
+    assert outside == ["hump.html", "events.csv"]
     assert re.findall(r"url\(|@import|<script", page) == []
 
 
@@ -119,3 +121,5 @@ def test_the_box_tells_whether_limits_are_kept(report: HumpingReport, accepted: 
     page = humping_page(replace(report, accepted=accepted, player=""))
     assert f'<div class="{style}">' in page
     assert "Play a train" not in page
+    assert "lay otherwise" not in page
+    assert "lay otherwise than cuts went 2 times" in humping_page(replace(report, otherwise=2))
