@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.studies.aiming.trial import Value
 from synth.studies.humping.base_trial import FEEDBACK, MEASURED, OPEN, SLOWING, with_interval_std, with_planner
 from synth.studies.humping.day_figures import DayFigures, day_figures, fewer_catch_ups
@@ -101,7 +102,8 @@ def frontier_groups(base: HumpTrial, stds_m_s: tuple[float, ...], least_s: tuple
     return groups
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Sums:
     """Of each bootstrap replicate (rows; the first is the sample itself) and each program, safest first: share of
     catch-ups, mean hump speed, cars an hour."""

@@ -47,7 +47,7 @@ class LastUsers:
         vertex = self.routes.vertex[routes][lane, element]
         self.cut[lane, vertex] = cut
         self.points[lane, vertex] = self.routes.points[routes][lane, element]
-        self.time_s[lane, vertex] = np.nan_to_num(time_s[lane, element], nan=np.inf)
+        self.time_s[lane, vertex] = np.nan_to_num(time_s[lane, element], nan=np.inf, posinf=np.inf)
 
 
 @frozen_arrays

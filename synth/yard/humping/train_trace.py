@@ -227,7 +227,7 @@ def occupations(routes: HumpRoutes, memory: TrainMemory, lane: int) -> Iterator[
                 from_m=float(place[Mark.FIRST_IN]),
                 to_m=float(place[Mark.LAST_OUT]),
                 from_s=float(time[cut, column, Mark.FIRST_IN]),
-                to_s=float(np.nan_to_num(ends, nan=np.inf)),
+                to_s=float(np.nan_to_num(ends, nan=np.inf, posinf=np.inf)),
             )
 
 
