@@ -36,6 +36,7 @@ class AxleCounters:
         self._expected: dict[tuple[int, int], int] = {}
         self._handed: dict[tuple[int, int], int] = {}
         self._gone: dict[tuple[int, int], int] = defaultdict(int)
+        self._off_route: dict[tuple[int, int], int] = defaultdict(int)
         self._free_since: dict[int, float] = {}
         self.latest: dict[int, int] = {}
         for cut in store.cuts:
@@ -70,6 +71,9 @@ class AxleCounters:
         give the rest to that, and let nobody behind the first way wait for it."""
         here, gone = (axle.element, cut), self._gone[axle.element, cut]
         self._gone[here] = gone + 1
+        own = self._table.needed.get(axle.element, {}).get(self._store.record(cut).track, axle.end)
+        if own != axle.end:
+            self._off_route[here] += 1
         branch = self._handed.get(here)
         if branch == axle.end:
             return
@@ -127,6 +131,15 @@ class AxleCounters:
             for cut in section.waits_for:
                 waiting.setdefault(cut, []).append(number)
         return waiting
+
+    def off_route(self) -> dict[int, int]:
+        """By cut, the first switch behind which two axles of it, or more, were counted on another way than that to the
+        track of its list. One alone may be of the cut ahead or behind: a counter that slips shifts one axle."""
+        found: dict[int, int] = {}
+        for (switch, cut), axles in self._off_route.items():
+            if axles > 1:
+                found.setdefault(cut, switch)
+        return found
 
     def _following(self, element: int) -> tuple[int, ...]:
         branches = (0, 1) if self._table.is_switch(element) else (0,)

@@ -97,7 +97,7 @@ class Why(IntEnum):
     WRONG_POSITION = 2
     """The points did not lie for it when it came."""
     OFF_ROUTE = 3
-    """It was found where its route does not lead."""
+    """It, or a part of it, was found where its route does not lead."""
     COUPLED = 4
     """It was not uncoupled from its leader."""
     NOT_SEEN = 5

@@ -94,11 +94,11 @@ class HumpControl:
         self.retarders.brake()
 
     def finish(self) -> None:
-        """The train is humped: close the signals, record cuts that were not found, or not with all axles, and counters
-        that are not at zero."""
+        """The train is humped: close the signals, record cuts that were not found, or not with all axles, or in part on
+        the way of another cut, and counters that are not at zero."""
         for lead in sorted(self._last):
             self._show(lead, Aspect.STOP)
-        unfinished = self.counters.unfinished()
+        unfinished, off_route = self.counters.unfinished(), self.counters.off_route()
         for cut in self.store.cuts:
             lead, waiting = self._table.graph.leads[cut.lead], unfinished.get(cut.serial)
             if cut.serial not in self.state.arrived:
@@ -106,6 +106,8 @@ class HumpControl:
             elif waiting and cut.serial not in self.state.misrouted:
                 ahead = min(waiting, key=lambda element: self._table.places[lead][element].from_m)
                 self._journal.tell(Kind.MISROUTED, ahead, cut.serial, Why.NOT_SEEN)
+            elif cut.serial in off_route and cut.serial not in self.state.misrouted:
+                self._journal.tell(Kind.MISROUTED, off_route[cut.serial], cut.serial, Why.OFF_ROUTE)
         for element, axles in self.counters.left_over().items():
             self._journal.tell(Kind.COUNTERS_LEFT, element, value=axles)
 

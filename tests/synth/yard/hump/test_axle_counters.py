@@ -12,7 +12,7 @@ from synth.yard.hump.hump_state import Counters
 from synth.yard.hump.models import ENTRY
 from synth.yard.hump.moving_cut import MovingCut, moving_cut
 from synth.yard.hump.practice_rules import PUBLISHED_MODEL, PracticeRules
-from synth.yard.hump.reference_faults import CounterSlip
+from synth.yard.hump.reference_faults import CounterSlip, LateSwitch
 from synth.yard.hump.route_table import RouteTable
 from synth.yard.hump.section_counter import Finding, SectionCounter
 from tests.plant_models.hump.random_humps import small_hump
@@ -158,6 +158,35 @@ def test_a_part_of_a_cut_that_stays_behind_is_recorded_at_the_end() -> None:
     assert sorted(control.counters.left_over()) == [2, 602]
     whole, _ = humped(TABLE, [record(1, 2, cars=2)], [rolling(1, 0.0), rolling(1, 7.1)])
     assert told(whole, Kind.MISROUTED) == []
+
+
+@pytest.mark.parametrize("whole", [False, True])
+def test_cars_of_a_cut_that_go_another_way_with_its_leader_are_recorded_at_the_end(whole: bool) -> None:
+    """All belong to track 2, but the points come at 8.6 s, and cut 1 at 8 s. The first car of the last cut stays
+    coupled to cut 1 or, if `whole`, to cut 2, which stays coupled to cut 1. The rest of the last cut goes home."""
+    last = 3 if whole else 2
+    cuts = [record(serial, 2, cars=2 if serial == last else 1) for serial in range(1, last + 1)]
+    late = [LateSwitch(1, 7.8)]
+    control, _ = humped(TABLE, cuts, [rolling(1, 0.0, cars=last), rolling(last, 20.0)], late)
+    assert control.state.arrived == {1: [1], last: [2]}
+    never_alone = [(Kind.MISROUTED, 201, 2, Why.NOT_SEEN)] if whole else []
+    assert told(control, Kind.MISROUTED) == [
+        (Kind.MISROUTED, 601, 1, Why.OFF_ROUTE),
+        *never_alone,
+        (Kind.MISROUTED, 1, last, Why.OFF_ROUTE),
+    ]
+    assert control.counters.left_over() == {}
+
+
+def test_a_lone_axle_that_a_counter_took_for_another_cut_puts_no_cut_on_another_way() -> None:
+    """The last axle of cut 1 is not counted at the right exit of switch 1. So the first one of cut 2 is counted for it
+    at the left exit, and cut 2 lacks an axle at the end."""
+    objects, slip = [rolling(1, 0.0), rolling(2, 8.0)], [CounterSlip(1, 1, 3, -1)]
+    control, _ = humped(TABLE, [record(1, 2), record(2, 1)], objects, slip, Operation(rules=PUBLISHED_MODEL))
+    of_cut_1 = [e.time_s for e in control.log.events if (e.kind, e.element, e.cut) == (Kind.EXIT_COUNTER, 1, 1)]
+    assert max(of_cut_1) == pytest.approx(8.0 + 52.0 / 5.0)
+    assert control.state.arrived == {1: [2], 2: [1]}
+    assert told(control, Kind.MISROUTED) == [(Kind.MISROUTED, 1, 2, Why.NOT_SEEN)]
 
 
 def test_an_axle_that_nobody_announced_is_a_fault() -> None:

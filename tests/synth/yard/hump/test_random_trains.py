@@ -18,6 +18,7 @@ from synth.yard.hump.event import Kind
 from synth.yard.hump.event_log import events_of_csv, to_log_csv
 from synth.yard.hump.hump_state import replayed
 from synth.yard.hump.misrouting import Misrouting
+from synth.yard.hump.reference_faults import LateSwitch
 from tests.synth.yard.hump.judged_trains import Humping, Scene, judgement, random_humping
 from tests.synth.yard.hump.many_trains import SCENES
 from tests.synth.yard.hump.queue_of_cuts import APART_M
@@ -36,6 +37,14 @@ def test_no_points_under_or_beside_a_cut_none_lost_no_silent_counter_and_the_log
     judged = judgement(random_humping(seed, SCENES[name]))
     assert {key: judged[key] for key in NEVER} == dict.fromkeys(NEVER, 0)
     assert judged["cuts"] > 0
+
+
+@pytest.mark.parametrize(("name", "seed"), [("all", 49094), ("stalled, all", 24757)])
+def test_cars_that_rolled_with_the_cut_ahead_past_late_points_are_not_lost(name: str, seed: int) -> None:
+    """These trains had a cut of which some cars ended on another track without a record."""
+    humping = random_humping(seed, SCENES[name])
+    assert [type(fault) for fault in humping.faults] == [LateSwitch]
+    assert {key: judgement(humping)[key] for key in NEVER} == dict.fromkeys(NEVER, 0)
 
 
 @pytest.mark.parametrize("name", SENSORS_ARE_RIGHT)
@@ -105,6 +114,7 @@ def test_cuts_stall_in_the_trains_and_objects_never_overlap() -> None:
 
 def test_cuts_whose_misrouting_is_not_recorded_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Misrouting, "send", lambda self, cut, element, why, reachable, leader=0: ())
+    monkeypatch.setattr(AxleCounters, "off_route", lambda self: {})
     assert total(Scene(faults=3, points_alone=True))["lost"] > 0
 
 
