@@ -107,6 +107,7 @@ def train_figures(found: TrainOutcomes, wanted_share: float = 0.005) -> tuple[Tr
         part("overspeed_to_2", found.overspeed[:, 1], judged),
         part("overspeed_above_2", found.overspeed[:, 2], judged),
         mean("gap_per_cut", "m", found.gap_m, judged),
-        mean("strokes_per_pass", "1", found.strokes.sum(axis=1).astype(float), passes),
     ]
+    if found.strokes.any():  # no position models its valves otherwise
+        figures.append(mean("strokes_per_pass", "1", found.strokes.sum(axis=1).astype(float), passes))
     return tuple(figures)

@@ -1,4 +1,4 @@
-"""The plan of a train before it is humped: hump speeds pair by pair, exit speeds of the interval positions.
+"""The plan of a train before it is humped: hump speeds, and exit speeds of the interval positions.
 
 Every pair is simulated, and the hump speeds are the fastest with which some choice of exit speeds keeps the cut behind
 from the cut ahead by the least interval. Then the exit speeds are chosen anew, each cut in the middle between both.
@@ -78,7 +78,8 @@ class Planner:
         """The plan with the fastest hump speeds that keep the interval; of all turns, the best one for each train."""
         speeds = np.full((known.trains, known.cuts), self.limits.steps_m_s[len(self.limits.steps_m_s) // 2])
         needs_s = np.full((known.trains, known.cuts, LEADERS), -np.inf)
-        best, first_in_s, least_cost = speeds, None, np.full(known.trains, np.inf)
+        best, least_cost = speeds, np.full(known.trains, np.inf)
+        first_in_s = np.full((known.trains, known.cuts, self.routes.elements), np.nan)
         for turn in range(self.fits + self.repairs + 1):
             if turn > 0:
                 speeds = self.method.speeds(apart_m(known), needs_s, self.limits)
@@ -86,11 +87,7 @@ class Planner:
             cost = self.cost_s(found)
             better = cost < least_cost
             best = np.where(better[:, None], speeds, best)
-            first_in_s = (
-                found.first_in_s
-                if first_in_s is None
-                else np.where(better[:, None, None], found.first_in_s, first_in_s)
-            )
+            first_in_s = np.where(better[:, None, None], found.first_in_s, first_in_s)
             least_cost = np.minimum(cost, least_cost)
             enough = self.headways_s(found)
             needs_s = enough if turn < self.fits else np.maximum(needs_s, enough)

@@ -74,15 +74,15 @@ def elements_of(config: ResolvedTrial, found: TrainOutcomes) -> Document:
 
 
 def positions_of(config: ResolvedTrial, found: TrainOutcomes) -> list[Document]:
-    """Passes of each position, and how exactly cuts left it."""
-    passes, error2 = found.passes.sum(axis=0), found.error2_m2_s2.sum(axis=0)
+    """Passes of each position, how exactly cuts left it, and commands to its valves, None where none are modelled."""
+    passes, error2, strokes = (each.sum(axis=0) for each in (found.passes, found.error2_m2_s2, found.strokes))
     return [
         {
             "number": choice.number,
             "site": choice.site,
             "passes": int(passes[place]),
             "rms_of_exit_less_command_m_s": float((error2[place] / passes[place]) ** 0.5) if passes[place] else None,
-            "strokes_per_pass": float(found.strokes[:, place].sum() / passes[place]) if passes[place] else None,
+            "strokes_per_pass": float(strokes[place] / passes[place]) if strokes[place] else None,
         }
         for place, choice in enumerate(config.positions)
     ]
