@@ -115,13 +115,6 @@ def even_speed_m_s(entry_m_s: Floats, exit_m_s: Floats, share: Floats) -> Floats
     return np.sqrt(entry_m_s**2 + share * (exit_m_s**2 - entry_m_s**2))
 
 
-def even_duration_s(start: Moving, to_m: Floats, exit_m_s: Floats) -> Floats:
-    """How long cuts take that are braked at an even rate; infinite where they stop."""
-    both = start.speed_m_s + exit_m_s
-    moves = (start.speed_m_s > 0.0) & (exit_m_s > 0.0)
-    return np.where(moves, 2.0 * (to_m - start.head_m) / np.where(moves, both, 1.0), np.inf)
-
-
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Push:

@@ -9,7 +9,7 @@ from plant_models.hump import Signal, Switch
 from plant_models.library import load_hump
 from synth.yard.humping.hump_routes import HumpRoutes, Mark, hump_routes
 from synth.yard.humping.meeting import first_of
-from synth.yard.humping.motion import Cars, Moving, Push, braked_evenly, even_duration_s, merged, rolled_free
+from synth.yard.humping.motion import Cars, Moving, Push, braked_evenly, merged, rolled_free
 from tests.plant_models.hump.random_humps import random_hump, small_hump
 from tests.synth.yard.humping.bare_cuts import GRAVITY_M_S2, EvenFall
 
@@ -86,8 +86,7 @@ def test_free_rolls_pass_places_in_any_order() -> None:
 def test_an_even_brake_keeps_the_balance_of_energy_and_time() -> None:
     start = Moving(np.array([0.0, 0.0]), np.array([6.0, 6.0]), np.array([1.0, 1.0]))
     exits, to = np.array([3.0, 0.0]), np.array([30.0, 30.0])
-    duration = even_duration_s(start, to, exits)
-    assert duration.tolist() == [pytest.approx(60.0 / 9.0), np.inf]
+    duration = np.array([2.0 * 30.0 / (6.0 + 3.0), np.inf])
     heads = np.tile(np.linspace(0.0, 30.0, 200), (2, 1))
     end, times = braked_evenly(start, to, exits, duration, heads)
     assert np.isinf(times[1, 1:]).all()
