@@ -46,7 +46,7 @@ class CutTrace:
         """This way as far as it is clear of the cut `leader`, which is `length_m` long, then coupled to its tail; and
         when they touch.
 
-        That is at `by_s` at the latest, as the model found from their axles at a joint.
+        That is at `by_s` at the latest, when the model found it from their axles at a joint.
         """
         inside = (self.head_m > leader.head_at(self.time_s) - length_m) | (self.time_s >= by_s)
         inside[0] = False

@@ -14,7 +14,7 @@ from synth.yard.humping.hump_routes import OF_FIRST_AXLE, HumpRoutes, Mark
 from synth.yard.humping.meeting import Ahead, LastUsers, first_of, meeting
 from synth.yard.humping.motion import Cars, Moving, Push, Rolls, braked_evenly, merged, rolled_free
 from synth.yard.humping.standing_cars import StandingCars
-from synth.yard.humping.tails import Tails, stations_of
+from synth.yard.humping.tails import Tails, followed
 from synth.yard.humping.train_cuts import TrainCuts
 from synth.yard.humping.train_memory import TrainMemory
 
@@ -150,44 +150,33 @@ class OneCut:
     def touch(self) -> None:
         """Cuts in contact roll behind those ahead of them from there on."""
         ahead = self.ahead()
-        found = meeting(self.hump.routes, self.routes, self.times, ahead)
-        at = first_of(found.contact)
-        touching = self.rolling & (at < found.contact.shape[1])
+        met = meeting(self.hump.routes, self.routes, self.times, ahead)
+        at = first_of(met.contact)
+        touching = self.rolling & (at < met.contact.shape[1])
         if not touching.any():
             return
-        lanes = self.lanes[touching]
-        leader = ahead.cut[touching, at[touching]]
-        self.memory.contact_at[lanes, self.cut] = at[touching]
-        self.routes[touching] = self.memory.route[lanes, leader]
-        self.times[touching] = self.behind(lanes, leader, at[touching])
+        lanes, column, memory = self.lanes[touching], at[touching], self.memory
+        leader = ahead.cut[touching, column]
+        came = met.touches_in[touching, column]
+        since = self.times[lanes, column, np.where(came, Mark.FIRST_IN, Mark.FIRST_OUT)]
+        self.routes[touching] = memory.route[lanes, leader]
+        memory.contact_at[lanes, self.cut], memory.behind[lanes, self.cut] = column, leader
+        memory.since_s[lanes, self.cut] = since
+        self.follow(lanes, leader, since)
         self.rolling = self.rolling & ~touching
 
-    def behind(self, lanes: Ints, leader: Ints, at: Ints) -> Floats:
-        """Times of cuts in contact from element `at` on: their first axles follow the last axles of their leaders."""
-        own, own_routes, memory = self.times[lanes], self.routes[lanes], self.memory
-        rows = lanes * self.trains.cuts + leader
-        there, base = self.trains.last_axle_m[rows], (self.last_m - self.first_m)[lanes]
-        ends, still = memory.tail_m[lanes, leader], memory.still_s[lanes, leader]
-        start = self.last_roll(lanes, leader, own_routes)
-        places, when = stations_of(Cars(self.hump.rolls, rows, own_routes), start, ends + there)
-        last = np.concatenate((places - there[:, None], ends[:, None]), axis=1)
-        ended = np.concatenate((when, still[:, None]), axis=1)
-        tails = Tails(self.hump.routes.place_m[own_routes], memory.time_s[lanes, leader], last, ended)
-        memory.tail_m[lanes, self.cut], memory.still_s[lanes, self.cut] = ends - base, still
-        met = own[np.arange(len(lanes)), at]
-        since = np.fmin(met[:, Mark.FIRST_IN], met[:, Mark.FIRST_OUT])
-        return tails.followed(own, since, base)
-
-    def last_roll(self, lanes: Ints, cut: Ints, routes: Ints) -> Moving:
-        """Where the cuts (n,) of the trains `lanes` began their last free rolls: at the last position, else the crest;
-        NaN where they did not come to that."""
-        memory, rows = self.memory, lanes * self.trains.cuts + cut
-        last = np.isfinite(self.hump.routes.entrance_m[routes]).sum(axis=1) - 1
-        crest = Moving(0.5 * self.trains.length_m[rows], memory.hump_speed_m_s[lanes, cut], memory.crest_s[lanes, cut])
-        held = last >= 0
-        at = lanes[held], cut[held], last[held]
-        leaves = self.hump.routes.release_m[routes[held]] + self.trains.last_axle_m[rows[held]]
-        return merged(crest, Moving(leaves, memory.exit_m_s[at], memory.end_s[at]), held)
+    def follow(self, lanes: Ints, leader: Ints, since_s: Floats) -> None:
+        """What the memory and the marks have of cuts whose first axles follow the last axles of their leaders."""
+        memory, trains, cut = self.memory, self.trains, self.cut
+        base = (self.last_m - self.first_m)[lanes]
+        wanted = self.hump.routes.place_m[self.routes[lanes]] + np.where(OF_FIRST_AXLE, 0.0, base[:, None, None])
+        tails = Tails(self.hump.routes, self.hump.rolls, trains, memory)
+        times = tails.times_s(lanes, leader, wanted.reshape(len(lanes), -1)).reshape(wanted.shape)
+        self.times[lanes] = followed(self.times[lanes], since_s[:, None, None], times)
+        memory.tail_m[lanes, cut] = memory.tail_m[lanes, leader] - base
+        memory.still_s[lanes, cut] = memory.still_s[lanes, leader]
+        ruled = memory.ruled_m_s[lanes, cut]
+        memory.ruled_m_s[lanes, cut] = np.where(np.isnan(ruled), memory.ruled_m_s[lanes, leader], ruled)
 
     def through_position(self, moving: Moving, position: int, control: ExitSpeeds) -> Moving:
         """The pass of `position`: commanded by the control, or as the cut ahead that is still in it."""
@@ -232,6 +221,7 @@ class OneCut:
         place = lanes, self.cut, position
         memory.begin_s[place], memory.entry_m_s[place] = start.time_s, start.speed_m_s
         memory.command_m_s[place], memory.exit_m_s[place] = command, passed.exit_m_s
+        memory.ruled_m_s[place] = command
         memory.end_s[place], memory.strokes[place] = end.time_s, passed.switchings
         ended = merged(moving, end, held)
         self.halt(moving, ended)
@@ -252,14 +242,14 @@ class OneCut:
         return merged(end, Moving(rolled.head_m, np.zeros(len(passed)), rolled.time_s + np.inf), stops), times
 
     def obeyed(self, command: Floats, held: Bools, position: int) -> Floats:
-        """Two cuts on a retarder: the mode of the first one rules."""
+        """Two cuts on a retarder: the mode of the first one rules, also through one in contact between them."""
         element = self.hump.routes.retarder[self.routes[held], position]
         ahead = self.ahead()
         met = meeting(self.hump.routes, self.routes, self.times, ahead)
         own = np.arange(len(element))
         both = met.unseparated[held][own, element]
         first = ahead.cut[held][own, element]
-        ruling = self.memory.command_m_s[self.lanes[held], np.maximum(first, 0), position]
+        ruling = self.memory.ruled_m_s[self.lanes[held], np.maximum(first, 0), position]
         return np.where(both & np.isfinite(ruling), ruling, command)
 
     def to_track(self, moving: Moving) -> None:

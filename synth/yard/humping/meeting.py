@@ -67,14 +67,21 @@ class Meeting:
     """What n cuts, of which `time_s` is known as far as it is not NaN, do with those ahead: (n, elements) each.
 
     `unseparated`: the first axle comes in before the last one ahead went out. `late`: the points lie for the cut ahead
-    and cannot be thrown any more. `contact`: it passes a joint before the cut ahead has passed it. `foul`: where the
-    ways part, it is at the fouling point before the cut ahead is beyond its own.
+    and cannot be thrown any more. `touches_in`, `touches_out`: its first axle passes the joint where cuts come in, or
+    go out, before the last one of the cut ahead has passed it. `foul`: where the ways part, it is at the fouling point
+    before the cut ahead is beyond its own.
     """
 
     unseparated: Bools
     late: Bools
-    contact: Bools
+    touches_in: Bools
+    touches_out: Bools
     foul: Bools
+
+    @property
+    def contact(self) -> Bools:
+        """The cuts touch at one of both joints."""
+        return np.asarray(self.touches_in | self.touches_out)
 
 
 def meeting(routes: HumpRoutes, rows: Ints, time_s: Floats, ahead: Ahead) -> Meeting:
@@ -88,7 +95,8 @@ def meeting(routes: HumpRoutes, rows: Ints, time_s: Floats, ahead: Ahead) -> Mee
     return Meeting(
         unseparated=somebody & (first_in < out),
         late=somebody & parts & (first_in < out + routes.throw_s[rows]),
-        contact=somebody & (touch_in | touch_out),
+        touches_in=somebody & touch_in,
+        touches_out=somebody & touch_out,
         foul=somebody & foul,
     )
 

@@ -7,61 +7,70 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
-from synth.yard.humping.hump_routes import OF_FIRST_AXLE
-from synth.yard.humping.motion import Cars, Moving, rolled_free
+from synth.yard.humping.hump_routes import HumpRoutes
+from synth.yard.humping.motion import Cars, Moving, Push, Rolls, braked_evenly, merged, rolled_free
+from synth.yard.humping.train_cuts import TrainCuts
+from synth.yard.humping.train_memory import TrainMemory
 
 Floats = NDArray[np.float64]
-
-STATIONS = 40
-"""Places on the last free roll of a leader where its time is worked out."""
+Ints = NDArray[np.int64]
 
 
-@frozen_arrays
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Tails:
-    """Last axles of n leaders: `place_m`, `time_s` (n, elements, marks) of their routes, and further places `last_m`
-    (n, k) where they are at `last_s`, the last one being where they stand. Between two places they move evenly."""
+    """The last axles of the cuts that `memory` tells of, told anew from what it has of their legs."""
 
-    place_m: Floats
-    time_s: Floats
-    last_m: Floats
-    last_s: Floats
+    routes: HumpRoutes
+    rolls: Rolls
+    trains: TrainCuts
+    memory: TrainMemory
 
-    def followed(self, own_s: Floats, since_s: Floats, base_m: Floats) -> Floats:
-        """Times of marks (n, elements, marks) of cuts that have `own_s` until they touch, at `since_s` (n,), and follow
-        with their first axles then; their last axles are `base_m` (n,) behind. Infinite where they do not come."""
-        times = np.where(own_s <= since_s[:, None, None], own_s, np.nan)
-        for row in range(len(own_s)):
-            place, when = self.track_of(row)
-            if len(place) == 0:  # the leader stands where it is in contact
-                times[row][np.isnan(times[row])] = np.inf
+    def times_s(self, lanes: Ints, cuts: Ints, places_m: Floats) -> Floats:
+        """When the last axles of the cuts (n,) of the trains `lanes` are at `places_m` (n, k), infinite where they
+        never are. A cut in contact follows the last axle of the one ahead of it with its first axle from then on."""
+        rows = lanes * self.trains.cuts + cuts
+        times = self.alone_s(lanes, cuts, places_m + self.trains.last_axle_m[rows, None])
+        led = np.flatnonzero(self.memory.behind[lanes, cuts] >= 0)
+        if len(led):
+            at, since = (lanes[led], cuts[led]), self.memory.since_s[lanes[led], cuts[led], None]
+            base = (self.trains.last_axle_m - self.trains.first_axle_m)[rows[led], None]
+            times[led] = followed(times[led], since, self.times_s(at[0], self.memory.behind[at], places_m[led] + base))
+        return times
+
+    def alone_s(self, lanes: Ints, cuts: Ints, heads_m: Floats) -> Floats:
+        """When the heads of the cuts (n,) are at `heads_m` (n, k), as if nobody were ahead of them; infinite where they
+        never are."""
+        memory, trains, at = self.memory, self.trains, (lanes, cuts)
+        rows, routes = lanes * trains.cuts + cuts, memory.route[lanes, cuts]
+        cars = Cars(self.rolls, rows, routes)
+        moving = Moving(0.5 * trains.length_m[rows], memory.hump_speed_m_s[at], memory.crest_s[at])
+        times = self.pushed_s(lanes, cuts, moving, heads_m)
+        for position in range(self.routes.positions):
+            held = np.isfinite(memory.end_s[lanes, cuts, position])  # a cut that stops in a position is not braked
+            if not held.any():
                 continue
-            wanted = self.place_m[row] + np.where(OF_FIRST_AXLE, 0.0, base_m[row])
-            behind = np.interp(wanted, place, when, left=since_s[row], right=np.inf)
-            missing = np.isnan(times[row])
-            times[row][missing] = np.maximum(behind[missing], since_s[row])
-        return np.where(np.isfinite(self.place_m), times, np.inf)
+            place = lanes[held], cuts[held], position
+            entrance = self.routes.entrance_m[routes[held], position] + trains.first_axle_m[rows[held]]
+            leaves = self.routes.exit_m[routes[held], position] + trains.last_axle_m[rows[held]]
+            _, rolled = rolled_free(cars.chosen(held), moving.chosen(held), entrance, heads_m[held])
+            start = Moving(entrance, memory.entry_m_s[place], memory.begin_s[place])
+            takes, exits = memory.end_s[place] - start.time_s, memory.exit_m_s[place]
+            end, braked = braked_evenly(start, leaves, exits, takes, heads_m[held])
+            times[held] = np.fmin(times[held], np.fmin(rolled, braked))
+            moving = merged(moving, end, held)
+        end_m = np.where(np.isnan(memory.end_m[at]), self.routes.length_m[routes], memory.end_m[at])
+        _, rolled = rolled_free(cars, moving, np.maximum(end_m, moving.head_m), heads_m)
+        times = np.fmin(times, rolled)
+        return np.where(np.isnan(times), np.inf, times)
 
-    def track_of(self, row: int) -> tuple[Floats, Floats]:
-        """(places, times) of one last axle, in order; it comes no farther than the last place."""
-        place = np.append(self.place_m[row][:, ~OF_FIRST_AXLE], self.last_m[row])
-        when = np.append(self.time_s[row][:, ~OF_FIRST_AXLE], self.last_s[row])
-        known = np.isfinite(place) & np.isfinite(when)
-        order = np.argsort(place[known], kind="stable")
-        rising = np.maximum.accumulate(when[known][order])
-        return place[known][order], rising
+    def pushed_s(self, lanes: Ints, cuts: Ints, let_go: Moving, heads_m: Floats) -> Floats:
+        """The same of the train on the hump before the cuts are `let_go`; NaN for places behind that."""
+        ahead = np.maximum(cuts - 1, 0)
+        length_m, rows = self.trains.length_m, lanes * self.trains.cuts
+        apart = np.where(cuts > 0, 0.5 * (length_m[rows + cuts] + length_m[rows + ahead]), length_m[rows + cuts])
+        return Push(self.memory.hump_speed_m_s[lanes, ahead], apart).times_s(let_go, heads_m)
 
 
-def stations_of(cars: Cars, start: Moving, end_m: Floats) -> tuple[Floats, Floats]:
-    """(places of the heads, times) of cuts (n,) on their last free rolls from `start` to `end_m`, (n, `STATIONS`); NaN
-    for cuts that did not come to that by themselves."""
-    heads, when = np.full((2, len(end_m), STATIONS), np.nan)
-    rolls = np.flatnonzero(np.isfinite(start.time_s) & np.isfinite(end_m) & (start.speed_m_s > 0.0))
-    if len(rolls):
-        begins, to = start.head_m[rolls], np.maximum(end_m[rolls], start.head_m[rolls])
-        heads[rolls] = begins[:, None] + (to - begins)[:, None] * np.linspace(0.0, 1.0, STATIONS + 1)[None, :-1]
-        _, times = rolled_free(cars.chosen(rolls), start.chosen(rolls), to, heads[rolls])
-        times[:, 0] = start.time_s[rolls]
-        when[rolls] = times
-    return heads, when
+def followed(own_s: Floats, since_s: Floats, tail_s: Floats) -> Floats:
+    """Times of cuts that have `own_s` until they touch, at `since_s`, and those of the last axle ahead from then on."""
+    return np.where(own_s <= since_s, own_s, np.maximum(tail_s, since_s))

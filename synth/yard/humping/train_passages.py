@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from synth.yard.humping.hump_routes import HumpRoutes, Mark
 from synth.yard.humping.train_cuts import TrainCuts
 from synth.yard.humping.train_memory import TrainMemory
-from synth.yard.humping.train_trace import user_ahead
 
 Floats = NDArray[np.float64]
 
@@ -57,20 +56,20 @@ class TrainPassages:
 
 def train_passages(routes: HumpRoutes, trains: TrainCuts, memory: TrainMemory, lane: int) -> TrainPassages:
     """Those of the train `lane` of `memory`, on the routes that its cuts went at last."""
-    times = with_contacts(routes, memory, lane)
+    times = with_contacts(memory, lane)
     shares = [axle_shares(trains, lane * trains.cuts + cut) for cut in range(trains.cuts)]
     ways = (tuple(way(routes, int(memory.route[lane, cut]), times[cut], share)) for cut, share in enumerate(shares))
     return TrainPassages(tuple(ways), tuple(int(track) for track in routes.tracks[memory.route[lane]]))
 
 
-def with_contacts(routes: HumpRoutes, memory: TrainMemory, lane: int) -> Floats:
+def with_contacts(memory: TrainMemory, lane: int) -> Floats:
     """Times (cuts, elements, marks) of a train. The simulation finds a contact at the next joint; there the cut comes
     no sooner than the last axle of the one that it touched; its first axle, where the last one never comes."""
     times: Floats = memory.time_s[lane].copy()
     for cut in range(len(times)):
         at = int(memory.contact_at[lane, cut])
-        leader = user_ahead(routes, memory, lane, cut, at)
-        if leader is not None:
+        leader = int(memory.behind[lane, cut])
+        if leader >= 0:
             joint = times[cut, at, Mark.FIRST_IN : Mark.LAST_IN + 1]
             ahead = times[leader, at, Mark.FIRST_IN : Mark.LAST_IN + 1]
             joint += max(0.0, ahead[np.isfinite(ahead)][-1] - joint[0])

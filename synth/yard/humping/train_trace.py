@@ -126,10 +126,10 @@ def train_trace(hump: Hump, trains: TrainCuts, memory: TrainMemory, lane: int) -
     ways = list(TracedTrain(hump, trains, memory, lane).traces())
     touch_s: dict[int, float] = {}
     for cut in range(trains.cuts):
-        leader = leader_of(hump.routes, memory, lane, cut)
+        leader = leader_of(memory, lane, cut)
         if leader is not None:
             length = float(trains.length_m[lane * trains.cuts + leader])
-            by_s = contact_by_s(hump.routes, memory, lane, cut)
+            by_s = float(memory.since_s[lane, cut])
             if memory.caught_on_track[lane, cut]:
                 ways[cut], touch_s[cut] = ways[cut].held_up(ways[leader], length)
             else:
@@ -140,22 +140,13 @@ def train_trace(hump: Hump, trains: TrainCuts, memory: TrainMemory, lane: int) -
     return TrainTrace(trains.first + lane, hump.routes, cuts, occupied, tuple(found))
 
 
-def leader_of(routes: HumpRoutes, memory: TrainMemory, lane: int, cut: int) -> int | None:
+def leader_of(memory: TrainMemory, lane: int, cut: int) -> int | None:
     """The cut with which `cut` came in contact, on the way or, while both rolled, on their track."""
     if not memory.caught_on_track[lane, cut]:
-        return user_ahead(routes, memory, lane, cut, int(memory.contact_at[lane, cut]))
+        leader = int(memory.behind[lane, cut])
+        return leader if leader >= 0 else None
     same = np.flatnonzero(memory.route[lane, :cut] == memory.route[lane, cut])
     return int(same[-1]) if len(same) else None
-
-
-def contact_by_s(routes: HumpRoutes, memory: TrainMemory, lane: int, cut: int) -> float:
-    """When `cut` comes in to the element of its contact, if the cut ahead is not yet in there; else infinite."""
-    at = int(memory.contact_at[lane, cut])
-    leader = user_ahead(routes, memory, lane, cut, at)
-    if leader is None:
-        return float("inf")
-    comes = memory.time_s[lane, cut, at, Mark.FIRST_IN]
-    return float(comes if comes < memory.time_s[lane, leader, at, Mark.LAST_IN] else np.inf)
 
 
 def user_ahead(routes: HumpRoutes, memory: TrainMemory, lane: int, cut: int, column: int) -> int | None:
@@ -257,7 +248,7 @@ def alarms(
                 yield Alarm(kind, touch_s.get(cut, met_s) if kind is AlarmKind.CONTACT else met_s, cut, ahead, number)
         ends_s = float(each.trace.time_s[-1])
         if memory.caught_on_track[lane, cut]:
-            ahead = leader_of(routes, memory, lane, cut)
+            ahead = leader_of(memory, lane, cut)
             yield Alarm(AlarmKind.ON_TRACK, touch_s.get(cut, ends_s), cut, ahead, None)
         if each.coupled_m_s is not None and each.coupled_m_s > COUPLING_SPEED_M_S:
             yield Alarm(AlarmKind.OVERSPEED, touch_s.get(cut, ends_s), cut, None, None)

@@ -26,6 +26,9 @@ MARKS = {
 ALMOST_STANDS_M = 0.1
 """Twice what the layered simulator leaves out of the last of a roll."""
 
+SAME_PLACE_M = 0.02
+"""A cut that almost stands takes long for so little; times are compared where it goes farther meanwhile."""
+
 COMPARED = (Kind.NOT_SEPARATED, Kind.MISROUTED, Kind.CONTACT, Kind.FOULED, Kind.TRACK_CONTACT)
 
 
@@ -111,7 +114,8 @@ def agreement(both: BothTrains, memory: TrainMemory, run: SlowRun, train: int) -
 
 
 def time_differences(both: BothTrains, memory: TrainMemory, run: SlowRun, train: int, cut: int) -> Iterator[float]:
-    """Seconds between the times of both at each mark; infinite where one alone knows of a passage."""
+    """Seconds between the times of both at each mark, 0 where it is there in nearly the same place; infinite where one
+    alone knows of a passage."""
     row = memory.route[train, cut]
     for column, vertex in enumerate(both.routes.vertex[row]):
         number = both.routes.numbers[vertex]
@@ -120,5 +124,6 @@ def time_differences(both: BothTrains, memory: TrainMemory, run: SlowRun, train:
             if vertex < 0 or (slow in (Mark.FIRST_FOULING, Mark.LAST_FOULING) and not is_switch):
                 continue
             own = float(np.nan_to_num(memory.time_s[train, cut, column, layered], nan=np.inf, posinf=np.inf))
-            other = run.time_s(cut, number, slow)
-            yield 0.0 if own == other else abs(own - other)
+            other = run.passages.get((cut, number, slow))
+            apart = abs(own - run.time_s(cut, number, slow)) if np.isfinite(own) or other is not None else 0.0
+            yield apart if other is None or apart * other.speed_m_s > SAME_PLACE_M else 0.0

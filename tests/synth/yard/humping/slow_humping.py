@@ -139,7 +139,9 @@ class SlowHumping(SlowRecord):
 
     def couple(self, i: int) -> None:
         """Cut `i` has come to standing cars."""
-        moving = self.cuts[i]
+        moving, j = self.cuts[i], self.ahead_on_track(i)
+        if j is not None:
+            self.margins_s.append(abs(moving.t - self.cuts[j].t))
         self.tell(moving.t, Kind.COUPLED, moving.route.elements[-1].number, i, moving.v)
         moving.mode = Mode.STANDING
 
@@ -188,7 +190,7 @@ class SlowHumping(SlowRecord):
         if not self.passed(j, number, Mark.LAST_TO, time_s):
             self.tell(time_s, Kind.NOT_SEPARATED, number, i)
             if isinstance(element.vertex, Retarder):
-                self.commands[i, number] = self.commands.get((j, number), self.planned(j, number))
+                self.commands[i, number] = self.ruling(j, number)
         at = moving.route.elements.index(element)
         if isinstance(element.vertex, Switch) and self.cuts[j].route.elements[at].position != element.position:
             delay_s = element.vertex.relay_s + element.vertex.throw_s
@@ -240,6 +242,13 @@ class SlowHumping(SlowRecord):
             return
         if not self.passed(j, element.number, Mark.LAST_FOULING, time_s):
             self.tell(time_s, Kind.FOULED, element.number, i)
+
+    def ruling(self, i: int, number: int) -> float:
+        """The command by which the position lets cut `i` go; that of the cut ahead, if it comes in contact with it."""
+        leader = self.cuts[i].leader
+        if (i, number) in self.commands or leader is None:
+            return self.commands.get((i, number), self.planned(i, number))
+        return self.ruling(self.cuts.index(leader), number)
 
     def planned(self, i: int, number: int) -> float:
         """The command of cut `i` for the position, as it was given."""

@@ -8,10 +8,12 @@ import pytest
 from plant_models.library.hump_entry import load_hump
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
 from plant_models.rolling.weather import Weather
+from synth.yard.humping.hump_routes import Mark
+from synth.yard.humping.train_memory import TrainMemory
 from tests.plant_models.rolling.populations import MIX, population
 from tests.synth.yard.humping.agreement import agreement, judged
-from tests.synth.yard.humping.fast_and_slow import HARD, both_trains
-from tests.synth.yard.humping.slow_humping import humped_slowly
+from tests.synth.yard.humping.fast_and_slow import HARD, BothTrains, Hardness, both_trains
+from tests.synth.yard.humping.slow_humping import STEP_S, SlowHumping, humped_slowly
 from tests.synth.yard.humping.slow_train import Kind
 
 TRACKS = (1, 2, 3, 9, 17)
@@ -48,15 +50,61 @@ def test_both_simulators_tell_the_same_of_small_trains(law: ResistanceLaw, weath
     assert compared > 0.7 * TRAINS * CUTS
 
 
+def many_trains(seed: int, hardness: Hardness) -> tuple[BothTrains, TrainMemory]:
+    """Trains among which to look for what is rare, and what the layered simulator says of them."""
+    people = population(MIX, HumpNormLaw(), Weather())
+    both = both_trains(load_hump("large").graph, people, TRACKS, seed, 3000, CUTS, hardness)
+    return both, both.fast()
+
+
 def test_both_simulators_see_the_same_cuts_foul() -> None:
     """Cuts that stop short of a fouling point are rare, so the layered simulator looks for them first."""
-    both = both_trains(load_hump("large").graph, population(MIX, HumpNormLaw(), Weather()), TRACKS, 5, 3000, CUTS, HARD)
-    memory = both.fast()
-    alone = (memory.contact_at == both.routes.elements).all(axis=1)  # tails in contact are nearly, not quite, the same
-    fouling = np.flatnonzero(memory.foul.any(axis=(1, 2)) & alone).tolist()
+    both, memory = many_trains(5, HARD)
+    fouling = np.flatnonzero(memory.foul.any(axis=(1, 2))).tolist()
     assert len(fouling) >= 3
     for train in fouling[:3]:
         run = humped_slowly(both.graph, both.slow(train))
         assert run.of(Kind.FOULED), train
         assert run.of(Kind.STOPPED), train
         assert not agreement(both, memory, run, train).differing, train
+
+
+def compared_trains(both: BothTrains, memory: TrainMemory, trains: list[int]) -> int:
+    """How many of `trains` could be compared; they must agree."""
+    compared = 0
+    for train in trains:
+        run = humped_slowly(both.graph, both.slow(train))
+        if run.closest_s < NEAR_S:
+            continue
+        found = agreement(both, memory, run, train)
+        assert not found.differing, train
+        assert found.times_s < NEAR_S, train
+        compared += 1
+    return compared
+
+
+def test_both_simulators_tell_the_same_of_cuts_behind_cuts_in_contact() -> None:
+    """A third cut meets the tail of one that follows the tail of the first since it met it at the end of a section."""
+    both, memory = many_trains(6, HARD)
+    at = np.minimum(memory.contact_at, both.routes.elements - 1)
+    came = np.take_along_axis(memory.time_s[..., Mark.FIRST_IN], at[:, :, None], axis=2)[..., 0]
+    at_end = (memory.behind >= 0) & (memory.since_s > came)
+    meets = memory.unseparated[:, 1:].any(axis=2) & at_end[:, :-1]
+    assert compared_trains(both, memory, np.flatnonzero(meets.any(axis=1)).tolist()[:8]) >= 4
+
+
+def test_a_position_stays_as_it_is_through_a_cut_in_contact() -> None:
+    """A cut comes on the position where one rolls in contact with another: the mode of the first of them rules."""
+    both, memory = many_trains(7, HARD)
+    column = both.routes.retarder[memory.route]
+    shared = np.take_along_axis(memory.unseparated, column, axis=2)
+    passes, led = np.isfinite(memory.begin_s), memory.behind >= 0
+    same = memory.route[:, 1:] == memory.route[:, :-1]
+    between = (passes & shared)[:, 1:] & (led[:, :-1, None] & ~passes[:, :-1]) & same[:, :, None]
+    found = np.argwhere(between).tolist()
+    assert len(found) >= 8
+    for train, ahead, position in found[:8]:
+        slow, cut = SlowHumping(both.graph, both.slow(train)), ahead + 1
+        slow.run(STEP_S)
+        element = both.routes.numbers[both.routes.vertex[memory.route[train, cut], column[train, cut, position]]]
+        assert memory.command_m_s[train, cut, position] == slow.commands[cut, element]
