@@ -66,12 +66,14 @@ def constant_tail(rate_per_s: float, service_s: float, wait_s: float) -> float:
     Q_n = P(at most n wait). All terms are positive (Franx, Operations Research Letters 29, 2001, p. 221), where
     Erlang's form, Σ_j (1 − ρ) e^(λ(t − jD)) (−λ(t − jD))^j/j!, loses all digits for long waits.
     """
-    from scipy.stats import poisson
+    from scipy.special import gammaln, xlogy
 
     services = math.floor(wait_s / service_s) + 1
     rest = rate_per_s * (services * service_s - wait_s)
     waiting = np.cumsum(requests_present(rate_per_s * service_s, services + 1))[1:]
-    return float(max(0.0, 1.0 - poisson.pmf(np.arange(services), rest) @ waiting[services - 1 :: -1]))
+    index = np.arange(services)
+    coming = np.exp(xlogy(index, rest) - rest - gammaln(index + 1.0))
+    return float(max(0.0, 1.0 - coming @ waiting[services - 1 :: -1]))
 
 
 def requests_present(load: float, most: int) -> Floats:
@@ -80,9 +82,9 @@ def requests_present(load: float, most: int) -> Floats:
     As often as the number rises above n it falls to n: π_{n+1} P(A = 0) = π_0 P(A > n) + Σ_{j=1}^{n} π_j P(A > n + 1 − j),
     with A the requests that come during a service; no term is negative.
     """
-    from scipy.stats import poisson
+    from scipy.special import pdtrc
 
-    more = poisson.sf(np.arange(most + 1), load)
+    more = pdtrc(np.arange(most + 1), load)
     present = np.empty(most + 1)
     present[0] = 1.0 - load
     for n in range(most):
