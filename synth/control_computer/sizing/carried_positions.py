@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 
 from plant_models.errors import require
 from synth.control_computer.sizing.periodic_task import PeriodicTask
-from synth.control_computer.sizing.response_time import responses
+from synth.control_computer.sizing.response_time import exact_load, responses
 from synth.control_computer.sizing.trackside_controllers import TracksideController
 
 MOST_POSITIONS = 1_000_000
@@ -81,11 +81,11 @@ def carried(controller: TracksideController, times: PositionTimes, positions: in
         longest_s = controller.scan.longest_response_s(work_s)
         return Carried(positions, times, longest_s, longest_s, controller.scan.used_share(work_s))
     samples, cuts = _tasks(controller, times, positions)
-    used = samples.utilisation + cuts.utilisation
-    if used >= 1.0:
-        return Carried(positions, times, math.inf, math.inf, used)
+    used = exact_load((samples, cuts))
+    if used >= 1:
+        return Carried(positions, times, math.inf, math.inf, float(used))
     answer, table = responses((samples, cuts))
-    return Carried(positions, times, answer.longest_s, table.longest_s, used)
+    return Carried(positions, times, answer.longest_s, table.longest_s, float(used))
 
 
 def most_positions(controller: TracksideController, times: PositionTimes) -> int:

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from plant_models.errors import require, require_between
-from synth.control_computer.sizing.task import TaskMix
+from synth.control_computer.sizing.task import TaskMix, require_speed
 
 
 @dataclass(frozen=True)
@@ -59,6 +59,7 @@ def used_share(mix: TaskMix, speed_op_s: float, cycle: Cycle, checks_count: bool
 
     The rest of a cycle confirms what is known. [hump-computer-1970s] tells 7 to 8 %, not whether checks count.
     """
+    require_speed(speed_op_s)
     work = mix.operations_per_s / speed_op_s
     return work / cycle.useful_share if checks_count else work
 
@@ -71,6 +72,7 @@ def operations_for_use(share: float, speed_op_s: float, rate_per_s: float, cycle
     at most. At 10⁶ op/s (feedback) they give 42 000 to 97 000; the same work has 8 000 in the text.
     """
     require_between("share", share, 0.0, 1.0)
+    require_speed(speed_op_s)
     require(
         math.isfinite(rate_per_s) and rate_per_s > 0.0,
         f"rate_per_s is {rate_per_s!r}; it must be a finite number above 0",

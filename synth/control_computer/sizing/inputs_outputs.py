@@ -60,7 +60,7 @@ class ChannelRules:
         ("section", "occupied or free, also those of switches and retarders"),
         ("zone", "pressure of the cylinders; one digital output for the valve of each of five stages"),
         ("retarder", "ready, or in manual control"),
-        ("radar", "speed"),
+        ("radar", "the measured speed"),
         ("point_sensor", "two wheel sensors close together"),
         ("axle_counter", "two wheel sensors at a joint, which also tell the direction"),
         ("crest_signal", "lamp proved; stop, slow, faster and back"),

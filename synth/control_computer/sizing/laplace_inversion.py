@@ -53,7 +53,7 @@ def inverted(transform: Callable[[Complexes], Complexes], time_s: float, toleran
 def _euler_sum(transform: Callable[[Complexes], Complexes], time_s: float, terms: int) -> float:
     """The binomial mean of the partial sums of `terms` to `terms` + `BINOMIAL_TERMS` terms."""
     index = np.arange(terms + BINOMIAL_TERMS + 1)
-    nodes = (DAMPING + 2j * math.pi * index) / (2.0 * time_s)
+    nodes = ((DAMPING + 2j * math.pi * index) / (2.0 * time_s)).astype(np.complex128)
     values = np.real(transform(nodes)) * np.where(index % 2, -1.0, 1.0)
     values[0] *= 0.5
     sums = np.cumsum(values)[terms:]

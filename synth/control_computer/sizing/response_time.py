@@ -43,21 +43,35 @@ def responses(tasks: tuple[PeriodicTask, ...]) -> tuple[Response, ...]:
     across a release. `PlantError` if the processor has too little time for all jobs.
     """
     require(len(tasks) > 0, "response times: there is no task; there must be at least one")
-    load = sum((exact(task.work_s) / exact(task.period_s) for task in tasks), Fraction(0))
-    late = any(task.jitter_s > 0.0 or task.blocking_s > 0.0 for task in tasks)
+    load = exact_load(tasks)
     require(
-        load < 1 or (load == 1 and not late),
+        load <= 1,
         f"the processor is overloaded: its tasks take {float(load):.6g} of its time, "
         f"{100.0 * float(load - 1):.4g} % more than there is",
+    )
+    require(
+        load < 1 or not _held_up(tasks),
+        "the processor has no time left: its tasks take all of it, so jitter or blocking is never made up for",
     )
     return tuple(Response(task, float(_longest(task, tasks))) for task in tasks)
 
 
 def deadlines_hold(tasks: tuple[PeriodicTask, ...]) -> bool:
-    """Whether every job of every task is in time; an overloaded processor is not."""
-    if math.fsum(task.utilisation for task in tasks) > 1.0 + 1e-9:
+    """Whether every job of every task is in time; with an overloaded processor it is not."""
+    load = exact_load(tasks)
+    if load > 1 or (load == 1 and _held_up(tasks)):
         return False
     return all(response.in_time for response in responses(tasks))
+
+
+def exact_load(tasks: tuple[PeriodicTask, ...]) -> Fraction:
+    """The share of the processor's time that all jobs take."""
+    return sum((exact(task.work_s) / exact(task.period_s) for task in tasks), Fraction(0))
+
+
+def _held_up(tasks: tuple[PeriodicTask, ...]) -> bool:
+    """Whether any has jitter or blocking."""
+    return any(task.jitter_s > 0.0 or task.blocking_s > 0.0 for task in tasks)
 
 
 def exact(value: float) -> Fraction:

@@ -178,6 +178,4 @@ class Hyperexponential:
 
 def require_mean(mean: float) -> None:
     """Raise `PlantError` unless a law can have this mean."""
-    require(
-        math.isfinite(mean) and mean > 0.0, f"service law: mean is {mean!r}; it must be a finite number above 0"
-    )
+    require(math.isfinite(mean) and mean > 0.0, f"service law: mean is {mean!r}; it must be a finite number above 0")

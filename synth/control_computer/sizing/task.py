@@ -83,14 +83,19 @@ class TaskMix:
 
     def streams(self, speed_op_s: float) -> tuple[Stream, ...]:
         """The tasks, in order, on a computer of `speed_op_s`; `PlantError` for a speed that is not above 0."""
-        require(
-            math.isfinite(speed_op_s) and speed_op_s > 0.0,
-            f"speed_op_s is {speed_op_s!r}; it must be a finite number above 0",
-        )
+        require_speed(speed_op_s)
         return tuple(
             Stream(task.name, task.rate_per_s, task.operations.scaled(1.0 / speed_op_s), task.priority)
             for task in self.tasks
         )
+
+
+def require_speed(speed_op_s: float) -> None:
+    """Raise `PlantError` unless a computer can have this speed."""
+    require(
+        math.isfinite(speed_op_s) and speed_op_s > 0.0,
+        f"speed_op_s is {speed_op_s!r}; it must be a finite number above 0",
+    )
 
 
 def by_priority(streams: tuple[Stream, ...]) -> dict[int, tuple[Stream, ...]]:

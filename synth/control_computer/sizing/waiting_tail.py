@@ -79,8 +79,8 @@ def constant_tail(rate_per_s: float, service_s: float, wait_s: float) -> float:
 def requests_present(load: float, most: int) -> Floats:
     """π_n, n = 0 … `most`: the law of the number of requests in the system, constant service, load ρ.
 
-    As often as the number rises above n it falls to n: π_{n+1} P(A = 0) = π_0 P(A > n) + Σ_{j=1}^{n} π_j P(A > n + 1 − j),
-    with A the requests that come during a service; no term is negative.
+    As often as the number rises above n it falls to n: with A the requests that come during a service,
+    π_{n+1} P(A = 0) = π_0 P(A > n) + Σ_{j=1}^{n} π_j P(A > n + 1 − j). No term is negative.
     """
     from scipy.special import pdtrc
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import synth
 from plant_models.errors import PlantError
-from plant_models.hump import HumpGraph
+from plant_models.hump import HumpGraph, Signal
 from synth.control_computer.sizing.inputs_outputs import (
     ChannelRules,
     Channels,
@@ -115,7 +115,7 @@ def test_channels_add_up_and_follow_the_rules(name: str) -> None:
 
 def test_without_axle_counters_there_are_no_channels_for_them(dumper: HumpGraph) -> None:
     bare = HumpGraph(
-        tuple(replace(v, axle_counters=False) if hasattr(v, "axle_counters") else v for v in dumper.vertices),
+        tuple(v if isinstance(v, Signal) else replace(v, axle_counters=False) for v in dumper.vertices),
         dumper.leads,
     )
     assert {row.kind: row.count for row in counted_channels(bare, ChannelRules())}["axle_counter"] == 0
