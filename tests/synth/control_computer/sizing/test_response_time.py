@@ -8,7 +8,7 @@ from itertools import permutations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from plant_models.errors import PlantError
@@ -22,19 +22,34 @@ def task(period: float, work: float, priority: int, deadline: float | None = Non
     return PeriodicTask(str(priority), period, work, deadline if deadline is not None else period, priority)
 
 
+Jobs = list[list[tuple[int, int]]]
+"""For each task (when a job should come, when it is let in)."""
+
+
+def together(tasks: tuple[PeriodicTask, ...], offsets: tuple[int, ...], until: int) -> Jobs:
+    """The first jobs are let in at their `offsets`, as late as their jitter lets them be, all others in time."""
+    return [
+        [(start - late + turn * period, start if turn == 0 else max(start, start - late + turn * period))
+         for turn in range((until + late) // period + 1)]
+        for start, late, period in zip(
+            offsets, (int(t.jitter_s) for t in tasks), (int(t.period_s) for t in tasks), strict=True
+        )
+    ]  # fmt: skip
+
+
 def scheduled(tasks: tuple[PeriodicTask, ...], offsets: tuple[int, ...], until: int) -> list[int]:
     """The longest response of each task in a schedule with whole times: the most urgent job runs at each tick."""
-    jobs: list[list[int]] = []  # priority, release, rest, task
+    coming = together(tasks, offsets, until)
+    jobs: list[list[int]] = []  # priority, let in, should come, rest, task
     longest = [0] * len(tasks)
     for now in range(until):
         for index, each in enumerate(tasks):
-            if now >= offsets[index] and (now - offsets[index]) % int(each.period_s) == 0:
-                jobs.append([each.priority, now, int(each.work_s), index])
+            jobs += [[each.priority, now, due, int(each.work_s), index] for due, let in coming[index] if let == now]
         if jobs:
             job = min(jobs)
-            job[2] -= 1
-            if job[2] == 0:
-                longest[job[3]] = max(longest[job[3]], now + 1 - job[1])
+            job[3] -= 1
+            if job[3] == 0:
+                longest[job[4]] = max(longest[job[4]], now + 1 - job[2])
                 jobs.remove(job)
     return longest
 
@@ -72,6 +87,27 @@ def test_the_longest_response_is_that_of_the_schedule_where_all_come_together(ta
     hyperperiod = math.lcm(*(int(each.period_s) for each in tasks))
     found = [response.longest_s for response in responses(tasks)]
     assert found == scheduled(tasks, (0,) * len(tasks), hyperperiod + 1)
+
+
+SECOND_JOB = (task(8, 1, 1), task(10, 2, 2), task(8, 2, 3), task(12, 5, 4))
+"""With the jitter below, the second job of the last task is the slowest: a search found it."""
+
+
+@example(SECOND_JOB, [8, 8, 0, 9])
+@given(small_sets(), st.lists(st.integers(0, 9), min_size=4, max_size=4))
+def test_with_jitter_the_longest_response_is_that_after_the_latest_release(
+    tasks: tuple[PeriodicTask, ...], late: list[int]
+) -> None:
+    jittery = tuple(replace(each, jitter_s=float(j)) for each, j in zip(tasks, late, strict=False))
+    load = sum(each.utilisation for each in jittery)
+    if load < 0.999:
+        hyperperiod = math.lcm(*(int(each.period_s) for each in jittery))
+        found = [response.longest_s for response in responses(jittery)]
+        assert found == scheduled(jittery, (0,) * len(jittery), 3 * hyperperiod + 1)
+
+
+def test_tasks_of_equal_priority_wait_for_each_other() -> None:
+    assert [response.longest_s for response in responses((task(20, 2, 1), task(20, 3, 1)))] == [5, 5]
 
 
 @given(small_sets(), st.integers(0, 2**32 - 1))

@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 import synth
@@ -28,6 +28,9 @@ from synth.control_computer.sizing.memory_need import (
 from synth.control_computer.sizing.word_length import Quantity, common_word_bits
 
 
+@example(3, 1, 1.0)
+@example(0, 64, 0.1)
+@example(0, 255, 0.25)
 @given(st.integers(0, 5000), st.integers(1, 400), st.sampled_from([0.01, 0.1, 0.25, 1.0, 2.0, 30.0]))
 def test_the_digits_tell_all_steps_apart_and_no_digit_is_too_many(least: int, steps: int, step: float) -> None:
     quantity = Quantity("x", least * step, (least + steps) * step, step)
