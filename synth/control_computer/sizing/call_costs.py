@@ -1,0 +1,78 @@
+"""What one call of our controller code costs, counted: the input from which loads and responses follow."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from plant_models.errors import require
+
+
+@dataclass(frozen=True)
+class CallCosts:
+    """Counted operations of the dearest call of each function, and `source`: how they were counted.
+
+    `observe`: a step of the estimator. `decide`: a decision at rest. `select`: the table of a cut. `aim`: the exit
+    speed from an aim table, 0 where there are none. `intact`: the checksum of one table, None if there is none in that
+    language; it is for the start only. Raises `PlantError`.
+    """
+
+    observe: int
+    decide: int
+    select: int
+    aim: int
+    intact: int | None
+    source: str
+
+    def __post_init__(self) -> None:
+        counts = {"observe": self.observe, "decide": self.decide, "select": self.select, "aim": self.aim}
+        if self.intact is not None:
+            counts["intact"] = self.intact
+        for name, value in counts.items():
+            require(
+                isinstance(value, int) and value >= 0,
+                f"call costs: {name} is {value!r}; it must be a whole number from 0 on",
+            )
+        require(self.observe + self.decide > 0, "call costs: observe and decide are 0; a sample must cost something")
+
+    @property
+    def sample(self) -> int:
+        """Of one sample: an estimate and a decision."""
+        return self.observe + self.decide
+
+    @property
+    def cut(self) -> int:
+        """Of one cut besides: its exit speed, and its table."""
+        return self.aim + self.select
+
+
+def c_costs() -> CallCosts:
+    """Instructions of the exported C on x86-64, gcc 12 -Os, by callgrind, tables with estimators.
+
+    All but `aim` are kept findings of the study controller-cost (docs/studies/controller-cost.json). `aim` was counted
+    the same way, gcc 12 -Os: the dearest of 3 000 hard questions to 19 tables with up to 7 × 7 × 8 nodes an axis.
+    """
+    return CallCosts(
+        observe=703,
+        decide=151,
+        select=30_733,
+        aim=447,
+        intact=29_399,
+        source="instructions on x86-64, gcc 12 -Os, callgrind: study controller-cost; aim counted apart",
+    )
+
+
+def st_costs() -> CallCosts:
+    """Operations of the exported Structured Text, counted in its parse tree (docs/structured-text.md).
+
+    `select`: 882 between two tables in a book of 6, 6 for each of 9 tables more, and 127 to copy an estimator of 16
+    breaks, the difference of the two loads: put together, not counted in one. `aim` with its choice of the table, 382
+    and 117, was counted like the others, for the same questions as in C. There is no checksum.
+    """
+    return CallCosts(
+        observe=332,
+        decide=89,
+        select=882 + 9 * 6 + 127,
+        aim=382 + 117,
+        intact=None,
+        source="operations of Structured Text as executed: docs/structured-text.md; aim counted apart",
+    )
