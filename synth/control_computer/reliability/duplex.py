@@ -13,12 +13,17 @@ from synth.control_computer.reliability.rates import require_not_negative, requi
 Floats = NDArray[np.float64]
 
 
+LONGEST_CHECK = 3.0
+"""Up to so many mean times between failures of a check, availability falls for all longer periods. With 3.6 and more it
+rises again over some of them, where it is about a quarter."""
+
+
 @dataclass(frozen=True)
 class Duplex:
     """Two equal computers, of which one ready is enough; both are as new at the start of each period.
 
-    `failure_per_h` λ of each. In the last `check_h` τк of the period one of them works alone while the other is checked.
-    Nothing is repaired within a period.
+    `failure_per_h` λ of each. In the last `check_h` τк of the period one of them works alone while the other is
+    checked. Nothing is repaired within a period.
     """
 
     failure_per_h: float
@@ -36,6 +41,8 @@ class Duplex:
         1 + e^{λτк}; with it Kг exceeds 1, and does not go to 1 as λ goes to 0. The mean is over a period, no steady
         state.
         """
+        from scipy.special import exprel
+
         period = np.asarray(period_h, dtype=np.float64)
         shortest = float(period.min(initial=np.inf))
         require(
@@ -43,18 +50,25 @@ class Duplex:
             f"duplex: a period of {shortest:g} h; it must be above 0 and no shorter than check_h, {self.check_h:g} h",
         )
         rate, together = self.failure_per_h, period - self.check_h
-        both = -2.0 * np.expm1(-rate * together) + 0.5 * np.expm1(-2.0 * rate * together)
-        alone = -np.exp(-rate * together) * np.expm1(-rate * self.check_h)
-        return np.asarray((both + alone) / (rate * period))
+        # exprel(−y) = (1 − e^{−y})/y
+        both = together * (2.0 * exprel(-rate * together) - exprel(-2.0 * rate * together))
+        alone = self.check_h * np.exp(-rate * together) * exprel(-rate * self.check_h)
+        return np.asarray(np.minimum((both + alone) / period, 1.0))  # rounding alone can exceed 1
 
     def longest_period_h(self, required: float) -> float:
-        """The longest period whose availability is at least `required`.
+        """The longest period whose availability is at least `required`; availability falls with the period.
 
-        `PlantError` where no period keeps it: a period is at least the check, in which one computer works alone.
+        `PlantError` where no period keeps it: a period is at least the check, in which one computer works alone; and
+        for checks longer than `LONGEST_CHECK`.
         """
         from scipy.optimize import brentq
 
         require(0.0 < required < 1.0, f"duplex: a required availability of {required!r}; it must lie between 0 and 1")
+        require(
+            self.failure_per_h * self.check_h <= LONGEST_CHECK,
+            f"duplex: check_h is {self.check_h:g} h; no longest period is looked for with checks of more than "
+            f"{LONGEST_CHECK:g} mean times between failures, {LONGEST_CHECK / self.failure_per_h:g} h",
+        )
         high = max(self.check_h, 1e-6 / self.failure_per_h)
         best = float(self.availability(self.check_h)) if self.check_h > 0.0 else 1.0
         require(

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from plant_models.errors import require
+from synth.control_computer.reliability.rates import require_probability
 from synth.yard.humping.hump_position import HumpPosition
 from synth.yard.humping.normal_hump_position import LibraryBrake, NormalHumpPosition
 from synth.yard.humping.stuck_position import StuckPosition, StuckStage, released
@@ -52,6 +53,25 @@ class ByHand:
     def model(self, brake: LibraryBrake) -> HumpPosition:
         """See `Failure`."""
         return NormalHumpPosition(self.exit_std_m_s, brake)
+
+
+@dataclass(frozen=True)
+class WeakSupply:
+    """It has only this `share` of its full brake, and keeps commands with `exit_std_m_s` where that is enough.
+
+    A supply that is known to be weak stands in the configuration of the trial (`supply_share`), and the plan counts
+    with it.
+    """
+
+    share: float
+    exit_std_m_s: float
+
+    def __post_init__(self) -> None:
+        require_probability("weak supply: share", self.share)
+
+    def model(self, brake: LibraryBrake) -> HumpPosition:
+        """See `Failure`."""
+        return NormalHumpPosition(self.exit_std_m_s, replace(brake, share=self.share * brake.share))
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,12 @@ from plant_models.errors import require
 from synth.control_computer.reliability.failure_losses import CutRisks
 from synth.control_computer.reliability.rates import require_not_negative, require_probability
 from synth.yard.humping.outcomes import TrainOutcomes
+from synth.yard.humping.train_cuts import TrainCuts
 from synth.yard.humping.train_figures import FEWEST_TRAINS, ratio, share
+from synth.yard.humping.train_memory import TrainMemory
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 Interval = tuple[float, float, float]
 """Value, and the ends of its 95 % interval."""
 
@@ -36,7 +39,7 @@ class ExtraFigure:
     cuts: int
 
 
-EVENTS: dict[str, Callable[[TrainOutcomes], NDArray[np.int64]]] = {
+EVENTS: dict[str, Callable[[TrainOutcomes], Ints]] = {
     "overspeed": lambda found: found.overspeed.sum(axis=1),
     "overspeed_above_2": lambda found: found.overspeed[:, 2],
     "catch_ups": lambda found: found.caught,
@@ -150,7 +153,7 @@ def extra_loss_per_h(
 
 def cuts_per_h(found: TrainOutcomes) -> Interval:
     """Cuts over the crest for each hour of humping, pauses between trains left out."""
-    value, low, high = ratio(3600.0 * (found.cuts - 1.0), found.span_s)
+    value, low, high = ratio(3600.0 * (found.cuts.astype(float) - 1.0), found.span_s)
     return float(value), float(low), float(high)
 
 
@@ -164,7 +167,20 @@ def measured_risks(failed: TrainOutcomes) -> CutRisks:
     return CutRisks(float(failed.overspeed.sum()) / cuts, float(failed.caught.sum()) / cuts)
 
 
-def trains_with_stop(found: TrainOutcomes) -> Interval:
-    """Share of trains in which a cut stands on the way: a failure that does this does not stay unnoticed."""
-    p, low, high, _ = share((found.stopped > 0).astype(float), np.ones(len(found)))
+def cuts_before_stop(memory: TrainMemory) -> Ints:
+    """How many cuts (trains,) were let go before one that stopped in a position; all of the train where none did.
+
+    A failure that holds cuts does not stay unnoticed: what is told of the cuts behind the first such one is told of
+    cuts that nobody would have humped any more.
+    """
+    stopped = np.any(memory.exit_m_s <= 0.0, axis=2)
+    return np.asarray(np.where(stopped.any(axis=1), stopped.argmax(axis=1), stopped.shape[1]))
+
+
+def other_track_with_frozen_points(trains: TrainCuts) -> Interval:
+    """Share of cuts that have another track than the first cut of their train: P2 of a computer that stops while that
+    one rolls, so that all points stay as they are. Failures of positions alone leave the points to the control."""
+    routes = trains.route.reshape(trains.trains, trains.cuts)
+    others = (routes[:, 1:] != routes[:, :1]).sum(axis=1).astype(float)
+    p, low, high, _ = share(others, np.full(trains.trains, float(trains.cuts - 1)))
     return p, low, high

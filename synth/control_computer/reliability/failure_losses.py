@@ -1,4 +1,4 @@
-"""What failures of the control computer cost: a year by its states, and a cut by what an unnoticed failure does to it."""
+"""What failures of the control computer cost: in a year, and for each cut that an unnoticed failure befalls."""
 
 from __future__ import annotations
 

@@ -116,18 +116,3 @@ class StateShares:
         """Mean hours of a year of 8760 h in each state, in the order of `State`."""
         ready, failed, maintenance, repair = (HOURS_PER_YEAR * share for share in vars(self).values())
         return ready, failed, maintenance, repair
-
-
-def null_space_shares(generator_per_h: Floats) -> Floats:
-    """The stationary probabilities (n,) of a generator (n, n) by its null space, pQ = 0: for any irreducible chain.
-
-    `PlantError` where the chain has several closed groups of states, for then its start decides.
-    """
-    from scipy.linalg import null_space
-
-    basis = null_space(generator_per_h.T)
-    require(
-        basis.shape[1] == 1,
-        f"chain: {basis.shape[1]} independent stationary vectors; every state must lead back to one group of states",
-    )
-    return np.asarray(basis[:, 0] / basis[:, 0].sum())

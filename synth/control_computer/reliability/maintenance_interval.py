@@ -81,7 +81,7 @@ class UsefulHours:
         The source prints "e^{−λx} − λx = 1 + λ·Sc/S1". With the negative exponent the left side is below 1 for every
         x > 0, so there is no root; without τ the right side adds a rate to a number. N'G = NG' gives both.
         """
-        y = root(lambda y: np.expm1(y) - y - computer.check_worth, math.sqrt(2.0 * computer.check_worth))
+        y = root(lambda y: math.expm1(y) - y - computer.check_worth, math.sqrt(2.0 * computer.check_worth))
         return y / computer.failure_per_h
 
 
@@ -118,7 +118,7 @@ def interval_of_cycle_h(computer: CheckedComputer, more_h: float) -> float:
         return math.inf
 
     def short_of(y: float) -> float:
-        return -np.expm1(-y) * (1.0 + more) - y * np.exp(-y) - worth
+        return -math.expm1(-y) * (1.0 + more) - y * math.exp(-y) - worth
 
     return root(short_of, math.sqrt(2.0 * worth)) / computer.failure_per_h
 

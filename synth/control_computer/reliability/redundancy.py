@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.errors import require
-from synth.control_computer.reliability.four_states import null_space_shares
 from synth.control_computer.reliability.rates import require_positive, require_probability
+from synth.control_computer.reliability.stationary import stationary_shares
 
 Floats = NDArray[np.float64]
 
@@ -62,7 +62,7 @@ class Redundant:
         from scipy.integrate import quad
 
         require_positive("redundancy: period_h", period_h)
-        failed, _ = quad(self.failed_after, 0.0, period_h, epsabs=0.0, epsrel=1e-10, limit=200)
+        failed, _ = quad(lambda t: float(self.failed_after(t)), 0.0, period_h, epsabs=0.0, epsrel=1e-10, limit=200)
         return float(failed) / period_h
 
     def checked_availability(self, period_h: float) -> float:
@@ -99,7 +99,7 @@ class Repaired:
 
     def shares(self) -> Floats:
         """Stationary share of time (n + 1,) with 0, 1, … n failed."""
-        return null_space_shares(self.generator_per_h())
+        return stationary_shares(self.generator_per_h())
 
     @property
     def unavailability(self) -> float:

@@ -17,8 +17,8 @@ from synth.yard.humping.normal_hump_position import LibraryBrake
 class StuckPosition:
     """It takes `taken_head_m` from every cut, metres, evenly along the path, and obeys no command.
 
-    A cut that has less energy stops. As all cuts that stop in a position (`humping`), it then stands at its exit; so a
-    closed brake that holds a cut is told by that cut alone, not by those that run into it.
+    A cut that has less energy stops. As all cuts that stop in a position (`humping`), it then stands at the exit. Held
+    by the last position it counts as having reached its track, all of which it leaves free; those behind run into it.
     """
 
     taken_head_m: Callable[[Arrivals], Floats]
@@ -39,7 +39,7 @@ def released(arrivals: Arrivals) -> Floats:
 
 @dataclass(frozen=True)
 class StuckStage:
-    """What `brake` takes that is stuck at `stage`, whatever stages the categories of the cuts allow, at mean friction."""
+    """What `brake` takes that is stuck at `stage`, whatever stages the cuts may be given, at mean friction."""
 
     brake: LibraryBrake
     stage: int
