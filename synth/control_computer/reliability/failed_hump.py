@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
-from plant_models.errors import require
-from synth.control_computer.reliability.rates import require_probability
+from plant_models.errors import require, require_between
 from synth.yard.humping.hump_position import HumpPosition
 from synth.yard.humping.normal_hump_position import LibraryBrake, NormalHumpPosition
 from synth.yard.humping.stuck_position import StuckPosition, StuckStage, released
@@ -67,7 +66,7 @@ class WeakSupply:
     exit_std_m_s: float
 
     def __post_init__(self) -> None:
-        require_probability("weak supply: share", self.share)
+        require_between("weak supply: share", self.share, 0.0, 1.0)
 
     def model(self, brake: LibraryBrake) -> HumpPosition:
         """See `Failure`."""

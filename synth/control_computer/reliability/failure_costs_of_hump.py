@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.errors import require
+from plant_models.errors import require, require_between
 from synth.control_computer.reliability.failure_losses import CutRisks
-from synth.control_computer.reliability.rates import require_not_negative, require_probability
+from synth.control_computer.reliability.rates import require_not_negative
 from synth.yard.humping.outcomes import TrainOutcomes
 from synth.yard.humping.train_cuts import TrainCuts
 from synth.yard.humping.train_figures import FEWEST_TRAINS, ratio, share
@@ -145,7 +145,7 @@ def extra_loss_per_h(
 
     Cuts an hour are those of the run with the failure; their own error is small beside that of the loss and left out.
     """
-    require_probability("failure costs: humping_share", humping_share)
+    require_between("failure costs: humping_share", humping_share, 0.0, 1.0)
     rate = humping_share * cuts_per_h(failed)[0]
     value, low, high = extra_loss_per_cut(sound, failed, prices)
     return rate * value, rate * low, rate * high

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from plant_models.errors import require_between
 from synth.control_computer.reliability.four_states import StateShares
-from synth.control_computer.reliability.rates import HOURS_PER_YEAR, require_not_negative, require_probability
+from synth.control_computer.reliability.rates import HOURS_PER_YEAR, require_not_negative
 
 
 @dataclass(frozen=True)
@@ -56,7 +57,7 @@ class CutPrices:
     def __post_init__(self) -> None:
         require_not_negative("cut prices: damage", self.damage)
         require_not_negative("cut prices: re_sorting", self.re_sorting)
-        require_probability("cut prices: damaged_share", self.damaged_share)
+        require_between("cut prices: damaged_share", self.damaged_share, 0.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -68,7 +69,7 @@ class CutRisks:
 
     def __post_init__(self) -> None:
         for key, value in vars(self).items():
-            require_probability(f"cut risks: {key}", value)
+            require_between(f"cut risks: {key}", value, 0.0, 1.0)
 
     def loss_per_cut(self, prices: CutPrices) -> float:
         """S = P1·S1·β + P2·S2, [hump-computer-1970s], chapter 4: the mean loss of a cut.

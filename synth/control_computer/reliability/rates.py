@@ -18,8 +18,3 @@ def require_positive(name: str, value: float) -> None:
 def require_not_negative(name: str, value: float) -> None:
     """Raise `PlantError` unless `value` is finite and not below 0."""
     require(math.isfinite(value) and value >= 0.0, f"{name} is {value!r}; it must be a finite number, 0 or more")
-
-
-def require_probability(name: str, value: float) -> None:
-    """Raise `PlantError` unless `value` is in [0, 1]."""
-    require(0.0 <= value <= 1.0, f"{name} is {value!r}; it must be from 0 to 1")

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.errors import require
-from synth.control_computer.reliability.rates import require_positive, require_probability
+from plant_models.errors import require, require_between
+from synth.control_computer.reliability.rates import require_positive
 from synth.control_computer.reliability.stationary import stationary_shares
 
 Floats = NDArray[np.float64]
@@ -34,7 +34,7 @@ class Redundant:
             f"redundancy: needed is {self.needed}; it must be from 1 to computers, {self.computers}",
         )
         require_positive("redundancy: failure_per_h", self.failure_per_h)
-        require_probability("redundancy: common_share", self.common_share)
+        require_between("redundancy: common_share", self.common_share, 0.0, 1.0)
 
     @property
     def own_per_h(self) -> float:
