@@ -69,18 +69,16 @@ class Duplex:
             f"duplex: check_h is {self.check_h:g} h; no longest period is looked for with checks of more than "
             f"{LONGEST_CHECK:g} mean times between failures, {LONGEST_CHECK / self.failure_per_h:g} h",
         )
-        high = max(self.check_h, 1e-6 / self.failure_per_h)
-        best = float(self.availability(self.check_h)) if self.check_h > 0.0 else 1.0
+        low = max(self.check_h, 1e-12 / self.failure_per_h)
+        best = float(self.availability(low))
         require(
             required <= best,
             f"duplex: a required availability of {required:.9g}; checks of {self.check_h:g} h, in which one computer "
             f"works alone, allow {best:.9g} at most: shorten the checks or lower the requirement",
         )
-        low = self.check_h
+        high = 2.0 * low
         while float(self.availability(high)) >= required:
-            low, high = high, 2.0 * high
-        if low == 0.0:
-            low = 1e-6 * high
+            high *= 2.0
         return float(brentq(lambda x: float(self.availability(x)) - required, low, high, xtol=1e-12 * high))
 
 

@@ -82,6 +82,12 @@ def test_its_own_formula_forbids_that_loss_with_checks_of_more_than_two_minutes(
     assert loss(1.0 - float(Duplex(FAILURE_PER_H, 0.25).availability(4.2))) == pytest.approx(26.0, abs=1.5)
 
 
+def test_the_loss_of_an_hour_is_that_of_a_car_at_both_ends() -> None:
+    """1.3 to 5.0 thousand an hour, 5000 to 20000 cars a day: 6.2 and 6.0 roubles a car, so S1 goes with the traffic."""
+    low, high = 1300.0 * 24.0 / 5000.0, 5000.0 * 24.0 / 20_000.0
+    assert low == pytest.approx(high, rel=0.05)
+
+
 def test_an_availability_of_0_999_does_not_lose_100_thousand() -> None:
     """The conclusions of the source say so; with its own S1 it is 44 thousand at most, and needs 11.4 an hour."""
     assert loss(0.001) == pytest.approx(43.8)
