@@ -1,1 +1,5 @@
+<<<<<<< HEAD
 """The control computer of the hump: how fast it must be, how reliable, and what it pays."""
+=======
+"""The control computer of the hump: how fast it must be, how reliable it is, and what it pays."""
+>>>>>>> reliability

@@ -1,0 +1,1 @@
+"""How reliable the control computer is: its states, its maintenance, its redundancy, and what failures cost."""
