@@ -74,9 +74,7 @@ def train_sums(found: TrainOutcomes) -> TrainSums:
 def figures_of_trains(name: str, found: TrainOutcomes) -> HumpDayFigures:
     """The figures of trains that were humped, with the intervals that `train_figures` gives them."""
     told = {figure.name: figure for figure in train_figures(found)}
-    require(
-        len(found) >= FEWEST_TRAINS, f"the hump variant {name!r} has {len(found)} trains; intervals take two or more"
-    )
+    require(len(found) >= FEWEST_TRAINS, f"the hump variant {name!r} has {len(found)} trains; an interval takes two")
     made = {}
     for ours, theirs in NAMES.items():
         figure = told[theirs]
@@ -87,8 +85,8 @@ def figures_of_trains(name: str, found: TrainOutcomes) -> HumpDayFigures:
 def change_of_trains(today: TrainOutcomes, new: TrainOutcomes) -> HumpDayChange:
     """New less today where both humped the same trains, in the same order (`PlantError` otherwise).
 
-    Ratios of sums over trains, linearised: residual of train k = (h'_k − r'b'_k)/b̄' − (h_k − r·b_k)/b̄; its standard error
-    over the trains with Student's quantile is half the interval. What the trains have in common cancels.
+    Ratios of sums over trains, linearised: residual of train k = (h'_k − r'b'_k)/b̄' − (h_k − r·b_k)/b̄; its standard
+    error over the trains with Student's quantile is half the interval. What the trains have in common cancels.
     """
     one, other = same_trains(today, new)
     trains = one.hits.shape[1]
@@ -106,7 +104,7 @@ def same_trains(today: TrainOutcomes, new: TrainOutcomes) -> tuple[TrainSums, Tr
     """The sums of both; `PlantError` unless they are of the same trains, at least two."""
     require(
         len(today) == len(new) and np.array_equal(today.train, new.train) and np.array_equal(today.cuts, new.cuts),
-        f"the variants humped {len(today)} and {len(new)} trains that are not the same ones; pairs need the same trains",
+        f"the variants humped {len(today)} and {len(new)} trains that are not the same; pairs must be",
     )
     require(len(today) >= FEWEST_TRAINS, f"the variants have {len(today)} trains; intervals take two or more")
     return train_sums(today), train_sums(new)

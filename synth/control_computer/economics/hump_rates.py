@@ -16,8 +16,8 @@ class HumpRates:
 
     `cars_per_h`: while a train is humped. Shares of all cuts: `catch_ups` (misrouted or in contact ahead of the last
     position), `misrouted` among them, `on_track` (those that reached their track alone). Shares of the cuts on
-    their track: `over_speeds_…`, couplings up to 1.5 m/s, up to 2 m/s and faster. `gap_m`: free metres that a cut on its
-    track left ahead of it. `PlantError` for a value outside its range.
+    their track: `over_speeds_…`, couplings up to 1.5 m/s, up to 2 m/s and faster. `gap_m`: free metres that a cut on
+    its track left ahead of it. `PlantError` for a value outside its range.
     """
 
     cars_per_h: float

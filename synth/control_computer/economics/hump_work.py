@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from synth.control_computer.economics.hump_queue import HumpQueue, WaitLaw, kraemer_langenbach_belz_h
+from synth.control_computer.economics.hump_queue import HumpQueue, WaitLaw, whitt_h
 from synth.control_computer.economics.hump_rates import HumpRates
 from synth.control_computer.economics.traffic import Handling, Traffic
 
@@ -16,10 +16,10 @@ class HumpWork:
     """The work of a day, all leads together.
 
     `load`: part of the time for which a lead is taken. `humping_h`: mean time over the crest of a train of mean length.
-    `wait_h`: mean wait of a train for humping. `relaxation_h`: see `HumpQueue`. The rest is a day's sum: hours that cars
-    are in a train that is humped or that waits for it; hours of the hump locomotive with trains (`humping`), gaps
-    (`pushing_up`) and cuts on a wrong track (`sorting_again`); numbers of couplings by class of speed,
-    catch-ups and misrouted cuts; metres of gap.
+    `wait_h`: mean wait of a train for humping. `relaxation_h`: see `HumpQueue`. The rest is a day's sum: hours that
+    cars are in a train that is humped or that waits for it; hours of the hump locomotive with trains (`humping`), gaps
+    (`pushing_up`) and cuts on a wrong track (`sorting_again`); numbers of couplings by class of speed, catch-ups and
+    misrouted cuts; metres of gap.
     """
 
     load: float
@@ -44,13 +44,11 @@ class HumpWork:
         return self.car_h_humping + self.car_h_waiting
 
 
-def hump_work(
-    rates: HumpRates, traffic: Traffic, handling: Handling, wait_law: WaitLaw = kraemer_langenbach_belz_h
-) -> HumpWork:
+def hump_work(rates: HumpRates, traffic: Traffic, handling: Handling, wait_law: WaitLaw = whitt_h) -> HumpWork:
     """The work of a mean day; `PlantError` where more trains come than can be humped.
 
-    Cars of a train stay for the whole humping of it: sooner or later they are where they were or on their track. Trains wait
-    first come first served, so a wait does not depend on a train's own length.
+    Cars of a train stay for the whole humping of it: sooner or later they are where they were or on their track.
+    Trains wait first come first served, so a wait does not depend on a train's own length.
     """
     queue = hump_queue(rates, traffic, handling)
     wait_h = wait_law(queue)

@@ -30,9 +30,9 @@ class InternalRate:
 def internal_rate(flows: Sequence[float]) -> InternalRate:
     """IRR of `flows` at the start and at the end of each year, any rate above −1; `PlantError` for no number.
 
-    Flows are a polynomial in 1/(1 + r). Where they change their sign once, it has one positive root. Where they change it
-    more often, it may have several and none of them is told, but for one case: sums of the flows up to each year that change
-    sign once, and end positive, leave one rate above 0 (Norstrøm 1972).
+    Flows are a polynomial in 1/(1 + r). Where they change their sign once, it has one positive root. Where they change
+    it more often, it may have several and none of them is told, but for one case: sums of the flows up to each year
+    that change sign once, and end positive, leave one rate above 0 (Norstrøm 1972).
     """
     require(all(math.isfinite(flow) for flow in flows), "the flows of money must be finite numbers")
     changes = sign_changes(flows)
@@ -57,8 +57,8 @@ def sign_changes(flows: Sequence[float]) -> int:
 def root(flows: Sequence[float], lowest: float) -> float:
     """The one rate whose ln(1 + r) is above `lowest`.
 
-    Sought in x = ln(1 + r), from where the last flow decides to where the first one does. A worth is scaled by its largest
-    discount, so nothing overflows.
+    Sought in x = ln(1 + r), from where the last flow decides to where the first one does. A worth is scaled by its
+    largest discount, so nothing overflows.
     """
     from scipy.optimize import brentq  # start-up: scipy only where it is needed
 

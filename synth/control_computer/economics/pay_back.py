@@ -15,8 +15,8 @@ def yearly_effect(
 ) -> float:
     """B = ΔE + Eн·ΔK − Sг, in currency a year.
 
-    Eн, the normative efficiency (0.12 to 0.15 a year), turns released capital into yearly worth. Sг: what the new system costs
-    a year, its losses by failures included.
+    Eн, the normative efficiency (0.12 to 0.15 a year), turns released capital into yearly worth. Sг: what the new
+    system costs a year, its losses by failures included.
     """
     require_between("normative_efficiency_per_year", normative_efficiency_per_year, 0.0, 1.0)
     return savings_per_year + normative_efficiency_per_year * released_capital - running_cost_per_year

@@ -12,8 +12,8 @@ from plant_models.errors import require, require_between
 class Investment:
     """`spent` at the start, `income_per_year` at the end of each of `years` years; real money, without inflation.
 
-    What is received at the start (released capital that is sold) is part of `spent`, which may be negative then. `PlantError`
-    for a value outside its range.
+    What is received at the start (released capital that is sold) is part of `spent`, which may be negative then.
+    `PlantError` for a value outside its range.
     """
 
     spent: float
@@ -48,7 +48,8 @@ def discounted_pay_back_years(investment: Investment, discount_per_year: float) 
     """When the discounted income has paid what was spent: n = −ln(1 − r·I/B)/ln(1 + r).
 
     None where it never does, however long the income lasts (B ≤ r·I); it may be longer than `years`. 0 where
-    nothing was spent and nothing is lost. Within a year the income is taken to come as the formula goes on between whole years.
+    nothing was spent and nothing is lost. Within a year the income is taken to come as the formula goes on between
+    whole years.
     """
     require_between("discount_per_year", discount_per_year, 0.0, 10.0)
     spent, income = investment.spent, investment.income_per_year

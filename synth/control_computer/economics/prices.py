@@ -13,12 +13,12 @@ MOST = 1e15
 class Prices:
     """All in one `currency`, each at least 0 (`PlantError`).
 
-    `per_locomotive_h`: an hour of the hump locomotive with its crew. `per_car_h`: an hour that a car stands in the yard,
-    as running cost alone (upkeep, hire); what the car itself is worth is `per_car`, so that it is not counted twice.
-    `per_cargo_t`: worth of a tonne of cargo. `per_over_speed_…`: mean damage of one coupling of this class of speed
-    (up to 1.5 m/s, up to 2 m/s, faster), those that damage nothing included. `per_catch_up`: of a cut that caught up,
-    damage and delay. `per_misrouted_cut`: of a cut on a wrong track, besides the locomotive that sorts it again.
-    `per_gap_m`: of a metre of gap that is pushed up, besides the locomotive.
+    `per_locomotive_h`: an hour of the hump locomotive with its crew. `per_car_h`: an hour that a car stands in the
+    yard, as running cost alone (upkeep, hire); what the car itself is worth is `per_car`, so that it is not counted
+    twice. `per_cargo_t`: worth of a tonne of cargo. `per_over_speed_…`: mean damage of one coupling of this class of
+    speed (up to 1.5 m/s, up to 2 m/s, faster), those that damage nothing included. `per_catch_up`: of a cut that
+    caught up, damage and delay. `per_misrouted_cut`: of a cut on a wrong track, besides the locomotive that sorts it
+    again. `per_gap_m`: of a metre of gap that is pushed up, besides the locomotive.
     """
 
     currency: str

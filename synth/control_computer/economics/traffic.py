@@ -59,9 +59,9 @@ class Handling:
     """What the yard does around the humping of a train.
 
     `between_trains_h`: mean time from the last cut of a train to the first of the next one that waits already, with its
-    standard deviation `between_trains_std_h`. `locomotive_h_per_gap_m`: time of a locomotive to push up one metre of gap.
-    `locomotive_h_per_misrouted_cut`: to fetch a cut from a wrong track and sort it again. `blocked_share`: part of both
-    during which nothing can be humped on this lead. `PlantError` for a value outside its range.
+    standard deviation `between_trains_std_h`. `locomotive_h_per_gap_m`: time of a locomotive to push up one metre of
+    gap. `locomotive_h_per_misrouted_cut`: to fetch a cut from a wrong track and sort it again. `blocked_share`: part
+    of both during which nothing can be humped on this lead. `PlantError` for a value outside its range.
     """
 
     between_trains_h: float

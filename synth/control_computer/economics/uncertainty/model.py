@@ -25,8 +25,9 @@ Ranges = Mapping[str, Range]
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Evaluations:
-    """Outputs at n points: `values` (outputs, n), NaN where the inputs were impossible; `faults`: how many of these gave
-    which sentence, the most frequent first (of sentences that differ in numbers alone, the first one stands for all)."""
+    """Outputs at n points: `values` (outputs, n), NaN where the inputs were impossible; `faults`: how many of these
+    gave which sentence, the most frequent first (of sentences that differ in numbers alone, the first one stands for
+    all)."""
 
     outputs: tuple[str, ...]
     values: Floats
@@ -73,7 +74,8 @@ def uncertain(ranges: Ranges) -> tuple[str, ...]:
 
 
 def points_at(ranges: Ranges, p: Mapping[str, Floats], n: int) -> tuple[tuple[str, ...], Floats]:
-    """Names and points (inputs, n): each input at its quantile `p[name]` (n,), its median where `p` does not tell it."""
+    """Names and points (inputs, n): each input at its quantile `p[name]` (n,), its median where `p` does not tell
+    it."""
     names = tuple(sorted(ranges))
     middle = np.full(n, 0.5)
     return names, np.array([ranges[name].quantile(p.get(name, middle)) for name in names])

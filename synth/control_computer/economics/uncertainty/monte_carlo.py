@@ -40,7 +40,7 @@ class Draws:
     @property
     def n(self) -> int:
         """Draws."""
-        return self.points.shape[1]
+        return int(self.points.shape[1])
 
     @property
     def impossible(self) -> Estimate:
@@ -118,8 +118,8 @@ def mean_of(values: Floats) -> Estimate:
 def quantile_of(ordered: Floats, p: float) -> tuple[float, float, float]:
     """The quantile p of values in order, and its 95 % interval between two of them.
 
-    By the binomial law of how many values lie below the quantile: for any distribution, and infinite values may be among them.
-    The ends are infinite where the values are too few.
+    By the binomial law of how many values lie below the quantile: for any distribution, and infinite values may be
+    among them. The ends are infinite where the values are too few.
     """
     from scipy.special import bdtrik  # start-up: scipy only where it is needed
 

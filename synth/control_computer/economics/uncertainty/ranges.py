@@ -57,7 +57,8 @@ class Uniform:
 
 @dataclass(frozen=True)
 class Triangular:
-    """From `low` to `high`, `mode` most likely; it may lie at an end. `PlantError` unless low ≤ mode ≤ high, low < high."""
+    """From `low` to `high`, `mode` most likely; it may lie at an end. `PlantError` unless low ≤ mode ≤ high, low <
+    high."""
 
     low: float
     mode: float
@@ -102,7 +103,8 @@ class LogNormal:
 class Measured:
     """A figure with its 95 % interval: median `value`, 2.5 and 97.5 % quantiles `low95` and `high95`.
 
-    Normal below and above the median, each with its own spread. `PlantError` unless low95 ≤ value ≤ high95, low95 < high95.
+    Normal below and above the median, each with its own spread. `PlantError` unless low95 ≤ value ≤ high95, low95 <
+    high95.
     """
 
     value: float

@@ -63,10 +63,10 @@ def sobol_of(
 ) -> tuple[SobolIndex, ...]:
     """First-order and total indices of `outputs`, for every input that has a range, by `scipy.stats.sobol_indices`.
 
-    `points`: base points, a power of 2; the function is called points · (inputs + 2) times on scrambled Sobol points (Saltelli 2010;
-    Jansen). Intervals: 2.5 and 97.5 % quantiles of `resamples` bootstrap samples of the base points. As these are
-    spread more evenly than independent ones, the intervals are rather too wide. `PlantError` where an output is not
-    finite at some point: ask a rate of pay-back instead of years, or narrow the ranges.
+    `points`: base points, a power of 2; the function is called points · (inputs + 2) times on scrambled Sobol points
+    (Saltelli 2010; Jansen). Intervals: 2.5 and 97.5 % quantiles of `resamples` bootstrap samples of the base points.
+    As these are spread more evenly than independent ones, the intervals are rather too wide. `PlantError` where an
+    output is not finite at some point: ask a rate of pay-back instead of years, or narrow the ranges.
     """
     from scipy.stats import sobol_indices  # start-up: scipy only where it is needed
 
@@ -80,7 +80,7 @@ def sobol_of(
     found = sobol_indices(
         func=lambda at: finite_values(model, names, constants, at, outputs),
         n=points,
-        dists=[Quantiles(ranges[name]) for name in names],
+        dists=[Quantiles(ranges[name]) for name in names],  # type: ignore[misc]  # stubs: of one number
         method=estimator,
         rng=random,
     )
@@ -118,12 +118,13 @@ def finite_values(
 def indices(f_A: Floats, f_B: Floats, f_AB: Floats) -> tuple[Floats, Floats]:
     """First-order and total indices (outputs, inputs) from centred values (s, n), (s, n), (d, s, n).
 
-    S = mean(f_B·(f_AB − f_A))/V (Saltelli 2010, table 2 b), T = mean((f_A − f_AB)²)/(2V) (Jansen, table 2 f), V the variance
-    of both samples together.
+    S = mean(f_B·(f_AB − f_A))/V (Saltelli 2010, table 2 b), T = mean((f_A − f_AB)²)/(2V) (Jansen, table 2 f), V the
+    variance of both samples together. Both are 0 where V is.
     """
     variance = np.var(np.concatenate([f_A, f_B], axis=-1), axis=-1)
-    first = np.mean(f_B * (f_AB - f_A), axis=-1) / variance
-    total = 0.5 * np.mean((f_A - f_AB) ** 2, axis=-1) / variance
+    inverse = np.divide(1.0, variance, out=np.zeros_like(variance), where=variance > 0.0)
+    first = np.mean(f_B * (f_AB - f_A), axis=-1) * inverse
+    total = 0.5 * np.mean((f_A - f_AB) ** 2, axis=-1) * inverse
     return first.T, total.T
 
 
