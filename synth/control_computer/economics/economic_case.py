@@ -72,7 +72,9 @@ class EconomicCase:
 
 @dataclass(frozen=True)
 class EconomicResult:
-    """What `evaluated` found; `savings` is ΔE a year, `capital` ΔK, `effect_per_year` B."""
+    """What `evaluated` found; `savings` is ΔE a year, `capital` ΔK, `effect_per_year` B.
+
+    `money`: what is spent and comes in for NPV, discounted pay-back and internal rate."""
 
     today: HumpWork
     new: HumpWork
@@ -80,9 +82,14 @@ class EconomicResult:
     capital: tuple[Item, ...]
     effect_per_year: float
     pay_back: PayBack
+    money: Investment
     net_present_value: float
     discounted_pay_back_years: float | None
-    internal_rate: InternalRate
+
+    @property
+    def internal_rate(self) -> InternalRate:
+        """The internal rate of return of `money`; sought when it is asked for, as draws do not ask."""
+        return internal_rate(self.money.flows)
 
     def figures(self) -> dict[str, float]:
         """The results by name; a time that never comes is infinite, so it can be ranked among draws."""
@@ -121,9 +128,9 @@ def evaluated(case: EconomicCase) -> EconomicResult:
         capital=capital,
         effect_per_year=effect,
         pay_back=pay_back(terms.investment, effect, terms.interest_per_year),
+        money=money,
         net_present_value=net_present_value(money, terms.discount_per_year),
         discounted_pay_back_years=discounted_pay_back_years(money, terms.discount_per_year),
-        internal_rate=internal_rate(money.flows),
     )
 
 
@@ -132,14 +139,15 @@ def with_inputs(value: _T, inputs: Mapping[str, float]) -> _T:
 
     A field that is a whole number takes the nearest one. `PlantError` for a name that is none of its numbers.
     """
+    known = names_of(value)
     parts: dict[str, dict[str, float]] = {}
     given: dict[str, object] = {}
     for name, number in inputs.items():
         head, _, rest = name.partition(".")
-        held = getattr(value, head, None) if head in names_of(value) else None
+        held = getattr(value, head, None) if head in known else None
         require(
             (is_dataclass(held) and bool(rest)) or (isinstance(held, int | float) and not rest),
-            f"{name!r} is no input of {type(value).__name__}; it has {', '.join(names_of(value))}",
+            f"{name!r} is no input of {type(value).__name__}; it has {', '.join(known)}",
         )
         if rest:
             parts.setdefault(head, {})[rest] = number

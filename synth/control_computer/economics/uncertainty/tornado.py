@@ -51,5 +51,5 @@ def tornado(model: Model, ranges: Ranges, output: str) -> Tornado:
         low, high = 2 * place, 2 * place + 1
         row = points[names.index(name)]
         bars.append(TornadoBar(name, *(float(v) for v in (row[low], row[high], values[low], values[high]))))
-    bars.sort(key=lambda bar: (-math.inf if math.isnan(bar.swing) else -bar.swing, bar.input))
+    bars.sort(key=lambda bar: (not math.isnan(bar.swing), -bar.swing, bar.input))
     return Tornado(output, float(values[-1]), tuple(bars))
