@@ -19,10 +19,21 @@ from synth.control_computer.economics.uncertainty.monte_carlo import (
     share_of,
     share_where,
 )
-from synth.control_computer.economics.uncertainty.ranges import Constant, LogNormal, Measured, Triangular, Uniform
+from synth.control_computer.economics.uncertainty.ranges import (
+    Constant,
+    LogNormal,
+    Measured,
+    Range,
+    Triangular,
+    Uniform,
+)
 from tests.synth.control_computer.economics.made_cases import CASE
 
-NORMAL = {"x": Measured(1.0, 1.0 - 1.96, 1.0 + 1.96), "y": Measured(2.0, 2.0 - 1.96, 2.0 + 1.96), "c": Constant(3.0)}
+NORMAL: dict[str, Range] = {
+    "x": Measured(1.0, 1.0 - 1.96, 1.0 + 1.96),
+    "y": Measured(2.0, 2.0 - 1.96, 2.0 + 1.96),
+    "c": Constant(3.0),
+}
 
 
 def linear(at: Mapping[str, float]) -> dict[str, float]:
@@ -108,7 +119,7 @@ def test_draws_follow_from_name_and_seed() -> None:
 
 def test_pay_back_of_a_yard() -> None:
     """The median case lies between the quantiles, and never agrees with the sign of the rate."""
-    ranges = {
+    ranges: dict[str, Range] = {
         "prices.per_car": LogNormal(20_000.0, 80_000.0),
         "terms.investment": Triangular(2e6, 3e6, 9e6),
         "terms.running_cost_per_year": Uniform(0.0, 8e6),

@@ -14,7 +14,7 @@ from synth.control_computer.economics.uncertainty.ranges import Constant, LogNor
 from synth.control_computer.economics.uncertainty.sobol import SobolIndex, sobol_of
 from tests.synth.control_computer.economics.made_cases import CASE
 
-ISHIGAMI = {name: Uniform(-math.pi, math.pi) for name in ("x1", "x2", "x3")}
+ISHIGAMI: dict[str, Range] = {name: Uniform(-math.pi, math.pi) for name in ("x1", "x2", "x3")}
 A, B = 7.0, 0.1
 V1 = 0.5 * (1.0 + B * math.pi**4 / 5.0) ** 2
 V2, V13 = A**2 / 8.0, B**2 * math.pi**8 * 8.0 / 225.0
@@ -84,7 +84,7 @@ def test_output_without_variance() -> None:
 
 def test_pay_back_of_a_yard() -> None:
     """What moves nothing has no index; the first-order indices and what several inputs do together make one."""
-    ranges = {
+    ranges: dict[str, Range] = {
         "prices.per_car": LogNormal(20_000.0, 80_000.0),
         "terms.investment": Uniform(2e6, 9e6),
         "traffic.cars_per_day": Uniform(3000.0, 4500.0),
