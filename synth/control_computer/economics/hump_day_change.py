@@ -13,6 +13,7 @@ from plant_models.frozen_arrays import frozen_arrays
 from synth.control_computer.economics.estimate import Estimate
 from synth.control_computer.economics.hump_day_figures import NAMES, HumpDayFigures
 from synth.control_computer.economics.hump_rates import HumpChange, HumpRates
+from synth.control_computer.economics.uncertainty.ranges import Range, range_of
 from synth.yard.humping.outcomes import TrainOutcomes
 from synth.yard.humping.train_figures import FEWEST_TRAINS, train_figures
 
@@ -120,6 +121,12 @@ def change_of_figures(today: HumpDayFigures, new: HumpDayFigures) -> HumpDayChan
     step = new.on_track - today.on_track
     trains = min(today.cars_per_h.n, new.cars_per_h.n)
     return HumpDayChange(paired=False, on_track=Estimate(step, step, step, trains), **made)
+
+
+def ranges_of_change(found: HumpDayChange) -> dict[str, Range]:
+    """The differences as inputs of an `EconomicCase` by name, each within its interval and independent of the
+    others."""
+    return {f"change.{field.name}": range_of(getattr(found, field.name)) for field in fields(HumpChange)}
 
 
 def unpaired(today: Estimate, new: Estimate) -> Estimate:

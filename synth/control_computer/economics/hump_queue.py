@@ -56,7 +56,7 @@ def overload_sentence(queue: HumpQueue) -> str:
     possible = queue.leads / queue.service_h
     return (
         f"the hump is overloaded: {queue.trains_per_h:.4g} trains an hour come and fewer than {possible:.4g} can be "
-        f"humped on {queue.leads} leads; the load is {queue.load:.4g} and must be below 1"
+        f"humped (leads: {queue.leads}); the load is {queue.load:.4g} and must be below 1"
     )
 
 

@@ -47,7 +47,7 @@ class HumpWork:
 def hump_work(rates: HumpRates, traffic: Traffic, handling: Handling, wait_law: WaitLaw = whitt_h) -> HumpWork:
     """The work of a mean day; `PlantError` where more trains come than can be humped.
 
-    Cars of a train stay for the whole humping of it: sooner or later they are where they were or on their track.
+    The humping of a train takes its whole time of every car: a car stands in the train first and on its track then.
     Trains wait first come first served, so a wait does not depend on a train's own length.
     """
     queue = hump_queue(rates, traffic, handling)

@@ -42,17 +42,6 @@ class Quantiles:
         return self.held.quantile(np.clip(p, 1e-9, 1.0 - 1e-9))
 
 
-@dataclass
-class Estimator:
-    """The estimator that scipy calls; it keeps the function values that the bootstrap draws from."""
-
-    held: tuple[Floats, Floats, Floats] | None = None
-
-    def __call__(self, f_A: Floats, f_B: Floats, f_AB: Floats) -> tuple[Floats, Floats]:
-        self.held = f_A, f_B, f_AB
-        return indices(f_A, f_B, f_AB)
-
-
 def sobol_of(
     model: Model,
     ranges: Ranges,
@@ -76,16 +65,21 @@ def sobol_of(
     )
     names = uncertain(ranges)
     constants = {name: each.value for name, each in ranges.items() if isinstance(each, Constant)}
-    estimator, random = Estimator(), np.random.default_rng(seed)
+    random = np.random.default_rng(seed)
+    held: list[tuple[Floats, Floats, Floats]] = []
+
+    def kept(f_A: Floats, f_B: Floats, f_AB: Floats) -> tuple[Floats, Floats]:
+        held.append((f_A, f_B, f_AB))  # the bootstrap needs the values that scipy has
+        return indices(f_A, f_B, f_AB)
+
     found = sobol_indices(
         func=lambda at: finite_values(model, names, constants, at, outputs),
         n=points,
         dists=[Quantiles(ranges[name]) for name in names],  # type: ignore[misc]  # stubs: of one number
-        method=estimator,
+        method=kept,
         rng=random,
     )
-    assert estimator.held is not None, "scipy called the estimator"
-    low, high = bootstrap(*estimator.held, resamples, random)
+    low, high = bootstrap(*held[-1], resamples, random)
     first = np.reshape(found.first_order, (len(outputs), len(names)))
     all_orders = np.reshape(found.total_order, first.shape)
     return tuple(

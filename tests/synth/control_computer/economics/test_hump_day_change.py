@@ -9,18 +9,21 @@ import numpy as np
 import pytest
 
 from plant_models.errors import PlantError
+from synth.control_computer.economics.economic_case import with_inputs
 from synth.control_computer.economics.estimate import Estimate, exactly
 from synth.control_computer.economics.hump_day_change import (
     change_of_figures,
     change_of_trains,
     figures_of_trains,
+    ranges_of_change,
     train_sums,
 )
 from synth.control_computer.economics.hump_day_figures import HumpDayFigures, figures_of_summary
 from synth.control_computer.economics.hump_rates import HumpChange, changed
+from synth.control_computer.economics.uncertainty.ranges import Constant
 from synth.yard.humping.train_figures import train_figures
 from synth.yard.humping.trial_summary import figure_of
-from tests.synth.control_computer.economics.made_cases import CHANGE, TODAY, made_outcomes
+from tests.synth.control_computer.economics.made_cases import CASE, CHANGE, TODAY, made_outcomes
 
 NAMES = tuple(field.name for field in fields(HumpChange))
 RARE = replace(TODAY, catch_ups=0.03, misrouted=0.01)
@@ -73,6 +76,18 @@ def test_what_trains_have_in_common_cancels() -> None:
     assert paired.over_speeds_to_2.half95 == pytest.approx(unpaired.over_speeds_to_2.half95, rel=0.1)  # none in common
     for name in NAMES:
         assert getattr(paired.change, name) == pytest.approx(getattr(unpaired.change, name), abs=1e-12)
+
+
+def test_differences_are_inputs_of_a_case() -> None:
+    shared = effects(1, 100)
+    found = change_of_trains(made_outcomes(shared, RARE, 2), made_outcomes(shared, changed(RARE, CHANGE), 3))
+    ranges = ranges_of_change(found)
+    medians = {name: float(each.quantile(np.array(0.5))) for name, each in ranges.items()}
+    assert with_inputs(CASE, medians).change == found.change
+    told = ranges["change.gap_m"].quantile(np.array([0.025, 0.975]))
+    np.testing.assert_allclose(told, [found.gap_m.low95, found.gap_m.high95])
+    same = change_of_trains(made_outcomes(shared, RARE, 2), made_outcomes(shared, RARE, 2))
+    assert all(isinstance(each, Constant) for each in ranges_of_change(same).values())
 
 
 def test_the_same_trains_twice_differ_by_nothing() -> None:

@@ -111,6 +111,22 @@ def test_twenty_thousand_cars_a_day_need_more_leads() -> None:
     assert 0.5 < found.load < 1.0
 
 
+def test_released_capital_grows_as_in_the_source() -> None:
+    """[hump-computer-1970s]: 240 thousand roubles at 5000 cars a day, 1000 at 20 000: 48 and 50 roubles per daily car.
+
+    So its Δt hardly depends on the traffic; without waits ours, N·Δt/24, does not either.
+    """
+    even = replace(TRAFFIC, cars_per_train_std=0.0, arrival_scv=0.0)
+    calm = replace(HANDLING, between_trains_std_h=0.0)
+    capital = []
+    for cars, leads in ((5000.0, 1), (20_000.0, 4)):
+        traffic = replace(even, cars_per_day=cars, leads=leads)
+        before, after = (hump_work(rates, traffic, calm) for rates in (TODAY, NEW))
+        capital.append(total(released_capital(before, after, traffic, PRICES)))
+    assert capital[1] / capital[0] == pytest.approx(4.0)
+    assert capital[1] / capital[0] == pytest.approx(1000.0 / 240.0, rel=0.05)
+
+
 def test_another_wait_law_is_asked() -> None:
     even = replace(TRAFFIC, arrival_scv=0.3)
     told = hump_work(TODAY, even, HANDLING, allen_cunneen_h).wait_h
