@@ -73,6 +73,7 @@ def test_internal_rates_in_closed_form() -> None:
     assert internal_rate((-100.0, 0.0, 121.0)).per_year == pytest.approx(0.1, abs=1e-13)
     assert internal_rate((-100.0, 50.0)).per_year == pytest.approx(-0.5, abs=1e-13)
     assert internal_rate((0.0, -100.0, 112.0)).per_year == pytest.approx(0.12, abs=1e-13)
+    assert internal_rate((0.0, 0.0, 0.0, -100.0, 0.0, 121.0, 0.0)).per_year == pytest.approx(0.1, abs=1e-13)
     forever = internal_rate(Investment(1.0, 100.0, 200).flows).per_year
     assert forever == pytest.approx(100.0, rel=1e-9), "an income for ever yields income / spent"
 
@@ -93,6 +94,15 @@ def test_several_internal_rates_are_not_told() -> None:
     assert found.per_year is None
     assert found.most == 2
     assert "up to 2" in found.statement
+
+
+def test_sums_that_change_sign_more_often_tell_no_rate() -> None:
+    """They end positive, but the investment is paid back, taken again and paid back: three rates, 10, 20 and 30 %."""
+    flows = (-1.0, 3.6, -4.31, 1.716)
+    assert [worth(flows, rate) for rate in (0.1, 0.2, 0.3)] == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)
+    assert sign_changes(np.cumsum((*flows, 0.1)).tolist()) > 1
+    assert internal_rate((*flows, 0.1)).per_year is None
+    assert internal_rate(flows).per_year is None
 
 
 def test_the_only_rate_above_zero_is_told() -> None:

@@ -33,6 +33,9 @@ def test_work_of_a_day_is_that_of_drawn_trains() -> None:
     found = hump_work(TODAY, TRAFFIC, HANDLING)
     a_day = TRAFFIC.trains_per_day
     assert found.load == pytest.approx(float((humping + between + extra).mean()) * a_day / 24.0, rel=2e-3)
+    service = humping + between + extra
+    told = hump_queue(TODAY, TRAFFIC, HANDLING).service_scv
+    assert told == pytest.approx(float(service.var() / service.mean() ** 2), rel=0.015)  # 0.3 % is its standard error
     assert found.car_h_humping == pytest.approx(a_day * float((cars * humping).mean()), rel=3e-3)
     assert found.locomotive_h_humping == pytest.approx(a_day * float((humping + between).mean()), rel=2e-3)
     assert found.locomotive_h_pushing_up == pytest.approx(a_day * 1e-4 * float(gap.mean()), rel=2e-3)
