@@ -1,5 +1,0 @@
-<<<<<<< HEAD
-"""The control computer of the hump: how fast it must be, how reliable, and what it pays."""
-=======
-"""The control computer of the hump: how fast it must be, how reliable it is, and what it pays."""
->>>>>>> reliability

@@ -1,0 +1,71 @@
+"""The figures of a simulated or observed hump with their intervals, as they enter the economics."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from plant_models.errors import PlantError, require
+from synth.yard.control_computer.economics.estimate import Estimate
+from synth.yard.control_computer.economics.hump_rates import HumpRates
+
+NAMES = {
+    "cars_per_h": "cars_per_hour",
+    "catch_ups": "catch_ups",
+    "misrouted": "misrouted",
+    "over_speeds_to_1_5": "overspeed_to_1_5",
+    "over_speeds_to_2": "overspeed_to_2",
+    "over_speeds_above_2": "overspeed_above_2",
+    "gap_m": "gap_per_cut",
+}
+"""Our figures, and what `hump simulate` calls them in `summary.json`."""
+
+
+@dataclass(frozen=True)
+class HumpDayFigures:
+    """The figures of `HumpRates`, each with its interval; `name` of the variant; `on_track` has none and needs none."""
+
+    name: str
+    cars_per_h: Estimate
+    catch_ups: Estimate
+    misrouted: Estimate
+    on_track: float
+    over_speeds_to_1_5: Estimate
+    over_speeds_to_2: Estimate
+    over_speeds_above_2: Estimate
+    gap_m: Estimate
+
+    def __post_init__(self) -> None:
+        self.rates  # noqa: B018  # its ranges are checked where it is made
+
+    @property
+    def rates(self) -> HumpRates:
+        """The figures without their intervals."""
+        return HumpRates(on_track=self.on_track, **{name: getattr(self, name).value for name in NAMES})
+
+
+def figures_of_summary(name: str, summary: Mapping[str, Any]) -> HumpDayFigures:
+    """Those of a `summary.json` that `hump simulate` wrote, already parsed.
+
+    `PlantError` where a figure is missing or has no interval, as with a single train.
+    """
+    try:
+        told, cuts = summary["figures"], int(summary["cuts"])
+        on_track = int(told["overspeed"]["n"]) / cuts
+        made = {ours: estimate_of(theirs, told[theirs]) for ours, theirs in NAMES.items()}
+    except (KeyError, TypeError, ValueError, ZeroDivisionError) as missing:
+        if isinstance(missing, PlantError):
+            raise
+        raise PlantError(f"the summary of the hump variant {name!r} lacks or damages {missing}") from missing
+    return HumpDayFigures(name=name, on_track=on_track, **made)
+
+
+def estimate_of(name: str, told: Mapping[str, Any]) -> Estimate:
+    """One figure of a summary."""
+    ends = told["ci95"]
+    require(
+        None not in (told["value"], *ends),
+        f"the hump figure {name} has no interval; simulate at least two trains that reach their tracks",
+    )
+    return Estimate(float(told["value"]), float(ends[0]), float(ends[1]), int(told["n"]))

@@ -1,0 +1,195 @@
+"""What a failure does on the hump: which positions change, what is added, and how exactly it is known."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from plant_models import PlantError
+from plant_models.library.catalogue import load_car, load_position, load_weight_categories
+from synth.yard.control_computer.reliability.failed_hump import (
+    ByHand,
+    FailedPosition,
+    StuckAtStage,
+    StuckReleased,
+    WeakSupply,
+    failed_trial,
+)
+from synth.yard.control_computer.reliability.failure_costs_of_hump import (
+    EventPrices,
+    ExtraFigure,
+    cuts_before_stop,
+    cuts_per_h,
+    difference_of_counts,
+    extra_loss_per_cut,
+    extra_loss_per_h,
+    failure_figures,
+    measured_risks,
+    other_track_with_frozen_points,
+    paired_difference,
+)
+from synth.yard.humping.normal_hump_position import LibraryBrake, NormalHumpPosition
+from synth.yard.humping.outcomes import TrainOutcomes
+from synth.yard.humping.stuck_position import StuckPosition
+from synth.yard.humping.trial import HumpTrial
+from tests.synth.yard.humping.made_trials import Day
+
+TRAINS = 25
+CATEGORIES, CAR = load_weight_categories(), load_car("gondola-4").car
+BRAKES = tuple(
+    LibraryBrake(load_position(name).position, CATEGORIES, CAR)
+    for name in ("knp-5-bunch", "knp-5-bunch", "rnz-2m-park")
+)
+PRICES = EventPrices(overspeed_to_2=2.0, overspeed_above_2=30.0, catch_up=7.0, stopped=20.0, gap_per_m=0.01)
+
+
+@cache
+def sound_trial() -> HumpTrial:
+    trial = Day().on("large")
+    return replace(
+        trial, positions=tuple(NormalHumpPosition(0.15, brake) for brake in BRAKES)
+    )  # with the brakes that fail
+
+
+@cache
+def sound() -> TrainOutcomes:
+    return sound_trial().batch(0, TRAINS)
+
+
+@cache
+def humped(*failed: FailedPosition) -> TrainOutcomes:
+    return failed_trial(sound_trial(), BRAKES, failed).batch(0, TRAINS)
+
+
+def told(found: TrainOutcomes) -> dict[str, ExtraFigure]:
+    return {figure.name: figure for figure in failure_figures(sound(), found)}
+
+
+def test_only_the_failed_positions_change() -> None:
+    trial = sound_trial()
+    failed = failed_trial(trial, BRAKES, [FailedPosition(3, StuckReleased()), FailedPosition(1, ByHand(0.4))])
+    assert failed.positions[1] is trial.positions[1]
+    assert failed.positions[0] == NormalHumpPosition(0.4, BRAKES[0])
+    assert isinstance(failed.positions[2], StuckPosition)
+    assert replace(failed, positions=trial.positions) == trial
+    for number in (0, 4):
+        with pytest.raises(PlantError, match=f"number is {number}; the hump has the positions 1 to 3"):
+            failed_trial(trial, BRAKES, [FailedPosition(number, StuckReleased())])
+
+
+def test_no_failure_adds_nothing() -> None:
+    for figure in failure_figures(sound(), humped()):
+        assert figure.sound == figure.failed
+        value, low, high = figure.extra
+        assert value == 0.0
+        assert low <= 0.0 <= high
+        assert (figure.trains, figure.cuts) == (TRAINS, 8 * TRAINS)
+    assert extra_loss_per_cut(sound(), humped(), PRICES)[0] == 0.0
+
+
+def test_a_last_position_that_is_stuck_released_makes_cuts_couple_fast() -> None:
+    figures = told(humped(FailedPosition(3, StuckReleased())))
+    for name in ("overspeed", "overspeed_above_2"):
+        assert figures[name].extra[1] > 0.2, name
+    assert figures["gap_per_cut"].extra[2] < 0.0
+    lost = extra_loss_per_cut(sound(), humped(FailedPosition(3, StuckReleased())), PRICES)
+    assert lost[1] > 0.0
+
+
+def test_a_first_position_that_is_stuck_closed_stops_trains() -> None:
+    """Cuts stand in it, and those behind run into them: no failure of which nobody knows."""
+    failed = FailedPosition(1, StuckAtStage(4))
+    found = humped(failed)
+    assert told(found)["catch_ups"].extra[1] > 0.5
+    _, _, memory = failed_trial(sound_trial(), BRAKES, [failed]).humped(0, TRAINS)
+    assert np.median(cuts_before_stop(memory)) < 8
+    for train, before in enumerate(cuts_before_stop(memory)):
+        assert (memory.exit_m_s[train, :before, 0] > 0.0).all()
+        assert before == 8 or memory.exit_m_s[train, before, 0] == 0.0
+    assert (cuts_before_stop(sound_trial().humped(0, TRAINS)[2]) == 8).all()
+
+
+def test_a_refused_table_costs_less_than_a_stuck_brake_and_more_than_none() -> None:
+    by_hand = told(humped(FailedPosition(3, ByHand(0.5))))["overspeed_above_2"]
+    stuck = told(humped(FailedPosition(3, StuckReleased())))["overspeed_above_2"]
+    assert 0.0 < by_hand.extra[0] < stuck.extra[0]
+
+
+def test_a_weak_supply_lies_between_the_sound_brake_and_none() -> None:
+    full, half, none = (humped(FailedPosition(2, WeakSupply(share, 0.15))) for share in (1.0, 0.4, 0.0))
+    assert (full.overspeed == sound().overspeed).all()
+    assert (none.overspeed == humped(FailedPosition(2, StuckReleased())).overspeed).all()
+    above = [float(found.overspeed[:, 2].sum()) for found in (full, half, none)]
+    assert above == sorted(above)
+    assert above[0] < above[2]
+    with pytest.raises(PlantError, match=r"weak supply: share is 1\.5"):
+        WeakSupply(1.5, 0.15)
+
+
+def test_extra_is_the_difference_and_losses_are_the_priced_events() -> None:
+    """An independent sum over all trains."""
+    with_it = humped(FailedPosition(2, StuckReleased()))
+    cuts = sound().cuts.sum()
+    for figure in failure_figures(sound(), with_it):
+        assert figure.extra[0] == pytest.approx(figure.failed[0] - figure.sound[0], abs=1e-12)
+    expected = 0.0
+    for sign, found in ((1.0, with_it), (-1.0, sound())):
+        slow, fast = found.overspeed[:, :2].sum(), found.overspeed[:, 2].sum()
+        events = 2.0 * slow + 30.0 * fast + 7.0 * found.caught.sum() + 20.0 * found.stopped.sum()
+        expected += sign * (events + 0.01 * found.gap_m.sum()) / cuts
+    per_cut = extra_loss_per_cut(sound(), with_it, PRICES)
+    assert per_cut[0] == pytest.approx(expected)
+    per_h = extra_loss_per_h(sound(), with_it, PRICES, 0.6)
+    rate = 3600.0 * (with_it.cuts - 1).sum() / with_it.span_s.sum()
+    assert cuts_per_h(with_it)[0] == pytest.approx(rate)
+    np.testing.assert_allclose(per_h, 0.6 * rate * np.array(per_cut))
+    risks = measured_risks(with_it)
+    assert risks.overspeed == pytest.approx(with_it.overspeed.sum() / cuts)
+    assert risks.other_track == pytest.approx(with_it.caught.sum() / cuts)
+
+
+def test_frozen_points_send_cuts_of_even_tracks_elsewhere() -> None:
+    """All tracks as likely: 1 − 1/tracks of the cuts."""
+    trial = sound_trial()
+    tracks = len(trial.routes.routes)
+    _, low, high = other_track_with_frozen_points(trial.source.trains(0, 400))
+    assert low <= 1.0 - 1.0 / tracks <= high
+
+
+@pytest.mark.parametrize(
+    ("common", "more", "fewer"),
+    [(0.05, 0.02, 0.01), (0.05, 0.0005, 0.0002), (0.0, 0.0, 0.001), (0.02, 0.0002, 0.0)],
+    ids=["often", "rarely", "only better", "nearly never"],
+)
+def test_intervals_hold_the_difference_in_95_of_100_sets(common: float, more: float, fewer: float) -> None:
+    """Events that both runs share, some of one run alone: 400 sets of 60 trains with 40 cuts."""
+    rng, cuts, held = np.random.default_rng(1), np.full(60, 40.0), 0
+    for _ in range(400):
+        both = rng.binomial(40, common, 60)
+        without, with_it = both + rng.binomial(40, fewer, 60), both + rng.binomial(40, more, 60)
+        _, low, high = difference_of_counts(without.astype(float), with_it.astype(float), cuts)
+        held += low <= more - fewer <= high
+    assert held >= 0.92 * 400  # 95 % less 2.75 standard deviations of 400 sets
+
+
+def test_pairing_tells_more_than_two_runs_alone() -> None:
+    """Trains differ much, the failure adds one event to every third: the difference is known better than either."""
+    rng, cuts = np.random.default_rng(2), np.full(200, 40.0)
+    without = rng.integers(0, 20, 200).astype(float)
+    extra = (np.arange(200) % 3 == 0).astype(float)
+    _, low, high = paired_difference(without, without + extra, cuts)
+    spread = 2.0 * 1.96 * without.std() * np.sqrt(2.0 / 200.0) / 40.0
+    assert high - low < 0.2 * spread
+
+
+def test_other_trains_cannot_be_compared() -> None:
+    other = sound_trial().batch(1, TRAINS)
+    with pytest.raises(PlantError, match="both runs must have the same trains"):
+        failure_figures(sound(), other)
+    with pytest.raises(PlantError, match="event prices: catch_up is -1"):
+        replace(PRICES, catch_up=-1.0)
+    with pytest.raises(PlantError, match=r"humping_share is 1\.5"):
+        extra_loss_per_h(sound(), sound(), PRICES, 1.5)
