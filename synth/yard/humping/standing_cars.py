@@ -39,14 +39,14 @@ class StandingCars:
         the last ones on their tracks, when they touch them while these still roll; NaN where they do not."""
         at = lanes, cars.routes
         closing = np.full(len(lanes), np.nan)
-        met = np.flatnonzero((self.row[at] >= 0) & (end.time_s < self.still_s[at]))
+        met = np.flatnonzero((self.row[at] >= 0) & (start.time_s < self.still_s[at]))
         if len(met):
             ahead = lanes[met], cars.routes[met]
             last = Cars(cars.rolls, self.row[ahead], cars.routes[met])
             was = Moving(self.head_m[ahead], self.speed_m_s[ahead], self.time_s[ahead])
             closing[met] = closing_speed_m_s(
-                OnTrack(last, was, self.end_m[ahead]),
-                OnTrack(cars.chosen(met), start.chosen(met), end.head_m[met]),
+                OnTrack(last, was, self.end_m[ahead], self.still_s[ahead]),
+                OnTrack(cars.chosen(met), start.chosen(met), end.head_m[met], end.time_s[met]),
                 self.length_m[ahead],
             )
         self.found_m[at] = self.seen_m(lanes, cars.routes, start.time_s)

@@ -12,7 +12,7 @@ from synth.yard.humping.hump_routes import Mark
 from synth.yard.humping.train_memory import TrainMemory
 from tests.plant_models.rolling.populations import MIX, population
 from tests.synth.yard.humping.agreement import agreement, judged
-from tests.synth.yard.humping.fast_and_slow import HARD, BothTrains, Hardness, both_trains
+from tests.synth.yard.humping.fast_and_slow import HARD, ORDINARY, BothTrains, Hardness, both_trains
 from tests.synth.yard.humping.slow_humping import STEP_S, SlowHumping, humped_slowly
 from tests.synth.yard.humping.slow_train import Kind
 
@@ -108,3 +108,14 @@ def test_a_position_stays_as_it_is_through_a_cut_in_contact() -> None:
         slow.run(STEP_S)
         element = both.routes.numbers[both.routes.vertex[memory.route[train, cut], column[train, cut, position]]]
         assert memory.command_m_s[train, cut, position] == slow.commands[cut, element]
+
+
+def test_cuts_touch_on_their_track_though_the_second_would_roll_longer() -> None:
+    """The cut ahead stands before the one behind would, had they not met while both rolled."""
+    both, memory = many_trains(8, ORDINARY)
+    touching = []
+    for train, cut in np.argwhere(memory.caught_on_track).tolist():
+        ahead = np.flatnonzero(memory.route[train, :cut] == memory.route[train, cut])[-1]
+        if memory.end_time_s[train, cut] > memory.still_s[train, ahead]:
+            touching.append(train)
+    assert compared_trains(both, memory, touching) >= 2

@@ -15,6 +15,8 @@ Floats = NDArray[np.float64]
 
 LENGTH_M = 14.0
 
+NEVER = np.array([np.inf])
+
 
 def cars(resisted: float = 0.0, row: int = 0) -> Cars:
     """One cut on flat track, which resistance slows down."""
@@ -28,8 +30,8 @@ def moving(head_m: float, speed_m_s: float, time_s: float) -> Moving:
 
 def closing(ahead: Moving, behind: Moving, ends_m: tuple[float, float], resisted: tuple[float, float]) -> float:
     """Of two cuts, the first one 14 m long."""
-    one = OnTrack(cars(resisted[0]), ahead, np.array([ends_m[0]]))
-    other = OnTrack(cars(resisted[1]), behind, np.array([ends_m[1]]))
+    one = OnTrack(cars(resisted[0]), ahead, np.array([ends_m[0]]), NEVER)
+    other = OnTrack(cars(resisted[1]), behind, np.array([ends_m[1]]), NEVER)
     return float(closing_speed_m_s(one, other, np.array([LENGTH_M]))[0])
 
 
