@@ -33,7 +33,8 @@ class Layout:
 TUNE_LAYOUT: Final = Layout("tune", "retarder-summary", ("tables", "c", "plots"))
 AIM_LAYOUT: Final = Layout("aim", "aim-summary", ("tables", "c", "st", "plots"))
 TRAINS_LAYOUT: Final = Layout("hump simulate", "hump-trial-summary", ("batches", "inputs", "plots"))
-LAYOUTS: Final = (TUNE_LAYOUT, AIM_LAYOUT, TRAINS_LAYOUT)
+COMPUTER_LAYOUT: Final = Layout("computer", "control-computer-summary", ("plots",))
+LAYOUTS: Final = (TUNE_LAYOUT, AIM_LAYOUT, TRAINS_LAYOUT, COMPUTER_LAYOUT)
 LEFTOVER = re.compile(r"\..+\.[0-9a-f]{16}\.part")
 PICTURES = re.compile(
     r"(rms-by-controller|feasibility|switchings|degree-study|(exit-density|surfaces|policy-map|sample-passes)-.+)"
@@ -46,6 +47,9 @@ AIM_PICTURES = re.compile(r"aim-(track|gaps|commands-by-cars|commands-by-resista
 
 TRAIN_PICTURES = re.compile(r"hump-[a-z-]+\.(png|svg)")
 """Those of humped trains."""
+
+COMPUTER_PICTURES = re.compile(r"computer-[a-z-]+\.(png|svg)")
+"""Those of a control computer."""
 
 SWEEP_LEDGER, SWEPT_CONFIG = "sweep/ledger.jsonl", "config.toml"
 """What is in every directory of a sweep, and beside every book of one."""

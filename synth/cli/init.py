@@ -16,7 +16,7 @@ def init_command(types: dict[str, str | None], show_list: bool, as_json: bool) -
     `types`: by folder of the library, the type that is asked for; '' for a usual one, None for none. A position under
     "retarders" asks for a configuration with it: so the option --retarder was, before there were files of types. Under
     "aim" '' asks for an aim configuration, a name for the file of a track or a car mix; under "hump" '' asks for a hump
-    trial configuration, a name for the file of a hump.
+    trial configuration, a name for the file of a hump; under "computer" '' asks for that of a control computer.
     """
     if show_list:
         return print_list(as_json)
@@ -34,13 +34,15 @@ def asked_for(types: dict[str, str | None]) -> tuple[str, str]:
     from synth.faults.input_error import InputError
 
     asked = [kind for kind in KINDS if types.get(kind.folder) is not None]
-    aim, hump = types.get("aim"), types.get("hump")
-    if len(asked) + (aim is not None) + (hump is not None) > 1:
+    aim, hump, computer = types.get("aim"), types.get("hump"), types.get("computer")
+    if len(asked) + sum(each is not None for each in (aim, hump, computer)) > 1:
         raise InputError("init prints one file at a time; give one of its options")
     if aim is not None:
         return aim_file(aim)
     if hump is not None:
         return hump_file(hump)
+    if computer is not None:
+        return computer_file(computer)
     if not asked:
         return "configuration", default_config_toml()
     (kind,) = asked
@@ -81,6 +83,16 @@ def hump_file(name: str) -> tuple[str, str]:
     if name not in hump_names():
         raise InputError(f"init --hump {name}: the library has no such hump; {near_miss(name, hump_names())}")
     return "type", hump_text(Path(name))
+
+
+def computer_file(name: str) -> tuple[str, str]:
+    """As `asked_for`: the configuration of a control computer, which has no types to be named."""
+    from synth.configuration.computer.template import default_computer_toml
+    from synth.faults.input_error import InputError
+
+    if name:
+        raise InputError(f"init --computer {name}: the library has no control computers; leave the name out")
+    return "configuration", default_computer_toml()
 
 
 def print_list(as_json: bool) -> int:

@@ -19,6 +19,7 @@ FILES = {
     "weight_categories": ("weight_categories", "File of a set of weight categories."),
     "aim": ("aim", "Aim configuration. With the name of a track or car mix: its file."),
     "hump": ("hump", "Hump trial configuration. With the name of a hump: its file."),
+    "computer": ("computer", "Configuration of a control computer."),
 }
 """Options that ask for a file: what `init_command` calls it, and the help."""
 

@@ -15,6 +15,7 @@ from synth.cli.arguments import Json, directory, whole_number
 def add_yard_commands(app: typer.Typer) -> None:
     """Add the commands of the yard to `app`."""
     app.command()(aim)
+    app.command()(computer)
     app.add_typer(hump_commands.app, name="hump")
 
 
@@ -47,3 +48,33 @@ def aim(
     from synth.cli.aim import aim_command
 
     return aim_command(config, output, passes, seed, as_json)
+
+
+def computer(
+    config: Annotated[Path | None, typer.Argument(metavar="CONFIG.toml", help="Built-in unless given.")] = None,
+    output: Annotated[
+        Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where the results go.")
+    ] = Path("out/computer"),
+    draws: Annotated[
+        int | None,
+        typer.Option(
+            parser=whole_number(200, 1_000_000),
+            metavar="N",
+            help="Draws of the uncertain inputs; as configured unless given.",
+        ),
+    ] = None,
+    seed: Annotated[
+        int | None,
+        typer.Option(
+            parser=whole_number(0, 2**53), metavar="N", help="Of the random numbers; as configured unless given."
+        ),
+    ] = None,
+    as_json: Json = False,
+) -> int:
+    """Size the control computer of a hump: how fast, how reliable, and what it pays.
+
+    Exit code 1 if it is slower than its tasks need, or misses a limit of the configuration.
+    """
+    from synth.cli.computer import computer_command
+
+    return computer_command(config, output, draws, seed, as_json)

@@ -26,11 +26,11 @@ def to_npz(found: TrainOutcomes, numbers: tuple[int, ...], trains_sha256: str) -
     return content.getvalue()
 
 
-def from_npz(content: bytes | memoryview, source: str, trains_sha256: str) -> TrainOutcomes:
-    """The outcomes in a file; `DamagedTable` for what is none, or none of this trial."""
+def from_npz(content: bytes | memoryview, source: str, trains_sha256: str | None) -> TrainOutcomes:
+    """The outcomes in a file; `DamagedTable` for what is none, or none of this trial (None: of any)."""
     try:
         with np.load(io.BytesIO(content), allow_pickle=False) as arrays:
-            if str(arrays[TRIAL]) != trains_sha256:
+            if trains_sha256 is not None and str(arrays[TRIAL]) != trains_sha256:
                 raise ValueError("they are of another trial")
             return TrainOutcomes(**{field.name: arrays[field.name] for field in fields(TrainOutcomes)})
     except (KeyError, ValueError, OSError, EOFError, zipfile.BadZipFile) as fault:

@@ -1,0 +1,1 @@
+"""The configuration of `retarder-synth computer`."""

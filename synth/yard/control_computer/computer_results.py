@@ -1,0 +1,125 @@
+"""What is found of a control computer: how fast it must be, how reliable it is, and what it pays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from plant_models.errors import PlantError
+from synth.yard.control_computer.computer_model import ComputerModel
+from synth.yard.control_computer.economics.economic_case import EconomicResult
+from synth.yard.control_computer.economics.uncertainty.model import uncertain
+from synth.yard.control_computer.economics.uncertainty.monte_carlo import (
+    Draws,
+    OutputFigures,
+    drawn,
+    output_figures,
+)
+from synth.yard.control_computer.economics.uncertainty.sobol import SobolIndex, sobol_of
+from synth.yard.control_computer.economics.uncertainty.tornado import Tornado, tornado
+from synth.yard.control_computer.sized_computer import SizedComputer, sized
+
+if TYPE_CHECKING:
+    from synth.yard.control_computer.resolved_computer import ResolvedComputer
+
+OUTPUTS = (
+    "failure_loss_per_year", "savings_per_year", "released_capital", "effect_per_year", "pay_back_years",
+    "net_present_value", "discounted_pay_back_years",
+)  # fmt: skip
+SHARED = ("pay_back_rate_per_year", "net_present_value")
+"""Outputs whose variance is shared out: they are finite where a pay-back never comes."""
+
+
+@dataclass(frozen=True)
+class ReliableComputer:
+    """Best intervals between checks, h (None where none is), and losses of a year with one computer and with two.
+
+    `longest_period_h`: of two that keep the required availability; None where no period does, `why_none` says why.
+    """
+
+    best_useful_h: float | None
+    best_calendar_h: float | None
+    single_availability: float
+    single_loss: tuple[float, float, float]
+    duplex_availability: float
+    duplex_loss: float
+    longest_period_h: float | None
+    why_none: str
+
+
+@dataclass(frozen=True)
+class UncertainMoney:
+    """Results over all draws; `no_sobol` says why there are no indices."""
+
+    draws: Draws
+    figures: tuple[OutputFigures, ...]
+    tornado: Tornado
+    sobol: tuple[SobolIndex, ...]
+    no_sobol: str
+
+
+@dataclass(frozen=True)
+class ComputerResults:
+    """All of it; `money` None where no input is uncertain."""
+
+    config: ResolvedComputer
+    sized: SizedComputer
+    reliable: ReliableComputer
+    economics: EconomicResult
+    money: UncertainMoney | None
+
+
+PARTS = 3
+"""Sizing, what it pays at the configured values, and over all uncertain inputs."""
+
+
+def computer_results(config: ResolvedComputer, done: Callable[[str], None] = lambda part: None) -> ComputerResults:
+    """Everything; `PlantError` where the hump or the computer is overloaded. `done` hears of each part."""
+    model = ComputerModel(config.case, config.upkeep)
+    economics = model.result()
+    done("what it pays")
+    size = sized(config)
+    done("how fast")
+    results = ComputerResults(config, size, reliable(config), economics, uncertain_money(config, model))
+    done("uncertain inputs")
+    return results
+
+
+def reliable(config: ResolvedComputer) -> ReliableComputer:
+    """Reliability and what failures cost."""
+    from synth.yard.control_computer.reliability.maintenance_interval import CalendarHours, UsefulHours
+
+    upkeep = config.upkeep
+    checked, loss, longest, why = upkeep.checked, upkeep.single_loss(), None, ""
+    try:
+        longest = upkeep.duplex.longest_period_h(upkeep.required_availability)
+    except PlantError as fault:
+        why = str(fault)
+    return ReliableComputer(
+        best_useful_h=None if checked is None else UsefulHours().best_interval_h(checked),
+        best_calendar_h=None if checked is None else CalendarHours().best_interval_h(checked),
+        single_availability=upkeep.chain.stationary().availability,
+        single_loss=(loss.unnoticed, loss.maintenance, loss.repair),
+        duplex_availability=1.0 - upkeep.duplex_unavailability,
+        duplex_loss=upkeep.duplex_loss_per_year(),
+        longest_period_h=longest,
+        why_none=why,
+    )
+
+
+def uncertain_money(config: ResolvedComputer, model: ComputerModel) -> UncertainMoney | None:
+    """The ranges carried through; None where every input is known."""
+    if not config.ranges:
+        return None
+    uncertain(config.ranges)
+    asked = config.settings.uncertainty
+    draws = drawn(model.figures, config.ranges, asked.draws, asked.seed)
+    figures = tuple(output_figures(draws, name) for name in OUTPUTS)
+    sobol: tuple[SobolIndex, ...] = ()
+    why = ""
+    try:
+        sobol = sobol_of(model.figures, config.ranges, SHARED, asked.sobol_points, seed=asked.seed)
+    except PlantError as fault:
+        why = str(fault)
+    return UncertainMoney(draws, figures, tornado(model.figures, config.ranges, "net_present_value"), sobol, why)
