@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,10 +73,15 @@ class HumpRoutes:
         """Most positions of a route."""
         return int(self.entrance_m.shape[1])
 
-    @property
+    @cached_property
+    def positions_of(self) -> Ints:
+        """Positions of each route, (routes,); the number of its last one."""
+        return read_only(np.isfinite(self.entrance_m).sum(axis=1))
+
+    @cached_property
     def release_m(self) -> Floats:
         """Where the last position of each route ends, (routes,); 0 where it has none."""
-        return np.asarray(self.exit_m.max(axis=1, initial=0.0, where=np.isfinite(self.exit_m)))
+        return read_only(self.exit_m.max(axis=1, initial=0.0, where=np.isfinite(self.exit_m)))
 
     def of_tracks(self, tracks: Ints) -> Ints:
         """Rows of the routes to `tracks`; each must be reached."""
@@ -91,6 +98,12 @@ class HumpRoutes:
         """
         same = (self.vertex[one] == self.vertex[other]) & (self.vertex[one] >= 0)
         return np.asarray(np.logical_and.accumulate(same, axis=1).sum(axis=1))
+
+
+def read_only(array: NDArray[Any]) -> NDArray[Any]:
+    """`array`, made so."""
+    array.setflags(write=False)
+    return array
 
 
 def hump_routes(graph: HumpGraph, lead: int) -> HumpRoutes:

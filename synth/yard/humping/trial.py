@@ -24,9 +24,10 @@ from synth.yard.humping.interval_control import Feedback, FeedbackSpeeds, OpenLo
 from synth.yard.humping.known_cuts import BAD, Brakes, KnownCuts, known_cuts, runner_n_per_kn
 from synth.yard.humping.outcomes import TrainOutcomes, outcomes
 from synth.yard.humping.rollability import CategoryMean, Rollability, measured_rollability
-from synth.yard.humping.route_rolling import rolling_on
+from synth.yard.humping.route_rolling import RouteRolling, rolling_on
 from synth.yard.humping.route_ways import RouteWays
 from synth.yard.humping.speed_sensors import SpeedSensors
+from synth.yard.humping.stretch_reading import AimReading, ReadByRoute, ReadOnStretch
 from synth.yard.humping.train_cuts import TrainCuts, expected
 from synth.yard.humping.train_memory import TrainMemory
 from synth.yard.humping.train_plan import Planner, TrainPlan
@@ -161,7 +162,7 @@ class HumpTrial:
         trains, free_m, known, plan = self.planned(first, count)
         rolls = rolling_on(self.ways, trains.population, trains.drawn, self.threads)
         hump = Hump(self.routes, self.positions, rolls)
-        control = self.control_of(trains, known, plan, self.aim_of(trains, known))
+        control = self.control_of(trains, known, plan, self.aim_of(trains, known, rolls))
         speeds: HumpSpeeds = ProgramSpeeds(plan.hump_speed_m_s)
         if self.control.slow_down_s is not None and isinstance(control, Feedback):
             speeds = FeedbackSpeeds(control, self.control.slow_down_s)
@@ -201,13 +202,15 @@ class HumpTrial:
         worse = runner_n_per_kn(trains, drawn, BAD) - drawn.resistance_n_per_kn
         return np.asarray(1e-3 * stretch * (worse + drawn.air_n_per_kn * (against[1] - against[0])))
 
-    def aim_of(self, trains: TrainCuts, known: KnownCuts) -> AimControl:
-        """The control of the last position for these trains."""
-        sensing = self.control.sensing
-        reading = None
+    def aim_of(self, trains: TrainCuts, known: KnownCuts, rolls: RouteRolling) -> AimControl:
+        """The control of the last position for these trains, which roll as in `rolls`."""
+        sensing, stretch_m = self.control.sensing, self.aim.stretch_m
+        reading: AimReading | None = None
         if sensing is not None and sensing.for_aim:
             sensors = SpeedSensors(self.routes, trains, sensing.speed_std_m_s)
             reading = ReadAhead(sensors, expected_way(trains, known))
+            if stretch_m is not None and np.isfinite(stretch_m).any():
+                reading = ReadByRoute(reading, ReadOnStretch(sensors, rolls, stretch_m))
         return AimControl(self.aim, self.routes, trains, reading)
 
     def control_of(self, trains: TrainCuts, known: KnownCuts, plan: TrainPlan, aim: AimControl) -> ExitSpeeds:

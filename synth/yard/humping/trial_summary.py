@@ -8,6 +8,7 @@ from importlib.metadata import version
 
 from synth.book.output_directory import TRAINS_LAYOUT
 from synth.book.summary import Document, plain
+from synth.yard.humping.aim_choice import AimChoice
 from synth.yard.humping.outcomes import TrainOutcomes
 from synth.yard.humping.resolved_trial import ResolvedTrial
 from synth.yard.humping.speed_program import csv_bytes
@@ -44,6 +45,7 @@ def trial_summary(
         "figures": {figure.name: figure_of(figure) for figure in figures},
         "elements": elements_of(config, found),
         "positions": positions_of(config, found),
+        "aim_tables": [aim_of(config, choice) for choice in config.aims],
         "files": dict(file_hashes),
     }
     plain_document: Document = plain(document)
@@ -86,6 +88,26 @@ def positions_of(config: ResolvedTrial, found: TrainOutcomes) -> list[Document]:
         }
         for place, choice in enumerate(config.positions)
     ]
+
+
+def aim_of(config: ResolvedTrial, choice: AimChoice) -> Document:
+    """Which aim tables command the last position, and on which tracks."""
+    return {
+        "tracks": sorted(int(config.routes.tracks[row]) for row in choice.rows),
+        "retarders": choice.retarders,
+        "tables": [
+            {
+                "id": table.id,
+                "created": table.created,
+                "config_sha256": table.generator.config_sha256,
+                "category": table.category.name,
+                "knowledge": "measured" if table.is_measured else "category",
+                "p_overspeed": table.required.p_overspeed,
+                "coupling_speed_m_s": table.required.coupling_speed_m_s,
+            }
+            for table in choice.tables.tables
+        ],
+    }
 
 
 def figures_csv(figures: Figures) -> bytes:
