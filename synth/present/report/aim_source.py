@@ -11,7 +11,7 @@ from synth.yard.humping.aim_choice import KNOWN, AimChoice
 COLUMNS = ("tracks", "table", "position", "weight category", "by", "p", "coupling speed, m/s", "made")
 LEAD = (
     "Exit speeds of the last position of these tracks are the answers of these tables, by the rule of controllers. "
-    "Where a table has no answer its lowest speed is commanded. On all other tracks exit speeds were chosen for this trial."
+    "Where a table has no answer its lowest speed is commanded. On other tracks they were chosen for this trial."
 )
 
 

@@ -87,10 +87,49 @@ class SpeedRange:
 
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
+class ByRoute:
+    """The choices `kept` of a position for cuts whose routes go on to another one; `aim` for those that `aims` (n,),
+    since it is the last one of their routes; their own speed for those whose routes have none any more, `gone` (n,)."""
+
+    kept: Choices
+    aim: Choices
+    aims: Bools
+    gone: Bools
+
+    @property
+    def most_entry_m_s(self) -> Floats:
+        """See `Choices`."""
+        most = np.where(self.aims, self.aim.most_entry_m_s, self.kept.most_entry_m_s)
+        return np.where(self.gone, np.inf, most)
+
+    @property
+    def least_entry_m_s(self) -> Floats:
+        """See `Choices`."""
+        least = np.where(self.aims, self.aim.least_entry_m_s, self.kept.least_entry_m_s)
+        return np.where(self.gone, 0.0, least)
+
+    def speeds(self, most_m_s: Floats) -> Floats:
+        """See `Choices`; a cut without choice has its speed as often."""
+        found = np.where(self.aims[:, None], self.aim.speeds(most_m_s), self.kept.speeds(most_m_s))
+        return np.where(self.gone[:, None], most_m_s[:, None], found)
+
+
+def choices_by_route(
+    routes: HumpRoutes, rows: Ints, position: int, choices: tuple[Choices, ...]
+) -> tuple[Choices, ...]:
+    """`choices` of the positions from `position` on, the last one of which is the aim, for cuts on the routes `rows`
+    (n,)."""
+    positions, aim = routes.positions_of[rows], choices[-1]
+    places = enumerate(choices, position)
+    return tuple(ByRoute(each, aim, positions == place + 1, positions <= place) for place, each in places)
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Compared:
     """n cuts with c choices each, (n, c): least margins to the cuts ahead and behind; whether the cut can have these
     speeds; how far it comes beyond the limits of entry of some position, 0 if it does not; when its last axle is out of
-    the section of the last position; all exit speeds added up."""
+    the last element; all exit speeds added up."""
 
     ahead_s: Floats
     behind_s: Floats
@@ -103,9 +142,8 @@ class Compared:
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Forecast:
-    """n cuts with one choice each: `first_in_s`, `last_out_s` (n, elements), NaN for what lies behind the cut or beyond
-    the last position, infinite behind a stop; (n, q) of the positions ahead: `exit_m_s`, and `ended_s`, when the passes
-    end."""
+    """n cuts with one choice each: `first_in_s`, `last_out_s` (n, elements), NaN for what lies behind the cut, infinite
+    behind a stop; (n, q) of the positions ahead: `exit_m_s`, and `ended_s`, when the passes end."""
 
     first_in_s: Floats
     last_out_s: Floats
@@ -114,9 +152,8 @@ class Forecast:
 
 
 class Ways:
-    """All ways that n cuts can go from where they are until their last axles are out of the last position's section:
-    free rolls and, for each position ahead, the choices of its exit speed. Build it with `from_crest` or
-    `from_entrance`."""
+    """All ways that n cuts can go from where they are until their last axles are out of the last element: free rolls
+    and, for each position ahead, the choices of its exit speed. Build it with `from_crest` or `from_entrance`."""
 
     def __init__(self, routes: HumpRoutes, legs: kernel.Legs) -> None:
         self.routes, self.legs = routes, legs
@@ -168,10 +205,12 @@ def from_entrance(
 def through(
     routes: HumpRoutes, expected: Expected, start: Moving, before_s: Floats, position: int, choices: tuple[Choices, ...]
 ) -> Ways:
-    """From `start` at the entrance of `position` through all positions behind it."""
+    """From `start` at the entrance of `position` through all positions behind it. The last of `choices` is of the last
+    position of each route, which on some routes comes before that of others."""
     count, marks, most = len(before_s), before_s.shape[1], len(choices)
     heads, fastest, stretches = heads_m(routes, expected), start.speed_m_s, []
     begins = np.maximum(entrance_m(routes, expected, position), start.head_m)
+    choices = choices if routes.even else choices_by_route(routes, expected.cars.routes, position, choices)
     for place, of_one in enumerate(choices, position):
         stretches.append(stretch(routes, expected, place, heads, Moving(begins, fastest, np.zeros(count)), of_one))
         fastest, begins = stretches[-1].ends_m_s.max(axis=1), entrance_m(routes, expected, place + 1)
@@ -219,9 +258,12 @@ class Stretch:
 def stretch(
     routes: HumpRoutes, expected: Expected, position: int, heads_m: Floats, start: Moving, choices: Choices
 ) -> Stretch:
-    """`position` with each of the `choices` for cuts that come as at `start`, at the fastest."""
+    """`position` with each of the `choices` for cuts that come as at `start`, at the fastest. On a route that has no
+    such position nothing happens: it has no length, at the end of the way that is forecast."""
     count = len(heads_m)
-    leaves = routes.exit_m[expected.cars.routes, position] + expected.last_axle_m
+    exit_m = routes.exit_m[expected.cars.routes, position]
+    there = np.isfinite(exit_m)
+    leaves = np.where(there, exit_m + expected.last_axle_m, start.head_m)
     unbraked, _ = rolled_free(expected.cars, start, leaves, np.empty((count, 0)))
     speeds = choices.speeds(np.maximum(unbraked.speed_m_s, SLOWEST_M_S))
     chosen = speeds.shape[1]
@@ -230,7 +272,7 @@ def stretch(
     ahead = entrance_m(routes, expected, position + 1)
     ends, roll = rolled_free(expected.cars.chosen(each), begins, ahead[each], heads_m[each])
     path = leaves - start.head_m
-    share = (heads_m - start.head_m[:, None]) / path[:, None]
+    share = (heads_m - start.head_m[:, None]) / np.where(there, path, np.nan)[:, None]
     return Stretch(
         speeds_m_s=speeds,
         won_m2_s2=unbraked.speed_m_s**2 - start.speed_m_s**2,
@@ -251,11 +293,13 @@ def heads_m(routes: HumpRoutes, expected: Expected) -> Floats:
 
 def entrance_m(routes: HumpRoutes, expected: Expected, position: int) -> Floats:
     """Where the heads are when the passes of `position` begin: at its entrance, but not before the last axles are out
-    of the position before it. Behind the last position: when they are out of its section."""
+    of the position before it. Behind the last position of a route: when they are out of its last element."""
     rows = expected.cars.routes
+    ends = routes.ends_m[rows] + expected.last_axle_m
     if position == routes.positions:
-        return np.asarray(routes.place_m[rows, routes.retarder[rows, -1], Mark.LAST_OUT] + expected.last_axle_m)
+        return np.asarray(ends)
     out = np.full(len(rows), -np.inf)
     if position > 0:
         out = routes.exit_m[rows, position - 1] + expected.last_axle_m
-    return np.asarray(np.maximum(routes.entrance_m[rows, position] + expected.first_axle_m, out))
+    begins = np.maximum(routes.entrance_m[rows, position] + expected.first_axle_m, out)
+    return begins if routes.even else np.where(np.isfinite(routes.entrance_m[rows, position]), begins, ends)

@@ -83,6 +83,24 @@ class HumpRoutes:
         """Where the last position of each route ends, (routes,); 0 where it has none."""
         return read_only(self.exit_m.max(axis=1, initial=0.0, where=np.isfinite(self.exit_m)))
 
+    @cached_property
+    def even(self) -> bool:
+        """Whether all routes have as many positions."""
+        return bool((self.positions_of == self.positions).all())
+
+    @cached_property
+    def ends_m(self) -> Floats:
+        """Where a last axle is out of the last element of its route, (routes,)."""
+        out = self.place_m[:, :, Mark.LAST_OUT]
+        return read_only(out.max(axis=1, initial=0.0, where=np.isfinite(out)))
+
+    @cached_property
+    def standing_from_m(self) -> Floats:
+        """From where on cars may stand on the track of each route, (routes,): behind its last position and switch."""
+        clear = self.place_m[:, :, Mark.LAST_CLEAR]
+        begins = np.array([route.yard_from_m for route in self.routes])
+        return read_only(clear.max(axis=1, initial=0.0, where=self.points >= 0).clip(begins, self.length_m))
+
     def of_tracks(self, tracks: Ints) -> Ints:
         """Rows of the routes to `tracks`; each must be reached."""
         own = self.tracks

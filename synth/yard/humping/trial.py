@@ -124,8 +124,9 @@ class Control:
 class HumpTrial:
     """Trains from `source` over `routes`, whose `ways` are the routes as their cars feel them.
 
-    `positions`: models in order from the crest, all but the last for intervals; `planner` with their ranges; `free`:
-    tracks before each train. `aim`: exit speeds of the last position; `usable_heads_m`: energy head (rows,) that
+    `positions`: models in order from the crest, of every route that has so many; the last of each route aims, all
+    others keep intervals; `planner` with the ranges of all but the last one; `free`: tracks before each train. `aim`:
+    exit speeds of the last position of each route; `usable_heads_m`: energy head (rows,) that
     each position can be trusted to take from cuts, by mass, axles and category.
     """
 
@@ -146,10 +147,6 @@ class HumpTrial:
             len(self.positions) == self.routes.positions == len(self.planner.ranges) + 1,
             f"hump trial: {len(self.positions)} position models and {len(self.planner.ranges)} ranges of exit speeds; "
             f"the hump has {self.routes.positions} positions, and ranges belong to all but the last",
-        )
-        require(
-            bool(np.isfinite(self.routes.entrance_m).all()),
-            "hump trial: some routes have fewer positions than others; that cannot be humped yet",
         )
 
     def batch(self, first: int, count: int) -> TrainOutcomes:
@@ -177,7 +174,7 @@ class HumpTrial:
 
     def known(self, trains: TrainCuts, free_m: Floats) -> KnownCuts:
         """What is known of trains before they are humped, and how they will be aimed if tracks stay as they are."""
-        release = self.routes.exit_m[trains.route, -1] + trains.last_axle_m
+        release = self.routes.release_m[trains.route] + trains.last_axle_m
         lanes = np.repeat(np.arange(trains.trains), trains.cuts)
         free = free_m[lanes, trains.route] - release
         sensing = self.control.sensing
@@ -187,14 +184,16 @@ class HumpTrial:
         heads = [brake(trains.mass_t, trains.axles, trains.category) for brake in self.usable_heads_m]
         braked = 2.0 * gravity[:, None] * np.stack(heads, axis=1)
         least = np.sqrt(WORST_ENTRY_M_S**2 + 2.0 * gravity * self.worse_head_m(trains))
-        given = Given(aim, np.sqrt(aim**2 + braked[:, -1]), least)
+        last = self.routes.positions_of[trains.route] - 1
+        given = Given(aim, np.sqrt(aim**2 + braked[np.arange(len(trains)), last]), least)
         early = np.array([position.brakes_early for position in self.positions])
         return known_cuts(trains, self.ways, given, Brakes(braked, early), self.threads)
 
     def worse_head_m(self, trains: TrainCuts) -> Floats:
         """Energy head (rows,) that bad runners against the wind lose more than expected ahead of the last position."""
-        begins = self.routes.exit_m[:, -2] if self.routes.positions > 1 else np.zeros(len(self.routes.routes))
-        stretch = (self.routes.entrance_m[:, -1] - begins)[trains.route]
+        rows, last = np.arange(len(self.routes.routes)), self.routes.positions_of - 1
+        begins = np.where(last > 0, self.routes.exit_m[rows, np.maximum(last - 1, 0)], 0.0)
+        stretch = np.where(last >= 0, self.routes.entrance_m[rows, last] - begins, 0.0)[trains.route]
         drawn = expected(trains)
         weather = trains.population.weather
         wind = np.array([weather.head_wind_mean_m_s, weather.head_wind_mean_m_s + 2.0 * weather.head_wind_std_m_s])
@@ -241,5 +240,5 @@ def with_room(routes: HumpRoutes, trains: TrainCuts, free_m: Floats) -> Floats:
     train = np.repeat(np.arange(trains.trains), trains.cuts)
     needs = np.zeros(free_m.shape)
     np.add.at(needs, (train, trains.route), trains.length_m + SPARE_M)
-    begins = np.array([route.yard_from_m for route in routes.routes])
+    begins = routes.standing_from_m
     return np.asarray(np.clip(begins + needs, free_m, routes.length_m))

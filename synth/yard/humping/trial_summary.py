@@ -6,9 +6,12 @@ import json
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 
+import numpy as np
+
 from synth.book.output_directory import TRAINS_LAYOUT
 from synth.book.summary import Document, plain
 from synth.yard.humping.aim_choice import AimChoice
+from synth.yard.humping.hump_routes import HumpRoutes
 from synth.yard.humping.outcomes import TrainOutcomes
 from synth.yard.humping.resolved_trial import ResolvedTrial
 from synth.yard.humping.speed_program import csv_bytes
@@ -76,12 +79,14 @@ def elements_of(config: ResolvedTrial, found: TrainOutcomes) -> Document:
 
 
 def positions_of(config: ResolvedTrial, found: TrainOutcomes) -> list[Document]:
-    """Passes of each position, how exactly cuts left it, and commands to its valves, None where none are modelled."""
+    """The tracks on whose routes each position is the last one, so that it aims; its passes, how exactly cuts left it,
+    and commands to its valves, None where none are modelled."""
     passes, error2, strokes = (each.sum(axis=0) for each in (found.passes, found.error2_m2_s2, found.strokes))
     return [
         {
             "number": choice.number,
             "site": choice.site,
+            "aims_on_tracks": aimed_tracks(config.routes, place + 1),
             "passes": int(passes[place]),
             "rms_of_exit_less_command_m_s": float((error2[place] / passes[place]) ** 0.5) if passes[place] else None,
             "strokes_per_pass": float(strokes[place] / passes[place]) if strokes[place] else None,
@@ -108,6 +113,11 @@ def aim_of(config: ResolvedTrial, choice: AimChoice) -> Document:
             for table in choice.tables.tables
         ],
     }
+
+
+def aimed_tracks(routes: HumpRoutes, number: int) -> list[int]:
+    """Tracks of the routes that have `number` positions."""
+    return [int(track) for track in np.sort(routes.tracks[routes.positions_of == number])]
 
 
 def figures_csv(figures: Figures) -> bytes:
