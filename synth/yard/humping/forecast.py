@@ -295,11 +295,13 @@ def entrance_m(routes: HumpRoutes, expected: Expected, position: int) -> Floats:
     """Where the heads are when the passes of `position` begin: at its entrance, but not before the last axles are out
     of the position before it. Behind the last position of a route: when they are out of its last element."""
     rows = expected.cars.routes
-    ends = routes.ends_m[rows] + expected.last_axle_m
     if position == routes.positions:
-        return np.asarray(ends)
+        return np.asarray(routes.ends_m[rows] + expected.last_axle_m)
     out = np.full(len(rows), -np.inf)
     if position > 0:
         out = routes.exit_m[rows, position - 1] + expected.last_axle_m
     begins = np.maximum(routes.entrance_m[rows, position] + expected.first_axle_m, out)
-    return begins if routes.even else np.where(np.isfinite(routes.entrance_m[rows, position]), begins, ends)
+    if routes.even:
+        return np.asarray(begins)
+    ends = routes.ends_m[rows] + expected.last_axle_m
+    return np.where(np.isfinite(routes.entrance_m[rows, position]), begins, ends)
