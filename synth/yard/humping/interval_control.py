@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 from plant_models.frozen_arrays import frozen_arrays
 from synth.yard.humping.aim_control import AimControl
 from synth.yard.humping.asked import Asked
-from synth.yard.humping.forecast import Choices, from_crest, from_entrance
+from synth.yard.humping.forecast import from_crest, from_entrance
 from synth.yard.humping.interval import IntervalRule, possible
 from synth.yard.humping.known_cuts import KnownCuts
 from synth.yard.humping.motion import Moving, Push
 from synth.yard.humping.rollability import Rollability
+from synth.yard.humping.route_choices import Choices
 from synth.yard.humping.sight import Sight
 from synth.yard.humping.train_memory import TrainMemory
 from synth.yard.humping.train_plan import Planner, TrainPlan, apart_m, free_by_s

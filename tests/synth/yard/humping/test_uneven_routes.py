@@ -71,12 +71,12 @@ def test_the_last_position_of_each_route_aims_and_no_other(name: str) -> None:
     for control in (Control(), Control(False), MEASURED):
         trial = trial_on(name, Day(cuts=12, control=control))
         trains, _, memory = trial.humped(0, 40)
-        aimed = np.abs(memory.command_m_s - 1.4) < 1e-5
+        aimed = np.isclose(memory.command_m_s, 1.4, atol=1e-5, rtol=0.0)
         held, routes = np.isfinite(memory.begin_s), trial.routes
-        own = memory.route == trains.route.reshape(memory.route.shape)
-        last = np.arange(3) + 1 == routes.positions_of[memory.route][:, :, None]
+        own = np.asarray(memory.route == trains.route.reshape(memory.route.shape))
+        last = np.asarray(routes.positions_of[memory.route][:, :, None] == np.arange(1, 4))
         together = memory.unseparated.any(axis=2)[:, :, None]  # two cuts on a retarder have one command
-        judged = held & own[:, :, None] & ~together
+        judged = np.asarray(held & own[:, :, None] & ~together)
         assert (aimed[judged] == last[judged]).all()
         assert (judged & last)[:, :, 1].sum() > 10
         assert not held[routes.positions_of[memory.route] == 2][:, 2].any()
