@@ -73,10 +73,10 @@ def test_the_last_position_of_each_route_aims_and_no_other(name: str) -> None:
         trains, _, memory = trial.humped(0, 40)
         aimed = np.isclose(memory.command_m_s, 1.4, atol=1e-5, rtol=0.0)
         held, routes = np.isfinite(memory.begin_s), trial.routes
-        own = np.asarray(memory.route == trains.route.reshape(memory.route.shape))
-        last = np.asarray(routes.positions_of[memory.route][:, :, None] == np.arange(1, 4))
-        together = memory.unseparated.any(axis=2)[:, :, None]  # two cuts on a retarder have one command
-        judged = np.asarray(held & own[:, :, None] & ~together)
+        own = memory.route == trains.route.reshape(memory.route.shape)
+        last = routes.positions_of[memory.route][:, :, None] == np.arange(1, 4)
+        together = np.asarray(memory.unseparated.any(axis=2))[:, :, None]  # two cuts on a retarder have one command
+        judged = held & own[:, :, None] & ~together
         assert (aimed[judged] == last[judged]).all()
         assert (judged & last)[:, :, 1].sum() > 10
         assert not held[routes.positions_of[memory.route] == 2][:, 2].any()
