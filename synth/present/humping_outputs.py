@@ -125,6 +125,8 @@ def report_of(
         figures=result.figures,
         pictures=pictures,
         parameters=config.parameters,
+        aims=config.aims,
+        tracks=tuple(route.track for route in config.routes.routes),
         player=PLAYER,
         log=LOG,
         otherwise=otherwise,

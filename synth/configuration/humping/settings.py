@@ -126,9 +126,15 @@ class ExitSpeedSettings(Section):
 
 
 class TrialAimSettings(Section):
-    """Exit speeds of the last position, which aim at the standing cars."""
+    """Exit speeds of the last position, which aim at the standing cars: chosen for the trial, or from exported tables.
+
+    `tables`: a file or directory of aim tables for all routes; `tables_of`: for retarders, by number. Both count before
+    those of the hump file.
+    """
 
     knowledge: KNOWN = "category"
+    tables: str | None = None
+    tables_of: dict[str, str] | None = None
     p_overspeed: float = setting(
         0.1, "1", 0.005, 0.9, "required probability of a coupling above 1.39 m/s (5 km/h)",
         "[kozachenko-aimed]: the share that its figures are drawn for",

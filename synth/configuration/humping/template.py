@@ -70,6 +70,10 @@ def lines() -> Iterator[str]:
     yield from ("", "[aim]", "# exit speeds of the last position, chosen for the free distance of each cut by its")
     yield from ('# weight "category", or by its resistance as it is "measured" besides', 'knowledge = "category"')
     yield from setting_lines("aim", TrialAimSettings())
+    yield "# or, in place of these numbers, aim tables (retarder-synth aim), a file or a directory: for all tracks, or"
+    yield "# those behind single retarders (docs/hump-trials.md):"
+    yield '# tables = "out/aim"'
+    yield '# tables_of = { 421 = "out/aim-1", 422 = "out/aim-2" }'
     yield from ("", "[sensors]", "# of what is measured; where nothing is, it counts nothing")
     yield from setting_lines("sensors", SensorSettings())
     yield from position_lines()

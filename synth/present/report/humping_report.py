@@ -8,10 +8,12 @@ from importlib.metadata import version
 
 from plant_models.library import SourcedValue
 from synth.present.plots.picture import Picture
+from synth.present.report.aim_source import aim_section
 from synth.present.report.document import Stamp, document, file_table, picture_sections
 from synth.present.report.figure_table import figure_table
 from synth.present.report.markup import Markup, element, joined
 from synth.present.report.parameter_table import parameter_section
+from synth.yard.humping.aim_choice import AimChoice
 from synth.yard.humping.train_figures import TrainFigure
 
 HOW_TO_READ = (
@@ -35,7 +37,8 @@ LIMITS = (
 class HumpingReport:
     """What a run of humped trains leaves: `verdict` in a sentence, `accepted` None where nothing was asked.
 
-    `parameters`: all inputs with their origins; `player`: name of the file beside the report that plays a train, ''
+    `parameters`: all inputs with their origins; `aims`: aim tables that commanded the last position, `tracks` (routes,)
+    being the tracks of their routes; `player`: name of the file beside the report that plays a train, ''
     for none; `log`: name of that with the log of the hump control for the same train, and `otherwise`, over how many
     switches cuts went otherwise than its points lay; `file_hashes`: SHA-256 of the files by name.
     """
@@ -48,6 +51,8 @@ class HumpingReport:
     figures: tuple[TrainFigure, ...]
     pictures: tuple[Picture, ...]
     parameters: tuple[SourcedValue, ...]
+    aims: tuple[AimChoice, ...]
+    tracks: tuple[int, ...]
     player: str
     log: str
     otherwise: int
@@ -77,6 +82,8 @@ def sections(report: HumpingReport) -> Iterator[tuple[str, str, Markup]]:
     yield "figures", "Figures", joined((figure_table(report.figures), element("p", HOW_TO_READ, class_="meta")))
     if report.pictures:
         yield "pictures", "Pictures", picture_sections(report.pictures)
+    if report.aims:
+        yield "aim", "Aim tables", aim_section(report.aims, report.tracks)
     yield "parameters", "Parameters", parameter_section(report.parameters)
     yield "limits", "Limits of use", element("ul", *(element("li", sentence) for sentence in LIMITS))
     yield "files", "Files", file_table(report.file_hashes)

@@ -4,6 +4,7 @@ inputs/config.toml               the configuration, with what the command line s
 inputs/hump.toml or hump.railml  the hump
 inputs/train.csv                 the sorting list, if there was one
 inputs/tables/position-N.h5      the book of a position, position-N.toml what it was tuned with
+inputs/aim/N/                    aim tables of the last position, for each group of routes
 inputs/types/                    the user's own types
 """
 
@@ -14,6 +15,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from plant_models.library import Library, TypeFile
+from synth.book.forms.table_file import file_stem
 from synth.book.output_directory import make_directory
 from synth.configuration.hump import RAILML_SUFFIXES, hump_text
 from synth.configuration.humping.trial_file import TrialFile
@@ -25,15 +27,12 @@ from synth.yard.humping.resolved_trial import ResolvedTrial
 from tuning_tables import write_atomically
 
 FOLDER: Final = "inputs"
-CONFIG, LIST, TABLES, TYPES = "config.toml", "train.csv", "tables", "types"
+CONFIG, LIST, TABLES, AIMS, TYPES = "config.toml", "train.csv", "tables", "aim", "types"
 
 
 def write_inputs(file: TrialFile, config: ResolvedTrial, directory: Path) -> list[Path]:
     """Write the inputs of `config`, which was resolved from `file`, into the folder of `directory`; the files."""
     folder = directory / FOLDER
-    if folder.exists():
-        shutil.rmtree(folder)
-    make_directory(folder)
     tree: dict[str, Any] = config.settings.model_dump(mode="json", exclude_none=True, exclude_unset=True)
     own: dict[str, TypeFile] = {str(each): each for each in file.library.own}
     contents: dict[str, bytes] = {}
@@ -45,11 +44,16 @@ def write_inputs(file: TrialFile, config: ResolvedTrial, directory: Path) -> lis
         contents[LIST] = (file.folder / file.settings.trains.list).read_bytes()
     told = (position_tree(choice, contents, own) for choice in config.positions)
     tree["position"] = [each for each in told if len(each) > 1]
+    if config.aims:
+        kept = {key: value for key, value in tree.get("aim", {}).items() if key not in ("tables", "tables_of")}
+        tree["aim"] = kept | aim_tree(config, contents)
     if own:
         tree["library"] = [f"{TYPES}/"]
     for type_file in own.values():
         contents[f"{TYPES}/{type_file.kind.folder}/{type_file.name}.toml"] = type_file.text.encode("utf-8")
     contents[CONFIG] = toml_text(tree).encode("utf-8")
+    if folder.exists():  # the inputs may have been read from there
+        shutil.rmtree(folder)
     for name, content in contents.items():
         make_directory((folder / name).parent)
         write_atomically(folder / name, content)
@@ -81,6 +85,17 @@ def position_tree(choice: PositionChoice, contents: dict[str, bytes], own: dict[
         own |= {str(each): each for each in library.own}
         contents[found["tables_config"]] = toml_text(relocated(tree, library)).encode("utf-8")
     return found
+
+
+def aim_tree(config: ResolvedTrial, contents: dict[str, bytes]) -> dict[str, Any]:
+    """The aim tables as [aim] tells them; they are added to `contents`."""
+    folders: dict[str, str] = {}
+    for number, choice in enumerate(config.aims, start=1):
+        for place, (file, table) in enumerate(zip(choice.files, choice.tables.tables, strict=True), start=1):
+            contents[f"{AIMS}/{number}/{place}-{file_stem(table)}.json"] = file.read_bytes()
+        folders |= {str(retarder): f"{AIMS}/{number}" for retarder in choice.retarders}
+    of_all = len(config.aims) == 1 and not config.designed_rows
+    return {"tables": f"{AIMS}/1"} if of_all else {"tables_of": folders}
 
 
 def relocated(tree: dict[str, Any], library: Library) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from synth.yard.humping.expected_way import ExpectedWay
 from synth.yard.humping.hump_aim import HumpAim
 from synth.yard.humping.hump_routes import HumpRoutes
 from synth.yard.humping.speed_sensors import SpeedSensors
+from synth.yard.humping.stretch_reading import AimReading
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -63,7 +64,7 @@ class AimControl:
     aim: HumpAim
     routes: HumpRoutes
     trains: AimedTrains
-    reading: ReadAhead | None = None
+    reading: AimReading | None = None
 
     def command(self, asked: Asked) -> Floats:
         """Exit speeds (n,), m/s: by the free distance that the head has when the last axle leaves the position."""

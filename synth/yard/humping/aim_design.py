@@ -72,11 +72,13 @@ class AimDesign:
         )
 
 
-def hump_aim(routes: HumpRoutes, design: AimDesign) -> HumpAim:
-    """The exit speeds for all `routes`. Routes whose tracks are alike share them; they are chosen on the first one."""
-    groups = [group_key(route, design.knowledge) for route in routes.routes]
+def hump_aim(routes: HumpRoutes, design: AimDesign, rows: Ints | None = None) -> HumpAim:
+    """The exit speeds for `routes`, or those of the `rows` alone, whose groups are told in their order. Routes whose
+    tracks are alike share them; they are chosen on the first one."""
+    chosen_routes = routes.routes if rows is None else [routes.routes[row] for row in rows]
+    groups = [group_key(route, design.knowledge) for route in chosen_routes]
     keys = list(dict.fromkeys(groups))
-    tables = tuple(group_aim(routes.routes[groups.index(key)], design) for key in keys)
+    tables = tuple(group_aim(chosen_routes[groups.index(key)], design) for key in keys)
     return HumpAim(np.array([keys.index(key) for key in groups]), tables, design.requirement.bounds_m_s[0])
 
 

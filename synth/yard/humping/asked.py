@@ -34,6 +34,11 @@ class Asked:
     free_m: Floats
     memory: TrainMemory
 
+    def chosen(self, which: NDArray[np.bool_]) -> Asked:
+        """Some of the cuts."""
+        lanes, routes, start = self.lanes[which], self.routes[which], self.start.chosen(which)
+        return Asked(self.cut, self.position, lanes, routes, start, self.free_m[which], self.memory)
+
 
 class ExitSpeeds(Protocol):
     """Commands the exit speeds of the positions."""

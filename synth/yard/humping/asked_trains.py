@@ -7,6 +7,7 @@ from pathlib import Path
 from plant_models.errors import PlantError, require, require_between
 from plant_models.library import WeightCategories
 from plant_models.library.car_mix_entry import CarMixEntry
+from plant_models.library.weight_category import WeightCategory
 from plant_models.rolling.random_cuts import CutPopulation
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
 from plant_models.rolling.weather import Weather
@@ -26,6 +27,18 @@ def with_room(settings: HumpTrialSettings, mix: CarMixEntry, routes: HumpRoutes)
     if "most_cars" in settings.trains.model_fields_set or settings.trains.most_cars <= room:
         return settings
     return settings.model_copy(update={"trains": settings.trains.model_copy(update={"most_cars": room})})
+
+
+def cars_of_cuts(trains: TrainPopulation | SortingList, categories: WeightCategories) -> dict[WeightCategory, set[int]]:
+    """How many cars the cuts of each weight category can have; categories of which there are none are left out."""
+    if isinstance(trains, SortingList):
+        own = (
+            (member, {cut.cars for cut in trains.cuts if cut.category == member.number})
+            for member in categories.members
+        )
+        return {member: cars for member, cars in own if cars}
+    used = (member for member in categories.members if trains.category_shares.get(member.number, 0.0) > 0.0)
+    return {member: set(range(1, trains.most_cars + 1)) for member in used}
 
 
 def mix_of(entry: CarMixEntry, settings: HumpTrialSettings) -> CarMixEntry:

@@ -55,7 +55,7 @@ def faults_of(cut: CutRecord, routes: HumpRoutes) -> Iterator[str]:
         yield f"goes to track {cut.track}; signal {routes.lead} leads to tracks {ranges(sorted(of_track))}"
     else:
         row = of_track[cut.track]
-        room, entrance = float(routes.length_m[row] - routes.exit_m[row].max()), float(routes.entrance_m[row].min())
+        room, entrance = float(routes.length_m[row] - routes.release_m[row]), float(routes.entrance_m[row].min())
         if cut.length_m > room:
             yield f"is {cut.length_m:g} m long; behind the last position of track {cut.track} there are {room:g} m"
         elif 0.5 * cut.length_m > entrance:

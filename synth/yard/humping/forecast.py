@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +11,7 @@ from plant_models.frozen_arrays import frozen_arrays
 from synth.kernels.roll import exit_choices as kernel
 from synth.yard.humping.hump_routes import HumpRoutes, Mark
 from synth.yard.humping.motion import Cars, Moving, Push, rolled_free
+from synth.yard.humping.route_choices import Choices, choices_by_route
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -36,21 +36,6 @@ class Expected:
     last_axle_m: Floats
     braked_m2_s2: Floats
     early: Bools
-
-
-class Choices(Protocol):
-    """Exit speeds of a position that are compared."""
-
-    @property
-    def most_entry_m_s(self) -> Floats | float:
-        """Fastest that a cut may come to the position."""
-
-    @property
-    def least_entry_m_s(self) -> Floats | float:
-        """Slowest that it may come, so that worse runners than expected come, too."""
-
-    def speeds(self, most_m_s: Floats) -> Floats:
-        """(n, choices); a cut cannot be faster than `most_m_s` (n,)."""
 
 
 @frozen_arrays
@@ -90,7 +75,7 @@ class SpeedRange:
 class Compared:
     """n cuts with c choices each, (n, c): least margins to the cuts ahead and behind; whether the cut can have these
     speeds; how far it comes beyond the limits of entry of some position, 0 if it does not; when its last axle is out of
-    the section of the last position; all exit speeds added up."""
+    the last element; all exit speeds added up."""
 
     ahead_s: Floats
     behind_s: Floats
@@ -103,9 +88,8 @@ class Compared:
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Forecast:
-    """n cuts with one choice each: `first_in_s`, `last_out_s` (n, elements), NaN for what lies behind the cut or beyond
-    the last position, infinite behind a stop; (n, q) of the positions ahead: `exit_m_s`, and `ended_s`, when the passes
-    end."""
+    """n cuts with one choice each: `first_in_s`, `last_out_s` (n, elements), NaN for what lies behind the cut, infinite
+    behind a stop; (n, q) of the positions ahead: `exit_m_s`, and `ended_s`, when the passes end."""
 
     first_in_s: Floats
     last_out_s: Floats
@@ -114,9 +98,8 @@ class Forecast:
 
 
 class Ways:
-    """All ways that n cuts can go from where they are until their last axles are out of the last position's section:
-    free rolls and, for each position ahead, the choices of its exit speed. Build it with `from_crest` or
-    `from_entrance`."""
+    """All ways that n cuts can go from where they are until their last axles are out of the last element: free rolls
+    and, for each position ahead, the choices of its exit speed. Build it with `from_crest` or `from_entrance`."""
 
     def __init__(self, routes: HumpRoutes, legs: kernel.Legs) -> None:
         self.routes, self.legs = routes, legs
@@ -168,10 +151,12 @@ def from_entrance(
 def through(
     routes: HumpRoutes, expected: Expected, start: Moving, before_s: Floats, position: int, choices: tuple[Choices, ...]
 ) -> Ways:
-    """From `start` at the entrance of `position` through all positions behind it."""
+    """From `start` at the entrance of `position` through all positions behind it. The last of `choices` is of the last
+    position of each route, which on some routes comes before that of others."""
     count, marks, most = len(before_s), before_s.shape[1], len(choices)
     heads, fastest, stretches = heads_m(routes, expected), start.speed_m_s, []
     begins = np.maximum(entrance_m(routes, expected, position), start.head_m)
+    choices = choices if routes.even else choices_by_route(routes, expected.cars.routes, position, choices)
     for place, of_one in enumerate(choices, position):
         stretches.append(stretch(routes, expected, place, heads, Moving(begins, fastest, np.zeros(count)), of_one))
         fastest, begins = stretches[-1].ends_m_s.max(axis=1), entrance_m(routes, expected, place + 1)
@@ -219,9 +204,12 @@ class Stretch:
 def stretch(
     routes: HumpRoutes, expected: Expected, position: int, heads_m: Floats, start: Moving, choices: Choices
 ) -> Stretch:
-    """`position` with each of the `choices` for cuts that come as at `start`, at the fastest."""
+    """`position` with each of the `choices` for cuts that come as at `start`, at the fastest. On a route that has no
+    such position nothing happens: it has no length, at the end of the way that is forecast."""
     count = len(heads_m)
-    leaves = routes.exit_m[expected.cars.routes, position] + expected.last_axle_m
+    exit_m = routes.exit_m[expected.cars.routes, position]
+    there = np.isfinite(exit_m)
+    leaves = np.where(there, exit_m + expected.last_axle_m, start.head_m)
     unbraked, _ = rolled_free(expected.cars, start, leaves, np.empty((count, 0)))
     speeds = choices.speeds(np.maximum(unbraked.speed_m_s, SLOWEST_M_S))
     chosen = speeds.shape[1]
@@ -230,7 +218,7 @@ def stretch(
     ahead = entrance_m(routes, expected, position + 1)
     ends, roll = rolled_free(expected.cars.chosen(each), begins, ahead[each], heads_m[each])
     path = leaves - start.head_m
-    share = (heads_m - start.head_m[:, None]) / path[:, None]
+    share = (heads_m - start.head_m[:, None]) / np.where(there, path, np.nan)[:, None]
     return Stretch(
         speeds_m_s=speeds,
         won_m2_s2=unbraked.speed_m_s**2 - start.speed_m_s**2,
@@ -251,11 +239,15 @@ def heads_m(routes: HumpRoutes, expected: Expected) -> Floats:
 
 def entrance_m(routes: HumpRoutes, expected: Expected, position: int) -> Floats:
     """Where the heads are when the passes of `position` begin: at its entrance, but not before the last axles are out
-    of the position before it. Behind the last position: when they are out of its section."""
+    of the position before it. Behind the last position of a route: when they are out of its last element."""
     rows = expected.cars.routes
     if position == routes.positions:
-        return np.asarray(routes.place_m[rows, routes.retarder[rows, -1], Mark.LAST_OUT] + expected.last_axle_m)
+        return np.asarray(routes.ends_m[rows] + expected.last_axle_m)
     out = np.full(len(rows), -np.inf)
     if position > 0:
         out = routes.exit_m[rows, position - 1] + expected.last_axle_m
-    return np.asarray(np.maximum(routes.entrance_m[rows, position] + expected.first_axle_m, out))
+    begins = np.maximum(routes.entrance_m[rows, position] + expected.first_axle_m, out)
+    if routes.even:
+        return np.asarray(begins)
+    ends = routes.ends_m[rows] + expected.last_axle_m
+    return np.where(np.isfinite(routes.entrance_m[rows, position]), begins, ends)

@@ -33,7 +33,8 @@ class AsInFile:
 
 @dataclass(frozen=True)
 class DrawnFree:
-    """Every share of the length of a track behind its last position, from `low` to `high`, is free equally often."""
+    """Every share of the length of a track behind its last position and fouling point, from `low` to `high`, is free
+    equally often."""
 
     low: float = 0.2
     high: float = 0.9
@@ -46,5 +47,5 @@ class DrawnFree:
     def free_m(self, routes: HumpRoutes, seed: int, first: int, count: int) -> Floats:
         """See `FreeTracks`."""
         u = uniform_numbers(seed, Purpose.STANDING, first, count, len(routes.routes))
-        begins = np.array([route.yard_from_m for route in routes.routes])
+        begins = routes.standing_from_m
         return np.asarray(begins + (self.low + (self.high - self.low) * u) * (routes.length_m - begins))

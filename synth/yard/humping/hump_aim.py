@@ -8,10 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.errors import PlantError
 from plant_models.frozen_arrays import frozen_arrays
-from plant_models.library.weight_category import WeightCategories
-from tuning_tables.aim import AimAxes, AimTable
+from tuning_tables.aim import AimAxes
 from tuning_tables.aim.exit_speed import AimNodes, aim_exit_speeds
 
 Floats = NDArray[np.float64]
@@ -67,12 +65,20 @@ class CategoryAim:
 class HumpAim:
     """Exit speeds of the last position: `tables`, by group of routes and by place of the weight category in its set.
 
-    `group` (routes,): the group of each route. `lowest_m_s` is commanded where no speed is known to be safe.
+    `group` (routes,): the group of each route. `lowest_m_s`, of all or (groups, categories), is commanded where no
+    speed is known to be safe. `stretch_m` (routes, 2): from where to where the tables have the resistance measured, NaN
+    for routes on which it is that of the free stretch ahead of the last position; None: for all.
     """
 
     group: Ints
     tables: tuple[tuple[CategoryAim, ...], ...]
-    lowest_m_s: float
+    lowest_m_s: float | Floats
+    stretch_m: Floats | None = None
+
+    @property
+    def lowest_by_table_m_s(self) -> Floats:
+        """(groups, categories)."""
+        return np.broadcast_to(self.lowest_m_s, (len(self.tables), len(self.tables[0])))
 
     def command_m_s(
         self, routes: Ints, category: Ints, cars: Ints, free_distance_m: Floats, reading_n_per_kn: Floats | None = None
@@ -80,7 +86,7 @@ class HumpAim:
         """Exit speeds for cuts on `routes`, (n,) all of them; a reading that is NaN was not made.
 
         The rule is that of aim tables (`tuning_tables.aim`), with one difference: longer cuts than the longest listed
-        are commanded as those.
+        are commanded as those. Exported tables are used only where none are longer.
         """
         speeds = np.full(len(routes), np.nan)
         together = self.group[routes] * len(self.tables[0]) + category
@@ -93,7 +99,7 @@ class HumpAim:
                 speeds[read] = answer(table.measured, cars[read], free_distance_m[read], reading_n_per_kn[read])
             if len(rows):
                 speeds[rows] = answer(table.by_category, cars[rows], free_distance_m[rows])
-        return np.where(np.isnan(speeds), self.lowest_m_s, speeds)
+        return np.where(np.isnan(speeds), self.lowest_by_table_m_s[self.group[routes], category], speeds)
 
     def expected_m_s(self, routes: Ints, category: Ints, cars: Ints, free_distance_m: Floats, measured: bool) -> Floats:
         """What is expected before the train: for the mean reading where cuts will be `measured`, else by category."""
@@ -111,16 +117,20 @@ def answer(nodes: AimNodes, cars: Ints, free_distance_m: Floats, reading_n_per_k
     return aim_exit_speeds(nodes, listed, free_distance_m, reading).astype(np.float64)
 
 
-def aim_of_tables(tables: Sequence[AimTable], categories: WeightCategories, routes: int) -> HumpAim:
-    """The aim tables of one position, by category alone, on all `routes`; `PlantError` where a category has none."""
-    chosen = []
-    for member in categories.members:
-        own = [table for table in tables if table.category.number == member.number and not table.is_measured]
-        if len(own) != 1:
-            raise PlantError(
-                f"aim tables: {len(own)} by category alone for the weight category {member.name} (number "
-                f"{member.number}); give exactly one for each category of the train"
-            )
-        chosen.append(CategoryAim(own[0]))
-    lowest = min(table.bounds_m_s[0] for table in tables)
-    return HumpAim(np.zeros(routes, dtype=np.int64), (tuple(chosen),), lowest)
+def no_speeds() -> AimGrid:
+    """Nodes without any speed, for cuts that no train has."""
+    return AimGrid(AimAxes(np.array([1]), np.zeros(1)), np.full((1, 1), np.nan))
+
+
+def joined_aims(parts: Sequence[tuple[Ints, HumpAim]], routes: int) -> HumpAim:
+    """One aim for all `routes`, of (rows, aim of these rows) that are no two for one route. Routes without a position
+    are in none, and nobody asks for them."""
+    group, stretch = np.zeros(routes, dtype=np.int64), np.full((routes, 2), np.nan)
+    tables: list[tuple[CategoryAim, ...]] = []
+    for rows, aim in parts:
+        group[rows] = len(tables) + aim.group
+        if aim.stretch_m is not None:
+            stretch[rows] = aim.stretch_m
+        tables += aim.tables
+    lowest = np.concatenate([aim.lowest_by_table_m_s for _, aim in parts])
+    return HumpAim(group, tuple(tables), lowest, stretch)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,10 +73,33 @@ class HumpRoutes:
         """Most positions of a route."""
         return int(self.entrance_m.shape[1])
 
-    @property
+    @cached_property
+    def positions_of(self) -> Ints:
+        """Positions of each route, (routes,); the number of its last one."""
+        return read_only(np.isfinite(self.entrance_m).sum(axis=1))
+
+    @cached_property
     def release_m(self) -> Floats:
         """Where the last position of each route ends, (routes,); 0 where it has none."""
-        return np.asarray(self.exit_m.max(axis=1, initial=0.0, where=np.isfinite(self.exit_m)))
+        return read_only(self.exit_m.max(axis=1, initial=0.0, where=np.isfinite(self.exit_m)))
+
+    @cached_property
+    def even(self) -> bool:
+        """Whether all routes have as many positions."""
+        return bool((self.positions_of == self.positions).all())
+
+    @cached_property
+    def ends_m(self) -> Floats:
+        """Where a last axle is out of the last element of its route, (routes,)."""
+        out = self.place_m[:, :, Mark.LAST_OUT]
+        return read_only(out.max(axis=1, initial=0.0, where=np.isfinite(out)))
+
+    @cached_property
+    def standing_from_m(self) -> Floats:
+        """From where on cars may stand on the track of each route, (routes,): behind its last position and switch."""
+        clear = self.place_m[:, :, Mark.LAST_CLEAR]
+        begins = np.array([route.yard_from_m for route in self.routes])
+        return read_only(clear.max(axis=1, initial=0.0, where=self.points >= 0).clip(begins, self.length_m))
 
     def of_tracks(self, tracks: Ints) -> Ints:
         """Rows of the routes to `tracks`; each must be reached."""
@@ -91,6 +116,12 @@ class HumpRoutes:
         """
         same = (self.vertex[one] == self.vertex[other]) & (self.vertex[one] >= 0)
         return np.asarray(np.logical_and.accumulate(same, axis=1).sum(axis=1))
+
+
+def read_only(array: NDArray[Any]) -> NDArray[Any]:
+    """`array`, made so."""
+    array.setflags(write=False)
+    return array
 
 
 def hump_routes(graph: HumpGraph, lead: int) -> HumpRoutes:

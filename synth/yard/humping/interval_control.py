@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,11 +11,12 @@ from numpy.typing import NDArray
 from plant_models.frozen_arrays import frozen_arrays
 from synth.yard.humping.aim_control import AimControl
 from synth.yard.humping.asked import Asked
-from synth.yard.humping.forecast import Choices, from_crest, from_entrance
+from synth.yard.humping.forecast import from_crest, from_entrance
 from synth.yard.humping.interval import IntervalRule, possible
 from synth.yard.humping.known_cuts import KnownCuts
 from synth.yard.humping.motion import Moving, Push
 from synth.yard.humping.rollability import Rollability
+from synth.yard.humping.route_choices import Choices
 from synth.yard.humping.sight import Sight
 from synth.yard.humping.train_memory import TrainMemory
 from synth.yard.humping.train_plan import Planner, TrainPlan, apart_m, free_by_s
@@ -35,17 +37,32 @@ class ProgramSpeeds:
         return np.asarray(self.speed_m_s[:, cut])
 
 
+def by_position(asked: Asked, aim: AimControl, kept: Callable[[Asked], Floats]) -> Floats:
+    """Exit speeds (n,): by `aim` of the cuts for which it is the last position of the route on which they roll by now,
+    of all others what `kept` commands."""
+    last = aim.routes.positions_of[asked.routes] == asked.position + 1
+    if last.all():
+        return aim.command(asked)
+    if not last.any():
+        return kept(asked)
+    found = np.empty(len(last))
+    found[last], found[~last] = aim.command(asked.chosen(last)), kept(asked.chosen(~last))
+    return found
+
+
 @dataclass(frozen=True)
 class OpenLoop:
-    """Exit speeds of the interval positions as planned; the last position aims."""
+    """Exit speeds as planned, for the track of the list; the last position of the route on which a cut rolls aims."""
 
     plan: TrainPlan
     aim: AimControl
 
     def command(self, asked: Asked) -> Floats:
         """See the class."""
-        if asked.position >= self.plan.exit_m_s.shape[2]:
-            return self.aim.command(asked)
+        return by_position(asked, self.aim, self.planned)
+
+    def planned(self, asked: Asked) -> Floats:
+        """What the plan has."""
         return np.asarray(self.plan.exit_m_s[asked.lanes, asked.cut, asked.position])
 
 
@@ -70,10 +87,12 @@ class Feedback:
         self.sight = Sight(planner.routes, known, plan)
 
     def command(self, asked: Asked) -> Floats:
-        """Exit speeds of the interval positions; the last position aims."""
+        """Exit speeds (n,); the last position of the route on which a cut rolls aims."""
+        return by_position(asked, self.aim, self.chosen)
+
+    def chosen(self, asked: Asked) -> Floats:
+        """Exit speeds (n,) of cuts that go on to another position."""
         routes, ranges = self.planner.routes, self.planner.ranges
-        if asked.position >= len(ranges):
-            return self.aim.command(asked)
         cut, lanes, memory = asked.cut, asked.lanes, asked.memory
         self.sight.learn(cut, memory)
         rows = lanes * self.known.cuts + cut

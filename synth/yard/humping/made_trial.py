@@ -10,13 +10,9 @@ from plant_models import PlantError
 from plant_models.cut import Car
 from plant_models.library import load_position
 from plant_models.library.position_entry import PositionEntry
-from synth.book.forms.table_file import read_tables
 from synth.faults.input_error import InputError
-from synth.yard.aim.knowledge import ByCategory, Requirement
-from synth.yard.aim.position_models import NormalPosition
 from synth.yard.book_classes import book_classes, unfitting
 from synth.yard.hump.sorting_list import SortingList
-from synth.yard.humping.aim_design import AimDesign, MeasuredAhead, hump_aim
 from synth.yard.humping.asked_speeds import ExitRange
 from synth.yard.humping.class_choice import ClassChoice
 from synth.yard.humping.forecast import SpeedRange
@@ -31,6 +27,7 @@ from synth.yard.humping.table_hump_position import TableHumpPosition
 from synth.yard.humping.train_plan import Planner
 from synth.yard.humping.train_source import DrawnSource, ListSource
 from synth.yard.humping.trial import ConstantSpeed, Control, HumpTrial, Program, Sensing, SimulatedPairs, TrainSource
+from synth.yard.humping.trial_aim import trial_aim
 from synth.yard.table_class import TableClass
 
 UNBRAKED_M_S = 99.0
@@ -55,7 +52,7 @@ def made_trial(config: ResolvedTrial, threads: int = 0) -> HumpTrial:
         planner=planner_of(config),
         program=program_of(config),
         control=control_of(config),
-        aim=hump_aim(config.routes, design_of(config, threads)),
+        aim=trial_aim(config, threads),
         usable_heads_m=tuple(replace(brake, share=usable * brake.share).head_m for brake in brakes),
         free=free_of(config),
         threads=threads,
@@ -133,14 +130,6 @@ def kinds_of_cuts(config: ResolvedTrial) -> set[tuple[int, int]]:
     }
 
 
-def told_exit_std_m_s(choice: PositionChoice) -> float:
-    """What an aim takes for the error of a position: of a book, the root mean square of what its tables predict."""
-    if choice.book is None:
-        return choice.exit_std_m_s or 0.0
-    (file,) = read_tables(choice.book)
-    return float(np.sqrt(np.mean([table.predicted.rms_m_s**2 for table in file.tables])))
-
-
 def speed_range(choice: PositionChoice, given: ExitRange, choices: int) -> SpeedRange:
     """What a position for intervals may be commanded."""
     low, high, entry = given
@@ -190,21 +179,6 @@ def control_of(config: ResolvedTrial) -> Control:
     if for_intervals or for_aim:
         sensing = Sensing(config.settings.sensors.speed_std_m_s, for_aim, for_intervals)
     return Control(exits.feedback, sensing, config.settings.hump_speed.slow_down_s)
-
-
-def design_of(config: ResolvedTrial, threads: int) -> AimDesign:
-    """How the exit speeds of the last position are chosen: for the error of its controller."""
-    aim, last = config.settings.aim, config.positions[-1]
-    measured = aim.knowledge == "measured"
-    return AimDesign(
-        population=config.people,
-        position=NormalPosition(told_exit_std_m_s(last)),
-        requirement=Requirement(aim.p_overspeed, (aim.lowest_m_s, aim.highest_m_s)),
-        knowledge=MeasuredAhead(config.settings.sensors.speed_std_m_s) if measured else ByCategory(),
-        design_cuts=aim.design_cuts,
-        seed=config.settings.trains.seed,
-        threads=threads,
-    )
 
 
 def free_of(config: ResolvedTrial) -> FreeTracks:

@@ -19,6 +19,7 @@ from plant_models.library import (
 from plant_models.library.car_mix_entry import CarMixEntry, load_car_mix
 from plant_models.library.data_file import keyed
 from plant_models.library.hump_entry import HumpEntry
+from plant_models.library.weight_category import WeightCategory
 from plant_models.rolling.random_cuts import CutPopulation
 from synth.configuration.config_file import load_config
 from synth.configuration.humping.settings import HumpTrialSettings
@@ -29,10 +30,19 @@ from synth.configuration.railml.write import to_railml
 from synth.configuration.resolved_config import range_warnings
 from synth.yard.hump.sorting_list import SortingList
 from synth.yard.hump.train_population import TrainPopulation
+from synth.yard.humping.aim_choice import AimChoice, aim_choices
 from synth.yard.humping.asked_speeds import ExitRange, exit_ranges, require_speeds
-from synth.yard.humping.asked_trains import category_shares, mix_of, population_of, trains_of, with_room
+from synth.yard.humping.asked_trains import (
+    cars_of_cuts,
+    category_shares,
+    mix_of,
+    population_of,
+    trains_of,
+    with_room,
+)
 from synth.yard.humping.hump_routes import HumpRoutes, hump_routes
 from synth.yard.humping.position_choice import PositionChoice, position_choices
+from synth.yard.humping.table_aim import aim_warnings, require_fitting
 from synth.yard.humping.trial_parameters import (
     CHANGES_NO_TRAIN,
     position_values,
@@ -58,7 +68,8 @@ KEY_OF_PLANT_MESSAGE: Final = {
 class ResolvedTrial:
     """Everything that humped trains depend on.
 
-    `trains`: a population, or the humped cuts of a sorting list. `ranges_m_s`: of each position but the last.
+    `trains`: a population, or the humped cuts of a sorting list. `ranges_m_s`: of each position but the last. `aims`:
+    exported aim tables of last positions; for routes that have none, speeds are chosen for the trial.
     `library`: with the user's own types. `parameters`: every number with unit, range, source and whether it is assumed;
     `warnings`: sentences about values outside their sensible range; `place`: what messages call the file.
     """
@@ -71,6 +82,7 @@ class ResolvedTrial:
     trains: TrainPopulation | SortingList
     positions: tuple[PositionChoice, ...]
     ranges_m_s: tuple[ExitRange, ...]
+    aims: tuple[AimChoice, ...]
     settings: HumpTrialSettings
     library: Library
     parameters: tuple[SourcedValue, ...]
@@ -82,6 +94,16 @@ class ResolvedTrial:
     def categories(self) -> WeightCategories:
         """The weight categories of the cuts."""
         return self.people.categories
+
+    @property
+    def kinds(self) -> dict[WeightCategory, set[int]]:
+        """How many cars the cuts of each weight category can have."""
+        return cars_of_cuts(self.trains, self.categories)
+
+    @property
+    def designed_rows(self) -> tuple[int, ...]:
+        """The routes with a position whose aim is chosen for the trial."""
+        return rows_without(self.aims, self.routes)
 
     @property
     def canonical_json(self) -> str:
@@ -125,8 +147,11 @@ def resolve_trial(file: TrialFile) -> ResolvedTrial:
         shares = category_shares(settings, categories)
         trains = trains_of(settings, file.folder, people, shares, routes)
         require_speeds(settings)
+        aims = aim_choices(routes.routes, settings.aim, file.hump_source.parent, file.folder)
+        for each in aims:
+            require_fitting(each, routes, cars_of_cuts(trains, categories), settings.aim.knowledge == "measured")
     parameters = (
-        *trial_numbers(settings, file.hump, mix, categories),
+        *trial_numbers(settings, file.hump, mix, categories, designed=len(rows_without(aims, routes)) > 0),
         *(() if isinstance(trains, SortingList) else share_values(settings, shares)),
         *range_values(settings.exit_speeds, ranges),
         *position_values(positions, file.hump),
@@ -140,13 +165,25 @@ def resolve_trial(file: TrialFile) -> ResolvedTrial:
         trains=trains,
         positions=positions,
         ranges_m_s=ranges,
+        aims=aims,
         settings=settings,
         library=library,
         parameters=parameters,
         notes=(*file.hump.notes, *mix.notes),
-        warnings=tuple(range_warnings(parameters)),
-        names=names_of(file, routes.lead, mix, categories, trains, positions),
+        warnings=(*range_warnings(parameters), *aim_warnings(aims, routes, settings)),
+        names=names_of(file, routes.lead, mix, categories, trains, positions) | aim_names(aims),
     )
+
+
+def rows_without(aims: tuple[AimChoice, ...], routes: HumpRoutes) -> tuple[int, ...]:
+    """The routes with a position that has no aim tables."""
+    told = {row for each in aims for row in each.rows}
+    return tuple(row for row in range(len(routes.routes)) if routes.positions_of[row] > 0 and row not in told)
+
+
+def aim_names(aims: tuple[AimChoice, ...]) -> dict[str, Any]:
+    """What trains depend on of aim tables: for which retarders, and their content."""
+    return {"aim_tables": [[list(each.retarders), list(each.sha256)] for each in aims]} if aims else {}
 
 
 def lead_of(file: TrialFile) -> int:

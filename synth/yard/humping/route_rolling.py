@@ -71,6 +71,17 @@ class RouteRolling:
         back[order] = np.arange(len(order))
         return Rolled(sorted_roll.speed_m_s[back], sorted_roll.time_s[back], sorted_roll.stop_m[back])
 
+    def fall_m(self, rows: Ints, routes: Ints, head_m: Floats) -> Floats:
+        """How far the cuts `rows` (m,) on `routes` (m,) have fallen when their heads are at `head_m` (m,), as the
+        kernel takes it: cars by their mass, less the heads that snow and the slope's extra resistance take."""
+        place = head_m[:, None] * self.ways.way.nodes_per_m - self.rows.nodes[rows]
+        node = np.clip(place, 0.0, self.ways.way.fall_m.shape[1] - 1.5).astype(np.int64)
+        at = self.ways.rows.rows_from[routes][:, None] + self.rows.rows[rows] + node
+        falls = self.ways.way.fall_m.reshape(-1)
+        return np.asarray(
+            (self.rows.shares[rows] * (falls[at] + (place - node) * (falls[at + 1] - falls[at]))).sum(axis=1)
+        )
+
     def _lanes(self, count: int, cars: int, constant: Floats) -> Cuts:
         """Lanes to be laid."""
         of_cars, of_bends = (cars, count), (self.ways.bends, count)

@@ -71,11 +71,17 @@ class Sight:
         exits = memory.exit_m_s[lanes, cut, position]
         later = range(position + 1, self.plan.exit_m_s.shape[2])
         next_m_s = (Given(self.chosen_m_s[lanes, cut, position, q]) for q in later)
-        choices = (Given(exits), *next_m_s, self.known.aim_of(rows))
+        choices = (Given(exits), *next_m_s, self.aim_after(rows, routes, position, exits))
         told = from_entrance(self.routes, expected, start, position, choices).followed()
         shift = ended - told.ended_s[:, 0]
         self.known_s[lanes, cut, 2 + 2 * position] = ended
         self.out_s[lanes, cut, 2 + 2 * position] = told.last_out_s + shift[:, None]
+
+    def aim_after(self, rows: Ints, routes: Ints, position: int, exit_m_s: Floats) -> Given:
+        """What is expected of the last position when the cuts `rows` (n,) have left `position` with `exit_m_s`: just
+        that, where it was the last one of their `routes`."""
+        aim, last = self.known.aim_of(rows), self.routes.positions_of[routes] == position + 1
+        return aim if not last.any() else Given(np.where(last, exit_m_s, aim.speed_m_s))
 
     def routes_by(self, lanes: Ints, cut: Ints, now_s: Floats, memory: TrainMemory) -> Ints:
         """Routes (n,) on which the cuts (n,) are at `now_s`, as far as one can see: their own until they are misrouted,

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.yard.humping.hump_routes import HumpRoutes
 from synth.yard.humping.train_cuts import TrainCuts
 from synth.yard.humping.train_plan import TrainPlan
 from synth.yard.humping.trial import HumpTrial
@@ -19,7 +20,7 @@ Floats = NDArray[np.float64]
 @dataclass(frozen=True)
 class ProgramRow:
     """Cut number `cut` of the train, from 1. `time_s`, `pushed_m`: when its middle is at the crest, since that of the
-    first cut was there; `exit_m_s`: of all positions, the last one by the aim as it is expected."""
+    first cut was there; `exit_m_s`: of the positions of its route, the last one by the aim as it is expected."""
 
     cut: int
     cars: int
@@ -36,9 +37,10 @@ class ProgramRow:
 
 @dataclass(frozen=True)
 class SpeedProgram:
-    """The program of the train `number`, from 0, of a trial."""
+    """The program of the train `number`, from 0, of a trial; `positions`: most that a route has."""
 
     number: int
+    positions: int
     rows: tuple[ProgramRow, ...]
 
     @property
@@ -56,11 +58,13 @@ class SpeedProgram:
 def speed_program(trial: HumpTrial, number: int) -> SpeedProgram:
     """The program of train `number` of `trial`; nothing is humped."""
     trains, _, known, plan = trial.planned(number, 1)
-    return program_of(number, trains, plan, known.aim.speed_m_s)
+    return program_of(number, trains, plan, known.aim.speed_m_s, trial.routes)
 
 
-def program_of(number: int, trains: TrainCuts, plan: TrainPlan, aim_m_s: Floats) -> SpeedProgram:
+def program_of(number: int, trains: TrainCuts, plan: TrainPlan, aim_m_s: Floats, routes: HumpRoutes) -> SpeedProgram:
     """The program that `plan` has for its only train."""
+    kept = np.maximum(routes.positions_of[trains.route] - 1, 0)
+    aimed = routes.positions_of[trains.route] > 0
     middle = np.cumsum(trains.length_m) - 0.5 * trains.length_m
     members = trains.population.categories.members
     rows = tuple(
@@ -75,11 +79,11 @@ def program_of(number: int, trains: TrainCuts, plan: TrainPlan, aim_m_s: Floats)
             hump_speed_m_s=float(plan.hump_speed_m_s[0, cut]),
             time_s=float(plan.crest_s[0, cut] - plan.crest_s[0, 0]),
             pushed_m=float(middle[cut] - middle[0]),
-            exit_m_s=(*(float(speed) for speed in plan.exit_m_s[0, cut]), float(aim_m_s[cut])),
+            exit_m_s=(*plan.exit_m_s[0, cut, : kept[cut]].tolist(), *([float(aim_m_s[cut])] if aimed[cut] else [])),
         )
         for cut in range(trains.cuts)
     )
-    return SpeedProgram(number, rows)
+    return SpeedProgram(number, routes.positions, rows)
 
 
 def locomotive_csv(program: SpeedProgram) -> bytes:
@@ -91,9 +95,9 @@ def locomotive_csv(program: SpeedProgram) -> bytes:
 
 
 def uncoupler_csv(program: SpeedProgram) -> bytes:
-    """For the uncoupler and the hump operator: every cut with what is to be done with it."""
-    positions = len(program.rows[0].exit_m_s)
-    exits = tuple(f"exit_{place}_m_s" for place in range(1, positions + 1))
+    """For the uncoupler and the hump operator: every cut with what is to be done with it. Positions that are not on the
+    way to its track have empty cells."""
+    exits = tuple(f"exit_{place}_m_s" for place in range(1, program.positions + 1))
     head = ("cut", "cars", "axles", "mass_t", "length_m", "category", "track", "hump_speed_m_s", "time_s", *exits)
     return csv_bytes(
         head,
@@ -101,6 +105,7 @@ def uncoupler_csv(program: SpeedProgram) -> bytes:
             (
                 r.cut, r.cars, r.axles, f"{r.mass_t:.1f}", f"{r.length_m:.2f}", r.category, r.track,
                 f"{r.hump_speed_m_s:.2f}", f"{r.time_s:.1f}", *(f"{speed:.2f}" for speed in r.exit_m_s),
+                *("",) * (program.positions - len(r.exit_m_s)),
             )
             for r in program.rows
         ],

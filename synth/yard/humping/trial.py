@@ -24,9 +24,10 @@ from synth.yard.humping.interval_control import Feedback, FeedbackSpeeds, OpenLo
 from synth.yard.humping.known_cuts import BAD, Brakes, KnownCuts, known_cuts, runner_n_per_kn
 from synth.yard.humping.outcomes import TrainOutcomes, outcomes
 from synth.yard.humping.rollability import CategoryMean, Rollability, measured_rollability
-from synth.yard.humping.route_rolling import rolling_on
+from synth.yard.humping.route_rolling import RouteRolling, rolling_on
 from synth.yard.humping.route_ways import RouteWays
 from synth.yard.humping.speed_sensors import SpeedSensors
+from synth.yard.humping.stretch_reading import AimReading, ReadByRoute, ReadOnStretch
 from synth.yard.humping.train_cuts import TrainCuts, expected
 from synth.yard.humping.train_memory import TrainMemory
 from synth.yard.humping.train_plan import Planner, TrainPlan
@@ -123,8 +124,9 @@ class Control:
 class HumpTrial:
     """Trains from `source` over `routes`, whose `ways` are the routes as their cars feel them.
 
-    `positions`: models in order from the crest, all but the last for intervals; `planner` with their ranges; `free`:
-    tracks before each train. `aim`: exit speeds of the last position; `usable_heads_m`: energy head (rows,) that
+    `positions`: models in order from the crest, of every route that has so many; the last of each route aims, all
+    others keep intervals; `planner` with the ranges of all but the last one; `free`: tracks before each train. `aim`:
+    exit speeds of the last position of each route; `usable_heads_m`: energy head (rows,) that
     each position can be trusted to take from cuts, by mass, axles and category.
     """
 
@@ -146,10 +148,6 @@ class HumpTrial:
             f"hump trial: {len(self.positions)} position models and {len(self.planner.ranges)} ranges of exit speeds; "
             f"the hump has {self.routes.positions} positions, and ranges belong to all but the last",
         )
-        require(
-            bool(np.isfinite(self.routes.entrance_m).all()),
-            "hump trial: some routes have fewer positions than others; that cannot be humped yet",
-        )
 
     def batch(self, first: int, count: int) -> TrainOutcomes:
         """What the trains `first` … `first + count − 1` come to."""
@@ -161,7 +159,7 @@ class HumpTrial:
         trains, free_m, known, plan = self.planned(first, count)
         rolls = rolling_on(self.ways, trains.population, trains.drawn, self.threads)
         hump = Hump(self.routes, self.positions, rolls)
-        control = self.control_of(trains, known, plan, self.aim_of(trains, known))
+        control = self.control_of(trains, known, plan, self.aim_of(trains, known, rolls))
         speeds: HumpSpeeds = ProgramSpeeds(plan.hump_speed_m_s)
         if self.control.slow_down_s is not None and isinstance(control, Feedback):
             speeds = FeedbackSpeeds(control, self.control.slow_down_s)
@@ -176,7 +174,7 @@ class HumpTrial:
 
     def known(self, trains: TrainCuts, free_m: Floats) -> KnownCuts:
         """What is known of trains before they are humped, and how they will be aimed if tracks stay as they are."""
-        release = self.routes.exit_m[trains.route, -1] + trains.last_axle_m
+        release = self.routes.release_m[trains.route] + trains.last_axle_m
         lanes = np.repeat(np.arange(trains.trains), trains.cuts)
         free = free_m[lanes, trains.route] - release
         sensing = self.control.sensing
@@ -186,14 +184,16 @@ class HumpTrial:
         heads = [brake(trains.mass_t, trains.axles, trains.category) for brake in self.usable_heads_m]
         braked = 2.0 * gravity[:, None] * np.stack(heads, axis=1)
         least = np.sqrt(WORST_ENTRY_M_S**2 + 2.0 * gravity * self.worse_head_m(trains))
-        given = Given(aim, np.sqrt(aim**2 + braked[:, -1]), least)
+        last = self.routes.positions_of[trains.route] - 1
+        given = Given(aim, np.sqrt(aim**2 + braked[np.arange(len(trains)), last]), least)
         early = np.array([position.brakes_early for position in self.positions])
         return known_cuts(trains, self.ways, given, Brakes(braked, early), self.threads)
 
     def worse_head_m(self, trains: TrainCuts) -> Floats:
         """Energy head (rows,) that bad runners against the wind lose more than expected ahead of the last position."""
-        begins = self.routes.exit_m[:, -2] if self.routes.positions > 1 else np.zeros(len(self.routes.routes))
-        stretch = (self.routes.entrance_m[:, -1] - begins)[trains.route]
+        rows, last = np.arange(len(self.routes.routes)), self.routes.positions_of - 1
+        begins = np.where(last > 0, self.routes.exit_m[rows, np.maximum(last - 1, 0)], 0.0)
+        stretch = np.where(last >= 0, self.routes.entrance_m[rows, last] - begins, 0.0)[trains.route]
         drawn = expected(trains)
         weather = trains.population.weather
         wind = np.array([weather.head_wind_mean_m_s, weather.head_wind_mean_m_s + 2.0 * weather.head_wind_std_m_s])
@@ -201,13 +201,15 @@ class HumpTrial:
         worse = runner_n_per_kn(trains, drawn, BAD) - drawn.resistance_n_per_kn
         return np.asarray(1e-3 * stretch * (worse + drawn.air_n_per_kn * (against[1] - against[0])))
 
-    def aim_of(self, trains: TrainCuts, known: KnownCuts) -> AimControl:
-        """The control of the last position for these trains."""
-        sensing = self.control.sensing
-        reading = None
+    def aim_of(self, trains: TrainCuts, known: KnownCuts, rolls: RouteRolling) -> AimControl:
+        """The control of the last position for these trains, which roll as in `rolls`."""
+        sensing, stretch_m = self.control.sensing, self.aim.stretch_m
+        reading: AimReading | None = None
         if sensing is not None and sensing.for_aim:
             sensors = SpeedSensors(self.routes, trains, sensing.speed_std_m_s)
             reading = ReadAhead(sensors, expected_way(trains, known))
+            if stretch_m is not None and np.isfinite(stretch_m).any():
+                reading = ReadByRoute(reading, ReadOnStretch(sensors, rolls, stretch_m))
         return AimControl(self.aim, self.routes, trains, reading)
 
     def control_of(self, trains: TrainCuts, known: KnownCuts, plan: TrainPlan, aim: AimControl) -> ExitSpeeds:
@@ -238,5 +240,5 @@ def with_room(routes: HumpRoutes, trains: TrainCuts, free_m: Floats) -> Floats:
     train = np.repeat(np.arange(trains.trains), trains.cuts)
     needs = np.zeros(free_m.shape)
     np.add.at(needs, (train, trains.route), trains.length_m + SPARE_M)
-    begins = np.array([route.yard_from_m for route in routes.routes])
+    begins = routes.standing_from_m
     return np.asarray(np.clip(begins + needs, free_m, routes.length_m))

@@ -28,9 +28,9 @@ CHANGES_NO_TRAIN: Final = ("trains.number", "acceptance.")
 
 
 def trial_numbers(
-    settings: HumpTrialSettings, hump: HumpEntry, mix: CarMixEntry, categories: WeightCategories
+    settings: HumpTrialSettings, hump: HumpEntry, mix: CarMixEntry, categories: WeightCategories, designed: bool
 ) -> Iterator[SourcedValue]:
-    """Those of hump, cars, weather and control."""
+    """Those of hump, cars, weather and control; those of the aim where it is `designed` for the trial on any route."""
     yield from (replace(value, key=f"hump.{value.key}") for value in hump.provenance)
     of_list = settings.trains.list is not None
     for value in setting_values("trains", settings.trains):
@@ -46,7 +46,8 @@ def trial_numbers(
     yield from hump_speed_values(settings)
     yield from slow_down_values(settings)
     yield from setting_values("exit_speeds", settings.exit_speeds)
-    yield from setting_values("aim", settings.aim)
+    if designed:
+        yield from setting_values("aim", settings.aim)
     if "measured" in (settings.aim.knowledge, settings.exit_speeds.knowledge):
         yield from setting_values("sensors", settings.sensors)
     for key, limit in settings.acceptance.model_dump(exclude_none=True).items():

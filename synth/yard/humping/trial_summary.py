@@ -6,8 +6,12 @@ import json
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 
+import numpy as np
+
 from synth.book.output_directory import TRAINS_LAYOUT
 from synth.book.summary import Document, plain
+from synth.yard.humping.aim_choice import AimChoice
+from synth.yard.humping.hump_routes import HumpRoutes
 from synth.yard.humping.outcomes import TrainOutcomes
 from synth.yard.humping.resolved_trial import ResolvedTrial
 from synth.yard.humping.speed_program import csv_bytes
@@ -44,6 +48,7 @@ def trial_summary(
         "figures": {figure.name: figure_of(figure) for figure in figures},
         "elements": elements_of(config, found),
         "positions": positions_of(config, found),
+        "aim_tables": [aim_of(config, choice) for choice in config.aims],
         "files": dict(file_hashes),
     }
     plain_document: Document = plain(document)
@@ -74,18 +79,45 @@ def elements_of(config: ResolvedTrial, found: TrainOutcomes) -> Document:
 
 
 def positions_of(config: ResolvedTrial, found: TrainOutcomes) -> list[Document]:
-    """Passes of each position, how exactly cuts left it, and commands to its valves, None where none are modelled."""
+    """The tracks on whose routes each position is the last one, so that it aims; its passes, how exactly cuts left it,
+    and commands to its valves, None where none are modelled."""
     passes, error2, strokes = (each.sum(axis=0) for each in (found.passes, found.error2_m2_s2, found.strokes))
     return [
         {
             "number": choice.number,
             "site": choice.site,
+            "aims_on_tracks": aimed_tracks(config.routes, place + 1),
             "passes": int(passes[place]),
             "rms_of_exit_less_command_m_s": float((error2[place] / passes[place]) ** 0.5) if passes[place] else None,
             "strokes_per_pass": float(strokes[place] / passes[place]) if strokes[place] else None,
         }
         for place, choice in enumerate(config.positions)
     ]
+
+
+def aim_of(config: ResolvedTrial, choice: AimChoice) -> Document:
+    """Which aim tables command the last position, and on which tracks."""
+    return {
+        "tracks": sorted(int(config.routes.tracks[row]) for row in choice.rows),
+        "retarders": choice.retarders,
+        "tables": [
+            {
+                "id": table.id,
+                "created": table.created,
+                "config_sha256": table.generator.config_sha256,
+                "category": table.category.name,
+                "knowledge": "measured" if table.is_measured else "category",
+                "p_overspeed": table.required.p_overspeed,
+                "coupling_speed_m_s": table.required.coupling_speed_m_s,
+            }
+            for table in choice.tables.tables
+        ],
+    }
+
+
+def aimed_tracks(routes: HumpRoutes, number: int) -> list[int]:
+    """Tracks of the routes that have `number` positions."""
+    return [int(track) for track in np.sort(routes.tracks[routes.positions_of == number])]
 
 
 def figures_csv(figures: Figures) -> bytes:

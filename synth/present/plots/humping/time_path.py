@@ -87,9 +87,11 @@ def subject_of(trace: TrainTrace) -> str:
 
 
 def bunch(routes: HumpRoutes, route: int) -> int:
-    """Number of the retarder ahead of the last one of the route; 0 where there is none."""
+    """Number of the last but one retarder of the route; of a route that has fewer than others, that of as many as they
+    have but one; 0 where there is none."""
     held = routes.retarder[route][routes.retarder[route] >= 0]
-    return routes.numbers[int(routes.vertex[route, held[-2]])] if len(held) > 1 else 0
+    place = min(len(held), routes.positions - 1) - 1
+    return routes.numbers[int(routes.vertex[route, held[place]])] if place >= 0 else 0
 
 
 def colours_by_bunch(trace: TrainTrace) -> dict[int, str]:

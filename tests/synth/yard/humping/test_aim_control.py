@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from plant_models import PlantError
 from plant_models.hump import TrackSection
 from plant_models.library.catalogue import load_car, load_weight_categories
 from plant_models.rolling.car_mix import CarMix, MixedCar
@@ -23,7 +22,7 @@ from synth.yard.humping.aim_control import AimControl, ReadAhead
 from synth.yard.humping.aim_design import AimDesign, MeasuredAhead, hump_aim, scene_of
 from synth.yard.humping.expected_way import ExpectedWay
 from synth.yard.humping.free_stretch import ResistanceOnStretch
-from synth.yard.humping.hump_aim import AimGrid, CategoryAim, HumpAim, aim_of_tables
+from synth.yard.humping.hump_aim import AimGrid, CategoryAim, HumpAim
 from synth.yard.humping.speed_sensors import SpeedSensors
 from synth.yard.humping.train_memory import TrainMemory
 from tests.synth.yard.humping.asked_cuts import (
@@ -36,8 +35,7 @@ from tests.synth.yard.humping.asked_cuts import (
     asked_at,
     large,
 )
-from tests.tuning_tables.aim.made_tables import category_table, measured_table
-from tuning_tables.aim import AimAxes, aim_exit_speed
+from tuning_tables.aim import AimAxes
 
 Floats = NDArray[np.float64]
 
@@ -127,23 +125,6 @@ def test_threads_change_nothing() -> None:
         assert alone.measured is not None
         assert beside.measured is not None
         assert np.array_equal(alone.measured.speed_nodes, beside.measured.speed_nodes, equal_nan=True)
-
-
-def test_an_aim_book_is_asked_by_its_own_rule() -> None:
-    numbers = [(member.number, member.name) for member in CATEGORIES.members]
-    tables = [category_table(0.3 + 0.3 * place, *named) for place, named in enumerate(numbers)]
-    booked = aim_of_tables([*tables, measured_table()], CATEGORIES, len(ROUTES.routes))
-    random = np.random.default_rng(1)
-    category, cars = random.integers(0, 5, 300), random.integers(1, 12, 300)
-    free = random.uniform(-20.0, 600.0, 300)
-    found = booked.command_m_s(random.integers(0, 32, 300), category, cars, free)
-    answers = [aim_exit_speed(tables[c], min(n, 8), d) for c, n, d in zip(category, cars.tolist(), free, strict=True)]
-    assert found.tolist() == [0.5 if answer is None else answer for answer in answers]
-
-
-def test_an_aim_book_that_lacks_a_category_is_refused() -> None:
-    with pytest.raises(PlantError, match=r"aim tables: 0 by category alone for the weight category ЛС \(number 2\)"):
-        aim_of_tables([category_table()], CATEGORIES, 1)
 
 
 def linear_aim() -> HumpAim:

@@ -84,11 +84,12 @@ def run(trial: HumpTrial, after_s: float) -> tuple[Fate, TrainMemory]:
     known = trial.known(trains, free_m)
     plan = trial.program.plan(trial.planner, known)
     fate = Fate(after_s)
-    control = trial.control_of(trains, known, plan, trial.aim_of(trains, known))
+    rolls = rolling_on(trial.ways, trains.population, trains.drawn, 1)
+    control = trial.control_of(trains, known, plan, trial.aim_of(trains, known, rolls))
     assert isinstance(control, Feedback)
     control.rollability = Misjudged(control.rollability, fate)
     positions = tuple(Fated(position, fate) for position in trial.positions)
-    hump = Hump(trial.routes, positions, rolling_on(trial.ways, trains.population, trains.drawn, 1))
+    hump = Hump(trial.routes, positions, rolls)
     return fate, humped(hump, trains, free_m, FeedbackSpeeds(control, 0.3), Heard(control, fate))
 
 

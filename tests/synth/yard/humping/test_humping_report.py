@@ -55,6 +55,8 @@ def report() -> HumpingReport:
         figures=train_figures(found),
         pictures=tuple(outcome_pictures(humped.entry, humped.hump.routes, found)),
         parameters=humped.entry.provenance[:20],
+        aims=(),
+        tracks=tuple(route.track for route in humped.hump.routes.routes),
         player="hump.html",
         log="events.csv",
         otherwise=0,
