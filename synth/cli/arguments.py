@@ -43,7 +43,7 @@ def whole_number(low: int, high: int) -> Callable[[str], int]:
     return number
 
 
-NAME_OPTIONS = ("--retarder", "--position", "--car", "--sensor", "--weight-categories", "--aim", "--hump")
+NAME_OPTIONS = ("--retarder", "--position", "--car", "--sensor", "--weight-categories", "--aim", "--hump", "--computer")
 """Options of init whose value may be left out."""
 
 

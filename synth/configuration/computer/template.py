@@ -44,7 +44,8 @@ def lines() -> Iterator[str]:
     """The lines of the file."""
     yield HEAD
     yield '# title = "…"'
-    yield f"# one of the library: {', '.join(hump_names())}; or the path of your own hump file: its elements are counted"
+    yield "# whose elements are counted; the path of your own hump file, or one of the library:"
+    yield f"# {', '.join(hump_names())}"
     yield f"hump = {quoted(ComputerSettings().hump)}"
     yield from task_lines()
     yield from ("", "[service]", '# who is next: "first-come", or by "relative" or "absolute" priorities')

@@ -17,6 +17,7 @@ from synth.yard.control_computer.resolved_computer import ResolvedComputer
 TRAFFIC = "traffic.cars_per_day"
 SHARES = np.linspace(0.4, 1.6, 13)
 DRAWS = 400
+THOUSAND = 1000.0
 OUTPUTS = ("net_present_value", "pay_back_rate_per_year")
 QUANTILES = (0.05, 0.5, 0.95)
 
@@ -30,10 +31,10 @@ def pay_back_over_traffic(config: ResolvedComputer) -> Figure:
     place(figure, left=0.95, right=0.3, bottom=0.85, top=0.9, w=0.26)
     panels = figure.subplots(1, 2)
     titles = (
-        (f"Net present value, {config.case.terms.years} years", config.case.prices.currency),
-        ("1/pay-back time by the formula of S0; below 0 it never pays back", "1/year"),
+        (f"Net present value, {config.case.terms.years} years", f"thousand {config.case.prices.currency}"),
+        ("1/pay-back time; below 0 it never pays back", "1/year"),
     )
-    for axes, band, (title, unit) in zip(panels, bands, titles, strict=True):
+    for axes, band, (title, unit) in zip(panels, (bands[0] / THOUSAND, bands[1]), titles, strict=True):
         dress(axes, title, "cars humped a day", unit)
         axes.fill_between(cars, band[0], band[2], color=SKY, alpha=0.45, linewidth=0.0, zorder=2)
         axes.plot(cars, band[1], color=BLUE, linewidth=1.6, marker="o", markersize=3.0, zorder=3)

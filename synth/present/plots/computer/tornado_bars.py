@@ -11,6 +11,7 @@ from synth.present.plots.house_style import BLUE, INK, ORANGE, dress, legend_bel
 from synth.yard.control_computer.economics.uncertainty.tornado import Tornado
 
 MOST_BARS = 14
+THOUSAND = 1000.0
 
 
 def tornado_bars(found: Tornado, currency: str) -> Figure:
@@ -24,12 +25,13 @@ def tornado_bars(found: Tornado, currency: str) -> Figure:
     )  # fmt: skip
     place(figure, left=2.9, right=0.4, bottom=0.95, top=0.8)
     axes = figure.subplots()
-    dress(axes, "", f"net present value, {currency}", "")
+    dress(axes, "", f"net present value, thousand {currency}", "")
+    middle = found.at_medians / THOUSAND
     for row, bar in enumerate(reversed(bars)):
         for end, colour in ((bar.at_low, ORANGE), (bar.at_high, BLUE)):
-            axes.barh(row, end - found.at_medians, left=found.at_medians, color=colour, height=0.62, zorder=3)
+            axes.barh(row, end / THOUSAND - middle, left=middle, color=colour, height=0.62, zorder=3)
     axes.set_yticks(range(len(bars)), [bar.input for bar in reversed(bars)], fontsize=8)
-    axes.axvline(found.at_medians, color=INK, linewidth=0.8, zorder=4)
+    axes.axvline(middle, color=INK, linewidth=0.8, zorder=4)
     axes.grid(False, axis="y")
     handles = [
         Patch(facecolor=ORANGE, label="input at its 5 % quantile"),

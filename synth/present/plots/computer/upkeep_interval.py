@@ -23,6 +23,7 @@ from synth.yard.control_computer.reliability.rates import HOURS_PER_YEAR
 from synth.yard.control_computer.resolved_computer import ResolvedComputer
 
 INTERVALS = 200
+THOUSAND = 1000.0
 
 
 def upkeep_interval(config: ResolvedComputer) -> Figure:
@@ -39,10 +40,10 @@ def upkeep_interval(config: ResolvedComputer) -> Figure:
     place(figure, left=0.8, right=0.3, bottom=0.85, top=0.9, w=0.26)
     of_share, of_loss = figure.subplots(1, 2)
     dress(of_share, "Share of time without a ready computer", "interval between checks, h", "1 − availability")
-    dress(of_loss, "Loss of a year", "interval between checks, h", currency)
+    dress(of_loss, "Loss of a year", "interval between checks, h", f"thousand {currency}")
     for axes, one, two in (
         (of_share, 1.0 - single, 1.0 - double),
-        (of_loss, single_loss(config, x), HOURS_PER_YEAR * (1.0 - double) * upkeep.unnoticed_per_h),
+        (of_loss, single_loss(config, x), HOURS_PER_YEAR * (1.0 - double) * upkeep.unnoticed_per_h / THOUSAND),
     ):
         axes.plot(x, one, color=VERMILLION, linestyle="-", linewidth=1.6)
         axes.plot(x, two, color=BLUE, linestyle="--", linewidth=1.6)
@@ -66,6 +67,10 @@ def upkeep_interval(config: ResolvedComputer) -> Figure:
 
 
 def single_loss(config: ResolvedComputer, interval_h: np.ndarray) -> np.ndarray:
-    """A year of one computer that is checked at even times."""
+    """A year of one computer that is checked at even times, in thousands."""
     checked = config.upkeep.checked
-    return np.full_like(interval_h, np.nan) if checked is None else np.asarray(checked.loss_per_year(interval_h))
+    return (
+        np.full_like(interval_h, np.nan)
+        if checked is None
+        else np.asarray(checked.loss_per_year(interval_h)) / THOUSAND
+    )

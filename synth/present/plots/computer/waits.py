@@ -23,7 +23,7 @@ from synth.yard.control_computer.resolved_computer import ResolvedComputer
 from synth.yard.control_computer.sizing.demand_service import mean_waits
 from synth.yard.control_computer.sizing.waiting_tail import start_tail
 
-SPEEDS = 40
+SPEEDS = 120
 FASTEST = 30.0
 """Times the least speed that can serve all tasks."""
 

@@ -1,0 +1,86 @@
+"""Configurations of a control computer: the template, and every fault in one sentence."""
+
+from __future__ import annotations
+
+import pytest
+
+from synth.configuration.computer.computer_file import parse_computer_file, read_computer_file
+from synth.configuration.computer.template import default_computer_toml
+from synth.configuration.plant_fault import in_file
+from synth.faults.input_error import InputError
+from synth.yard.control_computer.computer_results import computer_results
+from synth.yard.control_computer.resolved_computer import ResolvedComputer, resolve_computer
+
+FEW = "[uncertainty]\ndraws = 200\nsobol_points = 16\n"
+TASK = '[[task]]\nname = "a"\nrate_per_s = 1.0\noperations = 100.0\n'
+
+
+def resolved(text: str) -> ResolvedComputer:
+    """What `text` asks for."""
+    return resolve_computer(parse_computer_file(text, "c.toml"))
+
+
+def test_the_template_is_the_built_in_configuration_to_the_last_origin() -> None:
+    told, built_in = resolved(default_computer_toml()), resolve_computer(read_computer_file(None))
+    assert told.parameters == built_in.parameters
+    assert told.sha256 == built_in.sha256
+    assert (told.case, told.upkeep, dict(told.ranges)) == (built_in.case, built_in.upkeep, dict(built_in.ranges))
+    assert not built_in.warnings
+
+
+def test_what_is_only_shown_changes_no_hash_and_numbers_do() -> None:
+    built_in = resolve_computer(read_computer_file(None))
+    assert resolved('title = "x"\n[output]\nplots = false\n').sha256 == built_in.sha256
+    for text in ("[traffic]\ncars_per_day = 2999.0\n", TASK, '[reliability]\nstructure = "single"\n'):
+        assert resolved(text).sha256 != built_in.sha256, text
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("[service]\nspeed = 3.0\n", ("service.speed", "speed_op_s")),
+        (TASK.replace("1.0", "-1.0"), ("task a", "rate_per_s is -1.0", "above 0")),
+        (TASK.replace("1.0", "0.0"), ("task a", "rate_per_s is 0.0", "above 0")),
+        (TASK + 'law = "erlang"\n', ("task a", "stages")),
+        (TASK + TASK, ("task mix", "a is given twice")),
+        ("[reliability]\ncommon_share = 1.5\n", ("reliability.common_share", "1")),
+        ("[reliability]\ncheck_h = 3.0\n", ("reliability.check_interval_h is 2.5 h", "shorter than the check")),
+        ("[rates.today]\ncars_per_h = 500.0\ncatch_ups = 1.5\n", ("rates.today", "catch_ups is 1.5", "from 0 to 1")),
+        ("[prices]\nper_car = -1.0\n", ("prices.per_car",)),
+        ('[[range]]\ninput = "prices.car"\nlow = 1.0\nhigh = 2.0\n', ("'prices.car'", "per_car_h")),
+        ('[[range]]\ninput = "prices.currency"\nlow = 1.0\nhigh = 2.0\n', ("'prices.currency'", "per_car")),
+        ('[[range]]\ninput = "price.per_car"\nlow = 1.0\nhigh = 2.0\n', ("'price.per_car'", "prices.")),
+        ('[[range]]\ninput = "prices.per_car"\nlow = 2.0\nhigh = 1.0\n', ("lognormal", "2.0")),
+        (
+            '[[range]]\ninput = "prices.per_car"\nlaw = "triangular"\nlow = 1.0\nhigh = 2.0\n',
+            ("prices.per_car", "mode"),
+        ),
+        ("[uncertainty]\nsobol_points = 100\n", ("uncertainty.sobol_points is 100", "power of 2")),
+        ('[rates]\ntoday_trial = "x"\n', ("today_trial and new_trial",)),
+        ('[rates]\ntoday_trial = "x"\nnew_trial = "y"\n', ("rates.today_trial", "trains.npz")),
+        ('hump = "larg"\n', ("hump", "larg")),
+    ],
+)
+def test_a_fault_is_one_sentence_with_its_key(text: str, words: tuple[str, ...]) -> None:
+    with pytest.raises(InputError) as caught:
+        resolved(text)
+    (said,) = caught.value.sentences
+    assert said.startswith("c.toml")
+    for word in words:
+        assert word in said, said
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("[service]\nspeed_op_s = 6000.0\n", ("the computer is overloaded", "10 % more")),
+        ("[traffic]\ncars_per_day = 30000.0\n", ("overloaded",)),
+    ],
+)
+def test_an_overload_says_by_how_much(text: str, words: tuple[str, ...]) -> None:
+    config = resolved(FEW + text)
+    with pytest.raises(InputError) as caught, in_file(config.place, lambda sentence: sentence):
+        computer_results(config)
+    (said,) = caught.value.sentences
+    for word in words:
+        assert word in said, said

@@ -1,0 +1,124 @@
+"""`retarder-synth computer` as a user runs it: files, figures, exit codes, the same bytes."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from synth.book.output_directory import SUMMARY
+
+FEW = """[service]
+simulated_requests = 3000
+[uncertainty]
+draws = 200
+sobol_points = 16
+"""
+
+
+def run(*words: str, day: str = "1700000000") -> subprocess.CompletedProcess[str]:
+    """The command in a process of its own."""
+    environment = {**os.environ, "SOURCE_DATE_EPOCH": day, "COLUMNS": "120"}
+    return subprocess.run(
+        [sys.executable, "-m", "synth.cli", *words], capture_output=True, text=True, env=environment, check=False
+    )
+
+
+def written(path: Path, text: str) -> Path:
+    """A configuration."""
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def told(directory: Path) -> dict[str, Any]:
+    """The summary."""
+    document: dict[str, Any] = json.loads((directory / SUMMARY).read_bytes())
+    return document
+
+
+@pytest.fixture(scope="module")
+def first(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    """A run of few draws, and what it printed."""
+    folder = tmp_path_factory.mktemp("computer")
+    done = run("computer", str(written(folder / "c.toml", FEW)), "-o", str(folder / "out"))
+    assert done.returncode == 0, done.stderr
+    return folder, done.stdout
+
+
+def test_a_run_leaves_what_it_says(first: tuple[Path, str]) -> None:
+    folder, printed = first
+    summary = told(folder / "out")
+    assert summary["format"] == "control-computer-summary"
+    assert set(summary["files"]) == {
+        "report.html", *(f"plots/computer-{name}.{form}" for name in ("waits", "checks", "traffic", "tornado")
+                         for form in ("png", "svg")),
+    }  # fmt: skip
+    assert "accepted: the allowed waits need 105,694 op/s" in printed
+    page = (folder / "out" / "report.html").read_text(encoding="utf-8")
+    assert all(heading in page for heading in ("How fast", "How reliable", "What it pays", "Parameters"))
+    assert "nan" not in page.replace("maintenance", "").lower().split("data:image")[0]
+
+
+def test_the_published_computer_is_the_default(first: tuple[Path, str]) -> None:
+    """120 000 op/s keep both waits of [hump-computer-1970s]; a cycle takes 1 000 000 op/s."""
+    sizing = told(first[0] / "out")["sizing"]
+    (task,) = sizing["tasks"]
+    assert task["mean_wait_s"] == pytest.approx(0.825 * 0.0044444 / 2.0 / (1.0 - 0.055), rel=1e-4)
+    assert task["long_wait"]["share"] < 0.001
+    assert sizing["cyclic"]["speed_op_s"] == pytest.approx(1e6)
+
+
+def test_the_same_configuration_gives_the_same_bytes(first: tuple[Path, str]) -> None:
+    folder, _ = first
+    assert run("computer", str(folder / "c.toml"), "-o", str(folder / "again")).returncode == 0
+    for name in (SUMMARY, *told(folder / "out")["files"]):
+        assert (folder / "out" / name).read_bytes() == (folder / "again" / name).read_bytes(), name
+
+
+def test_limits_that_are_missed_are_told_and_change_the_exit_code(tmp_path: Path) -> None:
+    slow = "[service]\nsimulated_requests = 3000\nspeed_op_s = 60000.0\n[uncertainty]\ndraws = 200\nsobol_points = 16\n"
+    config = written(tmp_path / "c.toml", slow + "[acceptance]\npay_back_years = 0.1\nloss_per_year = 1.0\n")
+    done = run("computer", str(config), "-o", str(tmp_path / "out"))
+    assert done.returncode == 1, done.stderr
+    assert [limit["kept"] for limit in told(tmp_path / "out")["limits"]] == [False, False, False]
+    assert "not accepted" in done.stdout
+
+
+def test_a_pay_back_that_never_comes_is_a_statement(tmp_path: Path) -> None:
+    config = written(tmp_path / "c.toml", FEW + "[terms]\ninvestment = 1e12\n[output]\nplots = false\nreport = false\n")
+    done = run("computer", str(config), "-o", str(tmp_path / "out"), "--json")
+    assert done.returncode == 0, done.stderr
+    document = json.loads(done.stdout)
+    assert "never pays back" in document["economics"]["pay_back"]
+    assert document["economics"]["figures"]["pay_back_years"] is None
+    assert set(document["files"]) == set()
+
+
+def test_an_overloaded_hump_is_the_fault_of_the_input(tmp_path: Path) -> None:
+    config = written(tmp_path / "c.toml", FEW + "[traffic]\ncars_per_day = 30000.0\n")
+    done = run("computer", str(config), "-o", str(tmp_path / "out"))
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "overloaded" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not (tmp_path / "out" / SUMMARY).exists()
+
+
+def test_figures_of_the_hump_come_from_its_trials(tmp_path: Path) -> None:
+    """Two trials of the same trains: their differences are paired, and are the ranges of the changes."""
+    for name, std in (("today", 0.35), ("new", 0.03)):
+        text = "".join(f"[[position]]\nnumber = {k}\nexit_std_m_s = {std}\n" for k in (1, 2, 3))
+        text = f"[trains]\nnumber = 20\ncuts = 12\n{text}[output]\nplots = false\nreport = false\n"
+        trial = written(tmp_path / f"{name}.toml", text)
+        assert run("hump", "simulate", str(trial), "-o", str(tmp_path / name)).returncode == 0
+    config = written(tmp_path / "c.toml", FEW + '[rates]\ntoday_trial = "today"\nnew_trial = "new"\n')
+    done = run("computer", str(config), "-o", str(tmp_path / "out"))
+    assert done.returncode == 0, done.stderr
+    summary, trial_summary = told(tmp_path / "out"), told(tmp_path / "today")
+    cars = next(figure for name, figure in trial_summary["figures"].items() if name == "cars_per_hour")
+    assert summary["config"]["numbers"]["rates.today.cars_per_h"] == pytest.approx(cars["value"])
+    assert "change.gap_m" in {bar["input"] for bar in summary["uncertainty"]["tornado"]["bars"]}
