@@ -22,12 +22,12 @@ from synth.studies.humping.runs import Group
 from synth.yard.control_computer.economics.hump_rates import HumpRates
 from synth.yard.control_computer.reliability.failed_hump import FailedPosition, StuckAtStage, failed_trial
 from synth.yard.control_computer.sizing.demand_service import Discipline
-from synth.yard.humping.made_trial import brake_of, made_trial
+from synth.yard.humping.made_trial import brake_of
 from synth.yard.humping.outcomes import joined
 from synth.yard.humping.resolved_trial import load_trial
 
 ROOT = Path(__file__).parents[2]
-REQUESTS = 60_000
+REQUESTS = 30_000
 
 
 @pytest.fixture(scope="module")
@@ -177,8 +177,3 @@ def test_trains_are_humped_alike_whatever_the_batch_and_the_plan_is_shared() -> 
     assert (whole[0].before_stop == 8).all()
     assert (whole[1].before_stop < 8).any()
     assert first_trains(whole[0].outcomes, 2).train.tolist() == [0, 1]
-
-
-def test_the_made_trial_of_failures_is_the_default_one() -> None:
-    config = load_trial(None)
-    assert len(made_trial(config, 1).positions) == len(config.positions) == 3
