@@ -54,6 +54,13 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.book",
     ),
     Study(
+        "control-computer",
+        "How fast and how reliable must the control computer be, what does it pay, and which controller does it today?",
+        500.0,
+        "control-computer.md",
+        "synth.studies.control_computer.study",
+    ),
+    Study(
         "controller-agreement",
         "Does the exported C decide, choose and estimate as Python does, however it is compiled?",
         50.0,

@@ -62,7 +62,8 @@ class Served:
 
 @dataclass(frozen=True)
 class SimulatedWait:
-    """Of one task: means in s with their 95 % intervals, and the share of requests that wait longer than `long_s`."""
+    """Of one task: means in s with their 95 % intervals, and the shares of requests that are not begun (`long_share`)
+    and not done (`late_share`) within `long_s`."""
 
     task: str
     start_s: SampledMean
@@ -70,6 +71,7 @@ class SimulatedWait:
     sojourn_s: SampledMean
     long_s: float
     long_share: SampledMean
+    late_share: SampledMean
 
 
 def simulated_waits(
@@ -87,15 +89,16 @@ def simulated_waits(
     found = []
     for index, stream in enumerate(streams):
         mine = kept & (served.requests.stream == index)
-        start_s = served.start_s[mine]
+        start_s, sojourn_s = served.start_s[mine], served.sojourn_s[mine]
         found.append(
             SimulatedWait(
                 task=stream.name,
                 start_s=sampled_mean(start_s),
                 wait_s=sampled_mean(served.wait_s[mine]),
-                sojourn_s=sampled_mean(served.sojourn_s[mine]),
+                sojourn_s=sampled_mean(sojourn_s),
                 long_s=long_s,
                 long_share=sampled_mean((start_s > long_s).astype(np.float64)),
+                late_share=sampled_mean((sojourn_s > long_s).astype(np.float64)),
             )
         )
     return tuple(found)

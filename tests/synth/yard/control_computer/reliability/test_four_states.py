@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from plant_models import PlantError
+from synth.studies.control_computer.lives import chain_cycles
 from synth.yard.control_computer.reliability.four_states import FourStates, State, StateShares
 from synth.yard.control_computer.reliability.stationary import null_space_shares, stationary_shares
 
@@ -74,25 +74,10 @@ def test_transient_is_a_distribution(chain: FourStates, hours: float) -> None:
     assert p.sum() == pytest.approx(1.0, abs=1e-8)
 
 
-def simulated(chain: FourStates, cycles: int, seed: int) -> NDArray[np.float64]:
-    """Hours (cycles, 4) in each state from one entry into READY to the next; the earliest of competing clocks wins."""
-    rng, hours = np.random.default_rng(seed), np.zeros((cycles, 4))
-    fails, check = (rng.exponential(1.0 / rate, cycles) for rate in (chain.failure_per_h, chain.check_per_h))
-    found, again = (rng.exponential(1.0 / rate, cycles) for rate in (chain.detection_per_h, chain.check_per_h))
-    failed, checked_first = fails < check, again < found
-    hours[:, State.READY] = np.minimum(fails, check)
-    hours[:, State.FAILED_UNNOTICED] = np.where(failed, np.minimum(found, again), 0.0)
-    by_check = failed & checked_first & (chain.failed_check_to is State.MAINTENANCE)
-    maintained = ~failed | by_check
-    hours[:, State.MAINTENANCE] = maintained * rng.exponential(1.0 / chain.maintenance_per_h, cycles)
-    hours[:, State.REPAIR] = ~maintained * rng.exponential(1.0 / chain.repair_per_h, cycles)
-    return hours
-
-
 @pytest.mark.parametrize("chain", [PRINTED, TO_REPAIR, FourStates(0.3, 0.1, 0.2, 0.5, 0.05, State.REPAIR)])
 def test_shares_are_those_of_simulated_cycles(chain: FourStates) -> None:
     n = 400_000
-    hours = simulated(chain, n, 7)
+    hours = chain_cycles(chain, n, 7)
     total = hours.sum(axis=1)
     for state, share in zip(State, astuple(chain.stationary()), strict=True):
         residual = hours[:, state] - share * total
