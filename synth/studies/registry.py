@@ -146,7 +146,7 @@ STUDIES: tuple[Study, ...] = (
     Study(
         "hump-day",
         "How fast can trains be humped, and at what price in catch-ups, over-speeds and gaps?",
-        480.0,
+        1500.0,
         "hump-day.md",
         "synth.studies.humping.study",
         "synth.studies.humping.pictures",

@@ -2,50 +2,63 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
+from synth.studies.humping.closed_loops import RegulatedCouplings
 from synth.studies.humping.couplings import FREE, AimedFigures
-from synth.studies.humping.day_figures import DayFigures, metres, share, speed, whole
-from synth.studies.humping.frontier import OPEN_LOOP, WITH_MEASURED, WITH_SLOWING, AtLimit, Curve
+from synth.studies.humping.day_figures import DayFigures, PairFigures, metres, share, speed, whole
+from synth.studies.humping.frontier import OPEN_LOOP, WITH_MEASURED, WITH_SLOWING, AtLimit, Curve, sigma
 from synth.studies.markdown_table import ABSENT, MarkdownTable, table
+
+Days = dict[tuple[float, float], DayFigures]
+"""By the free shares of the tracks."""
 
 UNDECIDED = "not decidable with these trains"
 
 
-def answer_table(curves: tuple[Curve, ...], couplings: tuple[AimedFigures, ...]) -> MarkdownTable:
-    """A row an exactness and control, the least exact first."""
+def answer_table(
+    curves: tuple[Curve, ...], couplings: tuple[AimedFigures, ...], regulated: tuple[RegulatedCouplings, ...]
+) -> MarkdownTable:
+    """A row for each kind of positions and control: normal ones, the least exact first, then regulators. Steps between
+    both are left out."""
     limits = [f"cars an hour, catch-ups ≤ {100 * at.limit:g} %" for at in curves[0].at_limits]
     free = [f"gap a cut, tracks free {low:g}–{high:g}, m" for low, high in FREE]
-    heads = ("σ, m/s", "control", *limits, "over-speeds, %", "above 2 m/s, %", *free)
-    return table("the answer: cars an hour, over-speeds, gaps", heads, rows(curves, couplings))
+    heads = ("positions", "control", *limits, "over-speeds, %", "above 2 m/s, %", *free)
+    normal = dict.fromkeys(sigma(std) for std in sorted({c.aimed.std_m_s for c in couplings}, reverse=True))
+    order = [*normal, *dict.fromkeys(each.positions for each in regulated)]
+    told = sorted((c for c in curves if c.positions in order), key=lambda c: order.index(c.positions))
+    days = (days_of(c, couplings) if c.positions in normal else regulated_days(c, regulated) for c in told)
+    return table("the answer: cars an hour, over-speeds, gaps", heads, map(answer_row, told, days))
 
 
-def rows(curves: tuple[Curve, ...], couplings: tuple[AimedFigures, ...]) -> Iterator[tuple[str, ...]]:
-    """The rows. Couplings are those of positions that all have this exactness, with commands chosen for it and, where
-    resistance is measured, by it; they were not run with a train that is slowed down."""
-    for curve in sorted(curves, key=lambda c: -c.std_m_s):
-        told = [ABSENT] * (2 + len(FREE))
-        if curve.control != WITH_SLOWING:
-            days = days_of(curve, couplings)
-            wide, gaps = days[FREE[-1]], [metres(days[free].gap_m) for free in FREE]
-            told = [share(wide.overspeed), share(wide.classes[-1]), *gaps]
-        yield f"{curve.std_m_s:g}", curve.control, *(cars_cell(at) for at in curve.at_limits), *told
+def answer_row(curve: Curve, days: Days) -> tuple[str, ...]:
+    """Its cells. Couplings were not run with a train that is slowed down."""
+    told = [ABSENT] * (2 + len(FREE))
+    if curve.control != WITH_SLOWING:
+        wide, gaps = days[FREE[-1]], [metres(days[free].gap_m) for free in FREE]
+        told = [share(wide.overspeed), share(wide.classes[-1]), *gaps]
+    return curve.positions, curve.control, *(cars_cell(at) for at in curve.at_limits), *told
 
 
-def days_of(curve: Curve, couplings: tuple[AimedFigures, ...]) -> dict[tuple[float, float], DayFigures]:
-    """Figures of a control by the free shares of the tracks."""
+def days_of(curve: Curve, couplings: tuple[AimedFigures, ...]) -> Days:
+    """Figures of a control with normal positions that all have its exactness, with commands chosen for it and, where
+    resistance is measured, by it."""
     own = [
         each
         for each in couplings
-        if each.aimed.std_m_s == each.aimed.aim_std_m_s == curve.std_m_s
+        if sigma(each.aimed.std_m_s) == sigma(each.aimed.aim_std_m_s) == curve.positions
         and each.aimed.measured == (curve.control == WITH_MEASURED)
     ]
     usual = max(each.aimed.p_overspeed for each in own)
-    return {
-        each.aimed.free: each.found.open_loop if curve.control == OPEN_LOOP else each.found.feedback
-        for each in own
-        if each.aimed.p_overspeed == usual
-    }
+    return {each.aimed.free: of_control(curve, each.found) for each in own if each.aimed.p_overspeed == usual}
+
+
+def regulated_days(curve: Curve, regulated: tuple[RegulatedCouplings, ...]) -> Days:
+    """The same with a regulator."""
+    return {each.free: of_control(curve, each.found) for each in regulated if each.positions == curve.positions}
+
+
+def of_control(curve: Curve, found: PairFigures) -> DayFigures:
+    """Open loop or feedback."""
+    return found.open_loop if curve.control == OPEN_LOOP else found.feedback
 
 
 def cars_cell(at: AtLimit) -> str:

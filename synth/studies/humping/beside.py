@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from synth.studies.humping.couplings import CAREFUL, FREE, SHARES, AimedFigures
 from synth.studies.humping.day_figures import PairFigures, metres, share, speed
-from synth.studies.humping.frontier import OPEN_LOOP, WITH_FEEDBACK, Curve
+from synth.studies.humping.frontier import OPEN_LOOP, WITH_FEEDBACK, Curve, sigma
 from synth.studies.humping.programs import CAPS_M_S, KNOWN, MEAN, WORST, capped
 
 PUBLISHED_SPEEDS_M_S = (2.5, 2.7, 3.0)
@@ -26,10 +26,9 @@ def speed_rows(programs: tuple[PairFigures, ...]) -> Iterator[Row]:
     yield "the same, uncoupled by hand", "2.4", by_hand
 
 
-def catch_up_rows(curves: tuple[Curve, ...]) -> Iterator[Row]:
-    """Catch-ups on the slope at the published speeds, with the least exact positions of the curves."""
-    std = max(curve.std_m_s for curve in curves)
-    of = {curve.control: curve for curve in curves if curve.std_m_s == std}
+def catch_up_rows(curves: tuple[Curve, ...], std_m_s: float) -> Iterator[Row]:
+    """Catch-ups on the slope at the published speeds, with normal positions of this error."""
+    of = {curve.control: curve for curve in curves if curve.positions == sigma(std_m_s)}
     for control, at, published in ((OPEN_LOOP, 3.0, "12–15"), (OPEN_LOOP, 2.5, "2.5"), (WITH_FEEDBACK, 2.7, "none")):
         yield f"catch-ups at mean {at:g} m/s, {control}, %", published, caught(of[control], at)
 

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from plant_models.frozen_arrays import frozen_arrays
 from synth.studies.aiming.trial import Value
 from synth.studies.humping.base_trial import FEEDBACK, MEASURED, OPEN, SLOWING, with_interval_std, with_planner
+from synth.studies.humping.crossings import Sums, decided, drawn_weights, sums_of
 from synth.studies.humping.day_figures import DayFigures, day_figures, fewer_catch_ups
 from synth.studies.humping.runs import Group
 from synth.yard.humping.outcomes import TrainOutcomes
-from synth.yard.humping.trial import Floats, HumpTrial
+from synth.yard.humping.trial import HumpTrial
 
 CONTROLS = {
     "open loop": OPEN,
@@ -25,12 +26,11 @@ OPEN_LOOP, WITH_FEEDBACK, WITH_MEASURED, WITH_SLOWING = CONTROLS
 FEWEST_EVENTS = 10.0
 """Catch-ups that the trains must have at a limit; with fewer the bootstrap has nothing to draw from."""
 
-REPLICATES = 2000
-
 
 @dataclass(frozen=True)
 class Point:
-    """One program of a curve; `fewer`: by how much the share of catch-ups is less than in open loop, None there."""
+    """One program of a curve; `fewer`: by how much the share of catch-ups is less than in open loop, None there and
+    where the positions were not run in open loop."""
 
     least_s: float
     figures: DayFigures
@@ -61,13 +61,18 @@ class AtSpeed:
 
 @dataclass(frozen=True)
 class Curve:
-    """All programs with one exactness of the interval positions and one control."""
+    """All programs with one kind of positions and one control."""
 
-    std_m_s: float
+    positions: str
     control: str
     points: tuple[Point, ...]
     at_limits: tuple[AtLimit, ...]
     at_speeds: tuple[AtSpeed, ...]
+
+    @property
+    def name(self) -> str:
+        """Tells it from the others."""
+        return name_of(self.positions, self.control)
 
 
 @dataclass(frozen=True)
@@ -81,88 +86,55 @@ class Gain:
     cars_per_hour: Value | None
 
 
-def name_of(std_m_s: float, control: str, least_s: float | None = None) -> str:
+@dataclass(frozen=True)
+class Family:
+    """The curves of one kind of positions, one for each of `controls`."""
+
+    trial: HumpTrial
+    controls: tuple[str, ...]
+
+
+Families = Mapping[str, Family]
+"""By the names of their positions."""
+
+Line = tuple[str, str]
+"""Positions and control of a curve."""
+
+
+def sigma(std_m_s: float) -> str:
+    """Normal positions by name."""
+    return f"σ {std_m_s:g}"
+
+
+def name_of(positions: str, control: str, least_s: float | None = None) -> str:
     """The trial of a point, or a curve."""
-    curve = f"σ {std_m_s:g}, {control}"
+    curve = f"{positions}, {control}"
     return curve if least_s is None else f"{curve}, {least_s:g} s"
 
 
-def frontier_groups(base: HumpTrial, stds_m_s: tuple[float, ...], least_s: tuple[float, ...]) -> list[Group]:
-    """A group a program: all curves at it."""
+def normal_families(base: HumpTrial, stds_m_s: tuple[float, ...]) -> Families:
+    """A family an exactness of the interval positions, with every control."""
+    return {sigma(std): Family(with_interval_std(base, std), tuple(CONTROLS)) for std in stds_m_s}
+
+
+def frontier_groups(families: Families, least_s: tuple[float, ...]) -> list[Group]:
+    """A group a program: all curves at it. Families must share what programs depend on."""
+    first = next(iter(families.values())).trial
     groups = []
     for least in least_s:
-        planned = with_planner(base, least_s=least)
-        of_std = {std: with_interval_std(planned, std) for std in stds_m_s}
-        trials = {
-            name_of(std, control, least): replace(trial, control=made)
-            for std, trial in of_std.items()
-            for control, made in CONTROLS.items()
-        }
-        groups.append(Group(trials))
+        planner = with_planner(first, least_s=least).planner
+        groups.append(
+            Group(
+                {
+                    name_of(positions, control, least): replace(
+                        family.trial, planner=planner, control=CONTROLS[control]
+                    )
+                    for positions, family in families.items()
+                    for control in family.controls
+                }
+            )
+        )
     return groups
-
-
-@frozen_arrays
-@dataclass(frozen=True, eq=False)
-class Sums:
-    """Of each bootstrap replicate (rows; the first is the sample itself) and each program, safest first: share of
-    catch-ups, mean hump speed, cars an hour."""
-
-    catch_ups: Floats
-    hump_speed_m_s: Floats
-    cars_per_hour: Floats
-
-    def crossing(self, limit: float) -> tuple[Floats, Floats]:
-        """Speed and cars an hour (rows,) where the share passes `limit`, linear in between; −∞ and ∞ where it does so
-        ahead of the first program or behind the last."""
-        beyond = self.catch_ups > limit
-        behind = beyond.argmax(axis=1)
-        rows = np.arange(len(beyond))
-        ahead = np.maximum(behind - 1, 0)
-        low, high = self.catch_ups[rows, ahead], self.catch_ups[rows, behind]
-        part = np.where(high > low, (limit - low) / np.where(high > low, high - low, 1.0), 0.0)
-        found = []
-        for values in (self.hump_speed_m_s, self.cars_per_hour):
-            between = values[rows, ahead] + part * (values[rows, behind] - values[rows, ahead])
-            between = np.where(behind == 0, -np.inf, between)
-            found.append(np.where(beyond.any(axis=1), between, np.inf))
-        return found[0], found[1]
-
-    def at_speed(self, hump_speed_m_s: float) -> Floats:
-        """Share of catch-ups (rows,) where the mean hump speed is passed first, linear in between; NaN if it is not."""
-        faster = self.hump_speed_m_s >= hump_speed_m_s
-        behind, rows = faster.argmax(axis=1), np.arange(len(faster))
-        ahead = np.maximum(behind - 1, 0)
-        low, high = self.hump_speed_m_s[rows, ahead], self.hump_speed_m_s[rows, behind]
-        part = np.where(high > low, (hump_speed_m_s - low) / np.where(high > low, high - low, 1.0), 0.0)
-        share = self.catch_ups[rows, ahead] + part * (self.catch_ups[rows, behind] - self.catch_ups[rows, ahead])
-        return np.where(faster.any(axis=1) & (behind > 0), share, np.nan)
-
-
-def sums_of(outcomes: list[TrainOutcomes], weights: Floats) -> Sums:
-    """Those of the programs of a curve; `weights` (rows, trains): how often each train is drawn."""
-
-    def total(name: str) -> Floats:
-        return np.stack([weights @ getattr(each, name).astype(float) for each in outcomes], axis=1)
-
-    seconds = total("span_s")
-    return Sums(total("caught") / total("cuts"), total("span_m") / seconds, 3600.0 * total("span_cars") / seconds)
-
-
-def drawn_weights(trains: int, seed: int) -> Floats:
-    """Bootstrap weights (1 + REPLICATES, trains); the first row is one each."""
-    rng = np.random.default_rng(np.random.SeedSequence(seed))
-    drawn = rng.multinomial(trains, np.full(trains, 1.0 / trains), REPLICATES)
-    return np.concatenate((np.ones((1, trains)), drawn.astype(float)))
-
-
-def decided(values: Floats) -> Value | None:
-    """The sample's own value (the first) with the percentile interval of the others, if all three are finite."""
-    if not np.isfinite(values[0]):
-        return None
-    ordered = np.sort(values[1:])
-    low, high = (float(ordered[int(q * (len(ordered) - 1))]) for q in (0.025, 0.975))
-    return Value(float(values[0]), (low, high)) if np.isfinite((low, high)).all() else None
 
 
 @dataclass(frozen=True)
@@ -170,36 +142,36 @@ class Frontier:
     """All curves on the same trains, from the outcomes of their trials by name."""
 
     outcomes: dict[str, TrainOutcomes]
-    stds_m_s: tuple[float, ...]
+    lines: tuple[Line, ...]
     least_s: tuple[float, ...]
     limits: tuple[float, ...]
     speeds_m_s: tuple[float, ...]
     seed: int
 
     def curves(self) -> tuple[Curve, ...]:
-        """A curve an exactness and control."""
-        return tuple(self.curve(std, control) for std in self.stds_m_s for control in CONTROLS)
+        """Those of all lines."""
+        return tuple(map(self.curve, self.lines))
 
-    def of(self, std_m_s: float, control: str) -> list[TrainOutcomes]:
+    def of(self, line: Line) -> list[TrainOutcomes]:
         """The outcomes of a curve, safest program first."""
-        return [self.outcomes[name_of(std_m_s, control, least)] for least in self.least_s]
+        return [self.outcomes[name_of(*line, least)] for least in self.least_s]
 
-    def sums(self, std_m_s: float, control: str) -> Sums:
+    def sums(self, line: Line) -> Sums:
         """The sums of a curve over common bootstrap draws."""
-        outcomes = self.of(std_m_s, control)
+        outcomes = self.of(line)
         return sums_of(outcomes, drawn_weights(len(outcomes[0]), self.seed))
 
-    def curve(self, std_m_s: float, control: str) -> Curve:
+    def curve(self, line: Line) -> Curve:
         """One of them."""
-        outcomes, sums = self.of(std_m_s, control), self.sums(std_m_s, control)
-        opened = self.of(std_m_s, OPEN_LOOP)
-        points = tuple(
-            Point(least, day_figures(each), None if control == OPEN_LOOP else fewer_catch_ups(beside, each))
-            for least, each, beside in zip(self.least_s, outcomes, opened, strict=True)
-        )
+        positions, control = line
+        outcomes, sums = self.of(line), self.sums(line)
+        figures = list(map(day_figures, outcomes))
+        fewer: list[Value | None] = [None] * len(outcomes)
+        if control != OPEN_LOOP and (positions, OPEN_LOOP) in self.lines:
+            fewer = [fewer_catch_ups(*both) for both in zip(self.of((positions, OPEN_LOOP)), outcomes, strict=True)]
         limits = tuple(self.at_limit(sums, limit, outcomes[0]) for limit in self.limits)
         speeds = tuple(AtSpeed(each, decided(sums.at_speed(each))) for each in self.speeds_m_s)
-        return Curve(std_m_s, control, points, limits, speeds)
+        return Curve(*line, tuple(map(Point, self.least_s, figures, fewer)), limits, speeds)
 
     def at_limit(self, sums: Sums, limit: float, trains: TrainOutcomes) -> AtLimit:
         """Where a curve has this share."""
@@ -211,25 +183,19 @@ class Frontier:
         """Whether the trains carry a share as small as this."""
         return limit * float(trains.cuts.sum()) >= FEWEST_EVENTS
 
-    def gains(self) -> tuple[Gain, ...]:
-        """What feedback, measured resistance and exactness bring, at every limit."""
-        best, worst = min(self.stds_m_s), max(self.stds_m_s)
-        pairs = [((std, WITH_FEEDBACK), (std, OPEN_LOOP)) for std in self.stds_m_s]
-        pairs += [((std, WITH_MEASURED), (std, WITH_FEEDBACK)) for std in self.stds_m_s]
-        pairs += [((std, WITH_SLOWING), (std, WITH_FEEDBACK)) for std in self.stds_m_s]
-        pairs += [((best, control), (worst, control)) for control in CONTROLS if best < worst]
-        return tuple(self.gain(more, than, limit) for limit in self.limits for more, than in pairs)
-
-    def gain(self, more: tuple[float, str], than: tuple[float, str], limit: float) -> Gain:
-        """Of one curve over another."""
+    def gain(self, more: Line, than: Line, limit: float) -> Gain:
+        """Of one curve over another, at a limit."""
         found: list[Value | None] = [None, None]
-        if self.enough(limit, self.of(*more)[0]):
+        if self.enough(limit, self.of(more)[0]):
             with np.errstate(invalid="ignore"):  # ∞ − ∞ decides nothing
                 between = [
                     one - other
-                    for one, other in zip(
-                        self.sums(*more).crossing(limit), self.sums(*than).crossing(limit), strict=True
-                    )
+                    for one, other in zip(self.sums(more).crossing(limit), self.sums(than).crossing(limit), strict=True)
                 ]
             found = [decided(each) for each in between]
         return Gain(limit, name_of(*more), name_of(*than), *found)
+
+
+def lines_of(*parts: Families) -> tuple[Line, ...]:
+    """Those of all families."""
+    return tuple((name, control) for part in parts for name, family in part.items() for control in family.controls)

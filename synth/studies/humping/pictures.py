@@ -19,6 +19,8 @@ from synth.present.plots.house_style import (
     new_figure,
     place,
 )
+from synth.studies.humping.closed_loops import REGULATED, REGULATORS
+from synth.studies.humping.frontier import sigma
 
 if TYPE_CHECKING:
     from synth.studies.humping.couplings import AimedFigures
@@ -30,24 +32,47 @@ LEAST_SHARE = 2e-4
 
 
 def catch_ups(found: HumpDay) -> Figure:
-    """Share of catch-ups over the mean hump speed, a panel an exactness."""
-    stds = sorted({curve.std_m_s for curve in found.curves})
-    figure = new_figure(3.8 * max(len(stds), 2), 4.8, "Catch-ups over the mean hump speed",
-                        f"{found.inputs.trains} trains; bars: 95 % intervals; a point for each program")  # fmt: skip
+    """Share of catch-ups over the mean hump speed with normal positions, a panel an exactness."""
+    stds = sorted(found.inputs.stds_m_s)
+    panels = {f"σ {std:g} m/s": of_positions(found, sigma(std)) for std in stds}
+    return curves(found, panels, "Catch-ups over the mean hump speed")
+
+
+def positions(found: HumpDay) -> Figure:
+    """The same with every kind of positions, a panel a control."""
+    stds = sorted(found.inputs.stds_m_s, reverse=True)
+    kinds = [*map(sigma, stds), *REGULATORS]
+    shown = {(each.positions, each.control): each for each in found.curves}
+    panels = {
+        control: {name: shown[name, control] for name in kinds if (name, control) in shown} for control in REGULATED
+    }
+    return curves(found, panels, "Catch-ups over the mean hump speed, by the kind of positions")
+
+
+def of_positions(found: HumpDay, name: str) -> dict[str, Curve]:
+    """Curves of one kind of positions by control."""
+    return {curve.control: curve for curve in found.curves if curve.positions == name}
+
+
+def curves(found: HumpDay, shown: Mapping[str, Mapping[str, Curve]], title: str) -> Figure:
+    """A panel for each of `shown`, with its lines by name."""
+    figure = new_figure(3.8 * max(len(shown), 2), 4.8, title,
+                        f"{found.inputs.trains} trains; bars: 95 % intervals; a point for each program; dotted: the "
+                        "shares that are told")  # fmt: skip
     place(figure, left=0.8, right=0.4, bottom=1.0, top=0.85, w=0.12)
-    panels = np.atleast_1d(figure.subplots(1, len(stds), sharey=True))
-    for axes, std in zip(panels, stds, strict=True):
-        dress(axes, f"σ {std:g} m/s", "mean hump speed, m/s", "share of cuts" if std == stds[0] else "")
-        for k, curve in enumerate(each for each in found.curves if each.std_m_s == std):
-            line(axes, curve, k)
+    panels = np.atleast_1d(figure.subplots(1, len(shown), sharey=True))
+    for axes, (head, lines) in zip(panels, shown.items(), strict=True):
+        dress(axes, head, "mean hump speed, m/s", "share of cuts" if axes is panels[0] else "")
+        for k, (name, curve) in enumerate(lines.items()):
+            line(axes, curve, name, k)
         for at in found.curves[0].at_limits:
             axes.axhline(at.limit, color=GREY, linewidth=0.8, linestyle=":")
     panels[0].set(yscale="log", ylim=(LEAST_SHARE, 0.5))  # after all are dressed, which share this axis
-    legend_below(figure, panels[0].get_legend_handles_labels()[0], 4)
+    legend_below(figure, panels[0].get_legend_handles_labels()[0], 6)
     return figure
 
 
-def line(axes: Axes, curve: Curve, k: int) -> None:
+def line(axes: Axes, curve: Curve, name: str, k: int) -> None:
     """One curve."""
     days = [point.figures for point in curve.points]
     speeds = np.array([day.hump_speed_m_s.value for day in days])
@@ -55,7 +80,7 @@ def line(axes: Axes, curve: Curve, k: int) -> None:
     low, high = (np.array([max(day.catch_ups.ci95[side], LEAST_SHARE) for day in days]) for side in (0, 1))
     axes.errorbar(
         speeds, shares, yerr=np.maximum((shares - low, high - shares), 0.0), color=LINE_COLOURS[k],
-        linestyle=LINE_STYLES[k], marker=LINE_MARKERS[k], markersize=4, capsize=2, linewidth=1.2, label=curve.control,
+        linestyle=LINE_STYLES[k], marker=LINE_MARKERS[k], markersize=4, capsize=2, linewidth=1.2, label=name,
     )  # fmt: skip
 
 
@@ -93,4 +118,4 @@ def cross(axes: Axes, rows: list[AimedFigures], k: int) -> None:
 
 def figures(found: HumpDay) -> Mapping[str, Figure]:
     """All of them by name."""
-    return {"catch-ups": catch_ups(found), "couplings": couplings(found)}
+    return {"catch-ups": catch_ups(found), "positions": positions(found), "couplings": couplings(found)}

@@ -9,14 +9,16 @@ from dataclasses import dataclass, replace
 
 from synth.studies.humping.base_trial import FEEDBACK, Day
 from synth.studies.humping.beside import PUBLISHED_SPEEDS_M_S
-from synth.studies.humping.books import table_pairs
 from synth.studies.humping.causes import causes
+from synth.studies.humping.closed_loops import ClosedLoops, closed_loops
 from synth.studies.humping.couplings import AimedFigures, coupling_pairs
-from synth.studies.humping.day_figures import Pair
 from synth.studies.humping.disturbances import disturbance_pairs
+from synth.studies.humping.exits import TRAINS, exits_of
 from synth.studies.humping.findings import HumpDay, Inputs
-from synth.studies.humping.frontier import Frontier, frontier_groups
+from synth.studies.humping.frontier import Frontier, frontier_groups, lines_of, normal_families
+from synth.studies.humping.gains import normal_gains, step_gains, table_gains
 from synth.studies.humping.programs import program_pairs
+from synth.studies.humping.regulated_day import RegulatedDay
 from synth.studies.humping.runs import measured
 from synth.studies.humping.sensitivity import sensitivity_pairs
 from synth.studies.options import option
@@ -31,7 +33,6 @@ class Options:
     """What is studied."""
 
     trains: int = option(500, "trains of every variant", (2, 10**6))
-    table_trains: int = option(200, "trains where positions run tables; 0: no tables are tuned", (0, 10**6))
     cuts: int = option(40, "cuts of a train", (2, 999))
     stds_m_s: tuple[float, ...] = option((0.03, 0.15, 0.35), "errors of the interval positions", (0.0, 1.0))
     least_s: tuple[float, ...] = option(
@@ -39,6 +40,7 @@ class Options:
     )
     limits: tuple[float, ...] = option((0.001, 0.005), "shares of catch-ups that may not be passed", (1e-5, 0.5))
     design_cuts: int = option(2000, "cuts that exit speeds of the last position are chosen on", (200, 200_000))
+    no_tables: bool = option(False, "tune no tables, run none")
     workers: int = option(2, "processes; they change no result", (1, 1000))
     seed: int = option(17, "of all draws", (0, 10**9))
 
@@ -55,32 +57,45 @@ def run(options: Options, tell: Tell) -> HumpDay:
         "sensitivity": sensitivity_pairs(base),
         "couplings": list(aimed.values()),
     }
+    loops = None if options.no_tables else closed_loops(asked, options.stds_m_s, tell)
+    families = [normal_families(base, options.stds_m_s)]
     groups = [pair.group for of_part in pairs.values() for pair in of_part]
-    outcomes = measured(
-        [*frontier_groups(base, options.stds_m_s, options.least_s), *groups], options.trains, options.workers, tell
-    )
+    if loops is not None:
+        families += [loops.families(), loops.beside()]
+        groups += [pair.group for pair in (*loops.pairs(), *loops.couplings().values())]
+    groups = [group for each in families for group in frontier_groups(each, options.least_s)] + groups
+    outcomes = measured(groups, options.trains, options.workers, tell)
     found = {part: tuple(pair.found(outcomes) for pair in of_part) for part, of_part in pairs.items()}
-    frontier = Frontier(outcomes, options.stds_m_s, options.least_s, options.limits, PUBLISHED_SPEEDS_M_S, options.seed)
-    tables: list[Pair] = []
-    if options.table_trains:
-        tables = table_pairs(asked, options.stds_m_s, tell)
-        outcomes |= measured([pair.group for pair in tables], options.table_trains, options.workers, tell)
+    frontier = Frontier(
+        outcomes, lines_of(*families), options.least_s, options.limits, PUBLISHED_SPEEDS_M_S, options.seed
+    )
     return HumpDay(
-        inputs=Inputs(options.trains, options.table_trains, options.cuts, options.seed, base.planner.least_s),
+        inputs=Inputs(options.trains, options.cuts, options.seed, base.planner.least_s, options.stds_m_s),
         curves=frontier.curves(),
-        gains=frontier.gains(),
+        gains=normal_gains(frontier, options.stds_m_s),
         programs=found["programs"],
         couplings=tuple(map(AimedFigures, aimed, found["couplings"])),
         causes=causes(replace(worse, control=FEEDBACK), TODAY_STD_M_S, options.trains),
         disturbances=found["disturbances"],
         sensitivity=found["sensitivity"],
-        tables_beside=tuple(pair.found(outcomes) for pair in tables),
+        regulated=None if loops is None else regulated_day(loops, frontier),
+    )
+
+
+def regulated_day(loops: ClosedLoops, frontier: Frontier) -> RegulatedDay:
+    """What is found where positions work in their closed loop."""
+    return RegulatedDay(
+        gains=table_gains(frontier, loops.stds_m_s),
+        steps=step_gains(frontier, loops.steps()),
+        beside=tuple(pair.found(frontier.outcomes) for pair in loops.pairs()),
+        couplings=loops.found_couplings(frontier.outcomes),
+        exits=exits_of({name: made.on(loops.base) for name, made in loops.made.items()}, TRAINS),
     )
 
 
 METHOD = Method(
     Options,
-    Options(trains=3, table_trains=0, cuts=6, stds_m_s=(0.35,), least_s=(0.5, -0.5), design_cuts=200),
+    Options(trains=3, no_tables=True, cuts=6, stds_m_s=(0.35,), least_s=(0.5, -0.5), design_cuts=200),
     HumpDay,
     run,
 )

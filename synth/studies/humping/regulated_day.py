@@ -1,0 +1,34 @@
+"""What the study `hump-day` has found where positions work in their closed loop, and its tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from synth.studies.humping.closed_loops import RegulatedCouplings
+from synth.studies.humping.day_figures import PairFigures
+from synth.studies.humping.exits import Exits, exits_table
+from synth.studies.humping.frontier import Gain
+from synth.studies.humping.pair_tables import gains_table, pair_table
+from synth.studies.markdown_table import MarkdownTable
+
+
+@dataclass(frozen=True)
+class RegulatedDay:
+    """Gains of our tables beside other positions, and step by step from exact ones; variants at one least interval;
+    couplings by regulator; what positions make of their commands."""
+
+    gains: tuple[Gain, ...]
+    steps: tuple[Gain, ...]
+    beside: tuple[PairFigures, ...]
+    couplings: tuple[RegulatedCouplings, ...]
+    exits: tuple[Exits, ...]
+
+    def tables(self) -> Mapping[str, MarkdownTable]:
+        """See the titles."""
+        return {
+            "table-gains": gains_table("our tables: mean hump speed and cars an hour more, same trains", self.gains),
+            "steps": gains_table("from exact positions to our tables, a step a row, same trains", self.steps),
+            "tables": pair_table("our tables", "positions", self.beside),
+            "exits": exits_table(self.exits),
+        }
