@@ -8,8 +8,10 @@ from dataclasses import dataclass, fields, replace
 from synth.studies.control_computer.assumed_yard import YARD
 from synth.studies.control_computer.hump_runs import Humped, first_trains
 from synth.studies.humping.base_trial import FEEDBACK, OPEN, Day, with_planner
-from synth.studies.humping.books import HIGHEST_M_S, TABLES_STD_M_S, table_positions
+from synth.studies.humping.books import HIGHEST_M_S, Book
+from synth.studies.humping.closed_loops import TABLES_STD_M_S
 from synth.studies.humping.runs import Group
+from synth.studies.humping.table_positions import table_positions
 from synth.studies.markdown_table import MarkdownTable, table
 from synth.studies.study import Tell
 from synth.yard.control_computer.economics.estimate import Estimate
@@ -156,7 +158,7 @@ def benefit_groups(seed: int, cuts: int, design_cuts: int, tables: bool, tell: T
 
 def on_tables(trial: HumpTrial, tell: Tell) -> HumpTrial:
     """With our tables in all positions."""
-    made = table_positions(trial).on(trial)
+    made = table_positions(trial, Book.tables).on(trial)
     tell("books tuned")
     return made
 

@@ -32,7 +32,7 @@ TODAY_STD_M_S, ASKED_STD_M_S = 0.35, 0.15
 class Options:
     """What is studied."""
 
-    trains: int = option(500, "trains of every variant", (2, 10**6))
+    trains: int = option(250, "trains of every variant", (2, 10**6))
     cuts: int = option(40, "cuts of a train", (2, 999))
     stds_m_s: tuple[float, ...] = option((0.03, 0.15, 0.35), "errors of the interval positions", (0.0, 1.0))
     least_s: tuple[float, ...] = option(
