@@ -11,6 +11,7 @@ import pytest
 from synth.studies.control_computer.benefit import RateEstimates
 from synth.studies.control_computer.comparison import Comparison, joint_factor, judged, verdict
 from synth.studies.control_computer.controllers import Controllers, controllers
+from synth.studies.control_computer.failed_hump import FailedPosition, StuckAtStage, failed_trial
 from synth.studies.control_computer.findings import ControlComputer
 from synth.studies.control_computer.hump_runs import Order, first_trains, humped
 from synth.studies.control_computer.published_speeds import published_speeds
@@ -20,7 +21,6 @@ from synth.studies.documents import result_of
 from synth.studies.humping.base_trial import Day
 from synth.studies.humping.runs import Group
 from synth.yard.control_computer.economics.hump_rates import HumpRates
-from synth.yard.control_computer.reliability.failed_hump import FailedPosition, StuckAtStage, failed_trial
 from synth.yard.control_computer.sizing.demand_service import Discipline
 from synth.yard.humping.made_trial import brake_of
 from synth.yard.humping.outcomes import joined

@@ -13,6 +13,8 @@ import pytest
 
 from synth.book.output_directory import SUMMARY
 
+COMMAND = (sys.executable, "-c", "import sys; from synth.cli import main; raise SystemExit(main(sys.argv[1:]))")
+
 FEW = """[service]
 simulated_requests = 3000
 [uncertainty]
@@ -24,9 +26,7 @@ sobol_points = 16
 def run(*words: str, day: str = "1700000000") -> subprocess.CompletedProcess[str]:
     """The command in a process of its own."""
     environment = {**os.environ, "SOURCE_DATE_EPOCH": day, "COLUMNS": "120"}
-    return subprocess.run(
-        [sys.executable, "-m", "synth.cli", *words], capture_output=True, text=True, env=environment, check=False
-    )
+    return subprocess.run([*COMMAND, *words], capture_output=True, text=True, env=environment, check=False)
 
 
 def written(path: Path, text: str) -> Path:

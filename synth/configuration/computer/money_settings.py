@@ -19,25 +19,25 @@ class PriceSettings(Section):
 
     currency: str = Field("EUR", min_length=1, max_length=12)
     per_locomotive_h: float = setting(200.0, "currency/h", 0.0, 1e9, "hump locomotive with its crew", USUAL)
-    per_car_h: float = setting(1.0, "currency/h", 0.0, 1e9, "hire and upkeep of a car in the yard", USUAL)
-    per_car: float = setting(50_000.0, "currency", 0.0, 1e12, "worth of a car", USUAL)
-    per_cargo_t: float = setting(500.0, "currency/t", 0.0, 1e9, "worth of cargo", USUAL)
+    per_car_h: float = setting(0.5, "currency/h", 0.0, 1e9, "hire and upkeep of a car in the yard", USUAL)
+    per_car: float = setting(40_000.0, "currency", 0.0, 1e12, "worth of a car", USUAL)
+    per_cargo_t: float = setting(600.0, "currency/t", 0.0, 1e9, "worth of cargo", USUAL)
     per_over_speed_to_1_5: float = setting(
-        0.0, "currency", 0.0, 1e9, "mean damage of a coupling at 1.39 to 1.5 m/s", USUAL
+        2.0, "currency", 0.0, 1e9, "mean damage of a coupling at 1.39 to 1.5 m/s", USUAL
     )
-    per_over_speed_to_2: float = setting(1.0, "currency", 0.0, 1e9, "the same at 1.5 to 2 m/s", USUAL)
-    per_over_speed_above_2: float = setting(20.0, "currency", 0.0, 1e9, "the same above 2 m/s", USUAL)
-    per_catch_up: float = setting(20.0, "currency", 0.0, 1e9, "damage and delay of a cut that caught up", USUAL)
-    per_misrouted_cut: float = setting(10.0, "currency", 0.0, 1e9, "paper work of a cut on a wrong track", USUAL)
-    per_gap_m: float = setting(0.0, "currency/m", 0.0, 1e6, "metre of gap, besides the locomotive", USUAL)
+    per_over_speed_to_2: float = setting(20.0, "currency", 0.0, 1e9, "the same at 1.5 to 2 m/s", USUAL)
+    per_over_speed_above_2: float = setting(300.0, "currency", 0.0, 1e9, "the same above 2 m/s", USUAL)
+    per_catch_up: float = setting(50.0, "currency", 0.0, 1e9, "damage and delay of a cut that caught up", USUAL)
+    per_misrouted_cut: float = setting(30.0, "currency", 0.0, 1e9, "paper work of a cut on a wrong track", USUAL)
+    per_gap_m: float = setting(0.01, "currency/m", 0.0, 1e6, "metre of gap, besides the locomotive", USUAL)
 
 
 class TrafficSettings(Section):
     """Cars that are humped, and the trains that bring them."""
 
-    cars_per_day: float = setting(3000.0, "1/d", 1.0, 1e6, "cars humped a day", f"{JUDGEMENT}: a large yard")
-    cars_per_train: float = setting(60.0, "1", 1.0, 1000.0, "mean cars of a train", USUAL)
-    cars_per_train_std: float = setting(15.0, "1", 0.0, 1000.0, "their standard deviation", USUAL)
+    cars_per_day: float = setting(4000.0, "1/d", 1.0, 1e6, "cars humped a day", f"{JUDGEMENT}: a large yard")
+    cars_per_train: float = setting(72.0, "1", 1.0, 1000.0, "mean cars of a train", USUAL)
+    cars_per_train_std: float = setting(12.0, "1", 0.0, 1000.0, "their standard deviation", USUAL)
     cars_per_cut: float = setting(1.8, "1", 1.0, 100.0, "mean cars of a cut", "as hump trials have it")
     arrival_scv: float = setting(
         1.0, "1", 0.0, 100.0, "squared coefficient of variation of times between trains", f"{JUDGEMENT}: as by chance"
@@ -50,13 +50,13 @@ class TrafficSettings(Section):
 class HandlingSettings(Section):
     """What the yard does around the humping of a train."""
 
-    between_trains_h: float = setting(0.12, "h", 0.0, 24.0, "from the last cut of a train to the next train", USUAL)
-    between_trains_std_h: float = setting(0.05, "h", 0.0, 24.0, "its standard deviation", USUAL)
+    between_trains_h: float = setting(0.1, "h", 0.0, 24.0, "from the last cut of a train to the next train", USUAL)
+    between_trains_std_h: float = setting(0.03, "h", 0.0, 24.0, "its standard deviation", USUAL)
     locomotive_h_per_gap_m: float = setting(
-        2e-5, "h/m", 0.0, 1.0, "locomotive hours to push up a metre of gap", f"{JUDGEMENT}: many gaps in one trip"
+        1e-4, "h/m", 0.0, 1.0, "locomotive hours to push up a metre of gap", f"{JUDGEMENT}: many gaps in one trip"
     )
     locomotive_h_per_misrouted_cut: float = setting(0.25, "h", 0.0, 240.0, "to sort a cut again", USUAL)
-    blocked_share: float = setting(0.5, "1", 0.0, 1.0, "of both, during which nothing can be humped", USUAL)
+    blocked_share: float = setting(0.3, "1", 0.0, 1.0, "of both, during which nothing can be humped", USUAL)
 
 
 class FigureSettings(Section):
@@ -72,8 +72,37 @@ class FigureSettings(Section):
     gap_m: float = 0.0
 
 
-USUAL_TODAY = FigureSettings()
-USUAL_CHANGE = FigureSettings()
+USUAL_TODAY = FigureSettings(
+    cars_per_h=587.8,
+    catch_ups=0.00175,
+    misrouted=0.00175,
+    on_track=0.9931,
+    over_speeds_to_1_5=0.02929,
+    over_speeds_to_2=0.07393,
+    over_speeds_above_2=0.01997,
+    gap_m=76.97,
+)
+USUAL_CHANGE = FigureSettings(
+    cars_per_h=121.7,
+    catch_ups=-0.000625,
+    misrouted=-0.000625,
+    on_track=0.004625,
+    over_speeds_to_1_5=0.002875,
+    over_speeds_to_2=0.0004221,
+    over_speeds_above_2=0.002163,
+    gap_m=-14.24,
+)
+MEASURED_CHANGE: dict[str, tuple[float, float]] = {
+    "cars_per_h": (117.1, 126.3),
+    "catch_ups": (-0.001699, 0.0004486),
+    "misrouted": (-0.001699, 0.0004486),
+    "on_track": (0.002615, 0.006635),
+    "over_speeds_to_1_5": (-0.002018, 0.007768),
+    "over_speeds_to_2": (-0.006099, 0.006943),
+    "over_speeds_above_2": (-0.001331, 0.005656),
+    "gap_m": (-15.19, -13.29),
+}
+"""Their 95 % intervals, paired by train."""
 
 
 class RatesSettings(Section):
@@ -126,16 +155,21 @@ def usual_ranges() -> tuple[RangeSettings, ...]:
     """Ranges of the defaults: judgement, all of them."""
     lognormal = {
         "prices.per_locomotive_h": (100.0, 400.0),
-        "prices.per_car_h": (0.5, 2.0),
-        "prices.per_car": (25_000.0, 100_000.0),
-        "prices.per_over_speed_above_2": (5.0, 80.0),
-        "handling.locomotive_h_per_gap_m": (1e-5, 4e-5),
+        "prices.per_car_h": (0.25, 1.0),
+        "prices.per_car": (20_000.0, 80_000.0),
+        "prices.per_over_speed_above_2": (75.0, 1200.0),
+        "handling.locomotive_h_per_gap_m": (5e-5, 2e-4),
         "reliability.failure_per_h": (2e-4, 5e-3),
         "reliability.unnoticed_per_h": (1000.0, 10_000.0),
         "terms.investment": (600_000.0, 1_700_000.0),
     }
-    uniform = {"traffic.cars_per_day": (2400.0, 3600.0), "terms.fixed_saving_per_year": (0.0, 300_000.0)}
+    uniform = {"traffic.cars_per_day": (3400.0, 4400.0), "terms.fixed_saving_per_year": (0.0, 300_000.0)}
     return (
         *(RangeSettings(input=key, low=low, high=high) for key, (low, high) in lognormal.items()),
         *(RangeSettings(input=key, law="uniform", low=low, high=high) for key, (low, high) in uniform.items()),
+        *(
+            RangeSettings(input=f"change.{key}", law="measured", low=low, high=high)
+            for key, (low, high) in MEASURED_CHANGE.items()
+            if low < high
+        ),
     )

@@ -110,7 +110,7 @@ class ReliabilitySettings(Section):
     )
     unnoticed_per_h: float = setting(
         5000.0, "currency/h", 0.0, 1e12, "loss of an hour in which nobody knows of the failure",
-        f"{JUDGEMENT}: what couplings and wrong tracks of 200 cuts cost (docs/control-computer.md)",
+        f"{JUDGEMENT}: between a first and a second position that stay released (study control-computer)",
     )  # fmt: skip
     by_hand_per_h: float = setting(
         500.0, "currency/h", 0.0, 1e12, "loss of an hour of humping by hand", f"{JUDGEMENT}: humping is slower"

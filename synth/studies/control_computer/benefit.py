@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields, replace
 
 from synth.studies.control_computer.assumed_yard import YARD
 from synth.studies.control_computer.hump_runs import Humped, first_trains
+from synth.studies.control_computer.regulator_benefit import Benefit, regulator_benefit
 from synth.studies.humping.base_trial import FEEDBACK, OPEN, Day, with_planner
 from synth.studies.humping.books import HIGHEST_M_S, Book
 from synth.studies.humping.closed_loops import TABLES_STD_M_S
@@ -17,7 +18,6 @@ from synth.studies.study import Tell
 from synth.yard.control_computer.economics.estimate import Estimate
 from synth.yard.control_computer.economics.hump_day_change import HumpDayChange, change_of_trains, figures_of_trains
 from synth.yard.control_computer.economics.hump_day_figures import NAMES
-from synth.yard.control_computer.economics.regulator_benefit import Benefit, regulator_benefit
 from synth.yard.humping.outcomes import TrainOutcomes
 from synth.yard.humping.train_figures import share
 from synth.yard.humping.trial import HumpTrial

@@ -7,10 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from synth.studies.control_computer.hump_runs import Humped
-from synth.studies.humping.runs import Group
-from synth.studies.markdown_table import ABSENT, MarkdownTable, table
-from synth.yard.control_computer.reliability.failed_hump import (
+from synth.studies.control_computer.failed_hump import (
     ByHand,
     FailedPosition,
     Failure,
@@ -19,11 +16,14 @@ from synth.yard.control_computer.reliability.failed_hump import (
     WeakSupply,
     failed_trial,
 )
-from synth.yard.control_computer.reliability.failure_costs_of_hump import (
+from synth.studies.control_computer.failure_costs_of_hump import (
     ExtraFigure,
     failure_figures,
     other_track_with_frozen_points,
 )
+from synth.studies.control_computer.hump_runs import Humped
+from synth.studies.humping.runs import Group
+from synth.studies.markdown_table import ABSENT, MarkdownTable, table
 from synth.yard.control_computer.reliability.failure_losses import ASSUMED_RISKS
 from synth.yard.humping.made_trial import brake_of, made_trial
 from synth.yard.humping.outcomes import TrainOutcomes

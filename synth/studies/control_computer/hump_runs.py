@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
+from synth.studies.control_computer.failure_costs_of_hump import cuts_before_stop
 from synth.studies.humping.runs import Group, Planned
 from synth.studies.study import Tell
 from synth.sweep.local_workers import LocalWorkers
 from synth.sweep.work import Answer, answered
-from synth.yard.control_computer.reliability.failure_costs_of_hump import cuts_before_stop
 from synth.yard.humping.outcomes import TrainOutcomes, joined, outcomes
 from synth.yard.humping.train_plan import TrainPlan
 

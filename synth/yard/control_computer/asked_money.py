@@ -4,11 +4,17 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 
 from plant_models.errors import require
-from synth.configuration.computer.money_settings import FigureSettings, RangeSettings, RatesSettings
+from synth.configuration.computer.money_settings import (
+    USUAL_CHANGE,
+    FigureSettings,
+    RangeSettings,
+    RatesSettings,
+    usual_ranges,
+)
 from synth.configuration.computer.settings import ComputerSettings
 from synth.faults.input_error import InputError
 from synth.yard.control_computer.computer_model import require_input
@@ -98,7 +104,10 @@ def asked_ranges(settings: ComputerSettings, figures: HumpFigures) -> dict[str, 
     """Uncertain inputs by key; those of simulated differences are within their intervals. `PlantError`."""
     made = {} if figures.found is None else ranges_of_change(figures.found)
     told: set[str] = set()
+    own_change = settings.rates.change != USUAL_CHANGE  # the intervals of the defaults are not those of other changes
     for each in settings.range:
+        if own_change and each in usual_ranges() and each.law == "measured":
+            continue
         require(each.input not in told, f"range: {each.input!r} is given twice")
         require_input(each.input)
         told.add(each.input)
@@ -125,8 +134,3 @@ def value_of(key: str, settings: ComputerSettings, figures: HumpFigures) -> floa
     section, _, name = key.partition(".")
     held = {"today": figures.today, "change": figures.change}.get(section, getattr(settings, section, None))
     return float(getattr(held, name))
-
-
-def figure_names() -> tuple[str, ...]:
-    """The figures of a hump, as keys."""
-    return tuple(field.name for field in fields(HumpRates))

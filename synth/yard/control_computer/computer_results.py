@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 from plant_models.errors import PlantError
 from synth.yard.control_computer.computer_model import ComputerModel
 from synth.yard.control_computer.economics.economic_case import EconomicResult
-from synth.yard.control_computer.economics.uncertainty.model import uncertain
 from synth.yard.control_computer.economics.uncertainty.monte_carlo import (
     Draws,
     OutputFigures,
     drawn,
     output_figures,
 )
+from synth.yard.control_computer.economics.uncertainty.ranges import Constant
 from synth.yard.control_computer.economics.uncertainty.sobol import SobolIndex, sobol_of
 from synth.yard.control_computer.economics.uncertainty.tornado import Tornado, tornado
 from synth.yard.control_computer.sized_computer import SizedComputer, sized
@@ -110,9 +110,8 @@ def reliable(config: ResolvedComputer) -> ReliableComputer:
 
 def uncertain_money(config: ResolvedComputer, model: ComputerModel) -> UncertainMoney | None:
     """The ranges carried through; None where every input is known."""
-    if not config.ranges:
+    if all(isinstance(each, Constant) for each in config.ranges.values()):
         return None
-    uncertain(config.ranges)
     asked = config.settings.uncertainty
     draws = drawn(model.figures, config.ranges, asked.draws, asked.seed)
     figures = tuple(output_figures(draws, name) for name in OUTPUTS)

@@ -74,7 +74,7 @@ class CutRisks:
     def loss_per_cut(self, prices: CutPrices) -> float:
         """S = P1·S1·β + P2·S2, [hump-computer-1970s], chapter 4: the mean loss of a cut.
 
-        Gaps are left out there, because P2 is so large; `failure_costs_of_hump` counts them too.
+        Gaps are left out there, because P2 is so large; the study `control-computer` counts them too.
         """
         return self.overspeed * prices.damage * prices.damaged_share + self.other_track * prices.re_sorting
 

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import json
+from dataclasses import fields
+from pathlib import Path
+
 import pytest
 
 from synth.configuration.computer.computer_file import parse_computer_file, read_computer_file
@@ -9,7 +13,10 @@ from synth.configuration.computer.template import default_computer_toml
 from synth.configuration.plant_fault import in_file
 from synth.faults.input_error import InputError
 from synth.yard.control_computer.computer_results import computer_results
+from synth.yard.control_computer.economics.hump_rates import HumpRates
 from synth.yard.control_computer.resolved_computer import ResolvedComputer, resolve_computer
+
+ROOT = Path(__file__).parents[4]
 
 FEW = "[uncertainty]\ndraws = 200\nsobol_points = 16\n"
 TASK = '[[task]]\nname = "a"\nrate_per_s = 1.0\noperations = 100.0\n'
@@ -26,6 +33,23 @@ def test_the_template_is_the_built_in_configuration_to_the_last_origin() -> None
     assert told.sha256 == built_in.sha256
     assert (told.case, told.upkeep, dict(told.ranges)) == (built_in.case, built_in.upkeep, dict(built_in.ranges))
     assert not built_in.warnings
+
+
+def test_the_figures_of_the_hump_are_those_of_the_kept_study() -> None:
+    """Today and our tables in their closed loop, to the four digits of the defaults."""
+    kept = json.loads((ROOT / "docs" / "studies" / "control-computer.json").read_text(encoding="utf-8"))
+    benefit, built_in = kept["findings"]["benefit"], resolve_computer(read_computer_file(None))
+    change = benefit["beside_today"]["tables"]["change"]
+    measured = {each.input: each for each in built_in.settings.range if each.law == "measured"}
+    for field in fields(HumpRates):
+        name = field.name
+        assert getattr(built_in.case.today, name) == pytest.approx(
+            benefit["variants"]["today"]["rates"][name]["value"], rel=1e-3
+        )
+        told = change[name]
+        assert getattr(built_in.case.change, name) == pytest.approx(told["value"], rel=1e-3)
+        each = measured[f"change.{name}"]
+        assert (each.low, each.high) == pytest.approx((told["low95"], told["high95"]), rel=1e-3)
 
 
 def test_what_is_only_shown_changes_no_hash_and_numbers_do() -> None:

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from plant_models.errors import require, require_between
+from synth.studies.control_computer.stuck_position import StuckPosition, StuckStage, released
 from synth.yard.humping.hump_position import HumpPosition
 from synth.yard.humping.normal_hump_position import LibraryBrake, NormalHumpPosition
-from synth.yard.humping.stuck_position import StuckPosition, StuckStage, released
 from synth.yard.humping.trial import HumpTrial
 
 BY_HAND_STD_M_S = 0.5

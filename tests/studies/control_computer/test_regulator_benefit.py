@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from plant_models.errors import PlantError
+from synth.studies.control_computer.regulator_benefit import FIGURES, Benefit, Yard, benefits, regulator_benefit
 from synth.yard.control_computer.economics.hump_day_change import change_of_trains
 from synth.yard.control_computer.economics.hump_rates import changed
-from synth.yard.control_computer.economics.regulator_benefit import FIGURES, Benefit, Yard, benefits, regulator_benefit
 from tests.synth.yard.control_computer.economics.made_cases import (
     CHANGE,
     HANDLING,
