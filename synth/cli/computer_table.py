@@ -23,7 +23,7 @@ def print_computer(results: ComputerResults, verdict: ComputerVerdict, directory
         f"needed on demand {sized.needed_op_s[config.service.discipline]:,.0f} op/s, in cycles {sized.cyclic_op_s:,.0f}"
     )
     for row in sized.controllers:
-        print(f"{row.controller.name}: carries {row.most} of the {row.all_positions.positions} positions at most")
+        print(f"{row.controller.name}: {row.most} positions at most; the hump has {row.all_positions.positions}")
     print(
         f"losses of a year by failures: one computer {money(sum(found.single_loss), currency)}, "
         f"two {money(found.duplex_loss, currency)}"

@@ -158,12 +158,12 @@ def usual_ranges() -> tuple[RangeSettings, ...]:
         "prices.per_car_h": (0.25, 1.0),
         "prices.per_car": (20_000.0, 80_000.0),
         "prices.per_over_speed_above_2": (75.0, 1200.0),
-        "handling.locomotive_h_per_gap_m": (5e-5, 2e-4),
+        "handling.locomotive_h_per_gap_m": (7e-5, 1.4e-4),
         "reliability.failure_per_h": (2e-4, 5e-3),
         "reliability.unnoticed_per_h": (1000.0, 10_000.0),
         "terms.investment": (600_000.0, 1_700_000.0),
     }
-    uniform = {"traffic.cars_per_day": (3400.0, 4400.0), "terms.fixed_saving_per_year": (0.0, 300_000.0)}
+    uniform = {"traffic.cars_per_day": (3600.0, 4400.0), "terms.fixed_saving_per_year": (0.0, 300_000.0)}
     return (
         *(RangeSettings(input=key, low=low, high=high) for key, (low, high) in lognormal.items()),
         *(RangeSettings(input=key, law="uniform", low=low, high=high) for key, (low, high) in uniform.items()),

@@ -39,7 +39,7 @@ def computer_pictures(results: ComputerResults) -> Iterator[Picture]:
             "What it pays",
             "Pay-back over traffic",
             "Net present value and reciprocal of the pay-back time over the cars humped a day. The band is what the "
-            "uncertain inputs leave open; numbers of cars that most draws cannot hump are left out.",
+            "uncertain inputs leave open; numbers of cars that more than 5 % of the draws cannot hump are left out.",
         )
         yield picture(
             tornado_bars(results.money.tornado, config.case.prices.currency),

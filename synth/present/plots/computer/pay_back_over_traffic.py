@@ -20,6 +20,8 @@ DRAWS = 400
 THOUSAND = 1000.0
 OUTPUTS = ("net_present_value", "pay_back_rate_per_year")
 QUANTILES = (0.05, 0.5, 0.95)
+MOST_IMPOSSIBLE = 0.05
+"""Share of overloaded draws from which on the others no longer tell what to expect."""
 
 
 def pay_back_over_traffic(config: ResolvedComputer) -> Figure:
@@ -58,7 +60,7 @@ def bands_over_traffic(config: ResolvedComputer) -> tuple[np.ndarray, np.ndarray
             draws = drawn(model.figures, ranges, DRAWS, config.settings.uncertainty.seed)
         except PlantError:  # no draw can be humped
             continue
-        if draws.impossible.value > 0.5:
+        if draws.impossible.value > MOST_IMPOSSIBLE:
             continue
         values = [draws.found[name][~np.isnan(draws.found[name])] for name in OUTPUTS]
         found.append([np.quantile(each[np.isfinite(each)], QUANTILES) for each in values])
