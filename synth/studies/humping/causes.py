@@ -29,14 +29,15 @@ class Causes:
 
 def causes(trial: HumpTrial, std_m_s: float, trains: int) -> Causes:
     """Those of the first `trains`; `std_m_s`: of the last position. Cuts in contact are not counted."""
-    _, _, memory = trial.humped(0, trains)
+    humped, _, memory = trial.humped(0, trains)
     none = trial.routes.elements
     fast = (memory.end_speed_m_s > FAST_M_S) & (memory.misrouted_at == none) & (memory.contact_at == none)
     rolling = fast & memory.caught_on_track
     command = memory.command_m_s[:, :, -1]
+    category = humped.category.reshape(command.shape)
     with np.errstate(invalid="ignore"):  # a cut that never came to the position
         above = memory.exit_m_s[:, :, -1] > command + NOT_HELD_STDS * std_m_s
-        at_lowest = command <= trial.aim.lowest_m_s
+        at_lowest = command <= trial.aim.lowest_by_table_m_s[trial.aim.group[memory.route], category]
     not_held = fast & ~rolling & above
     lowest = fast & ~rolling & ~above & at_lowest
     of_all, of_rolling, of_not_held, of_lowest = (int(each.sum()) for each in (fast, rolling, not_held, lowest))
