@@ -11,6 +11,13 @@ import typer
 from synth.cli import hump_commands
 from synth.cli.arguments import Json, directory, whole_number
 
+Configuration = Annotated[Path | None, typer.Argument(metavar="CONFIG.toml", help="Built-in unless given.")]
+Output = Annotated[Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where the results go.")]
+Seed = Annotated[
+    int | None,
+    typer.Option(parser=whole_number(0, 2**53), metavar="N", help="Of the random numbers; as configured unless given."),
+]
+
 
 def add_yard_commands(app: typer.Typer) -> None:
     """Add the commands of the yard to `app`."""
@@ -20,10 +27,8 @@ def add_yard_commands(app: typer.Typer) -> None:
 
 
 def aim(
-    config: Annotated[Path | None, typer.Argument(metavar="CONFIG.toml", help="Built-in unless given.")] = None,
-    output: Annotated[
-        Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where the results go.")
-    ] = Path("out/aim"),
+    config: Configuration = None,
+    output: Output = Path("out/aim"),
     passes: Annotated[
         int | None,
         typer.Option(
@@ -32,12 +37,7 @@ def aim(
             help="Cuts of each number of cars that speeds are chosen on; as configured unless given.",
         ),
     ] = None,
-    seed: Annotated[
-        int | None,
-        typer.Option(
-            parser=whole_number(0, 2**53), metavar="N", help="Of the random numbers; as configured unless given."
-        ),
-    ] = None,
+    seed: Seed = None,
     as_json: Json = False,
 ) -> int:
     """Make aim tables: the exit speeds at which a park position lets cuts go.
@@ -51,10 +51,8 @@ def aim(
 
 
 def computer(
-    config: Annotated[Path | None, typer.Argument(metavar="CONFIG.toml", help="Built-in unless given.")] = None,
-    output: Annotated[
-        Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where the results go.")
-    ] = Path("out/computer"),
+    config: Configuration = None,
+    output: Output = Path("out/computer"),
     draws: Annotated[
         int | None,
         typer.Option(
@@ -63,12 +61,7 @@ def computer(
             help="Draws of the uncertain inputs; as configured unless given.",
         ),
     ] = None,
-    seed: Annotated[
-        int | None,
-        typer.Option(
-            parser=whole_number(0, 2**53), metavar="N", help="Of the random numbers; as configured unless given."
-        ),
-    ] = None,
+    seed: Seed = None,
     as_json: Json = False,
 ) -> int:
     """Size the control computer of a hump: how fast, how reliable, and what it pays.

@@ -13,7 +13,7 @@ from synth.studies.control_computer.comparison import Comparison, joint_factor, 
 from synth.studies.control_computer.controllers import Controllers, controllers
 from synth.studies.control_computer.failed_hump import FailedPosition, StuckAtStage, failed_trial
 from synth.studies.control_computer.findings import ControlComputer
-from synth.studies.control_computer.hump_runs import Order, first_trains, humped
+from synth.studies.control_computer.hump_runs import HUMPED, first_trains
 from synth.studies.control_computer.published_speeds import published_speeds
 from synth.studies.control_computer.queues import QueueRun, compared, queue_runs, simulated_run, with_joint_limits
 from synth.studies.control_computer.reliability import DUPLEXES, duplex_point, lives_beside, printed_availability
@@ -167,8 +167,8 @@ def test_trains_are_humped_alike_whatever_the_batch_and_the_plan_is_shared() -> 
     sound = Day(seed=3, cuts=8, design_cuts=200).trial()
     stuck = failed_trial(sound, brakes, [FailedPosition(1, StuckAtStage(4))])
     group = Group({"sound": sound, "stuck": stuck})
-    whole = humped(Order("a", group, 0, 4))
-    halves = [humped(Order("b", group, first, 2)) for first in (0, 2)]
+    whole = group.batch(0, 4, HUMPED)
+    halves = [group.batch(first, 2, HUMPED) for first in (0, 2)]
     for k, trial in enumerate((sound, stuck)):
         alone = trial.batch(0, 4)
         for parts in (whole[k].outcomes, joined([half[k].outcomes for half in halves])):

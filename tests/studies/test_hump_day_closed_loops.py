@@ -25,7 +25,7 @@ from synth.studies.humping.frontier import (
     sigma,
 )
 from synth.studies.humping.gains import normal_gains, step_gains, table_gains
-from synth.studies.humping.runs import Planned
+from synth.studies.humping.runs import OUTCOMES, Planned
 from synth.studies.humping.table_positions import TablePositions
 from synth.yard.humping.hump_position import evenly_braked_s
 from synth.yard.humping.hump_routes import Mark
@@ -161,7 +161,7 @@ def test_gains_are_differences_of_the_curves_that_they_name(trial: HumpTrial) ->
 
 def test_a_curve_that_was_not_run_in_open_loop_has_nothing_to_be_better_than(trial: HumpTrial) -> None:
     (group,) = frontier_groups(normal_families(trial, (0.35,)), (1.0,))
-    outcomes = dict(zip(group.trials, group.batch(0, TRAINS), strict=True))
+    outcomes = dict(zip(group.trials, group.batch(0, TRAINS, OUTCOMES), strict=True))
     line = (sigma(0.35), WITH_FEEDBACK)
     alone = Frontier(outcomes, (line,), (1.0,), (0.5,), (), 1).curve(line)
     beside = Frontier(outcomes, (line, (sigma(0.35), OPEN_LOOP)), (1.0,), (0.5,), (), 1).curve(line)
