@@ -66,7 +66,9 @@ def test_tuning_is_deterministic_and_reports_what_it_reached(
     again = {baseline.name: baseline for baseline in tune_baselines(common_passes(plant_52t, passes), TARGET_M_S)}
     for name, baseline in tuned.items():
         figures = exit_statistics(simulate(plant_52t, baseline.controller, passes), TARGET_M_S)
-        assert figures.rms_m_s == baseline.rms_m_s
+        assert figures.rms_m_s == pytest.approx(
+            baseline.rms_m_s, rel=1e-12
+        )  # sums of other lengths end in other last bits
         assert again[name].parameters == baseline.parameters
 
 

@@ -141,7 +141,7 @@ def extra_loss_per_cut(sound: TrainOutcomes, failed: TrainOutcomes, prices: Even
 def extra_loss_per_h(
     sound: TrainOutcomes, failed: TrainOutcomes, prices: EventPrices, humping_share: float = 1.0
 ) -> Interval:
-    """The same for each hour; `humping_share` of the time cuts go over the crest. S1 of the yearly losses.
+    """The same for each hour; `humping_share` of the time cuts go over the crest. Su of the yearly losses.
 
     Cuts an hour are those of the run with the failure; their own error is small beside that of the loss and left out.
     """

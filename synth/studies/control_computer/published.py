@@ -101,7 +101,7 @@ def loss_rows(found: PublishedLosses) -> Iterator[Row]:
     """Losses, intervals, pay-back."""
     low, _, high = found.worth_h
     yield ("loss of one computer, thousand roubles a year", "≤ 130", f"{found.single:.0f}",
-           f"S1 = 5, λ = 0.0024/h (assumed), checks every 2.5 h; the chain, whose checks come at random, tells "
+           f"Su = 5, λ = 0.0024/h (assumed), checks every 2.5 h; the chain, whose checks come at random, tells "
            f"{found.chain_ratio:.1f} times as much")  # fmt: skip
     yield (
         "loss of a duplex, thousand roubles a year", "1.5", f"{found.duplex:.2f}",

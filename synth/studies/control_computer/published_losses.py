@@ -1,6 +1,6 @@
 """Losses by failures, maintenance interval and pay-back of the published control computer, worked through again.
 
-The source tells neither failure rate nor prices but S1, 1.3 to 5 thousand roubles an hour. S1 = 5, λ = 0.0024/h and
+The source tells neither failure rate nor prices but Su, 1.3 to 5 thousand roubles an hour. Su = 5, λ = 0.0024/h and
 checks every 2.5 h are one set that gives its loss of a single computer; nothing else is fitted.
 """
 
@@ -36,7 +36,7 @@ class PublishedLosses:
     `single`: one computer with checks at fixed times; `chain_ratio`: how much more the chain with random checks of the
     same rate tells. `duplex`: a pair with checks of no length at the same period; `duplex_period_h`: the period at
     which it loses the published 1.5; `longest_check_min`: with longer checks no period does; `duplex_with_checks`: with
-    checks of 0.25 h every 4.2 h. `worth_h`: τSc/S1 that make 2, 2.5 and 3 h the best interval. `effects`: yearly
+    checks of 0.25 h every 4.2 h. `worth_h`: τSc/Su that make 2, 2.5 and 3 h the best interval. `effects`: yearly
     effects of the published savings at both normative efficiencies; `pay_back_years` with the assumed investments.
     """
 

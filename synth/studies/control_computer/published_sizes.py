@@ -89,7 +89,7 @@ class PublishedSizes:
                   *map(str, (c.digital_in, c.analog_in, c.digital_out, c.analog_out))) for c in self.channels),
             ),
             "memory": table(
-                "memory: the published table, and our controller on the large hump",
+                "what is kept in memory: the published table, and our controller on the large hump",
                 ("of", "what", "memory", "entries", "bits each"),
                 ((of, m.what, m.memory, str(m.count), str(m.bits))
                  for of, rows in (("published", self.published_memory), ("ours", self.our_memory)) for m in rows),

@@ -11,7 +11,7 @@ from synth.yard.control_computer.reliability.rates import HOURS_PER_YEAR, requir
 
 @dataclass(frozen=True)
 class HourPrices:
-    """Loss an hour: `unnoticed` S1 while the computer has failed and nobody knows, `by_hand` Sc while it is maintained
+    """Loss an hour: `unnoticed` Su while the computer has failed and nobody knows, `by_hand` Sc while it is maintained
     or repaired and the train is humped slower by hand. Any currency."""
 
     unnoticed: float
@@ -37,7 +37,7 @@ class YearlyLoss:
 
 
 def yearly_loss(shares: StateShares, prices: HourPrices) -> YearlyLoss:
-    """S = (p2·S1 + (p3 + p4)·Sc)·8760, [hump-computer-1970s], chapter 4."""
+    """S = (p2·Su + (p3 + p4)·Sc)·8760, [hump-computer-1970s], chapter 4."""
     return YearlyLoss(
         HOURS_PER_YEAR * shares.failed_unnoticed * prices.unnoticed,
         HOURS_PER_YEAR * shares.maintenance * prices.by_hand,
@@ -47,8 +47,8 @@ def yearly_loss(shares: StateShares, prices: HourPrices) -> YearlyLoss:
 
 @dataclass(frozen=True)
 class CutPrices:
-    """What happens to a cut costs: `damage` S1 of cars that couple so fast that they are damaged, which is the share
-    `damaged_share` β of couplings with over-speed; `re_sorting` S2 of a cut that went to another track."""
+    """What happens to a cut costs: `damage` Sd of cars that couple so fast that they are damaged, which is the share
+    `damaged_share` β of couplings with over-speed; `re_sorting` Sr of a cut that went to another track."""
 
     damage: float
     re_sorting: float
@@ -72,14 +72,14 @@ class CutRisks:
             require_between(f"cut risks: {key}", value, 0.0, 1.0)
 
     def loss_per_cut(self, prices: CutPrices) -> float:
-        """S = P1·S1·β + P2·S2, [hump-computer-1970s], chapter 4: the mean loss of a cut.
+        """S = P1·Sd·β + P2·Sr, [hump-computer-1970s], chapter 4: the mean loss of a cut.
 
         Gaps are left out there, because P2 is so large; the study `control-computer` counts them too.
         """
         return self.overspeed * prices.damage * prices.damaged_share + self.other_track * prices.re_sorting
 
     def loss_per_h(self, prices: CutPrices, cuts_per_h: float) -> float:
-        """S1 of `HourPrices`, at `cuts_per_h` on the mean, pauses included."""
+        """Su of `HourPrices`, at `cuts_per_h` on the mean, pauses included."""
         require_not_negative("cut risks: cuts_per_h", cuts_per_h)
         return cuts_per_h * self.loss_per_cut(prices)
 

@@ -20,8 +20,8 @@ class CheckedComputer:
     """One computer that is as new after each check; a failure is found by the next check only.
 
     `failure_per_h` λ; `check_h` τ: how long the hump is controlled by hand for a check, the repair of what it finds
-    included; `manual_price_per_h` Sc: what an hour by hand costs; `unnoticed_price_per_h` S1: what an hour costs in
-    which the computer has failed and nobody knows. Prices in any one currency; what counts is Sc/S1.
+    included; `manual_price_per_h` Sc: what an hour by hand costs; `unnoticed_price_per_h` Su: what an hour costs in
+    which the computer has failed and nobody knows. Prices in any one currency; what counts is Sc/Su.
     """
 
     failure_per_h: float
@@ -35,7 +35,7 @@ class CheckedComputer:
 
     @property
     def check_worth(self) -> float:
-        """λτ·Sc/S1: the price of a check against that of an hour unnoticed, in mean times between failures."""
+        """λτ·Sc/Su: the price of a check against that of an hour unnoticed, in mean times between failures."""
         price = self.check_h * self.manual_price_per_h / self.unnoticed_price_per_h
         return self.failure_per_h * price
 
@@ -44,7 +44,7 @@ class CheckedComputer:
         return np.asarray(-np.expm1(-self.failure_per_h * np.asarray(interval_h)) / self.failure_per_h)
 
     def cycle_loss(self, interval_h: Floats | float) -> Floats:
-        """N(x) = S1·(x − G) + Sc·τ: mean loss of an interval and the check that ends it."""
+        """N(x) = Su·(x − G) + Sc·τ: mean loss of an interval and the check that ends it."""
         unnoticed_h = np.asarray(interval_h) - self.ready_h(interval_h)
         return np.asarray(self.unnoticed_price_per_h * unnoticed_h + self.manual_price_per_h * self.check_h)
 
@@ -76,9 +76,9 @@ class UsefulHours:
         return computer.ready_h(interval_h)
 
     def best_interval_h(self, computer: CheckedComputer) -> float:
-        """The root of e^{λx} − λx = 1 + λτ·Sc/S1.
+        """The root of e^{λx} − λx = 1 + λτ·Sc/Su.
 
-        The source prints "e^{−λx} − λx = 1 + λ·Sc/S1". With the negative exponent the left side is below 1 for every
+        The source prints "e^{−λx} − λx = 1 + λ·Sc/Su". With the negative exponent the left side is below 1 for every
         x > 0, so there is no root; without τ the right side adds a rate to a number. N'G = NG' gives both.
         """
         y = root(lambda y: math.expm1(y) - y - computer.check_worth, math.sqrt(2.0 * computer.check_worth))
@@ -94,7 +94,7 @@ class WorkingHours:
         return np.asarray(interval_h, dtype=np.float64)
 
     def best_interval_h(self, computer: CheckedComputer) -> float:
-        """The root of 1 − e^{−λx}(1 + λx) = λτ·Sc/S1; none where the right side is 1 or more."""
+        """The root of 1 − e^{−λx}(1 + λx) = λτ·Sc/Su; none where the right side is 1 or more."""
         return interval_of_cycle_h(computer, 0.0)
 
 
@@ -107,7 +107,7 @@ class CalendarHours:
         return np.asarray(interval_h) + computer.check_h
 
     def best_interval_h(self, computer: CheckedComputer) -> float:
-        """The root of 1 + λτ − e^{−λx}(1 + λx + λτ) = λτ·Sc/S1; none where an hour by hand costs too much."""
+        """The root of 1 + λτ − e^{−λx}(1 + λx + λτ) = λτ·Sc/Su; none where an hour by hand costs too much."""
         return interval_of_cycle_h(computer, computer.check_h)
 
 

@@ -75,7 +75,7 @@ class Upkeep:
         return HourPrices(self.unnoticed_per_h, self.by_hand_per_h)
 
     def single_loss(self) -> YearlyLoss:
-        """A year with one computer: (p2·S1 + (p3 + p4)·Sc)·8760."""
+        """A year with one computer: (p2·Su + (p3 + p4)·Sc)·8760."""
         return yearly_loss(self.chain.stationary(), self.prices)
 
     @property

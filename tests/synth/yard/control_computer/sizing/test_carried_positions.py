@@ -26,7 +26,7 @@ from synth.yard.control_computer.sizing.trackside_controllers import (
     usual_controllers,
 )
 
-DOCS = Path(__file__).parents[4] / "docs"
+DOCS = Path(__file__).parents[5] / "docs"
 
 
 def test_the_counts_of_c_are_those_of_the_kept_study() -> None:
