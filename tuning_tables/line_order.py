@@ -52,7 +52,12 @@ def smallest_gap(
     difference = (np.array(upper) - np.array(lower)) * scale_m ** np.arange(len(lower))
     ends = np.array(s_range_m) / scale_m
     # Real parts of complex roots are no extrema, but one more point can only lower the minimum that is taken.
-    stationary = polynomial.polyroots(polynomial.polyder(difference)).real
+    slope = polynomial.polyder(difference)
+    # A last coefficient next to nothing spoils all roots; without it they hardly move, where the gap is stationary.
+    trimmed = polynomial.polytrim(slope, 2.0**-26 * float(np.abs(slope).max(initial=0.0)))
+    with np.errstate(over="ignore", invalid="ignore"):
+        roots = np.concatenate([polynomial.polyroots(each) for each in (slope, trimmed)]).real
+    stationary = roots[np.isfinite(roots)]
     candidates = np.concatenate([ends, np.clip(stationary, ends[0], ends[1])])
     gaps = polynomial.polyval(candidates, difference)
     least = int(np.argmin(gaps))

@@ -6,7 +6,7 @@ from dataclasses import FrozenInstanceError, replace
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from tuning_tables import (
@@ -200,6 +200,7 @@ def test_lines_must_keep_their_order_on_the_whole_range(
 coefficients = st.floats(-8, 8, width=32).map(lambda c: c + 0.0)  # no -0.0
 
 
+@example(lower=[0.0] * 4, gap=[0.5, -2.0, 1.0, 1.401298464324817e-45], s_m=(0.0, 2.0))
 @given(
     lower=st.lists(coefficients, min_size=4, max_size=4),
     gap=st.lists(coefficients, min_size=4, max_size=4),
