@@ -20,9 +20,6 @@ if TYPE_CHECKING:
     from synth.sweep.work import Engine
     from synth.yard.humping.resolved_trial import ResolvedTrial
 
-FEW_BATCHES = 6
-"""So many batches for each processor are humped in this process, by its threads: workers have to load first."""
-
 
 @dataclass(frozen=True)
 class AskedTrains:
@@ -98,7 +95,7 @@ def simulated(
 
 
 def engine_for(missing: list[BatchOrder], workers: int | None, scheduler: str | None) -> Engine:
-    """The cluster that was named, processes, or for a few batches this process with its threads."""
+    """The cluster that was named, processes, or this process for a single batch: workers have to load first."""
     from synth.sweep.trains.batch import answer_batch, answer_batch_here
 
     if scheduler is not None:
@@ -107,7 +104,7 @@ def engine_for(missing: list[BatchOrder], workers: int | None, scheduler: str | 
         cluster = connect(scheduler, answer_batch)
         say(f"the scheduler at {scheduler} has {cluster.threads()} threads of workers; more may join")
         return cluster
-    if workers is None and len(missing) < FEW_BATCHES * available():
+    if workers is None and min(len(missing), available()) < 2:
         from synth.sweep.work import InThisProcess
 
         return InThisProcess(answer_batch_here)

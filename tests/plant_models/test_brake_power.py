@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from plant_models import PlantError, PressingForce, RetarderPosition, TrackProfile, WeightForce, couple
-from plant_models.brake_power import full_brake_head_m
+from plant_models.brake_power import FullBrake
 from plant_models.library.catalogue import load_car, load_position
 from plant_models.motion import path_breaks_m, path_coefficients
 
@@ -18,7 +18,7 @@ BRAKED_M, TOUCH_KPA, BAND_KPA = 2 * 12.475, 50.0, 15.0
 
 
 def heads(position: RetarderPosition, mass_t: list[float], axles: list[int], stage: list[int]) -> np.ndarray:
-    return full_brake_head_m(position, GONDOLA, np.array(mass_t), np.array(axles), np.array(stage))
+    return FullBrake(position, GONDOLA).head_m(np.array(mass_t), np.array(axles), np.array(stage))
 
 
 def test_pressing_force_is_axles_times_force_times_length() -> None:

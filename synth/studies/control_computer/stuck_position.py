@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from plant_models.brake_power import full_brake_head_m
 from plant_models.errors import require
 from synth.yard.humping.hump_position import Arrivals, Floats, Passed, evenly_braked_s
 from synth.yard.humping.normal_hump_position import LibraryBrake
@@ -51,6 +50,4 @@ class StuckStage:
     def __call__(self, arrivals: Arrivals) -> Floats:
         """Energy head, m."""
         stages = np.full(len(arrivals), self.stage)
-        own = self.brake
-        head = full_brake_head_m(own.position, own.car, arrivals.mass_t, arrivals.axles, stages)
-        return np.asarray(own.share * head)
+        return np.asarray(self.brake.share * self.brake.full.head_m(arrivals.mass_t, arrivals.axles, stages))

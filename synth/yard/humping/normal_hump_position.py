@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.special import ndtri
 
-from plant_models.brake_power import full_brake_head_m
+from plant_models.brake_power import FullBrake
 from plant_models.cut import Car
 from plant_models.errors import require_between
 from plant_models.library.weight_category import WeightCategories
@@ -40,7 +41,12 @@ class LibraryBrake:
     def head_m(self, mass_t: Floats, axles: Ints, category: Ints) -> Floats:
         """The same of any cuts (n,)."""
         allowed = np.array([member.allowed_stage for member in self.categories.members])[category]
-        return np.asarray(self.share * full_brake_head_m(self.position, self.car, mass_t, axles, allowed))
+        return np.asarray(self.share * self.full.head_m(mass_t, axles, allowed))
+
+    @cached_property
+    def full(self) -> FullBrake:
+        """The brake with all its supply, in whatever stage."""
+        return FullBrake(self.position, self.car)
 
 
 @dataclass(frozen=True)

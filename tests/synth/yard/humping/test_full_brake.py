@@ -9,7 +9,7 @@ import pytest
 
 from plant_models import RollingResistance, couple
 from plant_models.approach import Approach
-from plant_models.brake_power import full_brake_head_m
+from plant_models.brake_power import FullBrake
 from plant_models.library.catalogue import load_car, load_position
 from plant_models.plant import Plant
 from synth.simulation.closed_loop import close_loop
@@ -36,7 +36,7 @@ def taken_head_m(name: str, cars: int, ahead_m: float, closed: bool, entry_m_s: 
     free = loop.run(full_brake(loop.stages, plant.start_m, plant.exit_m), none).exit_speed_m_s[0]
     assert braked > 0.5
     taken = (free**2 - braked**2) / (2.0 * cut.reduced_gravity_m_s2)
-    head = full_brake_head_m(entry.position, GONDOLA, np.array([mass_t]), np.array([cut.axles]), np.array([4]))
+    head = FullBrake(entry.position, GONDOLA).head_m(np.array([mass_t]), np.array([cut.axles]), np.array([4]))
     return float(taken), float(head[0])
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from plant_models import PlantError
-from plant_models.brake_power import full_brake_head_m
+from plant_models.brake_power import FullBrake
 from plant_models.library.catalogue import load_car, load_weight_categories
 from synth.simulation.closed_loop import simulate, trace
 from synth.simulation.keyed_passes import keyed_passes
@@ -169,7 +169,7 @@ def test_the_whole_brake_has_the_work_of_the_cut_itself(
     )  # fmt: skip
     plant = classes[0].plant
     factor = plant.friction.cut_factor(passes_of(classes[0]).cut_z, plant.friction_cv)
-    head = full_brake_head_m(plant.position, load_car("gondola-4").car, heavy.mass_t, heavy.axles, np.full(N, 2))
+    head = FullBrake(plant.position, load_car("gondola-4").car).head_m(heavy.mass_t, heavy.axles, np.full(N, 2))
     exit_m_s = position.passed(heavy).exit_m_s
     taken = (4.5**2 - exit_m_s**2) / (2.0 * heavy.reduced_gravity_m_s2)
     for axles in (4, 8, 12, 20):
