@@ -1,0 +1,67 @@
+"""Kernel: the pressure of the drive along logged passes, from the commands that are logged."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from plant_models import valve_drive
+from plant_models.valve_drive import ValveDrive
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+drive_on = njit(cache=True, nogil=True)(valve_drive.drive_on)
+wait_after_command = njit(cache=True, nogil=True)(valve_drive.wait_after_command)
+
+
+class Commands(NamedTuple):
+    """What the drive was told in passes of n rows in all.
+
+    `time_s`, `stage` (n,) of the rows; `first_row` (m + 1,) of the passes; `initial_stage` that the drive rests in
+    before the first row, reached from below; `stage_kpa` (K + 1,); `delay_s` from a row to the command on the wires.
+    """
+
+    time_s: Floats
+    stage: Ints
+    first_row: Ints
+    initial_stage: int
+    stage_kpa: Floats
+    delay_s: float
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def drive_rows(
+    commands: Commands, drive: ValveDrive, first: int, last: int, overpressure_kpa: Floats, pressure_kpa: Floats
+) -> None:
+    """Fill in, for the passes `first` … `last` − 1, the pressure at each row and the mean of max(0, P − P0) over each
+    part of the time to the next row; `overpressure_kpa` (n, parts), `pressure_kpa` (n,). Nothing follows a last row."""
+    parts = overpressure_kpa.shape[1]
+    for number in range(first, last):
+        begin, end = commands.first_row[number], commands.first_row[number + 1]
+        told = commands.stage_kpa[commands.initial_stage]
+        up = -1.0 if commands.initial_stage > 0 else 1.0
+        kpa, wait, coming, in_s = told + up * drive.band_kpa, 0.0, told, np.inf
+        before = commands.initial_stage
+        for row in range(begin, end):
+            if commands.stage[row] != before:
+                before = commands.stage[row]
+                coming, in_s = commands.stage_kpa[before], commands.delay_s
+            pressure_kpa[row] = kpa
+            if row == end - 1:
+                overpressure_kpa[row] = 0.0
+                break
+            part = (commands.time_s[row + 1] - commands.time_s[row]) / parts
+            for j in range(parts):
+                total, left = 0.0, part
+                if in_s < left:
+                    kpa, wait, total = drive_on(kpa, wait, told, in_s, drive)
+                    left -= in_s
+                    wait = wait_after_command(kpa, wait, told, coming, drive)
+                    told, in_s = coming, np.inf
+                in_s -= left
+                kpa, wait, more = drive_on(kpa, wait, told, left, drive)
+                overpressure_kpa[row, j] = (total + more) / part

@@ -1,0 +1,1 @@
+"""What measured passes of a retarder say of its numbers, of its tables, and of a drift."""

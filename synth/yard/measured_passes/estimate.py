@@ -1,0 +1,175 @@
+"""The numbers of a position that make its measured passes most likely, and how sure they are.
+
+Maximum of the likelihood times what is known before, by `scipy.optimize` (trust region, with the Fisher information in
+place of the second derivatives). The intervals are those of the sandwich: the spread of the scores from pass to pass
+between two informations, so that they hold where the surprises are not quite normal.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize
+
+from plant_models.frozen_arrays import frozen_arrays
+from synth.yard.measured_passes.fitting_passes import FittingPasses
+from synth.yard.measured_passes.likelihood import Likelihood, Surprises, likelihood_of
+from synth.yard.measured_passes.unknowns import OF_VALVES, Unknown, slope_of, values_at
+
+Floats = NDArray[np.float64]
+
+STEP = 1e-3
+"""Of the differences that stand for derivatives, in standard deviations of what is known before."""
+
+CHUNK = 125
+"""Passes whose derivatives are in memory at a time."""
+
+FEW = 150
+"""Passes that a first estimate is made on."""
+
+Z95 = 1.959963984540054
+
+TOLERANCE = 1e-4
+"""Of the slope in standard units: below a hundredth of a standard error of any number."""
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Linearised:
+    """At one point: log-likelihood, scores (m, p) and information (p, p) of the passes, without what is known before."""
+
+    log_likelihood: float
+    scores: Floats
+    information: Floats
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Estimate:
+    """What the passes say of the `unknowns`.
+
+    `u`, `covariance`: in standard deviations of what was known before; `information` of the passes alone.
+    """
+
+    unknowns: tuple[Unknown, ...]
+    passes: int
+    log_likelihood: float
+    u: Floats
+    covariance: Floats
+    information: Floats
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The numbers by key."""
+        return values_at(self.unknowns, self.u)
+
+    @property
+    def std(self) -> Floats:
+        """Standard errors, as fractions of the standard deviations known before, (p,)."""
+        return np.asarray(np.sqrt(np.diag(self.covariance)))
+
+    def interval(self, number: int) -> tuple[float, float]:
+        """95 % interval of unknown `number`."""
+        reach = Z95 * float(self.std[number])
+        one = self.unknowns[number]
+        return one.value(float(self.u[number]) - reach), one.value(float(self.u[number]) + reach)
+
+    def correlation(self) -> Floats:
+        """Of the errors of all numbers, (p, p)."""
+        return np.asarray(self.covariance / np.outer(self.std, self.std))
+
+
+class Posterior:
+    """Minus the logarithm of likelihood times what is known before, for an optimiser; remembers the last point."""
+
+    def __init__(self, parts: Sequence[Likelihood], unknowns: Sequence[Unknown], threads: int) -> None:
+        self.parts, self.unknowns, self.threads = parts, unknowns, threads
+        self.at_u: Floats | None = None
+        self.found: Linearised | None = None
+
+    def value(self, u: Floats) -> float:
+        """At `u`."""
+        values = values_at(self.unknowns, u)
+        with ThreadPoolExecutor(self.threads) as pool:
+            sums = pool.map(lambda part: part.at(values).log_likelihood(len(part.passes)).sum(), self.parts)
+            return 0.5 * float(u @ u) - float(sum(sums))
+
+    def linearised(self, u: Floats) -> Linearised:
+        """At `u`."""
+        if self.found is not None and self.at_u is not None and np.array_equal(u, self.at_u):
+            return self.found
+        with ThreadPoolExecutor(self.threads) as pool:
+            found = list(pool.map(lambda part: linearised(part, self.unknowns, u), self.parts))
+        self.at_u = u.copy()
+        self.found = Linearised(
+            sum(f.log_likelihood for f in found),
+            np.concatenate([f.scores for f in found]),
+            np.sum([f.information for f in found], axis=0),
+        )
+        return self.found
+
+    def gradient(self, u: Floats) -> Floats:
+        """At `u`."""
+        return np.asarray(u - self.linearised(u).scores.sum(axis=0))
+
+    def hessian(self, u: Floats) -> Floats:
+        """At `u`, by the Fisher information."""
+        return np.asarray(np.eye(len(u)) + self.linearised(u).information)
+
+
+def estimate(passes: FittingPasses, unknowns: tuple[Unknown, ...], threads: int = 1) -> Estimate:
+    """The most likely numbers. The result does not depend on `threads`."""
+    u = np.zeros(len(unknowns))
+    if len(passes) > 2 * FEW:
+        some = np.linspace(0, len(passes) - 1, FEW).astype(np.int64)
+        u = highest(posterior(passes.taken(some), unknowns, threads), u)
+    whole = posterior(passes, unknowns, threads)
+    u = highest(whole, u)
+    there = whole.linearised(u)
+    bread = np.linalg.inv(np.eye(len(u)) + there.information)
+    apart = there.scores - there.scores.mean(axis=0)
+    meat = np.eye(len(u)) + apart.T @ apart * (len(passes) / max(1, len(passes) - 1))
+    return Estimate(unknowns, len(passes), there.log_likelihood, u, bread @ meat @ bread, there.information)
+
+
+def posterior(passes: FittingPasses, unknowns: tuple[Unknown, ...], threads: int) -> Posterior:
+    """Of the passes in chunks."""
+    numbers = np.arange(len(passes))
+    chunks = [numbers[i : i + CHUNK] for i in range(0, len(passes), CHUNK)]
+    parts = [likelihood_of(passes.taken(chunk), slope_of(unknowns)) for chunk in chunks]
+    return Posterior(parts, unknowns, threads)
+
+
+def highest(target: Posterior, start: Floats) -> Floats:
+    """The most likely point, sought from `start`."""
+    found = minimize(
+        target.value, start, method="trust-exact", jac=target.gradient, hess=target.hessian,
+        options={"gtol": TOLERANCE * math.sqrt(sum(len(p.passes) for p in target.parts)), "initial_trust_radius": 1.0,
+                 "maxiter": 60},
+    )  # fmt: skip
+    return np.asarray(found.x)
+
+
+def linearised(part: Likelihood, unknowns: Sequence[Unknown], u: Floats) -> Linearised:
+    """Scores and information of some passes, by central differences of the surprises and their variances."""
+    values = values_at(unknowns, u)
+    pressures = part.pressures(values)
+    base = part.at(values, pressures)
+    count, r, s = len(unknowns), base.surprise, base.variance
+    by_surprise, by_variance = np.empty((count, len(r))), np.empty((count, len(r)))
+    for j, unknown in enumerate(unknowns):
+        ends: list[Surprises] = []
+        for sign in (1.0, -1.0):
+            moved = values | {unknown.key: unknown.value(float(u[j]) + sign * STEP)}
+            ends.append(part.at(moved, None if unknown.key in OF_VALVES else pressures))
+        by_surprise[j] = (ends[0].surprise - ends[1].surprise) / (2.0 * STEP)
+        by_variance[j] = (ends[0].variance - ends[1].variance) / (2.0 * STEP)
+    terms = -by_surprise * r / s - 0.5 * by_variance / s * (1.0 - r**2 / s)
+    scores = np.array([np.bincount(base.pass_of, term, len(part.passes)) for term in terms]).T
+    information = (by_surprise / s) @ by_surprise.T + 0.5 * (by_variance / s**2) @ by_variance.T
+    return Linearised(float(base.log_likelihood(len(part.passes)).sum()), scores, information)

@@ -1,0 +1,142 @@
+"""How likely measured passes are with given numbers of the position: by the surprises of the filter.
+
+Observations of a pass: each reading of the speed, each of the gauge, and how much the sensor shows above path by time.
+Each has a surprise r with the variance S, and the logarithm of the likelihood is −½ Σ (log 2πS + r²/S).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.speed_sensor import measured_speed_std
+from synth.kernels.measured.drive_rows import Commands, drive_rows
+from synth.kernels.measured.pass_filter import Cuts, Rows, Spread, filter_passes
+from synth.yard.measured_passes import unknowns as asked
+from synth.yard.measured_passes.fitting_passes import FittingPasses
+from synth.yard.measured_passes.pass_rows import PassRows, pass_rows
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Surprises:
+    """k observations of m passes: `surprise`, `variance` (k,), `pass_of` (k,), the first `readings` of them of the
+    sensor, row by row; `cuts`: what is known of the cuts in the end; `pressure_kpa` (n,) by the numbers given."""
+
+    surprise: Floats
+    variance: Floats
+    pass_of: Ints
+    readings: int
+    cuts: Cuts
+    pressure_kpa: Floats
+
+    def log_likelihood(self, passes: int) -> Floats:
+        """Of each pass, (m,)."""
+        terms = np.log(2.0 * np.pi * self.variance) + self.surprise**2 / self.variance
+        return np.asarray(-0.5 * np.bincount(self.pass_of, terms, passes))
+
+
+@dataclass(frozen=True, eq=False)
+class Likelihood:
+    """Of `passes`, at any numbers; build it with `likelihood_of`."""
+
+    passes: FittingPasses
+    rows: PassRows
+    commands: Commands
+    slope_key: str
+
+    def pressures(self, values: Mapping[str, float]) -> tuple[Floats, Floats]:
+        """Mean overpressure of each part of the time between rows (n, parts), and pressure at each row (n,)."""
+        pneumatics = self.passes.plant.position.pneumatics
+        drive = pneumatics.valves(values[asked.TOUCH_PRESSURE])._replace(
+            brake_delay_s=values[asked.BRAKE_DELAY],
+            touch_delay_s=values[asked.TOUCH_DELAY],
+            release_delay_s=values[asked.RELEASE_DELAY],
+            fill_s=values[asked.FILL],
+            exhaust_s=values[asked.EXHAUST],
+            band_kpa=values[asked.DEAD_BAND],
+        )
+        over, kpa = np.empty_like(self.rows.brake_m2_s2_per_kpa), np.empty(len(self.rows.step_m))
+        drive_rows(self.commands, drive, 0, len(self.passes), over, kpa)
+        return over, kpa
+
+    def at(self, values: Mapping[str, float], pressures: tuple[Floats, Floats] | None = None) -> Surprises:
+        """With the numbers `values`; `pressures` where they are known from other numbers with the same valves."""
+        over, kpa = self.pressures(values) if pressures is None else pressures
+        log, rows = self.passes.log, self.rows
+        force = self.passes.plant.position.force
+        brake = rows.brake_m2_s2_per_kpa + values[asked.SLOPE_BY_AXLES] * rows.by_axles_m2_s2_per_kpa
+        configured = getattr(force, self.slope_field)
+        braked = values[self.slope_key] / configured * np.einsum("ij,ij->i", brake, over)
+        spread = self.spread(values)
+        n, m = len(log.time_s), len(log)
+        surprise, variance = np.empty(n), np.empty(n)
+        cuts = Cuts(*(np.empty(m) for _ in Cuts._fields))
+        filter_passes(
+            Rows(log.speed_m_s, rows.step_m, rows.gained_m2_s2, rows.drag_m2_s2_per_n_kn, braked), spread,
+            log.first_row, 0, m, surprise, variance, cuts,
+        )  # fmt: skip
+        return self.observed(values, surprise, variance, cuts, kpa)
+
+    @property
+    def slope_field(self) -> str:
+        """The field of the force law behind the key of the slope."""
+        name = self.slope_key.rpartition(".")[2]
+        return "slope_kn_per_kpa_per_pair" if name == "slope_kn_per_kpa" else name
+
+    def spread(self, values: Mapping[str, float]) -> Spread:
+        """What differs from cut to cut."""
+        passes = self.passes
+        plants = [plant for _, plant in passes.plants]
+        axle_cv = np.array([p.friction_cv**2 - p.friction.common_cv**2 for p in plants])
+        mean = np.array(
+            [values.get(asked.RESISTANCE + label, plant.resistance.mean_n_per_kn) for label, plant in passes.plants]
+        )
+        std = np.array([p.resistance.std_n_per_kn for p in plants]) * values.get(asked.RESISTANCE_SPREAD, 1.0)
+        return Spread(
+            np.sqrt(values[asked.COMMON_CV] ** 2 + axle_cv)[passes.class_of],
+            mean[passes.class_of],
+            std[passes.class_of],
+            values[asked.PATH_STD],
+            values[asked.CORRELATION_LENGTH],
+            measured_speed_std(values[asked.NOISE], passes.plant.sensor.resolution_m_s),
+            values.get(asked.BIAS, 0.0),
+        )
+
+    def observed(
+        self, values: Mapping[str, float], surprise: Floats, variance: Floats, cuts: Cuts, kpa: Floats
+    ) -> Surprises:
+        """All observations beside one another; those that were not made are left out."""
+        log = self.passes.log
+        seen = np.isfinite(surprise)
+        columns = [(surprise[seen], variance[seen], log.pass_of_row[seen])]
+        if asked.GAUGE_NOISE in values:
+            read = np.isfinite(log.pressure_kpa)
+            noise = np.full(int(read.sum()), values[asked.GAUGE_NOISE] ** 2)
+            columns.append((log.pressure_kpa[read] - kpa[read], noise, log.pass_of_row[read]))
+        if asked.BIAS in values:
+            shown = np.flatnonzero(np.isfinite(self.rows.show_m_s))
+            counted = np.bincount(log.pass_of_row[np.isfinite(log.speed_m_s)], minlength=len(log))[shown]
+            std = measured_speed_std(values[asked.NOISE], self.passes.plant.sensor.resolution_m_s)
+            columns.append((self.rows.show_m_s[shown] - values[asked.BIAS], std**2 / counted, shown))
+        joined = [np.concatenate(column) for column in zip(*columns, strict=True)]
+        return Surprises(joined[0], joined[1], joined[2], int(seen.sum()), cuts, kpa)
+
+
+def likelihood_of(passes: FittingPasses, slope_key: str) -> Likelihood:
+    """The likelihood of `passes`; `slope_key` names the force slope."""
+    log, plant = passes.log, passes.plant
+    commands = Commands(
+        log.time_s,
+        log.stage,
+        log.first_row,
+        plant.approach.initial_stage,
+        np.asarray(plant.position.stage_pressures_kpa, dtype=np.float64),
+        plant.sensor.computing_delay_s,
+    )
+    return Likelihood(passes, pass_rows(passes), commands, slope_key)
