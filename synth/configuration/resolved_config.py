@@ -16,6 +16,7 @@ from plant_models.library import (
     SourcedValue,
     load_weight_categories,
 )
+from plant_models.library.near_miss import near_miss
 from plant_models.library.position_entry import MEAN_CV, REGULATOR
 from plant_models.library.sourced_value import SET_BY_USER
 from synth.configuration.cut_class import CutClass, Surroundings, category_warnings, resolve_cut
@@ -42,6 +43,7 @@ from synth.problem.estimator_resolution import estimator_resolution
 from synth.problem.problem import Problem
 from synth.problem.resolution import Resolution
 from tuning_tables.canonical import canonical_json
+from tuning_tables.excerpt import excerpt
 
 DIMENSIONLESS = "1"
 
@@ -170,6 +172,7 @@ def resolve(settings: Settings, file: str, library: Library = BUILT_IN) -> Resol
         *(value for c in cuts for value in c.provenance),
         *(value for name in NUMERICAL_SECTIONS for value in setting_values(name, getattr(settings, name))),
     )
+    parameters = with_sources(parameters, settings, file)
     config = ResolvedConfig(
         title=position.title if settings.title is None else settings.title,
         retarder=position,
@@ -188,6 +191,22 @@ def resolve(settings: Settings, file: str, library: Library = BUILT_IN) -> Resol
     )
     with in_file(file):
         return with_grid_warnings(config, file)
+
+
+def with_sources(parameters: tuple[SourcedValue, ...], settings: Settings, file: str) -> tuple[SourcedValue, ...]:
+    """`parameters` with what [sources] says of those that the file sets; `InputError` for any other key."""
+    sources = settings.sources
+    set_here = settings.library_overrides().keys() | {v.key for v in parameters if v.source == SET_BY_USER}
+    for key in sources:
+        if key not in set_here:
+            raise InputError(
+                f"{file}: sources has {excerpt(key)!r}, which this file sets to no value of its own: "
+                f"{near_miss(key, set_here) if set_here else 'leave it out'}"
+            )
+    return tuple(
+        replace(value, source=sources[value.key], confidence="") if value.key in sources else value
+        for value in parameters
+    )
 
 
 def resolve_cuts(settings: Settings, at: Surroundings) -> tuple[CutClass, ...]:

@@ -25,7 +25,7 @@ from synth.configuration.plant_settings import (
     TrackSettings,
 )
 from synth.configuration.section import Section, setting
-from synth.configuration.value_forms import Title
+from synth.configuration.value_forms import Source, Title
 from synth.problem.criterion import Criterion
 from synth.problem.requirement import FrictionRange, OverspeedLimit, Requirement
 from synth.problem.resolution import Resolution
@@ -155,6 +155,7 @@ class Settings(Section):
 
     title: Title | None = None
     library: tuple[str, ...] = Field((), max_length=20, strict=False)
+    sources: dict[str, Source] = Field(default_factory=dict)
     weight_categories: str = YARD_CATEGORIES
     position: PositionSettings = PositionSettings()
     retarder: RetarderSettings = RetarderSettings()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import AfterValidator, PlainValidator
+from pydantic import AfterValidator, Field, PlainValidator
 
 from plant_models.library import Value
 from plant_models.library.data_file import Form, form_name, number_or_pairs, numbers, pairs
@@ -33,3 +33,6 @@ Numbers = Annotated[tuple[float, ...], in_form(numbers)]
 Pairs = Annotated[tuple[tuple[float, float], ...], in_form(pairs)]
 Grade = Annotated[float | tuple[tuple[float, float], ...], in_form(number_or_pairs)]
 Title = Annotated[str, AfterValidator(printable)]
+
+Source = Annotated[str, Field(min_length=1, max_length=400), AfterValidator(printable)]
+"""Where a number is from, in the user's words."""

@@ -9,11 +9,11 @@ from importlib.metadata import version
 from pathlib import Path
 
 from synth.book.output_directory import SUMMARY, SWEPT_CONFIG, make_directory, remove_stale
+from synth.configuration.toml_text import toml_text
 from synth.sweep.book_summary import BookFigures, Failure, book_summary, case_of, sweep_summary
 from synth.sweep.plan import Plan, Unit
 from synth.sweep.sweep_directory import SweepDirectory
 from synth.sweep.sweep_file import Condition, SweepFile
-from synth.sweep.toml_text import toml_text
 from synth.sweep.unit_result import UnitResult
 from tuning_tables import ControllerTable, Generator, InvalidTable, TableBook, TableError, write_atomically, write_book
 from tuning_tables.canonical import canonical_json

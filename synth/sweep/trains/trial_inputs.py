@@ -21,7 +21,7 @@ from synth.configuration.hump import RAILML_SUFFIXES, hump_text
 from synth.configuration.humping.trial_file import TrialFile
 from synth.configuration.own_types import with_own_types
 from synth.configuration.toml_file import read_text, toml_tree
-from synth.sweep.toml_text import toml_text
+from synth.configuration.toml_text import toml_text
 from synth.yard.humping.position_choice import PositionChoice
 from synth.yard.humping.resolved_trial import ResolvedTrial
 from tuning_tables import write_atomically

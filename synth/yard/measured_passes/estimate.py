@@ -41,7 +41,7 @@ TOLERANCE = 1e-4
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Linearised:
-    """At one point: log-likelihood, scores (m, p) and information (p, p) of the passes, without what is known before."""
+    """Log-likelihood, scores (m, p) and information (p, p) at one point, without what was known before."""
 
     log_likelihood: float
     scores: Floats

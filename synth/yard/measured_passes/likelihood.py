@@ -94,9 +94,7 @@ class Likelihood:
         passes = self.passes
         plants = [plant for _, plant in passes.plants]
         axle_cv = np.array([p.friction_cv**2 - p.friction.common_cv**2 for p in plants])
-        mean = np.array(
-            [values.get(asked.RESISTANCE + label, plant.resistance.mean_n_per_kn) for label, plant in passes.plants]
-        )
+        mean = np.array([values.get(asked.RESISTANCE + p.cut.category, p.resistance.mean_n_per_kn) for p in plants])
         std = np.array([p.resistance.std_n_per_kn for p in plants]) * values.get(asked.RESISTANCE_SPREAD, 1.0)
         return Spread(
             np.sqrt(values[asked.COMMON_CV] ** 2 + axle_cv)[passes.class_of],

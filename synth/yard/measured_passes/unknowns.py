@@ -23,7 +23,8 @@ RELEASE_DELAY, DEAD_BAND = PNEUMATICS + "release_delay_s", PNEUMATICS + "dead_ba
 COMMON_CV, PATH_STD = FRICTION + "common_cv", FRICTION + "path_std"
 CORRELATION_LENGTH = FRICTION + "correlation_length_m"
 NOISE, BIAS = SENSOR + "noise_m_s", SENSOR + "bias_m_s"
-RESISTANCE, RESISTANCE_SPREAD = "resistance.mean_n_per_kn ", "resistance.spread"
+RESISTANCE, RESISTANCE_SPREAD = "rolling_resistance.mean_n_per_kn ", "rolling_resistance.spread"
+"""Of a weight category, whose name follows; and of all: the standard deviation over what was taken before."""
 GAUGE_NOISE = "gauge.noise_kpa"
 
 OF_VALVES = (TOUCH_PRESSURE, FILL, EXHAUST, BRAKE_DELAY, TOUCH_DELAY, RELEASE_DELAY, DEAD_BAND)
@@ -102,10 +103,9 @@ def _asked(passes: FittingPasses, known: Mapping[str, SourcedValue], slope: str)
         yield any_sign(BIAS, "m/s", *RANGES[BIAS])
     if passes.log.has_gauge:
         yield positive(GAUGE_NOISE, "kPa", *RANGES[GAUGE_NOISE])
-    for number in sorted(set(passes.class_of.tolist())):
-        label, plant = passes.plants[number]
-        mean = plant.resistance.mean_n_per_kn
-        yield positive(RESISTANCE + label, "N/kN", mean, 0.5 * mean, 2.0 * mean)
+    plants = [passes.plants[number][1] for number in sorted(set(passes.class_of.tolist()))]
+    for category, mean in {p.cut.category: p.resistance.mean_n_per_kn for p in plants}.items():
+        yield positive(RESISTANCE + category, "N/kN", mean, 0.5 * mean, 2.0 * mean)
     if any(plant.resistance.std_n_per_kn > 0.0 for _, plant in passes.plants):
         yield positive(RESISTANCE_SPREAD, "1", *RANGES[RESISTANCE_SPREAD])
 

@@ -1,0 +1,118 @@
+"""The configuration with what measured passes say of its numbers, each with its origin, as a file of its own.
+
+Numbers that the passes do not tell stay as they were, and stay assumed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from plant_models.library import BUILT_IN, Library
+from plant_models.library.sourced_value import flat_numbers
+from synth.configuration.config_file import valid_settings
+from synth.configuration.own_types import with_own_types
+from synth.configuration.plant_settings import DEFAULT_CUTS
+from synth.configuration.resolved_config import ResolvedConfig, resolve
+from synth.configuration.toml_file import Tree, read_text, toml_tree
+from synth.configuration.toml_text import toml_text
+from synth.yard.measured_passes import unknowns as asked
+from synth.yard.measured_passes.estimate import Estimate
+from synth.yard.measured_passes.identifiability import Finding, findings_of
+
+TYPES: Final = "types"
+DIGITS: Final = 6
+
+FACTORS: Final = asked.FORCE + "slope_factor_by_axles"
+
+
+@dataclass(frozen=True)
+class ConfigSource:
+    """A configuration as its author wrote it: names in place of paths, and his own types. None: the built-in one."""
+
+    place: str
+    tree: Tree
+    library: Library
+
+    def resolved(self) -> ResolvedConfig:
+        """Every default filled in."""
+        return resolve(valid_settings(self.tree, self.place), self.place, self.library)
+
+
+def config_source(path: Path | None) -> ConfigSource:
+    """The configuration in the file `path`; `InputError` on any fault."""
+    if path is None:
+        return ConfigSource("built-in configuration", {}, BUILT_IN)
+    tree, library = with_own_types(toml_tree(read_text(path), str(path)), str(path))
+    return ConfigSource(str(path), tree, library)
+
+
+def identified(source: ConfigSource, found: Estimate, mean_axles: float, origin: str) -> ConfigSource:
+    """`source` with the numbers of `found`; `origin` says of which passes, `mean_axles` is N̄ of these."""
+    config = source.resolved()
+    tree: Tree = {key: value for key, value in source.tree.items() if key not in ("cut", "sources")}
+    cuts = [dict(cut) for cut in source.tree.get("cut") or [cut.model_dump(exclude_unset=True) for cut in DEFAULT_CUTS]]
+    sources: dict[str, str] = {}
+    for finding in findings_of(found):
+        for key, value in values_of(finding, found, config, mean_axles):
+            *path, name = key.split(".")
+            table = cuts[int(path[0][4:-1])] if path[0].startswith("cut[") else tree
+            for part in path[1:] if table is not tree else path:
+                table[part] = table = dict(table.get(part, {}))
+            table[name] = value
+            low, high = finding.interval
+            sources[key] = f"identified from {origin}, 95 % interval {low:.4g} to {high:.4g} {finding.unit}".strip()
+    kept = {k: v for k, v in source.tree.get("sources", {}).items() if k not in sources}
+    tree["cut"], tree["sources"] = cuts, kept | sources
+    return ConfigSource(f"identified from {origin}", tree, source.library)
+
+
+def values_of(
+    finding: Finding, found: Estimate, config: ResolvedConfig, mean_axles: float
+) -> Iterator[tuple[str, float | list[float]]]:
+    """(key of the configuration, value) of what a finding changes."""
+    if not finding.identified or finding.key in (asked.BIAS, asked.GAUGE_NOISE):
+        return
+    value = rounded(finding.value)
+    if finding.key == asked.SLOPE_BY_AXLES:
+        low, high = finding.interval
+        if low > 0.0 or high < 0.0:  # else the force is as well told by one slope
+            yield FACTORS, factors(finding.value, config, mean_axles)
+    elif finding.key == asked.RESISTANCE_SPREAD:
+        for number, of_class in enumerate(config.cuts):
+            std = of_class.resistance.std_n_per_kn
+            yield f"cut[{number}].rolling_resistance.std_n_per_kn", rounded(std * finding.value)
+    elif finding.key.startswith(asked.RESISTANCE):
+        category = finding.key.removeprefix(asked.RESISTANCE)
+        for number, of_class in enumerate(config.cuts):
+            if of_class.cut.category == category:
+                yield f"cut[{number}].rolling_resistance.mean_n_per_kn", value
+    else:
+        yield finding.key, value
+
+
+def factors(slope_by_axles: float, config: ResolvedConfig, mean_axles: float) -> list[float]:
+    """c(N) of one wheel pair, two, …: those of the configuration, tilted about N̄."""
+    (now,) = (v.value for v in config.parameters if v.key == FACTORS)
+    assert isinstance(now, tuple)
+    most = max(len(now), *(of_class.cut.axles for of_class in config.cuts))
+    before = (flat_numbers(now)[min(n, len(now)) - 1] for n in range(1, most + 1))
+    tilted = (c * (1.0 + slope_by_axles * (n - mean_axles)) for n, c in enumerate(before, start=1))
+    return [rounded(min(max(c, 0.05), 5.0)) for c in tilted]
+
+
+def rounded(value: float) -> float:
+    """To so many digits as nobody measures."""
+    return float(f"{value:.{DIGITS}g}")
+
+
+def config_files(source: ConfigSource, name: str) -> dict[str, bytes]:
+    """The files that tell `source`, by their paths in the folder of the configuration `name`."""
+    tree: dict[str, Any] = dict(source.tree)
+    if source.library.own:
+        tree["library"] = [f"{TYPES}/"]
+    files = {f"{TYPES}/{each.kind.folder}/{each.name}.toml": each.text.encode() for each in source.library.own}
+    head = f"# {source.place[:1].upper()}{source.place[1:]}.\n"
+    return {**files, name: (head + toml_text(tree)).encode("utf-8")}
