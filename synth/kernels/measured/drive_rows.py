@@ -22,7 +22,8 @@ class Commands(NamedTuple):
     """What the drive was told in passes of n rows in all.
 
     `time_s`, `stage` (n,) of the rows; `first_row` (m + 1,) of the passes; `initial_stage` that the drive rests in
-    before the first row, reached from below; `stage_kpa` (K + 1,); `delay_s` from a row to the command on the wires.
+    before the first row, reached from below; `stage_kpa` (K + 1,); `delay_s` from a row to the command on the wires;
+    `settled`: each command is taken to have come when the pressure rested, whatever the numbers of the drive say.
     """
 
     time_s: Floats
@@ -31,6 +32,7 @@ class Commands(NamedTuple):
     initial_stage: int
     stage_kpa: Floats
     delay_s: float
+    settled: bool
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -60,6 +62,8 @@ def drive_rows(
                 if in_s < left:
                     kpa, wait, total = drive_on(kpa, wait, told, in_s, drive)
                     left -= in_s
+                    if commands.settled:
+                        kpa, wait = min(max(kpa, told - drive.band_kpa), told + drive.band_kpa), 0.0
                     wait = wait_after_command(kpa, wait, told, coming, drive)
                     told, in_s = coming, np.inf
                 in_s -= left

@@ -83,7 +83,7 @@ def filter_passes(
         for row in range(begin, end):
             surprise[row], variance[row] = math.nan, math.nan
             v = rows.speed_m_s[row] - spread.bias_m_s
-            if v > SLOWEST_M_S:  # NaN is not
+            if rows.speed_m_s[row] > SLOWEST_M_S:  # NaN is not; as read, so that the same readings count at all numbers
                 if begun:
                     correct(x, p, v, reading_var, row, surprise, variance)
                 else:

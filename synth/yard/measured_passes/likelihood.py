@@ -126,8 +126,13 @@ class Likelihood:
         return Surprises(joined[0], joined[1], joined[2], int(seen.sum()), cuts, kpa)
 
 
-def likelihood_of(passes: FittingPasses, slope_key: str) -> Likelihood:
-    """The likelihood of `passes`; `slope_key` names the force slope."""
+def likelihood_of(passes: FittingPasses, slope_key: str, settled: bool = False) -> Likelihood:
+    """The likelihood of `passes`; `slope_key` names the force slope.
+
+    `settled`: every command is taken to have found the drive at rest. So it is in the log of a regulator that waits for
+    that; but far from the true numbers the drive would still be under way, go on without its delay, and the likelihood
+    would have a second summit there.
+    """
     log, plant = passes.log, passes.plant
     commands = Commands(
         log.time_s,
@@ -136,5 +141,6 @@ def likelihood_of(passes: FittingPasses, slope_key: str) -> Likelihood:
         plant.approach.initial_stage,
         np.asarray(plant.position.stage_pressures_kpa, dtype=np.float64),
         plant.sensor.computing_delay_s,
+        settled,
     )
     return Likelihood(passes, pass_rows(passes), commands, slope_key)
