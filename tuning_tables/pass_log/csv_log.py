@@ -43,7 +43,7 @@ NUMBER: Final = re.compile(r"\s*([+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan
 def read_csv_log(path: Path, mapping: LogMapping) -> LogColumns:
     """The rows of the CSV file at `path`; `InvalidLog` names file, row and column of what is wrong; `OSError`."""
     source = os.fspath(path)
-    lines = _text_of(path, mapping).splitlines()
+    lines = _text_of(path, mapping).split("\n")
     while lines and not lines[-1].strip():
         lines.pop()
     independent, header = _first_lines(source, lines)
@@ -95,7 +95,7 @@ def _written(values: Any) -> list[Any]:
         return list(values)
     if values.dtype == np.bool_:
         return values.astype(int).tolist()
-    return ["" if value != value else value for value in values.tolist()]  # noqa: PLR0124  # only NaN is not itself
+    return ["" if value != value else value for value in values.tolist()]  # only NaN is not itself
 
 
 def _text_of(path: Path, mapping: LogMapping) -> str:

@@ -47,7 +47,7 @@ KEYS: Final = ("columns", "units", "constant", "delimiter", "decimal", "path")
 
 @dataclass(frozen=True)
 class LogMapping:
-    """What differs from the columns of `log_columns`: every entry is right by construction where `read_mapping` made it.
+    """What differs from the columns of `log_columns`: `read_mapping` makes no other than right ones.
 
     `columns`: foreign name by own name; `factors`: by own name, what the file's numbers are multiplied with;
     `constant`: values, in own units, of columns that the file lacks; `path_is_independent`: None leaves it to the file.
@@ -125,7 +125,7 @@ def _constant(source: str, name: str, value: Any) -> float | str:
         if len(text) > LONGEST_TEXT:
             raise InvalidLog(f"{source}: constant.{name} is longer than {LONGEST_TEXT} characters; shorten it.")
         return text
-    if isinstance(value, bool) and name != "stopped_by_hand" or not isinstance(value, int | float):
+    if (isinstance(value, bool) and name != "stopped_by_hand") or not isinstance(value, int | float):
         raise InvalidLog(f"{source}: constant.{name} is {value!r:.60}; it must be a number.")
     try:
         return float(value)
