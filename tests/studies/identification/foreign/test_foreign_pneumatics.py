@@ -141,6 +141,13 @@ def test_a_stage_rests_inside_its_band_and_beyond_the_edge(start_kpa: float, sta
     assert 0.01 < band - abs(rested[0] - stage_kpa) < band  # the closing valve let a little more through
 
 
+def test_a_valve_that_shuts_half_open_lets_nothing_back() -> None:
+    start_kpa, times = 150.0 - PLANT.drive.band_kpa - 2.0, np.linspace(0.1, 0.4, 301)
+    pressure = pressure_after_command(PLANT, foreign_draw(PLANT, 1, 0), start_kpa, 1, times)
+    assert start_kpa + 2.0 < pressure[-1] < 150.0  # reached within the 60 ms in which the valve opens
+    assert (np.diff(pressure) >= 0.0).all()
+
+
 def test_the_plant_is_a_neighbour_of_the_library() -> None:
     slope = PLANT.brake.mean_slope_kn_per_kpa(4.0)
     assert 0.80 < slope / (20.0 / 550.0) < 0.85
