@@ -50,7 +50,7 @@ MOST_LEARNT: Final = 16777216.0
 """2**24, beyond which float32 does not count."""
 
 LARGEST_SPEED_M_S: Final = 40.0
-LARGEST_LIMIT_M_S: Final = 0.5
+LEAST_LIMIT_M_S, LARGEST_LIMIT_M_S = 0.01, 0.5
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class Correction:
     parameters: Floats = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        require_between(self.limit_m_s, "correction.limit_m_s", 0.01, LARGEST_LIMIT_M_S)
+        require_between(self.limit_m_s, "correction.limit_m_s", LEAST_LIMIT_M_S, LARGEST_LIMIT_M_S)
         require_between(self.spread_m_s, "correction.spread_m_s", 0.005, 0.5)
         require_between(self.memory_passes, "correction.memory_passes", 10.0, 1e4)
         require_between(self.step_m_s, "correction.step_m_s", 1e-4, 0.1)
