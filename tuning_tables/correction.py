@@ -165,7 +165,7 @@ def learn_exit(parameters: Floats, state: Floats, error_m_s: float, credible: bo
     wanted = min(max(wanted, -limit), limit)
     state[0] = mean
     state[1] = min(max(wanted, state[1] - most), state[1] + most)
-    state[2] = min(state[2] + parameters[10], parameters[11])
+    state[2] = state[2] + parameters[10]  # float32 itself stays at 2**24
 
 
 def corrected_speed(parameters: Floats, state: Floats, v_m_s: float) -> Any:

@@ -93,6 +93,7 @@ def _sequences(correction: Correction) -> Iterator[list[Exit]]:
 def _states(correction: Correction) -> Iterator[tuple[float, float, float]]:
     """Begun, at the bounds, about to stop counting, and such as cannot be."""
     limit, reach, t = map(float, (correction.parameters[2], correction.parameters[3], correction.threshold_m_s))
+    yield from ((0.0, limit, 7.0), (0.0, -limit, 7.0))
     yield from ((0.0, 0.0, 0.0), (reach, limit, 9.0), (-reach, -limit, MOST_LEARNT), (1.5 * t, 0.0, MOST_LEARNT - 1.0))
     yield from ((_above(reach), 0.0, 5.0), (0.0, _above(limit), 5.0), (0.0, -_above(limit), 5.0), (0.0, 0.0, -1.0))
     yield from ((-_above(reach), 0.0, 5.0), (0.01, 0.001, 2.0 * MOST_LEARNT))

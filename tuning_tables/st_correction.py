@@ -179,10 +179,7 @@ IF Credible AND (Error_m_s >= -$LARGEST_ERROR_REAL) AND (Error_m_s <= $LARGEST_E
     END_IF;
     State.Mean_m_s := Mean;
     State.Correction_m_s := Wanted;
-    State.Learnt := State.Learnt + 1.0;
-    IF State.Learnt > $MOST_LEARNT_REAL THEN
-        State.Learnt := $MOST_LEARNT_REAL;
-    END_IF;
+    State.Learnt := State.Learnt + 1.0; (* REAL itself stays at 16777216 *)
 END_IF;
 END_FUNCTION_BLOCK
 """

@@ -109,8 +109,9 @@ def right() -> npt.NDArray[np.float32]:
 
     found, answers = asked(), np.empty((PASSES, 5), np.float32)
     states = np.ascontiguousarray(found["state"]).view(np.float32).copy()
-    errors, speeds = (np.ascontiguousarray(found[name]).view(np.float32).astype(np.float64)
-                      for name in ("error", "speed"))  # fmt: skip
+    with np.errstate(invalid="ignore"):  # a signalling NaN is widened
+        errors, speeds = (np.ascontiguousarray(found[name]).view(np.float32).astype(np.float64)
+                          for name in ("error", "speed"))  # fmt: skip
     all_answers(states, errors, speeds, found["credible"] != 0, found["pass"].copy(), answers)
     return answers
 
@@ -141,7 +142,8 @@ def test_python_and_its_compiled_text_agree() -> None:
     found, answers = asked(), right()
     for i in range(2000):
         state = found["state"][i].view(np.float32).copy()
-        error, speed = (float(found[name][i : i + 1].view(np.float32)[0]) for name in ("error", "speed"))
+        with np.errstate(invalid="ignore"):  # a signalling NaN is widened
+            error, speed = (float(found[name][i : i + 1].view(np.float32)[0]) for name in ("error", "speed"))
         learn_exit(CORRECTION.parameters, state, error, bool(found["credible"][i]))
         assert np.array_equal(state.view(np.uint32), answers[i, :3].view(np.uint32))
         assert np.array_equal(
@@ -216,7 +218,6 @@ MUTANTS = (
     ("value >= -bound && value <= bound", "value > -bound && value < bound", 1),
     ("rounded(mean * mean) > THRESHOLD_SQUARED", "1", 1),
     ("rounded(mean - rounded(THRESHOLD_SQUARED / mean))", "mean", 1),
-    ("clamped(wanted, -LIMIT_M_S, LIMIT_M_S)", "wanted", 1),
     ("state->learnt >= 0.0f", "1", 1),
     ("          && state->learnt <= MOST_LEARNT)", ")", 1),
     ("is_within(state->mean_m_s, REACH_M_S) &&", "", 1),
@@ -227,7 +228,7 @@ MUTANTS = (
     ("-REACH_M_S, REACH_M_S)", "-9.0f, 9.0f)", 1),
     ("rounded(old - STEP_M_S)", "-9.0f", 1),
     ("rounded(old + STEP_M_S)", "9.0f", 1),
-    ("0.0f, MOST_LEARNT)", "0.0f, 9.0e9f)", 1),
+    ("rounded(state->learnt + 1.0f)", "state->learnt", 1),
     ("v_m_s <= LARGEST_SPEED_M_S", "v_m_s <= 99.0f", 1),
     ("v_m_s >= 0.0f", "v_m_s >= -9.0f", 1),
     ("corrected < 0.0f ? 0.0f : corrected", "corrected", 1),
@@ -263,5 +264,5 @@ def test_names_take_the_prefix_and_equal_corrections_give_equal_bytes() -> None:
     assert b"retarder_" not in b"".join(files.values()).lower()
     assert correction_c_files(Correction()) == correction_c_files(Correction())
     assert correction_c_files(Correction()) != correction_c_files(Correction(0.1))
-    assert all(len(line) <= 120 for name in list(files)[:4] for line in files[name].decode("ascii").splitlines()
-               if not line.startswith("    {"))  # fmt: skip
+    lines = [line for name in list(files)[:4] for line in files[name].decode("ascii").splitlines()]
+    assert [line for line in lines if len(line) > 120 and not line.startswith("    {")] == []
