@@ -66,7 +66,7 @@ class Correction:
     """
 
     limit_m_s: float = 0.15
-    spread_m_s: float = 0.05
+    spread_m_s: float = 0.06
     memory_passes: float = 100.0
     step_m_s: float = 0.005
     parameters: Floats = field(init=False, repr=False, compare=False)
