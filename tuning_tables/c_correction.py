@@ -50,9 +50,7 @@ def correction_c_files(correction: Correction, prefix: ExportPrefix = RETARDER) 
 def correction_blanks(correction: Correction, exits: npt.NDArray[np.void]) -> Mapping[str, str]:
     """What the templates ask for, by the names of their blanks."""
     passes = golden_passes(correction)
-    exact = {
-        f"{name}_HEX": hex_float(value) for name, value in zip(CONSTANTS, correction.parameters[:12], strict=True)
-    }
+    exact = {f"{name}_HEX": hex_float(value) for name, value in zip(CONSTANTS, correction.parameters[:12], strict=True)}
     return {
         **exact,
         **correction_words(correction),

@@ -85,7 +85,7 @@ STUDIES: tuple[Study, ...] = (
     Study(
         "correction",
         "What does the on-line correction by the last exits gain on a plant that drifts, and cost on one that stays?",
-        150.0,
+        100.0,
         "correction.md#what-it-gains",
         "synth.studies.correction.study",
     ),

@@ -1,12 +1,13 @@
-"""The exported C of the on-line correction: bit for bit Python in every build, clean, and its self-test finds faults."""
+"""The exported C of the on-line correction: bit for bit Python in every build, clean, its self-test finds faults."""
 
 from __future__ import annotations
 
 import re
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -80,7 +81,7 @@ def asked() -> npt.NDArray[np.void]:
     t = CORRECTION.threshold_m_s
     found["state"][:, 0] = bits_of(rng.normal(0, 0.06, n), (reach, -reach, t, -t), 0.02)
     found["state"][:, 1] = bits_of(rng.uniform(-limit, limit, n), (limit, -limit, 0.0), 0.02)
-    found["state"][:, 2] = bits_of(rng.integers(0, 3000, n), (2.0**24, 2.0**24 - 1, 0.0), 0.02)
+    found["state"][:, 2] = bits_of(rng.integers(0, 3000, n).astype(np.float64), (2.0**24, 2.0**24 - 1, 0.0), 0.02)
     found["error"] = bits_of(rng.normal(0, 0.15, n), (1.0, -1.0, clip, -clip, 0.1, np.inf), 0.05)
     found["speed"] = bits_of(rng.uniform(0, 12, n), (40.0, 0.0, limit), 0.05)
     found["credible"] = rng.random(n) < 0.9
@@ -95,7 +96,8 @@ def asked() -> npt.NDArray[np.void]:
 @cache
 def right() -> npt.NDArray[np.float32]:
     """What the Python text makes of each question, compiled."""
-    learn, speed, usable = njit(learn_exit), njit(corrected_speed), njit(usable_exit)
+    texts: tuple[Callable[..., Any], ...] = (njit(learn_exit), njit(corrected_speed), njit(usable_exit))
+    learn, speed, usable = texts
     parameters = CORRECTION.parameters
 
     @njit

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -100,8 +101,8 @@ def in_double_precision(correction: Correction, errors: npt.NDArray[np.float64])
         surprise = np.clip(error + c - mean, -3.0 * correction.spread_m_s, 3.0 * correction.spread_m_s)
         mean = np.clip(mean + surprise / correction.memory_passes, -reach, reach)
         wanted = mean * max(0.0, 1.0 - 4.0 * variance / mean**2)
-        c += np.clip(np.clip(wanted, -correction.limit_m_s, correction.limit_m_s) - c, *(-correction.step_m_s,
-                                                                                        correction.step_m_s))  # fmt: skip
+        change = np.clip(wanted, -correction.limit_m_s, correction.limit_m_s) - c
+        c += np.clip(change, -correction.step_m_s, correction.step_m_s)
         found.append(c)
     return np.array(found)
 
@@ -157,7 +158,8 @@ def test_a_bias_beyond_the_limit_does_not_wind_it_up() -> None:
 
 
 def test_numba_compiles_the_same_numbers() -> None:
-    learn, speed, usable = njit(learn_exit), njit(corrected_speed), njit(usable_exit)
+    compiled_texts: tuple[Callable[..., Any], ...] = (njit(learn_exit), njit(corrected_speed), njit(usable_exit))
+    learn, speed, usable = compiled_texts
     rng = np.random.default_rng(5)
     plain, compiled = begin_correction(), begin_correction()
     for _ in range(3000):

@@ -75,7 +75,7 @@ class Corrected(Findings):
         """How much was simulated."""
         return (
             f"{self.sequences} independent sequences of {self.passes} passes for each row, seed {self.seed}; memory "
-            f"{self.memory_passes:g} passes, spread {self.spread_m_s:g} m/s, exits measured to {self.reading_m_s:g} m/s",
+            f"{self.memory_passes:g} passes, spread {self.spread_m_s:g} m/s, exits read to {self.reading_m_s:g} m/s",
         )
 
     def faults(self) -> tuple[str, ...]:

@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Sequence:
-    """n passes, arrays (n,): true exit speed - target, the correction that each ran under, whether it was learnt from."""
+    """n passes, arrays (n,): true exit speed - target, the correction each ran under, whether it was learnt from."""
 
     error_m_s: Floats
     correction_m_s: Floats

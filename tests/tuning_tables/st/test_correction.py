@@ -52,7 +52,8 @@ def test_every_question_is_answered_as_by_python(real: Real) -> None:
     ("before", "after"),
     [("Square > ThresholdSquared", "Mean > 0.0"), ("Wanted < Least", "Wanted < -9.0"), ("NOT Sound", "FALSE"),
      ("Surprise > Clip_m_s", "Surprise > 9.0"), ("Corrected_m_s < 0.0", "Corrected_m_s < -9.0"),
-     ("AtTop <= Others", "AtTop < Others"), ("(NOT EndsAtTop) OR ", ""), ("Surprise := Surprise - State.Mean_m_s;", "")],
+     ("AtTop <= Others", "AtTop < Others"), ("(NOT EndsAtTop) OR ", ""),
+     ("Surprise := Surprise - State.Mean_m_s;", "")],
 )  # fmt: skip
 def test_a_wrong_block_is_found_by_the_self_test(before: str, after: str) -> None:
     text = b"".join(FILES.values()).decode("ascii")
