@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.kernels.loop.closed_loop import Draws
 from synth.simulation.closed_loop import ClosedLoop, TableController
 from synth.simulation.passes import PassTrace
@@ -16,8 +17,9 @@ from tuning_tables.correction import Correction, begin_correction, learn_exit, u
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Sequence:
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class PassSequence:
     """n passes, arrays (n,): true exit speed - target, the correction each ran under, whether it was learnt from."""
 
     error_m_s: Floats
@@ -34,7 +36,7 @@ def corrected(table: ActiveTable, correction_m_s: np.float32) -> ActiveTable:
 
 def run_sequence(
     loop: ClosedLoop, table: ActiveTable, draws: Draws, readings_m_s: Floats, correction: Correction
-) -> Sequence:
+) -> PassSequence:
     """The passes of `draws` in their order; the exit of each is measured with the error `readings_m_s`, (n,)."""
     state, count, target = begin_correction(), len(readings_m_s), float(table.target_speed_m_s)
     errors, applied = np.empty(count), np.empty(count)
@@ -46,7 +48,7 @@ def run_sequence(
         measured = float(np.float32(errors[number] + reading))
         usable[number] = is_usable(trace, loop.stages - 1, correction, measured)
         learn_exit(correction.parameters, state, measured, bool(usable[number]))
-    return Sequence(errors, applied, usable)
+    return PassSequence(errors, applied, usable)
 
 
 def is_usable(trace: PassTrace, top_stage: int, correction: Correction, error_m_s: float) -> bool:

@@ -27,7 +27,7 @@ from synth.simulation.replicates import Interval, student_quantile
 from synth.studies.cases import Case, named_cases
 from synth.studies.correction.ageing import Ageing, ageings
 from synth.studies.correction.findings import Corrected, Row
-from synth.studies.correction.sequence import Sequence, run_sequence
+from synth.studies.correction.sequence import PassSequence, run_sequence
 from synth.studies.options import option
 from synth.studies.side_by_side import side_by_side
 from synth.studies.study import Method, Tell
@@ -86,7 +86,7 @@ def case_row(config: ResolvedConfig, case: Case, ageing: Ageing, correction: Cor
     loop = close_loop(case.plant, controller.stages)
     share = np.arange(options.passes) / options.passes
     seed = config.validation.seed + FRESH
-    plain, found = [], list[Sequence]()
+    plain, found = [], list[PassSequence]()
     for number in range(options.sequences):
         passes = ageing.age(random_passes(seed, number * options.passes, options.passes), case.plant, share)
         draws = loop.draws(passes)
@@ -96,7 +96,7 @@ def case_row(config: ResolvedConfig, case: Case, ageing: Ageing, correction: Cor
     return row_of(ageing, case, np.array(plain), found)
 
 
-def row_of(ageing: Ageing, case: Case, plain: Floats, sequences: Iterable[Sequence]) -> Row:
+def row_of(ageing: Ageing, case: Case, plain: Floats, sequences: Iterable[PassSequence]) -> Row:
     """The figures of sequences without, (sequences, passes), and with correction."""
     found = tuple(sequences)
     errors = np.array([each.error_m_s for each in found])
