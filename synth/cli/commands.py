@@ -236,6 +236,9 @@ def export(
         str | None, typer.Option(metavar="full|small", help="What the self-test of code asks; full unless given.")
     ] = None,
     split: Annotated[bool, typer.Option("--split", help="Structured Text with a file each unit.")] = False,
+    correction: Annotated[
+        float | None, typer.Option(metavar="LIMIT", help="With code that corrects by the last exits, up to LIMIT m/s.")
+    ] = None,
     as_json: Json = False,
 ) -> int:
     """Write tables in another form.
@@ -244,7 +247,7 @@ def export(
     """
     from synth.cli.export import AskedCode, export_command
 
-    return export_command(source, form, output, AskedCode(prefix, self_test, split), as_json)
+    return export_command(source, form, output, AskedCode(prefix, self_test, split, correction), as_json)
 
 
 add_init_command(app)

@@ -21,6 +21,7 @@ class AskedCode:
     prefix: str | None
     self_test: str | None
     split: bool
+    correction_m_s: float | None = None
 
 
 def export_command(source: Path, form: str, output: Path, asked: AskedCode, as_json: bool) -> int:
@@ -28,6 +29,7 @@ def export_command(source: Path, form: str, output: Path, asked: AskedCode, as_j
     from synth.book.forms.aim_file import read_aims
     from synth.book.forms.aim_forms import AIM_FORMS
     from synth.book.forms.code_options import code_options
+    from synth.book.forms.correction_form import correction_files
     from synth.book.forms.table_file import read_tables
     from synth.book.forms.table_forms import FORMS
     from synth.book.output_directory import make_directory
@@ -35,11 +37,14 @@ def export_command(source: Path, form: str, output: Path, asked: AskedCode, as_j
 
     if form not in FORMS:
         raise InputError(f"--format {form}: there is no such form; give {', '.join(FORMS)}")
-    options = code_options(form, asked.prefix, asked.self_test, asked.split)
+    options = code_options(form, asked.prefix, asked.self_test, asked.split, asked.correction_m_s)
     aims = [file.table for file in read_aims(source)]
     tables = () if aims else read_tables(source)[0].tables
     try:
-        files = AIM_FORMS[form](aims, options) if aims else FORMS[form](tables, options)
+        files = {
+            **(AIM_FORMS[form](aims, options) if aims else FORMS[form](tables, options)),
+            **correction_files(form, tables, options),
+        }
     except (InputError, InvalidTable) as fault:  # each table is right, but together they make no export
         raise InputError(f"{source}: {fault}") from None
     if form in ("c", "st") and tables:

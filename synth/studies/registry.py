@@ -83,6 +83,13 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.convergence.picture",
     ),
     Study(
+        "correction",
+        "What does the on-line correction by the last exits gain on a plant that drifts, and cost on one that stays?",
+        100.0,
+        "correction.md#what-it-gains",
+        "synth.studies.correction.study",
+    ),
+    Study(
         "coverage",
         "How often do the printed 95 % intervals hold the truth?",
         1200.0,

@@ -200,6 +200,42 @@ def test_export_of_controller_code_is_what_tune_leaves(command: Command, tuned: 
     assert {path.name for path in (tmp_path / "st").iterdir()} == {"retarder_table.st", "retarder_self_test.st"}
 
 
+def test_export_gives_the_correction_beside_unchanged_tables(command: Command, tuned: Path, tmp_path: Path) -> None:
+    for form, options, new in (
+        ("c", (), {"retarder_correction.c", "retarder_correction.h", "retarder_correction_self_test.c",
+                   "retarder_correction_self_test.h", "golden_exits.csv"}),
+        ("st", (), {"retarder_correction.st", "retarder_correction_self_test.st"}),
+        ("st", ("--split",), {f"correction_{each}.st" for each in (
+            "0001_RETARDER_CORRECTION", "0002_RETARDER_BEGIN_CORRECTION", "0003_RETARDER_USABLE_EXIT",
+            "0004_RETARDER_LEARN_EXIT", "0005_RETARDER_CORRECTED_SPEED", "0006_RETARDER_CORRECTION_TEST")}),
+    ):  # fmt: skip
+        folders = [tmp_path / f"{form}{len(options)}{name}" for name in ("plain", "corrected")]
+        asked = ("export", tuned / "book.h5", "--format", form, *options)
+        assert command(*asked, "-o", folders[0]).code == 0
+        assert command(*asked, "--correction", "0.1", "-o", folders[1]).code == 0
+        plain, corrected = ({file.name: file.read_bytes() for file in folder.iterdir()} for folder in folders)
+        assert corrected.keys() - plain.keys() == new
+        assert {name: corrected[name] for name in plain} == plain
+    header = (tmp_path / "c0corrected" / "retarder_correction.h").read_text("ascii")
+    assert "limit      0.1 m/s" in header
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (("--format", "csv", "--correction", "0.1"), "--correction is for --format c and st, not for csv"),
+        (("--format", "c", "--correction", "0.6"), "must lie between 0.01 and 0.5 m/s"),
+        (("--format", "st", "--correction", "nan"), "must lie between 0.01 and 0.5 m/s"),
+    ],
+)
+def test_a_correction_that_cannot_be_is_refused(
+    command: Command, tuned: Path, options: tuple[str, ...], sentence: str
+) -> None:
+    ran = command("export", tuned / "book.h5", *options)
+    assert ran.code == 2
+    assert sentence in ran.sentence
+
+
 def test_export_takes_a_prefix_a_small_self_test_and_splits(command: Command, tuned: Path, tmp_path: Path) -> None:
     book = tuned / "book.h5"
     ran = command("export", book, "--format", "c", "--prefix", "Bunch", "--self-test", "small", "-o", tuned / "c")

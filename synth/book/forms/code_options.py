@@ -6,32 +6,44 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from synth.faults.input_error import InputError
+from tuning_tables.correction import LARGEST_LIMIT_M_S, LEAST_LIMIT_M_S
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 
 SELF_TESTS: Mapping[str, SelfTestSize] = {"full": FULL, "small": SMALL}
 OPTIONS: Mapping[str, tuple[str, ...]] = {
-    "c": ("--prefix", "--self-test"),
-    "st": ("--prefix", "--self-test", "--split"),
+    "c": ("--prefix", "--self-test", "--correction"),
+    "st": ("--prefix", "--self-test", "--split", "--correction"),
 }
 """Of the forms that have any."""
 
 
 @dataclass(frozen=True)
 class CodeOptions:
-    """`prefix` of all names, what the `self_test` asks; `split`: a file each unit of Structured Text."""
+    """`prefix` of all names, what the `self_test` asks; `split`: a file each unit of Structured Text.
+
+    `correction_m_s`: limit of the on-line correction whose code comes with the tables, None for none.
+    """
 
     prefix: ExportPrefix = RETARDER
     self_test: SelfTestSize = FULL
     split: bool = False
+    correction_m_s: float | None = None
 
 
 PLAIN = CodeOptions()
 
 
-def code_options(form: str, prefix: str | None, self_test: str | None, split: bool) -> CodeOptions:
+def code_options(
+    form: str, prefix: str | None, self_test: str | None, split: bool, correction_m_s: float | None = None
+) -> CodeOptions:
     """The options as given, None for those that were not; `InputError` where `form` has no such option or value."""
-    given = {"--prefix": prefix is not None, "--self-test": self_test is not None, "--split": split}
+    given = {
+        "--prefix": prefix is not None,
+        "--self-test": self_test is not None,
+        "--split": split,
+        "--correction": correction_m_s is not None,
+    }
     for name in given:
         if given[name] and name not in OPTIONS.get(form, ()):
             takers = " and ".join(each for each, options in OPTIONS.items() if name in options)
@@ -42,4 +54,9 @@ def code_options(form: str, prefix: str | None, self_test: str | None, split: bo
         named = RETARDER if prefix is None else ExportPrefix(prefix)
     except ValueError as fault:
         raise InputError(f"--prefix {prefix}: {fault}") from None
-    return CodeOptions(named, SELF_TESTS[self_test or "full"], split)
+    if correction_m_s is not None and not LEAST_LIMIT_M_S <= correction_m_s <= LARGEST_LIMIT_M_S:
+        raise InputError(
+            f"--correction {correction_m_s:g}: the limit of the correction must lie between {LEAST_LIMIT_M_S:g} and "
+            f"{LARGEST_LIMIT_M_S:g} m/s; give 0.15"
+        )
+    return CodeOptions(named, SELF_TESTS[self_test or "full"], split, correction_m_s)

@@ -1,0 +1,270 @@
+"""The exported C of the on-line correction: bit for bit Python in every build, clean, its self-test finds faults."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from collections.abc import Callable, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from numba import njit
+
+from synth.studies.in_the_loop.builds import BUILDS, Build
+from synth.studies.in_the_loop.controller_process import CONTRACT, compile_with
+from tests.controller_code.conftest import Tool
+from tests.controller_code.sample_book import sample_book
+from tests.controller_code.test_export import FLOAT_H, PEDANTIC
+from tuning_tables.c_correction import correction_c_files
+from tuning_tables.c_source import c_files
+from tuning_tables.correction import Correction, corrected_speed, learn_exit, usable_exit
+from tuning_tables.export_prefix import ExportPrefix
+
+PASSES = 1_000_000
+SOURCES = ("retarder_correction.c", "retarder_correction_self_test.c")
+CORRECTION = Correction(0.15, 0.06)
+QUESTION = np.dtype([("state", "u4", 3), ("error", "u4"), ("speed", "u4"), ("credible", "i4"), ("pass", "i4", 6)])
+PROGRAM = r"""
+#include <stdio.h>
+#include <string.h>
+#include "retarder_correction_self_test.h"
+int main(int count, char **arguments)
+{
+    int32_t asked[12];
+    if (count > 1 && strcmp(arguments[1], "self-test") == 0) {
+        uint32_t where = 0u;
+        const int fault = retarder_correction_self_test(&where);
+        printf("fault %d at %u\n", fault, (unsigned)where);
+        return 0;
+    }
+    while (fread(asked, sizeof asked, 1, stdin) == 1) {
+        float answer[5], speed;
+        retarder_correction state;
+        retarder_exit pass;
+        memcpy(&state, asked, 12);
+        memcpy(&pass.error_m_s, asked + 3, 4);
+        memcpy(&speed, asked + 4, 4);
+        pass.samples = asked[6];
+        pass.missing = asked[7];
+        pass.at_top = asked[8];
+        pass.ends_at_top = (int)asked[9];
+        pass.by_hand = (int)asked[10];
+        pass.stalled = (int)asked[11];
+        retarder_learn_exit(&state, pass.error_m_s, (int)asked[5]);
+        memcpy(answer, &state, 12);
+        answer[3] = retarder_corrected_speed(&state, speed);
+        answer[4] = (float)retarder_usable_exit(&pass);
+        fwrite(answer, sizeof answer, 1, stdout);
+    }
+    return 0;
+}
+"""
+
+
+@cache
+def asked() -> npt.NDArray[np.void]:
+    """Likely states and exits, those at every bound, and one in ten of any bits."""
+    rng, n = np.random.default_rng(20261122), PASSES
+    limit, reach, clip = CORRECTION.parameters[2:5]
+    found = np.empty(n, QUESTION)
+
+    def bits_of(values: npt.NDArray[np.float64], special: Sequence[float], any_share: float) -> npt.NDArray[np.uint32]:
+        near = np.array(special, np.float32)
+        edges = np.nextafter(near[rng.integers(0, len(near), n)], rng.choice([-9, 0, 9], n).astype(np.float32))
+        chosen = np.where(rng.random(n) < 0.1, edges, values.astype(np.float32)).view(np.uint32)
+        return np.where(rng.random(n) < any_share, rng.integers(0, 2**32, n, np.uint32), chosen)
+
+    t = CORRECTION.threshold_m_s
+    found["state"][:, 0] = bits_of(rng.normal(0, 0.06, n), (reach, -reach, t, -t), 0.02)
+    found["state"][:, 1] = bits_of(rng.uniform(-limit, limit, n), (limit, -limit, 0.0), 0.02)
+    found["state"][:, 2] = bits_of(rng.integers(0, 3000, n).astype(np.float64), (2.0**24, 2.0**24 - 1, 0.0), 0.02)
+    found["error"] = bits_of(rng.normal(0, 0.15, n), (1.0, -1.0, clip, -clip, 0.1, np.inf), 0.05)
+    found["speed"] = bits_of(rng.uniform(0, 12, n), (40.0, 0.0, limit), 0.05)
+    found["credible"] = rng.random(n) < 0.9
+    samples = rng.choice([*range(5, 100), 32767, -1], n)
+    found["pass"] = np.stack(
+        [samples, rng.integers(-1, 6, n), (samples * rng.uniform(-0.1, 1.1, n)).astype(np.int32),
+         rng.integers(0, 2, n), rng.random(n) < 0.1, rng.random(n) < 0.1], axis=1,
+    )  # fmt: skip
+    return found
+
+
+@cache
+def right() -> npt.NDArray[np.float32]:
+    """What the Python text makes of each question, compiled."""
+    texts: tuple[Callable[..., Any], ...] = (njit(learn_exit), njit(corrected_speed), njit(usable_exit))
+    learn, speed, usable = texts
+    parameters = CORRECTION.parameters
+
+    @njit
+    def all_answers(states, errors, speeds, credible, passes, answers):  # type: ignore[no-untyped-def]
+        for i in range(len(errors)):
+            learn(parameters, states[i], errors[i], credible[i])
+            answers[i, :3] = states[i]
+            answers[i, 3] = speed(parameters, states[i], speeds[i])
+            p = passes[i]
+            answers[i, 4] = usable(parameters, p[0], p[1], p[2], p[3] != 0, p[4] != 0, p[5] != 0, errors[i])
+
+    found, answers = asked(), np.empty((PASSES, 5), np.float32)
+    states = np.ascontiguousarray(found["state"]).view(np.float32).copy()
+    with np.errstate(invalid="ignore"):  # a signalling NaN is widened
+        errors, speeds = (np.ascontiguousarray(found[name]).view(np.float32).astype(np.float64)
+                          for name in ("error", "speed"))  # fmt: skip
+    all_answers(states, errors, speeds, found["credible"] != 0, found["pass"].copy(), answers)
+    return answers
+
+
+def built(folder: Path, build: Build, change: tuple[str, str] | None = None) -> list[str]:
+    """The command that runs a program with the exported files in it."""
+    for name, content in correction_c_files(CORRECTION).items():
+        text = content.decode()
+        if change and name == SOURCES[0]:
+            assert change[0] in text
+            text = text.replace(*change, 1)
+        (folder / name).write_text(text, newline="")
+    (folder / "main.c").write_text(PROGRAM)
+    objects = []
+    for name in SOURCES:
+        objects.append(str(folder / f"{name}.o"))
+        compile_with([build.compiler, *build.contract, *build.flags, "-c", str(folder / name), "-o", objects[-1]])
+    program = str(folder / "program")
+    compile_with([build.compiler, *build.flags, *build.link, str(folder / "main.c"), *objects, "-o", program])
+    return [*build.emulator, program]
+
+
+def told(command: Sequence[str], *arguments: str, given: bytes = b"") -> bytes:
+    return subprocess.run([*command, *arguments], input=given, capture_output=True, timeout=300, check=True).stdout
+
+
+def test_python_and_its_compiled_text_agree() -> None:
+    found, answers = asked(), right()
+    for i in range(2000):
+        state = found["state"][i].view(np.float32).copy()
+        with np.errstate(invalid="ignore"):  # a signalling NaN is widened
+            error, speed = (float(found[name][i : i + 1].view(np.float32)[0]) for name in ("error", "speed"))
+        learn_exit(CORRECTION.parameters, state, error, bool(found["credible"][i]))
+        assert np.array_equal(state.view(np.uint32), answers[i, :3].view(np.uint32))
+        assert np.array_equal(
+            np.float32(corrected_speed(CORRECTION.parameters, state, speed)), answers[i, 3], equal_nan=True
+        )
+
+
+@pytest.mark.parametrize("build", BUILDS, ids=str)
+def test_c_learns_as_python_to_the_last_bit(build: Build, tmp_path: Path, tool: Tool) -> None:
+    for name in build.missing():
+        tool(name)
+    command = built(tmp_path, build)
+    given = asked().view("i4").astype(f"{build.order}i4").tobytes()
+    found = np.frombuffer(told(command, given=given), f"{build.order}f4").astype(np.float32).reshape(-1, 5)
+    # Which of its many bit patterns a NaN that is handed on has is the processor's business.
+    both_nan = np.isnan(found) & np.isnan(right())
+    assert np.count_nonzero((found.view(np.uint32) != right().view(np.uint32)) & ~both_nan) == 0
+    assert told(command, "self-test") == b"fault 0 at 0\n"
+
+
+def test_the_questions_reach_much() -> None:
+    answers = right()
+    assert np.isfinite(answers[:, :3]).all()
+    assert np.abs(answers[:, 1]).max() == CORRECTION.parameters[2]
+    for share in ((answers[:, 1] == 0.0).mean(), answers[:, 4].mean(), (answers[:, 3] == 0.0).mean()):
+        assert 0.001 < share < 0.6
+
+
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+def test_compilers_and_checkers_have_nothing_to_say(compiler: str, tmp_path: Path, tool: Tool) -> None:
+    built(tmp_path, Build(tool(compiler), ("-O1",)))
+    weak = ("-Weverything", "-Wno-padded", "-Wno-unsafe-buffer-usage", "-Wno-unknown-warning-option",
+            "-Wno-declaration-after-statement")  # fmt: skip
+    switches = ("-fanalyzer",) if compiler == "gcc" else weak
+    for name in SOURCES:
+        said = compile_with([compiler, *PEDANTIC, *switches, str(tmp_path / name), "-o", str(tmp_path / "o")])
+        assert said == ""
+
+
+def test_cppcheck_has_nothing_to_say(tmp_path: Path, tool: Tool) -> None:
+    checker = tool("cppcheck")
+    built(tmp_path, Build(tool("gcc"), ("-O1",)))
+    checks = ["--enable=all", "--inconclusive", "--std=c99", "--quiet", "--error-exitcode=3"]
+    files = [str(tmp_path / name) for name in (*SOURCES, "main.c")]
+    assert compile_with([checker, *checks, "--suppress=missingIncludeSystem", *FLOAT_H, *files]) == ""
+
+
+def test_it_links_beside_the_tables_and_needs_nothing(tmp_path: Path, tool: Tool) -> None:
+    files = {**c_files(sample_book()), **correction_c_files(CORRECTION)}
+    sources = [name for name in files if name.endswith(".c")]
+    for name, content in files.items():
+        (tmp_path / name).write_bytes(content)
+    for name in sources:
+        compile_with([tool("gcc"), *CONTRACT, "-Os", "-c", str(tmp_path / name), "-o", str(tmp_path / f"{name}.o")])
+    (tmp_path / "main.c").write_text(
+        '#include "retarder_table.h"\n#include "retarder_correction.h"\nint main(void)\n{\n    retarder_correction c;\n'
+        "    retarder_begin_correction(&c);\n    retarder_begin_correction(0);\n    retarder_learn_exit(0, 0.0f, 1);\n"
+        "    return retarder_decide(0, 0, 1.0f, retarder_corrected_speed(&c, 1.0f)) + retarder_usable_exit(0)\n"
+        "        + (retarder_corrected_speed(0, 1.0f) != 1.0f);\n}\n"
+    )
+    objects = [str(tmp_path / f"{name}.o") for name in sources]
+    compile_with([tool("gcc"), "-std=c99", str(tmp_path / "main.c"), *objects, "-o", str(tmp_path / "m")])
+    assert subprocess.run([tmp_path / "m"], check=False).returncode == 0
+    listed = compile_with(["nm", *(each for each in objects if "correction" in each)])
+    undefined = {line.split()[-1] for line in listed.splitlines() if " U " in line}
+    assert {name for name in undefined if not name.startswith("retarder_")} <= {"memcpy", "memset"}
+    assert not re.search(r" [dDbBC] ", listed)
+
+
+MUTANTS = (
+    ("value >= -bound &&", "", 1),
+    ("value >= -bound && value <= bound", "value > -bound && value < bound", 1),
+    ("rounded(mean * mean) > THRESHOLD_SQUARED", "1", 1),
+    ("rounded(mean - rounded(THRESHOLD_SQUARED / mean))", "mean", 1),
+    ("state->learnt >= 0.0f", "1", 1),
+    ("          && state->learnt <= MOST_LEARNT)", ")", 1),
+    ("is_within(state->mean_m_s, REACH_M_S) &&", "", 1),
+    ("retarder_begin_correction(state);\n    }\n    if (credible", "}\n    if (credible", 1),
+    ("credible == 0 ||", "", 1),
+    ("rounded(error_m_s + old)", "error_m_s", 1),
+    ("-CLIP_M_S, CLIP_M_S)", "-1.0f, 1.0f)", 1),
+    ("-REACH_M_S, REACH_M_S)", "-9.0f, 9.0f)", 1),
+    ("rounded(old - STEP_M_S)", "-9.0f", 1),
+    ("rounded(old + STEP_M_S)", "9.0f", 1),
+    ("rounded(state->learnt + 1.0f)", "state->learnt", 1),
+    ("v_m_s <= LARGEST_SPEED_M_S", "v_m_s <= 99.0f", 1),
+    ("v_m_s >= 0.0f", "v_m_s >= -9.0f", 1),
+    ("corrected < 0.0f ? 0.0f : corrected", "corrected", 1),
+    ("*state = unknown;", "(void)unknown;", 1),
+    ("pass->by_hand != 0 ||", "", 2),
+    ("pass->stalled != 0 ||", "", 2),
+    ("pass->samples < 10", "pass->samples <= 10", 2),
+    ("pass->missing < 0", "0", 2),
+    ("pass->missing > 3", "pass->missing >= 3", 2),
+    ("pass->at_top < 0 ||", "", 2),
+    ("pass->at_top > pass->samples - pass->at_top", "pass->at_top >= pass->samples - pass->at_top", 2),
+    ("!is_within(pass->error_m_s, LARGEST_ERROR_M_S)", "0", 2),
+    ("pass->ends_at_top == 0 ||", "", 2),
+    ("pass->error_m_s <= LARGEST_EXCESS_M_S", "pass->error_m_s < LARGEST_EXCESS_M_S", 2),
+)
+
+
+@pytest.mark.parametrize(("before", "after", "fault"), MUTANTS, ids=[f"{n}" for n in range(len(MUTANTS))])
+def test_the_self_test_finds_a_wrong_controller(
+    before: str, after: str, fault: int, tmp_path: Path, tool: Tool
+) -> None:
+    tool("gcc")
+    command = built(tmp_path, Build("gcc", ("-O1",), ("-std=c99", "-w")), (before, after))
+    assert told(command, "self-test").decode().startswith(f"fault {fault} at")
+
+
+def test_names_take_the_prefix_and_equal_corrections_give_equal_bytes() -> None:
+    files = correction_c_files(Correction(), ExportPrefix("BUNCH"))
+    assert list(files) == [
+        "bunch_correction.h", "bunch_correction.c", "bunch_correction_self_test.h", "bunch_correction_self_test.c",
+        "bunch_golden_exits.csv",
+    ]  # fmt: skip
+    assert b"retarder_" not in b"".join(files.values()).lower()
+    assert correction_c_files(Correction()) == correction_c_files(Correction())
+    assert correction_c_files(Correction()) != correction_c_files(Correction(0.1))
+    lines = [line for name in list(files)[:4] for line in files[name].decode("ascii").splitlines()]
+    assert [line for line in lines if len(line) > 120 and not line.startswith("    {")] == []

@@ -1,0 +1,90 @@
+"""The on-line correction in Structured Text, run from its parse tree: bit for bit the Python text; its self-test."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from tests.controller_code.test_correction_code import CORRECTION, asked, right
+from tests.tuning_tables.st.conftest import shaped_book
+from tests.tuning_tables.st.evaluator import Program
+from tests.tuning_tables.st.storage import Real
+from tests.tuning_tables.st.syntax import faults, parse, walk
+from tests.tuning_tables.st.test_syntax import KEYWORDS
+from tuning_tables.export_prefix import ExportPrefix
+from tuning_tables.st_correction import CORRECTION_FILE, correction_st_files, correction_st_unit_files
+from tuning_tables.st_source import st_files
+
+FILES = correction_st_files(CORRECTION)
+MEMBERS = ("MEAN_M_S", "CORRECTION_M_S", "LEARNT")
+
+
+def answers_of(program: Program, questions: npt.NDArray[np.void]) -> npt.NDArray[np.float32]:
+    """What the blocks make of every question, a lane each: float32 (n, 5)."""
+    state = program.new("RETARDER_CORRECTION")
+    for name, words in zip(MEMBERS, questions["state"].T, strict=True):
+        state[name].store(np.ascontiguousarray(words).view(np.float32), None)
+    error, speed = (np.ascontiguousarray(questions[name]).view(np.float32) for name in ("error", "speed"))
+    learner, corrector, judge = (
+        program.new(f"RETARDER_{name}") for name in ("LEARN_EXIT", "CORRECTED_SPEED", "USABLE_EXIT")
+    )
+    program.call("RETARDER_LEARN_EXIT", learner, Error_m_s=error, Credible=questions["credible"] != 0, State=state)
+    program.call("RETARDER_CORRECTED_SPEED", corrector, Observed_m_s=speed, State=state)
+    samples, missing, at_top, *flags = questions["pass"].T.astype(np.int64)
+    told: dict[str, Any] = dict(zip(("EndsAtTop", "ByHand", "Stalled"), (flag != 0 for flag in flags), strict=True))
+    program.call("RETARDER_USABLE_EXIT", judge, Samples=samples, Missing=missing, AtTop=at_top, Error_m_s=error, **told)
+    found = [*(state[name].value for name in MEMBERS), corrector["CORRECTED_M_S"].value, judge["USABLE"].value]
+    return np.stack([np.broadcast_to(each, error.shape).astype(np.float32) for each in found], axis=1)
+
+
+@pytest.mark.parametrize("real", [np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
+def test_every_question_is_answered_as_by_python(real: Real) -> None:
+    with np.errstate(invalid="ignore"):  # a signalling NaN is widened
+        found = answers_of(Program(FILES[CORRECTION_FILE], real), asked())
+    # 0 has no sign in Structured Text.
+    assert np.array_equal(found, right(), equal_nan=True)
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [("Square > ThresholdSquared", "Mean > 0.0"), ("Wanted < Least", "Wanted < -9.0"), ("NOT Sound", "FALSE"),
+     ("Surprise > Clip_m_s", "Surprise > 9.0"), ("Corrected_m_s < 0.0", "Corrected_m_s < -9.0"),
+     ("AtTop <= Others", "AtTop < Others"), ("(NOT EndsAtTop) OR ", ""),
+     ("Surprise := Surprise - State.Mean_m_s;", "")],
+)  # fmt: skip
+def test_a_wrong_block_is_found_by_the_self_test(before: str, after: str) -> None:
+    text = b"".join(FILES.values()).decode("ascii")
+    assert before in text
+    assert self_tested(text.replace(before, after, 1)) > 0
+    assert self_tested(text) == 0
+
+
+def self_tested(text: str) -> int:
+    """How many rows the self-test finds wrong."""
+    program = Program(text.encode("ascii"))
+    block = program.new("RETARDER_CORRECTION_TEST")
+    program.call("RETARDER_CORRECTION_TEST", block)
+    assert (int(block["FIRSTFAILED"].value) >= 0) == (int(block["FAILED"].value) > 0)
+    return int(block["FAILED"].value)
+
+
+def test_the_text_is_plain_and_fits_beside_the_tables() -> None:
+    together = b"".join([*FILES.values(), *st_files(shaped_book(3, 1)).values()])
+    assert faults(parse(together)) == []
+    assert "RETARDER_DECIDE" in Program(together).blocks
+    lines = b"".join(FILES.values()).decode("ascii").split("\n")
+    assert all(len(line) <= 120 and line == line.rstrip() for line in lines)
+    names = {node.text.decode("ascii").upper() for node in walk(parse(together)) if node.type == "identifier"}
+    assert names & set(KEYWORDS.split()) == set()
+    longest = b"".join(correction_st_files(CORRECTION, ExportPrefix("TENLETTERS")).values())
+    named = {node.text.decode("ascii") for node in walk(parse(longest)) if node.type == "identifier"}
+    assert all(len(name) <= 32 for name in named), sorted(named, key=len)[-1]
+
+
+def test_a_file_each_unit_holds_the_same() -> None:
+    units = correction_st_unit_files(CORRECTION)
+    assert len(units) == 6
+    assert self_tested(b"\n".join(units.values()).decode("ascii")) == 0
