@@ -84,16 +84,15 @@ def print_found(found: Sensitivity, directory: Path) -> None:
     """What to measure first, by output, and where the files are."""
     from synth.book.sensitivity.ranking import UNDECIDABLE, measure_first, percent
 
-    print(
-        f"{len(found.cases)} tables on {found.trial.points} plants, {found.trial.passes} passes each; mean over tables"
-    )
+    trial = found.trial
+    print(f"mean over {len(found.cases)} tables, each on {trial.points} plants with {trial.passes} passes:")
     for each in found.overall:
         print(measure_first(found.names, each))
         if each.varies:
             open_ones = sum(not share.decided for share in each.shares)
             print(
-                f"  parameters together {percent(each.together)}, noise of the passes {100.0 * each.noise.value:.1f} %; "
-                f"{open_ones} of {len(found.keys)} parameters {UNDECIDABLE}"
+                f"  parameters together {percent(each.together)}, noise of the passes {100.0 * each.noise.value:.1f} %"
+                f"; {open_ones} of {len(found.keys)} parameters {UNDECIDABLE}"
             )
     output = found.config.output
     print(

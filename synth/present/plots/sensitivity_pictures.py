@@ -25,15 +25,15 @@ def sensitivity_pictures(found: Sensitivity) -> Iterator[Picture]:
         "sensitivity-overall",
         "All cases",
         "Shares of variance, all cases",
-        "Share of the variance that each number alone accounts for, mean over the cases, with 95 % intervals. Grey: the "
-        "interval holds 0, so these passes do not decide.",
+        "Share of the variance that each number alone accounts for, mean over the cases, with 95 % intervals. Grey: "
+        "the interval holds 0, so these passes do not decide.",
     )
     yield picture(
         share_cells(found),
         "sensitivity-cases",
         "Case by case",
         "Shares of variance by case",
-        "Per cent of the variance of the rms exit error by case, class of cuts and target. Grey figures are not decided.",
+        "Per cent of the variance of the rms exit error, by class of cuts and target. Grey figures are not decided.",
     )
 
 
@@ -70,10 +70,10 @@ def share_cells(found: Sensitivity) -> Figure:
     places = [found.keys.index(key) for key in order]
     cases = [f"{case.label}\nto {case.target_m_s:g} m/s" for case in found.cases]
     figure = new_figure(
-        4.0 + 0.62 * len(cases), 2.9 + 0.3 * len(order), "Shares of the variance of the rms exit error, %",
+        4.0 + 0.62 * len(cases), 2.3 + 0.3 * len(order), "Shares of the variance of the rms exit error, %",
         "every case is a table of its own",
     )  # fmt: skip
-    place(figure, left=3.1, right=0.3, bottom=1.7, top=0.75)
+    place(figure, left=3.1, right=0.3, bottom=1.15, top=0.75)
     axes = figure.subplots()
     dress(axes)
     axes.grid(False)
@@ -82,7 +82,7 @@ def share_cells(found: Sensitivity) -> Figure:
     for (row, column), value in np.ndenumerate(values):
         decided = found.cases[column].outputs[0].shares[places[row]].decided
         colour = ("white" if value > DARK_CELL else INK) if decided else GREY
-        axes.text(column, row, f"{100.0 * value:.0f}", ha="center", va="center", fontsize=7.5, color=colour)
+        axes.text(column, row, f"{max(100.0 * value, 0.0):.0f}", ha="center", va="center", fontsize=7.5, color=colour)
     names = [found.names[place] for place in places]
     axes.set_yticks(range(len(order)), names, fontsize=8)
     axes.set_xticks(range(len(cases)), cases, fontsize=7, rotation=90)
