@@ -15,6 +15,7 @@ from synth.configuration.resolved_config import ResolvedConfig
 MASS: Final = "cut.mass_t"
 
 NEVER_VARIED: Final = {
+    "retarder.stage_pressures_kpa": "read at a gauge; the library has no range for all of them together",
     "retarder.pneumatics.closing_delay_s": "with a narrow dead band the stages would hunt, which the model refuses",
 }
 """Keys that are held although the library has a range for them, and why."""
@@ -57,16 +58,17 @@ def varied_parameters(
         span = parameter.sensible or own.get(parameter.key)
         if parameter.key == MASS:
             span = parameter.low, parameter.high
+        if parameter.key in known:
+            span = parameter.nominal, parameter.nominal
         if span is not None:
-            found.append(within_limits(parameter, span, held=parameter.key in known))
+            found.append(within_limits(parameter, span))
     return tuple(found)
 
 
-def within_limits(parameter: Parameter, span: tuple[float, float], held: bool) -> Varied:
+def within_limits(parameter: Parameter, span: tuple[float, float]) -> Varied:
     """`parameter` over `span` as far as its limits allow."""
     nominal = parameter.nominal
-    low = nominal if held else max(min(span[0], nominal), parameter.low)
-    high = nominal if held else min(max(span[1], nominal), parameter.high)
+    low, high = max(min(span[0], nominal), parameter.low), min(max(span[1], nominal), parameter.high)
     return Varied(parameter.key, parameter.name, nominal, low, high, parameter.assumed)
 
 
