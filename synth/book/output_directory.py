@@ -34,7 +34,8 @@ TUNE_LAYOUT: Final = Layout("tune", "retarder-summary", ("tables", "c", "plots")
 AIM_LAYOUT: Final = Layout("aim", "aim-summary", ("tables", "c", "st", "plots"))
 TRAINS_LAYOUT: Final = Layout("hump simulate", "hump-trial-summary", ("batches", "inputs", "plots"))
 COMPUTER_LAYOUT: Final = Layout("computer", "control-computer-summary", ("plots",))
-LAYOUTS: Final = (TUNE_LAYOUT, AIM_LAYOUT, TRAINS_LAYOUT, COMPUTER_LAYOUT)
+SENSITIVITY_LAYOUT: Final = Layout("sensitivity", "sensitivity-summary", ("plots",))
+LAYOUTS: Final = (TUNE_LAYOUT, AIM_LAYOUT, TRAINS_LAYOUT, COMPUTER_LAYOUT, SENSITIVITY_LAYOUT)
 LEFTOVER = re.compile(r"\..+\.[0-9a-f]{16}\.part")
 PICTURES = re.compile(
     r"(rms-by-controller|feasibility|switchings|degree-study|(exit-density|surfaces|policy-map|sample-passes)-.+)"
@@ -50,6 +51,9 @@ TRAIN_PICTURES = re.compile(r"hump-[a-z-]+\.(png|svg)")
 
 COMPUTER_PICTURES = re.compile(r"computer-[a-z-]+\.(png|svg)")
 """Those of a control computer."""
+
+SENSITIVITY_PICTURES = re.compile(r"sensitivity-[a-z-]+\.(png|svg)")
+"""Those of shares of variance."""
 
 SWEEP_LEDGER, SWEPT_CONFIG = "sweep/ledger.jsonl", "config.toml"
 """What is in every directory of a sweep, and beside every book of one."""

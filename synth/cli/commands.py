@@ -19,6 +19,7 @@ from synth.cli.arguments import (
     with_names,
 )
 from synth.cli.init_commands import add_init_command
+from synth.cli.measuring_commands import add_measuring_commands
 from synth.cli.yard_commands import add_yard_commands
 
 app = typer.Typer(
@@ -88,6 +89,7 @@ def tune(
 
 
 add_yard_commands(app)
+add_measuring_commands(app)
 
 
 @app.command()

@@ -12,15 +12,15 @@ import pytest
 from plant_models import Friction, Plant, PlantError, WeightForce
 from synth.configuration.config_file import load_config
 from synth.configuration.cut_class import CutClass
+from synth.configuration.plant_parameter import LEFT_OUT, Parameter, assumed_keys, parameters
+from synth.configuration.plant_values import NEARLY_SUPPLY, SLOPE_BY_AXLES, STAGE_PRESSURES, by_axles, with_values
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.kernels.loop.closed_loop import brake_rows
 from synth.simulation.closed_loop import LineController, TableController, close_loop, simulate
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.solver.switching_lines import SwitchingLines
 from synth.studies.robustness.condition import aged_valves, conditions, friction, out_of_service, shifted_stages
-from synth.studies.robustness.parameter import LEFT_OUT, Parameter, assumed_keys, parameters
 from synth.studies.robustness.perturbation import all_off, one_off, sensible_ends
-from synth.studies.robustness.plant_values import NEARLY_SUPPLY, SLOPE_BY_AXLES, STAGE_PRESSURES, by_axles, with_values
 from tests.synth.case_factory import make_plant, make_table
 
 SUPPLY = "retarder.pneumatics.supply_pressure_kpa"

@@ -9,6 +9,7 @@ import pytest
 
 from synth.book.tuned_table import predict
 from synth.configuration.config_file import load_config
+from synth.configuration.plant_parameter import Parameter
 from synth.problem.resolution import finer_for_check
 from synth.simulation.exit_statistics import rms_ratio
 from synth.simulation.random_passes import random_passes
@@ -22,7 +23,6 @@ from synth.studies.robustness.experiments import (
     together,
     tolerated,
 )
-from synth.studies.robustness.parameter import Parameter
 from synth.studies.robustness.perturbation import Perturbation, ends_by
 from synth.studies.robustness.sensor_fault import Bias
 from synth.studies.robustness.trial import Trial, trial_of

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 from plant_models import Plant, PressingForce, WeightForce
 from plant_models.library.weight_category import WeightCategories
+from synth.configuration.plant_values import SLOPES, STAGE_PRESSURES, with_values
 from synth.studies.humping.books import BOOKS, Regulator
-from synth.studies.robustness.plant_values import SLOPES, STAGE_PRESSURES, with_values
 from synth.yard.humping.class_choice import ClassChoice
 from synth.yard.humping.table_hump_position import TableHumpPosition
 from synth.yard.humping.train_source import DrawnSource

@@ -10,9 +10,9 @@ from dataclasses import replace
 from typing import Final
 
 from plant_models import Plant
-from synth.studies.robustness.parameter import Parameter, nominal_value
+from synth.configuration.plant_parameter import Parameter, nominal_value
+from synth.configuration.plant_values import SLOPES, with_values
 from synth.studies.robustness.perturbation import Perturbation, reach_note
-from synth.studies.robustness.plant_values import SLOPES, with_values
 from synth.studies.robustness.sensor_fault import Bias, DropOut, LostReadings, at_random, before_exit
 
 SLIVER_M: Final = 1e-6

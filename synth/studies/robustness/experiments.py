@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant
+from synth.book.sensitivity.hypercube import unit_hypercube
+from synth.configuration.plant_parameter import Parameter
 from synth.studies.robustness.findings import EndsRow, SweepRow, TogetherRow
-from synth.studies.robustness.parameter import Parameter
 from synth.studies.robustness.perturbation import Ends, all_off, one_off
 from synth.studies.robustness.trial import Trial
 from synth.studies.side_by_side import side_by_side
@@ -71,10 +72,7 @@ def first_crossing(relative: Sequence[float], rms_m_s: Sequence[float], limit_m_
 
 def hypercube(parameters: int, span: float, points: int, seed: int) -> NDArray[np.float64]:
     """Points of a Latin hypercube, uniform over ±`span`, (points, parameters)."""
-    from scipy.stats import qmc  # start-up: scipy only where it is needed
-
-    unit = qmc.LatinHypercube(parameters, rng=np.random.default_rng(seed)).random(points)
-    relative: NDArray[np.float64] = span * (2.0 * unit - 1.0)
+    relative: NDArray[np.float64] = span * (2.0 * unit_hypercube(parameters, points, seed) - 1.0)
     return relative
 
 

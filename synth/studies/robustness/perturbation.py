@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from plant_models import Plant
-from synth.studies.robustness.parameter import Parameter
-from synth.studies.robustness.plant_values import stages_out_of_reach, with_values
+from synth.configuration.plant_parameter import Parameter
+from synth.configuration.plant_values import stages_out_of_reach, with_values
 from synth.studies.robustness.sensor_fault import SensorFault, no_fault
 
 

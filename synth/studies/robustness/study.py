@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from synth.configuration.plant_parameter import LEFT_OUT, Parameter, parameters
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.simulation.stratified_passes import stratified_passes
 from synth.studies.cases import Case, named_cases
@@ -21,7 +22,6 @@ from synth.studies.options import option
 from synth.studies.robustness.condition import conditions
 from synth.studies.robustness.experiments import one_at_a_time, sweep, together
 from synth.studies.robustness.findings import CaseRow, EndsRow, OutcomeRow, Robustness, SweepRow
-from synth.studies.robustness.parameter import LEFT_OUT, Parameter, parameters
 from synth.studies.robustness.perturbation import Perturbation, ends_by, one_off, sensible_ends
 from synth.studies.robustness.sensor_fault import no_fault
 from synth.studies.robustness.trial import Trial, trial_of

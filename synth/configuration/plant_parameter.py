@@ -10,8 +10,7 @@ from typing import Final
 from plant_models import Plant, PressingForce
 from plant_models.library import SourcedValue
 from synth.configuration.cut_class import CutClass
-from synth.configuration.resolved_config import ResolvedConfig
-from synth.studies.robustness.plant_values import (
+from synth.configuration.plant_values import (
     GRADE,
     RELATIVE,
     SLOPE_BY_AXLES,
@@ -19,6 +18,7 @@ from synth.studies.robustness.plant_values import (
     STAGE_PRESSURES,
     TOUCH_PRESSURE,
 )
+from synth.configuration.resolved_config import ResolvedConfig
 
 FULL_RANGE: Final = 0.5
 """Relative change at which a parameter that is nominally zero takes the end of its sensible range."""

@@ -81,7 +81,7 @@ def changed_force(plant: Plant, values: Mapping[str, float]) -> PressingForce | 
         slope = values.get(SLOPES[1], force.slope_kn_per_kpa_per_t)
         factors = by_axles(force.slope_factor_by_axles, values.get(SLOPE_BY_AXLES, 1.0), plant.cut.axles)
         return WeightForce(slope, touch, factors)
-    raise ValueError(f"robustness: the force law {type(force).__name__} has no numbers that can be changed")
+    raise ValueError(f"plant values: the force law {type(force).__name__} has no numbers that can be changed")
 
 
 def by_axles(factors: tuple[float, ...], at_all: float, axles: int) -> tuple[float, ...]:
