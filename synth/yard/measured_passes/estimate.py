@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -144,17 +145,40 @@ def posterior(passes: FittingPasses, unknowns: tuple[Unknown, ...], threads: int
     return Posterior(parts, unknowns, threads)
 
 
+@dataclass(frozen=True, eq=False)
+class Turned:
+    """`target` in variables z in which the summit is about as wide in all directions as it seems to be at `start`."""
+
+    target: Posterior
+    start: Floats
+    turn: Floats
+
+    def point(self, z: Floats) -> Floats:
+        """Where `z` is."""
+        return np.asarray(self.start + self.turn @ z)
+
+    def value(self, z: Floats) -> float:
+        """See `Posterior`."""
+        return self.target.value(self.point(z))
+
+    def gradient(self, z: Floats) -> Floats:
+        """See `Posterior`."""
+        return np.asarray(self.turn.T @ self.target.gradient(self.point(z)))
+
+    def hessian(self, z: Floats) -> Floats:
+        """See `Posterior`."""
+        return np.asarray(self.turn.T @ self.target.hessian(self.point(z)) @ self.turn)
+
+
 def highest(target: Posterior, start: Floats, near: float) -> Floats:
     """The most likely point, sought from `start` until the slope is `near`, in standard errors."""
-    # In these variables the summit is about as wide in all directions as it seems to be from the start.
-    turn = np.linalg.inv(np.linalg.cholesky(target.hessian(start))).T
-    found = minimize(
-        lambda z: target.value(start + turn @ z), np.zeros(len(start)), method="trust-exact",
-        jac=lambda z: turn.T @ target.gradient(start + turn @ z),
-        hess=lambda z: turn.T @ target.hessian(start + turn @ z) @ turn,
-        options={"gtol": near, "initial_trust_radius": 10.0, "max_trust_radius": 1e6, "maxiter": MOST_STEPS},
+    turned = Turned(target, start, np.linalg.inv(np.linalg.cholesky(target.hessian(start))).T)
+    options: Any = {"gtol": near, "initial_trust_radius": 10.0, "max_trust_radius": 1e6, "maxiter": MOST_STEPS}
+    found: Any = minimize(
+        turned.value, np.zeros(len(start)), method="trust-exact", jac=turned.gradient, hess=turned.hessian,
+        options=options,
     )  # fmt: skip
-    return np.asarray(start + turn @ found.x)
+    return turned.point(found.x)
 
 
 def linearised(part: Likelihood, unknowns: Sequence[Unknown], u: Floats) -> Linearised:
