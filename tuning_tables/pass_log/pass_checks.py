@@ -84,7 +84,8 @@ def steady(name: str) -> Check:
 
     def changes(s: Segments) -> Rows:
         first = s[name][s.first_row[:-1]][s.pass_of_row]
-        return ~((s[name] == first) | (np.isnan(s[name]) & np.isnan(first)))
+        same: Rows = (s[name] == first) | (np.isnan(s[name]) & np.isnan(first))
+        return ~same
 
     return name, changes, lambda s, row: f"changes to {s[name][row]:g} within the pass; it must be one number"
 

@@ -15,7 +15,7 @@ def sample_log(passes: int = 6, rows: int = 40, first: int = 0, gauge: bool = Tr
     stage = (sample // 10) % 3
     noise = np.random.default_rng(first).normal(size=len(sample))
     return PassLog(
-        time_s=np.round(number * (rows * 0.1 + 30.0) + sample * 0.1, 9),
+        time_s=np.round(number * (rows * 0.1 + 30.0) + sample * 0.1, 9).astype(np.float64),
         path_m=5.0 * sample * 0.1 - sample**2 * 0.05 / rows,
         speed_m_s=np.round(speed + 0.02 * noise, 2),
         pressure_kpa=150.0 * stage + 2.0 * noise if gauge else np.full(len(sample), np.nan),

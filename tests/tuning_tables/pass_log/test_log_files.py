@@ -37,7 +37,8 @@ def test_a_log_reads_back_exactly(tmp_path: Path, name: str, gauge: bool) -> Non
     log = replace(log, speed_m_s=speed, path_is_independent=gauge)
     write_log(log, tmp_path / name)
     loaded = read_logs([tmp_path / name], None, 2)
-    assert loaded.faults == loaded.refused == ()
+    assert loaded.faults == ()
+    assert loaded.refused == ()
     assert_equal(loaded.log, log)
     assert [path.name for path in tmp_path.iterdir()] == [name]
 
