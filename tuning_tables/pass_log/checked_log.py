@@ -48,7 +48,7 @@ def pass_faults(segments: Segments) -> dict[int, PassFault]:
     for number, earlier in _out_of_order(segments, faults):
         row = int(segments.first_row[number])
         time = segments["time_s"]
-        what = f"begins at {time[row]:.3f} s, before the pass ahead has ended at {time[earlier]:.3f} s; the clock must go on"
+        what = f"begins at {time[row]:.3f} s, but the pass ahead ended at {time[earlier]:.3f} s; the clock must go on"
         faults[number] = _fault(segments, number, row, "time_s", what)
     seen: set[str] = set()
     for number, cut_id in enumerate(segments.columns.cut_id.value):

@@ -94,7 +94,7 @@ def _written(values: Any) -> list[Any]:
     if isinstance(values, tuple):
         return list(values)
     if values.dtype == np.bool_:
-        return values.astype(int).tolist()
+        return [int(value) for value in values]
     return ["" if value != value else value for value in values.tolist()]  # only NaN is not itself
 
 

@@ -6,6 +6,7 @@ import os
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Final
 
@@ -92,7 +93,7 @@ def _read(path: Path, mapping: LogMapping, top_stage: int | None) -> tuple[PassL
 
 
 def _files(paths: Sequence[Path]) -> Iterator[Path]:
-    for path in paths:
+    for path in dict.fromkeys(paths):
         if not path.is_dir():
             yield path
             continue
@@ -105,7 +106,7 @@ def _files(paths: Sequence[Path]) -> Iterator[Path]:
 def _in_order_of_time(found: list[tuple[Path, PassLog]]) -> list[tuple[Path, PassLog]]:
     """Sorted by their beginnings, if no two files overlap."""
     ordered = sorted(found, key=lambda each: float(each[1].time_s[0]))
-    apart = all(now.time_s[0] > ahead.time_s[-1] for (_, ahead), (_, now) in zip(ordered, ordered[1:], strict=False))
+    apart = all(now.time_s[0] > ahead.time_s[-1] for (_, ahead), (_, now) in pairwise(ordered))
     return ordered if apart else found
 
 

@@ -84,14 +84,15 @@ def steady(name: str) -> Check:
 
     def changes(s: Segments) -> Rows:
         first = s[name][s.first_row[:-1]][s.pass_of_row]
-        return ~((s[name] == first) | (np.isnan(s[name]) & np.isnan(first)))
+        same: Rows = (s[name] == first) | (np.isnan(s[name]) & np.isnan(first))
+        return ~same
 
     return name, changes, lambda s, row: f"changes to {s[name][row]:g} within the pass; it must be one number"
 
 
 def duplicated(s: Segments) -> Rows:
     """Rows that are the row before once more."""
-    same = (s.step(s["time_s"]) == 0.0) & (s.step(s["path_m"]) == 0.0)
+    same: Rows = (s.step(s["time_s"]) == 0.0) & (s.step(s["path_m"]) == 0.0)
     speed = s["speed_m_s"]
     same &= (s.step(speed) == 0.0) | np.isnan(speed)
     same[s.first_row[:-1]] = False
@@ -100,7 +101,7 @@ def duplicated(s: Segments) -> Rows:
 
 def clock_stands_or_goes_back(s: Segments) -> Rows:
     """Rows no later than the row before."""
-    late = s.step(s["time_s"]) <= 0.0
+    late: Rows = s.step(s["time_s"]) <= 0.0
     late[s.first_row[:-1]] = False
     return late
 
@@ -134,7 +135,9 @@ def path_goes_back(s: Segments) -> Rows:
 
 def path_jumps(s: Segments) -> Rows:
     """Rows farther on than any car rolls."""
-    return s.step(s["path_m"]) > FASTEST_M_S * np.maximum(0.0, s.step(s["time_s"])) + LOOSE_PATH_M
+    farthest = FASTEST_M_S * np.maximum(0.0, s.step(s["time_s"])) + LOOSE_PATH_M
+    far: Rows = s.step(s["path_m"]) > farthest
+    return far
 
 
 def category_changes(s: Segments) -> Rows:
@@ -172,7 +175,7 @@ CHECKS: Final[tuple[Check, ...]] = (
     ),
     (
         "time_s", gap,
-        lambda s, row: f"is {s.step(s['time_s'])[row]:.2f} s after the row before; at most {LONGEST_GAP_S:g} s may lack",
+        lambda s, row: f"is {s.step(s['time_s'])[row]:.2f} s after the row before; at most {LONGEST_GAP_S:g} s may be",
     ),
     (
         "path_m", path_goes_back,

@@ -1,0 +1,146 @@
+"""Bad logs: each kind is told in one sentence that names file, row and column, and costs no sound pass."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.tuning_tables.pass_log.sample_logs import sample_log
+from tuning_tables.errors import InvalidLog
+from tuning_tables.pass_log.log_files import read_logs, write_log
+
+ROWS = 40
+FIRST = 3 + 2 * ROWS
+"""Row in a spreadsheet of the first row of pass 2: after a comment and a header."""
+
+Table = list[list[str]]
+
+
+def table_of(path: Path) -> Table:
+    return [line.split(",") for line in path.read_text(encoding="utf-8").splitlines()]
+
+
+def put(column: int, value: str, row: int = FIRST + 5) -> Callable[[Table], None]:
+    def change(table: Table) -> None:
+        table[row - 1][column] = value
+
+    return change
+
+
+def shift(column: int, by: float, row: int = FIRST + 5, last: int = FIRST + ROWS) -> Callable[[Table], None]:
+    def change(table: Table) -> None:
+        for place in range(row - 1, last - 1):
+            table[place][column] = repr(float(table[place][column]) + by)
+
+    return change
+
+
+def drop(first: int, last: int) -> Callable[[Table], None]:
+    def change(table: Table) -> None:
+        del table[first - 1 : last - 1]
+
+    return change
+
+
+def twice(table: Table) -> None:
+    table.insert(FIRST + 5, table[FIRST + 4])
+
+
+def same_cut(table: Table) -> None:
+    for place in range(FIRST - 1, FIRST - 1 + ROWS):
+        table[place][0] = "cut-00000"
+
+
+@pytest.mark.parametrize(
+    ("change", "row", "column", "words"),
+    [
+        (put(1, "nan"), FIRST + 5, "time_s", "a number must stand there"),
+        (put(2, ""), FIRST + 5, "path_m", "a number must stand there"),
+        (twice, FIRST + 6, "time_s", "all others are those of the row before"),
+        (shift(1, -0.5), FIRST + 5, "time_s", "0.400 s back"),
+        (shift(1, 3.0), FIRST + 5, "time_s", "jumps by 3.100 s"),
+        (drop(FIRST + 5, FIRST + 20), FIRST + 5, "time_s", "1.60 s after the row before"),
+        (shift(2, -1.5), FIRST + 5, "path_m", "more than 0.2 m behind"),
+        (shift(2, 50.0), FIRST + 5, "path_m", "no car does"),
+        (put(3, "-0.5"), FIRST + 5, "speed_m_s", "from 0 to 40 m/s"),
+        (put(3, "41"), FIRST + 5, "speed_m_s", "from 0 to 40 m/s"),
+        (put(5, "1.5"), FIRST + 5, "stage", "whole number"),
+        (put(5, "3"), FIRST + 5, "stage", "stages 0 to 2"),
+        (put(6, "99"), FIRST + 5, "mass_t", "changes to 99 within the pass"),
+        (put(6, "30000"), FIRST + 5, "mass_t", "from 1 to 20000 t"),
+        (put(7, "0"), FIRST + 5, "axles", "from 1 to 1000"),
+        (put(8, "X"), FIRST + 5, "category", "changes within the pass"),
+        (put(10, "2"), FIRST + 5, "stopped_by_hand", "must be 0 or 1"),
+        (drop(FIRST + 4, FIRST + ROWS), FIRST, "cut_id", "4 rows only"),
+        (shift(1, -50.0, FIRST), FIRST, "time_s", "but the pass ahead ended"),
+        (same_cut, FIRST, "cut_id", "stands in an earlier pass"),
+    ],
+)
+def test_a_faulty_pass_is_left_out_and_named(
+    tmp_path: Path, change: Callable[[Table], None], row: int, column: str, words: str
+) -> None:
+    path = tmp_path / "log.csv"
+    write_log(sample_log(passes=6, rows=ROWS), path)
+    table = table_of(path)
+    change(table)
+    path.write_text("\n".join(",".join(cells) for cells in table), encoding="utf-8")
+    loaded = read_logs([path], None, 2)
+    (fault,) = loaded.faults
+    assert (fault.file, fault.row, fault.column) == (str(path), row, column)
+    assert fault.sentence.startswith(f"{path}: row {row}, column {column}, cut {fault.cut_id}: ")
+    assert words in fault.sentence
+    assert len(loaded.log) == 5
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (put(3, "fast"), f"row {FIRST + 5}, column speed_m_s: 'fast' is no number"),
+        (put(0, ""), f"row {FIRST + 5}, column cut_id: the cell is empty"),
+        (put(2, "way", row=2), "row 2: there is no column path_m"),
+        (put(4, "time_s", row=2), "row 2: the column time_s stands there twice"),
+        (lambda table: table.insert(FIRST + 4, [""]), f"row {FIRST + 5}: the line is empty"),
+        (lambda table: table[FIRST + 4].__delitem__(slice(4, None)), "column pressure_kpa: the row has only 4"),
+        (lambda table: table.__delitem__(slice(2, None)), "no rows under a header line"),
+    ],
+)  # fmt: skip
+def test_a_file_that_is_no_table_is_refused(tmp_path: Path, change: Callable[[Table], None], words: str) -> None:
+    path = tmp_path / "log.csv"
+    write_log(sample_log(passes=6, rows=ROWS), path)
+    table = table_of(path)
+    change(table)
+    path.write_text("\n".join(",".join(cells) for cells in table), encoding="utf-8")
+    with pytest.raises(InvalidLog) as refused:
+        read_logs([path], None, 2)
+    assert words in str(refused.value)
+    assert str(path) in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("column", "factor", "words"),
+    [
+        ("speed_m_s", 3.6, 'column speed_m_s: the measured speed is 3.6 times the path in time; speed_m_s seems'),
+        ("speed_m_s", 1 / 3.6, "divided by 3.6 once too often"),
+        ("path_m", 1 / 0.3048, "path_m seems to be in feet"),
+        ("pressure_kpa", 0.01, "if it is in bar"),
+    ],
+)  # fmt: skip
+def test_a_file_in_other_units_is_refused(tmp_path: Path, column: str, factor: float, words: str) -> None:
+    log = sample_log()
+    write_log(replace(log, **{column: getattr(log, column) * factor}), tmp_path / "log.h5")
+    with pytest.raises(InvalidLog) as refused:
+        read_logs([tmp_path / "log.h5"], None, 2)
+    assert words in str(refused.value)
+
+
+def test_a_stage_without_effect_is_told(tmp_path: Path) -> None:
+    log = sample_log()
+    other = np.random.default_rng(3).permutation(log.pressure_kpa)
+    for pressure in (other, np.full(len(other), 150.0)):
+        write_log(replace(log, pressure_kpa=pressure), tmp_path / "log.csv")
+        with pytest.raises(InvalidLog, match=r"log\.csv: from row 13 on, column stage: the stage is without effect"):
+            read_logs([tmp_path / "log.csv"], None, 2)
