@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,16 +23,24 @@ from synth.yard.measured_passes.pass_rows import PassRows, pass_rows
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+USUAL_M_S, USUAL_KPA = 4.0, 300.0
+"""Where a law beyond the model is that of the model."""
+
 
 @dataclass(frozen=True, eq=False)
 class Surprises:
-    """k observations of m passes: `surprise`, `variance` (k,), `pass_of` (k,), the first `readings` of them of the
-    sensor, row by row; `cuts`: what is known of the cuts in the end; `pressure_kpa` (n,) by the numbers given."""
+    """k observations of m passes: `surprise`, `variance` (k,) and `pass_of` (k,).
+
+    The first `readings` of them are of the sensor, at the rows `row_of`; then come `gauged` of the gauge; each row by
+    row. `cuts`: what is known of the cuts in the end; `pressure_kpa` (n,) by the numbers given.
+    """
 
     surprise: Floats
     variance: Floats
     pass_of: Ints
     readings: int
+    row_of: Ints
+    gauged: int
     cuts: Cuts
     pressure_kpa: Floats
 
@@ -70,18 +79,35 @@ class Likelihood:
         over, kpa = self.pressures(values) if pressures is None else pressures
         log, rows = self.passes.log, self.rows
         force = self.passes.plant.position.force
+        by_speed, pressing, drag = self.beyond(values, over)
         brake = rows.brake_m2_s2_per_kpa + values[asked.SLOPE_BY_AXLES] * rows.by_axles_m2_s2_per_kpa
         configured = getattr(force, self.slope_field)
-        braked = values[self.slope_key] / configured * np.einsum("ij,ij->i", brake, over)
+        braked = values[self.slope_key] / configured * by_speed * np.einsum("ij,ij->i", brake, pressing)
         spread = self.spread(values)
         n, m = len(log.time_s), len(log)
         surprise, variance = np.empty(n), np.empty(n)
         cuts = Cuts(*(np.empty(m) for _ in Cuts._fields))
         filter_passes(
-            Rows(log.speed_m_s, rows.step_m, rows.gained_m2_s2, rows.drag_m2_s2_per_n_kn, braked), spread,
+            Rows(log.speed_m_s, rows.step_m, rows.gained_m2_s2, rows.drag_m2_s2_per_n_kn * drag, braked), spread,
             log.first_row, 0, m, surprise, variance, cuts,
         )  # fmt: skip
         return self.observed(values, surprise, variance, cuts, kpa)
+
+    def beyond(self, values: Mapping[str, float], over: Floats) -> tuple[Floats, Floats, Floats]:
+        """What the model has not, at 0 unless `values` have it: factor of friction (n,), pressure that presses (n, p),
+        factor of resistance (n,). By a metre a second above `USUAL_M_S`, and by the pressure over `USUAL_KPA`."""
+        speed = self.speed_above_m_s
+        friction = 1.0 + values.get(asked.FRICTION_BY_SPEED, 0.0) * speed
+        bend = values.get(asked.FORCE_BY_PRESSURE, 0.0)
+        pressing = over if bend == 0.0 else over * (1.0 + bend * (over / USUAL_KPA - 1.0))
+        return friction, pressing, 1.0 + values.get(asked.RESISTANCE_BY_SPEED, 0.0) * speed
+
+    @cached_property
+    def speed_above_m_s(self) -> Floats:
+        """Path by time from each row to the next, less `USUAL_M_S`, (n,)."""
+        log = self.passes.log
+        step_s = np.diff(log.time_s, append=np.inf)
+        return np.asarray(np.where(self.rows.step_m > 0.0, self.rows.step_m / step_s - USUAL_M_S, 0.0))
 
     @property
     def slope_field(self) -> str:
@@ -113,9 +139,11 @@ class Likelihood:
         log = self.passes.log
         seen = np.isfinite(surprise)
         columns = [(surprise[seen], variance[seen], log.pass_of_row[seen])]
+        gauged = 0
         if asked.GAUGE_NOISE in values:
             read = np.isfinite(log.pressure_kpa)
-            noise = np.full(int(read.sum()), values[asked.GAUGE_NOISE] ** 2)
+            gauged = int(read.sum())
+            noise = np.full(gauged, values[asked.GAUGE_NOISE] ** 2)
             columns.append((log.pressure_kpa[read] - kpa[read], noise, log.pass_of_row[read]))
         if asked.BIAS in values:
             shown = np.flatnonzero(np.isfinite(self.rows.show_m_s))
@@ -123,7 +151,7 @@ class Likelihood:
             std = measured_speed_std(values[asked.NOISE], self.passes.plant.sensor.resolution_m_s)
             columns.append((self.rows.show_m_s[shown] - values[asked.BIAS], std**2 / counted, shown))
         joined = [np.concatenate(column) for column in zip(*columns, strict=True)]
-        return Surprises(joined[0], joined[1], joined[2], int(seen.sum()), cuts, kpa)
+        return Surprises(joined[0], joined[1], joined[2], int(seen.sum()), np.flatnonzero(seen), gauged, cuts, kpa)
 
 
 def likelihood_of(passes: FittingPasses, slope_key: str, settled: bool = False) -> Likelihood:

@@ -27,6 +27,10 @@ RESISTANCE, RESISTANCE_SPREAD = "rolling_resistance.mean_n_per_kn ", "rolling_re
 """Of a weight category, whose name follows; and of all: the standard deviation over what was taken before."""
 GAUGE_NOISE = "gauge.noise_kpa"
 
+FRICTION_BY_SPEED, FORCE_BY_PRESSURE = "friction.by_speed", "retarder.force.by_pressure"
+RESISTANCE_BY_SPEED = "rolling_resistance.by_speed"
+"""What the model has not, and is only tested for: relative changes, see `Likelihood.beyond`."""
+
 OF_VALVES = (TOUCH_PRESSURE, FILL, EXHAUST, BRAKE_DELAY, TOUCH_DELAY, RELEASE_DELAY, DEAD_BAND)
 """On these depends the pressure at a time."""
 
