@@ -1,0 +1,163 @@
+"""Which drift it is that an alarm tells of, since which pass, and how large it is.
+
+Each cause is given its most likely size and beginning on the passes up to now; the one with the largest likelihood is
+named. Between its sizes the logarithm of the likelihood is a cubic spline.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from synth.yard.measured_passes.drift.causes import TIMES, Cause
+from synth.yard.measured_passes.drift.charts import Charts
+from synth.yard.measured_passes.drift.evidence import Evidence
+
+Floats = NDArray[np.float64]
+
+BACK = 30
+"""A drift may have begun so many passes before the chart that gave the alarm left 0."""
+
+FURTHER = 100
+"""Passes after an alarm that the decision takes at most."""
+
+ODDS = 20.0
+"""A cause is named where it is so many times as likely as the next one."""
+
+FALL95 = 1.9207294103470202
+"""Half the 95 % quantile of χ² with one degree of freedom."""
+
+
+@dataclass(frozen=True)
+class Gain:
+    """Of one cause: its most likely size and beginning, and the logarithm of its likelihood over that of no drift."""
+
+    cause: Cause
+    size: float
+    begin: int
+    log_gain: float
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What is behind an alarm, known by the passes up to and with `until`.
+
+    `gains`: of all causes, the most likely first; `begins95`: earliest and latest pass that the drift of the first one
+    may have begun with; `size95` of it. An end at the edge of the sizes is the edge: it may be beyond.
+    """
+
+    alarm: int
+    until: int
+    gains: tuple[Gain, ...]
+    begins95: tuple[int, int]
+    size95: tuple[float, float]
+
+    @property
+    def first(self) -> Gain:
+        """The most likely cause."""
+        return self.gains[0]
+
+    @property
+    def odds(self) -> float:
+        """How many times as likely as the next one the first one is, each at its own best."""
+        return math.exp(min(self.gains[0].log_gain - self.gains[1].log_gain, 700.0))
+
+    @property
+    def decided(self) -> bool:
+        """Whether the first cause is the cause."""
+        return self.odds >= ODDS
+
+
+def diagnosed(evidence: Evidence, charts: Charts) -> Diagnosis | None:
+    """What is behind the first alarm, decided as early as the odds allow; None without an alarm."""
+    if charts.alarm is None:
+        return None
+    alarm = charts.alarm[0]
+    last = min(alarm + FURTHER, len(evidence) - 1)
+    for until in range(alarm, last):
+        found = gains_of(evidence, charts, until)
+        if found[0].log_gain - found[1].log_gain >= math.log(ODDS):
+            return diagnosis(evidence, charts, until, found)
+    return diagnosis(evidence, charts, last, gains_of(evidence, charts, last))
+
+
+def first_begin(charts: Charts) -> int:
+    """The earliest pass that the drift behind the first alarm is taken to have begun with."""
+    assert charts.alarm is not None
+    return max(0, charts.zero_before(*charts.alarm) + 1 - BACK)
+
+
+def gains_of(evidence: Evidence, charts: Charts, until: int) -> tuple[Gain, ...]:
+    """All causes by the passes up to `until`, the most likely first."""
+    begin = first_begin(charts)
+    found = []
+    for cause, ratio in zip(evidence.causes, evidence.ratios, strict=True):
+        sums = from_each(ratio[begin : until + 1])
+        number = int(np.argmax(sums.max(axis=1)))
+        # The best size on the grid belongs to about the best beginning; the spline then finds the size itself.
+        size, gain = highest(cause, sums[number])
+        found.append(Gain(cause, size, begin + number, gain))
+    return tuple(sorted(found, key=lambda gain: -gain.log_gain))
+
+
+def diagnosis(evidence: Evidence, charts: Charts, until: int, gains: tuple[Gain, ...]) -> Diagnosis:
+    """`gains`, with the intervals of the first cause."""
+    assert charts.alarm is not None
+    first, begin = gains[0], first_begin(charts)
+    ratio = evidence.ratios[evidence.causes.index(first.cause)]
+    by_begin = np.array([highest(first.cause, row)[1] for row in from_each(ratio[begin : until + 1])])
+    near = begin + np.flatnonzero(by_begin >= by_begin.max() - FALL95)
+    span = around(first.cause, ratio[first.begin : until + 1].sum(axis=0))
+    return Diagnosis(charts.alarm[0], until, gains, (int(near[0]), int(near[-1])), span)
+
+
+def sized(evidence: Evidence, found: Diagnosis, until: int) -> tuple[float, tuple[float, float]]:
+    """Size of the first cause and its 95 % interval by all passes from its beginning to `until`."""
+    cause = found.first.cause
+    ratio = evidence.ratios[evidence.causes.index(cause)]
+    total = ratio[found.first.begin : until + 1].sum(axis=0)
+    return highest(cause, total)[0], around(cause, total)
+
+
+def from_each(ratio: Floats) -> Floats:
+    """Sums from each pass to the last, (m, sizes)."""
+    return np.asarray(np.cumsum(ratio[::-1], axis=0)[::-1])
+
+
+def scaled(cause: Cause, sizes: Sequence[float] | Floats) -> Floats:
+    """Sizes on the scale of the spline: logarithms of factors."""
+    values = np.asarray(sizes, dtype=np.float64)
+    return np.asarray(np.log(values)) if cause.scale is TIMES else values
+
+
+def unscaled(cause: Cause, value: float) -> float:
+    """The size at a place on the scale of the spline."""
+    return math.exp(value) if cause.scale is TIMES else value
+
+
+def highest(cause: Cause, total: Floats) -> tuple[float, float]:
+    """(most likely size, gain there) of summed ratios (sizes,)."""
+    at = scaled(cause, cause.sizes)
+    spline = CubicSpline(at, total)
+    turns = spline.derivative().roots(extrapolate=False)
+    places = np.concatenate((turns[np.isfinite(turns)], at[[0, -1]]))
+    heights = spline(places)
+    best = int(np.argmax(heights))
+    return unscaled(cause, float(places[best])), float(heights[best])
+
+
+def around(cause: Cause, total: Floats) -> tuple[float, float]:
+    """Sizes at which summed ratios lie 1.92 below their highest value, the edges where they do not."""
+    at = scaled(cause, cause.sizes)
+    size, gain = highest(cause, total)
+    best = float(scaled(cause, [size])[0])
+    falls = CubicSpline(at, total - gain + FALL95).roots(extrapolate=False)
+    below, above = falls[falls <= best], falls[falls > best]
+    low = float(below.max()) if len(below) else float(at[0])
+    high = float(above.min()) if len(above) else float(at[-1])
+    return unscaled(cause, low), unscaled(cause, high)
