@@ -67,14 +67,14 @@ class Cause:
         return f"{size:+.{digits}f} {self.scale.unit}"
 
 
-def geometric(step: float, below: int, above: int) -> tuple[tuple[float, ...], tuple[float, float]]:
-    """Sizes step^-below … step^above, and the two next to 1."""
-    return tuple(step**k for k in range(-below, above + 1)), (1.0 / step, step)
+def geometric(step: float, reach: int, watched: int = 1) -> tuple[tuple[float, ...], tuple[float, float]]:
+    """Sizes step^−reach … step^reach, and those `watched` steps from 1."""
+    return tuple(step**k for k in range(-reach, reach + 1)), (step**-watched, step**watched)
 
 
-def even(step: float, reach: int) -> tuple[tuple[float, ...], tuple[float, float]]:
-    """Sizes −reach · step … reach · step, and the two next to 0."""
-    return tuple(step * k for k in range(-reach, reach + 1)), (-step, step)
+def even(step: float, reach: int, watched: int) -> tuple[tuple[float, ...], tuple[float, float]]:
+    """Sizes −reach · step … reach · step, and those `watched` steps from 0."""
+    return tuple(step * k for k in range(-reach, reach + 1)), (-watched * step, watched * step)
 
 
 NEW_TABLES = "make new tables from the numbers of now ('retune')"
@@ -91,7 +91,7 @@ def causes_of(passes: FittingPasses, values: Values, slope_key: str) -> tuple[Ca
 
 
 def _of_friction(passes: FittingPasses, slope_key: str) -> Iterator[Cause]:
-    sizes = geometric(1.15, 6, 5)
+    sizes = geometric(1.15, 5)
     yield Cause("friction", "mean friction", (slope_key,), TIMES, *sizes, Remedy.RETUNE, NEW_TABLES)
     categories = sorted({passes.log.category[number] for number in range(len(passes))})
     for category in categories if len(categories) > 1 else ():
@@ -100,41 +100,41 @@ def _of_friction(passes: FittingPasses, slope_key: str) -> Iterator[Cause]:
             f"{PADS}; else {NEW_TABLES}", category,
         )  # fmt: skip
     yield Cause(
-        "friction spread", "spread of friction from cut to cut", (asked.COMMON_CV,), TIMES, *geometric(1.4, 3, 3),
+        "friction spread", "spread of friction from cut to cut", (asked.COMMON_CV,), TIMES, *geometric(1.4, 3),
         Remedy.RETUNE, NEW_TABLES,
     )  # fmt: skip
     keys = tuple(asked.RESISTANCE + passes.plants[number][0] for number in sorted(set(passes.class_of.tolist())))
     yield Cause(
-        "rolling resistance", "rolling resistance", keys, TIMES, *geometric(1.25, 4, 4), Remedy.RETUNE, NEW_TABLES
+        "rolling resistance", "rolling resistance", keys, TIMES, *geometric(1.25, 4), Remedy.RETUNE, NEW_TABLES
     )
 
 
 def _of_drive() -> Iterator[Cause]:
     drive = (
-        ("fill constant", asked.FILL, 1.25, "look at supply valve, supply pressure and leaks of the brake cylinder"),
-        ("exhaust constant", asked.EXHAUST, 1.25, "look at the exhaust valve, its silencer and the pipes: they let out "
+        ("fill constant", asked.FILL, 1.12, "look at supply valve, supply pressure and leaks of the brake cylinder"),
+        ("exhaust constant", asked.EXHAUST, 1.12, "look at the exhaust valve, its silencer and the pipes: they let out "
          "too slowly or too fast"),
-        ("brake delay", asked.BRAKE_DELAY, 1.5, "look at the supply valve and its magnet: it opens at another time"),
-        ("release delay", asked.RELEASE_DELAY, 1.5, "look at the exhaust valve and its magnet: it opens at another "
+        ("brake delay", asked.BRAKE_DELAY, 1.2, "look at the supply valve and its magnet: it opens at another time"),
+        ("release delay", asked.RELEASE_DELAY, 1.2, "look at the exhaust valve and its magnet: it opens at another "
          "time"),
-        ("dead band", asked.DEAD_BAND, 1.3, "look at the pressure switches of the stages"),
-        ("touch pressure", asked.TOUCH_PRESSURE, 1.2, "look at pads (worn, changed), their gap to the wheel, and the "
+        ("dead band", asked.DEAD_BAND, 1.12, "look at the pressure switches of the stages"),
+        ("touch pressure", asked.TOUCH_PRESSURE, 1.1, "look at pads (worn, changed), their gap to the wheel, and the "
          "linkage"),
     )  # fmt: skip
     for name, key, step, advice in drive:
-        yield Cause(name, name, (key,), TIMES, *geometric(step, 4, 4), Remedy.REPAIR, advice)
+        yield Cause(name, name, (key,), TIMES, *geometric(step, 8, 2), Remedy.REPAIR, advice)
 
 
 def _of_sensors(passes: FittingPasses, values: Values) -> Iterator[Cause]:
     if asked.BIAS in values and passes.log.path_is_independent:
         advice = "adjust the speed sensor (angle, mounting); until then the tables aim wrong by as much"
-        yield Cause("sensor bias", "bias of the speed sensor", (asked.BIAS,), plus("m/s"), *even(0.05, 6),
+        yield Cause("sensor bias", "bias of the speed sensor", (asked.BIAS,), plus("m/s"), *even(0.025, 10, 2),
                     Remedy.REPAIR, advice)  # fmt: skip
     yield Cause(
-        "sensor noise", "noise of the speed sensor", (asked.NOISE,), TIMES, *geometric(1.4, 3, 4), Remedy.REPAIR,
+        "sensor noise", "noise of the speed sensor", (asked.NOISE,), TIMES, *geometric(1.2, 6, 2), Remedy.REPAIR,
         "look at the speed sensor: lens, mounting, disturbance",
     )  # fmt: skip
     if asked.GAUGE_NOISE in values and passes.log.has_gauge:
         advice = "adjust the pressure gauge; retarder and tables are not concerned"
-        yield Cause("gauge offset", "offset of the pressure gauge", (), plus("kPa"), *even(4.0, 6), Remedy.REPAIR,
+        yield Cause("gauge offset", "offset of the pressure gauge", (), plus("kPa"), *even(2.0, 10, 2), Remedy.REPAIR,
                     advice)  # fmt: skip

@@ -1,7 +1,7 @@
 """Which drift it is that an alarm tells of, since which pass, and how large it is.
 
 Each cause is given its most likely size and beginning on the passes up to now; the one with the largest likelihood is
-named. Between its sizes the logarithm of the likelihood is a cubic spline.
+named.
 """
 
 from __future__ import annotations
@@ -12,8 +12,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
-
 from synth.yard.measured_passes.drift.causes import TIMES, Cause
 from synth.yard.measured_passes.drift.charts import Charts
 from synth.yard.measured_passes.drift.evidence import Evidence
@@ -23,11 +21,14 @@ Floats = NDArray[np.float64]
 BACK = 30
 """A drift may have begun so many passes before the chart that gave the alarm left 0."""
 
-FURTHER = 100
+FURTHER = 150
 """Passes after an alarm that the decision takes at most."""
 
-ODDS = 20.0
+ODDS = 50.0
 """A cause is named where it is so many times as likely as the next one."""
+
+NEAR = 8.0
+"""Sizes whose logarithms of likelihood differ by less have a parabola through them."""
 
 FALL95 = 1.9207294103470202
 """Half the 95 % quantile of χ² with one degree of freedom."""
@@ -48,14 +49,13 @@ class Diagnosis:
     """What is behind an alarm, known by the passes up to and with `until`.
 
     `gains`: of all causes, the most likely first; `begins95`: earliest and latest pass that the drift of the first one
-    may have begun with; `size95` of it. An end at the edge of the sizes is the edge: it may be beyond.
+    may have begun with.
     """
 
     alarm: int
     until: int
     gains: tuple[Gain, ...]
     begins95: tuple[int, int]
-    size95: tuple[float, float]
 
     @property
     def first(self) -> Gain:
@@ -99,29 +99,19 @@ def gains_of(evidence: Evidence, charts: Charts, until: int) -> tuple[Gain, ...]
     for cause, ratio in zip(evidence.causes, evidence.ratios, strict=True):
         sums = from_each(ratio[begin : until + 1])
         number = int(np.argmax(sums.max(axis=1)))
-        # The best size on the grid belongs to about the best beginning; the spline then finds the size itself.
         size, gain = highest(cause, sums[number])
         found.append(Gain(cause, size, begin + number, gain))
     return tuple(sorted(found, key=lambda gain: -gain.log_gain))
 
 
 def diagnosis(evidence: Evidence, charts: Charts, until: int, gains: tuple[Gain, ...]) -> Diagnosis:
-    """`gains`, with the intervals of the first cause."""
+    """`gains`, with the interval of the beginning."""
     assert charts.alarm is not None
     first, begin = gains[0], first_begin(charts)
     ratio = evidence.ratios[evidence.causes.index(first.cause)]
     by_begin = np.array([highest(first.cause, row)[1] for row in from_each(ratio[begin : until + 1])])
     near = begin + np.flatnonzero(by_begin >= by_begin.max() - FALL95)
-    span = around(first.cause, ratio[first.begin : until + 1].sum(axis=0))
-    return Diagnosis(charts.alarm[0], until, gains, (int(near[0]), int(near[-1])), span)
-
-
-def sized(evidence: Evidence, found: Diagnosis, until: int) -> tuple[float, tuple[float, float]]:
-    """Size of the first cause and its 95 % interval by all passes from its beginning to `until`."""
-    cause = found.first.cause
-    ratio = evidence.ratios[evidence.causes.index(cause)]
-    total = ratio[found.first.begin : until + 1].sum(axis=0)
-    return highest(cause, total)[0], around(cause, total)
+    return Diagnosis(charts.alarm[0], until, gains, (int(near[0]), int(near[-1])))
 
 
 def from_each(ratio: Floats) -> Floats:
@@ -130,34 +120,27 @@ def from_each(ratio: Floats) -> Floats:
 
 
 def scaled(cause: Cause, sizes: Sequence[float] | Floats) -> Floats:
-    """Sizes on the scale of the spline: logarithms of factors."""
+    """Sizes on the scale of their steps: logarithms of factors."""
     values = np.asarray(sizes, dtype=np.float64)
     return np.asarray(np.log(values)) if cause.scale is TIMES else values
 
 
 def unscaled(cause: Cause, value: float) -> float:
-    """The size at a place on the scale of the spline."""
+    """The size at a place on that scale."""
     return math.exp(value) if cause.scale is TIMES else value
 
 
 def highest(cause: Cause, total: Floats) -> tuple[float, float]:
-    """(most likely size, gain there) of summed ratios (sizes,)."""
-    at = scaled(cause, cause.sizes)
-    spline = CubicSpline(at, total)
-    turns = spline.derivative().roots(extrapolate=False)
-    places = np.concatenate((turns[np.isfinite(turns)], at[[0, -1]]))
-    heights = spline(places)
-    best = int(np.argmax(heights))
-    return unscaled(cause, float(places[best])), float(heights[best])
+    """(most likely size, gain there) of summed ratios (sizes,): the best of the sizes.
 
-
-def around(cause: Cause, total: Floats) -> tuple[float, float]:
-    """Sizes at which summed ratios lie 1.92 below their highest value, the edges where they do not."""
+    Where its neighbours are not far below, by the parabola through the three. Farther apart a parabola is no likelihood
+    any more: it would rise above the best size by more than the truth does.
+    """
+    k = int(np.argmax(total))
+    if not 0 < k < len(total) - 1 or total[k] - min(total[k - 1], total[k + 1]) > NEAR:
+        return cause.sizes[k], float(total[k])
     at = scaled(cause, cause.sizes)
-    size, gain = highest(cause, total)
-    best = float(scaled(cause, [size])[0])
-    falls = CubicSpline(at, total - gain + FALL95).roots(extrapolate=False)
-    below, above = falls[falls <= best], falls[falls > best]
-    low = float(below.max()) if len(below) else float(at[0])
-    high = float(above.min()) if len(above) else float(at[-1])
-    return unscaled(cause, low), unscaled(cause, high)
+    slope, bend = 0.5 * (total[k + 1] - total[k - 1]), total[k + 1] - 2.0 * total[k] + total[k - 1]
+    if bend >= 0.0:
+        return cause.sizes[k], float(total[k])
+    return unscaled(cause, float(at[k] - slope / bend * (at[k + 1] - at[k]))), float(total[k] - 0.5 * slope**2 / bend)
