@@ -84,7 +84,7 @@ def logged_passes(
 
 def rows_of_pass(loop: ClosedLoop, controller: Controller, draws: Draws, number: int) -> Floats:
     """Time, path, measured speed and stage at the samples of pass `number` of `draws`, (4, samples)."""
-    one = Draws(*(part[number : number + 1] for part in draws))
+    one = Draws._make(part[number : number + 1] for part in draws)
     events = loop.follow(controller, one)
     period, first = loop.sensor.period_s, float(one.first_sample_s[0])
     # The first event is where the pass begins, the last where it ends; the kernel makes the times of samples like this.

@@ -86,7 +86,7 @@ def test_the_gauge_agrees_with_the_overpressure_that_braked(plant: Plant) -> Non
 
 
 def test_the_gauge_follows_the_closed_form_of_one_command(plant_52t: Plant) -> None:
-    """First command of each pass, from release: dead times, then the exponential towards the supply, up to the edge of the band."""
+    """First command of each pass, from release: dead times, then an exponential up to the edge of the band."""
     log = logged_passes(plant_52t, regulator(plant_52t), TARGET_M_S, 6, 0, 30, EXACT_GAUGE)
     drive, delay_s = plant_52t.position.pneumatics, plant_52t.sensor.computing_delay_s
     dead_s = delay_s + drive.brake_delay_s + drive.touch_delay_s

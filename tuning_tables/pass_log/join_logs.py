@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -18,7 +19,7 @@ def join_logs(logs: Sequence[PassLog]) -> PassLog:
     """
     if not logs:
         raise InvalidTable("pass log: there is no log to join.")
-    parts = {name: np.concatenate([getattr(log, name) for log in logs]) for name in ROWS}
+    parts: dict[str, Any] = {name: np.concatenate([getattr(log, name) for log in logs]) for name in ROWS}
     for name in PASSES:
         values = [getattr(log, name) for log in logs]
         texts = isinstance(values[0], tuple)
