@@ -104,9 +104,7 @@ def _of_friction(passes: FittingPasses, slope_key: str) -> Iterator[Cause]:
         Remedy.RETUNE, NEW_TABLES,
     )  # fmt: skip
     keys = tuple(asked.RESISTANCE + passes.plants[number][0] for number in sorted(set(passes.class_of.tolist())))
-    yield Cause(
-        "rolling resistance", "rolling resistance", keys, TIMES, *geometric(1.25, 4), Remedy.RETUNE, NEW_TABLES
-    )
+    yield Cause("rolling resistance", "rolling resistance", keys, TIMES, *geometric(1.25, 4), Remedy.RETUNE, NEW_TABLES)
 
 
 def _of_drive() -> Iterator[Cause]:
