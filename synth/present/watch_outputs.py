@@ -22,9 +22,9 @@ from synth.yard.measured_passes.drift.watch import Drift, Watch
 from tuning_tables.atomic_file import write_atomically
 
 CAPTION = (
-    "Upper panel: the sum of each chart; the dashed line is its limit. Below: exponentially weighted mean of exit speed "
-    "less target by weight category, with limits at three standard deviations. Lines: the beginning of the drift (dotted) "
-    "and the alarm (solid)."
+    "Upper panel: the sum of each chart; the dashed line is its limit. Below: exponentially weighted mean of exit "
+    "speed less target by weight category, with limits at three standard deviations. Vertical lines: the beginning of "
+    "the drift (dotted) and the alarm (solid)."
 )
 
 
@@ -92,7 +92,8 @@ def cost_sentence(drift: Drift) -> str:
         return "What it costs is not known: no targets on both sides of its beginning."
     return (
         f"Exits: rms of the error {before.rms_m_s:.3f} m/s in {before.passes} passes before, {after.rms_m_s:.3f} in "
-        f"{after.passes} since; over-speed {100.0 * before.overspeed:.1f} % before, {100.0 * after.overspeed:.1f} % since."
+        f"{after.passes} since; over-speed {100.0 * before.overspeed:.1f} % before, {100.0 * after.overspeed:.1f} % "
+        "since."
     )
 
 

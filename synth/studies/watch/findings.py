@@ -78,8 +78,8 @@ class Watched(Findings):
     def sentences(self) -> tuple[str, ...]:
         """How much was simulated."""
         return (
-            f"{self.passes} passes in order and {self.changed_passes} of each change, seed {self.seed}; repetitions draw "
-            "from them with replacement",
+            f"{self.passes} passes in order and {self.changed_passes} of each change, seed {self.seed}; repetitions "
+            "draw from them with replacement",
         )
 
     def faults(self) -> tuple[str, ...]:

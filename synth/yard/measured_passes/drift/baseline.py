@@ -44,8 +44,8 @@ def of_reference(
     """`values`, with those in their place that make the passes of `reference` most likely."""
     if len(reference) < LEAST_REFERENCE:
         raise InputError(
-            f"the reference has {len(reference)} passes; give {LEAST_REFERENCE} or more of a position in order, so that "
-            "an error of its numbers is not taken for a drift"
+            f"the reference has {len(reference)} passes; give {LEAST_REFERENCE} or more of a position in order, so "
+            "that an error of its numbers is not taken for a drift"
         )
     found = estimate(reference, unknowns_of(reference, parameters), threads).values
     return values | {key: value for key, value in found.items() if key in values}

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
 from synth.yard.measured_passes.drift.causes import TIMES, Cause
 from synth.yard.measured_passes.drift.charts import Charts
 from synth.yard.measured_passes.drift.evidence import Evidence

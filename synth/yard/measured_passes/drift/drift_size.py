@@ -1,4 +1,4 @@
-"""How large a drift is: the most likely size on the passes that have it, with its interval, by the likelihood itself."""
+"""How large a drift is: the most likely size on the passes that have it, by the likelihood itself."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The watch on a position's passes: charts, and what is behind the first alarm: cause, beginning, size, cost, remedy."""
+"""The watch on the passes of a position: charts, and what is behind the first alarm."""
 
 from __future__ import annotations
 
