@@ -260,6 +260,14 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.verification",
     ),
     Study(
+        "watch",
+        "After how many passes is a drift found and named, and how often is the alarm a false one?",
+        90.0,
+        "watch.md#how-it-was-shown",
+        "synth.studies.watch.study",
+        "synth.studies.watch.picture",
+    ),
+    Study(
         "yard-chain",
         "What do exact exits and measured resistance bring the yard: metres of gap and damaging couplings?",
         510.0,
