@@ -27,3 +27,7 @@ class NewerVersion(TableError):
 
 class OlderVersion(TableError):
     """The file was written to a version of the format that this reader no longer knows: export it again."""
+
+
+class InvalidLog(ValueError):
+    """A file of measured passes, or its mapping, cannot be used: correct the file, the mapping, or leave it out."""

@@ -88,8 +88,9 @@ def told(call: Callable[[], int]) -> int:
         from plant_models import PlantError
         from synth.faults.input_error import InputError
         from tuning_tables import TableError
+        from tuning_tables.errors import InvalidLog
 
-        if not isinstance(fault, InputError | PlantError | TableError):
+        if not isinstance(fault, InputError | PlantError | TableError | InvalidLog):
             return told_of_unforeseen(fault)
         say_each(fault.sentences if isinstance(fault, InputError) else (str(fault),))
         return DAMAGED if isinstance(fault, TableError) else INPUT_FAULT

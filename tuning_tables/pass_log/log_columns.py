@@ -1,0 +1,75 @@
+"""The columns of a file of measured passes, and what a file holds before it is cut into passes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+LARGEST_FILE_BYTES: Final = 2**30
+LONGEST_TEXT: Final = 63
+TEXTS: Final = ("cut_id", "category")
+OPTIONAL: Final = MappingProxyType({"pressure_kpa": np.nan, "target_m_s": np.nan, "stopped_by_hand": 0.0})
+"""Columns that a file may lack, and what stands for them then."""
+
+COLUMNS: Final = (
+    "cut_id", "time_s", "path_m", "speed_m_s", "pressure_kpa", "stage",
+    "mass_t", "axles", "category", "target_m_s", "stopped_by_hand",
+)  # fmt: skip
+NUMBERS: Final = tuple(name for name in COLUMNS if name not in TEXTS)
+CONSTANT: Final = ("mass_t", "axles", "target_m_s", "stopped_by_hand")
+"""Numbers that are one and the same in all rows of a pass."""
+
+
+@dataclass(frozen=True)
+class TextRuns:
+    """A column of text, run by run: `value[i]` stands in the rows from `first_row[i]` on."""
+
+    first_row: tuple[int, ...]
+    value: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class LogColumns:
+    """The rows of one file, in SI: `numbers` (n,) by column, and the runs of the two columns of text.
+
+    `first_number`: what a spreadsheet calls the first row. `path_is_independent`: as in `PassLog`.
+    """
+
+    source: str
+    first_number: int
+    numbers: Mapping[str, Floats]
+    cut_id: TextRuns
+    category: TextRuns
+    path_is_independent: bool
+
+    @property
+    def rows(self) -> int:
+        """Number of rows n."""
+        return len(self.numbers["time_s"])
+
+
+@dataclass(frozen=True)
+class PassFault:
+    """Why a pass was left out: `row` as in a spreadsheet (HDF5: counted from 1), `column`, and one whole sentence."""
+
+    file: str
+    row: int
+    column: str
+    cut_id: str
+    sentence: str
+
+
+@dataclass(frozen=True)
+class FileFault:
+    """Why a file was not used, in one sentence that names it."""
+
+    file: str
+    sentence: str
