@@ -34,7 +34,9 @@ TUNE_LAYOUT: Final = Layout("tune", "retarder-summary", ("tables", "c", "plots")
 AIM_LAYOUT: Final = Layout("aim", "aim-summary", ("tables", "c", "st", "plots"))
 TRAINS_LAYOUT: Final = Layout("hump simulate", "hump-trial-summary", ("batches", "inputs", "plots"))
 COMPUTER_LAYOUT: Final = Layout("computer", "control-computer-summary", ("plots",))
-LAYOUTS: Final = (TUNE_LAYOUT, AIM_LAYOUT, TRAINS_LAYOUT, COMPUTER_LAYOUT)
+REPLAY_LAYOUT: Final = Layout("replay", "replay-summary", ("plots",))
+RETUNE_LAYOUT: Final = Layout("retune", "retune-summary", ("tables", "plots"))
+LAYOUTS: Final = (TUNE_LAYOUT, AIM_LAYOUT, TRAINS_LAYOUT, COMPUTER_LAYOUT, REPLAY_LAYOUT, RETUNE_LAYOUT)
 LEFTOVER = re.compile(r"\..+\.[0-9a-f]{16}\.part")
 PICTURES = re.compile(
     r"(rms-by-controller|feasibility|switchings|degree-study|(exit-density|surfaces|policy-map|sample-passes)-.+)"
@@ -50,6 +52,9 @@ TRAIN_PICTURES = re.compile(r"hump-[a-z-]+\.(png|svg)")
 
 COMPUTER_PICTURES = re.compile(r"computer-[a-z-]+\.(png|svg)")
 """Those of a control computer."""
+
+MEASURED_PICTURES = re.compile(r"(replay|retune)-[a-z-]+\.(png|svg)")
+"""Those of measured passes."""
 
 SWEEP_LEDGER, SWEPT_CONFIG = "sweep/ledger.jsonl", "config.toml"
 """What is in every directory of a sweep, and beside every book of one."""

@@ -19,6 +19,7 @@ from synth.cli.arguments import (
     with_names,
 )
 from synth.cli.init_commands import add_init_command
+from synth.cli.measured_commands import add_measured_commands
 from synth.cli.yard_commands import add_yard_commands
 
 app = typer.Typer(
@@ -88,6 +89,7 @@ def tune(
 
 
 add_yard_commands(app)
+add_measured_commands(app)
 
 
 @app.command()

@@ -51,8 +51,16 @@ def tuned_tables(
 def tables_by_case(
     tables: Sequence[ControllerTable], config: ResolvedConfig, source: str
 ) -> dict[Case, ControllerTable]:
-    """The tables of a book by the class of `config` that each is for; `InputError` for one that fits none."""
-    return {(plant_for(table, config, source)[0], table.target_speed_m_s): table for table in tables}
+    """The tables of a book by the class of `config` that each is for; `InputError` for one that fits none.
+
+    The dead band may be another one: it is identified anew with every log.
+    """
+    band_kpa = config.retarder.position.pneumatics.dead_band_kpa
+    found = {}
+    for table in tables:
+        here = replace(table, retarder=replace(table.retarder, dead_band_kpa=band_kpa))
+        found[plant_for(here, config, source)[0], table.target_speed_m_s] = table
+    return found
 
 
 def restated(setup: ClassSetup, table: ControllerTable) -> ControllerTable:
