@@ -32,6 +32,6 @@ def loaded_passes(
         raise InputError(str(fault)) from None
     for refused in loaded.refused:
         warn(refused.sentence)
-    for fault in loaded.faults:
-        warn(fault.sentence)
+    for left_out in loaded.faults:
+        warn(left_out.sentence)
     return fitting_passes(loaded.log, config.plants(), source)

@@ -63,7 +63,7 @@ def measured_over_predicted(found: Replay) -> Figure:
 def own_and_other(found: Replay) -> Figure:
     """Bands over the passes."""
     target = found.passes.log.target_m_s[found.compared]
-    order = np.argsort((found.own.mean_m_s[found.compared] - target))
+    order = np.argsort(found.own.mean_m_s[found.compared] - target)
     n = len(order)
     figure = new_figure(10.0, 4.8, "Predicted exits of the same cuts under both tables", f"{n} passes")
     place(figure, left=0.8, right=0.3, bottom=0.95, top=0.75)

@@ -101,14 +101,16 @@ def replay(passes: FittingPasses, config: ResolvedConfig, order: ReplayOrder) ->
     replayer = Replayer(passes, known_cuts(like, found, values), order.draws, order.seed)
     measured = measured_exits(like, found, values)
     target = passes.log.target_m_s
-    run = [predicted_exits(replayer.exits(of.tables, of.of_pass, False), target) for of in (own, other)]
+    own_exits, other_exits = (
+        predicted_exits(replayer.exits(of.tables, of.of_pass, False), target) for of in (own, other)
+    )
     by_hand = np.asarray(passes.log.stopped_by_hand)
     compared = (own.of_pass != NO_TABLE) & (other.of_pass != NO_TABLE) & ~by_hand
     fresh = replayer.exits(own.tables, np.where(by_hand, NO_TABLE, own.of_pass), True)
     rank = ranks(fresh, measured, order.seed)
     return Replay(
-        passes, rule_agreement(passes, other), rule_agreement(passes, own), *run, measured, fresh, rank, compared,
-        left_out(passes, own, other, measured), difference(run[0], run[1], compared, order.seed), uniformity(rank),
+        passes, rule_agreement(passes, other), rule_agreement(passes, own), own_exits, other_exits, measured, fresh, rank, compared,
+        left_out(passes, own, other, measured), difference(own_exits, other_exits, compared, order.seed), uniformity(rank),
     )  # fmt: skip
 
 
@@ -149,7 +151,7 @@ def difference(own: PredictedExits, other: PredictedExits, compared: NDArray[np.
     n = len(a)
     if n == 0:
         nothing = Bootstrapped(float("nan"), (float("nan"), float("nan")))
-        return Difference(0, *[float("nan")] * 2, nothing, *[float("nan")] * 2, nothing, 0.0)
+        return Difference(0, np.nan, np.nan, nothing, np.nan, np.nan, nothing, 0.0)
     apart = np.abs(b - a)
     return Difference(
         n,

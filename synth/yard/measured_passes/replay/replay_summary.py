@@ -68,9 +68,7 @@ def agreement_words(agreement: RuleAgreement) -> str:
     return f"{same} of {asked} readings and {commands} of {all_commands} commands; {differing} passes differ somewhere"
 
 
-def replay_summary(
-    found: Replay, config: ResolvedConfig, created: str, file_hashes: Mapping[str, str]
-) -> Document:
+def replay_summary(found: Replay, config: ResolvedConfig, created: str, file_hashes: Mapping[str, str]) -> Document:
     """The document; None stands for what is not known."""
     document = {
         "format": REPLAY_LAYOUT.form,

@@ -35,7 +35,7 @@ class RuleAgreement:
     @property
     def asked(self) -> NDArray[np.bool_]:
         """Rows at which the table is asked, (n,)."""
-        return self.wanted != NOT_ASKED
+        return np.asarray(self.wanted != NOT_ASKED)
 
     @property
     def rows(self) -> tuple[int, int]:

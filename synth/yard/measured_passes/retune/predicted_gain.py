@@ -97,9 +97,7 @@ def case_gain(
     of_log = 0.5 * np.log(squares[:, 1] / squares[:, 0])
     half = student_quantile(len(plants) - 1) * float(of_log.std(ddof=1)) * math.sqrt(1.0 + 1.0 / len(plants))
     middle = float(of_log.mean())
-    return CaseGain(
-        *case, old, new, math.exp(middle), (math.exp(middle - half), math.exp(middle + half))
-    )
+    return CaseGain(*case, old, new, math.exp(middle), (math.exp(middle - half), math.exp(middle + half)))
 
 
 def predicted_gains(

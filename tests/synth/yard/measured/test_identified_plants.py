@@ -35,7 +35,9 @@ def test_every_number_stands_where_it_belongs(assumed: Yard) -> None:
     assert plants["LS-1"].resistance.mean_n_per_kn == before["LS-1"].resistance.mean_n_per_kn
     for label in plants:
         assert plants[label].resistance.std_n_per_kn == pytest.approx(1.3 * before[label].resistance.std_n_per_kn)
-    assert plant.position.pneumatics.exhaust_time_constant_s == before["S-1"].position.pneumatics.exhaust_time_constant_s
+    assert (
+        plant.position.pneumatics.exhaust_time_constant_s == before["S-1"].position.pneumatics.exhaust_time_constant_s
+    )
 
 
 def test_origins_are_told_and_the_configuration_is_another(assumed: Yard) -> None:

@@ -42,7 +42,11 @@ def true_exits(yard: Yard, table: ControllerTable, seed: int) -> np.ndarray:
 def replayed(assumed: Yard, worn: Yard) -> list[Replay]:
     own, other = assumed.tables[CASE], worn.tables[CASE]
     return [
-        replay(fitted(assumed, log_of(assumed, own, seed)), assumed.config, ReplayOrder([own], [other], 32, 1000 + 10 * seed))
+        replay(
+            fitted(assumed, log_of(assumed, own, seed)),
+            assumed.config,
+            ReplayOrder([own], [other], 32, 1000 + 10 * seed),
+        )
         for seed in range(REPETITIONS)
     ]
 
