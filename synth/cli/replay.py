@@ -1,4 +1,4 @@
-"""`retarder-synth replay`: measured passes under other tables; all that can be refused is refused before anything runs."""
+"""`retarder-synth replay`: measured passes under other tables; refused is what can be before anything runs."""
 
 from __future__ import annotations
 

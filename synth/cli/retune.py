@@ -34,11 +34,14 @@ def retune_command(
     from synth.yard.measured_passes.retune.tuned_books import tables_by_case
 
     old = None if given is None else tables_by_case(given, config, source)
-    with output_directory(output, RETUNE_LAYOUT) as directory:
-        with interruptible(directory), Progress(len(config.problems())) as progress:
-            order = RetuneOrder(old, creation_time(), threads=available())
-            found = guarded(retune, passes, config, order, progress.note)
-            write_retune(found, directory)
+    with (
+        output_directory(output, RETUNE_LAYOUT) as directory,
+        interruptible(directory),
+        Progress(len(config.problems())) as progress,
+    ):
+        order = RetuneOrder(old, creation_time(), threads=available())
+        found = guarded(retune, passes, config, order, progress.note)
+        write_retune(found, directory)
     if as_json:
         sys.stdout.write((output / "summary.json").read_text(encoding="utf-8"))
     else:

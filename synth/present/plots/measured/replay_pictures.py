@@ -21,14 +21,14 @@ def replay_pictures(found: Replay) -> Iterator[Picture]:
     if found.uniformity.n:
         yield picture(
             measured_over_predicted(found), "replay-measured", "Measured and predicted", "Measured over predicted",
-            "Left: exit less target, as measured and as predicted for any cut of its class that enters as fast under the "
-            "tables that drove the log. Right: ranks of the measured exits among the predicted ones; level where log and "
+            "Left: exit less target, as measured and as predicted for any cut of its class as fast, under the "
+            "tables that drove the log. Right: ranks of the measured exits among those; level where log and "
             "configuration agree, dotted: where 95 % of the bars stay then.",
         )  # fmt: skip
     if found.difference.passes:
         yield picture(
             own_and_other(found), "replay-tables", "The other tables", "Exits under both tables",
-            "Predicted exit less target of the same cuts under the tables that drove the log and under the others: mean "
+            "Predicted exit less target of the same cuts under the tables that drove the log and the others: mean "
             "and 80 % band of each pass, sorted by the mean under the tables of the log.",
         )  # fmt: skip
 

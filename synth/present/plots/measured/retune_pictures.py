@@ -30,13 +30,13 @@ def retune_pictures(found: Retuned) -> Iterator[Picture]:
     """All of them."""
     yield picture(
         gains(found), "retune-gains", "What is gained", "rms after over rms before",
-        "rms of exit less target under the new table over that under the old one, on the plants that the passes leave "
+        "rms of exit less target under the new table over that under the old one, on the plants the passes leave "
         "likely; bars: 95 % intervals, of the passes and of the estimate. Grey: within noise, the case keeps its table.",
     )  # fmt: skip
     most = min(found.changed or found.gains, key=lambda gain: gain.ratio)
     yield picture(
         before_after(found, most), "retune-lines", "What is gained", "Lines before and after",
-        f"{most.label} to {most.target_m_s:g} m/s, where most is gained: the lines above which a stage is raised, before "
+        f"{most.label} to {most.target_m_s:g} m/s, where most is gained: lines above which a stage is raised, before "
         "and after.",
     )  # fmt: skip
 

@@ -37,13 +37,16 @@ class Retuned:
         return tuple(gain for gain in self.gains if gain.better)
 
 
+STANDARD = GainOrder()
+
+
 @dataclass(frozen=True)
 class RetuneOrder:
     """What runs in the yard: `old` tables by case, None: those that a tune of the configuration makes."""
 
     old: Mapping[Case, ControllerTable] | None
     created: str
-    gain: GainOrder = GainOrder()
+    gain: GainOrder = STANDARD
     threads: int = 1
 
 

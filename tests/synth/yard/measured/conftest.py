@@ -62,5 +62,6 @@ def worn(assumed: Yard) -> Yard:
     known = {each.key: each.value for each in assumed.config.parameters}
     slope, exhaust = "retarder.force.slope_kn_per_kpa", "retarder.pneumatics.exhaust_time_constant_s"
     old = known[slope], known[exhaust]
-    assert isinstance(old[0], float) and isinstance(old[1], float)
+    assert isinstance(old[0], float)
+    assert isinstance(old[1], float)
     return yard_of(with_identified(assumed.config, {slope: 0.7 * old[0], exhaust: 1.5 * old[1]}, "truth"))

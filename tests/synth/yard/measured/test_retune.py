@@ -62,7 +62,9 @@ def test_the_new_book_states_the_identified_plant(retuned: Retuned) -> None:
         assert table.validated is not None
 
 
-def test_a_log_of_the_unchanged_plant_is_refused(assumed: Yard, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_a_log_of_the_unchanged_plant_is_refused(
+    assumed: Yard, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     write_log(log_of(assumed, assumed, 3), tmp_path / "log.h5")
     write_book(tuple(assumed.tables.values()), tmp_path / "old.h5")
     (tmp_path / "c.toml").write_text(TEXT)
@@ -72,7 +74,8 @@ def test_a_log_of_the_unchanged_plant_is_refused(assumed: Yard, tmp_path: Path, 
     assert "within noise" in capsys.readouterr().out
     assert not (out / "book.h5").exists()
     summary = json.loads((out / "summary.json").read_text())
-    assert summary["refused"] and not any(case["changed"] for case in summary["cases"])
+    assert summary["refused"]
+    assert not any(case["changed"] for case in summary["cases"])
     assert {"report.html", "plots/retune-gains.png"} <= set(summary["files"])
 
     assert main(["replay", str(tmp_path / "log.h5"), *words, "--own", words[1], "-o", str(tmp_path / "again")]) == 0
