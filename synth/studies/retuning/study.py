@@ -135,10 +135,11 @@ def cells(rows: list[Row]) -> tuple[str, ...]:
         return float(np.mean([getattr(row, name) for row in rows]))
 
     shares = [row.recovered for row in rows]
+    recovered = f"{100.0 * mean('recovered'):.0f} % {span((min(shares), max(shares)), 0, 100.0)}"
     held = sum(row.predicted_ci95[0] <= row.new_rms_m_s / row.old_rms_m_s <= row.predicted_ci95[1] for row in rows)
     return (
         str(rows[0].logged), rows[0].case, f"{mean('old_rms_m_s'):.4f}", f"{mean('new_rms_m_s'):.4f}",
-        f"{mean('truth_rms_m_s'):.4f}", f"{100.0 * mean('recovered'):.0f} % {span((min(shares), max(shares)), 0, 100.0)}",
+        f"{mean('truth_rms_m_s'):.4f}", recovered,
         f"{held} of {len(rows)}", f"{sum(row.changed for row in rows)} of {len(rows)}",
     )  # fmt: skip
 

@@ -31,7 +31,7 @@ def retune_pictures(found: Retuned) -> Iterator[Picture]:
     yield picture(
         gains(found), "retune-gains", "What is gained", "rms after over rms before",
         "rms of exit less target under the new table over that under the old one, on the plants the passes leave "
-        "likely; bars: 95 % intervals, of the passes and of the estimate. Grey: within noise, the case keeps its table.",
+        "likely; bars: 95 % intervals, of passes and estimate. Grey: within noise, the case keeps its table.",
     )  # fmt: skip
     most = min(found.changed or found.gains, key=lambda gain: gain.ratio)
     yield picture(

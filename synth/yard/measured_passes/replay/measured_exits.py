@@ -23,7 +23,7 @@ LONGEST_GAP_S = 0.6
 
 @dataclass(frozen=True, eq=False)
 class MeasuredExits:
-    """(m,) of the passes: exit speed and its standard error, NaN where the log ends too early; 0 where the cut stood."""
+    """(m,) of the passes: exit speed and its standard error, NaN if the log ends too early; 0 if the cut stood."""
 
     speed_m_s: Floats
     std_m_s: Floats

@@ -109,8 +109,10 @@ def replay(passes: FittingPasses, config: ResolvedConfig, order: ReplayOrder) ->
     fresh = replayer.exits(own.tables, np.where(by_hand, NO_TABLE, own.of_pass), True)
     rank = ranks(fresh, measured, order.seed)
     return Replay(
-        passes, rule_agreement(passes, other), rule_agreement(passes, own), own_exits, other_exits, measured, fresh, rank, compared,
-        left_out(passes, own, other, measured), difference(own_exits, other_exits, compared, order.seed), uniformity(rank),
+        passes, rule_agreement(passes, other), rule_agreement(passes, own), own_exits, other_exits, measured,
+        fresh, rank, compared,
+        left_out(passes, own, other, measured),
+        difference(own_exits, other_exits, compared, order.seed), uniformity(rank),
     )  # fmt: skip
 
 

@@ -34,7 +34,7 @@ def replay_sentences(found: Replay) -> tuple[str, ...]:
     if d.passes:
         low, high = d.rms_m_s.ci95
         told.append(
-            f"rms of exit less target on the same {d.passes} cuts: {d.own_rms_m_s:.4f} m/s under the tables of the log, "
+            f"rms of exit less target on {d.passes} cuts: {d.own_rms_m_s:.4f} m/s under the tables of the log, "
             f"{d.other_rms_m_s:.4f} m/s under the others; difference {d.rms_m_s.value:+.4f} [{low:+.4f}, {high:+.4f}] "
             f"m/s (95 %), carried by {d.effective:.0f} passes"
         )

@@ -25,7 +25,7 @@ def retune_sentences(found: Retuned) -> tuple[str, ...]:
     most = min(changed, key=lambda gain: gain.ratio)
     low, high = most.ratio_ci95
     return (
-        f"{len(changed)} of {len(found.gains)} cases get new tables, identified from {n} passes; {kept} are within noise "
+        f"{len(changed)} of {len(found.gains)} cases get new tables, from {n} passes; {kept} are within noise "
         "and keep their lines",
         f"most is gained for {most.label} to {most.target_m_s:g} m/s: rms {most.old_rms_m_s:.4f} to "
         f"{most.new_rms_m_s:.4f} m/s, ratio {most.ratio:.3f} [{low:.3f}, {high:.3f}] (95 %)",
