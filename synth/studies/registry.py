@@ -199,6 +199,13 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.reference_problem.picture",
     ),
     Study(
+        "retuning",
+        "How much of what can be recovered do tables recover that are tuned for measured passes?",
+        75.0,
+        "retune.md#measured",
+        "synth.studies.retuning.study",
+    ),
+    Study(
         "robustness",
         "What does a table do on another plant than it was tuned for: wrong parameters, worn parts, faulty sensors?",
         157.0,
