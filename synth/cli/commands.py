@@ -19,8 +19,8 @@ from synth.cli.arguments import (
     with_names,
 )
 from synth.cli.init_commands import add_init_command
-from synth.cli.measuring_commands import add_measuring_commands
 from synth.cli.measured_commands import add_measured_commands
+from synth.cli.measuring_commands import add_measuring_commands
 from synth.cli.yard_commands import add_yard_commands
 
 app = typer.Typer(

@@ -19,8 +19,25 @@ Output = Annotated[Path, typer.Option("-o", "--output", parser=directory, metava
 
 def add_measured_commands(app: typer.Typer) -> None:
     """Add the commands on measured passes to `app`."""
+    app.command()(identify)
     app.command()(replay)
     app.command()(retune)
+
+
+def identify(
+    logs: Logs,
+    mapping: Mapping = None,
+    config: Config = None,
+    output: Output = Path("out/identify"),
+    as_json: Json = False,
+) -> int:
+    """Tell the numbers of a position from its measured passes, and write them as a configuration.
+
+    Exit code 1 if a test says that the model does not hold for these passes.
+    """
+    from synth.cli.identify import identify_command
+
+    return identify_command(logs, mapping, config, output, as_json)
 
 
 def replay(

@@ -140,7 +140,7 @@ def estimate(passes: FittingPasses, unknowns: tuple[Unknown, ...], threads: int 
 
 
 def first_estimate(passes: FittingPasses, unknowns: tuple[Unknown, ...], threads: int) -> Floats:
-    """From some of the passes, sought from quick, usual and slow valves: the likelihood has summits of its own there."""
+    """From some of the passes, sought from quick, usual and slow valves: the likelihood has summits of its own."""
     some = np.unique(np.linspace(0, len(passes) - 1, FEW).astype(np.int64))
     target = posterior(passes.taken(some), unknowns, threads, settled=True)
     of_times = np.array([unknown.key in VALVE_TIMES for unknown in unknowns])

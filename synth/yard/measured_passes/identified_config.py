@@ -6,19 +6,15 @@ Numbers that the passes do not tell stay as they were, and stay assumed.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Final
 
-from plant_models.library import BUILT_IN, Library
 from plant_models.library.sourced_value import flat_numbers
-from synth.configuration.config_file import valid_settings
-from synth.configuration.own_types import with_own_types
 from synth.configuration.plant_settings import DEFAULT_CUTS
-from synth.configuration.resolved_config import ResolvedConfig, resolve
-from synth.configuration.toml_file import Tree, read_text, toml_tree
+from synth.configuration.resolved_config import ResolvedConfig
+from synth.configuration.toml_file import Tree
 from synth.configuration.toml_text import toml_text
 from synth.yard.measured_passes import unknowns as asked
+from synth.yard.measured_passes.config_source import ConfigSource
 from synth.yard.measured_passes.estimate import Estimate
 from synth.yard.measured_passes.identifiability import Finding, findings_of
 
@@ -26,27 +22,6 @@ TYPES: Final = "types"
 DIGITS: Final = 6
 
 FACTORS: Final = asked.FORCE + "slope_factor_by_axles"
-
-
-@dataclass(frozen=True)
-class ConfigSource:
-    """A configuration as its author wrote it: names in place of paths, and his own types. None: the built-in one."""
-
-    place: str
-    tree: Tree
-    library: Library
-
-    def resolved(self) -> ResolvedConfig:
-        """Every default filled in."""
-        return resolve(valid_settings(self.tree, self.place), self.place, self.library)
-
-
-def config_source(path: Path | None) -> ConfigSource:
-    """The configuration in the file `path`; `InputError` on any fault."""
-    if path is None:
-        return ConfigSource("built-in configuration", {}, BUILT_IN)
-    tree, library = with_own_types(toml_tree(read_text(path), str(path)), str(path))
-    return ConfigSource(str(path), tree, library)
 
 
 def identified(source: ConfigSource, found: Estimate, mean_axles: float, origin: str) -> ConfigSource:

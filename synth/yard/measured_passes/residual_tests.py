@@ -92,7 +92,9 @@ def along(part: Likelihood, found: Estimate, key: str) -> tuple[Floats, Floats, 
     r, s = base.surprise, base.variance
     by_r = (ends[0].surprise - ends[1].surprise) / (2.0 * STEP)
     by_s = (ends[0].variance - ends[1].variance) / (2.0 * STEP)
-    score: Floats = np.bincount(base.pass_of, -by_r * r / s - 0.5 * by_s / s * (1.0 - r**2 / s), len(part.passes))
+    score = np.asarray(
+        np.bincount(base.pass_of, -by_r * r / s - 0.5 * by_s / s * (1.0 - r**2 / s), len(part.passes)), dtype=np.float64
+    )
     cross = np.empty(len(found.u))
     for j, unknown in enumerate(found.unknowns):
         moved = values | {unknown.key: unknown.value(float(found.u[j]) + STEP)}

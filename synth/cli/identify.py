@@ -1,0 +1,42 @@
+"""`retarder-synth identify`: the numbers of a position from its measured passes, as a configuration."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from synth.cli import LIMITS_MISSED, OK, say
+from synth.cli.processors import available
+
+
+def identify_command(
+    logs: Sequence[Path], mapping: Path | None, config_path: Path | None, output: Path, as_json: bool
+) -> int:
+    """Identify the numbers behind `logs`; 1 where a test says that the model does not hold."""
+    from synth.book.creation_time import creation_time, require_date
+    from synth.book.output_directory import IDENTIFY_LAYOUT, output_directory
+    from synth.cli.interrupt import interruptible
+    from synth.kernels.cache import guarded
+    from synth.yard.measured_passes.config_source import config_source
+    from synth.yard.measured_passes.loaded_passes import loaded_passes
+
+    source = config_source(config_path)
+    config = source.resolved()
+    require_date()
+    passes = loaded_passes(logs, mapping, config, source.place, lambda sentence: say(f"warning: {sentence}"))
+    from synth.present.identify_outputs import write_identified
+    from synth.yard.measured_passes.identify import identify
+    from synth.yard.measured_passes.identify_summary import identify_sentences
+
+    started = time.monotonic()
+    with output_directory(output, IDENTIFY_LAYOUT) as directory, interruptible(directory):
+        found = guarded(identify, passes, config, available())
+        say(f"{len(passes)} passes told after {time.monotonic() - started:.1f} s")
+        write_identified(found, source, creation_time(), directory)
+    if as_json:
+        sys.stdout.write((output / "summary.json").read_text(encoding="utf-8"))
+    else:
+        print("\n".join((*identify_sentences(found), f"{output}: config.toml, plots/, report.html, summary.json")))
+    return LIMITS_MISSED if found.wrong else OK

@@ -1,0 +1,59 @@
+"""What identification leaves in its directory: the configuration, pictures, report, and last of all the summary."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from synth.book.output_directory import SUMMARY, make_directory
+from synth.book.summary import Document
+from synth.present.measured_outputs import written
+from synth.present.report.measured_report import Figures
+from synth.yard.measured_passes.config_source import ConfigSource
+from synth.yard.measured_passes.identified_config import config_files, identified
+from synth.yard.measured_passes.identify import Identified
+from synth.yard.measured_passes.identify_summary import CONFIG, identify_sentences, identify_summary
+from synth.yard.measured_passes.pass_rows import pass_rows
+from tuning_tables import write_atomically
+from tuning_tables.canonical import canonical_json
+
+LIMITS: Final = (
+    "The numbers are those of the model of this program. Where a test says that the model does not hold, they are what "
+    "comes nearest to the passes, and the intervals hold for that.",
+    "The intervals hold for the plant as it was while the log was made.",
+)
+
+
+def write_identified(found: Identified, source: ConfigSource, created: str, directory: Path) -> Document:
+    """Write everything; the summary as written. Raises `OSError`."""
+    from synth.present.plots.measured.identify_pictures import identify_pictures  # matplotlib
+
+    new = identified(source, found.estimate, pass_rows(found.passes).mean_axles, found.origin)
+    files = []
+    for name, content in config_files(new, CONFIG).items():
+        make_directory((directory / name).parent)
+        write_atomically(directory / name, content)
+        files.append(directory / name)
+    shape = (
+        f"identify: {found.config.title}", not found.wrong, identify_sentences(found), figures_of(found),
+        (*found.reasons, *LIMITS),
+    )  # fmt: skip
+    hashes = written(shape, new.resolved().sha256, created, tuple(identify_pictures(found)), directory, files)
+    summary = identify_summary(found, created, hashes)
+    write_atomically(directory / SUMMARY, canonical_json(summary) + b"\n")
+    return summary
+
+
+def figures_of(found: Identified) -> tuple[Figures, ...]:
+    """Numbers and tests."""
+    numbers = [
+        (f.key, f"{f.before:.4g}", f"{f.value:.4g}", f"{f.interval[0]:.4g} to {f.interval[1]:.4g}", f.unit,
+         "yes" if f.identified else "no: stays as it was", ", ".join(key for key, _ in f.with_others))
+        for f in found.findings
+    ]  # fmt: skip
+    tests = [(t.looks_for, f"{t.z:+.1f}", f"{t.p:.2g}", "no" if t in found.wrong else "yes") for t in found.tests]
+    heads = ("key", "before", "identified", "95 % interval", "unit", "told", "told together with")
+    return (
+        Figures("Numbers", heads, numbers),
+        Figures("Does the model hold?", ("the test looks for", "z", "p", "holds"), tests),
+    )

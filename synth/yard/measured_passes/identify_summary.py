@@ -1,0 +1,88 @@
+"""What `identify` tells: sentences for a person, a document for programs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any, Final
+
+from synth.yard.measured_passes import unknowns as asked
+from synth.yard.measured_passes.identifiability import Finding
+from synth.yard.measured_passes.identify import Identified
+from synth.yard.measured_passes.residual_tests import ResidualTest
+
+CONFIG: Final = "config.toml"
+
+VERSION: Final = 1
+
+
+def identify_sentences(found: Identified) -> tuple[str, ...]:
+    """The answer, most important first."""
+    return tuple(_sentences(found))
+
+
+def _sentences(found: Identified) -> Iterator[str]:
+    told = [finding for finding in found.findings if finding.identified]
+    moved = [finding for finding in told if not finding.within]
+    yield (
+        f"{len(found.passes)} passes tell {len(told)} of {len(found.findings)} numbers; of {len(moved)} what was taken "
+        "before is outside the 95 % interval."
+    )
+    for finding in found.findings:
+        if finding.key == asked.BIAS and not finding.within:
+            low, high = finding.interval
+            yield f"The speed sensor shows {finding.value:+.3f} [{low:+.3f}, {high:+.3f}] m/s too much: adjust it."
+    yield (
+        f"Surprises of the readings, over what is expected (1 where the numbers are right): "
+        f"{found.before.surprise_rms:.2f} with the numbers before, {found.after.surprise_rms:.2f} with these."
+    )
+    if not found.wrong:
+        yield "No test says that the model does not hold."
+    for test in found.wrong:
+        yield f"The model does not hold: {test.looks_for}{size_of(test)} (p = {test.p:.1g})."
+
+
+def size_of(test: ResidualTest) -> str:
+    """The size of an effect with its interval, where a test tells it."""
+    if not math.isfinite(test.size):
+        return ""
+    low, high = test.size - 1.96 * test.size_std, test.size + 1.96 * test.size_std
+    return f", by {test.size:+.3f} [{low:+.3f}, {high:+.3f}] {test.unit.removeprefix('1 ')}"
+
+
+def identify_summary(found: Identified, created: str, hashes: dict[str, str]) -> dict[str, Any]:
+    """The document."""
+    return {
+        "format": "identify-summary",
+        "version": VERSION,
+        "created": created,
+        "config_sha256": found.config.sha256,
+        "passes": len(found.passes),
+        "log_likelihood": found.estimate.log_likelihood,
+        "sentences": list(identify_sentences(found)),
+        "numbers": [number(finding) for finding in found.findings],
+        "not_to_be_told": list(found.reasons),
+        "tests": [tested(test, test in found.wrong) for test in found.tests],
+        "surprise_rms": {"before": found.before.surprise_rms, "after": found.after.surprise_rms},
+        "files": hashes,
+    }
+
+
+def number(finding: Finding) -> dict[str, Any]:
+    """One number."""
+    return {
+        "key": finding.key,
+        "unit": finding.unit or "1",
+        "before": finding.before,
+        "value": finding.value,
+        "ci95": list(finding.interval),
+        "identified": finding.identified,
+        "left_of_what_was_unknown": finding.left,
+        "told_together_with": [{"key": key, "correlation": value} for key, value in finding.with_others],
+    }
+
+
+def tested(test: ResidualTest, fails: bool) -> dict[str, Any]:
+    """One test."""
+    size = {"size": test.size, "size_std": test.size_std, "unit": test.unit} if math.isfinite(test.size) else {}
+    return {"looks_for": test.looks_for, "z": test.z, "p": test.p, "model_wrong": fails, **size}
