@@ -159,6 +159,13 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.humping.pictures",
     ),
     Study(
+        "identification",
+        "How true are the numbers that measured passes tell, and do their intervals hold?",
+        1500.0,
+        "identify.md",
+        "synth.studies.identification.study",
+    ),
+    Study(
         "integration-error",
         "What do the time steps of the closed loop cost in accuracy?",
         8.0,

@@ -37,8 +37,10 @@ class Options:
     """What is repeated."""
 
     truths: tuple[str, ...] = option(NAMES, "plants")
-    passes: tuple[int, ...] = option((200, 2000), "passes of a log", (40, 100_000))
-    repetitions: int = option(100, "logs of each plant and length", (2, 10_000))
+    passes: int = option(200, "passes of a log", (40, 100_000))
+    repetitions: int = option(100, "logs of each plant", (2, 10_000))
+    long_passes: int = option(2000, "passes of a long log", (40, 100_000))
+    long_repetitions: int = option(24, "long logs of the first plant, 0 for none; 20 s each", (0, 10_000))
 
 
 @dataclass(frozen=True)
@@ -125,10 +127,12 @@ def run(options: Options, tell: Tell) -> Identification:
     yard = assumed_yard()
     tell("tables tuned for the assumed numbers")
     rows: list[NumberRow] = []
-    for truth in chosen:
-        for passes in options.passes:
-            rows += rows_of(yard, truth, passes, options.repetitions)
-            tell(f"{truth.name}: {options.repetitions} logs of {passes} passes")
+    orders = [(truth, options.passes, options.repetitions) for truth in chosen]
+    if options.long_repetitions:
+        orders.append((chosen[0], options.long_passes, options.long_repetitions))
+    for truth, passes, repetitions in orders:
+        rows += rows_of(yard, truth, passes, repetitions)
+        tell(f"{truth.name}: {repetitions} logs of {passes} passes")
     return Identification(SEED, tuple(rows))
 
 
@@ -161,4 +165,4 @@ def number_row(name: str, passes: int, truth: float, told: Sequence[Finding]) ->
     )  # fmt: skip
 
 
-METHOD = Method(Options, Options(NAMES[:1], (40,), 2), Identification, run)
+METHOD = Method(Options, Options(NAMES[:1], 40, 2, 40, 0), Identification, run)

@@ -7,7 +7,7 @@ between two informations, so that they hold where the surprises are not quite no
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
@@ -23,13 +23,14 @@ from synth.yard.measured_passes.unknowns import OF_VALVES, VALVE_TIMES, Unknown,
 
 Floats = NDArray[np.float64]
 
-STEP = 1e-3
-"""Of the differences that stand for derivatives, in standard deviations of what is known before."""
+STEP, SIDE = 1e-3, 5e-3
+"""Of the differences that stand for derivatives, in standard deviations of what is known before: to both sides of a
+point, and to one of them."""
 
 CHUNK = 125
 """Passes whose derivatives are in memory at a time."""
 
-FEW = 60
+FEW = 100
 """Passes that a first estimate is made on."""
 
 STARTS = (0.0, 1.5, -1.5)
@@ -41,6 +42,17 @@ MOST_STEPS = 100
 
 NEAR, ROUGHLY = 0.01, 0.1
 """How near to the summit a search ends, in standard errors: of the estimate, and of the point that it starts from."""
+
+
+@dataclass(frozen=True)
+class Side:
+    """Where a difference starts and goes to, from the point itself."""
+
+    start: float
+    to: float
+
+
+CENTRAL = Side(-STEP, STEP)
 
 
 @frozen_arrays
@@ -108,15 +120,18 @@ class Posterior:
         """At `u`."""
         if self.found is not None and self.at_u is not None and np.array_equal(u, self.at_u):
             return self.found
+        self.at_u, self.found = u.copy(), self.linearised_by(u, {})
+        return self.found
+
+    def linearised_by(self, u: Floats, sides: Mapping[str, Side]) -> Linearised:
+        """At `u`, with differences between the ends of `sides`; of the other numbers between both sides of `u`."""
         with ThreadPoolExecutor(self.threads) as pool:
-            found = list(pool.map(lambda part: linearised(part, self.unknowns, u), self.parts))
-        self.at_u = u.copy()
-        self.found = Linearised(
+            found = list(pool.map(lambda part: linearised(part, self.unknowns, u, sides), self.parts))
+        return Linearised(
             sum(f.log_likelihood for f in found),
             np.concatenate([f.scores for f in found]),
             np.sum([f.information for f in found], axis=0),
         )
-        return self.found
 
     def gradient(self, u: Floats) -> Floats:
         """At `u`."""
@@ -131,7 +146,7 @@ def estimate(passes: FittingPasses, unknowns: tuple[Unknown, ...], threads: int 
     """The most likely numbers. The result does not depend on `threads`."""
     whole = posterior(passes, unknowns, threads)
     u = highest(whole, first_estimate(passes, unknowns, threads), NEAR)
-    there = whole.linearised(u)
+    there = gentlest(whole, u)
     bread = np.linalg.inv(np.eye(len(u)) + there.information)
     apart = there.scores - there.scores.mean(axis=0)
     # As many scores as numbers are used up: without this the intervals of short logs are too short.
@@ -154,6 +169,19 @@ def posterior(passes: FittingPasses, unknowns: tuple[Unknown, ...], threads: int
     chunks = [numbers[i : i + CHUNK] for i in range(0, len(passes), CHUNK)]
     parts = [likelihood_of(passes.taken(chunk), slope_of(unknowns), settled) for chunk in chunks]
     return Posterior(parts, unknowns, threads)
+
+
+def gentlest(target: Posterior, u: Floats) -> Linearised:
+    """At the summit `u`, of each number of the valves on the side where the passes tell less of it.
+
+    Where a flow begins or ends just at a reading of the gauge, the likelihood has an edge: steep on one side, flat on
+    the other. The summit often lies on it, and the number may be anywhere on the flat side.
+    """
+    sides = [Side(start, start + SIDE) for start in (0.0, -SIDE)]
+    found = [target.linearised_by(u, dict.fromkeys(OF_VALVES, side)) for side in sides]
+    above, below = (np.diag(each.information) for each in found)
+    chosen = {unknown.key: sides[int(below[j] < above[j])] for j, unknown in enumerate(target.unknowns)}
+    return target.linearised_by(u, {key: side for key, side in chosen.items() if key in OF_VALVES})
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,20 +220,21 @@ def highest(target: Posterior, start: Floats, near: float) -> Floats:
     return turned.point(found.x)
 
 
-def linearised(part: Likelihood, unknowns: Sequence[Unknown], u: Floats) -> Linearised:
-    """Scores and information of some passes, by central differences of the surprises and their variances."""
+def linearised(part: Likelihood, unknowns: Sequence[Unknown], u: Floats, sides: Mapping[str, Side]) -> Linearised:
+    """Scores and information of some passes, by differences of the surprises and their variances."""
     values = values_at(unknowns, u)
     pressures = part.pressures(values)
     base = part.at(values, pressures)
     count, r, s = len(unknowns), base.surprise, base.variance
     by_surprise, by_variance = np.empty((count, len(r))), np.empty((count, len(r)))
     for j, unknown in enumerate(unknowns):
+        side = sides.get(unknown.key, CENTRAL)
         ends: list[Surprises] = []
-        for sign in (1.0, -1.0):
-            moved = values | {unknown.key: unknown.value(float(u[j]) + sign * STEP)}
+        for place in (side.to, side.start):
+            moved = values | {unknown.key: unknown.value(float(u[j]) + place)}
             ends.append(part.at(moved, None if unknown.key in OF_VALVES else pressures))
-        by_surprise[j] = (ends[0].surprise - ends[1].surprise) / (2.0 * STEP)
-        by_variance[j] = (ends[0].variance - ends[1].variance) / (2.0 * STEP)
+        by_surprise[j] = (ends[0].surprise - ends[1].surprise) / (side.to - side.start)
+        by_variance[j] = (ends[0].variance - ends[1].variance) / (side.to - side.start)
     terms = -by_surprise * r / s - 0.5 * by_variance / s * (1.0 - r**2 / s)
     scores = np.array([np.bincount(base.pass_of, term, len(part.passes)) for term in terms]).T
     information = (by_surprise / s) @ by_surprise.T + 0.5 * (by_variance / s**2) @ by_variance.T
