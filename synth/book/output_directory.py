@@ -35,7 +35,13 @@ AIM_LAYOUT: Final = Layout("aim", "aim-summary", ("tables", "c", "st", "plots"))
 TRAINS_LAYOUT: Final = Layout("hump simulate", "hump-trial-summary", ("batches", "inputs", "plots"))
 COMPUTER_LAYOUT: Final = Layout("computer", "control-computer-summary", ("plots",))
 SENSITIVITY_LAYOUT: Final = Layout("sensitivity", "sensitivity-summary", ("plots",))
-LAYOUTS: Final = (TUNE_LAYOUT, AIM_LAYOUT, TRAINS_LAYOUT, COMPUTER_LAYOUT, SENSITIVITY_LAYOUT)
+REPLAY_LAYOUT: Final = Layout("replay", "replay-summary", ("plots",))
+RETUNE_LAYOUT: Final = Layout("retune", "retune-summary", ("tables", "plots"))
+IDENTIFY_LAYOUT: Final = Layout("identify", "identify-summary", ("types", "plots"))
+LAYOUTS: Final = (
+    TUNE_LAYOUT, AIM_LAYOUT, TRAINS_LAYOUT, COMPUTER_LAYOUT, SENSITIVITY_LAYOUT, REPLAY_LAYOUT, RETUNE_LAYOUT,
+    IDENTIFY_LAYOUT,
+)  # fmt: skip
 LEFTOVER = re.compile(r"\..+\.[0-9a-f]{16}\.part")
 PICTURES = re.compile(
     r"(rms-by-controller|feasibility|switchings|degree-study|(exit-density|surfaces|policy-map|sample-passes)-.+)"
@@ -54,6 +60,9 @@ COMPUTER_PICTURES = re.compile(r"computer-[a-z-]+\.(png|svg)")
 
 SENSITIVITY_PICTURES = re.compile(r"sensitivity-[a-z-]+\.(png|svg)")
 """Those of shares of variance."""
+
+MEASURED_PICTURES = re.compile(r"(identify|replay|retune)-[a-z-]+\.(png|svg)")
+"""Those of measured passes."""
 
 SWEEP_LEDGER, SWEPT_CONFIG = "sweep/ledger.jsonl", "config.toml"
 """What is in every directory of a sweep, and beside every book of one."""

@@ -23,6 +23,7 @@ from synth.cli.arguments import (
 )
 from synth.cli.init_commands import add_init_command
 from synth.cli.measuring_commands import add_measuring_commands
+from synth.cli.measured_commands import add_measured_commands
 from synth.cli.yard_commands import add_yard_commands
 
 app = typer.Typer(
@@ -93,6 +94,7 @@ def tune(
 
 add_yard_commands(app)
 add_measuring_commands(app)
+add_measured_commands(app)
 
 
 @app.command()

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from synth.cli import hump_commands
-from synth.cli.arguments import Json, directory, whole_number
+from synth.cli.arguments import Config, Json, directory, whole_number
 
 Configuration = Annotated[Path | None, typer.Argument(metavar="CONFIG.toml", help="Built-in unless given.")]
 Output = Annotated[Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where the results go.")]
@@ -23,6 +23,7 @@ def add_yard_commands(app: typer.Typer) -> None:
     """Add the commands of the yard to `app`."""
     app.command()(aim)
     app.command()(computer)
+    app.command()(watch)
     app.add_typer(hump_commands.app, name="hump")
 
 
@@ -71,3 +72,25 @@ def computer(
     from synth.cli.computer import computer_command
 
     return computer_command(config, output, draws, seed, as_json)
+
+
+def watch(
+    logs: Annotated[list[Path], typer.Argument(metavar="LOGS...", help="Measured passes: files, or folders of them.")],
+    config: Config = None,
+    mapping: Annotated[
+        Path | None, typer.Option("--mapping", metavar="M", help="TOML file that maps foreign columns and units.")
+    ] = None,
+    reference: Annotated[
+        list[Path] | None,
+        typer.Option(metavar="LOG", help="Passes known to be in order: drifts are counted from their numbers."),
+    ] = None,
+    output: Output = Path("out/watch"),
+    as_json: Json = False,
+) -> int:
+    """Watch measured passes of a position for drifts.
+
+    What drifted, since when, what it costs, whether to retune or to repair. Exit code 1 if something drifted.
+    """
+    from synth.cli.watch import AskedWatch, watch_command
+
+    return watch_command(AskedWatch(logs, reference or (), config, mapping, output), as_json)

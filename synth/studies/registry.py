@@ -199,6 +199,13 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.reference_problem.picture",
     ),
     Study(
+        "retuning",
+        "How much of what can be recovered do tables recover that are tuned for measured passes?",
+        75.0,
+        "retune.md#measured",
+        "synth.studies.retuning.study",
+    ),
+    Study(
         "robustness",
         "What does a table do on another plant than it was tuned for: wrong parameters, worn parts, faulty sensors?",
         157.0,
@@ -258,6 +265,14 @@ STUDIES: tuple[Study, ...] = (
         120.0,
         "verification.md",
         "synth.studies.verification",
+    ),
+    Study(
+        "watch",
+        "After how many passes is a drift found and named, and how often is the alarm a false one?",
+        90.0,
+        "watch.md#how-it-was-shown",
+        "synth.studies.watch.study",
+        "synth.studies.watch.picture",
     ),
     Study(
         "yard-chain",

@@ -132,7 +132,8 @@ def predict(x, p, f, q, rows, row, spread):
     f[1] = -(1.0 + held * x[3]) * work
     f[2] = -rows.drag_m2_s2[row]
     f[3] = -force * held
-    x[0] += rows.gained_m2_s2[row] + f[2] * x[2] + f[1] * x[1]
+    # ξ and η are told by the same readings, so their errors go against each other: the mean of ξη is not ξ̂·η̂.
+    x[0] += rows.gained_m2_s2[row] + f[2] * x[2] + f[1] * x[1] - held * work * p[1, 3]
     x[0] = max(x[0], LEAST_ENERGY)
     x[3] *= memory
     for j in range(4):

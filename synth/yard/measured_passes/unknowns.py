@@ -34,6 +34,8 @@ RESISTANCE_BY_SPEED = "rolling_resistance.by_speed"
 OF_VALVES = (TOUCH_PRESSURE, FILL, EXHAUST, BRAKE_DELAY, TOUCH_DELAY, RELEASE_DELAY, DEAD_BAND)
 """On these depends the pressure at a time."""
 
+VALVE_TIMES = (FILL, EXHAUST, BRAKE_DELAY, RELEASE_DELAY)
+
 SAME, LOGARITHM = (float, float), (math.log, math.exp)
 
 RANGES: Mapping[str, tuple[float, float, float]] = {

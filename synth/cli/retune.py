@@ -1,0 +1,50 @@
+"""`retarder-synth retune`: new tables from measured passes, refused where they are within noise."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from synth.cli import LIMITS_MISSED, OK, say
+from synth.cli.processors import available
+
+
+def retune_command(
+    logs: Sequence[Path], tables: Path | None, mapping: Path | None, config_path: Path | None, output: Path,
+    as_json: bool,
+) -> int:  # fmt: skip
+    """Tune tables for what `logs` say; 1 where none of them is better beyond doubt than the old ones."""
+    from synth.book.creation_time import creation_time, require_date
+    from synth.book.forms.table_file import read_tables
+    from synth.book.output_directory import RETUNE_LAYOUT, output_directory
+    from synth.cli.interrupt import interruptible
+    from synth.cli.progress import Progress
+    from synth.configuration.config_file import BUILT_IN, load_config
+    from synth.kernels.cache import guarded
+    from synth.yard.measured_passes.loaded_passes import loaded_passes
+
+    config, source = load_config(config_path), str(config_path or BUILT_IN)
+    given = None if tables is None else read_tables(tables)[0].tables
+    require_date()
+    passes = loaded_passes(logs, mapping, config, source, lambda sentence: say(f"warning: {sentence}"))
+    from synth.present.measured_outputs import write_retune
+    from synth.yard.measured_passes.retune.retune import RetuneOrder, retune
+    from synth.yard.measured_passes.retune.retune_summary import retune_sentences
+    from synth.yard.measured_passes.retune.tuned_books import tables_by_case
+
+    old = None if given is None else tables_by_case(given, config, source)
+    with (
+        output_directory(output, RETUNE_LAYOUT) as directory,
+        interruptible(directory),
+        Progress(len(config.problems())) as progress,
+    ):
+        order = RetuneOrder(old, creation_time(), threads=available())
+        found = guarded(retune, passes, config, order, progress.note)
+        write_retune(found, directory)
+    if as_json:
+        sys.stdout.write((output / "summary.json").read_text(encoding="utf-8"))
+    else:
+        files = ("tables/, book.h5, " if found.tables else "") + "plots/, report.html, summary.json"
+        print("\n".join((*retune_sentences(found), f"{output}: {files}")))
+    return OK if found.changed else LIMITS_MISSED

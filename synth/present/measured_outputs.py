@@ -1,0 +1,104 @@
+"""What a replay and a retune leave in their directories: book, pictures, report, and last of all the summary."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from synth.book.output_directory import MEASURED_PICTURES, SUMMARY, remove_stale
+from synth.book.summary import Document
+from synth.configuration.resolved_config import ResolvedConfig
+from synth.present.outputs import file_hashes
+from synth.present.plots.picture import Picture, save_picture
+from synth.present.report.measured_report import Figures, MeasuredReport, measured_page
+from synth.yard.measured_passes.replay.replay import Replay
+from synth.yard.measured_passes.replay.replay_summary import is_described, replay_sentences, replay_summary
+from synth.yard.measured_passes.retune.retune import Retuned
+from synth.yard.measured_passes.retune.retune_summary import retune_sentences, retune_summary
+from tuning_tables import write_atomically, write_book, write_json
+from tuning_tables.canonical import canonical_json
+
+OF_BOTH = (
+    "The plant is the model of this program with the numbers of the configuration; what the model lacks is not here.",
+    "Intervals hold the chance of the passes named, and not that the yard changes after them.",
+)
+OF_REPLAY = (
+    "Friction along the path and noise of the sensor are drawn anew; friction and resistance of a cut are as its log "
+    "tells them.",
+    "Rows must be the samples of the regulator: between samples a table that would command cannot have been followed.",
+)
+OF_RETUNE = (
+    "A sensor that shows too much is not corrected by new tables: see sensor.bias_m_s among the numbers.",
+    "New tables are made for the passes measured. After a repair of valves or sensors measure anew.",
+)
+
+Shape = tuple[str, bool, tuple[str, ...], tuple[Figures, ...], tuple[str, ...]]
+"""Title, whether all is well, sentences, tables and limits of a report."""
+
+
+def write_replay(found: Replay, config: ResolvedConfig, created: str, directory: Path) -> Document:
+    """Write everything; the summary as written. Raises `OSError`."""
+    from synth.present.plots.measured.replay_pictures import replay_pictures  # matplotlib
+
+    rows = [[cut_id, why] for cut_id, why in found.left_out]
+    figures = (Figures("Passes left out", ("cut", "why"), rows),) if rows else ()
+    shape = (f"replay: {config.title}", is_described(found), replay_sentences(found), figures, OF_REPLAY + OF_BOTH)
+    hashes = written(shape, config.sha256, created, tuple(replay_pictures(found)), directory, ())
+    summary = replay_summary(found, config, created, hashes)
+    write_atomically(directory / SUMMARY, canonical_json(summary) + b"\n")
+    return summary
+
+
+def write_retune(found: Retuned, directory: Path) -> Document:
+    """Write everything; the summary as written. No book where no case is better. Raises `OSError`."""
+    from synth.present.plots.measured.retune_pictures import retune_pictures  # matplotlib
+
+    files = []
+    if found.tables:
+        for table in found.tables:
+            files.append(directory / "tables" / f"{table.id}.json")
+            write_json(table, files[-1])
+        files.append(directory / "book.h5")
+        write_book(found.tables, files[-1])
+    else:
+        (directory / "book.h5").unlink(missing_ok=True)
+    title = f"retune: {found.config.title}"
+    shape = (title, bool(found.changed), retune_sentences(found), figures_of(found), OF_RETUNE + OF_BOTH)
+    pictures = tuple(retune_pictures(found)) if found.gains else ()
+    hashes = written(shape, found.identified.sha256, found.created, pictures, directory, files)
+    summary = retune_summary(found, hashes)
+    write_atomically(directory / SUMMARY, canonical_json(summary) + b"\n")
+    return summary
+
+
+def figures_of(found: Retuned) -> tuple[Figures, ...]:
+    """Cases and numbers."""
+    cases = [
+        (f"{g.label} to {g.target_m_s:g} m/s", f"{g.old_rms_m_s:.4f}", f"{g.new_rms_m_s:.4f}",
+         f"{g.ratio:.3f} [{g.ratio_ci95[0]:.3f}, {g.ratio_ci95[1]:.3f}]", "new" if g.better else "kept: within noise")
+        for g in found.gains
+    ]  # fmt: skip
+    numbers = []
+    for i, one in enumerate(found.estimate.unknowns):
+        low, high = found.estimate.interval(i)
+        value = one.value(float(found.estimate.u[i]))
+        numbers.append((one.key, f"{one.value(0.0):.4g}", f"{value:.4g}", f"{low:.4g} to {high:.4g}", one.unit))
+    return (
+        Figures("rms by case, m/s", ("case", "before", "after", "ratio [95 %]", "table"), cases),
+        Figures("Numbers", ("key", "configured", "identified", "95 % interval", "unit"), numbers),
+    )
+
+
+def written(
+    shape: Shape, sha256: str, created: str, pictures: tuple[Picture, ...], directory: Path, files: Sequence[Path]
+) -> dict[str, str]:
+    """Pictures and report; hashes of all files, those of `files` among them."""
+    title, good, sentences, figures, limits = shape
+    saved = [path for picture in pictures for path in save_picture(picture, directory / "plots")]
+    hashes = file_hashes(directory, [*files, *saved])
+    page = directory / "report.html"
+    report = MeasuredReport(title, created, sha256, good, sentences, figures, pictures, limits, hashes)
+    write_atomically(page, measured_page(report).encode())
+    hashes |= file_hashes(directory, [page])
+    remove_stale(directory, set(hashes), pictures=MEASURED_PICTURES)
+    return hashes

@@ -1,0 +1,1 @@
+"""The study `watch`: how soon drifts are found and named, and how often nothing is found to be one."""

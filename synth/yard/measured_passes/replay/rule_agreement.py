@@ -1,0 +1,85 @@
+"""What a table would have commanded at every logged reading, beside what was commanded."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.yard.measured_passes.fitting_passes import FittingPasses
+from synth.yard.measured_passes.replay.drive_states import DriveStates, drive_states
+from synth.yard.measured_passes.replay.logged_tables import NO_TABLE, LoggedTables
+from tuning_tables.active_table import ActiveTable
+from tuning_tables.estimator import begin
+from tuning_tables.pass_log.pass_log import PassLog
+from tuning_tables.rule import decide_many, speed_for
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+NOT_ASKED = -1
+
+
+@dataclass(frozen=True, eq=False)
+class RuleAgreement:
+    """`wanted` (n,): the stage that the table of the pass commands at each row, `NOT_ASKED` where it may not or has no
+    table; `commanded` (n,) as logged; `stage_before` (n,); `first_differing` (m,): the row where each pass first
+    differs, −1 where it nowhere does. After that row the logged pass is no longer the one that the table would make."""
+
+    wanted: Ints
+    commanded: Ints
+    stage_before: Ints
+    first_differing: Ints
+
+    @property
+    def asked(self) -> NDArray[np.bool_]:
+        """Rows at which the table is asked, (n,)."""
+        return np.asarray(self.wanted != NOT_ASKED)
+
+    @property
+    def rows(self) -> tuple[int, int]:
+        """(same, asked) rows."""
+        asked = self.asked
+        return int((asked & (self.wanted == self.commanded)).sum()), int(asked.sum())
+
+    @property
+    def commands(self) -> tuple[int, int]:
+        """(same, all) of the rows at which the log or the table changes the stage."""
+        change = self.asked & ((self.wanted != self.stage_before) | (self.commanded != self.stage_before))
+        return int((change & (self.wanted == self.commanded)).sum()), int(change.sum())
+
+
+def rule_agreement(passes: FittingPasses, tables: LoggedTables) -> RuleAgreement:
+    """Ask the table of each pass at every row where the drive rests by the model."""
+    log, states = passes.log, drive_states(passes)
+    wanted = np.full(len(log.time_s), NOT_ASKED, dtype=np.int64)
+    of_row = np.repeat(tables.of_pass, np.diff(log.first_row))
+    entrance = np.array([plant.entrance_stage for _, plant in passes.plants])[passes.class_of][log.pass_of_row]
+    for number, table in enumerate(tables.tables):
+        rows = np.flatnonzero(of_row == number)
+        speed = log.speed_m_s[rows] if table.estimator is None else estimated(log, table, states, number, tables)
+        at, before = log.path_m[rows], states.stage_before[rows]
+        stage = np.clip(before + decide_many(table, before, at, speed), 0, max(len(table.coefficients) - 1, 0))
+        gated = np.where(at < 0.0, np.minimum(stage, np.maximum(before, entrance[rows])), stage)
+        wanted[rows] = np.where(states.resting[rows], gated, NOT_ASKED)
+    return RuleAgreement(wanted, log.stage, states.stage_before, first_differing(log, wanted))
+
+
+def estimated(log: PassLog, table: ActiveTable, states: DriveStates, number: int, tables: LoggedTables) -> Floats:
+    """The estimated speed at all rows of the passes that `table`, the one called `number`, regulates."""
+    found: list[float] = []
+    for one in np.flatnonzero(tables.of_pass == number).tolist():
+        state, rows = begin(), log.rows(one)
+        columns = (log.path_m[rows], log.speed_m_s[rows], states.overpressure_kpa[rows])
+        found += [speed_for(table, state, *map(float, row)) for row in zip(*columns, strict=True)]
+    return np.array(found)
+
+
+def first_differing(log: PassLog, wanted: Ints) -> Ints:
+    """The first row of each pass that differs, (m,), −1 for none."""
+    differs = np.flatnonzero((wanted != NOT_ASKED) & (wanted != log.stage))
+    passes, first = np.unique(log.pass_of_row[differs], return_index=True)
+    found = np.full(len(log), NO_TABLE, dtype=np.int64)
+    found[passes] = differs[first]
+    return found

@@ -1,0 +1,1 @@
+"""New tables from measured passes, and what they gain."""

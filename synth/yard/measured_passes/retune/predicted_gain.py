@@ -1,0 +1,115 @@
+"""What new tables gain against old ones on a plant that is known as well as measured passes tell it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models import Plant, PlantError
+from synth.configuration.resolved_config import ResolvedConfig
+from synth.simulation.closed_loop import close_loop
+from synth.simulation.controllers import TableController
+from synth.simulation.replicates import student_quantile
+from synth.simulation.stratified_passes import stratified_passes
+from synth.yard.measured_passes.estimate import Estimate
+from synth.yard.measured_passes.identified_plants import with_identified
+from synth.yard.measured_passes.retune.tuned_books import Case, plants_of
+from synth.yard.measured_passes.unknowns import values_at
+from tuning_tables import ControllerTable
+
+Floats = NDArray[np.float64]
+
+MOST_TRIES = 50
+"""Draws of numbers that no plant may have, before that is a fault of the estimate."""
+
+
+@dataclass(frozen=True)
+class GainOrder:
+    """`sets` of numbers are drawn from the law of the estimate, `passes` simulated on each; `seed` of both."""
+
+    sets: int = 16
+    passes: int = 2000
+    seed: int = 41
+
+
+@dataclass(frozen=True)
+class CaseGain:
+    """One case: rms of exit − target under both tables on the identified plants, m/s, and new / old.
+
+    `ratio_ci95` holds the chance of the passes and what the estimate leaves open.
+    """
+
+    label: str
+    target_m_s: float
+    old_rms_m_s: float
+    new_rms_m_s: float
+    ratio: float
+    ratio_ci95: tuple[float, float]
+
+    @property
+    def case(self) -> Case:
+        """Label and target."""
+        return self.label, self.target_m_s
+
+    @property
+    def better(self) -> bool:
+        """The new table is shown to be better: the interval ends below 1."""
+        return self.ratio_ci95[1] < 1.0
+
+
+def likely_plants(config: ResolvedConfig, estimate: Estimate, order: GainOrder) -> tuple[dict[str, Plant], ...]:
+    """Plants by label for each of `order.sets` draws of the numbers, normal around the estimate.
+
+    Draws that no plant may have are drawn anew; `PlantError` where there is nothing else.
+    """
+    rng = np.random.default_rng(order.seed)
+    found: list[dict[str, Plant]] = []
+    fault = PlantError("")
+    for _ in range(order.sets + MOST_TRIES):
+        u = rng.multivariate_normal(estimate.u, estimate.covariance, method="eigh")
+        try:
+            found.append(plants_of(with_identified(config, values_at(estimate.unknowns, u), "drawn")))
+        except PlantError as one:
+            fault = one
+        if len(found) == order.sets:
+            return tuple(found)
+    raise fault
+
+
+def case_gain(
+    case: Case, tables: tuple[ControllerTable, ControllerTable], plants: Sequence[Plant], order: GainOrder
+) -> CaseGain:
+    """Old and new table on each of `plants`, on the same passes; other passes on each plant."""
+    squares = np.empty((len(plants), 2))
+    for number, plant in enumerate(plants):
+        passes = stratified_passes(order.seed, number * order.passes, order.passes)
+        for column, table in enumerate(tables):
+            loop = close_loop(plant, len(table.stages))
+            sample = loop.run(TableController(table), loop.draws(passes))
+            error = sample.exit_speed_m_s - case[1]
+            squares[number, column] = sample.weight @ error**2 / sample.weight.sum()
+    old, new = np.sqrt(squares.mean(axis=0)).tolist()
+    of_log = 0.5 * np.log(squares[:, 1] / squares[:, 0])
+    half = student_quantile(len(plants) - 1) * float(of_log.std(ddof=1)) * math.sqrt(1.0 + 1.0 / len(plants))
+    middle = float(of_log.mean())
+    return CaseGain(*case, old, new, math.exp(middle), (math.exp(middle - half), math.exp(middle + half)))
+
+
+def predicted_gains(
+    old: Mapping[Case, ControllerTable],
+    new: Mapping[Case, ControllerTable],
+    plants: Sequence[Mapping[str, Plant]],
+    order: GainOrder,
+    threads: int = 1,
+) -> tuple[CaseGain, ...]:
+    """For every case that has an old table and a new one, in the order of the new ones."""
+    cases = [case for case in new if case in old]
+    with ThreadPoolExecutor(threads) as pool:
+        return tuple(
+            pool.map(lambda case: case_gain(case, (old[case], new[case]), [p[case[0]] for p in plants], order), cases)
+        )

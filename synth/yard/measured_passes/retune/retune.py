@@ -1,0 +1,77 @@
+"""New tables from measured passes: estimate, tune, and keep what is better beyond doubt."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from synth.configuration.resolved_config import ResolvedConfig
+from synth.yard.measured_passes.estimate import Estimate, estimate
+from synth.yard.measured_passes.fitting_passes import FittingPasses
+from synth.yard.measured_passes.identified_plants import identified_plants
+from synth.yard.measured_passes.retune.predicted_gain import CaseGain, GainOrder, likely_plants, predicted_gains
+from synth.yard.measured_passes.retune.tuned_books import Case, Tell, class_setups, finished, tuned_tables
+from synth.yard.measured_passes.unknowns import unknowns_of
+from tuning_tables import ControllerTable
+
+
+@dataclass(frozen=True)
+class Retuned:
+    """`config` before, `identified` after; `gains` of all cases; `old`, `new` tables by case.
+
+    `tables`: the new book, in which cases without a proven gain keep their lines; empty where that is all of them.
+    """
+
+    config: ResolvedConfig
+    identified: ResolvedConfig
+    estimate: Estimate
+    created: str
+    gains: tuple[CaseGain, ...]
+    old: Mapping[Case, ControllerTable]
+    new: Mapping[Case, ControllerTable]
+    tables: tuple[ControllerTable, ...]
+
+    @property
+    def changed(self) -> tuple[CaseGain, ...]:
+        """The cases whose new table is better beyond doubt."""
+        return tuple(gain for gain in self.gains if gain.better)
+
+
+STANDARD = GainOrder()
+
+
+@dataclass(frozen=True)
+class RetuneOrder:
+    """What runs in the yard: `old` tables by case, None: those that a tune of the configuration makes."""
+
+    old: Mapping[Case, ControllerTable] | None
+    created: str
+    gain: GainOrder = STANDARD
+    threads: int = 1
+
+
+def retune(passes: FittingPasses, config: ResolvedConfig, order: RetuneOrder, tell: Tell) -> Retuned:
+    """Tables for what `passes` say of the plant of `config`. Raises `PlantError` for numbers that no plant has."""
+    found = estimate(passes, unknowns_of(passes, config.parameters), order.threads)
+    tell(f"{len(found.unknowns)} numbers identified from {found.passes} passes")
+    identified = identified_plants(config, found)
+    old = order.old
+    if old is None:
+        old = tuned_tables(config, class_setups(config, order.created), order.threads, lambda _: None)
+        tell(f"{len(old)} tables of the configuration tuned")
+    setups = class_setups(identified, order.created)
+    new = tuned_tables(identified, setups, order.threads, tell)
+    plants = likely_plants(config, found, order.gain)
+    gains = predicted_gains(old, new, plants, order.gain, order.threads)
+    tell(f"{len(gains)} cases compared on {len(plants)} likely plants")
+    better = {gain.case for gain in gains if gain.better}
+    tables = () if not better else finished(setups, *book_of(old, new, better))
+    return Retuned(config, identified, found, order.created, gains, old, new, tables)
+
+
+def book_of(
+    old: Mapping[Case, ControllerTable], new: Mapping[Case, ControllerTable], better: Sequence[Case] | set[Case]
+) -> tuple[dict[Case, ControllerTable], frozenset[Case]]:
+    """The tables of the new book, and the cases that keep their old lines."""
+    kept = frozenset(case for case in new if case in old and case not in better)
+    return {case: old[case] if case in kept else table for case, table in new.items()}, kept

@@ -1,0 +1,67 @@
+"""A position with two classes, its tables, and the same with less friction and a slow exhaust."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import pytest
+
+from synth.configuration.config_file import parse_config
+from synth.configuration.resolved_config import ResolvedConfig
+from synth.yard.measured_passes.identified_plants import with_identified
+from synth.yard.measured_passes.retune.tuned_books import Case, class_setups, tuned_tables
+from tuning_tables import ControllerTable
+
+CREATED = "2000-01-01T00:00:00Z"
+
+TEXT = """
+[position]
+name = "knp-5-bunch"
+[entry]
+low_m_s = 4.5
+high_m_s = 6.5
+[targets]
+exit_speeds_m_s = [3.0]
+[validation]
+passes = 1000
+[[cut]]
+label = "LS-1"
+car = "gondola-4"
+cars = 1
+mass_t = 36.0
+[[cut]]
+label = "S-1"
+car = "gondola-4"
+cars = 1
+mass_t = 52.0
+"""
+
+
+@dataclass(frozen=True)
+class Yard:
+    """A configuration with its tables by case."""
+
+    config: ResolvedConfig
+    tables: dict[Case, ControllerTable]
+
+
+def yard_of(config: ResolvedConfig) -> Yard:
+    """`config`, tuned."""
+    return Yard(config, tuned_tables(config, class_setups(config, CREATED), 2, lambda _: None))
+
+
+@pytest.fixture(scope="session")
+def assumed() -> Yard:
+    """What the library says."""
+    return yard_of(parse_config(TEXT, "test"))
+
+
+@pytest.fixture(scope="session")
+def worn(assumed: Yard) -> Yard:
+    """Friction -30 %, exhaust constant +50 %, and tables tuned with that."""
+    known = {each.key: each.value for each in assumed.config.parameters}
+    slope, exhaust = "retarder.force.slope_kn_per_kpa", "retarder.pneumatics.exhaust_time_constant_s"
+    old = known[slope], known[exhaust]
+    assert isinstance(old[0], float)
+    assert isinstance(old[1], float)
+    return yard_of(with_identified(assumed.config, {slope: 0.7 * old[0], exhaust: 1.5 * old[1]}, "truth"))

@@ -1,0 +1,98 @@
+"""Retuned tables against those tuned with the truth, and a log from which nothing is to be gained."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from synth.cli import main
+from synth.simulation.closed_loop import TableController, simulate
+from synth.simulation.logged_passes import LoggedClass, mixed_log
+from synth.simulation.stratified_passes import stratified_passes
+from synth.yard.measured_passes.fitting_passes import fitting_passes
+from synth.yard.measured_passes.retune.retune import Retuned, RetuneOrder, retune
+from tuning_tables import ControllerTable, read_book, write_book
+from tuning_tables.pass_log.log_files import write_log
+from tuning_tables.pass_log.pass_log import PassLog
+
+from .conftest import CREATED, TEXT, Yard
+
+CASES = [("LS-1", 3.0), ("S-1", 3.0)]
+
+
+def log_of(yard: Yard, tables: Yard, seed: int) -> PassLog:
+    plants = dict(yard.config.plants())
+    return mixed_log(
+        [LoggedClass(plants[label], TableController(tables.tables[label, target]), target) for label, target in CASES],
+        [150] * len(CASES), seed, None,
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def retuned(assumed: Yard, worn: Yard) -> Retuned:
+    passes = fitting_passes(log_of(worn, assumed, 3), assumed.config.plants(), "test")
+    return retune(passes, assumed.config, RetuneOrder(assumed.tables, CREATED, threads=2), lambda _: None)
+
+
+def test_the_retuned_tables_recover_what_can_be_recovered(retuned: Retuned, assumed: Yard, worn: Yard) -> None:
+    """20 000 passes of the true plant: at least 90 % of what the tables tuned with the truth gain."""
+    passes, plants = stratified_passes(99, 0, 20_000), dict(worn.config.plants())
+
+    def rms(case: tuple[str, float], table: ControllerTable) -> float:
+        sample = simulate(plants[case[0]], TableController(table), passes)
+        return float(np.sqrt(sample.weight @ (sample.exit_speed_m_s - case[1]) ** 2 / sample.weight.sum()))
+
+    for case, gain in zip(CASES, retuned.gains, strict=True):
+        old, new, best = (rms(case, yard[case]) for yard in (assumed.tables, retuned.new, worn.tables))
+        assert old - best > 0.003
+        assert (old - new) / (old - best) >= 0.9
+        assert gain.better
+        assert new / old == pytest.approx(gain.ratio, abs=0.05)
+
+
+def test_the_new_book_states_the_identified_plant(retuned: Retuned) -> None:
+    assert [(table.id, table.target_speed_m_s) for table in retuned.tables] == [
+        (f"{label}-to-{target:g}-m-s", target) for label, target in CASES
+    ]
+    for table in retuned.tables:
+        assert table.generator.config_sha256 == retuned.identified.sha256 != retuned.config.sha256
+        assert table.validated is not None
+
+
+def test_a_log_of_the_unchanged_plant_is_refused(
+    assumed: Yard, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_log(log_of(assumed, assumed, 3), tmp_path / "log.h5")
+    write_book(tuple(assumed.tables.values()), tmp_path / "old.h5")
+    (tmp_path / "c.toml").write_text(TEXT)
+    words = ["--table", str(tmp_path / "old.h5"), "--config", str(tmp_path / "c.toml")]
+    out = tmp_path / "out"
+    assert main(["retune", str(tmp_path / "log.h5"), *words, "-o", str(out)]) == 1
+    assert "within noise" in capsys.readouterr().out
+    assert not (out / "book.h5").exists()
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["refused"]
+    assert not any(case["changed"] for case in summary["cases"])
+    assert {"report.html", "plots/retune-gains.png"} <= set(summary["files"])
+
+    assert main(["replay", str(tmp_path / "log.h5"), *words, "--own", words[1], "-o", str(tmp_path / "again")]) == 0
+    told = json.loads((tmp_path / "again" / "summary.json").read_text())
+    assert told["agreement"]["own"]["rows"]["same"] == told["agreement"]["own"]["rows"]["asked"] > 0
+    assert main(["replay", str(tmp_path / "nothing.h5"), *words]) == 2
+
+
+def test_a_mixed_book_keeps_lines_without_a_proven_gain(retuned: Retuned, assumed: Yard, tmp_path: Path) -> None:
+    from synth.yard.measured_passes.retune.retune import book_of
+    from synth.yard.measured_passes.retune.tuned_books import class_setups, finished
+
+    tables, kept = book_of(assumed.tables, retuned.new, {CASES[0]})
+    assert kept == {CASES[1]}
+    made = finished(class_setups(retuned.identified, CREATED), tables, kept)
+    assert made[0].stages == retuned.new[CASES[0]].stages
+    assert made[1].stages == assumed.tables[CASES[1]].stages
+    assert made[1].predicted != assumed.tables[CASES[1]].predicted
+    write_book(made, tmp_path / "b.h5")
+    assert len(read_book(tmp_path / "b.h5")) == 2

@@ -1,0 +1,147 @@
+"""The watch names what was changed, on seeded logs of a table in the closed loop; a day's log through the command."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from synth.cli import main
+from synth.configuration.config_file import load_config
+from synth.configuration.resolved_config import ResolvedConfig
+from synth.studies.tuned_table import tuned_table
+from synth.studies.watch.pools import CHANGES, GAUGE, IN_ORDER, Change, simulated
+from synth.yard.measured_passes import unknowns as asked
+from synth.yard.measured_passes.drift.baseline import configured
+from synth.yard.measured_passes.drift.causes import causes_of
+from synth.yard.measured_passes.drift.drift_size import drift_size
+from synth.yard.measured_passes.drift.evidence import evidence_of
+from synth.yard.measured_passes.drift.watch import Watch, watch
+from synth.yard.measured_passes.fitting_passes import FittingPasses, fitting_passes
+from synth.yard.measured_passes.likelihood import likelihood_of
+from tuning_tables import ControllerTable
+from tuning_tables.pass_log.join_logs import join_logs, one_after_the_other
+from tuning_tables.pass_log.log_files import write_log
+from tuning_tables.pass_log.pass_log import PassLog
+
+CALM = 60
+
+
+@pytest.fixture(scope="module")
+def config() -> ResolvedConfig:
+    return load_config(None)
+
+
+@pytest.fixture(scope="module")
+def table(config: ResolvedConfig) -> ControllerTable:
+    label, plant = config.plants()[0]
+    return tuned_table(config, plant, config.targets_of(label)[0])
+
+
+def day(config: ResolvedConfig, table: ControllerTable, change: Change, changed: int) -> PassLog:
+    """Passes in order, then changed ones."""
+    tables = [(config.plants()[0][1], table)]
+    logs = [simulated(tables, IN_ORDER, CALM, 3, GAUGE), simulated(tables, change, changed, 4, GAUGE)]
+    log = one_after_the_other(join_logs(logs), 30.0)
+    return replace(log, cut_id=tuple(f"cut-{number}" for number in range(len(log))))
+
+
+def watched(config: ResolvedConfig, log: PassLog) -> Watch:
+    passes = fitting_passes(log, config.plants(), "the test")
+    values, slope_key = configured(passes, config.parameters)
+    return watch(passes, values, slope_key)
+
+
+@pytest.mark.parametrize(("change", "size"), [(0, 0.7), (2, 1.5), (3, 0.1)])
+def test_what_was_changed_is_named_with_its_size(
+    config: ResolvedConfig, table: ControllerTable, change: int, size: float
+) -> None:
+    found = watched(config, day(config, table, CHANGES[change], 80)).drift
+    assert found is not None
+    diagnosis = found.diagnosis
+    assert diagnosis.decided
+    assert diagnosis.first.cause.name == CHANGES[change].cause
+    assert CALM <= diagnosis.alarm <= CALM + 40
+    assert diagnosis.begins95[0] <= CALM <= diagnosis.begins95[1]
+    # Twice the half width: a test for a blunder, not for the coverage.
+    middle, half = 0.5 * (found.size.low95 + found.size.high95), 0.5 * (found.size.high95 - found.size.low95)
+    assert abs(middle - size) < max(2.0 * half, 0.01 * size)
+    assert found.before.passes == diagnosis.first.begin
+    assert found.after.rms_m_s > found.before.rms_m_s
+
+
+def test_passes_in_order_and_one_outlier_give_no_alarm(config: ResolvedConfig, table: ControllerTable) -> None:
+    log = day(config, table, IN_ORDER, 60)
+    speed, pressure = log.speed_m_s.copy(), log.pressure_kpa.copy()
+    speed[log.rows(70)] += 0.5
+    pressure[log.rows(80)] += 40.0
+    found = watched(config, replace(log, speed_m_s=speed, pressure_kpa=pressure))
+    assert found.drift is None
+    assert max(row.max() for row in found.evidence.ratios) > 100.0, "there is no outlier"
+
+
+def test_passes_stopped_by_hand_are_left_out(config: ResolvedConfig, table: ControllerTable) -> None:
+    log = day(config, table, IN_ORDER, 10)
+    by_hand = np.arange(len(log)) % 7 == 0
+    found = watched(config, replace(log, stopped_by_hand=by_hand))
+    assert found.number_of.tolist() == np.flatnonzero(~by_hand).tolist()
+
+
+def some(config: ResolvedConfig, table: ControllerTable) -> tuple[FittingPasses, dict[str, float], str]:
+    passes = fitting_passes(day(config, table, IN_ORDER, 2).taken(np.arange(5)), config.plants(), "the test")
+    return passes, *configured(passes, config.parameters)
+
+
+def test_ratios_are_those_of_the_likelihood(config: ResolvedConfig, table: ControllerTable) -> None:
+    passes, values, slope_key = some(config, table)
+    causes = causes_of(passes, values, slope_key)
+    evidence = evidence_of(passes, values, causes, slope_key)
+    like = likelihood_of(passes, slope_key)
+    (fill,) = (i for i, cause in enumerate(causes) if cause.keys == (asked.FILL,))
+    slower = values | {asked.FILL: values[asked.FILL] * causes[fill].sizes[-1]}
+    wanted = like.at(slower).log_likelihood(5) - like.at(values).log_likelihood(5)
+    assert evidence.ratios[fill][:, -1] == pytest.approx(wanted, rel=1e-9)
+    # A gauge that shows 6 kPa less gains by a supposed offset of 6 what the log lost by it.
+    (gauge,) = (i for i, cause in enumerate(causes) if cause.name == "gauge offset")
+    log = passes.log
+    off = likelihood_of(replace(passes, log=replace(log, pressure_kpa=log.pressure_kpa - 6.0)), slope_key)
+    size = causes[gauge].sizes.index(6.0)
+    wanted = off.at(values).log_likelihood(5) - like.at(values).log_likelihood(5)
+    assert evidence.ratios[gauge][:, size] == pytest.approx(wanted, rel=1e-9)
+
+
+def test_a_size_lies_where_the_likelihood_is_highest(config: ResolvedConfig, table: ControllerTable) -> None:
+    passes, values, slope_key = some(config, table)
+    (cause,) = (each for each in causes_of(passes, values, slope_key) if each.name == "friction")
+    found = drift_size(passes, values, cause, slope_key, 1.0)
+    like = likelihood_of(passes, slope_key)
+
+    def total(size: float) -> float:
+        return float(like.at(cause.moved(values, size)).log_likelihood(5).sum())
+
+    grid = np.linspace(found.low95, found.high95, 41)
+    assert total(found.size) >= max(map(total, grid.tolist())) - 1e-6
+    for end in (found.low95, found.high95):
+        assert total(found.size) - total(end) == pytest.approx(1.9207, abs=0.01)
+
+
+def test_the_command_tells_a_day(config: ResolvedConfig, table: ControllerTable, tmp_path: Path) -> None:
+    log = tmp_path / "day.csv"
+    write_log(day(config, table, CHANGES[2], 30), log)
+    assert main(["watch", str(log), "-o", str(tmp_path / "out")]) == 1
+    told = json.loads((tmp_path / "out" / "watch.json").read_text(encoding="utf-8"))
+    assert told["drift"]["cause"] == "exhaust constant"
+    assert told["drift"]["remedy"] == "repair"
+    assert told["drift"]["begin"] == CALM + 1
+    assert told["drift"]["begin_cut"] == f"cut-{CALM}"
+    assert "REPAIR" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    rows = (tmp_path / "out" / "charts.csv").read_text(encoding="utf-8").splitlines()
+    assert len(rows) == CALM + 30 + 1
+    assert math.isfinite(float(rows[-1].split(",")[2]))
+    write_log(day(config, table, IN_ORDER, 30), log)
+    assert main(["watch", str(log), "-o", str(tmp_path / "calm")]) == 0
+    assert main(["watch", str(tmp_path / "none.csv"), "-o", str(tmp_path / "calm")]) == 2
