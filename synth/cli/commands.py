@@ -11,7 +11,10 @@ import typer
 from synth.cli.arguments import (
     Config,
     ExportSource,
+    GaugeStd,
     Json,
+    LogFile,
+    LogPasses,
     Source,
     SourceOrDirectory,
     directory,
@@ -143,15 +146,18 @@ def validate(
             parser=whole_number(0, 2**63 - 1), metavar="N", help="Of the random numbers; as configured unless given."
         ),
     ] = None,
+    log: LogFile = None,
+    log_passes: LogPasses = None,
+    gauge_std: GaugeStd = None,
     as_json: Json = False,
 ) -> int:
     """Simulate exported tables once more.
 
     Nothing is solved. Exit code 1 if a table misses a limit of the configuration.
     """
-    from synth.cli.validate import validate_command
+    from synth.cli.validate import asked_log, validate_command
 
-    return validate_command(source, config, passes, seed, as_json)
+    return validate_command(source, config, passes, seed, asked_log(log, log_passes, gauge_std), as_json)
 
 
 @app.command()

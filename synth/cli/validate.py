@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import math
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,10 +12,41 @@ from synth.cli import LIMITS_MISSED, OK, say
 from synth.cli.processors import available
 
 if TYPE_CHECKING:
-    from synth.book.validate_table import Revalidation
+    from collections.abc import Sequence
+
+    from synth.book.validate_table import Rehearsal, Revalidation
+    from tuning_tables import ControllerTable
 
 
-def validate_command(path: Path, config_path: Path | None, passes: int | None, seed: int | None, as_json: bool) -> int:
+LOG_PASSES, GAUGE_STD_KPA = 200, 2.0
+"""Of a log, unless the user says otherwise."""
+
+
+@dataclass(frozen=True)
+class AskedLog:
+    """`passes` passes of each table are to be logged in the file at `path`; `gauge_std_kpa` NaN: without a gauge."""
+
+    path: Path
+    passes: int
+    gauge_std_kpa: float
+
+
+def asked_log(path: Path | None, passes: int | None, gauge_std_kpa: float | None) -> AskedLog | None:
+    """What the options ask for; None for no log. `InputError` for options of a log without one, or a wrong ending."""
+    from synth.faults.input_error import InputError
+    from tuning_tables.pass_log.log_files import require_writable_name
+
+    if path is None:
+        if passes is not None or gauge_std_kpa is not None:
+            raise InputError("--log-passes and --gauge-std are about a log; say by --log FILE.csv where it is to go")
+        return None
+    require_writable_name(path)
+    return AskedLog(path, passes or LOG_PASSES, GAUGE_STD_KPA if gauge_std_kpa is None else gauge_std_kpa)
+
+
+def validate_command(
+    path: Path, config_path: Path | None, passes: int | None, seed: int | None, log: AskedLog | None, as_json: bool
+) -> int:
     """Simulate the tables in `path`; 1 if one that is not known to be infeasible is not shown to keep every limit."""
     from synth.book.forms.table_file import is_infeasible, read_tables, summary_beside
     from synth.cli.interrupt import interruptible
@@ -30,6 +63,8 @@ def validate_command(path: Path, config_path: Path | None, passes: int | None, s
     seed = config.validation.seed if seed is None else seed
     rehearsal = Rehearsal(config, source, passes, seed, available())
     with interruptible():
+        if log is not None:
+            guarded(write_rehearsed_log, file.tables, rehearsal, log)
         found = guarded(
             revalidate_all, file.tables, rehearsal, [is_infeasible(table, summary) for table in file.tables]
         )
@@ -41,7 +76,19 @@ def validate_command(path: Path, config_path: Path | None, passes: int | None, s
         print(json.dumps(plain([document(each) for each in found]), indent=1, ensure_ascii=False))
     else:
         print_found(found, seed)
+        if log is not None:
+            print(f"{log.passes} passes of each table, as a controller logs them: {log.path}")
     return OK if all(each.judgement.word == "accepted" or each.infeasible for each in found) else LIMITS_MISSED
+
+
+def write_rehearsed_log(tables: Sequence[ControllerTable], rehearsal: Rehearsal, asked: AskedLog) -> None:
+    """Simulate passes of `tables` once more, as cuts come, and write what a controller logs of them."""
+    from plant_models.pressure_gauge import PressureGauge
+    from synth.book.rehearsed_log import rehearsed_log
+    from tuning_tables.pass_log.log_files import write_log
+
+    gauge = None if math.isnan(asked.gauge_std_kpa) else PressureGauge(asked.gauge_std_kpa)
+    write_log(rehearsed_log(tables, rehearsal, asked.passes, gauge), asked.path)
 
 
 def document(each: Revalidation) -> dict[str, Any]:

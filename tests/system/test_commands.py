@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from synth.book.output_directory import output_directory
@@ -15,6 +17,7 @@ from synth.configuration.config_file import parse_config
 from tests.system.conftest import CLASS, Command, changed
 from tuning_tables import from_json, read_book, read_json, to_csv, to_json, write_book
 from tuning_tables.canonical import canonical_json, document_checksum
+from tuning_tables.pass_log.log_files import read_logs
 
 ID = "gondola-4-22t-to-1.5-m-s"
 HEAVIER = "gondola-4-30t-to-1.5-m-s"
@@ -135,6 +138,42 @@ def test_validate_confirms_what_the_tables_say(command: Command, tuned: Path, tw
     assert other.code == 0
     assert "limits kept, as stated" in other.out
     assert "4000 stratified passes of each table, seed 7" in other.out
+
+
+@pytest.mark.parametrize(("name", "std"), [("log.csv", "0"), ("log.h5", "none")])
+def test_validate_logs_passes_as_a_controller_would(
+    command: Command, tuned: Path, two_classes: Path, name: str, std: str
+) -> None:
+    given = ("validate", tuned / "book.h5", "--config", two_classes, "--passes", 1000, "--log", tuned / name)
+    ran = command(*given, "--log-passes", 30, "--gauge-std", std)
+    assert (ran.code, ran.err) == (0, "")
+    assert f"30 passes of each table, as a controller logs them: {tuned / name}" in ran.out
+    tables = read_book(tuned / "book.h5")
+    loaded = read_logs([tuned / name], None, len(tables[0].stages) - 1)
+    assert loaded.faults == ()
+    log = loaded.log
+    assert Counter(log.mass_t.tolist()) == {22.0: 30, 30.0: 30}
+    assert set(log.target_m_s) == {1.5}
+    assert log.has_gauge == (std == "0")
+    if log.has_gauge:  # a drive at rest is within the dead band of its stage, and an exact gauge shows it there
+        apart_kpa = np.abs(log.pressure_kpa - np.array([stage.pressure_kpa for stage in tables[0].stages])[log.stage])
+        assert np.median(apart_kpa) <= tables[0].retarder.dead_band_kpa
+
+
+def test_validate_refuses_a_log_that_cannot_be(command: Command, tuned: Path) -> None:
+    ran = command("validate", tuned / "book.h5", "--log", tuned / "log.xlsx")
+    assert (ran.code, ran.out) == (2, "")
+    assert (
+        ran.sentence == f"{tuned / 'log.xlsx'}: a log is written to a file that ends in .csv, .h5, .hdf5; name it so."
+    )
+    alone = command("validate", tuned / "book.h5", "--log-passes", 5)
+    assert alone.code == 2
+    assert "say by --log FILE.csv where it is to go" in alone.sentence
+    for word in ("-1", "nan", "101", "much"):
+        refused = command("validate", tuned / "book.h5", "--log", tuned / "log.csv", "--gauge-std", word)
+        assert refused.code == 2
+        assert f"it is {word!r}; give 0 to 100 kPa, or none" in refused.sentence
+    assert not list(tuned.glob("*log.*"))
 
 
 def test_validate_finds_a_table_that_lies(command: Command, tuned: Path, two_classes: Path) -> None:

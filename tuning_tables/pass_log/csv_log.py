@@ -175,34 +175,36 @@ def _parsed(
             _name_fault(source, body, begin, first_number, places, mapping)
             raise InvalidLog(f"{source}: a cell goes over the end of its line; write the log anew.")
         for name in texts:
-            _require_texts(source, name, block[name], first_number + begin)
             _lengthen(runs[name], block[name], begin)
         blocks.append({name: block[name].copy() for name in places if name not in texts})
-    numbers = {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
-    return numbers, {name: TextRuns(tuple(first), tuple(value)) for name, (first, value) in runs.items()}
+    found: dict[str, TextRuns] = {name: TextRuns(tuple(first), tuple(value)) for name, (first, value) in runs.items()}
+    for name, texts_of in found.items():
+        _require_texts(source, name, texts_of, first_number)
+    return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}, found
 
 
 def _filled(lines: list[str], delimiter: str) -> list[str]:
     """The lines with `nan` in empty cells: numpy knows no empty number."""
-    joined = "\n".join(lines)
-    if any(sign in joined for sign in (2 * delimiter, delimiter + "\n", "\n" + delimiter, delimiter + " ")) or (
-        joined.startswith(delimiter) or joined.endswith(delimiter)
-    ):
+    joined = "\n".join(("", *lines, ""))
+    if delimiter + " " in joined or "\n " in joined:  # perhaps cells of spaces: the slow way finds them
         cell = re.escape(delimiter)
-        joined = re.sub(rf"(?m)(?:^|(?<={cell})) *(?={cell}|$)", "nan", joined)
-        return joined.split("\n")
-    return lines
+        joined = re.sub(rf"(?m)(?<={cell}) +(?={cell}|$)|^ +(?={cell})", "", joined)
+    gaps = [gap for gap in (2 * delimiter, "\n" + delimiter, delimiter + "\n") if gap in joined]
+    if not gaps:
+        return lines
+    for gap in [*gaps, *gaps]:  # twice: of three delimiters in a row, one pass sees the first two
+        joined = joined.replace(gap, f"{gap[0]}nan{gap[1]}")
+    return joined[1:-1].split("\n")
 
 
-def _require_texts(source: str, name: str, values: npt.NDArray[np.str_], first_number: int) -> None:
-    empty = np.flatnonzero((values == "") | (values == "nan"))
-    if empty.size:
-        raise InvalidLog(f"{source}: row {first_number + empty[0]}, column {name}: the cell is empty; fill it.")
-    long = np.flatnonzero(np.char.str_len(values) > LONGEST_TEXT)
-    if long.size:
-        raise InvalidLog(
-            f"{source}: row {first_number + long[0]}, column {name}: longer than {LONGEST_TEXT} characters; shorten it."
-        )
+def _require_texts(source: str, name: str, texts: TextRuns, first_number: int) -> None:
+    for row, text in zip(texts.first_row, texts.value, strict=True):
+        if text in ("", "nan"):
+            raise InvalidLog(f"{source}: row {first_number + row}, column {name}: the cell is empty; fill it.")
+        if len(text) > LONGEST_TEXT:
+            raise InvalidLog(
+                f"{source}: row {first_number + row}, column {name}: longer than {LONGEST_TEXT} characters; shorten it."
+            )
 
 
 def _lengthen(runs: tuple[list[int], list[str]], values: npt.NDArray[np.str_], begin: int) -> None:

@@ -36,9 +36,9 @@ class TextRuns:
     value: tuple[str, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LogColumns:
-    """The rows of one file, in SI: `numbers` (n,) by column, and the runs of the two columns of text.
+    """The rows of one file, in SI: `numbers` (n,) by column, read-only, and the runs of the two columns of text.
 
     `first_number`: what a spreadsheet calls the first row. `path_is_independent`: as in `PassLog`.
     """
@@ -49,6 +49,10 @@ class LogColumns:
     cut_id: TextRuns
     category: TextRuns
     path_is_independent: bool
+
+    def __post_init__(self) -> None:
+        for values in self.numbers.values():
+            values.setflags(write=False)
 
     @property
     def rows(self) -> int:

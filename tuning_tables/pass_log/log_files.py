@@ -71,8 +71,7 @@ def write_log(log: PassLog, path: Path) -> None:
 
     `InvalidLog` for another ending, and for cut_id and categories that a file cannot hold; `OSError`.
     """
-    if path.suffix.lower() not in WRITERS:
-        raise InvalidLog(f"{path}: a log is written to a file that ends in {', '.join(WRITERS)}; name it so.")
+    require_writable_name(path)
     twice = [cut_id for cut_id, count in Counter(log.cut_id).items() if count > 1]
     if twice:
         raise InvalidLog(f"{path}: cut_id {excerpt(twice[0])!r} stands for two passes; give each its own.")
@@ -83,6 +82,12 @@ def write_log(log: PassLog, path: Path) -> None:
                 "printable characters, and no space around them."
             )
     WRITERS[path.suffix.lower()](log, path)
+
+
+def require_writable_name(path: Path) -> None:
+    """`InvalidLog` where `path` has an ending that no log is written with."""
+    if path.suffix.lower() not in WRITERS:
+        raise InvalidLog(f"{path}: a log is written to a file that ends in {', '.join(WRITERS)}; name it so.")
 
 
 def _read(path: Path, mapping: LogMapping, top_stage: int | None) -> tuple[PassLog | None, tuple[PassFault, ...]]:

@@ -13,8 +13,9 @@ import pytest
 
 from tests.tuning_tables.pass_log.sample_logs import sample_log
 from tuning_tables.errors import InvalidLog
+from tuning_tables.pass_log.csv_log import read_csv_log
 from tuning_tables.pass_log.log_files import read_logs, write_log
-from tuning_tables.pass_log.log_mapping import read_mapping
+from tuning_tables.pass_log.log_mapping import LogMapping, read_mapping
 from tuning_tables.pass_log.pass_log import PassLog
 
 
@@ -192,3 +193,26 @@ def test_changed_bytes_give_a_log_or_a_sentence(tmp_path: Path, name: str) -> No
             assert name in str(fault)  # noqa: PT017  # either end is right
             assert len(str(fault)) < 1500  # noqa: PT017
     assert refused > 20
+
+
+@pytest.mark.parametrize(
+    ("line", "speed", "target"),
+    [
+        (",,,1.5", np.nan, 1.5),
+        (" ,  , ,1.5", np.nan, 1.5),
+        ("4.5,,,", 4.5, np.nan),
+        (" 4.5 ,,, ", 4.5, np.nan),
+        (",,,", np.nan, np.nan),
+    ],
+)
+def test_empty_cells_are_missing_readings(tmp_path: Path, line: str, speed: float, target: float) -> None:
+    """Also several in a row, of spaces, at the beginning and the end of a line."""
+    head = "speed_m_s,pressure_kpa,note,target_m_s,cut_id,time_s,path_m,stage,mass_t,axles,category,stopped_by_hand"
+    rows = [f"{line},a,{row},{row},1,20,4,T,{'' if line == ',,,' else 0}" for row in range(6)]
+    (tmp_path / "log.csv").write_text("\n".join([head, *rows]), encoding="utf-8")
+    columns = read_csv_log(tmp_path / "log.csv", LogMapping())
+    found = {name: columns.numbers[name] for name in ("speed_m_s", "pressure_kpa", "target_m_s", "path_m")}
+    expected = {"speed_m_s": [speed] * 6, "pressure_kpa": [np.nan] * 6, "target_m_s": [target] * 6, "path_m": range(6)}
+    for name, values in expected.items():
+        assert np.array_equal(found[name], list(values), equal_nan=True), name
+    assert np.isnan(columns.numbers["stopped_by_hand"]).all() == (line == ",,,")
