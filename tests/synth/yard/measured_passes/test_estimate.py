@@ -1,0 +1,63 @@
+"""Estimates of a known plant, their derivatives, and what is done where the likelihood has an edge."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from synth.studies.identification.truths import TRUTHS, Yard
+from synth.yard.measured_passes import unknowns as asked
+from synth.yard.measured_passes.estimate import Estimate, estimate, posterior
+from synth.yard.measured_passes.fitting_passes import FittingPasses
+from synth.yard.measured_passes.identifiability import findings_of
+from synth.yard.measured_passes.unknowns import unknowns_of
+
+
+def test_intervals_hold_the_truth_of_most_numbers(found: Estimate) -> None:
+    truth = TRUTHS[0].values(tuple(unknown.key for unknown in found.unknowns))
+    z = [
+        (u - unknown.standing(truth[unknown.key])) / std
+        for unknown, u, std in zip(found.unknowns, found.u, found.std, strict=True)
+    ]
+    assert np.sum(np.abs(z) < 1.96) >= len(z) - 3
+    assert np.max(np.abs(z)) < 3.5
+
+
+def test_scores_are_the_slope_of_the_likelihood(passes: FittingPasses, found: Estimate) -> None:
+    target = posterior(passes, found.unknowns, 1)
+    rng = np.random.default_rng(0)
+    u = found.u + 0.3 * found.std * rng.standard_normal(len(found.u))
+    gradient = target.gradient(u)
+    for j in (0, 8, 11, 12):  # of the motion alone: those of the valves have edges
+        step = np.zeros(len(u))
+        step[j] = 1e-4
+        slope = (target.value(u + step) - target.value(u - step)) / 2e-4
+        assert abs(gradient[j] - slope) < 1e-3 * max(1.0, abs(slope))
+
+
+def test_threads_change_nothing(yard: Yard, passes: FittingPasses) -> None:
+    some = passes.taken(np.arange(45))
+    unknowns = unknowns_of(some, yard.config.parameters)
+    one, two = (estimate(some, unknowns, threads) for threads in (1, 2))
+    assert one.u.tobytes() == two.u.tobytes()
+    assert one.covariance.tobytes() == two.covariance.tobytes()
+
+
+def test_a_summit_on_an_edge_is_no_sharp_number(found: Estimate) -> None:
+    """The pressure rests before the next reading whatever the touch delay is, within a few hundredths of a second."""
+    (number,) = (i for i, unknown in enumerate(found.unknowns) if unknown.key == asked.TOUCH_DELAY)
+    low, high = found.interval(number)
+    assert high - low > 0.01
+
+
+def test_without_gauge_and_with_path_from_speed_less_is_told(yard: Yard, passes: FittingPasses) -> None:
+    blind = replace(passes.log, pressure_kpa=np.full(len(passes.log.time_s), np.nan), path_is_independent=False)
+    some = replace(passes, log=blind)
+    unknowns = unknowns_of(some, yard.config.parameters)
+    keys = {unknown.key for unknown in unknowns}
+    assert not keys & {asked.BIAS, asked.GAUGE_NOISE}
+    told = {finding.key: finding.identified for finding in findings_of(estimate(some, unknowns, 2))}
+    assert not told[asked.FILL]
+    assert told[asked.COMMON_CV]
+    assert told[asked.NOISE]

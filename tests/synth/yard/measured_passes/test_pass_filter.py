@@ -1,0 +1,83 @@
+"""The filter of a pass against the likelihood by quadrature, and its Ornstein–Uhlenbeck steps against closed forms."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import dblquad
+
+from synth.kernels.measured.pass_filter import Cuts, Rows, Spread, filter_passes, mean_variance
+
+NOISE, CV, MEAN_W, STD_W = 0.05, 0.15, 1.4, 0.4
+
+
+def rows_of(seed: int, n: int = 14) -> Rows:
+    """A pass that brakes from its fourth row on."""
+    rng = np.random.default_rng(seed)
+    step = np.full(n, 0.5)
+    gained, drag = np.full(n, 0.035), np.full(n, 0.0045)
+    work = np.where(np.arange(n) >= 3, 0.55, 0.0)
+    friction, w = 1.0 + CV * rng.standard_normal(), MEAN_W + STD_W * rng.standard_normal()
+    energy = 0.5 * 5.0**2 + np.concatenate(([0.0], np.cumsum(gained - w * drag - friction * work)[:-1]))
+    step[-1] = gained[-1] = drag[-1] = work[-1] = 0.0
+    return Rows(np.sqrt(2.0 * energy) + NOISE * rng.standard_normal(n), step, gained, drag, work)
+
+
+def filtered(rows: Rows, path_std: float) -> tuple[np.ndarray, np.ndarray, Cuts]:
+    """Surprises, their variances, and what is known of the cut."""
+    n = len(rows.speed_m_s)
+    surprise, variance = np.empty(n), np.empty(n)
+    cuts = Cuts(*(np.empty(1) for _ in Cuts._fields))
+    spread = Spread(np.array([CV]), np.array([MEAN_W]), np.array([STD_W]), path_std, 2.0, NOISE, 0.0)
+    filter_passes(rows, spread, np.array([0, n]), 0, 1, surprise, variance, cuts)
+    return surprise, variance, cuts
+
+
+def by_quadrature(rows: Rows) -> tuple[float, float]:
+    """Logarithm of the likelihood of all readings but the first, given that one, and the mean friction after them."""
+    x, weight = np.polynomial.hermite_e.hermegauss(41)
+    weight = weight / weight.sum()
+    first = rows.speed_m_s[0]
+    total, moment = 0.0, 0.0
+    for (a, wa), (b, wb), (c, wc) in itertools.product(zip(x, weight, strict=True), repeat=3):
+        friction, w = 1.0 + CV * b, MEAN_W + STD_W * c
+        # What the first reading tells: a flat law of the energy before it, as of the filter.
+        start = 0.5 * (first**2 - NOISE**2) + first * NOISE * a
+        steps = rows.gained_m2_s2 - w * rows.drag_m2_s2 - friction * rows.braked_m2_s2
+        speed = np.sqrt(2.0 * np.maximum(start + np.cumsum(steps)[:-1], 1e-9))
+        z = (rows.speed_m_s[1:] - speed) / NOISE
+        chance = wa * wb * wc * math.exp(-0.5 * float(z @ z))
+        total, moment = total + chance, moment + chance * friction
+    return math.log(total) - len(z) * math.log(NOISE * math.sqrt(2.0 * math.pi)), moment / total
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_the_likelihood_is_that_of_a_quadrature(seed: int) -> None:
+    """Over energy, friction and resistance; the filter is linear about what it expects, which costs little."""
+    rows = rows_of(seed)
+    surprise, variance, cuts = filtered(rows, 0.0)
+    assert math.isnan(surprise[0])
+    told = -0.5 * float(np.sum(np.log(2.0 * np.pi * variance[1:]) + surprise[1:] ** 2 / variance[1:]))
+    expected, friction = by_quadrature(rows)
+    assert told == pytest.approx(expected, abs=0.03)
+    assert cuts.friction[0] == pytest.approx(friction, abs=0.003)
+
+
+@pytest.mark.parametrize("ratio", [1e-4, 0.049, 0.051, 0.3, 2.0])
+def test_the_mean_of_the_path_friction_has_the_variance_of_its_process(ratio: float) -> None:
+    """∫∫ of the covariance, given the first value."""
+    found, _ = dblquad(
+        lambda s, t: math.exp(-abs(s - t)) - math.exp(-s - t), 0.0, ratio, 0.0, ratio, epsabs=1e-13, epsrel=1e-9
+    )
+    assert mean_variance(ratio) == pytest.approx(found / ratio**2, rel=2e-4)
+
+
+def test_readings_that_are_missing_are_left_out() -> None:
+    rows = rows_of(3)
+    rows.speed_m_s[[0, 5]] = np.nan
+    surprise, variance, _ = filtered(rows, 0.1)
+    assert np.flatnonzero(np.isnan(surprise)).tolist() == [0, 1, 5]
+    assert variance[6] > variance[4]
