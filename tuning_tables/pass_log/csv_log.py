@@ -178,8 +178,8 @@ def _parsed(
             _lengthen(runs[name], block[name], begin)
         blocks.append({name: block[name].copy() for name in places if name not in texts})
     found: dict[str, TextRuns] = {name: TextRuns(tuple(first), tuple(value)) for name, (first, value) in runs.items()}
-    for name, texts_of in found.items():
-        _require_texts(source, name, texts_of, first_number)
+    for text in texts:
+        _require_texts(source, text, found[text], first_number)
     return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}, found
 
 
