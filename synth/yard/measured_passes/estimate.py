@@ -184,6 +184,7 @@ def gentlest(target: Posterior, u: Floats) -> Linearised:
     return target.linearised_by(u, {key: side for key, side in chosen.items() if key in OF_VALVES})
 
 
+@frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Turned:
     """`target` in variables z in which the summit is about as wide in all directions as it seems to be at `start`."""

@@ -9,12 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Cut, Plant
+from plant_models.frozen_arrays import frozen_arrays
 from synth.faults.input_error import InputError
 from tuning_tables.pass_log.pass_log import PassLog
 
 Ints = NDArray[np.int64]
 
 
+@frozen_arrays
 @dataclass(frozen=True, eq=False)
 class FittingPasses:
     """A log whose passes all belong to classes of one position.

@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from plant_models.speed_sensor import measured_speed_std
 from synth.kernels.measured.drive_rows import Commands, drive_rows
 from synth.kernels.measured.pass_filter import Cuts, Rows, Spread, filter_passes
@@ -27,6 +28,7 @@ USUAL_M_S, USUAL_KPA = 4.0, 300.0
 """Where a law beyond the model is that of the model."""
 
 
+@frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Surprises:
     """k observations of m passes: `surprise`, `variance` (k,) and `pass_of` (k,).

@@ -60,7 +60,7 @@ def numbers(found: Identified) -> Figure:
         axes.plot([u - 1.96 * std, u + 1.96 * std], [y, y], color=colour, linewidth=2)
         axes.plot([u], [y], "o", color=colour, markersize=5, markerfacecolor=colour if finding.identified else "white")
         low, high = finding.interval
-        text = f"{finding.value:.4g} [{low:.4g}, {high:.4g}] {finding.unit.partition(" ")[0]}"
+        text = f"{finding.value:.4g} [{low:.4g}, {high:.4g}] {finding.unit.partition(' ')[0]}"
         axes.annotate(
             text, (1.02, y), xycoords=("axes fraction", "data"), va="center", fontsize=7.5,
             color=INK if finding.identified else GREY,

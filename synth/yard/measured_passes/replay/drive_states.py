@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from plant_models.stage_regulator import Actuator, stage_locked_actuator
 from synth.simulation.closed_loop import SUBSTEP_S
 from synth.yard.measured_passes.fitting_passes import FittingPasses
@@ -17,6 +18,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
+@frozen_arrays
 @dataclass(frozen=True, eq=False)
 class DriveStates:
     """Of n rows: `resting`: the command before has come to rest, by the model; `stage_before` in force until the row;

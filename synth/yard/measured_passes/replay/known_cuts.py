@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant
+from plant_models.frozen_arrays import frozen_arrays
 from plant_models.speed_sensor import measured_speed_std
 from synth.kernels.loop import closed_loop as kernel
 from synth.kernels.measured.pass_filter import SLOWEST_M_S
@@ -29,6 +30,7 @@ KNOWN_SPREAD = 1e-6
 """Spread of a resistance that is told."""
 
 
+@frozen_arrays
 @dataclass(frozen=True, eq=False)
 class KnownCuts:
     """(m,) each. Of the resistance w: `resistance_n_per_kn`, `resistance_variance`; of the friction ξ, given w:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.yard.measured_passes.fitting_passes import FittingPasses
 from tuning_tables import ControllerTable
 from tuning_tables.active_table import ActiveTable
@@ -18,6 +19,7 @@ Ints = NDArray[np.int64]
 NO_TABLE = -1
 
 
+@frozen_arrays
 @dataclass(frozen=True, eq=False)
 class LoggedTables:
     """`tables` that passes are regulated with; `of_pass` (m,): number of that of each pass, `NO_TABLE` for none, and

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from plant_models.speed_sensor import measured_speed_std
 from synth.kernels.measured.pass_filter import SLOWEST_M_S
 from synth.yard.measured_passes import unknowns as asked
@@ -21,6 +22,7 @@ LONGEST_GAP_S = 0.6
 """A pass whose last reading is longer before the exit has no measured exit."""
 
 
+@frozen_arrays
 @dataclass(frozen=True, eq=False)
 class MeasuredExits:
     """(m,) of the passes: exit speed and its standard error, NaN if the log ends too early; 0 if the cut stood."""

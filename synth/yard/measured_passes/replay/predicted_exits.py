@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.controllers import TableController
 from synth.simulation.exit_statistics import OVERSPEED_M_S
@@ -26,6 +27,7 @@ BAND = (0.1, 0.9)
 """Quantiles at the ends of the band of a prediction."""
 
 
+@frozen_arrays
 @dataclass(frozen=True, eq=False)
 class PredictedExits:
     """Of m passes under one table: `mean_m_s` and `band_m_s` (m, 2) of the exit speed, `square_m2_s2` mean square of

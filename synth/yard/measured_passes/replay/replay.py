@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.yard.measured_passes.fitting_passes import FittingPasses
 from synth.yard.measured_passes.likelihood import likelihood_of
@@ -57,6 +58,7 @@ class Uniformity:
     p_value: float
 
 
+@frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Replay:
     """What another book would have done in `passes`.

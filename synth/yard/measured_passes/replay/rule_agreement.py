@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.yard.measured_passes.fitting_passes import FittingPasses
 from synth.yard.measured_passes.replay.drive_states import DriveStates, drive_states
 from synth.yard.measured_passes.replay.logged_tables import NO_TABLE, LoggedTables
@@ -21,6 +22,7 @@ Ints = NDArray[np.int64]
 NOT_ASKED = -1
 
 
+@frozen_arrays
 @dataclass(frozen=True, eq=False)
 class RuleAgreement:
     """`wanted` (n,): the stage that the table of the pass commands at each row, `NOT_ASKED` where it may not or has no
