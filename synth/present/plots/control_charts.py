@@ -25,9 +25,9 @@ NAMED = 4
 def control_charts(found: Watch) -> Figure:
     """All charts over the number of the pass; beginning and alarm of a drift are marked."""
     means = found.moving_means
-    figure = new_figure(9.0, 3.6 + 1.3 * len(means), "Watch on drift", f"{len(found.passes)} passes")
-    place(figure, left=0.8, right=2.5, bottom=0.6, top=0.85, h=0.45)
-    panels = figure.subplots(1 + len(means), 1, sharex=True, squeeze=False, height_ratios=[2.5] + [1.0] * len(means))
+    figure = new_figure(9.0, 4.0 + 1.4 * len(means), "Watch on drift", f"{len(found.passes)} passes")
+    place(figure, left=0.8, right=2.5, bottom=0.6, top=0.85, h=0.62)
+    panels = figure.subplots(1 + len(means), 1, squeeze=False, height_ratios=[2.5] + [1.0] * len(means))
     draw_sums(panels[0, 0], found)
     for number, mean in enumerate(means):
         axes, x = panels[number + 1, 0], found.number_of[mean.numbers] + 1
@@ -35,6 +35,8 @@ def control_charts(found: Watch) -> Figure:
         axes.fill_between(x, mean.low, mean.high, color=PALE_GREY, linewidth=0.0)
         axes.axhline(mean.centre, color=GREY, linewidth=0.7)
         axes.plot(x, mean.means, color=LINE_COLOURS[0], linewidth=1.2)
+    for axes in panels[1:, 0]:
+        axes.sharex(panels[-1, 0])
     panels[-1, 0].set_xlabel("pass", fontsize=9)
     for axes in panels[:, 0]:
         mark_drift(axes, found)
@@ -42,19 +44,21 @@ def control_charts(found: Watch) -> Figure:
 
 
 def draw_sums(axes: Axes, found: Watch) -> None:
-    """The sums; the highest ones up to shortly after the alarm have names. They end at twice the limit."""
-    x, charts = found.number_of + 1, found.charts
-    dress(axes, "sum of each chart, and the limit", y="S")
-    until = len(x) if found.drift is None else found.drift.diagnosis.until + 1
-    order = np.argsort(-charts.sums[:until].max(axis=0), kind="stable")
+    """The sums until the cause has a name: afterwards they tell nothing new. The highest ones have names in the legend."""
+    charts = found.charts
+    until = len(found.number_of) if found.drift is None else found.drift.diagnosis.until + 1
+    x, sums = found.number_of[:until] + 1, charts.sums[:until]
+    title = "sum of each chart, and the limit"
+    dress(axes, title if found.drift is None else f"{title}, until the cause has a name", "pass", "S")
+    order = np.argsort(-sums.max(axis=0), kind="stable")
     for rank, chart in reversed(list(enumerate(order.tolist()))):
         k, size = charts.kinds[chart]
         cause = found.evidence.causes[k]
         if rank < NAMED:
-            axes.plot(x, charts.sums[:, chart], color=LINE_COLOURS[rank], linestyle=LINE_STYLES[rank], linewidth=1.2,
+            axes.plot(x, sums[:, chart], color=LINE_COLOURS[rank], linestyle=LINE_STYLES[rank], linewidth=1.2,
                       label=f"{cause.name} {cause.told(size)}")  # fmt: skip
         else:
-            axes.plot(x, charts.sums[:, chart], color=GREY, linewidth=0.4, alpha=0.6)
+            axes.plot(x, sums[:, chart], color=GREY, linewidth=0.4, alpha=0.6)
     axes.axhline(charts.limit, color=INK, linestyle="--", linewidth=1.0)
     axes.set_ylim(0.0, 2.0 * charts.limit)
     handles, labels = axes.get_legend_handles_labels()
