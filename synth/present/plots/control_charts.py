@@ -44,7 +44,7 @@ def control_charts(found: Watch) -> Figure:
 
 
 def draw_sums(axes: Axes, found: Watch) -> None:
-    """The sums until the cause has a name: afterwards they tell nothing new. The highest ones have names in the legend."""
+    """The sums until the cause has a name: afterwards they tell nothing new. The highest ones are in the legend."""
     charts = found.charts
     until = len(found.number_of) if found.drift is None else found.drift.diagnosis.until + 1
     x, sums = found.number_of[:until] + 1, charts.sums[:until]
