@@ -161,7 +161,7 @@ STUDIES: tuple[Study, ...] = (
     Study(
         "identification",
         "How true are the numbers that measured passes tell, and do their intervals hold?",
-        1500.0,
+        1200.0,
         "identify.md",
         "synth.studies.identification.study",
     ),
