@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from plant_models.pressure_gauge import PressureGauge
-
 from synth.configuration.config_file import parse_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.simulation.controllers import TableController

@@ -7,8 +7,11 @@ from pathlib import Path
 
 import pytest
 
+from plant_models.library import POSITIONS
 from synth.configuration.config_file import load_config, parse_config
+from synth.configuration.type_template import type_toml
 from synth.faults.input_error import InputError
+from synth.studies.identification.truths import text_of_classes
 from synth.yard.measured_passes import unknowns as asked
 from synth.yard.measured_passes.config_source import ConfigSource, config_source
 from synth.yard.measured_passes.estimate import Estimate
@@ -37,8 +40,6 @@ def written(source: ConfigSource, folder: Path) -> Path:
 
 
 def test_numbers_come_back_with_their_origin(passes: FittingPasses, found: Estimate, tmp_path: Path) -> None:
-    from synth.studies.identification.truths import text_of_classes
-
     (tmp_path / "asked.toml").write_text(text_of_classes(), encoding="utf-8")
     source = config_source(tmp_path / "asked.toml")
     new = identified(source, found, pass_rows(passes).mean_axles, "80 passes")
@@ -59,8 +60,6 @@ def test_numbers_come_back_with_their_origin(passes: FittingPasses, found: Estim
 
 
 def test_own_types_go_with_the_configuration(passes: FittingPasses, found: Estimate, tmp_path: Path) -> None:
-    from synth.configuration.type_template import POSITIONS, type_toml
-
     (tmp_path / "types" / "positions").mkdir(parents=True)
     (tmp_path / "types" / "positions" / "our-site.toml").write_text(type_toml(POSITIONS, None), encoding="utf-8")
     (tmp_path / "own.toml").write_text(OWN, encoding="utf-8")
