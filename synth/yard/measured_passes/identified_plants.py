@@ -76,7 +76,7 @@ def most_braked_axles(plant: Plant) -> int:
 
 def identified_class(cut: CutClass, values: Mapping[str, float], source: str) -> CutClass:
     """The class with its identified resistance, mean and spread."""
-    law, key = cut.resistance, asked.RESISTANCE + cut.label
+    law, key = cut.resistance, asked.RESISTANCE + cut.cut.category
     spread = values.get(asked.RESISTANCE_SPREAD, 1.0)
     found = RollingResistance(values.get(key, law.mean_n_per_kn), law.std_n_per_kn * spread)
     changed = {

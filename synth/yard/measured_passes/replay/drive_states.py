@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,15 +36,22 @@ def drive_states(passes: FittingPasses) -> DriveStates:
     period = plant.sensor.sample_period_s
     substeps = math.ceil(period / SUBSTEP_S)
     actuator = stage_locked_actuator(plant.position, plant.sensor, plant.position.top_stage, substeps)
-    found = DriveStates(
-        np.zeros(len(log.time_s), dtype=np.bool_), np.zeros(len(log.time_s), dtype=np.int64), np.zeros(len(log.time_s))
-    )
+    n = len(log.time_s)
+    found = Columns(np.zeros(n, dtype=np.bool_), np.zeros(n, dtype=np.int64), np.zeros(n))
     for number in range(len(log)):
         fill_in(log, number, actuator, (period, plant.approach.initial_stage), found)
-    return found
+    return DriveStates(*found)
 
 
-def fill_in(log: PassLog, number: int, actuator: Actuator, begin: tuple[float, int], found: DriveStates) -> None:
+class Columns(NamedTuple):
+    """Memory for `DriveStates`, while it is filled."""
+
+    resting: NDArray[np.bool_]
+    stage_before: Ints
+    overpressure_kpa: Floats
+
+
+def fill_in(log: PassLog, number: int, actuator: Actuator, begin: tuple[float, int], found: Columns) -> None:
     """The rows of pass `number`; `begin`: sampling period, and the stage in which the drive rests before."""
     period, stage = begin
     rows = log.rows(number)

@@ -16,7 +16,7 @@ NUMBERS = {
     SLOPE: 0.03, "retarder.force.touch_pressure_kpa": 41.0, "retarder.pneumatics.fill_time_constant_s": 0.37,
     "retarder.pneumatics.dead_band_kpa": 12.0, "friction.common_cv": 0.11, "friction.path_std": 0.07,
     "friction.correlation_length_m": 3.1, "sensor.noise_m_s": 0.03, "sensor.bias_m_s": 0.1,
-    "resistance.mean_n_per_kn S-1": 2.2, "resistance.spread": 1.3, "gauge.noise_kpa": 4.0,
+    "rolling_resistance.mean_n_per_kn С": 2.2, "rolling_resistance.spread": 1.3, "gauge.noise_kpa": 4.0,
 }  # fmt: skip
 
 
