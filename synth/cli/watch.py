@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 from synth.cli import LIMITS_MISSED, OK, say
 
 if TYPE_CHECKING:
-    from synth.configuration.resolved_config import ResolvedConfig
-    from tuning_tables.pass_log.pass_log import PassLog
+    from synth.yard.measured_passes.fitting_passes import FittingPasses
 
 
 @dataclass(frozen=True)
@@ -37,20 +36,22 @@ def watch_command(asked: AskedWatch, as_json: bool) -> int:
     config = load_config(asked.config)
     require_date()
     name = str(asked.config or BUILT_IN)
-    log = measured(asked.logs, asked.mapping, config)
-    reference = measured(asked.reference, asked.mapping, config) if asked.reference else None
+    from synth.yard.measured_passes.loaded_passes import loaded_passes
+
+    def loaded(paths: Sequence[Path]) -> FittingPasses:
+        return loaded_passes(paths, asked.mapping, config, name, lambda sentence: say(f"warning: {sentence}"))
+
+    passes = loaded(asked.logs)
+    reference = loaded(asked.reference) if asked.reference else None
     make_directory(asked.output)
     from synth.present.watch_outputs import write_watch
     from synth.yard.measured_passes.drift.baseline import configured, of_reference
     from synth.yard.measured_passes.drift.watch import watch
-    from synth.yard.measured_passes.fitting_passes import fitting_passes
 
     with interruptible(asked.output):
-        passes = fitting_passes(log, config.plants(), name)
         values, slope_key = guarded(configured, passes, config.parameters)
         if reference is not None:
-            known = fitting_passes(reference, config.plants(), name)
-            values = of_reference(known, config.parameters, values, available())
+            values = of_reference(reference, config.parameters, values, available())
         found = guarded(watch, passes, values, slope_key, available())
         written = write_watch(found, config, creation_time(), asked.output)
     if as_json:
@@ -59,16 +60,3 @@ def watch_command(asked: AskedWatch, as_json: bool) -> int:
         print(written.verdict)
         print(f"watch.json, charts.csv, watch.png and report.html in {asked.output}")
     return OK if found.drift is None else LIMITS_MISSED
-
-
-def measured(paths: Sequence[Path], mapping: Path | None, config: ResolvedConfig) -> PassLog:
-    """The passes of the files at `paths`; what is left out of them is said. `InvalidLog` where none is left."""
-    from tuning_tables.pass_log.log_files import read_logs
-    from tuning_tables.pass_log.log_mapping import read_mapping
-
-    read = read_logs(
-        paths, None if mapping is None else read_mapping(mapping), config.plants()[0][1].position.top_stage
-    )
-    for sentence in (*(each.sentence for each in read.refused), *(each.sentence for each in read.faults)):
-        say(f"left out: {sentence}")
-    return read.log

@@ -13,7 +13,6 @@ from synth.yard.measured_passes.config_source import ConfigSource
 from synth.yard.measured_passes.identified_config import config_files, identified
 from synth.yard.measured_passes.identify import Identified
 from synth.yard.measured_passes.identify_summary import CONFIG, identify_sentences, identify_summary
-from synth.yard.measured_passes.pass_rows import pass_rows
 from tuning_tables import write_atomically
 from tuning_tables.canonical import canonical_json
 
@@ -28,7 +27,7 @@ def write_identified(found: Identified, source: ConfigSource, created: str, dire
     """Write everything; the summary as written. Raises `OSError`."""
     from synth.present.plots.measured.identify_pictures import identify_pictures  # matplotlib
 
-    new = identified(source, found.estimate, pass_rows(found.passes).mean_axles, found.origin)
+    new = identified(source, found.estimate, found.origin)
     files = []
     for name, content in config_files(new, CONFIG).items():
         make_directory((directory / name).parent)

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, Final
 
-from plant_models.library.sourced_value import flat_numbers
 from synth.configuration.plant_settings import DEFAULT_CUTS
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.configuration.toml_file import Tree
@@ -17,21 +16,20 @@ from synth.yard.measured_passes import unknowns as asked
 from synth.yard.measured_passes.config_source import ConfigSource
 from synth.yard.measured_passes.estimate import Estimate
 from synth.yard.measured_passes.identifiability import Finding, findings_of
+from synth.yard.measured_passes.identified_plants import FACTORS, factors_by_axles
 
 TYPES: Final = "types"
 DIGITS: Final = 6
 
-FACTORS: Final = asked.FORCE + "slope_factor_by_axles"
 
-
-def identified(source: ConfigSource, found: Estimate, mean_axles: float, origin: str) -> ConfigSource:
-    """`source` with the numbers of `found`; `origin` says of which passes, `mean_axles` is N̄ of these."""
+def identified(source: ConfigSource, found: Estimate, origin: str) -> ConfigSource:
+    """`source` with the numbers of `found`; `origin` says of which passes."""
     config = source.resolved()
     tree: Tree = {key: value for key, value in source.tree.items() if key not in ("cut", "sources")}
     cuts = [dict(cut) for cut in source.tree.get("cut") or [cut.model_dump(exclude_unset=True) for cut in DEFAULT_CUTS]]
     sources: dict[str, str] = {}
     for finding in findings_of(found):
-        for key, value in values_of(finding, found, config, mean_axles):
+        for key, value in values_of(finding, config):
             *path, name = key.split(".")
             table = cuts[int(path[0][4:-1])] if path[0].startswith("cut[") else tree
             for part in path[1:] if table is not tree else path:
@@ -44,9 +42,7 @@ def identified(source: ConfigSource, found: Estimate, mean_axles: float, origin:
     return ConfigSource(f"identified from {origin}", tree, source.library)
 
 
-def values_of(
-    finding: Finding, found: Estimate, config: ResolvedConfig, mean_axles: float
-) -> Iterator[tuple[str, float | list[float]]]:
+def values_of(finding: Finding, config: ResolvedConfig) -> Iterator[tuple[str, float | list[float]]]:
     """(key of the configuration, value) of what a finding changes."""
     if not finding.identified or finding.key in (asked.BIAS, asked.GAUGE_NOISE):
         return
@@ -54,7 +50,7 @@ def values_of(
     if finding.key == asked.SLOPE_BY_AXLES:
         low, high = finding.interval
         if low > 0.0 or high < 0.0:  # else the force is as well told by one slope
-            yield FACTORS, factors(finding.value, config, mean_axles)
+            yield FACTORS, [rounded(c) for c in factors_by_axles(config, finding.value)]
     elif finding.key == asked.RESISTANCE_SPREAD:
         for number, of_class in enumerate(config.cuts):
             std = of_class.resistance.std_n_per_kn
@@ -66,16 +62,6 @@ def values_of(
                 yield f"cut[{number}].rolling_resistance.mean_n_per_kn", value
     else:
         yield finding.key, value
-
-
-def factors(slope_by_axles: float, config: ResolvedConfig, mean_axles: float) -> list[float]:
-    """c(N) of one wheel pair, two, …: those of the configuration, tilted about N̄."""
-    (now,) = (v.value for v in config.parameters if v.key == FACTORS)
-    assert isinstance(now, tuple)
-    most = max(len(now), *(of_class.cut.axles for of_class in config.cuts))
-    before = (flat_numbers(now)[min(n, len(now)) - 1] for n in range(1, most + 1))
-    tilted = (c * (1.0 + slope_by_axles * (n - mean_axles)) for n, c in enumerate(before, start=1))
-    return [rounded(min(max(c, 0.05), 5.0)) for c in tilted]
 
 
 def rounded(value: float) -> float:

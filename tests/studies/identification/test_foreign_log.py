@@ -15,7 +15,6 @@ from synth.yard.measured_passes.config_source import ConfigSource, config_source
 from synth.yard.measured_passes.fitting_passes import fitting_passes
 from synth.yard.measured_passes.identified_config import identified
 from synth.yard.measured_passes.identify import Identified, identify
-from synth.yard.measured_passes.pass_rows import pass_rows
 from tests.studies.identification.conftest import MASSES_T, TARGET_M_S
 from tests.studies.identification.foreign.foreign_log import foreign_exits, foreign_log
 from tests.studies.identification.foreign.foreign_plant import ForeignPlant
@@ -68,7 +67,7 @@ def test_a_table_for_what_was_identified_beats_the_assumed_one(
 ) -> None:
     """On the foreign railway itself, on the same cuts: mean square error of the exits, paired."""
     told, source = found
-    new = identified(source, told.estimate, pass_rows(told.passes).mean_axles, told.origin).resolved()
+    new = identified(source, told.estimate, told.origin).resolved()
     assert new.retarder.friction.common_cv == pytest.approx(told.estimate.values[asked.COMMON_CV], rel=1e-5)
     plants = dict(new.plants())
     old_config = source.resolved()

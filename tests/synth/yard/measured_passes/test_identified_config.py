@@ -18,7 +18,6 @@ from synth.yard.measured_passes.estimate import Estimate
 from synth.yard.measured_passes.fitting_passes import FittingPasses
 from synth.yard.measured_passes.identifiability import findings_of
 from synth.yard.measured_passes.identified_config import config_files, identified
-from synth.yard.measured_passes.pass_rows import pass_rows
 
 OWN = """library = ["types/"]
 [position]
@@ -42,7 +41,7 @@ def written(source: ConfigSource, folder: Path) -> Path:
 def test_numbers_come_back_with_their_origin(passes: FittingPasses, found: Estimate, tmp_path: Path) -> None:
     (tmp_path / "asked.toml").write_text(text_of_classes(), encoding="utf-8")
     source = config_source(tmp_path / "asked.toml")
-    new = identified(source, found, pass_rows(passes).mean_axles, "80 passes")
+    new = identified(source, found, "80 passes")
     again = load_config(written(new, tmp_path / "out"))
     known = {value.key: value for value in again.parameters}
     assert again.sha256 == new.resolved().sha256
@@ -64,7 +63,7 @@ def test_own_types_go_with_the_configuration(passes: FittingPasses, found: Estim
     (tmp_path / "types" / "positions" / "our-site.toml").write_text(type_toml(POSITIONS, None), encoding="utf-8")
     (tmp_path / "own.toml").write_text(OWN, encoding="utf-8")
     source = config_source(tmp_path / "own.toml")
-    path = written(identified(source, found, pass_rows(passes).mean_axles, "80 passes"), tmp_path / "elsewhere")
+    path = written(identified(source, found, "80 passes"), tmp_path / "elsewhere")
     assert load_config(path).retarder.name == "our-site"
     assert tomllib.loads(path.read_text(encoding="utf-8"))["library"] == ["types/"]
 
