@@ -8,6 +8,7 @@ from plant_models.friction import Friction
 from plant_models.motion import PathCoefficients, braked_axles, mean_braked_axles, path_breaks_m, path_coefficients
 from plant_models.plant import Plant
 from plant_models.pneumatics import Pneumatics, PressureHistory
+from plant_models.point_sensors import Passage, PointSensors, deciding_passages, every_axle, first_axle, passages
 from plant_models.retarder import PressingForce, RetarderPosition, WeightForce
 from plant_models.rolling_resistance import RollingResistance
 from plant_models.speed_sensor import DopplerSensor
@@ -23,10 +24,12 @@ __all__ = [
     "Friction",
     "HistogramEntrySpeed",
     "NormalEntrySpeed",
+    "Passage",
     "PathCoefficients",
     "Plant",
     "PlantError",
     "Pneumatics",
+    "PointSensors",
     "PressingForce",
     "PressureHistory",
     "RetarderPosition",
@@ -35,7 +38,11 @@ __all__ = [
     "WeightForce",
     "braked_axles",
     "couple",
+    "deciding_passages",
+    "every_axle",
+    "first_axle",
     "mean_braked_axles",
+    "passages",
     "path_breaks_m",
     "path_coefficients",
 ]

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +19,6 @@ from numpy.typing import NDArray
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.pneumatics import PressureHistory
 from plant_models.retarder import RetarderPosition
-from plant_models.speed_sensor import DopplerSensor
 
 
 @frozen_arrays
@@ -52,8 +52,22 @@ class Actuator:
         return int(np.argmax(self.mode_stage == stage))
 
 
-def stage_locked_actuator(position: RetarderPosition, sensor: DopplerSensor, top_stage: int, substeps: int) -> Actuator:
-    """Modes and chains of `position` with its stages 0 … `top_stage` under the regulator's sampling."""
+class RegulatorClock(Protocol):
+    """How a regulator counts time: radar and point sensors are both one."""
+
+    @property
+    def sample_period_s(self) -> float:
+        """Durations of changes of stage are whole numbers of these."""
+        ...
+
+    @property
+    def computing_delay_s(self) -> float:
+        """From the decision to the command on the valves' wires."""
+        ...
+
+
+def stage_locked_actuator(position: RetarderPosition, clock: RegulatorClock, top_stage: int, substeps: int) -> Actuator:
+    """Modes and chains of `position` with its stages 0 … `top_stage` under the regulator's `clock`."""
     touch = position.force.touch_pressure_kpa
     modes = resting_modes(position, top_stage)
     command = np.full((len(modes), top_stage + 1), -1)
@@ -68,11 +82,11 @@ def stage_locked_actuator(position: RetarderPosition, sensor: DopplerSensor, top
             command[mode, wanted] = len(ends)
             distance = [abs(p - history.end_kpa) if k == wanted else math.inf for k, p in modes]
             ends.append(int(np.argmin(distance)))
-            busy_s = sensor.computing_delay_s + history.duration_s
-            samples.append(max(1, math.ceil(busy_s / sensor.sample_period_s - 1e-9)))
+            busy_s = clock.computing_delay_s + history.duration_s
+            samples.append(max(1, math.ceil(busy_s / clock.sample_period_s - 1e-9)))
             histories.append((pressure, history))
     count = max(samples) * substeps
-    edges = np.arange(count + 1) * (sensor.sample_period_s / substeps) - sensor.computing_delay_s
+    edges = np.arange(count + 1) * (clock.sample_period_s / substeps) - clock.computing_delay_s
     overpressure = np.empty((len(ends), count))
     for chain, (pressure, history) in enumerate(histories):
         before = max(0.0, pressure - touch) * np.minimum(edges, 0.0)

@@ -1,0 +1,135 @@
+"""Point speed sensors (wheel sensors): speed is measured where a wheel rolls over a base of known length.
+
+A sensor has two coils, `base_m` apart. The time t between their pulses gives v = base/t (zhukovitsky-2012, eq. (1)).
+That is the mean speed over the base, which under constant acceleration a is the speed at its middle, to a²·t²/(8 v).
+So a reading tells the speed half a base before the second coil, and is off by a·(base/2)/v from the speed there.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.cut import Cut
+from plant_models.errors import require, require_between
+
+MOST_SENSORS = 32
+SHORTEST_SECTION_M = 0.3
+
+Axles = Callable[[Cut], tuple[int, ...]]
+"""Which axles of a cut the regulator decides on, by number from 0."""
+
+
+def first_axle(cut: Cut) -> tuple[int, ...]:
+    """The first axle alone."""
+    return (0,)
+
+
+def every_axle(cut: Cut) -> tuple[int, ...]:
+    """Every axle: the later version of zhukovitsky-2012."""
+    return tuple(range(cut.axles))
+
+
+@dataclass(frozen=True)
+class PointSensors:
+    """Sensors along a retarder position, and the regulator that listens to them.
+
+    `path_m`: middle of the base of each sensor, from the entrance of the first retarder, rising, negative ahead of it.
+    `base_m`: distance of the coils; `base_tolerance`: std of its relative error, lasting for each sensor and unknown to
+    the regulator. `timer_noise_s`: std of a measured time; `timer_resolution_s`: times are whole multiples of it, 0:
+    not quantised. `computing_delay_s`: from the second pulse to the command on the wires. `scan_period_s`: step of
+    the regulator's clock; a transient is over at the first step after its end. `axles`: those that it decides on.
+    """
+
+    path_m: tuple[float, ...]
+    base_m: float = 0.2
+    base_tolerance: float = 0.002
+    timer_noise_s: float = 1e-4
+    timer_resolution_s: float = 1e-4
+    computing_delay_s: float = 0.02
+    scan_period_s: float = 0.02
+    axles: Axles = first_axle
+
+    def __post_init__(self) -> None:
+        require(
+            1 <= len(self.path_m) <= MOST_SENSORS,
+            f"sensors: path_m has {len(self.path_m)} entries; 1 to {MOST_SENSORS} sensors are possible",
+        )
+        for number, place in enumerate(self.path_m):
+            require_between(f"sensors: path_m[{number}]", place, -100.0, 500.0)
+        for number, (before, after) in enumerate(pairwise(self.path_m)):
+            require(
+                after - before >= SHORTEST_SECTION_M,
+                f"sensors: path_m[{number + 1}] is {after:g}; it must be at least {SHORTEST_SECTION_M:g} m behind the "
+                f"sensor before it, which stands at {before:g}",
+            )
+        require_between("sensors: base_m", self.base_m, 0.05, 1.0)
+        require(
+            self.base_m < SHORTEST_SECTION_M or all(b - a > self.base_m for a, b in pairwise(self.path_m)),
+            f"sensors: base_m is {self.base_m:g}; the bases of neighbouring sensors must not overlap",
+        )
+        require_between("sensors: base_tolerance", self.base_tolerance, 0.0, 0.2)
+        require_between("sensors: timer_noise_s", self.timer_noise_s, 0.0, 0.05)
+        require_between("sensors: timer_resolution_s", self.timer_resolution_s, 0.0, 0.05)
+        require_between("sensors: computing_delay_s", self.computing_delay_s, 0.0, 2.0)
+        require_between("sensors: scan_period_s", self.scan_period_s, 0.001, 0.5)
+
+    @property
+    def sample_period_s(self) -> float:
+        """Step of the clock in which durations of commands are counted: `scan_period_s`."""
+        return self.scan_period_s
+
+    @property
+    def timing_std_s(self) -> float:
+        """Std of a measured time, quantisation as an equivalent noise; 1 µs at least."""
+        return max(math.hypot(self.timer_noise_s, self.timer_resolution_s / math.sqrt(12.0)), 1e-6)
+
+    def reading_std_m_s(self, speed_m_s: NDArray[np.float64] | float) -> NDArray[np.float64]:
+        """Std of a reading at true speeds: v²·σ_t/base and v times the tolerance of the base, together."""
+        v = np.asarray(speed_m_s, dtype=np.float64)
+        return np.hypot(v * v * self.timing_std_s / self.base_m, v * self.base_tolerance)
+
+    def standard_reading(self, speed_m_s: NDArray[np.float64]) -> NDArray[np.float64]:
+        """∫ dv/σ(v) from infinity, −∞ at standstill: it rises with the speed, and in it every reading has std 1."""
+        v = np.asarray(speed_m_s, dtype=np.float64)
+        with np.errstate(divide="ignore"):
+            time_in_stds = self.base_m / (np.maximum(v, 0.0) * self.timing_std_s)
+        if self.base_tolerance == 0.0:
+            return -time_in_stds
+        return -np.arcsinh(self.base_tolerance * time_in_stds) / self.base_tolerance
+
+    def speed_at_reading(self, standard: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Inverse of `standard_reading`; ∞ at 0 and above."""
+        below = np.maximum(-np.asarray(standard, dtype=np.float64), 0.0)
+        grown = np.sinh(self.base_tolerance * below) / self.base_tolerance if self.base_tolerance else below
+        with np.errstate(divide="ignore"):
+            return self.base_m / (grown * self.timing_std_s)
+
+
+@dataclass(frozen=True)
+class Passage:
+    """Axle `axle` of a cut over sensor `sensor`: it is at the middle of the base when the first axle is at `path_m`."""
+
+    sensor: int
+    axle: int
+    path_m: float
+
+
+def passages(sensors: PointSensors, cut: Cut) -> tuple[Passage, ...]:
+    """All passages of axles that the regulator looks at, in the order of the path; those behind the exit too."""
+    met = [
+        Passage(sensor, axle, place + cut.axle_offsets_m[axle])
+        for sensor, place in enumerate(sensors.path_m)
+        for axle in sensors.axles(cut)
+    ]
+    return tuple(sorted(met, key=lambda passage: (passage.path_m, passage.sensor)))
+
+
+def deciding_passages(sensors: PointSensors, cut: Cut, exit_m: float) -> tuple[Passage, ...]:
+    """The passages at which a command may still act: those before the exit."""
+    return tuple(each for each in passages(sensors, cut) if each.path_m < exit_m - 1e-9)
