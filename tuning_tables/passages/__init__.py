@@ -1,0 +1,1 @@
+"""Tables for point sensors: switching speeds for every passage over a sensor, and the rule that reads them."""

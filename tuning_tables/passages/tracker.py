@@ -1,0 +1,85 @@
+"""Which passage a pair of pulses was, or none that can be believed.
+
+A sensor tells its own number, when it was passed and how fast; it does not tell which axle. The tracker holds what it
+believes of the cut: the last passage, the speed there, the time since. A pulse pair belongs to the next passage over
+that sensor whose distance from the last one the cut can have rolled in that time: no farther than with the greatest
+acceleration, no less far than with the greatest deceleration, each from a speed that the reading allows. Where there is
+none, the pair is not believed: nothing is commanded. So lost pulses cost their own passage alone, and a pulse too
+many, too early or from a sensor out of order costs nothing.
+
+A first pulse can be false itself, and then every true one would contradict it. So a pair that is not believed is kept
+as a *rival*; a pair that follows from the rival and not from what was believed makes the regulator change its mind.
+
+All arithmetic is float32, one rounding an operation. `limits` float32 (6,): least and greatest credible speed in m/s,
+greatest acceleration and deceleration in m/s² (> 0), relative error allowed of a speed, error allowed of a path in m.
+`state` float32 (6,): passage, speed and time since, of what is believed and of the rival; passage −1: none.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+NONE: Final = -1
+LONGEST_WAIT_S: Final = 1e6
+
+
+def begin_cut(state: npt.NDArray[np.float32]) -> None:
+    """Forget the cut before: `state` (6,) as it is when a new one is expected."""
+    state[:] = 0.0
+    state[0] = NONE
+    state[3] = NONE
+
+
+def believed_passage(
+    path_m: npt.NDArray[np.float32],
+    sensor_of: npt.NDArray[np.int64],
+    limits: npt.NDArray[np.float32],
+    state: npt.NDArray[np.float32],
+    sensor: int,
+    since_s: float,
+    v_m_s: float,
+) -> int:
+    """The passage that a pulse pair of `sensor` is taken for, or −1; `state` is brought up to date.
+
+    `path_m`, `sensor_of` (M,) of the passages in the order of the path; `since_s`: time since the pulse pair before, of
+    whatever sensor, or since `begin_cut`; `v_m_s`: base over time. Raises nothing for any number. `numba.njit` compiles
+    this text as it stands: hence the one loop over what is believed and the rival.
+    """
+    if not 0.0 <= since_s <= LONGEST_WAIT_S:
+        return NONE
+    since, v, none = np.float32(since_s), np.float32(0.0), np.float32(NONE)
+    state[2] += since
+    state[5] += since
+    if not (limits[0] <= v_m_s <= limits[1]):
+        return NONE
+    v = np.float32(v_m_s)
+    first, one, half = NONE, np.float32(1.0), np.float32(0.5)
+    for passage in range(path_m.shape[0] - 1, -1, -1):
+        if sensor_of[passage] == sensor:
+            first = passage
+    if first == NONE:
+        return NONE
+    found = NONE
+    if state[0] == none and state[3] == none:
+        found = first
+    for at in range(0, 6, 3):
+        if found != NONE or state[at] == none:
+            continue
+        here, time = int(state[at]), state[at + 2]
+        fast, slow = state[at + 1] * (one + limits[4]), state[at + 1] * (one - limits[4])
+        farthest = time * (fast + half * limits[2] * time) + limits[5]
+        rolls = min(time, slow / limits[3])
+        nearest = rolls * (slow - half * limits[3] * rolls) - limits[5]
+        for passage in range(path_m.shape[0] - 1, here, -1):
+            way = path_m[passage] - path_m[here]
+            if sensor_of[passage] == sensor and nearest <= way and way <= farthest:
+                found = passage
+    if found == NONE:
+        state[3], state[4], state[5] = np.float32(first), v, np.float32(0.0)
+        return NONE
+    state[0], state[1], state[2] = np.float32(found), v, np.float32(0.0)
+    state[3] = none
+    return found
