@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -29,17 +30,34 @@ is beyond help, at 26 nodes of the default book where switchings have no price."
 class Solution:
     """Result of a sweep.
 
-    `lines`: the common policy; `gain_down`, `gain_up` (N, K + 1, E): mean-square cost saved by a change of stage
-    at a measured speed (what the lines bound, and what R5's indifferent region is read from); `values`
-    (I, N + 1, H, L, E), or of fewer nodes: estimated cost to go by scenario, in the type that was asked for.
+    `lines_m_s` (C, R, K + 1): the common policy, by command, decision and stage; `gain` (C, R, K + 1, E): mean-square
+    cost saved by a command at a measured speed (what the lines bound, and what R5's indifferent region is read from);
+    `values` (I, N + 1, H, L, E), or of fewer nodes: estimated cost to go by scenario, in the type that was asked for.
     """
 
     chain: Chain
     aim: Aim
-    lines: SwitchingLines
-    gain_down: NDArray[np.float64]
-    gain_up: NDArray[np.float64]
+    lines_m_s: NDArray[np.float64]
+    gain: NDArray[np.float64]
     values: NDArray[np.floating[Any]]
+
+    @cached_property
+    def lines(self) -> SwitchingLines:
+        """The policy as lines over the path: of decisions at every node, commands that go one stage far."""
+        lower, upper = (with_exit_node(each) for each in self.lines_m_s)
+        return SwitchingLines(self.chain.grid.path_m, lower, upper)
+
+    @property
+    def gain_down(self) -> NDArray[np.float64]:
+        """Of going one stage down, (R, K + 1, E)."""
+        gain: NDArray[np.float64] = self.gain[0]
+        return gain
+
+    @property
+    def gain_up(self) -> NDArray[np.float64]:
+        """Of going one stage up, (R, K + 1, E)."""
+        gain: NDArray[np.float64] = self.gain[1]
+        return gain
 
 
 def solve(chain: Chain, aim: Aim, value_type: type[np.floating[Any]] = np.float32) -> Solution:
@@ -68,28 +86,27 @@ def solve_all(
     kept = nodes + 1 if nodes_kept is None else nodes_kept
     states = (len(c.actuator.mode_stage), len(c.path_noise.levels), points)
     values = np.empty((len(c.scenarios.factor), kept, *states, width), value_type)
-    lower, upper = np.empty((nodes, stages, width)), np.empty((nodes, stages, width))
-    gain_down, gain_up = (np.empty((nodes, stages, width, points)) for _ in range(2))
-    noise_m_s = c.measurement.std_m_s
-    smear_start, smear = true_speed_weights(c.grid.speed_m_s, noise_m_s)
+    shape = (c.decisions.commands, len(c.decisions), stages, width)
+    lines, gain = np.empty(shape), np.empty((*shape, points))
+    readings, noise = c.measurement.readings(c.grid.speed_m_s), c.measurement.std
+    smear_start, smear = true_speed_weights(c.grid.speed_m_s, readings, noise)
     costs = (np.stack(exit_costs, axis=1), stall_costs, change_costs)
     arguments = (
         *(in_packs_of_targets(each, value_type).ravel() for each in costs),
-        TIE_M2_S2, ROUNDINGS * float(np.finfo(value_type).eps), noise_m_s, smear_start, smear.astype(value_type),
-        hidden_prior(c).astype(value_type), *sweep_arguments(c),
+        TIE_M2_S2, ROUNDINGS * float(np.finfo(value_type).eps), readings, noise, smear_start,
+        smear.astype(value_type), hidden_prior(c).astype(value_type), c.decisions.at_nodes(nodes), *sweep_arguments(c),
         c.scenarios.factor, c.scenarios.extra_m_s2,
-        c.grid.path_step_m, c.grid.energy_step_m2_s2, c.plant.sensor.sample_period_s, len(c.entry),
+        c.grid.path_step_m, c.grid.energy_step_m2_s2, c.epochs.hold_period_s, len(c.entry),
         c.approach_nodes, c.plant.entrance_stage,
-        values, lower, upper, gain_down, gain_up,
+        values, lines, gain,
     )  # fmt: skip
     sweep(*arguments)
     return tuple(
         Solution(
             chain=c,
             aim=aim,
-            lines=SwitchingLines(c.grid.path_m, with_exit_node(lower[:, :, i]), with_exit_node(upper[:, :, i])),
-            gain_down=gain_down[:, :, i],
-            gain_up=gain_up[:, :, i],
+            lines_m_s=c.measurement.speeds(lines[..., i]),
+            gain=gain[:, :, :, i],
             values=values[..., i],
         )
         for i, aim in enumerate(aims)
@@ -108,7 +125,7 @@ def sweep_arguments(c: Chain) -> Any:
     a = c.landings
     return (
         c.grid.speed_m_s, c.actuator.mode_stage, c.actuator.mode_overpressure_kpa,
-        a.lower_chain, a.upper_chain, a.end_mode, a.ends, a.factors,
+        a.change_chain, a.end_mode, a.ends, a.factors,
         c.transient_noise.probability, c.transient_noise.mean, c.transient_noise.std,
         c.path_noise.levels, c.path_noise.transition,
         c.drive_m_s2, c.brake_m_s2_per_kpa,
@@ -124,20 +141,20 @@ def hidden_prior(c: Chain) -> NDArray[np.float64]:
 
 
 def true_speed_weights(
-    speed_m_s: NDArray[np.float64], noise_m_s: float
+    speed_m_s: NDArray[np.float64], readings: NDArray[np.float64], noise: float
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Bands of P(true speed | measured speed) on the grid: first index (E,) and weights (E, W).
 
-    Flat prior in speed: weight φ((v' − v)/σ)·dv', cut at four standard deviations.
+    Flat prior in speed: weight φ((y' − y)/σ)·dv', cut at four standard deviations, y = `readings` of the speeds.
     """
-    v = speed_m_s
-    width = np.gradient(v)
-    first = np.searchsorted(v, v - 4 * noise_m_s)
-    last = np.searchsorted(v, v + 4 * noise_m_s, side="right")
+    v = readings
+    width = np.gradient(speed_m_s)
+    first = np.searchsorted(v, v - 4 * noise)
+    last = np.searchsorted(v, v + 4 * noise, side="right")
     span = int((last - first).max())
     start = np.minimum(first, len(v) - span)
     index = start[:, None] + np.arange(span)
-    weights = np.exp(-0.5 * ((v[index] - v[:, None]) / noise_m_s) ** 2) * width[index]
+    weights = np.exp(-0.5 * ((v[index] - v[:, None]) / noise) ** 2) * width[index]
     return start, weights / weights.sum(axis=1, keepdims=True)
 
 

@@ -15,38 +15,36 @@ from plant_models.frozen_arrays import frozen_arrays
 from synth.kernels.sweep.policy_value import backward
 from synth.problem.aim import Aim
 from synth.solver.chain.chain import Chain
+from synth.solver.chain.epochs import Policy
 from synth.solver.exit_density import ExitDensity
 from synth.solver.policy_density import (
-    Commands,
+    Probabilities,
     commands,
     exit_density,
     forward_one,
     shared_arguments,
     slopes_of_commands,
 )
-from synth.solver.switching_lines import SwitchingLines
 
-Gradient = tuple[float, NDArray[np.float64], NDArray[np.float64]]
-"""A cost, and its derivatives by the lower and by the upper lines at the path nodes, (K + 1, N) each."""
+Gradient = tuple[float, NDArray[np.float64]]
+"""A cost, and its derivatives by the lines, (C, R, K + 1): by command, decision and stage."""
 
 
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class ScenarioCosts:
-    """Cost of a policy in every hidden scenario (I,), and its derivatives by the line values (I, K + 1, N)."""
+    """Cost of a policy in every hidden scenario (I,), and its derivatives by the lines (I, C, R, K + 1)."""
 
     cost: NDArray[np.float64]
-    by_lower: NDArray[np.float64]
-    by_upper: NDArray[np.float64]
+    by_lines: NDArray[np.float64]
 
     def weighted(self, weight: NDArray[np.float64]) -> Gradient:
         """Sum over the scenarios."""
-        cost, by_lower, by_upper = 0.0, np.zeros(self.by_lower.shape[1:]), np.zeros(self.by_upper.shape[1:])
+        cost, by_lines = 0.0, np.zeros(self.by_lines.shape[1:])
         for one, share in enumerate(weight):
             cost += share * self.cost[one]
-            by_lower += share * self.by_lower[one]
-            by_upper += share * self.by_upper[one]
-        return float(cost), by_lower, by_upper
+            by_lines += share * self.by_lines[one]
+        return float(cost), by_lines
 
     def grouped(self, weight: NDArray[np.float64]) -> ScenarioCosts:
         """The mean over every group of scenarios that stand side by side, by the groups' own `weight` (G, members)."""
@@ -57,7 +55,7 @@ class ScenarioCosts:
             over_group: NDArray[np.float64] = np.einsum("gm,gm...->g...", weight, apart)
             return over_group
 
-        return ScenarioCosts(mean(self.cost), mean(self.by_lower), mean(self.by_upper))
+        return ScenarioCosts(mean(self.cost), mean(self.by_lines))
 
 
 @dataclass(frozen=True)
@@ -67,51 +65,55 @@ class Evaluation:
     chain: Chain
     aim: Aim
 
-    def density(self, lines: SwitchingLines) -> ExitDensity:
+    def density(self, lines: Policy) -> ExitDensity:
         """Exit-speed density, all scenarios weighted."""
         return exit_density(self.chain, lines)
 
-    def rms_m_s(self, lines: SwitchingLines) -> float:
+    def rms_m_s(self, lines: Policy) -> float:
         """Predicted rms error at the exit."""
         return self.density(lines).rms_m_s(self.aim.target_speed_m_s)
 
-    def cost(self, lines: SwitchingLines) -> float:
+    def cost(self, lines: Policy) -> float:
         """Expected cost by the backward recursion, every state valued."""
-        policy = commands(self.chain, lines)
+        policy = commands(self.chain, lines.at_decisions(self.chain.decisions))
         nothing, no_band = np.empty((0, 0, 0, 0)), np.empty((0, 2), dtype=np.int64)
-        slopes = Commands(np.empty((0, 0, 0)), np.empty((0, 0, 0)))
+        slopes = np.empty((0, 0, 0, 0))
         weights = enumerate(self.chain.scenarios.weight)
         return float(sum(weight * self._backward(policy, slopes, i, nothing, no_band)[0] for i, weight in weights))
 
-    def gradient(self, lines: SwitchingLines) -> Gradient:
+    def gradient(self, lines: Policy) -> Gradient:
         """Cost, and its exact derivatives by every line value; what `polish.polish` minimises."""
         return self.scenario_costs(lines).weighted(self.chain.scenarios.weight)
 
-    def scenario_costs(self, lines: SwitchingLines) -> ScenarioCosts:
+    def scenario_costs(self, lines: Policy) -> ScenarioCosts:
         """Cost and exact gradient in every scenario; their weights play no part."""
-        c, policy, slopes = self.chain, commands(self.chain, lines), slopes_of_commands(self.chain, lines)
-        nodes, _, points = policy.down.shape
-        density = np.empty((nodes, len(c.actuator.mode_stage), len(c.path_noise.levels), points))
-        band = np.empty((nodes, 2), dtype=np.int64)
+        c, at_decisions = self.chain, lines.at_decisions(self.chain.decisions)
+        policy, slopes = commands(c, at_decisions), slopes_of_commands(c, at_decisions)
+        modes, levels, points = len(c.actuator.mode_stage), len(c.path_noise.levels), policy.shape[3]
+        density = np.empty((len(c.decisions), modes, levels, points))
+        band = np.empty((len(c.drive_m_s2), 2), dtype=np.int64)
         found = []
         for i in range(len(c.scenarios.weight)):
             forward_one(c, policy, i, density, band)
-            one, lower, upper = self._backward(policy, slopes, i, density, band)
-            found.append((one, lower.T, upper.T))
+            found.append(self._backward(policy, slopes, i, density, band))
         return ScenarioCosts(*(np.array(each) for each in zip(*found, strict=True)))
 
     def _backward(
-        self, policy: Commands, slopes: Commands, i: int, density: NDArray[np.float64], band: NDArray[np.int64]
+        self,
+        policy: Probabilities,
+        slopes: Probabilities,
+        i: int,
+        density: NDArray[np.float64],
+        band: NDArray[np.int64],
     ) -> Gradient:
-        """Backward recursion in scenario `i`; gradient (N, K + 1) if `density`, `band` are its forward ones."""
+        """Backward recursion in scenario `i`, with the gradient if `density`, `band` are its forward ones."""
         c, criterion = self.chain, self.aim.criterion
-        nodes, stages, _ = policy.down.shape
-        by_lower, by_upper = np.zeros((nodes, stages)), np.zeros((nodes, stages))
+        by_lines = np.zeros(policy.shape[:3])
         arguments = (
-            policy.down, policy.up, slopes.down, slopes.up,
+            policy, slopes, c.decisions.at_nodes(len(c.drive_m_s2)),
             *criterion.exit_costs(c.grid.speed_m_s, self.aim.target_speed_m_s),
             criterion.switching_tolerance_m2_s2, c.entry, c.entry_mode, *shared_arguments(c), c.scenarios.factor[i],
-            c.scenarios.extra_m_s2[i], c.grid.path_step_m, c.grid.energy_step_m2_s2, c.plant.sensor.sample_period_s,
-            density, band, by_lower, by_upper,
+            c.scenarios.extra_m_s2[i], c.grid.path_step_m, c.grid.energy_step_m2_s2, c.epochs.hold_period_s,
+            density, band, by_lines,
         )  # fmt: skip
-        return backward(*arguments), by_lower, by_upper
+        return backward(*arguments), by_lines

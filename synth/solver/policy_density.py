@@ -18,38 +18,41 @@ from synth.kernels.sweep.commands import command_probabilities, command_slopes
 from synth.kernels.sweep.policy_density import forward
 from synth.kernels.vector.packs import EIGHT
 from synth.solver.chain.chain import Chain
+from synth.solver.chain.decisions import steps_of
+from synth.solver.chain.epochs import Policy
 from synth.solver.exit_density import ExitDensity
-from synth.solver.switching_lines import SwitchingLines
+
+Probabilities = NDArray[np.float64]
+"""Of each command at every decision, stage and true speed, (C, R, K + 1, E); or their slopes by the lines."""
 
 
-@frozen_arrays
-@dataclass(frozen=True, eq=False)
-class Commands:
-    """P(down), P(up) at every node, stage and true speed (N, K + 1, E); or their slopes by the line value."""
-
-    down: NDArray[np.float64]
-    up: NDArray[np.float64]
+def commands(chain: Chain, lines_m_s: NDArray[np.float64]) -> Probabilities:
+    """Probability of each command by `lines_m_s` (C, R, K + 1) under the chain's measurement."""
+    return by_lines(command_probabilities, chain, lines_m_s)
 
 
-def commands(chain: Chain, lines: SwitchingLines) -> Commands:
-    """Command probabilities of `lines`, linear between their nodes, under the chain's measurement."""
-    return by_lines(command_probabilities, chain, lines)
+def slopes_of_commands(chain: Chain, lines_m_s: NDArray[np.float64]) -> Probabilities:
+    """How fast the probability to go as far as each command or farther changes with its line."""
+    slopes = by_lines(command_slopes, chain, lines_m_s)
+    slopes *= chain.measurement.slopes(lines_m_s)[..., None]
+    return slopes
 
 
-def slopes_of_commands(chain: Chain, lines: SwitchingLines) -> Commands:
-    """How fast these probabilities change with the line value."""
-    return by_lines(command_slopes, chain, lines)
-
-
-def by_lines(kernel: Callable[..., None], chain: Chain, lines: SwitchingLines) -> Commands:
+def by_lines(kernel: Callable[..., None], chain: Chain, lines_m_s: NDArray[np.float64]) -> Probabilities:
     """What `kernel` gives for the lines as the measurement has them."""
-    nodes, points = len(chain.drive_m_s2), len(chain.grid.speed_m_s)
-    lower, upper = lines.lower_m_s[:, :nodes].T.copy(), lines.upper_m_s[:, :nodes].T.copy()
-    lower, upper, noise_m_s = chain.measurement.thresholds(lower, upper)
-    upper[: chain.approach_nodes, chain.plant.entrance_stage :] = np.inf  # before the entrance, no further
-    down, up = (before_a_pack((nodes, lines.stages, points)) for _ in range(2))
-    kernel(lower, upper, chain.grid.speed_m_s, noise_m_s, down, up)
-    return Commands(down, up)
+    lines, noise = chain.measurement.thresholds(lines_m_s)
+    lines = np.array(lines)
+    before = chain.decisions.node < chain.approach_nodes
+    for command in range(1, len(lines), 2):  # before the entrance, no further
+        lines[command, before, max(chain.plant.entrance_stage + 1 - steps_of(command), 0) :] = np.inf
+    found = before_a_pack((*lines.shape, len(chain.grid.speed_m_s)))
+    kernel(lines, chain.measurement.readings(chain.grid.speed_m_s), noise, found)
+    return found
+
+
+def commands_of(chain: Chain, policy: Policy) -> Probabilities:
+    """Probability of each command of a policy."""
+    return commands(chain, policy.at_decisions(chain.decisions))
 
 
 def before_a_pack(shape: tuple[int, ...]) -> NDArray[np.float64]:
@@ -60,33 +63,33 @@ def before_a_pack(shape: tuple[int, ...]) -> NDArray[np.float64]:
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Occupancy:
-    """Where a policy takes the cut: `samples` (I, N, H, L, E) expected samples in every hidden state, weighted
+    """Where a policy takes the cut: `samples` (I, R, H, L, E) expected decisions in every hidden state, weighted
     by the scenarios; `band` (I, N, 2) range of energies met at a node."""
 
     samples: NDArray[np.float64]
     band: NDArray[np.int64]
 
 
-def exit_density(chain: Chain, lines: SwitchingLines) -> ExitDensity:
+def exit_density(chain: Chain, lines: Policy) -> ExitDensity:
     """Exit-speed density of the policy, all scenarios weighted."""
     nothing = np.empty((len(chain.scenarios.weight), 0, 0, 0, 0))
-    return forward_pass(chain, commands(chain, lines), nothing)[0]
+    return forward_pass(chain, commands_of(chain, lines), nothing)[0]
 
 
-def density_and_occupancy(chain: Chain, lines: SwitchingLines) -> tuple[ExitDensity, Occupancy]:
+def density_and_occupancy(chain: Chain, lines: Policy) -> tuple[ExitDensity, Occupancy]:
     """Exit-speed density, and the occupancy of every hidden state, from one forward recursion."""
     c = chain
-    shape = (len(c.drive_m_s2), len(c.actuator.mode_stage), len(c.path_noise.levels), len(c.grid.speed_m_s))
+    shape = (len(c.decisions), len(c.actuator.mode_stage), len(c.path_noise.levels), len(c.grid.speed_m_s))
     samples = np.zeros((len(c.scenarios.weight), *shape))
-    density, band = forward_pass(c, commands(c, lines), samples)
+    density, band = forward_pass(c, commands_of(c, lines), samples)
     return density, Occupancy(samples, band)
 
 
-def scenario_densities(chain: Chain, lines: SwitchingLines) -> tuple[ExitDensity, ...]:
+def scenario_densities(chain: Chain, lines: Policy) -> tuple[ExitDensity, ...]:
     """Exit-speed density in every scenario alone, in their order."""
     scenarios, nodes = len(chain.scenarios.weight), len(chain.drive_m_s2)
     nothing, band = np.empty((scenarios, 0, 0, 0, 0)), np.empty((scenarios, nodes, 2), dtype=np.int64)
-    found = zip(*forward_all(chain, commands(chain, lines), slice(None), nothing, band), strict=True)
+    found = zip(*forward_all(chain, commands_of(chain, lines), slice(None), nothing, band), strict=True)
     return tuple(scenario_density(chain, exits, totals) for exits, totals in found)
 
 
@@ -96,8 +99,10 @@ def scenario_density(chain: Chain, exits: NDArray[np.float64], totals: NDArray[n
     return ExitDensity(chain.grid.speed_m_s, exits, stalled, escaped, float(totals[2] + totals[3]))
 
 
-def forward_pass(c: Chain, policy: Commands, samples: NDArray[np.float64]) -> tuple[ExitDensity, NDArray[np.int64]]:
-    """Forward recursion over all scenarios; `samples` (I, N, H, L, E) is filled unless its nodes are 0."""
+def forward_pass(
+    c: Chain, policy: Probabilities, samples: NDArray[np.float64]
+) -> tuple[ExitDensity, NDArray[np.int64]]:
+    """Forward recursion over all scenarios; `samples` (I, R, H, L, E) is filled unless its length R is 0."""
     weights, points = c.scenarios.weight, len(c.grid.speed_m_s)
     band = np.empty((len(weights), len(c.drive_m_s2), 2), dtype=np.int64)
     exits_of, totals_of = forward_all(c, policy, slice(None), samples, band)
@@ -112,7 +117,7 @@ def forward_pass(c: Chain, policy: Commands, samples: NDArray[np.float64]) -> tu
 
 
 def forward_one(
-    c: Chain, policy: Commands, i: int, density: NDArray[np.float64], band: NDArray[np.int64]
+    c: Chain, policy: Probabilities, i: int, density: NDArray[np.float64], band: NDArray[np.int64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Forward recursion in scenario `i`: exit probabilities (E,) and the kernel's totals (4,)."""
     exits, totals = forward_all(c, policy, slice(i, i + 1), density[None], band[None])
@@ -120,14 +125,15 @@ def forward_one(
 
 
 def forward_all(
-    c: Chain, policy: Commands, scenarios: slice, density: NDArray[np.float64], band: NDArray[np.int64]
+    c: Chain, policy: Probabilities, scenarios: slice, density: NDArray[np.float64], band: NDArray[np.int64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Forward recursion in several scenarios: exit probabilities (I, E) and the kernel's totals (I, 4)."""
     factor = c.scenarios.factor[scenarios]
     exits, totals = np.empty((len(factor), len(c.grid.speed_m_s))), np.empty((len(factor), 4))
     arguments = (
-        policy.down, policy.up, c.entry, c.entry_mode, *shared_arguments(c), factor, c.scenarios.extra_m_s2[scenarios],
-        c.grid.path_step_m, c.grid.energy_step_m2_s2, c.plant.sensor.sample_period_s, density, band, exits, totals,
+        policy, c.decisions.at_nodes(len(c.drive_m_s2)), c.entry, c.entry_mode, *shared_arguments(c),
+        factor, c.scenarios.extra_m_s2[scenarios],
+        c.grid.path_step_m, c.grid.energy_step_m2_s2, c.epochs.hold_period_s, density, band, exits, totals,
     )  # fmt: skip
     forward(*arguments)
     return exits, totals
@@ -138,7 +144,7 @@ def shared_arguments(c: Chain) -> Any:
     a = c.landings
     return (
         c.grid.speed_m_s, c.actuator.mode_stage, c.actuator.mode_overpressure_kpa,
-        a.lower_chain, a.upper_chain, a.end_mode, a.ends, a.factors,
+        a.change_chain, a.end_mode, a.ends, a.factors,
         c.transient_noise.probability, c.transient_noise.mean, c.transient_noise.std,
         c.path_noise.levels, c.path_noise.transition, c.path_noise.stationary, c.drive_m_s2, c.brake_m_s2_per_kpa,
     )  # fmt: skip

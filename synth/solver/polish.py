@@ -20,8 +20,8 @@ from synth.solver.switching_lines import SwitchingLines
 LOOSE_M_S = 0.3
 """See `whitening`."""
 
-Evaluate = Callable[[SwitchingLines], tuple[float, NDArray[np.float64], NDArray[np.float64]]]
-"""Lines at path nodes → (cost, its derivatives by lower (K + 1, N) and by upper (K + 1, N))."""
+Evaluate = Callable[[SwitchingLines], tuple[float, NDArray[np.float64]]]
+"""Lines at path nodes → (cost, its derivatives by the lower and the upper lines (2, N, K + 1))."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,8 @@ def polish(
         nonlocal calls
         calls += 1
         lines = unpack(y)
-        cost, by_lower, by_upper = evaluate(lines.at(nodes_m)) if y.any() else first
+        cost, by_lines = evaluate(lines.at(nodes_m)) if y.any() else first
+        by_lower, by_upper = (np.ascontiguousarray(each.T) for each in by_lines)
         # Below 0 the grid is too coarse for these lines, and its error would be what is minimised.
         if 0.0 < cost < best[0][0] and gap_of(lines) >= 0.5 * MINIMUM_GAP_M_S:
             best[0] = (cost, lines)

@@ -6,16 +6,16 @@ import numpy as np
 
 from synth.kernels.sweep.finer_end import forward_to_finer_end
 from synth.solver.chain.chain import Chain
+from synth.solver.chain.epochs import Policy
 from synth.solver.chain.finer_end import FinerEnd, finer_end, finer_length_m, times_as_fine
 from synth.solver.exit_density import ExitDensity, without_negative
 from synth.solver.policy_density import commands, exit_density, shared_arguments
-from synth.solver.switching_lines import SwitchingLines
 
 NEGLIGIBLE = 3e-11
 """A state of less probability is left out; in all less than 2e-6 is lost."""
 
 
-def resolved_density(chain: Chain, lines: SwitchingLines, target_speed_m_s: float) -> ExitDensity:
+def resolved_density(chain: Chain, lines: Policy, target_speed_m_s: float) -> ExitDensity:
     """Exit-speed density of `lines`, all scenarios weighted, its last metres on energies that resolve it at the target.
 
     Nowhere negative; mass, mean and mean square are those of the recursion.
@@ -23,23 +23,25 @@ def resolved_density(chain: Chain, lines: SwitchingLines, target_speed_m_s: floa
     times = times_as_fine(chain, target_speed_m_s)
     if times == 1:
         return without_negative(exit_density(chain, lines))
-    end = finer_end(chain, lines, finer_length_m(target_speed_m_s), times)
+    end = finer_end(chain, lines.at_decisions(chain.decisions), finer_length_m(target_speed_m_s), times)
     return without_negative(density_by_end(chain, lines, end))
 
 
-def density_by_end(chain: Chain, lines: SwitchingLines, end: FinerEnd) -> ExitDensity:
+def density_by_end(chain: Chain, lines: Policy, end: FinerEnd) -> ExitDensity:
     """The same with a given `end`, as the recursion leaves it; its energies are `end.times` as dense as the chain's."""
     c, last = chain, end.chain
-    late = SwitchingLines(lines.nodes_m[end.node :], lines.lower_m_s[:, end.node :], lines.upper_m_s[:, end.node :])
-    policy, late_policy = commands(c, lines), commands(last, late)
+    at_decisions = lines.at_decisions(c.decisions)
+    late = at_decisions[:, len(c.decisions) - len(last.decisions) :]
+    policy, late_policy = commands(c, at_decisions), commands(last, late)
+    nodes, late_nodes = len(c.drive_m_s2), len(last.drive_m_s2)
     points, weight = end.times * len(c.grid.speed_m_s), c.scenarios.weight
     negligible = np.clip(NEGLIGIBLE / np.maximum(np.abs(weight), 1e-12), NEGLIGIBLE, 1e-7)
     exits, totals = np.empty((len(weight), points)), np.empty((len(weight), 4))
     arguments = (
-        end.node, end.handed, end.times, late_policy.down, late_policy.up, last.grid.speed_m_s, last.landings.ends,
-        negligible, policy.down, policy.up, c.entry, c.entry_mode, *shared_arguments(c),
-        c.scenarios.factor, c.scenarios.extra_m_s2, c.grid.path_step_m, c.grid.energy_step_m2_s2,
-        c.plant.sensor.sample_period_s, exits, totals,
+        end.node, end.handed, end.times, late_policy, last.decisions.at_nodes(late_nodes), last.grid.speed_m_s,
+        last.landings.ends, negligible, policy, c.decisions.at_nodes(nodes), c.entry, c.entry_mode,
+        *shared_arguments(c), c.scenarios.factor, c.scenarios.extra_m_s2, c.grid.path_step_m, c.grid.energy_step_m2_s2,
+        c.epochs.hold_period_s, exits, totals,
     )  # fmt: skip
     forward_to_finer_end(*arguments)
     probability = (weight[:, None] * exits).sum(axis=0)

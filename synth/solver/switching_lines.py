@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
+from synth.solver.chain.decisions import Decisions
 
 
 @frozen_arrays
@@ -34,6 +35,10 @@ class SwitchingLines:
     def stages(self) -> int:
         """Number of stages K + 1."""
         return int(self.lower_m_s.shape[0])
+
+    def at_decisions(self, decisions: Decisions) -> NDArray[np.float64]:
+        """The lines (2, R, K + 1), down and up; the nodes must be those of the path."""
+        return np.stack([self.lower_m_s[:, decisions.node].T, self.upper_m_s[:, decisions.node].T])
 
     def at(self, nodes_m: NDArray[np.float64]) -> SwitchingLines:
         """The same lines at other path nodes."""

@@ -21,7 +21,7 @@ from synth.problem.requirement_found import CERTIFIED_GAP, WorstCaseFound
 from synth.solver.backward_induction import Solution
 from synth.solver.chain.chain import Chain
 from synth.solver.chance_constraint import predicted_density
-from synth.solver.evaluation import Evaluation, ScenarioCosts
+from synth.solver.evaluation import Evaluation, Gradient, ScenarioCosts
 from synth.solver.finer_speed import finer_in_speed, known_factors
 from synth.solver.policy_density import scenario_densities
 from synth.solver.polish import Evaluate, polish
@@ -105,7 +105,7 @@ def guard_worst_case(
 def weighted_mean(costs_of: Callable[[SwitchingLines], ScenarioCosts], weights: NDArray[np.float64]) -> Evaluate:
     """Σ w_i·J_i with its gradient."""
 
-    def evaluate(lines: SwitchingLines) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
+    def evaluate(lines: SwitchingLines) -> Gradient:
         return costs_of(lines).weighted(weights)
 
     return evaluate
@@ -114,11 +114,11 @@ def weighted_mean(costs_of: Callable[[SwitchingLines], ScenarioCosts], weights: 
 def smooth_maximum(costs_of: Callable[[SwitchingLines], ScenarioCosts], beta: float) -> Evaluate:
     """log(mean exp(β·J_i))/β with its gradient: between the mean and the maximum of the costs."""
 
-    def evaluate(lines: SwitchingLines) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
+    def evaluate(lines: SwitchingLines) -> Gradient:
         costs = costs_of(lines)
         top = costs.cost.max()
         value = top + np.log(np.exp(beta * (costs.cost - top)).mean()) / beta
-        return float(value), *costs.weighted(soft_weights(costs.cost, beta))[1:]
+        return float(value), costs.weighted(soft_weights(costs.cost, beta))[1]
 
     return evaluate
 

@@ -204,7 +204,7 @@ class BruteForce:
             change[side, i, h, u] = row
         sensor = t.plant.sensor
         sigma = sensor.reading_std_m_s
-        start, smear = true_speed_weights(t.grid.speed_m_s, sigma)
+        start, smear = true_speed_weights(t.grid.speed_m_s, t.grid.speed_m_s, sigma)
         for k in range(t.actuator.stages):
             gains = []
             for side in (0, 1):

@@ -24,9 +24,9 @@ def lines(seed: int) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.parametrize("seed", range(3))
 def test_commands_are_those_of_the_normal_law(seed: int) -> None:
     lower, upper = lines(seed)
-    down, up, down_slope, up_slope = (np.full((5, 4, len(SPEED_M_S)), np.nan) for _ in range(4))
-    command_probabilities(lower, upper, SPEED_M_S, NOISE_M_S, down, up)
-    command_slopes(lower, upper, SPEED_M_S, NOISE_M_S, down_slope, up_slope)
+    (down, up), (down_slope, up_slope) = chances, slopes = np.full((2, 2, 5, 4, len(SPEED_M_S)), np.nan)
+    command_probabilities(np.stack([lower, upper]), SPEED_M_S, NOISE_M_S, chances)
+    command_slopes(np.stack([lower, upper]), SPEED_M_S, NOISE_M_S, slopes)
     below = (lower[:, :, None] - SPEED_M_S) / NOISE_M_S
     above = (SPEED_M_S - upper[:, :, None]) / NOISE_M_S
     for found, slope, z, sign in ((down, down_slope, below, 1.0), (up, up_slope, above, -1.0)):
@@ -36,3 +36,17 @@ def test_commands_are_those_of_the_normal_law(seed: int) -> None:
         certain = np.abs(z) > CERTAIN * (1.0 + 1e-12)
         assert (found[certain] == (z[certain] > 0.0)).all()
         assert (slope[certain] == 0.0).all()
+
+
+def test_a_command_that_goes_farther_is_not_one_that_goes_just_so_far() -> None:
+    """Lines for one and for two stages: the probabilities of both are those of the normal law between the lines."""
+    near, far = np.full((2, 1, 1), 1.0), np.array([[[0.8]], [[1.3]]])
+    lines_of_both = np.concatenate([near, far])  # down by 1, up by 1, down by 2, up by 2
+    found = np.empty((4, 1, 1, len(SPEED_M_S)))
+    command_probabilities(lines_of_both, SPEED_M_S, NOISE_M_S, found)
+    below, beyond = ((SPEED_M_S - line) / NOISE_M_S for line in (0.8, 1.3))
+    by_law = norm.sf((SPEED_M_S - 1.0) / NOISE_M_S)
+    expected = (by_law - norm.cdf(-below), 1.0 - by_law - norm.cdf(beyond), norm.cdf(-below), norm.cdf(beyond))
+    for command, probability in enumerate(expected):
+        np.testing.assert_allclose(found[command, 0, 0], probability, atol=2.5 * norm.sf(CERTAIN))
+    assert found.sum(axis=0).max() <= 1.0 + 1e-12

@@ -106,7 +106,8 @@ def test_gradient_is_the_slope_of_the_cost(small: Callable[[], Chain], seed: int
     rng = np.random.default_rng(seed + 1)
     shape = lines.lower_m_s[:, :-1].shape
     direction = rng.standard_normal((2, *shape))
-    cost, by_lower, by_upper = Evaluation(t, Aim(target, criterion)).gradient(lines)
+    cost, by_lines = Evaluation(t, Aim(target, criterion)).gradient(lines)
+    by_lower, by_upper = (each.T for each in by_lines)
     h = 1e-4
     sides = [Evaluation(t, Aim(target, criterion)).cost(shifted(lines, *(s * h * direction))) for s in (1.0, -1.0)]
     size = np.abs(by_lower).sum() + np.abs(by_upper).sum()

@@ -121,7 +121,8 @@ def figures(plant: Plant) -> list[float]:
     # Without the compiler numpy decides where float32 meets float64; in one type there is nothing to decide.
     (solution,) = solve_all(t, [Aim(2.5, CRITERION)], value_type=np.float64)
     density = exit_density(t, solution.lines)
-    cost, by_lower, by_upper = Evaluation(t, solution.aim).gradient(solution.lines)
+    cost, by_lines = Evaluation(t, solution.aim).gradient(solution.lines)
+    by_lower, by_upper = by_lines
     lines = solution.lines.upper_m_s[np.isfinite(solution.lines.upper_m_s)]
     sums = (t.landings.ends, solution.values, solution.gain_up, lines, density.probability**2, by_lower**2, by_upper**2)
     return [cost, density.stalled, *(float(each.sum()) for each in sums)]

@@ -113,8 +113,8 @@ def test_gradient_is_the_slope_of_the_cost(design: Chain, start: PolynomialLines
         return Evaluation(design, Aim(TARGET_M_S, criterion)).scenario_costs(moved).cost
 
     found = Evaluation(design, Aim(TARGET_M_S, criterion)).scenario_costs(lines)
-    along = (found.by_lower * direction[0][:, :-1]).sum((1, 2)) + (found.by_upper * direction[1][:, :-1]).sum((1, 2))
-    size = np.abs(found.by_lower).sum((1, 2)) + np.abs(found.by_upper).sum((1, 2))
+    along = (found.by_lines * direction[:, :, :-1].transpose(0, 2, 1)).sum((1, 2, 3))
+    size = np.abs(found.by_lines).sum((1, 2, 3))
     assert np.abs(along).max() > 1e-4
     # Commands that are next to impossible are cut off, so the cost has steps of some 1e-10 where one comes or goes.
     steps = 1.5e-10 / (2 * h)
@@ -180,7 +180,8 @@ def test_an_active_limit_is_met_where_lagrangian_and_limit_meet(
     assert found.rms_m_s > 0.98 * found.rms_without_m_s
     ground = finer_in_speed(design, 2.0, check.scenarios)
     priced = Criterion(terminal=PenalisedOverspeed(found.multiplier_m2_s2, 0.05))
-    cost, by_lower, by_upper = Evaluation(ground, Aim(TARGET_M_S, priced)).gradient(lines.at(ground.grid.path_m))
+    cost, by_lines = Evaluation(ground, Aim(TARGET_M_S, priced)).gradient(lines.at(ground.grid.path_m))
+    by_lower, by_upper = (each.T for each in by_lines)
     matrix, free_lines = lines.basis(ground.grid.path_m[:-1]), np.nonzero(lines.has_line)
     gradient = np.stack([by_lower @ matrix, by_upper @ matrix], axis=1)[free_lines] / cost
     step = np.einsum("lab,la->lb", whitening(fit.curvature[free_lines], matrix, cost), gradient)

@@ -104,9 +104,9 @@ def test_a_polish_that_opening_spoils_leaves_the_lines_as_they_were(
     moved = replace(fit.lines, coefficients=fit.lines.coefficients + 0.1)
     at_moved = moved.at(nodes).upper_m_s
 
-    def evaluate(lines: SwitchingLines) -> tuple[float, np.ndarray, np.ndarray]:
-        cost, by_lower, by_upper = exact(lines)
-        return error if np.array_equal(lines.upper_m_s, at_moved) else cost, by_lower, by_upper
+    def evaluate(lines: SwitchingLines) -> tuple[float, np.ndarray]:
+        cost, by_lines = exact(lines)
+        return error if np.array_equal(lines.upper_m_s, at_moved) else cost, by_lines
 
     monkeypatch.setattr("synth.solver.polish.opened", lambda lines: moved)
     result = polish(fit.lines, fit.curvature, nodes, evaluate, 25)
@@ -120,7 +120,8 @@ def test_polish_ends_where_the_projected_gradient_is_small(design: Chain, fit: F
     best = polish(fit.lines, fit.curvature, design.grid.path_m, evaluate, 40).lines
     gains = []
     for lines in (fit.lines, best):
-        cost, by_lower, by_upper = evaluate(lines.at(design.grid.path_m))
+        cost, by_lines = evaluate(lines.at(design.grid.path_m))
+        by_lower, by_upper = (each.T for each in by_lines)
         matrix = np.asarray(np.polynomial.legendre.legvander(2 * design.grid.path_m[:-1] / lines.exit_m - 1, 3), float)
         free = np.nonzero(lines.has_line)
         gradient = np.stack([by_lower @ matrix, by_upper @ matrix], axis=1)[free] / cost

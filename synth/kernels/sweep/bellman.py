@@ -16,7 +16,7 @@ from synth.kernels.sweep.commands import normal_cdf
 from synth.kernels.sweep.flow import mix_values, pull, shifts
 from synth.kernels.sweep.landing_plan import find_runs, landing_scratch, landing_tables
 from synth.kernels.sweep.next_sample import quanta_to_next_sample
-from synth.kernels.sweep.thresholds import lower_threshold, upper_threshold
+from synth.kernels.sweep.thresholds import find_lines
 from synth.kernels.sweep.transient_sweep import add_transient_values
 from synth.kernels.vector.borrowing import borrowing
 from synth.kernels.vector.packs import EIGHT, choose, load8, magnitude, store
@@ -24,35 +24,41 @@ from synth.kernels.vector.packs import EIGHT, choose, load8, magnitude, store
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def sweep(
-    terminal, stalled, change_cost, tolerance, rounding, noise, smear_start, smear, prior,
-    speed, stage, pressure, lower_chain, upper_chain, chain_mode,
+    terminal, stalled, change_cost, tolerance, rounding, reading, noise, smear_start, smear, prior, decision_at,
+    speed, stage, pressure, change_chain, chain_mode,
     ends, factors, probability, mean, std, levels, transition,
     drive, brake, factor, extra, path_step, energy_step, period, reach, approach_nodes, entrance_stage,
-    values, lower, upper, gain_down, gain_up,
+    values, lines, gain,
 ):  # fmt: skip
     """One backward sweep over all path quanta.
 
     `terminal` (E·T',) cost by exit energy and target, `stalled` (T',) cost of a stall, `change_cost` (T',) of a
     command, where T' ≥ T are whole packs of eight; values are computed in the type of `terminal`. `tolerance`: an
     averaged gain of less is none; `rounding`: so is one of less than this part of the cost. I scenarios: `factor`,
-    `extra` (I,); `prior` (I, H, L) weights of what is hidden; `smear_start` (E,), `smear` (E, W): probability of true
-    speeds given a measured one. No node below `approach_nodes` raises beyond `entrance_stage`. Outputs: `values`
-    (I, N + 1, H, L, E, T), or of the first nodes only, `lower`, `upper` (N, K + 1, T), `gain_down`, `gain_up`
-    (N, K + 1, T, E): averaged cost saved by the change, by measured speed.
+    `extra` (I,); `prior` (I, H, L) weights of what is hidden; `reading` (E,) what is measured of the speeds, with
+    errors of std `noise`; `smear_start` (E,), `smear` (E, W): probability of true speeds given a measured one.
+    `decision_at` (N,): number of the decision at a node, R or more where there is none. Of the commands 2·d − 2 goes
+    down, 2·d − 1 up by d stages; `change_chain` (C, H) their transients, −1: none. No node below
+    `approach_nodes` raises beyond `entrance_stage`. Outputs: `values` (I, N + 1, H, L, E, T), or of the first nodes
+    only, `lines` (C, R, K + 1, T) in readings, `gain` (C, R, K + 1, T, E): averaged cost saved by the change, by
+    measured speed.
     """
     count, nodes, width = factor.shape[0], drive.shape[0], stalled.shape[0]
     modes, size, points = pressure.shape[0], levels.shape[0], speed.shape[0]
+    commands, decisions, stages = lines.shape[0], lines.shape[1], lines.shape[2]
     ring = probability.shape[1] + 3
     row, kind = points * width, terminal.dtype
     recent = np.zeros((count, ring, modes, size, row), kind)
     mixed = np.zeros((count, ring, modes, size, row), kind)
     ahead = np.empty((count, reach, modes, size, row), kind)
     holds = np.empty((count, modes, size, row), kind)
-    changes = np.zeros((2, count, modes, size, row), kind)
+    changes = np.zeros((count, modes, size, commands, row), kind)
     quanta = np.empty((count, modes, size, points))
     shift = np.empty((count, modes, size))
-    gains = np.empty((2, lower.shape[1], row), kind)
-    chance = np.empty((2, row), kind)
+    gains = np.empty((commands, stages, row), kind)
+    chance = np.empty((commands, row), kind)
+    best, chosen = np.empty(points + 1), np.empty((commands // 2, points + 1), np.int64)
+    possible, least_ahead = np.empty((2, stages), np.int64), 0.0 if period > 0.0 else 1.0
     undecided = np.empty(points, np.bool_)
     scratch = np.empty(row, kind)
     crossed, runs, place, weight = landing_scratch(ends.shape[4], size, kind)
@@ -64,7 +70,8 @@ def sweep(
     ahead[:, 1:] = terminal
     copy_out(recent[:, nodes % ring], values, nodes, points)
     for n in range(nodes - 1, -1, -1):
-        gains[:] = 0.0
+        decision = decision_at[n]
+        gains[:], possible[:] = 0.0, 0
         for i in range(count):
             shifts(n, factor[i], levels, drive, brake, pressure, extra[i], path_step, energy_step, shift[i])
             for r in range(reach - 2, 0, -1):
@@ -75,38 +82,46 @@ def sweep(
                     a = shift[i, h, q] * energy_step / path_step
                     quanta_to_next_sample(speed, 0, points, a, period, path_step, quanta[i, h, q])
                     hold_values(ahead[i], h * size + q, quanta[i, h, q], width, holds[i, h, q])
-            for side in range(2):
+            for command in range(commands if decision < decisions else 0):
+                side, by = command % 2, command // 2 + 1
                 for h in range(modes):
-                    c = upper_chain[h] if side == 1 else lower_chain[h]
-                    if c < 0 or (side == 1 and n < approach_nodes and stage[h] >= entrance_stage):
+                    c = change_chain[command, h]
+                    if c < 0 or (side == 1 and n < approach_nodes and stage[h] + by > entrance_stage):
                         continue  # no gain, so no line, and what `changes` holds plays no part
+                    possible[side, stage[h]] = by
                     found = find_runs(
-                        n, c, 0, points, factor[i], ends, factors, path_step, probability.shape[1] - 1, crossed, runs
-                    )
+                        decision, c, 0, points, factor[i], ends, factors, path_step,
+                        probability.shape[1] - 1, crossed, runs,
+                    )  # fmt: skip
                     for q in range(size):
-                        changed = changes[side, i, h, q]
+                        changed = changes[i, h, q, command]
                         in_every_cell(change_cost, changed)
                         add_transient_values(
-                            n, nodes, c, q, runs, found, chain_mode[c], ends, met[i], slope[i],
+                            n, decision, nodes, c, q, runs, found, chain_mode[c], ends, met[i], slope[i], least_ahead,
                             extra[i], path_step, energy_step,
                             recent[i], mixed[i], stalled, place, weight, changed,
                         )  # fmt: skip
-                        add_gains(holds[i, h, q], changed, prior[i, h, q], rounding, width, gains[side, stage[h]])
-        for k in range(lower.shape[1]):
-            for side, each in ((0, gain_down), (1, gain_up)):
-                spread(gains[side, k], smear_start, smear, width, scratch)
-                apart(scratch, width, each[n, k])
-            for t in range(lower.shape[2]):
-                lower[n, k, t] = lower_threshold(gain_down[n, k, t], speed, tolerance)
-                upper[n, k, t] = max(upper_threshold(gain_up[n, k, t], speed, tolerance), lower[n, k, t])
-            command_chances(lower[n, k], upper[n, k], speed, noise, width, chance, undecided)
+                        add_gains(holds[i, h, q], changed, prior[i, h, q], rounding, width, gains[command, stage[h]])
+        for k in range(stages):
+            if decision < decisions:
+                for command in range(commands):
+                    spread(gains[command, k], smear_start, smear, width, scratch)
+                    apart(scratch, width, gain[command, decision, k])
+                for t in range(lines.shape[3]):
+                    find_lines(
+                        gain[:, decision, k, t], possible[:, k], reading, tolerance, best, chosen,
+                        lines[:, decision, k, t],
+                    )  # fmt: skip
+                command_chances(lines[:, decision, k], reading, noise, width, chance, undecided)
+            else:
+                undecided[:] = False
             for h in range(modes):
                 if stage[h] != k:
                     continue
                 for i in range(count):
                     for q in range(size):
                         sampled_values(
-                            chance, changes[0, i, h, q], changes[1, i, h, q], ahead[i, 1, h, q], holds[i, h, q],
+                            chance, changes[i, h, q], ahead[i, 1, h, q], holds[i, h, q],
                             quanta[i, h, q], undecided, stalled, recent[i, n % ring, h, q],
                         )  # fmt: skip
         for i in range(count):
@@ -177,24 +192,27 @@ def apart(row, width, out):
 
 
 @borrowing
-def command_chances(lower, upper, speed, noise, width, out, undecided):
-    """P(down), P(up) at every true speed and target, `out` (2, E·T); lines `lower`, `upper` (T,).
+def command_chances(lines, reading, noise, width, out, undecided):
+    """Probability of each command at every true speed and target, `out` (C, E·T); `lines` (C, T) in readings.
 
     `undecided` (E,): whether any target may get another command than holding.
     """
     out[:] = 0.0
-    for j in range(speed.shape[0]):
+    for j in range(reading.shape[0]):
         undecided[j] = False
-        for t in range(lower.shape[0]):
-            down = normal_cdf((lower[t] - speed[j]) / noise)
-            up = normal_cdf((speed[j] - upper[t]) / noise)
-            out[0, j * width + t], out[1, j * width + t] = down, up
-            undecided[j] = undecided[j] or down > 0.0 or up > 0.0
+        for t in range(lines.shape[1]):
+            further_down, further_up = 0.0, 0.0
+            for command in range(lines.shape[0] - 2, -1, -2):
+                down = normal_cdf((lines[command, t] - reading[j]) / noise)
+                up = normal_cdf((reading[j] - lines[command + 1, t]) / noise)
+                out[command, j * width + t], out[command + 1, j * width + t] = down - further_down, up - further_up
+                further_down, further_up = down, up
+            undecided[j] = undecided[j] or further_down > 0.0 or further_up > 0.0
 
 
 @borrowing
-def sampled_values(chance, down, up, value_next, value_hold, quanta, undecided, stalled, out):
-    """Values at a sample (E·T,), of commands given with the chances (2, E·T) of `command_chances`.
+def sampled_values(chance, changes, value_next, value_hold, quanta, undecided, stalled, out):
+    """Values at a sample (E·T,), of `changes` (C, E·T) commanded with the chances of `command_chances`.
 
     Where the next sample may be at this node again, the geometric series is summed. `undecided` (E,): elsewhere the
     command is to hold.
@@ -208,9 +226,11 @@ def sampled_values(chance, down, up, value_next, value_hold, quanta, undecided, 
             if not undecided[j]:
                 store(out, at, load8(value_hold, at))
                 continue
-            lowers, raises = load8(chance, at), load8(chance, row + at)
-            changed = lowers * load8(down, at) + raises * load8(up, at)
-            change, held = lowers + raises, load8(value_hold, at)
+            change = load8(chance, at)
+            changed, held = change * load8(changes, at), load8(value_hold, at)
+            for other in range(at + row, chance.shape[0] * row, row):
+                changed = changed + load8(chance, other) * load8(changes, other)
+                change = change + load8(chance, other)
             hold = 1.0 - change
             if f < 1.0:
                 sampled = (hold * f * load8(value_next, at) + changed) / (1.0 - hold * (1.0 - f))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from synth.kernels.vector.borrowing import borrowing
 
 CERTAIN = 6.0
@@ -11,39 +13,39 @@ CERTAIN = 6.0
 
 
 @borrowing
-def command_probabilities(lower, upper, speed, noise, down, up):
-    """P(measured < lower) and P(measured > upper) at every node.
+def command_probabilities(lines, reading, noise, out):
+    """Probability of each command at every decision, stage and true speed.
 
-    `lower`, `upper` (N, K + 1); `speed` (E,), ascending; `noise` std of the measured speed; outputs (N, K + 1, E).
+    Commands: 2·d − 2 goes down, 2·d − 1 up by d stages. `lines` (C, R, K + 1): what is measured below or above the line
+    of a command makes the regulator go so far or farther; `reading` (E,), ascending, what is measured of the true
+    speeds, with errors of std `noise`; output (C, R, K + 1, E).
     """
     scale = 1.0 / max(noise, 1e-6)
-    for n in range(lower.shape[0]):
-        for k in range(lower.shape[1]):
-            begin, end = uncertain(speed, lower[n, k], scale)
-            down[n, k, :begin] = 1.0
-            for j in range(begin, end):
-                down[n, k, j] = normal_cdf((lower[n, k] - speed[j]) * scale)
-            down[n, k, end:] = 0.0
-            begin, end = uncertain(speed, upper[n, k], scale)
-            up[n, k, :begin] = 0.0
-            for j in range(begin, end):
-                up[n, k, j] = normal_cdf((speed[j] - upper[n, k]) * scale)
-            up[n, k, end:] = 1.0
+    for command, n, k in np.ndindex(lines.shape):
+        line, row, up = lines[command, n, k], out[command, n, k], command % 2
+        begin, end = uncertain(reading, line, scale)
+        row[:begin], row[end:] = 1.0 - up, float(up)
+        for j in range(begin, end):
+            row[j] = normal_cdf((reading[j] - line) * scale) if up else normal_cdf((line - reading[j]) * scale)
+    for command in range(lines.shape[0] - 2):  # what goes farther goes not just so far
+        for n, k in np.ndindex(lines.shape[1:]):
+            for j in range(reading.shape[0]):
+                out[command, n, k, j] -= out[command + 2, n, k, j]
 
 
 @borrowing
-def command_slopes(lower, upper, speed, noise, down, up):
-    """Derivatives of `command_probabilities` by the line, arguments as there."""
+def command_slopes(lines, reading, noise, out):
+    """Derivatives by the line of the probability to go so far or farther; arguments as of `command_probabilities`."""
     scale = 1.0 / max(noise, 1e-6)
-    down[:], up[:] = 0.0, 0.0
-    for n in range(lower.shape[0]):
-        for k in range(lower.shape[1]):
-            begin, end = uncertain(speed, lower[n, k], scale)
-            for j in range(begin, end):
-                down[n, k, j] = normal_density((lower[n, k] - speed[j]) * scale) * scale
-            begin, end = uncertain(speed, upper[n, k], scale)
-            for j in range(begin, end):
-                up[n, k, j] = -normal_density((speed[j] - upper[n, k]) * scale) * scale
+    out[:] = 0.0
+    for command, n, k in np.ndindex(lines.shape):
+        line, up = lines[command, n, k], command % 2
+        begin, end = uncertain(reading, line, scale)
+        for j in range(begin, end):
+            if up:
+                out[command, n, k, j] = -normal_density((reading[j] - line) * scale) * scale
+            else:
+                out[command, n, k, j] = normal_density((line - reading[j]) * scale) * scale
 
 
 @borrowing

@@ -22,25 +22,26 @@ LINEAR_BELOW = 2
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def forward_to_finer_end(
-    node, handed, times, fine_down, fine_up, fine_speed, fine_ends, negligible,
-    down, up, entry, entry_mode, speed, stage, pressure, lower_chain, upper_chain, chain_mode,
+    node, handed, times, fine_policy, fine_decision_at, fine_speed, fine_ends, negligible,
+    policy, decision_at, entry, entry_mode, speed, stage, pressure, change_chain, chain_mode,
     ends, factors, probability, mean, std, levels, transition, stationary,
     drive, brake, factor, extra, path_step, energy_step, period, exits, totals,
 ):  # fmt: skip
     """Distribution at the exit in the scenarios `factor`, `extra` (I,).
 
     At `node` the share `handed` (E,) of every energy goes over to the finer grid, whose energies are `times` as dense:
-    `fine_down`, `fine_up` (N − node, K + 1, E_f), `fine_speed` (E_f,), `fine_ends` (N − node, C, F, 2, E_f') belong to
-    it. `negligible` (I,): a state of a scenario with less mass is left out. The rest as in `policy_density.forward`,
-    but for `exits` (I, times·E), by energy of the finer grid.
+    `fine_policy` (C, R_f, K + 1, E_f), `fine_decision_at` (N − node,), `fine_speed` (E_f,), `fine_ends` (R_f, ·, F, 2,
+    E_f') belong to it. `negligible` (I,): a state of a scenario with less mass is left out. The rest as in
+    `policy_density.forward`, but for `exits` (I, times·E), by energy of the finer grid.
     """
     modes, size, nodes, points, row = pressure.shape[0], levels.shape[0], drive.shape[0], speed.shape[0], ends.shape[4]
     reach, ring, fine_row = entry.shape[0], probability.shape[1] + 3, fine_ends.shape[4]
     heading, fine_heading = np.empty((reach, modes, size, row)), np.empty((reach, modes, size, fine_row))
     arriving, fine_arriving = np.zeros((ring, modes, size, row)), np.zeros((ring, modes, size, fine_row))
     mixing, fine_mixing = np.zeros((ring, modes, size, row)), np.zeros((ring, modes, size, fine_row))
-    memory = np.zeros(row), np.zeros(row), np.ones(row), np.zeros((2, row)), np.empty((modes, size))
-    fine_memory = np.zeros(fine_row), np.zeros(fine_row), np.ones(fine_row), np.zeros((2, fine_row)), memory[4]
+    chance, fine_chance = np.zeros((policy.shape[0], row)), np.zeros((policy.shape[0], fine_row))
+    memory = np.zeros(row), np.zeros(row), np.ones(row), chance, np.empty((modes, size))
+    fine_memory = np.zeros(fine_row), np.zeros(fine_row), np.ones(fine_row), fine_chance, memory[4]
     spans, fine_spans = np.empty((reach, modes, size, 2), np.int64), np.empty((reach, modes, size, 2), np.int64)
     landed, fine_landed = np.empty((ring, modes, 2), np.int64), np.empty((ring, modes, 2), np.int64)
     arrived = np.zeros((modes, size, 2), np.int64)
@@ -62,7 +63,7 @@ def forward_to_finer_end(
         for start, stop in ((0, node), (node, nodes)):
             follow(
                 start, stop, negligible[i], heading, arriving, mixing, memory, scratch, spans, arrived, landed,
-                down, up, speed, stage, pressure, lower_chain, upper_chain, chain_mode,
+                policy, decision_at, speed, stage, pressure, change_chain, chain_mode,
                 ends, factors, met[0], slope[0], levels, transition,
                 drive, brake, factor[i], extra[i], path_step, energy_step, period, unkept, bands, totals[i],
             )  # fmt: skip
@@ -75,8 +76,8 @@ def forward_to_finer_end(
         collect(arriving[nodes % ring], mixing[nodes % ring], heading, rest)
         follow(
             0, nodes - node, negligible[i], fine_heading, fine_arriving, fine_mixing, fine_memory, fine_scratch,
-            fine_spans, arrived, fine_landed, fine_down, fine_up, fine_speed, stage, pressure,
-            lower_chain, upper_chain, chain_mode, fine_ends, factors, met[0],
+            fine_spans, arrived, fine_landed, fine_policy, fine_decision_at, fine_speed, stage, pressure,
+            change_chain, chain_mode, fine_ends, factors, met[0],
             np.ascontiguousarray(slope[0, :, :, node:]), levels, transition, fine_drive, fine_brake,
             factor[i], extra[i], path_step, energy_step / times, period, unkept, bands, totals[i],
         )  # fmt: skip
@@ -87,8 +88,8 @@ def forward_to_finer_end(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def refine_landings(ends, points, node, times, fine_ends):
-    """`fine_ends` (N − node, C, F, 2, E_f'): `ends` (N, C, F, 2, E') from `node` on at energies `times` as dense.
+def refine_landings(ends, points, first, times, fine_ends):
+    """`fine_ends` (R − first, C, F, 2, E_f'): `ends` (R, C, F, 2, E') from decision `first` on, `times` as dense.
 
     A landing is smooth in the energy, so four of `points` E energies are interpolated; next to a stall and at the top
     the nearest counts.
@@ -96,14 +97,14 @@ def refine_landings(ends, points, node, times, fine_ends):
     row, fine_row = ends.shape[4], fine_ends.shape[4]
     apart = times * np.arange(EIGHT)
     for n, c, f in np.ndindex(fine_ends.shape[:3]):
-        path = ends[node + n, c, f, 0]
+        path = ends[first + n, c, f, 0]
         begin = 0
         for j in range(points):
             if path[j] < 0.0:
                 begin = j + 1
         begin, end = min(begin + 1, points), min((fine_row - 1) // times, points - 2)
         for side in range(2):
-            found, out = ends[node + n, c, f, side], fine_ends[n, c, f, side]
+            found, out = ends[first + n, c, f, side], fine_ends[n, c, f, side]
             for i in range(min(times * begin, fine_row)):
                 out[i] = found[(2 * i + times) // (2 * times)]
             for d in range(times):

@@ -15,38 +15,54 @@ from synth.kernels.vector.packs import (
     holds_anywhere,
     least,
     load16,
+    root,
     store,
     whole,
 )
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def land(path_step, work, gravity, overpressure, samples, substeps, dt, factors, speed, ends):
-    """Integrate every transient from every node; results into `ends`.
+def land(starts, lead, held, fine, work, gravity, overpressure, samples, substeps, dt, factors, speed, ends):
+    """Integrate every transient from every decision; results into `ends`.
 
-    Shapes: `work` (W + 1,) = ∫β ds at equal steps from 0 to S_exit, `gravity` (W,) means of g'(i − w)·1e-3;
-    `overpressure` (C, ·) per substep of `dt` seconds; `samples` (C,); `factors` (F,) friction factors;
-    `speed` (E',), whole packs. `ends` (N, C, F, 2, E'): path until the end of the transient, or to S_exit, −1 for a
+    Shapes: `starts` (R,) path of the decisions and `lead` (R,) path from there at the overpressure `held` (C,) before
+    the transient begins; `work` (W + 1,) = ∫β ds at steps of `fine` from 0 to S_exit, `gravity` (W,) means of
+    g'(i − w)·1e-3; `overpressure` (C, ·) per substep of `dt` seconds; `samples` (C,); `factors` (F,) friction factors;
+    `speed` (E',), whole packs. `ends` (R, C, F, 2, E'): path until the end of the transient, or to S_exit, −1 for a
     stall; and v²/2 there.
     """
     cells, points = gravity.shape[0], speed.shape[0]
-    fine = (ends.shape[0] * path_step) / cells
     rise = np.empty(cells)
     for i in range(cells):
         rise[i] = work[i + 1] - work[i]
     count, numbers = samples.shape[0], factors.shape[0]
     for n in range(ends.shape[0]):
-        start = n * path_step
+        start = starts[n]
         for c in range(count):
             for f in range(numbers):
                 at = ((n * count + c) * numbers + f) * 2 * points
                 for j in range(0, points, SIXTEEN):
+                    v, ahead = load16(speed, j), lead[n]
+                    if ahead != 0.0:
+                        v = rolled_on(start, ahead, v, work, rise, gravity, fine, factors[f] * held[c])
                     path, energy = landing_of_pack(
-                        start, load16(speed, j), work, rise, gravity, fine, overpressure[c], samples[c] * substeps,
+                        start + ahead, v, work, rise, gravity, fine, overpressure[c], samples[c] * substeps,
                         factors[f], dt,
                     )  # fmt: skip
+                    if ahead != 0.0:
+                        path = choose(path < 0.0, -1.0, path + ahead)
                     store(ends, at + j, path)
                     store(ends, at + points + j, energy)
+
+
+@borrowing
+def rolled_on(start, ahead, v, work, rise, gravity, fine, brake):
+    """Speeds a path `ahead` of `start`, behind it if that is negative, at the constant overpressure times friction."""
+    here, there = max(start, 0.0) / fine, max(start + ahead, 0.0) / fine
+    i, k = min(int(here), gravity.shape[0] - 1), min(int(there), gravity.shape[0] - 1)
+    done = work[k] + min(there - k, 1.0) * rise[k] - work[i] - (here - i) * rise[i]
+    square = v * v + 2.0 * (gravity[i] * ahead - brake * done)
+    return choose(v > 0.0, root(greatest(square, 0.0)), 0.0)
 
 
 @borrowing

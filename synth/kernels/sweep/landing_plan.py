@@ -2,12 +2,13 @@
 
 The landing point of a transient lies between two path nodes; the value there is interpolated along the path on which
 the cut would roll on at the stage reached, so that interpolation shifts the phase of the sampling a little but never
-the speed. The same landings serve values backward (`transient_sweep` for many targets, `transient` for one) and masses
-forward (`transient`). So a landing is worked out as a *plan*: two groups of four neighbouring places and their weights.
-Group a lies at the node before the landing, among values at a sample; group b at the node after it, among values
-before the noise level changes.
+the speed. Where the next decision is a place and not a time away, the cut rolls on to the node ahead: `least_ahead` 1.
+The same landings serve values backward (`transient_sweep` for many targets, `transient` for one) and masses forward
+(`transient`). So a landing is worked out as a *plan*: two groups of four neighbouring places and their weights. Group a
+lies at the node before the landing, among values at a sample; group b at the node after it, among values before the
+noise level changes.
 
-Arguments shared by all: `ends` (N, C, F, 2, E') path and energy at the end of a transient over the equally spaced
+Arguments shared by all: `ends` (R, C, F, 2, E') path and energy at the end of a transient over the equally spaced
 `factors` (F,), see `landing.land`; noise tables `probability`, `mean`, `std` (C, R, L, L); `met` of a scenario from
 `landing_tables`.
 """
@@ -112,13 +113,13 @@ def end_of_transient(ends, at, width, nearest, centre, low, middle, high):
 
 
 @borrowing
-def find_runs(n, c, begin, end, factor, ends, factors, path_step, longest, crossed, runs):
-    """Runs of energies begin ≤ j < `end` that cross equally many path quanta in transient `c` from node `n` at ξ_cut.
+def find_runs(decision, c, begin, end, factor, ends, factors, path_step, longest, crossed, runs):
+    """Runs of energies begin ≤ j < `end` that cross equally many path quanta in transient `c` of a decision at ξ_cut.
 
     Returns how many; `runs`[k] = (first energy, quanta crossed or −1 for a stall), one more holding `end`.
     """
     points = ends.shape[4]
-    at = (n * ends.shape[1] + c) * ends.shape[2] * 2 * points
+    at = (decision * ends.shape[1] + c) * ends.shape[2] * 2 * points
     nearest, centre, low, middle, high = factor_weights(factor, factors)
     quanta = 1.0 / path_step
     for j in range(begin, end, EIGHT):
@@ -135,7 +136,7 @@ def find_runs(n, c, begin, end, factor, ends, factors, path_step, longest, cross
 
 @borrowing_inline
 def landing_of_pack(
-    ends, at, width, law, stalls, slope, left, extra, quanta, cells, points, stride, first, wrap, wrapped
+    ends, at, width, law, stalls, slope, left, extra, quanta, cells, points, stride, first, wrap, wrapped, least_ahead
 ):
     """Plan the landings of a pack of energies: (place a, place b, weights a, weights b, quanta, lowest, highest).
 
@@ -143,6 +144,7 @@ def landing_of_pack(
     says; `slope` (·,) from this node on at the mode and level reached, `left` quanta until S_exit; `quanta`, `cells` of
     a unit of path and of energy. Places count grid points of rows of `points` energies: `first` is that of this node at
     the mode and level reached, `stride` between nodes, which live in a ring: from `wrap` nodes on it is `wrapped` less.
+    `least_ahead`: least share of what lands that is decided on at the node ahead of it, 0 or 1.
     The landings lie between `lowest` and `highest` in cells, at the node after so many `quanta` and at the next one.
     """
     share, nearest, centre, low, middle, high = law
@@ -160,15 +162,17 @@ def landing_of_pack(
         own = crossed < 1  # a landing in its own quantum is decided on at the quantum's end
         back = choose(leaves, e, e - gained * x) * cells
         forth = (e + gained * (1.0 - x)) * cells
-        share_b = choose(leaves | stopped, 0.0, choose(own, 1.0, x) * share)
-        share_a = choose(leaves | stopped, share, choose(own, 0.0, 1.0 - x) * share)
+        part = greatest(x, least_ahead)
+        share_b = choose(leaves | stopped, 0.0, choose(own, 1.0, part) * share)
+        share_a = choose(leaves | stopped, share, choose(own, 0.0, 1.0 - part) * share)
     else:
         x = greatest(ahead - fraction(crossed), 0.0)
         gained = gather(slope, crossed)
         back = (e - gained * x) * cells
         forth = (e + gained * (1.0 - x)) * cells
-        share_b = x * share
-        share_a = (1.0 - x) * share
+        part = greatest(x, least_ahead)
+        share_b = part * share
+        share_a = (1.0 - part) * share
     row_a = crossed * stride + first
     row_b = choose(crossed >= wrap - 1, row_a - (wrapped - stride), row_a + stride)
     row_a = choose(crossed >= wrap, row_a - wrapped, row_a)

@@ -7,7 +7,13 @@ from synth.kernels.vector.borrowing import borrowing
 
 @borrowing
 def quanta_to_next_sample(speed, begin, end, acceleration, period, path_step, out):
-    """`out`[begin:end]: path until the next sample in quanta, from every `speed` (E,), never below a small number."""
+    """`out`[begin:end]: path until the next sample in quanta, from every `speed` (E,), never below a small number.
+
+    Where the next decision is a place and not a time away, `period` is 0: then it is looked for at every node.
+    """
+    if period <= 0.0:
+        out[begin:end] = 1.0
+        return
     quanta = 1.0 / path_step
     gained, stopping = 0.5 * acceleration * period * period, 0.0
     if acceleration < 0.0:

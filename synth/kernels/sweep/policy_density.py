@@ -37,16 +37,17 @@ MATTERS = 1e-3
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def forward(
-    down, up, entry, entry_mode, speed, stage, pressure, lower_chain, upper_chain, chain_mode,
+    policy, decision_at, entry, entry_mode, speed, stage, pressure, change_chain, chain_mode,
     ends, factors, probability, mean, std, levels, transition, stationary,
     drive, brake, factor, extra, path_step, energy_step, period, density, band, exits, totals,
 ):  # fmt: skip
     """Density of sampled states, and the distribution at the exit, in the scenarios `factor`, `extra` (I,).
 
-    `down`, `up` (N, K + 1, E) command probabilities, behind which a pack may be read; `entry` (M + 1, E): probability
-    of entering with speed j and having the first sample at node r, `entry_mode` the mode at rest then; the rest as in
-    `flow` and `transient`.
-    Outputs: `density` (I, N, H, L, E) expected number of samples at each node and state, or (I, 0, 0, 0, 0); `band`
+    `policy` (C, R, K + 1, E) probability of each command, behind which a pack may be read; command 2·d − 2 goes down,
+    2·d − 1 up by d stages. `decision_at` (N,): number of the decision at a node, R or more where there is none; `entry`
+    (M + 1, E): probability of entering with speed j and having the first sample at node r, `entry_mode` the mode at
+    rest then; the rest as in `flow` and `transient`. Where the next decision is a place, `period` is 0.
+    Outputs: `density` (I, R, H, L, E) expected number of samples at each decision and state, or (I, 0, 0, 0, 0); `band`
     (I, N, 2) range of energies that are met at a node; `exits` (I, E) exit probability by energy; `totals` (I, 4):
     stalled mass, escaped mass, changes down, changes up.
     """
@@ -54,7 +55,8 @@ def forward(
     reach, ring = entry.shape[0], probability.shape[1] + 3
     heading = np.empty((reach, modes, size, row))
     arriving, mixing = np.zeros((ring, modes, size, row)), np.zeros((ring, modes, size, row))
-    memory = np.zeros(row), np.zeros(row), np.ones(row), np.zeros((2, row)), np.empty((modes, size))
+    chance = np.zeros((policy.shape[0], row))
+    memory = np.zeros(row), np.zeros(row), np.ones(row), chance, np.empty((modes, size))
     spans, arrived = np.empty((reach, modes, size, 2), np.int64), np.zeros((modes, size, 2), np.int64)
     landed = np.empty((ring, modes, 2), np.int64)
     scratch = landing_scratch(row, size, speed.dtype)
@@ -71,7 +73,7 @@ def forward(
         totals[i] = 0.0
         follow(
             0, drive.shape[0], NEGLIGIBLE_MASS, heading, arriving, mixing, memory, scratch, spans, arrived, landed,
-            down, up, speed, stage, pressure, lower_chain, upper_chain, chain_mode,
+            policy, decision_at, speed, stage, pressure, change_chain, chain_mode,
             ends, factors, met[0], slope[0], levels, transition,
             drive, brake, factor[i], extra[i], path_step, energy_step, period, density[i], band[i], totals[i],
         )  # fmt: skip
@@ -81,7 +83,7 @@ def forward(
 @borrowing
 def follow(
     start, stop, negligible, heading, arriving, mixing, memory, scratch, spans, arrived, landed,
-    down, up, speed, stage, pressure, lower_chain, upper_chain, chain_mode,
+    policy, decision_at, speed, stage, pressure, change_chain, chain_mode,
     ends, factors, met, slope, levels, transition,
     drive, brake, factor, extra, path_step, energy_step, period, density, band, totals,
 ):  # fmt: skip
@@ -96,8 +98,11 @@ def follow(
     moved, mass, quanta, chance, shift = memory
     nodes, reach, ring = drive.shape[0], heading.shape[0], arriving.shape[0]
     modes, size, points = pressure.shape[0], levels.shape[0], speed.shape[0]
-    first, last = 0, points
+    first, last, least_ahead = 0, points, 0.0 if period > 0.0 else 1.0
+    commands, decisions = policy.shape[0], policy.shape[1]
     for n in range(start, stop):
+        decision = decision_at[n]
+        decides = decision < decisions
         here, mixed = arriving[n % ring], mixing[n % ring]
         find_arrivals(here, mixed, transition, landed[n % ring], MATTERS * negligible, arrived)
         first, last = occupied(heading, spans, arrived, points, MATTERS * negligible)
@@ -113,14 +118,14 @@ def follow(
                 )
                 acceleration = shift[h, q] * energy_step / path_step
                 quanta_to_next_sample(speed, begin, end, acceleration, period, path_step, quanta)
-                told = (n * down.shape[1] + k) * points
-                go_on(mass, down, up, told, chance, quanta, begin, end, negligible, heading, spans, h, q)
-                if density.shape[0] > 0:
+                told = (decision * policy.shape[2] + k) * points if decides else -1
+                go_on(mass, policy, told, chance, quanta, begin, end, negligible, heading, spans, h, q)
+                if density.shape[0] > 0 and decides:
                     for j in range(lowest, last):
-                        density[n, h, q, j] = mass[j] if begin <= j < end else 0.0
-                for side in range(2):
-                    c = upper_chain[h] if side == 1 else lower_chain[h]
-                    share = chance[side]
+                        density[decision, h, q, j] = mass[j] if begin <= j < end else 0.0
+                for command in range(commands if decides else 0):
+                    c, side = change_chain[command, h], command % 2
+                    share = chance[command]
                     low, high = extent(share, begin, end, negligible)
                     if c < 0 or low >= high:
                         continue
@@ -129,8 +134,8 @@ def follow(
                         changes += share[j]
                     totals[2 + side] = changes
                     totals[0] += spread_changes(
-                        share, n, nodes, c, q, low, high, factor, chain_mode[c], ends, factors, met, slope,
-                        extra, path_step, energy_step, points, arriving, mixing, landed, scratch,
+                        share, n, decision, nodes, c, q, low, high, factor, chain_mode[c], ends, factors, met, slope,
+                        least_ahead, extra, path_step, energy_step, points, arriving, mixing, landed, scratch,
                     )  # fmt: skip
         clear_landed(here, mixed, landed[n % ring])
         for r in range(1, reach):
@@ -203,23 +208,25 @@ def masses_at_sample(here, arrived, heading, span, first, last, negligible, mass
 
 
 @borrowing
-def go_on(mass, down, up, told, chance, quanta, begin, end, negligible, heading, spans, h, q):
+def go_on(mass, policy, told, chance, quanta, begin, end, negligible, heading, spans, h, q):
     """What holds is on its way to its next sample, in `heading` (M + 1, H, L, E') at mode `h` and level `q`.
 
     `mass` (E',) becomes the expected number of samples at this node: where the next sample may be at it again, the
-    geometric series is summed. `chance` (2, E') becomes the masses that get the commands down and up, whose
-    probabilities stand in `down` and `up` from flat index `told` on. What is `negligible` goes nowhere.
+    geometric series is summed. `chance` (C, E') becomes the masses that get the commands, whose probabilities stand in
+    the first of `policy` from flat index `told` on, −1: all hold. What is `negligible` goes nowhere.
     """
     reach, row = heading.shape[0], mass.shape[0]
     size = heading.shape[2]
+    commands, told_stride = chance.shape[0] if told >= 0 else 0, policy.shape[1] * policy.shape[2] * policy.shape[3]
     stride, state = heading.shape[1] * size * row, (h * size + q) * row
     for j in range(begin, end, EIGHT):
         found, f = load8(mass, j), load8(quanta, j)
-        lower, higher = load8(down, told + j), load8(up, told + j)
         matters = magnitude(found) >= negligible
         step = least(whole(f), reach - 2)
         x = least(f - fraction(step), 1.0)
-        hold, again = 1.0 - lower - higher, step < 1
+        hold, again = eight(1.0), step < 1
+        for command in range(commands):
+            hold = hold - load8(policy, command * told_stride + told + j)
         samples = choose(again, found / (1.0 - hold * (1.0 - x)), found)
         store(mass, j, choose(matters, samples, found))
         samples = choose(matters, samples, 0.0)
@@ -232,9 +239,9 @@ def go_on(mass, down, up, told, chance, quanta, begin, end, negligible, heading,
                 widen(spans[r + 1, h, q], j, min(j + EIGHT, row))
                 store(heading, at, load8(heading, at) + choose(lanes, near, 0.0))
                 store(heading, at + stride, load8(heading, at + stride) + choose(lanes, far, 0.0))
-        lower, higher = samples * lower, samples * higher
-        store(chance, j, choose(magnitude(lower) >= negligible, lower, 0.0))
-        store(chance, row + j, choose(magnitude(higher) >= negligible, higher, 0.0))
+        for command in range(commands):
+            share = samples * load8(policy, command * told_stride + told + j)
+            store(chance, command * row + j, choose(magnitude(share) >= negligible, share, 0.0))
 
 
 @borrowing

@@ -20,16 +20,17 @@ NEGLIGIBLE_PROBABILITY = 1e-9
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def backward(
-    down, up, down_slope, up_slope, terminal, stalled, change_cost, entry, entry_mode, speed, stage, pressure,
-    lower_chain, upper_chain, chain_mode, ends, factors, probability, mean, std,
+    policy, slopes, decision_at, terminal, stalled, change_cost, entry, entry_mode, speed, stage, pressure,
+    change_chain, chain_mode, ends, factors, probability, mean, std,
     levels, transition, stationary, drive, brake, factor, extra, path_step, energy_step, period,
-    density, band, lower_gradient, upper_gradient,
+    density, band, gradient,
 ):  # fmt: skip
     """Expected cost of the policy from the entry; with `density` of the same policy also the gradient.
 
     `terminal` (E,) cost by exit energy, `stalled` cost of a stall, `change_cost` of each command;
-    `density` (N, H, L, E) and `band` (N, 2) from `forward`, or `density` of length 0: then every state is
-    valued and no gradient taken. `lower_gradient`, `upper_gradient` (N, K + 1) are added to.
+    `policy` as in `forward`; `slopes` (C, R, K + 1, E): derivative by the line of the probability of a command to go
+    so far or farther. `density` (R, H, L, E) and `band` (N, 2) from `forward`, or `density` of length 0: then every
+    state is valued and no gradient taken. `gradient` (C, R, K + 1) is added to.
     """
     modes, size, points, row = pressure.shape[0], levels.shape[0], speed.shape[0], ends.shape[4]
     reach, ring, last = entry.shape[0], probability.shape[1] + 3, drive.shape[0]
@@ -44,12 +45,13 @@ def backward(
         path_step,
     )  # fmt: skip
     follow_back(
-        ahead, values, mixed, np.zeros(row), np.full(1, stalled), np.empty(row), np.zeros((2, row)),
+        ahead, values, mixed, np.zeros(row), np.full(1, stalled), np.empty(row),
+        np.zeros((change_chain.shape[0], row)), np.empty(change_chain.shape[0]),
         np.empty((modes, size)), landing_scratch(row, size, speed.dtype),
-        down, up, down_slope, up_slope, stalled, change_cost, speed, stage, pressure,
-        lower_chain, upper_chain, chain_mode, ends, factors, met[0], slope[0],
+        policy, slopes, decision_at, stalled, change_cost, speed, stage, pressure,
+        change_chain, chain_mode, ends, factors, met[0], slope[0],
         levels, transition, drive, brake, factor, extra, path_step, energy_step, period,
-        density, band, lower_gradient, upper_gradient,
+        density, band, gradient,
     )  # fmt: skip
     cost = 0.0
     for r in range(reach):
@@ -66,18 +68,20 @@ def backward(
 
 @borrowing
 def follow_back(
-    ahead, values, mixed, scratch, stop, quanta, changed, shift, landing,
-    down, up, down_slope, up_slope, stalled, change_cost, speed, stage, pressure,
-    lower_chain, upper_chain, chain_mode, ends, factors, met, slope,
+    ahead, values, mixed, scratch, stop, quanta, changed, worth, shift, landing,
+    policy, slopes, decision_at, stalled, change_cost, speed, stage, pressure,
+    change_chain, chain_mode, ends, factors, met, slope,
     levels, transition, drive, brake, factor, extra, path_step, energy_step, period,
-    density, band, lower_gradient, upper_gradient,
+    density, band, gradient,
 ):  # fmt: skip
     """`backward` with its memory: values ahead at held stages, at samples, and before mixing (rings)."""
     nodes, reach, ring = drive.shape[0], ahead.shape[0], values.shape[0]
     modes, size, points = pressure.shape[0], levels.shape[0], speed.shape[0]
-    visited_only = density.shape[0] > 0
+    visited_only, least_ahead = density.shape[0] > 0, 0.0 if period > 0.0 else 1.0
+    commands, decisions = gradient.shape[0], gradient.shape[1]
+    several = commands > 2
     for n in range(nodes - 1, -1, -1):
-        first, last = 1, points
+        decision, first, last = decision_at[n], 1, points
         if visited_only:
             first, last = max(band[n, 0], 1), band[n, 1]
         here = values[n % ring]
@@ -91,29 +95,33 @@ def follow_back(
                 acceleration = shift[h, q] * energy_step / path_step
                 quanta_to_next_sample(speed, first, last, acceleration, period, path_step, quanta)
                 here[h, q, 0] = stalled
-                for side in range(2):
-                    c = upper_chain[h] if side == 1 else lower_chain[h]
-                    chance = up[n, k] if side == 1 else down[n, k]
-                    begin, end = decided(chance, density, n, h, q, first, last)
+                if decision >= decisions:
+                    for j in range(first, last):
+                        here[h, q, j] = ahead[1, h, q, j]
+                    continue
+                for command in range(commands):
+                    c, begin, end = change_chain[command, h], first, last
+                    if not several:
+                        begin, end = decided(policy[command, decision, k], density, decision, h, q, first, last)
                     if c < 0 or begin >= end:
                         continue
                     change_values(
-                        n, nodes, c, q, begin, end, factor, chain_mode[c], ends, factors, met, slope,
-                        extra, path_step, energy_step, points,
-                        values, mixed, stalled, landing, changed[side],
+                        n, decision, nodes, c, q, begin, end, factor, chain_mode[c], ends, factors, met, slope,
+                        least_ahead, extra, path_step, energy_step, points,
+                        values, mixed, stalled, landing, changed[command],
                     )  # fmt: skip
                 for j in range(first, last):
-                    mass = density[n, h, q, j] if visited_only else 1.0
+                    mass = density[decision, h, q, j] if visited_only else 1.0
                     if abs(mass) < NEGLIGIBLE_MASS:
                         here[h, q, j] = ahead[1, h, q, j]
                         continue
-                    p_down, p_up = down[n, k, j], up[n, k, j]
-                    lowers = lower_chain[h] >= 0 and p_down > NEGLIGIBLE_PROBABILITY
-                    raises = upper_chain[h] >= 0 and p_up > NEGLIGIBLE_PROBABILITY
-                    q_down = change_cost + changed[0, j] if lowers else 0.0
-                    q_up = change_cost + changed[1, j] if raises else 0.0
-                    by_change = p_down * q_down + p_up * q_up
-                    hold = 1.0 - p_down - p_up
+                    by_change, hold = 0.0, 1.0
+                    for command in range(commands):
+                        chance = policy[command, decision, k, j]
+                        told = change_chain[command, h] >= 0 and (several or chance > NEGLIGIBLE_PROBABILITY)
+                        worth[command] = change_cost + changed[command, j] if told else np.nan
+                        by_change += chance * (worth[command] if told else 0.0)
+                        hold -= chance
                     step = min(int(quanta[j]), reach - 2)
                     x = min(quanta[j] - step, 1.0)
                     if step == 0:
@@ -123,25 +131,26 @@ def follow_back(
                         q_hold = (1.0 - x) * ahead[step, h, q, j] + x * ahead[step + 1, h, q, j]
                         value = hold * q_hold + by_change
                     here[h, q, j] = value
-                    if visited_only and lowers:
-                        lower_gradient[n, k] += mass * down_slope[n, k, j] * (q_down - q_hold)
-                    if visited_only and raises:
-                        upper_gradient[n, k] += mass * up_slope[n, k, j] * (q_up - q_hold)
+                    for command in range(commands if visited_only else 0):
+                        nearer = q_hold if command < 2 else worth[command - 2]
+                        if not np.isnan(worth[command]):
+                            by_line = mass * slopes[command, decision, k, j]
+                            gradient[command, decision, k] += by_line * (worth[command] - nearer)
         mix_values(here, transition, first, last, stop, mixed[n % ring])
 
 
 @borrowing
-def decided(chance, density, n, h, q, first, last):
+def decided(chance, density, decision, h, q, first, last):
     """Range of energies within [first, last) that hold every visited state in which a command has a `chance` (E,)."""
-    while first < last and not is_decided(chance, density, n, h, q, first):
+    while first < last and not is_decided(chance, density, decision, h, q, first):
         first += 1
-    while first < last and not is_decided(chance, density, n, h, q, last - 1):
+    while first < last and not is_decided(chance, density, decision, h, q, last - 1):
         last -= 1
     return first, last
 
 
 @borrowing
-def is_decided(chance, density, n, h, q, j):
+def is_decided(chance, density, decision, h, q, j):
     """Whether a visited state may get the command of `chance`; `density` of length 0: every state is visited."""
-    visited = density.shape[0] == 0 or abs(density[n, h, q, j]) >= NEGLIGIBLE_MASS
+    visited = density.shape[0] == 0 or abs(density[decision, h, q, j]) >= NEGLIGIBLE_MASS
     return visited and chance[j] > NEGLIGIBLE_PROBABILITY

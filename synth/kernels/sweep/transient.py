@@ -4,9 +4,9 @@
 the same plan (`landing_plan`), so that they are transposes of one another.
 
 Values and masses live in rings over the path: node n is at index n mod ring length, the exit node N too. Rows hold
-E' ≥ E energies. Further arguments, the same for both: `n`, `c`, `q` node, transient, noise level; begin ≤ j < end the
-energies; `factor` ξ_cut; `mode` reached; `met`, `slope` of the scenario from `landing_plan.landing_tables`; `scratch`
-from `landing_plan.landing_scratch`; the rest as in `landing_plan`.
+E' ≥ E energies. Further arguments, the same for both: `n`, `decision`, `c`, `q` node, its decision, transient, noise
+level; begin ≤ j < end the energies; `factor` ξ_cut; `mode` reached; `met`, `slope` of the scenario from
+`landing_plan.landing_tables`; `scratch` from `landing_plan.landing_scratch`; the rest as in `landing_plan`.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from synth.kernels.vector.packs import EIGHT, add_to, choose, eight, gather, gre
 
 @borrowing
 def spread_changes(
-    share, n, last, c, q, begin, end, factor, mode, ends, factors, met, slope,
+    share, n, decision, last, c, q, begin, end, factor, mode, ends, factors, met, slope, least_ahead,
     extra, path_step, energy_step, points, arriving, mixing, landed, scratch,
 ):  # fmt: skip
     """Spread the masses `share` (E',) over `arriving` and `mixing` (ring, H, L, E'); returns the mass that stalls.
@@ -28,9 +28,9 @@ def spread_changes(
     """
     crossed, runs, place, weight = scratch
     ring, modes, size, row = arriving.shape
-    at, stride = (n * ends.shape[1] + c) * ends.shape[2] * 2 * row, modes * size * row
+    at, stride = (decision * ends.shape[1] + c) * ends.shape[2] * 2 * row, modes * size * row
     quanta, cells, start = 1.0 / path_step, 1.0 / energy_step, n % ring
-    count = find_runs(n, c, begin, end, factor, ends, factors, path_step, met.shape[1] - 1, crossed, runs)
+    count = find_runs(decision, c, begin, end, factor, ends, factors, path_step, met.shape[1] - 1, crossed, runs)
     stalled = 0.0
     bottom, top = eight(points), eight(0.0)
     soonest, latest = whole(eight(last)), whole(top)
@@ -43,7 +43,7 @@ def spread_changes(
                     law = law_met(met, c, max(over, 0), q, m, side)
                     at_a, at_b, a, b, by, lowest, highest = landing_of_pack(
                         ends, at + j, row, law, over < 0, slope[mode, m, n:], last - n, extra, quanta, cells, points,
-                        stride, start * stride + (mode * size + m) * row, ring - start, ring * stride,
+                        stride, start * stride + (mode * size + m) * row, ring - start, ring * stride, least_ahead,
                     )  # fmt: skip
                     a = a[0] * mass, a[1] * mass, a[2] * mass, a[3] * mass
                     b = b[0] * mass, b[1] * mass, b[2] * mass, b[3] * mass
@@ -89,7 +89,7 @@ def widen_landed(quanta, cells, n, last, points, landed):
 
 @borrowing
 def change_values(
-    n, last, c, q, begin, end, factor, mode, ends, factors, met, slope,
+    n, decision, last, c, q, begin, end, factor, mode, ends, factors, met, slope, least_ahead,
     extra, path_step, energy_step, points, values, mixed, stalled, scratch, out,
 ):  # fmt: skip
     """`out`[begin:end] (E',) = expected value after transient `c`; `values`, `mixed` (ring, H, L, E').
@@ -98,9 +98,9 @@ def change_values(
     """
     crossed, runs, _, _ = scratch
     ring, modes, size, row = values.shape
-    at, stride = (n * ends.shape[1] + c) * ends.shape[2] * 2 * row, modes * size * row
+    at, stride = (decision * ends.shape[1] + c) * ends.shape[2] * 2 * row, modes * size * row
     quanta, cells, start = 1.0 / path_step, 1.0 / energy_step, n % ring
-    count = find_runs(n, c, begin, end, factor, ends, factors, path_step, met.shape[1] - 1, crossed, runs)
+    count = find_runs(decision, c, begin, end, factor, ends, factors, path_step, met.shape[1] - 1, crossed, runs)
     for k in range(count):
         over = runs[k, 1]
         for j in range(runs[k, 0], runs[k + 1, 0], EIGHT):
@@ -110,7 +110,7 @@ def change_values(
                     law = law_met(met, c, max(over, 0), q, m, side)
                     at_a, at_b, a, b, _, _, _ = landing_of_pack(
                         ends, at + j, row, law, over < 0, slope[mode, m, n:], last - n, extra, quanta, cells, points,
-                        stride, start * stride + (mode * size + m) * row, ring - start, ring * stride,
+                        stride, start * stride + (mode * size + m) * row, ring - start, ring * stride, least_ahead,
                     )  # fmt: skip
                     stopped = at_a < 0
                     at_a = greatest(at_a, 0)

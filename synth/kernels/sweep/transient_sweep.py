@@ -13,10 +13,10 @@ from synth.kernels.vector.packs import EIGHT, item, load8, store
 
 @borrowing
 def add_transient_values(
-    n, last, c, q, runs, count, mode, ends, met, slope,
+    n, decision, last, c, q, runs, count, mode, ends, met, slope, least_ahead,
     extra, path_step, energy_step, values, mixed, stalled, place, weight, out,
 ):  # fmt: skip
-    """Add to `out` (E·T,) the expected value after transient `c` from node `n` and noise level `q`.
+    """Add to `out` (E·T,) the expected value after transient `c` from node `n`, number `decision`, and noise level `q`.
 
     `values` (ring, H, L, E·T) at a sample and `mixed` before the noise level changes; `stalled` (T,), T whole packs of
     eight; `runs`, `count` from `find_runs`; `place`, `weight` are scratch; the rest as in `landing_plan`.
@@ -24,7 +24,7 @@ def add_transient_values(
     ring, modes, size = values.shape[0], values.shape[1], values.shape[2]
     width, row = stalled.shape[0], ends.shape[4]
     points = out.shape[0] // width
-    at = (n * ends.shape[1] + c) * ends.shape[2] * 2 * row
+    at = (decision * ends.shape[1] + c) * ends.shape[2] * 2 * row
     quanta, cells, start, stride = 1.0 / path_step, 1.0 / energy_step, n % ring, modes * size * points
     for k in range(count):
         stop, over = runs[k + 1, 0], runs[k, 1]
@@ -34,7 +34,7 @@ def add_transient_values(
                     law = law_met(met, c, max(over, 0), q, m, side)
                     at_a, at_b, a, b, _, _, _ = landing_of_pack(
                         ends, at + j, row, law, over < 0, slope[mode, m, n:], last - n, extra, quanta, cells, points,
-                        stride, start * stride + (mode * size + m) * points, ring - start, ring * stride,
+                        stride, start * stride + (mode * size + m) * points, ring - start, ring * stride, least_ahead,
                     )  # fmt: skip
                     store_plan(at_a * width, at_b * width, a, b, 2 * m + side, place, weight)
             for lane in range(min(stop - j, EIGHT)):

@@ -12,8 +12,9 @@ from plant_models import Plant, path_coefficients
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.stage_regulator import Actuator, stage_locked_actuator
 from synth.problem.resolution import Resolution
-from synth.solver.chain.entry import entry_distribution
-from synth.solver.chain.grid import Grid, make_grid
+from synth.solver.chain.decisions import Decisions
+from synth.solver.chain.epochs import DecisionEpochs
+from synth.solver.chain.grid import Grid
 from synth.solver.chain.landings import CHECK_FACTOR_STEP, FACTOR_STEP, Landings, friction_factors, make_landings
 from synth.solver.chain.path_noise import (
     PathNoise,
@@ -23,7 +24,8 @@ from synth.solver.chain.path_noise import (
     transient_noise,
 )
 from synth.solver.chain.scenarios import Scenarios, check_scenarios, persistent_scenarios
-from synth.solver.chain.speed_measurement import SpeedMeasurement, quantised_measurement, smooth_measurement
+from synth.solver.chain.speed_measurement import SpeedMeasurement
+from synth.solver.chain.time_samples import TimeSamples
 
 NODE_AT_ENTRANCE_M = 1e-9
 """A path node this near to the entrance is there."""
@@ -34,13 +36,16 @@ NODE_AT_ENTRANCE_M = 1e-9
 class Chain:
     """One plant on the grid of one resolution; everything but policy and aim.
 
-    `measurement`: the measured speed as command probabilities take it. `drive_m_s2`, `brake_m_s2_per_kpa` (N,): cell
-    means. `entry` (M + 1, E): probability of entry energy j with the first sample at path node r.
-    `entry_mode`: the resting mode that the regulator finds.
+    `epochs`: when the regulator decides, and `decisions` where that is on the grid. `measurement`: the measured speed
+    as command probabilities take it. `drive_m_s2`, `brake_m_s2_per_kpa` (N,): cell means. `entry` (M + 1, E):
+    probability of entry energy j with the first decision at path node r. `entry_mode`: the resting mode that the
+    regulator finds.
     """
 
     plant: Plant
     resolution: Resolution
+    epochs: DecisionEpochs
+    decisions: Decisions
     measurement: SpeedMeasurement
     grid: Grid
     actuator: Actuator
@@ -60,32 +65,47 @@ class Chain:
 
     def quantised(self) -> Chain:
         """The same with the sensor's staircase."""
-        return replace(self, measurement=quantised_measurement(self.plant.sensor))
+        return replace(self, measurement=self.epochs.predicted_measurement(self.plant, self.grid))
 
 
-def persistent_chain(plant: Plant, resolution: Resolution) -> Chain:
-    """ξ_cut in scenarios, η as a correlated chain, a smooth measurement: the default formulation."""
+def persistent_chain(plant: Plant, resolution: Resolution, epochs: DecisionEpochs | None = None) -> Chain:
+    """ξ_cut in scenarios, η as a correlated chain, a smooth measurement: the default formulation.
+
+    `epochs`: when the regulator decides; None: at the samples of the plant's radar.
+    """
     scenarios = persistent_scenarios(plant, resolution.friction_nodes, resolution.resistance_nodes)
-    return chain_of(plant, resolution, scenarios)
+    return chain_of(plant, resolution, scenarios, epochs=epochs)
 
 
-def check_chain(plant: Plant, resolution: Resolution) -> Chain:
+def check_chain(plant: Plant, resolution: Resolution, epochs: DecisionEpochs | None = None) -> Chain:
     """The persistent formulation with `check_scenarios` and the sensor's staircase: predicts a finished table."""
     scenarios = check_scenarios(plant, resolution.friction_nodes, resolution.resistance_nodes)
-    return chain_of(plant, resolution, scenarios, CHECK_FACTOR_STEP).quantised()
+    return chain_of(plant, resolution, scenarios, CHECK_FACTOR_STEP, epochs).quantised()
 
 
-def chain_of(plant: Plant, resolution: Resolution, scenarios: Scenarios, factor_step: float = FACTOR_STEP) -> Chain:
+def chain_of(
+    plant: Plant,
+    resolution: Resolution,
+    scenarios: Scenarios,
+    factor_step: float = FACTOR_STEP,
+    epochs: DecisionEpochs | None = None,
+) -> Chain:
     """The plant on the grid of `resolution`, η as a correlated chain; `factor_step` as in `friction_factors`."""
-    grid = make_grid(plant, resolution)
-    actuator = stage_locked_actuator(plant.position, plant.sensor, plant.top_stage, resolution.transient_substeps)
+    epochs = TimeSamples(plant.sensor) if epochs is None else epochs
+    grid = epochs.grid(plant, resolution)
+    actuator = stage_locked_actuator(plant.position, epochs.clock, plant.top_stage, epochs.substeps(resolution))
     coefficients = path_coefficients(plant.position, plant.cut, plant.profile, grid.path_m)
     path_noise = correlated_noise(plant.friction, grid.path_step_m, resolution.path_levels)
-    landings = make_landings(plant, grid, actuator, friction_factors(plant, factor_step))
+    decisions = epochs.decisions(plant, grid)
+    landings = make_landings(
+        plant, grid, decisions, actuator, epochs.clock.sample_period_s, friction_factors(plant, factor_step)
+    )
     return Chain(
         plant=plant,
         resolution=resolution,
-        measurement=smooth_measurement(plant.sensor),
+        epochs=epochs,
+        decisions=decisions,
+        measurement=epochs.measurement(plant, grid),
         grid=grid,
         actuator=actuator,
         drive_m_s2=coefficients.free_m_s2(plant.resistance.mean_n_per_kn),
@@ -94,7 +114,7 @@ def chain_of(plant: Plant, resolution: Resolution, scenarios: Scenarios, factor_
         path_noise=path_noise,
         transient_noise=noise_on_landings(path_noise, landings, grid),
         scenarios=scenarios,
-        entry=entry_distribution(plant, grid),
+        entry=epochs.entry(plant, grid),
         entry_mode=actuator.mode_of(plant.approach.initial_stage),
     )
 

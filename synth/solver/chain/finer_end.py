@@ -13,7 +13,6 @@ from synth.kernels.sweep.finer_end import refine_landings
 from synth.solver.chain.chain import Chain
 from synth.solver.chain.grid import MARGIN_CELLS, Grid
 from synth.solver.chain.landings import in_whole_packs
-from synth.solver.switching_lines import SwitchingLines
 
 CELLS = 20
 """At least so many cells lie within three standard deviations of the exit speed to both sides of its mean."""
@@ -51,7 +50,7 @@ class FinerEnd:
 
 def times_as_fine(chain: Chain, target_speed_m_s: float) -> int:
     """How many times as fine energies must be for `CELLS` cells near the target, where the exit speed spreads least."""
-    of_noise = SHARE_OF_NOISE * chain.plant.sensor.reading_std_m_s
+    of_noise = SHARE_OF_NOISE * chain.epochs.reading_std_m_s(target_speed_m_s)
     least_spread = math.hypot(target_speed_m_s * of_noise, OTHER_SPREAD_M2_S2)  # of the energy
     return max(1, math.ceil(CELLS * chain.grid.energy_step_m2_s2 / (6.0 * least_spread)))
 
@@ -61,11 +60,16 @@ def finer_length_m(target_speed_m_s: float) -> float:
     return min(LONGEST_M, LENGTH_M2_S / target_speed_m_s)
 
 
-def finer_end(chain: Chain, lines: SwitchingLines, length_m: float, times: int) -> FinerEnd:
-    """The last `length_m` of `chain` with energies `times` as dense, below a ceiling above all lines that are met."""
+def finer_end(chain: Chain, lines_m_s: NDArray[np.float64], length_m: float, times: int) -> FinerEnd:
+    """The last `length_m` of `chain` with energies `times` as dense, below a ceiling above all lines that are met.
+
+    `lines_m_s` (C, R, K + 1) by command, decision and stage.
+    """
     grid, quanta = chain.grid, len(chain.drive_m_s2)
     node = quanta - min(max(round(length_m / grid.path_step_m), 1), quanta)
-    upper = lines.upper_m_s[:, node:]
+    decisions = chain.decisions.behind(node)
+    first = len(chain.decisions) - len(decisions)
+    upper = lines_m_s[1::2, first:]
     met = upper < grid.speed_m_s[-1]
     ceiling_m_s = float(upper.max(initial=0.0, where=met)) + ABOVE_LINES_M_S
     cells = min(math.ceil(0.5 * ceiling_m_s**2 / grid.energy_step_m2_s2), len(grid.speed_m_s))
@@ -76,11 +80,13 @@ def finer_end(chain: Chain, lines: SwitchingLines, length_m: float, times: int) 
     energy = grid.energy_step_m2_s2 / times * np.arange(points, dtype=np.float64)
     finer = Grid(grid.path_m[node:].copy(), energy, np.sqrt(2.0 * energy))
     landings = chain.landings
-    ends = np.empty((*landings.ends[node:].shape[:4], len(in_whole_packs(energy))))
-    refine_landings(landings.ends, landings.points, node, times, ends)
+    ends = np.empty((*landings.ends[first:].shape[:4], len(in_whole_packs(energy))))
+    refine_landings(landings.ends, landings.points, first, times, ends)
     end = replace(
         chain,
         grid=finer,
+        decisions=decisions,
+        measurement=chain.measurement.behind(first, finer.speed_m_s),
         drive_m_s2=drive.copy(),
         brake_m_s2_per_kpa=chain.brake_m_s2_per_kpa[node:].copy(),
         landings=replace(landings, ends=ends, points=points),

@@ -13,6 +13,7 @@ from plant_models.frozen_arrays import frozen_arrays
 from plant_models.stage_regulator import Actuator
 from synth.kernels.sweep.landing import land
 from synth.kernels.vector.packs import EIGHT, SIXTEEN
+from synth.solver.chain.decisions import Decisions, steps_of
 from synth.solver.chain.grid import Grid
 
 FACTOR_STEP, CHECK_FACTOR_STEP = 0.5, 1.0
@@ -25,42 +26,65 @@ FINE_CELLS_PER_QUANTUM = 4
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Landings:
-    """End of every neighbouring stage change from every grid node, for friction `factors` (F,).
+    """End of every change of stage that may be commanded, from every decision, for friction `factors` (F,).
 
-    `ends` (N, C, F, 2, E'), see `kernels.landing.land`, of which `points` E are energies of the grid; `lower_chain`,
-    `upper_chain` (H,): index of the transient one stage down / up from a mode, −1 if none; `end_mode` (C,).
+    `ends` (R, ·, F, 2, E'), see `kernels.landing.land`, of which `points` E are energies of the grid; `change_chain`
+    (C, H): index of the transient of a command in a mode, −1 if none; `end_mode` of the transients.
     """
 
     factors: NDArray[np.float64]
     ends: NDArray[np.float64]
-    lower_chain: NDArray[np.int64]
-    upper_chain: NDArray[np.int64]
+    change_chain: NDArray[np.int64]
     end_mode: NDArray[np.int64]
     overpressure_kpa: NDArray[np.float64]
     samples: NDArray[np.int64]
     points: int
 
     @property
+    def lower_chain(self) -> NDArray[np.int64]:
+        """The transients one stage down, (H,)."""
+        chains: NDArray[np.int64] = self.change_chain[0]
+        return chains
+
+    @property
+    def upper_chain(self) -> NDArray[np.int64]:
+        """The transients one stage up, (H,)."""
+        chains: NDArray[np.int64] = self.change_chain[1]
+        return chains
+
+    @property
     def travel_m(self) -> NDArray[np.float64]:
-        """Path until the end of the transient, or to S_exit, (N, C, F, E); −1 for a stall."""
+        """Path until the end of the transient, or to S_exit, (R, ·, F, E); −1 for a stall."""
         return self.ends[..., 0, : self.points]
 
     @property
     def energy_m2_s2(self) -> NDArray[np.float64]:
-        """v²/2 at the end of the transient, (N, C, F, E)."""
+        """v²/2 at the end of the transient, (R, ·, F, E)."""
         return self.ends[..., 1, : self.points]
 
 
-def make_landings(plant: Plant, grid: Grid, actuator: Actuator, factors: NDArray[np.float64]) -> Landings:
-    """Integrate the motion through every change to a neighbouring stage (`land`), for friction `factors` (F,)."""
-    modes = len(actuator.mode_stage)
+def make_landings(
+    plant: Plant,
+    grid: Grid,
+    decisions: Decisions,
+    actuator: Actuator,
+    period_s: float,
+    factors: NDArray[np.float64],
+) -> Landings:
+    """Integrate the motion through every change of stage (`land`), for friction `factors` (F,).
+
+    `period_s`: the step of the clock in which the actuator counts.
+    """
     used: list[int] = []
-    lower, upper = np.full(modes, -1), np.full(modes, -1)
-    for neighbours, step in ((lower, -1), (upper, 1)):
+    held: list[float] = []
+    change_chain = np.full((decisions.commands, len(actuator.mode_stage)), -1)
+    for command in range(decisions.commands):
         for mode, stage in enumerate(actuator.mode_stage):
-            if 0 <= stage + step < actuator.stages:
-                neighbours[mode] = len(used)
-                used.append(int(actuator.command[mode, stage + step]))
+            wanted = stage + steps_of(command)
+            if 0 <= wanted < actuator.stages:
+                change_chain[command, mode] = len(used)
+                used.append(int(actuator.command[mode, wanted]))
+                held.append(float(actuator.mode_overpressure_kpa[mode]))
     fine = np.linspace(plant.start_m, plant.exit_m, FINE_CELLS_PER_QUANTUM * (len(grid.path_m) - 1) + 1)
     cells = path_coefficients(plant.position, plant.cut, plant.profile, fine)
     work = np.concatenate([[0.0], np.cumsum(cells.brake_m_s2_per_kpa * np.diff(fine))])
@@ -68,13 +92,13 @@ def make_landings(plant: Plant, grid: Grid, actuator: Actuator, factors: NDArray
     samples = actuator.chain_samples[used]
     overpressure = np.ascontiguousarray(actuator.chain_overpressure_kpa[used, : samples.max() * actuator.substeps])
     speed = in_whole_packs(grid.speed_m_s)
-    ends = np.empty((len(grid.path_m) - 1, len(used), len(factors), 2, len(speed)))
-    dt = plant.sensor.sample_period_s / actuator.substeps
+    ends = np.empty((len(decisions), len(used), len(factors), 2, len(speed)))
+    length_m = (len(grid.path_m) - 1) * grid.path_step_m
     land(
-        grid.path_step_m, work, drive, overpressure, samples, actuator.substeps, dt, factors,
-        speed, ends,
+        decisions.node * grid.path_step_m, decisions.lead_m, np.array(held), length_m / len(drive), work, drive,
+        overpressure, samples, actuator.substeps, period_s / actuator.substeps, factors, speed, ends,
     )  # fmt: skip
-    return Landings(factors, ends, lower, upper, actuator.chain_mode[used], overpressure, samples, len(grid.speed_m_s))
+    return Landings(factors, ends, change_chain, actuator.chain_mode[used], overpressure, samples, len(grid.speed_m_s))
 
 
 def in_whole_packs(speed_m_s: NDArray[np.float64]) -> NDArray[np.float64]:

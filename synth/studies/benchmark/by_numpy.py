@@ -153,7 +153,7 @@ def lines(chain: Chain, holding: Floats, changing: Floats, costs: Costs) -> tupl
     """(lower, upper) of one node, (K + 1, T): the thresholds with the largest total gain beyond them."""
     stages, speed = chain.actuator.stages, chain.grid.speed_m_s
     prior = hidden_prior(chain)[..., None, None]
-    start, smear = true_speed_weights(speed, chain.measurement.std_m_s)
+    start, smear = true_speed_weights(speed, speed, chain.measurement.std)
     seen = start[:, None] + np.arange(smear.shape[1])
     shape = (stages, costs.exit_m2_s2.shape[1])
     found = np.full(shape, -np.inf), np.full(shape, np.inf)
@@ -208,7 +208,7 @@ def sampled(
     chain: Chain, found: tuple[Floats, Floats], changing: Floats, following: Floats, holding: Floats, quanta: Floats
 ) -> Floats:
     """Values at a sample under the lines `found`; within one quantum the next sample may be at this node again."""
-    (lower, upper), speed, noise = found, chain.grid.speed_m_s[:, None], chain.measurement.std_m_s
+    (lower, upper), speed, noise = found, chain.grid.speed_m_s[:, None], chain.measurement.std
     out = np.empty_like(holding)
     for h, k in enumerate(chain.actuator.mode_stage):
         down, up = chances((lower[k] - speed) / noise), chances((speed - upper[k]) / noise)

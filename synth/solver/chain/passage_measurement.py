@@ -1,0 +1,90 @@
+"""What a point sensor measures, as the solver takes it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models import PointSensors
+from plant_models.frozen_arrays import frozen_arrays
+
+Floats = NDArray[np.float64]
+
+SHARE_OF_CELL = 0.4
+"""Std of a cell of the speed grid, as part of its width, about what a probability that is put into cells forgets."""
+
+SLOWEST_M_S = 1e-2
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class PassageMeasurement:
+    """Readings are ∫ dv/σ(v), so that every reading has std 1; σ: error of the sensor and width of a cell together.
+
+    The errors of a good sensor are smaller than the cells of the grid. Without the width of the cell, a command would
+    come or go for the mass of a whole cell at once, and the cost would be no smooth function of the lines.
+    `speed_m_s` (E,) of the grid; `ahead_m2_s2` (R, K + 1): what v² grows by from the node to where the speed is read.
+    """
+
+    sensors: PointSensors
+    speed_m_s: Floats
+    ahead_m2_s2: Floats
+
+    @property
+    def std(self) -> float:
+        """1."""
+        return 1.0
+
+    @cached_property
+    def _table(self) -> tuple[Floats, Floats]:
+        """(speeds, readings): the integral at speeds much denser than the grid, from the slowest on."""
+        v = np.linspace(SLOWEST_M_S, float(self.speed_m_s[-1]) + 1.0, 4000)
+        energy_step = 0.5 * float(self.speed_m_s[1]) ** 2
+        std = np.hypot(self.sensors.reading_std_m_s(v), SHARE_OF_CELL * np.minimum(energy_step / v, v))
+        steps = 0.5 * (1.0 / std[1:] + 1.0 / std[:-1]) * np.diff(v)
+        return v, np.concatenate([[0.0], np.cumsum(steps)])
+
+    def readings(self, speed_m_s: Floats) -> Floats:
+        """The integral up to the speeds; below the slowest as if the error were the same there."""
+        v, integral = self._table
+        below = np.minimum(speed_m_s - v[0], 0.0) * (integral[1] - integral[0]) / (v[1] - v[0])
+        found: Floats = np.interp(speed_m_s, v, integral) + below
+        return found
+
+    def thresholds(self, lines_m_s: Floats) -> tuple[Floats, float]:
+        """Lines in readings at the node; infinite ones stay so."""
+        finite = np.isfinite(lines_m_s)
+        found = np.array(lines_m_s)
+        found[finite] = self.readings(self._at_node(lines_m_s)[finite])
+        return found, 1.0
+
+    def slopes(self, lines_m_s: Floats) -> Floats:
+        """Derivatives of the thresholds by the lines; 0 where a line is infinite."""
+        v, integral = self._table
+        at_node = np.clip(np.where(np.isfinite(lines_m_s), self._at_node(lines_m_s), v[0]), v[0], v[-1])
+        cell = np.clip(np.searchsorted(v, at_node) - 1, 0, len(v) - 2)
+        slope = (integral[cell + 1] - integral[cell]) / (v[cell + 1] - v[cell])
+        moved = np.where(np.isfinite(lines_m_s), lines_m_s / np.maximum(at_node, SLOWEST_M_S), 0.0)
+        found: Floats = np.where(np.isfinite(lines_m_s), slope * moved, 0.0)
+        return found
+
+    def speeds(self, lines: Floats) -> Floats:
+        """Lines in m/s where the speed is read, of lines in readings at the node."""
+        v, integral = self._table
+        finite = np.isfinite(lines)
+        at_node = np.interp(np.where(finite, lines, 0.0), integral, v)
+        read = np.sqrt(np.maximum(at_node**2 + self.ahead_m2_s2, SLOWEST_M_S**2))
+        found: Floats = np.where(finite, read, lines)
+        return found
+
+    def behind(self, first: int, speed_m_s: Floats) -> PassageMeasurement:
+        """The same at the decisions from number `first` on, on another grid."""
+        return PassageMeasurement(self.sensors, speed_m_s, self.ahead_m2_s2[first:])
+
+    def _at_node(self, lines_m_s: Floats) -> Floats:
+        """Speeds at the node of speeds where they are read."""
+        finite = np.where(np.isfinite(lines_m_s), lines_m_s, 1.0)
+        return np.sqrt(np.maximum(finite**2 - self.ahead_m2_s2, SLOWEST_M_S**2))

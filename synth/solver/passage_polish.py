@@ -1,0 +1,119 @@
+"""The polish of switching speeds: the exactly evaluated cost, minimised over all of them at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.solver.backward_induction import Solution
+from synth.solver.chain.decisions import steps_of
+from synth.solver.evaluation import Evaluation
+from synth.solver.one_blas_thread import one_blas_thread
+from synth.solver.passage_speeds import PassageSpeeds, ordered, passage_speeds
+from synth.solver.policy_density import density_and_occupancy
+from synth.solver.polynomial_fit import off_line_cost, stage_occupancy
+
+LOOSE_M_S = 0.15
+"""Std of a switching speed that costs nothing: it moves no farther than others make it."""
+
+
+@dataclass(frozen=True)
+class PassagePolish:
+    """Result of `polish_passages`: the policy, its cost before and after, evaluations, how the search ended."""
+
+    speeds: PassageSpeeds
+    cost_before: float
+    cost_after: float
+    evaluations: int
+    converged: bool
+    status: str
+
+
+@one_blas_thread()
+def polish_passages(solution: Solution, max_iterations: int = 40, tolerance: float = 2e-3) -> PassagePolish:
+    """Minimise the cost over all finite switching speeds of a solution, keeping their order.
+
+    Sequential quadratic programming in units in which being off costs the same for each. It ends when a step changes
+    the cost by less than `tolerance` of the first; the cost of the result is no higher than the start's.
+    """
+    from scipy.optimize import LinearConstraint, minimize  # start-up: scipy only where it is needed
+
+    start = passage_speeds(solution.lines_m_s)
+    free = np.isfinite(start.switching_m_s)
+    evaluation = Evaluation(solution.chain, solution.aim)
+    before = evaluation.gradient(start)[0]
+    unit = np.minimum(np.sqrt(before / (being_off(solution, start)[free] + 1e-12)), LOOSE_M_S)
+    best: list[tuple[float, PassageSpeeds]] = [(before, start)]
+    calls = 0
+
+    def policy(y: NDArray[np.float64]) -> PassageSpeeds:
+        t = np.array(start.switching_m_s)
+        t[free] += unit * y
+        return PassageSpeeds(ordered(t))
+
+    def objective(y: Any) -> Any:
+        nonlocal calls
+        calls += 1
+        speeds = policy(y)
+        cost, by_lines = evaluation.gradient(speeds)
+        if 0.0 < cost < best[0][0]:
+            best[0] = cost, speeds
+        return cost / before, by_switching(by_lines, speeds.stages)[free] * unit / before
+
+    order = order_of(free)
+    gaps = order @ start.switching_m_s[free]
+    constraints = LinearConstraint(order * unit, -gaps, np.inf) if len(order) else ()
+    options: Any = {"maxiter": max_iterations, "ftol": tolerance}
+    y0 = np.zeros(int(free.sum()))
+    result = minimize(objective, y0, jac=True, method="SLSQP", constraints=constraints, options=options)
+    cost, speeds = best[0]
+    return PassagePolish(speeds, before, cost, calls, bool(result.success), str(result.message))
+
+
+def by_switching(by_lines: NDArray[np.float64], stages: int) -> NDArray[np.float64]:
+    """Derivatives by the switching speeds (M, K + 1, K) of those by lines (C, R, K + 1)."""
+    found = np.zeros((by_lines.shape[1], stages, stages - 1))
+    for command, stage, parted in parted_by(len(by_lines), stages):
+        found[:, stage, parted] = by_lines[command, :, stage]
+    return found
+
+
+def parted_by(commands: int, stages: int) -> list[tuple[int, int, int]]:
+    """(command, stage, index of the switching speed in its row) of every line that there can be."""
+    found = []
+    for command in range(commands):
+        step = steps_of(command)
+        for stage in range(stages):
+            parted = stage + step if step < 0 else stage + step - 1
+            if 0 <= parted < stages - 1:
+                found.append((command, stage, parted))
+    return found
+
+
+def being_off(solution: Solution, speeds: PassageSpeeds) -> NDArray[np.float64]:
+    """Second derivative of the cost by every switching speed, (M, K + 1, K), about the policy of the solution."""
+    _, occupancy = density_and_occupancy(solution.chain, speeds)
+    chain = solution.chain
+    per_stage = stage_occupancy(occupancy.samples, chain.actuator.mode_stage, chain.actuator.stages)
+    found = np.zeros(speeds.switching_m_s.shape)
+    for command, stage, parted in parted_by(chain.decisions.commands, chain.actuator.stages):
+        gain = solution.gain[command, :, stage]
+        if command >= 2:
+            gain = gain - solution.gain[command - 2, :, stage]
+        line = speeds.switching_m_s[:, stage, parted]
+        found[:, stage, parted] = off_line_cost(line, gain, per_stage[:, stage], chain.grid.speed_m_s)
+    return found
+
+
+def order_of(free: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """One row for every two neighbours of a row that are both free, over the free ones: their difference."""
+    number = np.cumsum(free.ravel()).reshape(free.shape) - 1
+    both = free[:, :, 1:] & free[:, :, :-1]
+    rows = np.zeros((int(both.sum()), int(free.sum())))
+    at = np.arange(len(rows))
+    rows[at, number[:, :, 1:][both]] = 1.0
+    rows[at, number[:, :, :-1][both]] = -1.0
+    return rows

@@ -1,0 +1,82 @@
+"""Switching speeds at the passages over point sensors: the policy of a regulator that sees a cut only there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.frozen_arrays import frozen_arrays
+from synth.solver.chain.decisions import Decisions, steps_of
+
+SMALLEST_GAP_M_S = 1e-3
+"""A line to go down lies at least so far below the line to go up."""
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class PassageSpeeds:
+    """`switching_m_s` (M, K + 1, K): at passage m with stage k in force, t[j] parts wanting stage j from stage j + 1.
+
+    No row falls; −∞ for j < k: never lower so far, +∞ for j ≥ k: never raise so far (`tuning_tables.passages.rule`).
+    """
+
+    switching_m_s: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        t = self.switching_m_s
+        if t.ndim != 3 or t.shape[1] != t.shape[2] + 1:
+            raise ValueError(f"passage speeds: shape {t.shape}; it must be (passages, stages, stages - 1)")
+        if not (t[:, :, 1:] >= t[:, :, :-1]).all():
+            raise ValueError("passage speeds: a row falls")
+
+    @property
+    def stages(self) -> int:
+        """Number of stages K + 1."""
+        return int(self.switching_m_s.shape[1])
+
+    def at_decisions(self, decisions: Decisions) -> NDArray[np.float64]:
+        """The lines (C, R, K + 1) of commands by up to K stages."""
+        passages, stages, top = self.switching_m_s.shape
+        lines = np.empty((decisions.commands, passages, stages))
+        for command in range(decisions.commands):
+            step = steps_of(command)
+            lines[command] = np.inf if step > 0 else -np.inf
+            for stage in range(stages):
+                parted = stage + step if step < 0 else stage + step - 1
+                if 0 <= parted < top:
+                    lines[command, :, stage] = self.switching_m_s[:, stage, parted]
+        return lines
+
+
+def passage_speeds(lines_m_s: NDArray[np.float64]) -> PassageSpeeds:
+    """The policy of lines (C, R, K + 1); where a line to go down reaches the one to go up, both make room."""
+    commands, passages, stages = lines_m_s.shape
+    top = stages - 1
+    t = np.empty((passages, stages, top))
+    for stage in range(stages):
+        t[:, stage, :stage], t[:, stage, stage:] = -np.inf, np.inf
+        for command in range(commands):
+            step = steps_of(command)
+            parted = stage + step if step < 0 else stage + step - 1
+            if 0 <= parted < top:
+                t[:, stage, parted] = lines_m_s[command, :, stage]
+    return PassageSpeeds(ordered(t))
+
+
+def ordered(switching_m_s: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(M, K + 1, K) with no row falling and a gap around the stage in force."""
+    t = np.array(switching_m_s)
+    stages = t.shape[1]
+    for stage in range(stages):
+        down, up = t[:, stage, :stage], t[:, stage, stage:]
+        down[:] = np.minimum.accumulate(down[:, ::-1], axis=1)[:, ::-1] if stage else down
+        up[:] = np.maximum.accumulate(up, axis=1) if stage < stages - 1 else up
+        if 0 < stage < stages - 1:
+            near_down, near_up = down[:, -1:], up[:, :1]
+            close = np.isfinite(near_down) & np.isfinite(near_up) & (near_up - near_down < SMALLEST_GAP_M_S)
+            middle = np.where(close, 0.5 * (near_down + near_up), 0.0)
+            down[:] = np.where(close, np.minimum(down, middle - 0.5 * SMALLEST_GAP_M_S), down)
+            up[:] = np.where(close, np.maximum(up, middle + 0.5 * SMALLEST_GAP_M_S), up)
+    return t
