@@ -198,7 +198,7 @@ def any_fault(data: st.DataObject, sensors: int, stream: int) -> SensorFault:
     return data.draw(st.sampled_from(faults))
 
 
-@settings(max_examples=120)
+@settings(max_examples=100)
 @given(st.data())
 def test_any_faults_leave_a_sound_loop(data: st.DataObject) -> None:
     plant = with_approach(pilot_plant(data.draw(st.sampled_from([22.0, 52.0]))), 5.0, 2, data.draw(st.integers(0, 2)))
@@ -219,10 +219,11 @@ def test_any_faults_leave_a_sound_loop(data: st.DataObject) -> None:
     assert np.all((trace.stage >= 0) & (trace.stage <= top))
     assert np.all((told.believed >= -1) & (told.believed < len(speeds)))
     assert np.all((told.outcome == NOT_BELIEVED) == (told.believed < 0))
-    changed = np.diff(told.stage, prepend=plant.approach.initial_stage) != 0
+    steps = np.diff(told.stage, prepend=plant.approach.initial_stage)
+    changed = steps != 0
     assert np.all(told.outcome[changed] == DECIDED)
     assert np.count_nonzero(changed) == sample.switchings[0]
-    early = changed & (np.take(loop.pulses.path_m, told.believed) < 0.0)
+    early = (steps > 0) & (np.take(loop.pulses.path_m, told.believed) < 0.0)
     assert np.all(told.stage[early] <= 2)
 
 
