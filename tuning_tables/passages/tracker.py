@@ -12,7 +12,8 @@ as a *rival*; a pair that follows from the rival and not from what was believed 
 
 All arithmetic is float32, one rounding an operation. `limits` float32 (6,): least and greatest credible speed in m/s,
 greatest acceleration and deceleration in m/s² (> 0), relative error allowed of a speed, error allowed of a path in m.
-`state` float32 (6,): passage, speed and time since, of what is believed and of the rival; passage −1: none.
+`state` float32 (6,): passage, speed and time since, of what is believed and of the rival; passage −1: none. Times stop
+at `LONGEST_WAIT_S`. A state that cannot be (a memory lost its content) is begun anew.
 """
 
 from __future__ import annotations
@@ -48,12 +49,21 @@ def believed_passage(
     whatever sensor, or since `begin_cut`; `v_m_s`: base over time. Raises nothing for any number. `numba.njit` compiles
     this text as it stands: hence the one loop over what is believed and the rival.
     """
+    none, nought, longest = np.float32(NONE), np.float32(0.0), np.float32(LONGEST_WAIT_S)
+    sound = True
+    for at in range(0, 6, 3):  # comparisons so that NaN fails
+        known = none <= state[at] < path_m.shape[0] and nought <= state[at + 1] <= limits[1]
+        sound = sound and known and nought <= state[at + 2] <= longest
+    if not sound:
+        state[:] = nought
+        state[0], state[3] = none, none
     if not 0.0 <= since_s <= LONGEST_WAIT_S:
         return NONE
-    since, v, none = np.float32(since_s), np.float32(0.0), np.float32(NONE)
-    state[2] += since
-    state[5] += since
-    if not (limits[0] <= v_m_s <= limits[1]):
+    since = np.float32(since_s)
+    state[2] = min(state[2] + since, longest)
+    state[5] = min(state[5] + since, longest)
+    # In double precision: then no number overflows when it is compared.
+    if not (float(limits[0]) <= v_m_s <= float(limits[1])):
         return NONE
     v = np.float32(v_m_s)
     first, one, half = NONE, np.float32(1.0), np.float32(0.5)
@@ -78,8 +88,8 @@ def believed_passage(
             if sensor_of[passage] == sensor and nearest <= way and way <= farthest:
                 found = passage
     if found == NONE:
-        state[3], state[4], state[5] = np.float32(first), v, np.float32(0.0)
+        state[3], state[4], state[5] = np.float32(first), v, nought
         return NONE
-    state[0], state[1], state[2] = np.float32(found), v, np.float32(0.0)
+    state[0], state[1], state[2] = np.float32(found), v, nought
     state[3] = none
     return found
