@@ -24,8 +24,9 @@ def table_of(
     places_m: tuple[float, ...] = (-4.0, 3.0, 9.5, 30.0, 45.0),
     axles_m: tuple[float, ...] = (0.0, 1.85, 8.65, 10.5),
     rows: tuple[Row, ...] = ROWS,
+    pressures: tuple[float, ...] = (0.0, 150.0, 300.0),
 ) -> PassageTable:
-    """Three stages, the same rows at every passage; the last sensor of `places_m` may stand behind the exit and log."""
+    """The same rows at every passage; the last sensor of `places_m` may stand behind the exit and log."""
     sensors = SensorLayout(places_m, 0.2, 0.002, 1e-4, 1e-4, 0.02, 0.02, decides_on)
     exit_m = 26.95 + axles_m[-1]
     return PassageTable(
@@ -35,7 +36,7 @@ def table_of(
         retarder=RetarderId("Talbremse Süd", ((0.0, 12.475), (14.475, 26.95)), exit_m, 15.0),
         cut=CutId("Л", 22.0, axles_m, 1),
         target_speed_m_s=3.0,
-        pressure_kpa=(0.0, 150.0, 300.0),
+        pressure_kpa=pressures,
         sensors=sensors,
         approach=Approach(-places_m[0], 1),
         initial_stage=0,

@@ -6,6 +6,7 @@ import math
 import pickle
 from collections.abc import Callable
 from dataclasses import FrozenInstanceError, replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -96,7 +97,7 @@ def test_a_table_is_a_value() -> None:
         ({"cut": CutId("Л", 22.0, tuple(float(x) for x in range(820)))}, "cut.axle_offsets_m"),
     ],
 )
-def test_values_that_make_no_table_are_refused(change: dict[str, object], key: str) -> None:
+def test_values_that_make_no_table_are_refused(change: dict[str, Any], key: str) -> None:
     with pytest.raises(InvalidTable, match=f"^{key}"):
         replace(table_of(), **change)
 
@@ -158,7 +159,7 @@ def test_rows_that_cannot_be_decided_by_are_refused(rows: tuple[tuple[float, ...
         PassageTable(**fields_of(table_of(), rows))
 
 
-def fields_of(table: PassageTable, rows: tuple[tuple[float, ...], ...]) -> dict[str, object]:
+def fields_of(table: PassageTable, rows: tuple[tuple[float, ...], ...]) -> dict[str, Any]:
     """The fields of `table` with these rows at every passage."""
     named = {name: getattr(table, name) for name, each in table.__dataclass_fields__.items() if each.init}
     return {**named, "passages": tuple(replace(row, switching_m_s=rows) for row in table.passages)}
@@ -182,7 +183,7 @@ def fields_of(table: PassageTable, rows: tuple[tuple[float, ...], ...]) -> dict[
         ({"decides_on": "first_axle"}, "decides_on"),
     ],
 )
-def test_sensors_that_cannot_be_are_refused(change: dict[str, object], key: str) -> None:
+def test_sensors_that_cannot_be_are_refused(change: dict[str, Any], key: str) -> None:
     sensors = table_of().sensors
     assert isinstance(sensors, SensorLayout)
     with pytest.raises(InvalidTable, match=f"sensors.{key}"):
@@ -201,6 +202,6 @@ def test_sensors_that_cannot_be_are_refused(change: dict[str, object], key: str)
         ({"path_tolerance_m": -0.1}, "path_tolerance_m"),
     ],
 )
-def test_limits_that_mean_nothing_are_refused(change: dict[str, object], key: str) -> None:
+def test_limits_that_mean_nothing_are_refused(change: dict[str, Any], key: str) -> None:
     with pytest.raises(InvalidTable, match=f"plausible.{key}"):
         replace(table_of().plausible, **change)

@@ -15,7 +15,7 @@ from numba import njit
 from tests.tuning_tables.passages.made_tables import row_lists, table_of
 from tuning_tables.passages.rule import wanted_stage
 
-COMPILED = njit(wanted_stage)
+COMPILED: Any = njit(wanted_stage)
 NAN, INF = math.nan, math.inf
 Speeds = npt.NDArray[np.float32]
 
@@ -98,5 +98,5 @@ def test_the_stage_wanted_never_falls_with_the_speed(speeds: Speeds, passage: in
 )
 def test_decisions_of_a_table_by_hand(passage: int, stage: int, v: float, wanted: int) -> None:
     table = table_of()
-    arguments: tuple[Any, ...] = (table.switching_m_s, table.entrance_stage, table.before_entrance)
-    assert wanted_stage(*arguments, passage, stage, v) == wanted
+    before = table.before_entrance
+    assert wanted_stage(table.switching_m_s, table.entrance_stage, before, passage, stage, v) == wanted

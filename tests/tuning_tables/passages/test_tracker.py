@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from tests.tuning_tables.passages.made_tables import table_of
 from tests.tuning_tables.passages.true_passes import LIMITS, Pulse, TruePass, rolled, true_passes
 from tuning_tables.passages.tracker import NONE, begin_cut, believed_passage
 
-COMPILED = njit(believed_passage)
+COMPILED: Any = njit(believed_passage)
 often = settings(derandomize=True, max_examples=200, deadline=None)
 
 
