@@ -99,7 +99,7 @@ class Published:
                 if c >= 0:
                     value[h, :, 1:] = self.change(n, int(c))[:, 1:] + self.price
             changes.append(value)
-        start, smear = true_speed_weights(v, self.sigma)
+        start, smear = true_speed_weights(v, v, self.sigma)
         for k in range(self.t.actuator.stages):
             for side, lines in enumerate((self.lower, self.upper)):
                 gain = np.einsum("m,hmj->j", WEIGHTS, (hold - changes[side])[self.stage == k])

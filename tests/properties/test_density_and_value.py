@@ -15,7 +15,7 @@ from synth.problem.criterion import Criterion
 from synth.solver.chain.chain import Chain
 from synth.solver.evaluation import Evaluation
 from synth.solver.policy_density import (
-    commands,
+    commands_of,
     exit_density,
     forward_all,
     forward_one,
@@ -70,7 +70,7 @@ def test_density_and_value_agree(
 def test_no_mass_is_lost(small: Callable[[], Chain], seed: int) -> None:
     """Exits and stalls sum to one within 1e-9. Cubic weights can leave stalls of −1e-6, which the density clips."""
     t, total, stalled = small(), 0.0, 0.0
-    policy, band = commands(t, random_lines(t, seed)), np.empty((len(t.drive_m_s2), 2), dtype=np.int64)
+    policy, band = commands_of(t, random_lines(t, seed)), np.empty((len(t.drive_m_s2), 2), dtype=np.int64)
     for i, weight in enumerate(t.scenarios.weight):
         exits, totals = forward_one(t, policy, i, np.empty((0, 0, 0, 0)), band)
         total += weight * (exits.sum() + totals[0])
@@ -87,7 +87,7 @@ def test_no_mass_is_lost(small: Callable[[], Chain], seed: int) -> None:
 def test_a_scenario_leaves_nothing_to_the_next(small: Callable[[], Chain], seed: int) -> None:
     """Followed after others, in the same memory, a scenario has the exits and totals that it has alone, to the bit."""
     t = small()
-    policy = commands(t, random_lines(t, seed))
+    policy = commands_of(t, random_lines(t, seed))
     scenarios, nothing = len(t.scenarios.weight), np.empty((0, 0, 0, 0))
     band = np.empty((scenarios, len(t.drive_m_s2), 2), dtype=np.int64)
     together = forward_all(t, policy, slice(None), np.empty((scenarios, 0, 0, 0, 0)), band)

@@ -11,7 +11,7 @@ from plant_models import Plant
 from synth.problem.resolution import Resolution
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.exit_density import ExitDensity
-from synth.solver.policy_density import commands, exit_density
+from synth.solver.policy_density import commands_of, exit_density
 from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tabulate import lines_of, prediction_of, tabulate
@@ -81,7 +81,7 @@ def test_the_staircase_of_the_sensor_is_the_exact_quantisation(plant_of: Callabl
     shape = (design.actuator.stages, len(nodes))
     upper = np.full(shape, level)
     upper[-1] = np.inf
-    found = commands(design.quantised(), SwitchingLines(nodes, np.full(shape, -np.inf), upper)).up[0, 1]
+    found = commands_of(design.quantised(), SwitchingLines(nodes, np.full(shape, -np.inf), upper))[1, 0, 1]
     q, noise = plant.sensor.resolution_m_s, plant.sensor.noise_m_s
     z = np.random.default_rng(5).normal(size=40_000)
     near = np.abs(design.grid.speed_m_s - level) < 0.15

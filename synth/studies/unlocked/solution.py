@@ -128,7 +128,7 @@ def swept(
     first = np.empty((len(p.level_steps), len(p.scenarios.weight), len(p.chain.levels), len(t.speed_m_s)))
     arguments: tuple[Any, ...] = (
         terminal, stalled, criterion.switching_tolerance_m2_s2, TIE_M2_S2,
-        noise, *true_speed_weights(t.speed_m_s, noise), p.scenarios.weight, p.chain.stationary,
+        noise, *true_speed_weights(t.speed_m_s, t.speed_m_s, noise), p.scenarios.weight, p.chain.stationary,
         t.speed_m_s, m.allowed, m.target, m.weight, m.overpressure_kpa, m.end_overpressure_kpa,
         p.chain.levels, p.level_steps, p.scenarios.factor, p.scenarios.extra_m_s2,
         p.lift_m2_s2, p.work_m2_s2_per_kpa, FINE_CELLS_PER_QUANTUM / t.path_step_m, t.path_step_m,

@@ -125,7 +125,7 @@ class BruteForce:
         noise = p.plant.sensor.reading_std_m_s
         hidden = [(i, q) for i in range(len(p.scenarios.weight)) for q in range(len(p.chain.levels))]
         value = {(i, q, a): self.command(i, n, m, q, a) for i, q in hidden for a in range(3) if p.modes.allowed[m, a]}
-        start, weights = true_speed_weights(p.grid.speed_m_s, noise)
+        start, weights = true_speed_weights(p.grid.speed_m_s, p.grid.speed_m_s, noise)
         for a in (0, 2):
             if not p.modes.allowed[m, a]:
                 continue

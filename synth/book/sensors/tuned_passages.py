@@ -1,0 +1,78 @@
+"""The one way from an aim to a table for point sensors: solve, polish, round, predict."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models import Plant, PointSensors
+from plant_models.frozen_arrays import frozen_arrays
+from synth.problem.aim import Aim
+from synth.problem.resolution import Resolution, finer_for_check
+from synth.solver.backward_induction import solve
+from synth.solver.chain.chain import Chain, check_chain, persistent_chain
+from synth.solver.chain.sensor_passages import SensorPassages
+from synth.solver.exit_density import ExitDensity
+from synth.solver.passage_polish import PassagePolish, polish_passages
+from synth.solver.passage_speeds import PassageSpeeds, ordered
+from synth.solver.resolved_density import resolved_density
+
+NODES_KEPT = 1
+"""Path nodes at which a solution keeps its values."""
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class TunedPassages:
+    """Switching speeds as a table holds them, and the exit density predicted of them.
+
+    `speeds`: float32 numbers of the stages that the cut may use; `polish`: how they were found.
+    """
+
+    plant: Plant
+    sensors: PointSensors
+    aim: Aim
+    speeds: PassageSpeeds
+    polish: PassagePolish
+    predicted: ExitDensity
+
+    @property
+    def rms_m_s(self) -> float:
+        """Predicted rms error at the exit."""
+        return self.predicted.rms_m_s(self.aim.target_speed_m_s)
+
+
+@dataclass(frozen=True)
+class PassageChains:
+    """The chains of one plant with point sensors: to design switching speeds on, and to predict finished ones."""
+
+    design: Chain
+    check: Chain
+
+
+def passage_chains(plant: Plant, sensors: PointSensors, resolution: Resolution) -> PassageChains:
+    """Both chains; `plant` begins at the first sensor (`with_point_sensors`)."""
+    epochs = SensorPassages(sensors)
+    design = persistent_chain(plant, resolution, epochs)
+    return PassageChains(design, check_chain(plant, finer_for_check(resolution), epochs))
+
+
+def tuned_passages(chains: PassageChains, aim: Aim) -> TunedPassages:
+    """Switching speeds for one aim: those of the solution, polished, rounded to float32, and predicted."""
+    solution = solve(chains.design, aim)
+    found = polish_passages(solution)
+    speeds = rounded(found.speeds)
+    predicted = resolved_density(chains.check, speeds, aim.target_speed_m_s)
+    epochs = chains.design.epochs
+    if not isinstance(epochs, SensorPassages):
+        raise TypeError("tuned passages: the chains are not of point sensors")
+    return TunedPassages(chains.design.plant, epochs.clock, aim, speeds, replace(found, speeds=speeds), predicted)
+
+
+def rounded(speeds: PassageSpeeds) -> PassageSpeeds:
+    """The float32 numbers next to the switching speeds, in order; none is negative."""
+    apart = ordered(np.where(np.isfinite(speeds.switching_m_s), np.maximum(speeds.switching_m_s, 0.0), np.inf))
+    kept: NDArray[np.float64] = np.where(np.isfinite(speeds.switching_m_s), apart, speeds.switching_m_s)
+    return PassageSpeeds(kept.astype(np.float32).astype(np.float64) + 0.0)
