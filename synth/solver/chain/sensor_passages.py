@@ -79,16 +79,8 @@ class SensorPassages:
         return Decisions(node, place_m + 0.5 * self.clock.base_m - node * grid.path_step_m, plant.top_stage)
 
     def entry(self, plant: Plant, grid: Grid) -> NDArray[np.float64]:
-        """Entry speed by its law, all at the first passage; the mean energy is kept."""
-        count = 2000 if plant.entry.high_m_s > plant.entry.low_m_s else 1
-        at_entrance = plant.entry.speed_m_s((np.arange(count) + 0.5) / count)
-        v = plant.start_speed_m_s(at_entrance, plant.resistance.mean_n_per_kn)
-        position = 0.5 * v**2 / grid.energy_m2_s2[1]
-        cell = np.minimum(position.astype(int), len(grid.energy_m2_s2) - 2)
-        entry = np.zeros((LEAST_REACH, len(grid.energy_m2_s2)))
-        np.add.at(entry[0], cell, (1.0 - (position - cell)) / count)
-        np.add.at(entry[0], cell + 1, (position - cell) / count)
-        return entry
+        """Entry speed by its law, all at the first passage."""
+        return entry_at_start(plant, grid)
 
     def reading_std_m_s(self, speed_m_s: float) -> float:
         """That of a sensor."""
@@ -103,6 +95,19 @@ class SensorPassages:
     def predicted_measurement(self, plant: Plant, grid: Grid) -> SpeedMeasurement:
         """The same: the timer's steps are much finer than its noise and the grid."""
         return self.measurement(plant, grid)
+
+
+def entry_at_start(plant: Plant, grid: Grid) -> NDArray[np.float64]:
+    """Entry speed by its law, all where the regulator begins to act, (3, E); the mean energy is kept."""
+    count = 2000 if plant.entry.high_m_s > plant.entry.low_m_s else 1
+    at_entrance = plant.entry.speed_m_s((np.arange(count) + 0.5) / count)
+    v = plant.start_speed_m_s(at_entrance, plant.resistance.mean_n_per_kn)
+    position = 0.5 * v**2 / grid.energy_m2_s2[1]
+    cell = np.minimum(position.astype(int), len(grid.energy_m2_s2) - 2)
+    entry = np.zeros((LEAST_REACH, len(grid.energy_m2_s2)))
+    np.add.at(entry[0], cell, (1.0 - (position - cell)) / count)
+    np.add.at(entry[0], cell + 1, (position - cell) / count)
+    return entry
 
 
 def held_m_s2(plant: Plant, grid: Grid, decisions: Decisions) -> NDArray[np.float64]:

@@ -1,0 +1,117 @@
+"""What any layout of point sensors costs, quickly: a chain that decides at every path node, or at some of them.
+
+Where a change of stage ends depends on no sensor. So the motion is integrated once for all places, and a layout costs a
+backward sweep alone: the expected cost of its solution, which is not polished yet.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models import Plant, PointSensors
+from synth.problem.aim import Aim
+from synth.problem.resolution import Resolution
+from synth.solver.backward_induction import solve_all
+from synth.solver.chain.chain import Chain, persistent_chain
+from synth.solver.chain.decisions import Decisions
+from synth.solver.chain.grid import Grid, make_grid
+from synth.solver.chain.passage_measurement import PassageMeasurement
+from synth.solver.chain.sensor_passages import entry_at_start
+
+COARSE = Resolution(path_step_m=0.5, speed_step_m_s=0.06, friction_nodes=4, path_levels=2, resistance_nodes=1)
+"""What layouts are compared on before the best of them are tuned."""
+
+
+@dataclass(frozen=True)
+class EveryNode:
+    """Decisions at every path node, as if there were a sensor `clock` at each."""
+
+    clock: PointSensors
+
+    @property
+    def hold_period_s(self) -> float:
+        """0: the next decision is at a place."""
+        return 0.0
+
+    def substeps(self, resolution: Resolution) -> int:
+        """One: the clock's steps are short."""
+        return 1
+
+    def grid(self, plant: Plant, resolution: Resolution) -> Grid:
+        """Uniform in path and energy."""
+        return make_grid(plant, resolution)
+
+    def decisions(self, plant: Plant, grid: Grid) -> Decisions:
+        """At every node, with the command half a base behind."""
+        nodes = len(grid.path_m) - 1
+        return Decisions(np.arange(nodes), np.full(nodes, 0.5 * self.clock.base_m), plant.top_stage)
+
+    def entry(self, plant: Plant, grid: Grid) -> NDArray[np.float64]:
+        """All where the regulator begins to act."""
+        return entry_at_start(plant, grid)
+
+    def reading_std_m_s(self, speed_m_s: float) -> float:
+        """That of a sensor."""
+        return float(self.clock.reading_std_m_s(speed_m_s))
+
+    def measurement(self, plant: Plant, grid: Grid) -> PassageMeasurement:
+        """Read at the node itself."""
+        return PassageMeasurement(self.clock, grid.speed_m_s, np.zeros((1, 1)))
+
+    def predicted_measurement(self, plant: Plant, grid: Grid) -> PassageMeasurement:
+        """The same."""
+        return self.measurement(plant, grid)
+
+
+@dataclass(frozen=True)
+class LayoutCase:
+    """A class of cuts at the position, and the aims that its tables will have; all count alike."""
+
+    plant: Plant
+    aims: tuple[Aim, ...]
+
+
+@dataclass(frozen=True)
+class CandidatePlaces:
+    """One case made ready for the comparison of layouts. Build it with `candidate_places`."""
+
+    chain: Chain
+    aims: tuple[Aim, ...]
+    axle_offsets_m: tuple[float, ...]
+
+    def mean_cost(self, sensors_m: Sequence[float]) -> float:
+        """Mean over the aims of the expected cost with sensors at these places, each taken at the nearest node."""
+        solutions = solve_all(self.at(sensors_m), self.aims, nodes_kept=1)
+        c = self.chain
+        reached = c.entry[0]
+        costs = [
+            float(
+                np.einsum("i,q,j,iqj->", c.scenarios.weight, c.path_noise.stationary, reached, each.values[:, 0, mode])
+            )
+            for each, mode in ((solution, c.entry_mode) for solution in solutions)
+        ]
+        return sum(costs) / len(costs)
+
+    def at(self, sensors_m: Sequence[float]) -> Chain:
+        """The chain that decides at the passages over these sensors alone."""
+        c, step = self.chain, self.chain.grid.path_step_m
+        place = np.add.outer(np.asarray(sensors_m), np.asarray(self.axle_offsets_m)).ravel() - c.grid.path_m[0]
+        node = np.unique(np.rint(place / step).astype(np.int64))
+        node = node[(node >= 0) & (node < len(c.drive_m_s2))]
+        decisions = Decisions(node, c.decisions.lead_m[node], c.decisions.farthest)
+        landings = replace(c.landings, ends=np.ascontiguousarray(c.landings.ends[node]))
+        return replace(c, decisions=decisions, landings=landings)
+
+
+def candidate_places(
+    case: LayoutCase, sensors: PointSensors, ahead_m: float, resolution: Resolution = COARSE
+) -> CandidatePlaces:
+    """`case` with places from `ahead_m` before the entrance on; of `sensors` all but the places is taken."""
+    plant = replace(case.plant, approach=replace(case.plant.approach, length_m=ahead_m))
+    chain = persistent_chain(plant, resolution, EveryNode(sensors))
+    offsets = tuple(plant.cut.axle_offsets_m[axle] for axle in sensors.axles(plant.cut))
+    return CandidatePlaces(chain, case.aims, offsets)

@@ -1,0 +1,104 @@
+"""The layout of least expected cost for a number of sensors: insertion, then descent place by place.
+
+The cost is compared on the coarse chains of `candidate_places`. Nothing proves that the descent ends in the best layout
+of all; for three sensors exhaustive search finds the same (tests).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.point_sensors import SHORTEST_SECTION_M
+from synth.book.sensors.candidate_places import CandidatePlaces
+from synth.book.sensors.layout import equal_layout
+
+Numbers = tuple[int, ...]
+"""Numbers of the places at which deciding sensors stand, rising."""
+
+STRIDES = (6, 3, 1)
+"""By so many places a sensor is moved, the longest first."""
+
+LEAST_GAIN = 1e-4
+"""A move must lower the cost by this part of it."""
+
+
+@dataclass(frozen=True)
+class LayoutSearch:
+    """Mean cost of layouts over `cases`, each worked out once; `path_m` (P,): where sensors may stand, rising.
+
+    `first_m`, `exit_m`: of equal layouts.
+    """
+
+    cases: tuple[CandidatePlaces, ...]
+    path_m: NDArray[np.float64]
+    first_m: float
+    exit_m: float
+    threads: int = 1
+    known: dict[Numbers, float] = field(default_factory=dict, compare=False, repr=False)
+
+    def costs(self, layouts: Sequence[Numbers]) -> list[float]:
+        """Mean costs over the cases; infinite where sensors stand too near to each other or off the path."""
+        asked = [each for each in dict.fromkeys(layouts) if each not in self.known]
+        with ThreadPoolExecutor(max_workers=self.threads) as pool:
+            for layout, cost in zip(asked, pool.map(self._cost, asked), strict=True):
+                self.known[layout] = cost
+        return [self.known[each] for each in layouts]
+
+    def places_m(self, layout: Numbers) -> tuple[float, ...]:
+        """The places of a layout."""
+        return tuple(round(float(self.path_m[number]), 3) for number in layout)
+
+    def numbers(self, places_m: Sequence[float]) -> Numbers:
+        """The numbers of the places next to these."""
+        return tuple(int(np.argmin(np.abs(self.path_m - place))) for place in places_m)
+
+    def best_layouts(self, counts: Sequence[int]) -> dict[int, Numbers]:
+        """The best layout found for each of the `counts` of deciding sensors."""
+        found: dict[int, Numbers] = {}
+        for count in range(1, max(counts) + 1):
+            starts = [self.numbers(equal_layout(self.first_m, self.exit_m, count))]
+            if count > 1:
+                starts += self.inserted(found[count - 1])
+            costs = self.costs(starts)
+            found[count] = self.descended(starts[int(np.argmin(costs))])
+        return {count: found[count] for count in counts}
+
+    def inserted(self, layout: Numbers) -> list[Numbers]:
+        """Layouts with one more sensor, in the middle of a section, before the first or behind the last."""
+        ends = [0, *layout, len(self.path_m) - 1]
+        new = {(a + b) // 2 for a, b in pairwise(ends)} - set(layout)
+        return [tuple(sorted((*layout, number))) for number in sorted(new)]
+
+    def descended(self, layout: Numbers) -> Numbers:
+        """Sensors moved one by one while that pays."""
+        best = layout
+        for stride in STRIDES:
+            moved = True
+            while moved:
+                moved = False
+                for sensor in range(len(layout)):
+                    tried = [best, *(shifted(best, sensor, by) for by in (-stride, stride))]
+                    costs = self.costs(tried)
+                    least = int(np.argmin(costs))
+                    if costs[least] < costs[0] * (1.0 - LEAST_GAIN):
+                        best, moved = tried[least], True
+        return best
+
+    def _cost(self, layout: Numbers) -> float:
+        if any(number < 0 or number >= len(self.path_m) for number in layout):
+            return float("inf")
+        places = [float(self.path_m[number]) for number in layout]
+        if any(b - a < SHORTEST_SECTION_M for a, b in pairwise(places)) or places[0] > 0.0:
+            return float("inf")
+        return sum(case.mean_cost(places) for case in self.cases) / len(self.cases)
+
+
+def shifted(layout: Numbers, sensor: int, by: int) -> Numbers:
+    """`layout` with one sensor moved by so many nodes."""
+    return tuple(number + by if which == sensor else number for which, number in enumerate(layout))
