@@ -4,6 +4,7 @@ import pytest
 
 from plant_models import PointSensors, every_axle, first_axle
 from plant_models.library import BUILT_IN, WHEEL_SENSORS, TypeFile, TypeFileError, load_position, load_wheel_sensor
+from plant_models.library.sourced_value import SourcedTable
 from plant_models.library.wheel_sensor_entry import WHEEL_SENSOR_SCHEMA, wheel_sensor_from
 
 GOOD = BUILT_IN.file(WHEEL_SENSORS, "ds-2").text
@@ -48,9 +49,7 @@ def test_oil_takes_force_and_certainty_from_the_dumper_position() -> None:
     assert oiled.position.pneumatics == dry.position.pneumatics
     pressures = oiled.position.stage_pressures_kpa
     touch = oiled.position.force.touch_pressure_kpa
-    slopes = [
-        next(v.value for v in entry.provenance if v.key == "retarder.force.slope_kn_per_kpa") for entry in (oiled, dry)
-    ]
+    slopes = [SourcedTable(entry.provenance).number("retarder.force.slope_kn_per_kpa") for entry in (oiled, dry)]
     # What the note of the position says: with oil stage 3 brakes no harder than stage 2 without.
     assert slopes[0] * (pressures[3] - touch) < slopes[1] * (pressures[2] - touch)
     assert oiled.friction.common_cv > dry.friction.common_cv
