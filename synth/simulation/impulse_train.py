@@ -20,11 +20,16 @@ def resting_train(value: float) -> ImpulseTrain:
     return ((-math.inf, value),)
 
 
-def with_impulse(train: ImpulseTrain, instant_s: float, value: float) -> ImpulseTrain:
-    """The train with one more impulse at its end. Raises `ValueError` for an instant before that of the last."""
+def with_command(
+    train: ImpulseTrain, instant_s: float, stage: int, stage_pressures_kpa: tuple[float, ...]
+) -> ImpulseTrain:
+    """The train with one more impulse at its end, whose area is the pressure of `stage`.
+
+    Raises `ValueError` for an instant before that of the last.
+    """
     if instant_s < train[-1][0]:
-        raise ValueError(f"impulse train: {instant_s:g} s comes after {train[-1][0]:g} s")
-    return (*train, (instant_s, value))
+        raise ValueError(f"impulse train: a command at {instant_s:g} s comes after that at {train[-1][0]:g} s")
+    return (*train, (instant_s, stage_pressures_kpa[stage]))
 
 
 def held(train: ImpulseTrain, time_s: float) -> float:
