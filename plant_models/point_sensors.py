@@ -20,6 +20,8 @@ from plant_models.errors import require, require_between
 
 MOST_SENSORS = 32
 SHORTEST_SECTION_M = 0.3
+ROUNDING_M = 1e-9
+"""By so much a difference of places may be off: 1.2 − 0.9 is less than 0.3."""
 
 Axles = Callable[[Cut], tuple[int, ...]]
 """Which axles of a cut the regulator decides on, by number from 0."""
@@ -64,7 +66,7 @@ class PointSensors:
             require_between(f"sensors: path_m[{number}]", place, -100.0, 500.0)
         for number, (before, after) in enumerate(pairwise(self.path_m)):
             require(
-                after - before >= SHORTEST_SECTION_M,
+                after - before >= SHORTEST_SECTION_M - ROUNDING_M,
                 f"sensors: path_m[{number + 1}] is {after:g}; it must be at least {SHORTEST_SECTION_M:g} m behind the "
                 f"sensor before it, which stands at {before:g}",
             )

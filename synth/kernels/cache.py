@@ -32,6 +32,8 @@ _KERNEL_SOURCES = (
     "plant_models/valve_drive.py",
     "synth/**/kernels/**/*.py",
     "tuning_tables/estimator.py",
+    "tuning_tables/passages/rule.py",
+    "tuning_tables/passages/tracker.py",
     "tuning_tables/rule.py",
 )
 """Patterns of the files that kernels are compiled from; tests/architecture finds these by itself and compares."""

@@ -260,18 +260,22 @@ def simulate_many(
     The result does not depend on `threads` nor on how the passes are split.
     """
     loop = close_loop(plant, controller.stages)
-    cells, end = len(loop.path.gravity_m_s2) - loop.path.approach_cells, first_pass + count
-    # Chunks end at multiples of their size, so that no block of random numbers is drawn twice.
-    inner = range((first_pass // CHUNK_PASSES + 1) * CHUNK_PASSES, end, CHUNK_PASSES)
-    starts, ends = [first_pass, *inner], [*inner, end]
+    cells = len(loop.path.gravity_m_s2) - loop.path.approach_cells
 
     def chunk(start: int, stop: int) -> ExitSample:
         return loop.run(controller, loop.draws(row(seed, start, stop - start, cells)))
 
     with ThreadPoolExecutor(max_workers=threads) as pool:
-        samples = list(pool.map(chunk, starts, ends))
+        samples = list(pool.map(chunk, *chunk_bounds(first_pass, count)))
     names = [field.name for field in fields(ExitSample)]
     return ExitSample(**{name: np.concatenate([getattr(sample, name) for sample in samples]) for name in names})
+
+
+def chunk_bounds(first_pass: int, count: int) -> tuple[list[int], list[int]]:
+    """Where the chunks of so many passes begin and end: at multiples of their size, so that no block is drawn twice."""
+    end = first_pass + count
+    inner = range((first_pass // CHUNK_PASSES + 1) * CHUNK_PASSES, end, CHUNK_PASSES)
+    return [first_pass, *inner], [*inner, end]
 
 
 def trace(

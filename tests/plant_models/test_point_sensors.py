@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -66,6 +67,11 @@ def test_passages_come_in_the_order_of_the_path() -> None:
     assert [each.sensor for each in deciding_passages(SENSORS, CUT, 22.5)] == [0, 1, 2]
 
 
+def test_the_shortest_section_is_allowed_wherever_it_lies() -> None:
+    for start in (-5.0, 0.9, 123.4):
+        assert PointSensors((start, start + 0.3, start + 0.6)).path_m[0] == start
+
+
 @pytest.mark.parametrize(
     ("change", "told"),
     [
@@ -78,6 +84,6 @@ def test_passages_come_in_the_order_of_the_path() -> None:
         ({"scan_period_s": 0.0}, "scan_period_s"),
     ],
 )
-def test_impossible_sensors_are_refused(change: dict[str, object], told: str) -> None:
+def test_impossible_sensors_are_refused(change: dict[str, Any], told: str) -> None:
     with pytest.raises(PlantError, match=told):
         replace(SENSORS, **change)

@@ -1,0 +1,222 @@
+"""Kernel of the closed loop with point sensors: cut, valves, sensors and rule, from event to event.
+
+Motion is as exact as in `kernels.closed_loop`: a transient is played as its mean overpressure over equal parts, all
+else is closed form. The cut rolls to whatever comes first: a coil, the end of a piece of constant overpressure, or a
+pulse pair that is heard later than it was given. Coils lie anywhere in a path cell, so cells and η are those of the
+loop with a radar, number for number.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from synth.kernels.loop.closed_loop import LEFT, LONGEST_PASS_S, MOVING, STALLED, Draws, Exits, Path, note
+from synth.kernels.loop.passage_pulses import (
+    BASE_COLUMN,
+    MOST_BASES,
+    Heard,
+    Memory,
+    Pulses,
+    next_row,
+    place_coils,
+    pulses_before,
+    rows_by_the_clock,
+    rows_of_source,
+    take_row,
+)
+from synth.kernels.loop.passage_regulator import (
+    DECIDED,
+    NOT_BELIEVED,
+    NOT_HEARD,
+    UNFINISHED,
+    PassageLaw,
+    begin_cut,
+    passage_of_pair,
+    stage_at_passage,
+)
+from synth.kernels.vector.borrowing import borrowing, borrowing_inline
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Outcomes = NDArray[np.uint8]
+
+ON_COIL = 3
+"""Besides `MOVING`, `LEFT` and `STALLED`: the place has come that the cut was to be followed to."""
+
+WATCHED_FROM_S = -60.0
+"""The regulator expects the cut from then on, time 0 being where the pass begins."""
+
+READING_FIELDS = 8
+"""Columns of the pulse pairs heard: time, middle of the reading, sensor told, source, passage that it was taken for
+(−1: none), speed told, what came of it, stage in force afterwards."""
+
+
+class PieceDrive(NamedTuple):
+    """What the drive plays: pieces of constant overpressure, first the H resting modes, then those of all chains.
+
+    `end_s`: since the second pulse, infinite for resting modes; `after`: the next piece; `command` (H, K + 1): first
+    piece of the chain from a mode to a stage, −1 to the stage itself.
+    """
+
+    kpa: Floats
+    end_s: Floats
+    after: Ints
+    command: Ints
+    initial_mode: int
+    initial_stage: int
+
+
+@borrowing_inline
+def roll(
+    edges_m: Floats, free: Floats, brake: Floats, overpressure: float, duration_s: float, to_m: float,
+    cell: int, s: float, v: float,
+) -> Any:  # fmt: skip
+    """Move for `duration_s` under constant overpressure, but no farther than `to_m`.
+
+    Returns (cell, s, v, time used, status): `closed_loop.advance` with one more end, `ON_COIL`.
+    """
+    left = duration_s
+    while True:
+        a = free[cell] - brake[cell] * overpressure
+        edge = edges_m[cell + 1]
+        goal = min(edge, to_m)
+        gap = max(0.0, goal - s)
+        v_end = v + a * left
+        x = 0.5 * (v + v_end) * left
+        if v_end > 0.0 and x < gap:
+            return cell, s + x, v_end, duration_s, MOVING
+        square = v * v + 2.0 * a * gap
+        if square <= 0.0:
+            return cell, s - 0.5 * v * v / a, 0.0, duration_s - left - v / a, STALLED
+        v_goal = math.sqrt(square)
+        left = max(0.0, left - 2.0 * gap / (v + v_goal))
+        v = v_goal
+        s = max(s, goal)
+        if edge <= to_m:
+            cell += 1
+            if cell == free.shape[0]:
+                return cell, s, v, duration_s - left, LEFT
+        if to_m <= edge:
+            return cell, s, v, duration_s - left, ON_COIL
+
+
+@borrowing_inline
+def outcome_of(passage: int, middle_s: float, rests_from_s: float) -> int:
+    """What comes of a pulse pair: only what was read after the last transient counts."""
+    if passage < 0:
+        return NOT_BELIEVED
+    return DECIDED if middle_s >= rests_from_s else UNFINISHED
+
+
+@borrowing_inline
+def note_pair(
+    seen: Floats, count: int, time_s: float, row: int, told: int, passage: int, outcome: int, stage: int, memory: Memory
+) -> int:
+    """Write one pulse pair, if that is wanted (`seen` not empty); returns the number of pairs."""
+    if count < seen.shape[0]:
+        seen[count, 0], seen[count, 1] = time_s, time_s - memory.half_s[row]
+        seen[count, 2], seen[count, 3], seen[count, 4] = told, memory.row_source[row], passage
+        seen[count, 5], seen[count, 6], seen[count, 7] = memory.reading_m_s[row], outcome, stage
+        return count + 1
+    return count
+
+
+@borrowing
+def run_passage_pass(
+    edges_m: Floats, free: Floats, brake: Floats, drive: PieceDrive, pulses: Pulses, after_s: Floats, told_m_s: Floats,
+    law: PassageLaw, start_m_s: float, noise_z: NDArray[np.float32], memory: Memory, outcomes: Outcomes,
+    events: Floats, seen: Floats,
+) -> Any:  # fmt: skip
+    """One pass from where the regulator acts to the exit; returns (v, time, status, switchings, events, pairs).
+
+    `outcomes` (E,): what came of the first pair heard from each source.
+    """
+    sources, resting = pulses.path_m.shape[0], drive.command.shape[0]
+    place_coils(pulses, noise_z, memory)
+    begin_cut(memory.state)
+    outcomes[:] = NOT_HEARD
+    waiting = rows_by_the_clock(pulses, after_s, told_m_s, memory)
+    coil = pulses_before(edges_m[0], free[0], start_m_s, memory)
+    cell, s, v, time, status = 0, edges_m[0], start_m_s, 0.0, MOVING
+    piece, stage, begun_s, rests_from_s, heard_s = (
+        drive.initial_mode,
+        drive.initial_stage,
+        0.0,
+        -math.inf,
+        WATCHED_FROM_S,
+    )
+    switchings, pairs = 0, 0
+    count = note(events, 0, time, s, v, drive.kpa[piece], stage, math.nan)
+    while status == MOVING:
+        due_s, at = next_row(waiting, memory)
+        piece_ends_s = begun_s + drive.end_s[piece]
+        until_s = min(min(piece_ends_s, due_s), LONGEST_PASS_S)
+        to_m = memory.place_m[memory.order[coil]] if coil < 2 * sources else math.inf
+        # A pair may be told from before the pass began: then the cut does not move until the clock has caught up.
+        lasts_s = max(0.0, until_s - time)
+        cell, s, v, used, status = roll(edges_m, free, brake, drive.kpa[piece], lasts_s, to_m, cell, s, v)
+        if status == LEFT or status == STALLED:
+            time += used
+        elif status == ON_COIL:
+            time, status = time + used, MOVING
+            source = memory.order[coil]
+            coil += 1
+            if source < sources:
+                memory.first_s[source] = time
+            else:
+                source -= sources
+                z = noise_z[source % (BASE_COLUMN + 1 - MOST_BASES)]
+                waiting = rows_of_source(pulses, source, time, z, after_s, told_m_s, waiting, memory)
+        elif until_s == LONGEST_PASS_S:
+            time, status = max(time, until_s), STALLED  # it creeps
+        elif until_s == piece_ends_s:
+            time, piece = max(time, until_s), drive.after[piece]
+            if piece < resting:
+                rests_from_s = until_s
+            count = note(events, count, until_s, s, v, drive.kpa[piece], stage, math.nan)
+        else:
+            time = max(time, until_s)
+            row, waiting = take_row(at, waiting, memory)
+            told, source, read = pulses.told_sensor[row], memory.row_source[row], memory.reading_m_s[row]
+            passage = passage_of_pair(law, memory.state, told, due_s - heard_s, read, source)
+            heard_s = due_s
+            outcome = outcome_of(passage, due_s - memory.half_s[row], rests_from_s)
+            if source >= 0 and outcomes[source] == NOT_HEARD:
+                outcomes[source] = outcome
+            wanted = stage_at_passage(law, passage, stage, read) if outcome == DECIDED else stage
+            if wanted != stage:
+                piece, stage, begun_s, rests_from_s = drive.command[piece, wanted], wanted, due_s, math.inf
+                switchings += 1
+            count = note(events, count, due_s, s, v, drive.kpa[piece], stage, read)
+            pairs = note_pair(seen, pairs, due_s, row, told, passage, outcome, stage, memory)
+    count = note(events, count, time, s, v, drive.kpa[piece], stage, math.nan)
+    return v, time, status, switchings, count, pairs
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def run_passage_passes(
+    path: Path, drive: PieceDrive, pulses: Pulses, heard: Heard, law: PassageLaw, draws: Draws, memory: Memory,
+    exits: Exits, outcomes: Outcomes, events: Floats, seen: Floats,
+) -> Any:  # fmt: skip
+    """Simulate all passes of `draws` into `exits` and `outcomes` (n, E); returns (events, pairs) of the last pass."""
+    free, count, pairs = np.empty(path.gravity_m_s2.shape[0]), 0, 0
+    alike = heard.after_s.shape[0] == 1
+    for i in range(draws.cut_factor.shape[0]):
+        drag = path.drag_m_s2_per_n_kn * draws.resistance_n_kn[i]
+        for j in range(free.shape[0]):
+            free[j] = path.gravity_m_s2[j] - drag
+        row = 0 if alike else i
+        v, time, status, switchings, count, pairs = run_passage_pass(
+            path.edges_m, free, draws.brake_m_s2_per_kpa[i], drive, pulses, heard.after_s[row], heard.told_m_s[row],
+            law, draws.entry_m_s[i], draws.noise_z[i], memory, outcomes[i], events, seen,
+        )  # fmt: skip
+        exits.stalled[i] = status != LEFT
+        exits.speed_m_s[i] = v if status == LEFT else 0.0
+        exits.time_s[i] = time
+        exits.switchings[i] = switchings
+    return count, pairs

@@ -1,0 +1,166 @@
+"""Kernel of the sensors in the loop of passages: where the coils lie for this pass, and what a pulse pair tells.
+
+A *source* is an axle that rolls over a sensor. What the regulator hears are *rows*: pulse pairs, each with the number
+of the sensor that it is told, after so long, and with the measured speed or another. Without faults there is one row a
+source; `synth.simulation.sensor_faults` adds and takes away.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.kernels.vector.borrowing import borrowing_inline
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+SHORTEST_BASE = 0.1
+"""A base is at least this part of what it should be: beyond, the normal law of its error has no meaning."""
+
+BASE_COLUMN, MOST_BASES = 255, 32
+"""Of the numbers of a pass the last ones are for the bases, that of sensor i at 255 − i; all before, for the timer."""
+
+
+class Pulses(NamedTuple):
+    """E sources and R rows, alike in all passes.
+
+    `path_m` (E,): path of the first axle where the axle is at the middle of the base; `sensor` (E,); `coils` (2E,):
+    first coils e and second coils E + e, in the order of the path if bases have no error. Rows of source e are
+    `first_row[e]` … `first_row[e + 1]` − 1, `first_row` (E + 1,); those behind come by the clock. `told_sensor` (R,).
+    """
+
+    path_m: Floats
+    sensor: Ints
+    coils: Ints
+    first_row: Ints
+    told_sensor: Ints
+    base_m: float
+    base_tolerance: float
+    timer_noise_s: float
+    timer_resolution_s: float
+
+
+class Heard(NamedTuple):
+    """What differs from pass to pass, (n, R), or (1, R) where nothing does.
+
+    `after_s`: from the second pulse of the source to the row, or for a row by the clock its time; NaN: not heard.
+    `told_m_s`: the speed told; NaN: that which is measured.
+    """
+
+    after_s: Floats
+    told_m_s: Floats
+
+
+class Memory(NamedTuple):
+    """Room for one pass: coils (2E,), pulse times (E,), rows (R,) and those of them that wait, tracker (6,)."""
+
+    place_m: Floats
+    order: Ints
+    first_s: Floats
+    due_s: Floats
+    half_s: Floats
+    reading_m_s: Floats
+    row_source: Ints
+    waiting: Ints
+    state: NDArray[np.float32]
+
+
+@borrowing_inline
+def place_coils(pulses: Pulses, noise_z: NDArray[np.float32], memory: Memory) -> None:
+    """Where the first axle is at each pulse of this pass, and the order of the pulses."""
+    sources = pulses.path_m.shape[0]
+    for e in range(sources):
+        z = noise_z[BASE_COLUMN - pulses.sensor[e]]
+        scale = 1.0 + pulses.base_tolerance * z
+        if not scale >= SHORTEST_BASE:
+            scale = 1.0 if math.isnan(scale) else SHORTEST_BASE
+        half = 0.5 * pulses.base_m * scale
+        memory.place_m[e], memory.place_m[sources + e] = pulses.path_m[e] - half, pulses.path_m[e] + half
+    for at in range(2 * sources):  # by insertion: all but in order already
+        coil = pulses.coils[at]
+        place, slot = memory.place_m[coil], at
+        while slot > 0 and memory.place_m[memory.order[slot - 1]] > place:
+            memory.order[slot] = memory.order[slot - 1]
+            slot -= 1
+        memory.order[slot] = coil
+
+
+@borrowing_inline
+def pulses_before(start_m: float, free_m_s2: float, v: float, memory: Memory) -> int:
+    """Times of the coils passed before `start_m`, which the cut reaches with `v` at time 0; returns how many.
+
+    Only first coils can lie there. Nothing brakes, so the acceleration is the free one.
+    """
+    coil = 0
+    while coil < memory.order.shape[0] and memory.place_m[memory.order[coil]] < start_m:
+        way = start_m - memory.place_m[memory.order[coil]]
+        v_before = math.sqrt(max(v * v - 2.0 * free_m_s2 * way, 0.01 * v * v))
+        memory.first_s[memory.order[coil]] = -2.0 * way / (v + v_before)
+        coil += 1
+    return coil
+
+
+@borrowing_inline
+def wait_for(row: int, source: int, due_s: float, half_s: float, v_m_s: float, waiting: int, memory: Memory) -> int:
+    """Have `row` heard at `due_s`; returns how many rows are waited for."""
+    memory.due_s[row], memory.half_s[row], memory.reading_m_s[row] = due_s, half_s, v_m_s
+    memory.row_source[row] = source
+    memory.waiting[waiting] = row
+    return waiting + 1
+
+
+@borrowing_inline
+def rows_by_the_clock(pulses: Pulses, after_s: Floats, told_m_s: Floats, memory: Memory) -> int:
+    """Have the rows heard that come from no source; returns how many rows are waited for."""
+    waiting = 0
+    for row in range(pulses.first_row[pulses.path_m.shape[0]], pulses.told_sensor.shape[0]):
+        if not math.isnan(after_s[row]):
+            half_s = 0.5 * pulses.base_m / told_m_s[row] if told_m_s[row] > 0.0 else 0.0
+            waiting = wait_for(row, -1, after_s[row], half_s, told_m_s[row], waiting, memory)
+    return waiting
+
+
+@borrowing_inline
+def rows_of_source(
+    pulses: Pulses, source: int, time_s: float, z: float, after_s: Floats, told_m_s: Floats, waiting: int,
+    memory: Memory,
+) -> int:  # fmt: skip
+    """Have the rows of `source` heard, whose second pulse comes at `time_s`; returns how many rows are waited for.
+
+    The measured time has the noise `z` in standard deviations and is rounded; NaN: nothing was measured. A time that is
+    measured as 0 or less tells an infinite or negative speed: the rule holds, and the tracker does not believe it.
+    """
+    true_s = time_s - memory.first_s[source]
+    measured_s = true_s + pulses.timer_noise_s * z
+    if pulses.timer_resolution_s > 0.0:
+        measured_s = np.rint(measured_s / pulses.timer_resolution_s) * pulses.timer_resolution_s
+    if math.isnan(measured_s):
+        return waiting
+    for row in range(pulses.first_row[source], pulses.first_row[source + 1]):
+        if not math.isnan(after_s[row]):
+            v = pulses.base_m / measured_s if math.isnan(told_m_s[row]) else told_m_s[row]
+            waiting = wait_for(row, source, time_s + after_s[row], 0.5 * true_s, v, waiting, memory)
+    return waiting
+
+
+@borrowing_inline
+def next_row(waiting: int, memory: Memory) -> Any:
+    """(time, place in `waiting`) of the row that is heard next, the first of several; infinity where none waits."""
+    due_s, found = math.inf, -1
+    for at in range(waiting):
+        row = memory.waiting[at]
+        if memory.due_s[row] < due_s or (memory.due_s[row] == due_s and row < memory.waiting[found]):
+            due_s, found = memory.due_s[row], at
+    return due_s, found
+
+
+@borrowing_inline
+def take_row(at: int, waiting: int, memory: Memory) -> Any:
+    """(row, how many still wait) once the row at place `at` of `waiting` is heard."""
+    row = memory.waiting[at]
+    memory.waiting[at] = memory.waiting[waiting - 1]
+    return row, waiting - 1

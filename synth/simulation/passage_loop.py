@@ -1,0 +1,224 @@
+"""Closed-loop Monte Carlo with point sensors: passes of a plant under switching speeds at the passages."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models import Plant, PointSensors, deciding_passages
+from plant_models.stage_regulator import Actuator, stage_locked_actuator
+from synth.kernels.loop import closed_loop as radar_kernel
+from synth.kernels.loop import passage_loop as kernel
+from synth.kernels.loop import passage_pulses
+from synth.simulation.closed_loop import SUBSTEP_S, ClosedLoop, chunk_bounds, close_loop, empty_exits, trace_of
+from synth.simulation.controllers import fixed
+from synth.simulation.heard_pairs import HeardPairs, as_given
+from synth.simulation.passage_controller import PassageController
+from synth.simulation.passage_sample import PassageSample, PassageTrace, PassReadings
+from synth.simulation.random_passes import RandomPasses
+from synth.simulation.stratified_passes import stratified_passes
+
+PATH_ERROR_M = 1e-3
+"""How far the passages that a controller knows may lie from those of the loop, where it is told each of them."""
+
+Faults = Callable[[HeardPairs, radar_kernel.Draws], HeardPairs]
+"""What faults make of the pairs of the passes that were drawn (`sensor_faults`)."""
+
+
+@dataclass(frozen=True)
+class PassageLoop:
+    """A plant with point sensors made ready for the kernel. Build it with `close_passage_loop`."""
+
+    sensors: PointSensors
+    radar: ClosedLoop
+    drive: kernel.PieceDrive
+    pulses: passage_pulses.Pulses
+
+    @property
+    def plant(self) -> Plant:
+        """The plant; its radar takes no part."""
+        return self.radar.plant
+
+    @property
+    def stages(self) -> int:
+        """Number of stages K + 1."""
+        return int(self.drive.command.shape[1])
+
+    def draws(self, passes: RandomPasses, cut_factor: float | None = None) -> radar_kernel.Draws:
+        """What `passes` mean for this plant: the same as with the radar. `cut_factor` fixes ξ_cut for all cuts."""
+        return self.radar.draws(passes, cut_factor)
+
+    def run(
+        self, controller: PassageController, draws: radar_kernel.Draws, faults: Faults | None = None
+    ) -> PassageSample:
+        """All passes of `draws` under `controller`; with `faults` it must have limits for the tracker."""
+        nothing = np.empty((0, kernel.READING_FIELDS))
+        return self._alone(controller, draws, faults, np.empty((0, radar_kernel.EVENT_FIELDS)), nothing)[0]
+
+    def follow(
+        self, controller: PassageController, draws: radar_kernel.Draws, faults: Faults | None = None
+    ) -> PassageTrace:
+        """The only pass of `draws` under `controller`, event by event."""
+        pairs = len(self._pairs(draws, faults).source)
+        events = np.empty(((pairs + 1) * (len(self.drive.kpa) + 1) + 2, radar_kernel.EVENT_FIELDS))
+        seen = np.empty((pairs, kernel.READING_FIELDS))
+        sample, events, seen = self._alone(controller, draws, faults, events, seen)
+        motion = trace_of(events, bool(sample.stalled[0]))
+        return PassageTrace(**vars(motion), readings=readings_of(seen))
+
+    def _pairs(self, draws: radar_kernel.Draws, faults: Faults | None) -> HeardPairs:
+        if faults is None:
+            return as_given(self.pulses.sensor, 1)
+        return faults(as_given(self.pulses.sensor, len(draws.cut_factor)), draws)
+
+    def _alone(
+        self,
+        controller: PassageController,
+        draws: radar_kernel.Draws,
+        faults: Faults | None,
+        events: NDArray[np.float64],
+        seen: NDArray[np.float64],
+    ) -> tuple[PassageSample, NDArray[np.float64], NDArray[np.float64]]:
+        """One pass after the other, with the events and pulse pairs of the last."""
+        self._require_fit(controller, faults)
+        pairs, sources, passes = self._pairs(draws, faults), len(self.pulses.path_m), len(draws.cut_factor)
+        pulses = self.pulses._replace(
+            first_row=fixed(pairs.first_row(sources), np.int64), told_sensor=fixed(pairs.sensor, np.int64)
+        )
+        exits, outcome = empty_exits(passes), np.empty((passes, sources), dtype=np.uint8)
+        memory = pass_memory(sources, len(pairs.source))
+        count, heard = kernel.run_passage_passes(
+            self.radar.path, self.drive, pulses, pairs.for_kernel(), controller.law(), draws, memory, exits, outcome,
+            events, seen,
+        )  # fmt: skip
+        sample = PassageSample(
+            exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s, draws.weight, outcome=outcome
+        )
+        return sample, events[:count], seen[:heard]
+
+    def _require_fit(self, controller: PassageController, faults: Faults | None) -> None:
+        if controller.stages != self.stages:
+            raise ValueError(f"passage loop: the controller has {controller.stages} stages, the loop {self.stages}")
+        if controller.tracks:
+            return
+        if faults is not None:
+            raise ValueError("passage loop: a regulator without limits for its tracker cannot be run with faults")
+        path = self.pulses.path_m
+        if controller.path_m.shape != path.shape or np.abs(controller.path_m - path).max(initial=0.0) > PATH_ERROR_M:
+            raise ValueError("passage loop: the passages of the controller are not those of sensors and cut")
+
+
+def close_passage_loop(plant: Plant, sensors: PointSensors, stages: int, substeps: int | None = None) -> PassageLoop:
+    """`plant` with a regulator of `stages` stages that decides at the passages of its cut over `sensors`.
+
+    A transient is played as its means over `substeps` equal parts of a scan, by default as many as make them at most
+    `SUBSTEP_S`. `ValueError` where a sensor stands ahead of the place from which on the regulator acts, where no
+    passage is before the exit, or for more stages than the position has.
+    """
+    met = deciding_passages(sensors, plant.cut, plant.exit_m)
+    if not met:
+        raise ValueError("passage loop: no axle passes a sensor before the exit")
+    if met[0].path_m < plant.start_m - 1e-9:
+        raise ValueError(
+            f"passage loop: the first sensor stands at {met[0].path_m:g} m and the plant begins at "
+            f"{plant.start_m:g} m: make the approach as long as that sensor is ahead of the entrance"
+        )
+    radar = close_loop(plant, stages)
+    if substeps is None:
+        substeps = math.ceil(sensors.scan_period_s / SUBSTEP_S - 1e-9)
+    actuator = stage_locked_actuator(plant.position, sensors, stages - 1, substeps)
+    path = np.array([max(each.path_m, plant.start_m) for each in met])
+    sensor = np.array([each.sensor for each in met], dtype=np.int64)
+    coils = np.argsort(np.concatenate([path - 0.5 * sensors.base_m, path + 0.5 * sensors.base_m]), kind="stable")
+    pulses = passage_pulses.Pulses(
+        fixed(path, np.float64),
+        fixed(sensor, np.int64),
+        fixed(coils, np.int64),
+        fixed(np.arange(len(met) + 1), np.int64),
+        fixed(sensor, np.int64),
+        sensors.base_m,
+        sensors.base_tolerance,
+        sensors.timer_noise_s,
+        sensors.timer_resolution_s,
+    )
+    return PassageLoop(
+        sensors, radar, piece_drive(actuator, sensors.scan_period_s, plant.approach.initial_stage), pulses
+    )
+
+
+def piece_drive(actuator: Actuator, period_s: float, initial_stage: int) -> kernel.PieceDrive:
+    """What `actuator` plays as pieces of constant overpressure; `period_s` of the clock that its chains count in."""
+    modes, part = len(actuator.mode_overpressure_kpa), period_s / actuator.substeps
+    kpa, ends, after = [actuator.mode_overpressure_kpa], [np.full(modes, math.inf)], [np.arange(modes)]
+    first, count = [], modes
+    for chain, mode in enumerate(actuator.chain_mode):
+        parts = int(actuator.chain_samples[chain]) * actuator.substeps
+        played = np.round(actuator.chain_overpressure_kpa[chain, :parts], 9)  # so that a rest is one piece
+        last = np.flatnonzero(np.append(np.diff(played) != 0.0, True))
+        first.append(count)
+        count += last.size
+        kpa.append(played[last])
+        ends.append((last + 1) * part)
+        after.append(np.append(np.arange(first[-1] + 1, count), mode))
+    return kernel.PieceDrive(
+        fixed(np.concatenate(kpa), np.float64),
+        fixed(np.concatenate(ends), np.float64),
+        fixed(np.concatenate(after), np.int64),
+        fixed(np.where(actuator.command < 0, -1, np.asarray(first)[actuator.command]), np.int64),
+        actuator.mode_of(initial_stage),
+        initial_stage,
+    )
+
+
+def pass_memory(sources: int, rows: int) -> passage_pulses.Memory:
+    """Memory of the kernel for one pass at a time."""
+    coils = 2 * sources
+    return passage_pulses.Memory(
+        np.empty(coils), np.empty(coils, dtype=np.int64), np.empty(sources),
+        np.empty(rows), np.empty(rows), np.empty(rows),
+        np.empty(rows, dtype=np.int64), np.empty(rows, dtype=np.int64), np.empty(6, dtype=np.float32),
+    )  # fmt: skip
+
+
+def readings_of(seen: NDArray[np.float64]) -> PassReadings:
+    """The pulse pairs that the kernel has noted, (pairs, `READING_FIELDS`), for reading."""
+    time, middle, told, source, believed, reading, outcome, stage = np.ascontiguousarray(seen.T)
+    told, source, believed, stage = (each.astype(np.int64) for each in (told, source, believed, stage))
+    return PassReadings(time, middle, told, source, believed, reading, outcome.astype(np.uint8), stage)
+
+
+def simulate_passages(
+    plant: Plant,
+    sensors: PointSensors,
+    controller: PassageController,
+    seed: int,
+    count: int,
+    first_pass: int = 0,
+    threads: int = 1,
+    faults: Faults | None = None,
+) -> PassageSample:
+    """Passes `first_pass` … `first_pass + count − 1` of the stratified row of `seed`, in bounded memory.
+
+    Pass i is the same cut, friction, entry and resistance as in `simulate_many`. The result does not depend on
+    `threads` nor on how the passes are split.
+    """
+    loop = close_passage_loop(plant, sensors, controller.stages)
+    cells = len(loop.radar.path.gravity_m_s2) - loop.radar.path.approach_cells
+
+    def chunk(start: int, stop: int) -> PassageSample:
+        return loop.run(controller, loop.draws(stratified_passes(seed, start, stop - start, cells)), faults)
+
+    with ThreadPoolExecutor(max_workers=threads) as pool:
+        samples = list(pool.map(chunk, *chunk_bounds(first_pass, count)))
+    return joined(samples)
+
+
+def joined(samples: Sequence[PassageSample]) -> PassageSample:
+    """The passes of `samples` one after the other."""
+    names = [field.name for field in fields(PassageSample)]
+    return PassageSample(**{name: np.concatenate([getattr(sample, name) for sample in samples]) for name in names})

@@ -1,0 +1,77 @@
+"""What simulated passes with point sensors leave behind: exits, and what came of every passage."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.frozen_arrays import frozen_arrays
+from synth.kernels.loop.passage_regulator import DECIDED, NOT_BELIEVED, NOT_HEARD, UNFINISHED
+from synth.simulation.passes import ExitSample, PassTrace
+from synth.simulation.replicates import Interval, share_of
+
+__all__ = [
+    "DECIDED",
+    "NOT_BELIEVED",
+    "NOT_HEARD",
+    "UNFINISHED",
+    "PassReadings",
+    "PassageSample",
+    "PassageTrace",
+    "unfinished_shares",
+]
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class PassageSample(ExitSample):
+    """Exits of n passes, and `outcome` uint8 (n, M): what came of the first pulse pair of each passage.
+
+    `NOT_HEARD`: the cut did not come there, or no pair was heard; `DECIDED`: the rule was asked; `UNFINISHED`: a
+    transient had not ended by the middle of the reading; `NOT_BELIEVED`: the tracker took the pair for no passage.
+    """
+
+    outcome: NDArray[np.uint8]
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class PassReadings:
+    """The pulse pairs that the regulator heard in one pass, in their order, arrays (pairs,).
+
+    `time_s` of the second pulse as heard and `middle_s` of the reading; `told_sensor`; `passage`, the true one, −1 if
+    the pair was none; `believed`, the passage that the regulator took it for, −1: none; `reading_m_s`; `outcome` as in
+    `PassageSample`; `stage` commanded from then on.
+    """
+
+    time_s: NDArray[np.float64]
+    middle_s: NDArray[np.float64]
+    told_sensor: NDArray[np.int64]
+    passage: NDArray[np.int64]
+    believed: NDArray[np.int64]
+    reading_m_s: NDArray[np.float64]
+    outcome: NDArray[np.uint8]
+    stage: NDArray[np.int64]
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class PassageTrace(PassTrace):
+    """One pass event by event, and what the regulator heard; `measured_m_s` is that of a pulse pair, else NaN."""
+
+    readings: PassReadings
+
+
+def unfinished_shares(sample: PassageSample) -> list[tuple[float, Interval]]:
+    """For every passage the share of the cuts heard there that found a transient unfinished, and its 95 % interval.
+
+    NaN where no cut was heard.
+    """
+    nothing = (float("nan"), (float("nan"), float("nan")))
+    found = []
+    for outcome in sample.outcome.T:
+        weight = np.where((outcome == DECIDED) | (outcome == UNFINISHED), sample.weight, 0.0)
+        found.append(share_of((outcome == UNFINISHED) & (weight > 0.0), weight) if weight.any() else nothing)
+    return found

@@ -1,0 +1,65 @@
+"""Plants with point sensors and rules by hand, for the tests of the loop of passages."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models import Approach, Plant, PointSensors, deciding_passages
+from synth.simulation.passage_controller import PassageController
+from synth.simulation.passage_loop import PassageLoop
+from synth.simulation.passage_sample import PassageTrace
+from synth.simulation.random_passes import RandomPasses
+
+SENSORS = PointSensors((-5.0, 4.0, 10.0, 17.0, 24.0, 30.0))
+CREDIBLE = (0.2, 9.0, 0.15, 3.5, 0.06, 0.3)
+
+
+def with_approach(plant: Plant, length_m: float, entrance_stage: int = 31, initial_stage: int = 0) -> Plant:
+    """`plant` whose regulator acts from `length_m` ahead of the entrance on."""
+    return replace(plant, approach=Approach(length_m, entrance_stage, initial_stage))
+
+
+def exact(sensors: PointSensors) -> PointSensors:
+    """`sensors` without any error."""
+    return replace(sensors, base_tolerance=0.0, timer_noise_s=0.0, timer_resolution_s=0.0)
+
+
+def rule_of(
+    plant: Plant, sensors: PointSensors, switching_m_s: NDArray[np.floating], limits: tuple[float, ...] = ()
+) -> PassageController:
+    """The regulator with these switching speeds, (M, K + 1, K)."""
+    met = deciding_passages(sensors, plant.cut, plant.exit_m)
+    return PassageController(
+        switching_m_s.astype(np.float32),
+        np.array([each.path_m for each in met], dtype=np.float32),
+        np.array([each.sensor for each in met], dtype=np.int64),
+        plant.entrance_stage,
+        np.array(limits, dtype=np.float32),
+    )
+
+
+def braking_rule(
+    plant: Plant, sensors: PointSensors, target_m_s: float, limits: tuple[float, ...] = ()
+) -> PassageController:
+    """Stage j + 1 where v² > v_t² + 2·a·(S_exit − s), a in steps of 0.22 m/s²: an energy rule by hand."""
+    met = deciding_passages(sensors, plant.cut, plant.exit_m)
+    top = plant.top_stage
+    left_m = plant.exit_m - np.array([max(each.path_m, 0.0) for each in met])
+    rates = 0.22 * (np.arange(top) + 0.4)
+    speeds = np.sqrt(target_m_s**2 + 2.0 * rates * left_m[:, None])
+    return rule_of(plant, sensors, np.repeat(speeds[:, None, :], top + 1, axis=1), limits)
+
+
+def holding_rule(plant: Plant, sensors: PointSensors, limits: tuple[float, ...] = ()) -> PassageController:
+    """No command, whatever is read."""
+    top, passages = plant.top_stage, len(deciding_passages(sensors, plant.cut, plant.exit_m))
+    never = np.where(np.arange(top) < np.arange(top + 1)[:, None], -np.inf, np.inf)
+    return rule_of(plant, sensors, np.repeat(never[None], passages, axis=0), limits)
+
+
+def followed(loop: PassageLoop, controller: PassageController, passes: RandomPasses) -> list[PassageTrace]:
+    """Every pass of `passes`, event by event."""
+    return [loop.follow(controller, loop.draws(passes.part(i, i + 1))) for i in range(len(passes))]

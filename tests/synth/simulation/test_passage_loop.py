@@ -1,0 +1,302 @@
+"""The loop of passages: closed forms, readings, the lock, common random numbers, any rule and any sensors."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from plant_models import (
+    Friction,
+    Plant,
+    Pneumatics,
+    PointSensors,
+    RollingResistance,
+    deciding_passages,
+    every_axle,
+    first_axle,
+)
+from plant_models.stage_regulator import stage_locked_actuator
+from synth.simulation.closed_loop import close_loop
+from synth.simulation.exit_statistics import exit_statistics
+from synth.simulation.passage_loop import close_passage_loop, simulate_passages
+from synth.simulation.passage_sample import DECIDED, NOT_HEARD, UNFINISHED, PassageSample, unfinished_shares
+from synth.simulation.random_passes import RandomPasses, random_passes
+from synth.simulation.stratified_passes import stratified_passes
+from tests.synth.conftest import pilot_plant
+from tests.synth.simulation.passage_cases import (
+    SENSORS,
+    braking_rule,
+    exact,
+    followed,
+    holding_rule,
+    rule_of,
+    with_approach,
+)
+
+
+@pytest.fixture(scope="module")
+def passes() -> RandomPasses:
+    return random_passes(seed=3, first_pass=0, count=1000)
+
+
+@pytest.fixture(scope="module")
+def plant() -> Plant:
+    return with_approach(pilot_plant(52.0), 5.0)
+
+
+# ------------------------------------------------------------------------------------------ closed forms
+
+
+def test_a_coasting_cut_passes_the_coils_when_energy_says(plant: Plant, passes: RandomPasses) -> None:
+    sensors = exact(SENSORS)
+    loop = close_passage_loop(plant, sensors, plant.top_stage + 1)
+    for i in (0, 5, 9):
+        draws = loop.draws(passes.part(i, i + 1))
+        trace = loop.follow(holding_rule(plant, sensors), draws)
+        v, a = draws.entry_m_s[0], loop.radar.path.drag_m_s2_per_n_kn * (8.0 - draws.resistance_n_kn[0])
+        places = np.array(sensors.path_m)[:, None] + np.array([-0.1, 0.1]) + 5.0
+        times = (np.sqrt(v * v + 2.0 * a * places) - v) / a
+        np.testing.assert_allclose(trace.readings.time_s, times[:, 1], rtol=1e-10)
+        np.testing.assert_allclose(trace.readings.middle_s, times.mean(axis=1), rtol=1e-10, atol=1e-12)
+        np.testing.assert_allclose(trace.readings.reading_m_s, 0.2 / np.diff(times)[:, 0], rtol=1e-10)
+        assert trace.exit_speed_m_s == pytest.approx(math.sqrt(v * v + 2.0 * a * (plant.exit_m + 5.0)), rel=1e-12)
+        assert list(trace.readings.passage) == list(trace.readings.believed) == list(range(6))
+
+
+def test_a_reading_is_off_the_speed_at_the_decision_by_half_a_base(passes: RandomPasses) -> None:
+    """Held at the top stage the cut is braked by a; the decision comes with v lower by a·(base/2)/v."""
+    plant = replace(
+        with_approach(pilot_plant(52.0), 0.0, initial_stage=4),
+        friction=Friction(0.0, 0.0, 0.0, 2.0),
+        resistance=RollingResistance(1.4, 0.0),
+    )
+    sensors = exact(PointSensors((3.0, 5.5), base_m=0.3))
+    loop = close_passage_loop(plant, sensors, 5)
+    path = loop.radar.path
+    for trace in followed(loop, holding_rule(plant, sensors), passes.part(0, 5)):
+        for at, time in enumerate(trace.readings.time_s):
+            event = int(np.flatnonzero(trace.time_s == time)[0])
+            v, kpa = trace.speed_m_s[event], trace.overpressure_kpa[event]
+            cell = int(np.searchsorted(path.edges_m, sensors.path_m[at])) - 1
+            drag = 1.4 * path.drag_m_s2_per_n_kn
+            a = path.gravity_m_s2[cell] - drag - path.brake_m_s2_per_kpa[cell] * kpa
+            assert a < -0.5
+            bias = trace.readings.reading_m_s[at] - v
+            assert bias == pytest.approx(-a * 0.15 / trace.readings.reading_m_s[at], rel=0.01)
+
+
+def test_without_transients_work_follows_from_stages_alone(passes: RandomPasses) -> None:
+    """Valves that act at once: energy balance from decision to decision, with the rule in plain words."""
+    still = replace(
+        with_approach(pilot_plant(52.0), 5.0),
+        friction=Friction(0.15, 0.0, 0.0, 2.0),
+        resistance=RollingResistance(1.4, 0.0),
+    )
+    fast = Pneumatics(700.0, 0.0, 0.0, 0.0, 0.0, 1e-3, 1e-3, 15.0)
+    plant = replace(still, position=replace(still.position, pneumatics=fast))
+    sensors = exact(replace(SENSORS, computing_delay_s=0.0, scan_period_s=0.001))
+    loop, rule = close_passage_loop(plant, sensors, 5), braking_rule(plant, sensors, 3.0)
+    path, band = loop.radar.path, 15.0
+    gained = np.append(0.0, np.cumsum((path.gravity_m_s2 - 1.4 * path.drag_m_s2_per_n_kn) * np.diff(path.edges_m)))
+    braked = np.append(0.0, np.cumsum(path.brake_m_s2_per_kpa * np.diff(path.edges_m)))
+    stage_kpa = np.array(plant.position.stage_pressures_kpa)
+    draws = loop.draws(passes.part(0, 40))
+    exits, commands = loop.run(rule, draws).exit_speed_m_s, 0
+    for i in range(40):
+        e, s, stage, kpa = 0.5 * draws.entry_m_s[i] ** 2, -5.0, 0, 0.0
+
+        def energy(to_m: float, e: float, s: float, kpa: float, factor: float) -> float:
+            free = np.interp([s, to_m], path.edges_m, gained)
+            work = np.interp([s, to_m], path.edges_m, braked)
+            return float(e + np.diff(free)[0] - factor * kpa * np.diff(work)[0])
+
+        for number, middle in enumerate(sensors.path_m):
+            v = math.sqrt(2.0 * energy(middle, e, s, kpa, draws.cut_factor[i]))
+            e, s = energy(middle + 0.1, e, s, kpa, draws.cut_factor[i]), middle + 0.1
+            wanted = int(np.count_nonzero(v > rule.switching_m_s[number, stage]))
+            if wanted != stage:
+                rests = stage_kpa[wanted] + (band if wanted < stage else -band)
+                kpa, stage, commands = max(0.0, rests - 50.0), wanted, commands + 1
+        v_exit = math.sqrt(2.0 * energy(plant.exit_m, e, s, kpa, draws.cut_factor[i]))
+        assert exits[i] == pytest.approx(v_exit, abs=0.01)  # some milliseconds of 1 m/s² are left
+    assert commands > 60
+
+
+# --------------------------------------------------------------------------------------- law of readings
+
+
+def test_readings_have_the_noise_of_the_sensors(plant: Plant) -> None:
+    """In standard readings the errors have std 1, and the axles of a cut share that of the base."""
+    sensors = replace(SENSORS, base_tolerance=0.01, timer_noise_s=2e-4, timer_resolution_s=1e-4, axles=every_axle)
+    loop, exact_loop = (close_passage_loop(plant, each, 5) for each in (sensors, exact(sensors)))
+    drawn = random_passes(seed=5, first_pass=0, count=1200)
+    rule = holding_rule(plant, sensors)
+    read = np.array([each.readings.reading_m_s for each in followed(loop, rule, drawn)])
+    true = np.array([each.readings.reading_m_s for each in followed(exact_loop, rule, drawn)])
+    error = sensors.standard_reading(read) - sensors.standard_reading(true)
+    assert np.abs(error.mean(axis=0)).max() < 4.5 / math.sqrt(len(error))
+    assert error.std(axis=0) == pytest.approx(1.0, abs=0.11)
+    assert error.std() == pytest.approx(1.0, abs=0.02)
+    met = deciding_passages(sensors, plant.cut, plant.exit_m)
+    together = np.corrcoef(error.T)
+    base = 0.01 * true.mean(axis=0) / sensors.reading_std_m_s(true.mean(axis=0))
+    same = np.array([[a.sensor == b.sensor for b in met] for a in met])
+    shared = np.where(same, np.outer(base, base), 0.0)
+    off = ~np.eye(len(met), dtype=bool)
+    assert shared[off & same].min() > 0.3
+    assert np.abs(together - shared)[off].max() < 0.14
+
+
+def test_a_reading_that_is_missing_commands_nothing(plant: Plant, passes: RandomPasses) -> None:
+    noise = passes.noise_z.copy()
+    noise[:, 3:224] = np.nan
+    loop, rule = close_passage_loop(plant, SENSORS, 5), braking_rule(plant, SENSORS, 3.0)
+    sample = loop.run(rule, loop.draws(replace(passes, noise_z=noise)))
+    assert np.all(sample.outcome[:, 3:] == NOT_HEARD)
+    last = np.where(np.arange(6) < 3, 0.0, np.inf)[:, None, None]
+    silent = np.where(np.isinf(last), holding_rule(plant, SENSORS).switching_m_s, rule.switching_m_s)
+    assert np.array_equal(
+        sample.exit_speed_m_s, loop.run(rule_of(plant, SENSORS, silent), loop.draws(passes)).exit_speed_m_s
+    )
+
+
+# -------------------------------------------------------------------------------------------------- lock
+
+
+def test_a_passage_counts_only_where_the_transient_has_ended(plant: Plant, passes: RandomPasses) -> None:
+    """Sensors close together: whether each pair may decide follows from the commands before, by the clock of scans."""
+    sensors = PointSensors((-5.0, -3.5, 0.5, 2.0, 3.0, 7.0, 8.5, 13.0, 16.0, 16.5, 24.0), axles=every_axle)
+    loop, rule = close_passage_loop(plant, sensors, 5), braking_rule(plant, sensors, 3.0)
+    actuator = stage_locked_actuator(plant.position, sensors, 4, 1)
+    found = {DECIDED: 0, UNFINISHED: 0}
+    for trace in followed(loop, rule, passes.part(0, 30)):
+        heard, mode, stage, rests = trace.readings, 0, 0, -math.inf
+        assert np.all(np.diff(heard.time_s) > 0)
+        for at, middle in enumerate(heard.middle_s):
+            assert heard.outcome[at] == (DECIDED if middle >= rests else UNFINISHED)
+            found[heard.outcome[at]] += 1
+            if heard.stage[at] != stage:
+                assert heard.outcome[at] == DECIDED
+                chain = actuator.command[mode, heard.stage[at]]
+                rests = heard.time_s[at] + actuator.chain_samples[chain] * sensors.scan_period_s
+                mode, stage = int(actuator.chain_mode[chain]), int(heard.stage[at])
+    assert min(found.values()) > 100
+    sample = loop.run(rule, loop.draws(passes))
+    shares = unfinished_shares(sample)
+    counted = [np.mean(each[each > 0] == UNFINISHED) for each in sample.outcome.T]
+    assert [share for share, _ in shares] == pytest.approx(counted)
+    assert all(low <= share <= high for share, (low, high) in shares)
+
+
+def test_before_the_entrance_no_higher_stage_is_entered(passes: RandomPasses) -> None:
+    plant = with_approach(pilot_plant(52.0), 5.0, entrance_stage=2, initial_stage=1)
+    always = rule_of(plant, SENSORS, np.zeros((6, 5, 4)))
+    for trace in followed(close_passage_loop(plant, SENSORS, 5), always, passes.part(0, 3)):
+        assert trace.stage[0] == 1
+        assert list(trace.readings.stage[:2]) == [2, 4]
+
+
+# --------------------------------------------------------------------------------- common random numbers
+
+
+def test_cuts_are_those_of_the_radar(plant: Plant, passes: RandomPasses) -> None:
+    radar, points = close_loop(plant, 5), close_passage_loop(plant, SENSORS, 5)
+    one, other = radar.draws(passes), points.draws(passes)
+    for name in one._fields:
+        assert getattr(one, name).tobytes() == getattr(other, name).tobytes()
+    for name in radar.path._fields:
+        assert np.array_equal(getattr(radar.path, name), getattr(points.radar.path, name))
+
+
+def test_threads_and_chunks_do_not_change_a_byte(plant: Plant) -> None:
+    rule = braking_rule(plant, SENSORS, 3.0)
+    whole = simulate_passages(plant, SENSORS, rule, seed=1, count=5300)
+    threaded = simulate_passages(plant, SENSORS, rule, seed=1, count=5300, threads=2)
+    later = simulate_passages(plant, SENSORS, rule, seed=1, count=3200, first_pass=2100)
+    loop = close_passage_loop(plant, SENSORS, 5)
+    direct = loop.run(rule, loop.draws(stratified_passes(1, 0, 5300)))
+    for name, array in vars(whole).items():
+        assert array.tobytes() == getattr(threaded, name).tobytes()
+        assert array.tobytes() == getattr(direct, name).tobytes()
+        assert array[2100:].tobytes() == getattr(later, name).tobytes()
+    assert whole.outcome.shape == (5300, 6)
+
+
+def test_a_trace_is_the_simulated_pass(plant: Plant, passes: RandomPasses) -> None:
+    loop, rule = close_passage_loop(plant, SENSORS, 5), braking_rule(plant, SENSORS, 3.0)
+    sample = loop.run(rule, loop.draws(passes))
+    for i, trace in enumerate(followed(loop, rule, passes.part(0, 20))):
+        assert trace.exit_speed_m_s == sample.exit_speed_m_s[i]
+        assert trace.time_s[-1] == sample.transit_time_s[i]
+        assert np.count_nonzero(np.diff(trace.stage)) == sample.switchings[i]
+        assert np.all(np.diff(trace.time_s) > 0)
+        assert trace.path_m[-1] == plant.exit_m
+        assert np.count_nonzero(~np.isnan(trace.measured_m_s)) == len(trace.readings.time_s)
+    assert sample.switchings.mean() > 1.5
+
+
+def test_known_friction_and_statistics_go_on_as_with_the_radar(plant: Plant, passes: RandomPasses) -> None:
+    loop, rule = close_passage_loop(plant, SENSORS, 5), braking_rule(plant, SENSORS, 3.0)
+    assert np.all(loop.draws(passes, 0.85).cut_factor == 0.85)
+    known = exit_statistics(loop.run(rule, loop.draws(passes, 0.85)), 3.0)
+    assert known.std_m_s < exit_statistics(loop.run(rule, loop.draws(passes)), 3.0).std_m_s
+
+
+# ------------------------------------------------------------------------------------ any rule, any sensors
+
+
+@settings(max_examples=60)
+@given(st.data())
+def test_any_rule_and_sensors_end_every_pass(data: st.DataObject) -> None:
+    plant = with_approach(pilot_plant(data.draw(st.sampled_from([22.0, 52.0, 85.0]))), 4.0)
+    gaps = data.draw(st.lists(st.floats(0.31, 8.0), max_size=12))
+    sensors = PointSensors(
+        tuple(np.cumsum([-4.0, *gaps]).tolist()),
+        base_m=data.draw(st.floats(0.05, 0.3)),
+        base_tolerance=data.draw(st.floats(0.0, 0.2)),
+        timer_noise_s=data.draw(st.floats(0.0, 0.05)),
+        timer_resolution_s=data.draw(st.sampled_from([0.0, 1e-4, 0.05])),
+        computing_delay_s=data.draw(st.floats(0.0, 2.0)),
+        scan_period_s=data.draw(st.floats(0.005, 0.5)),
+        axles=data.draw(st.sampled_from([first_axle, every_axle])),
+    )
+    top = plant.top_stage
+    count = len(deciding_passages(sensors, plant.cut, plant.exit_m))
+    rng = np.random.default_rng(data.draw(st.integers(0, 2**32)))
+    speeds = np.sort(rng.uniform(0.0, 7.0, (count, top + 1, top)), axis=2)
+    speeds[rng.random(speeds.shape) < 0.1] = np.inf
+    sample = simulate_passages(plant, sensors, rule_of(plant, sensors, np.sort(speeds, axis=2)), 11, 60)
+    require_sound(sample, top)
+
+
+def require_sound(sample: PassageSample, top: int) -> None:
+    """Every pass ends, and what it leaves can be."""
+    assert np.all(np.isfinite(sample.exit_speed_m_s) & (sample.exit_speed_m_s >= 0.0))
+    assert np.all((sample.exit_speed_m_s == 0.0) == sample.stalled)
+    assert np.all((sample.transit_time_s > 1.0) & (sample.transit_time_s <= 300.0))
+    assert np.all(sample.switchings <= (sample.outcome == DECIDED).sum(axis=1))
+    assert sample.outcome.max(initial=0) <= UNFINISHED
+
+
+def test_what_does_not_fit_is_refused(plant: Plant) -> None:
+    loop = close_passage_loop(plant, SENSORS, 5)
+    draws = loop.draws(random_passes(1, 0, 2))
+    with pytest.raises(ValueError, match="3 stages, the loop 5"):
+        loop.run(braking_rule(with_approach(pilot_plant(22.0), 5.0), SENSORS, 2.0), draws)
+    with pytest.raises(ValueError, match="not those of sensors and cut"):
+        loop.run(braking_rule(plant, replace(SENSORS, path_m=(-5.0, 4.0)), 3.0), draws)
+    with pytest.raises(ValueError, match="first sensor stands at -5 m and the plant begins at 0 m"):
+        close_passage_loop(pilot_plant(52.0), SENSORS, 5)
+    with pytest.raises(ValueError, match="no axle passes"):
+        close_passage_loop(plant, PointSensors((80.0,)), 5)
+    with pytest.raises(ValueError, match="has shape"):
+        rule_of(plant, SENSORS, np.zeros((6, 4, 4)))
+    with pytest.raises(ValueError, match="must not fall"):
+        rule_of(plant, SENSORS, np.tile([4.0, 3.0, 5.0, 6.0], (6, 5, 1)))
+    with pytest.raises(ValueError, match="six numbers"):
+        braking_rule(plant, SENSORS, 3.0, limits=(1.0, 2.0))
