@@ -1,4 +1,4 @@
-"""The block diagram of the regulator with a radar: speed and path are quantised in time (zhukovitsky-2012, figure 4)."""
+"""The block diagram of the regulator with a radar: quantised in time (as figure 4 of zhukovitsky-2012)."""
 
 from __future__ import annotations
 
@@ -69,12 +69,13 @@ def deciding_parts(loop: ClosedLoop, controller: TableController) -> tuple[Part,
             "digital controller", "D(z)", Block.COMPUTER, "compares the speed with the lines of the stage in force",
             stage_by_table, takes=(("stage", "U[n]"), ("s_m", "S*[n]"), ("v_m_s", "V*[n]")), gives=("D[n]",),
             given=(("law", controller.law()), ("top", controller.stages - 1)), waits_for=("lock",),
-            numbers=(Number("stages", controller.stages), Number("K", controller.stages - 1)),
+            numbers=(Number("K", controller.stages - 1)),
         ),
         Part(
-            "interlock of the entrance", "", Block.COMPUTER, "admits no stage before the entrance above the highest there",
+            "interlock of the entrance", "", Block.COMPUTER,
+            "admits no stage before the entrance above the highest there",
             regulator.admitted, takes=(("stage", "U[n]"), ("wanted", "D[n]"), ("s", "S*[n]")), gives=("U[n]",),
-            given=(("entrance_stage", entrance_stage),), numbers=(Number("highest", loop.plant.entrance_stage),),
+            given=(("entrance_stage", entrance_stage),), numbers=(Number("highest ahead", loop.plant.entrance_stage),),
         ),
     )  # fmt: skip
 

@@ -73,10 +73,11 @@ class WiredPressure:
         """∫p dt over the next `time_s`; where the pads touch or let go, the stretch is cut in two."""
         touching = self._felt_after(0.0) > 0.0
         cut_s = first_time(lambda x: (self._felt_after(x) > 0.0) != touching, time_s)
-        return sum(
-            0.5 * (b - a) * sum(w * self._felt_after(a + 0.5 * (b - a) * (x + 1.0)) for x, w in zip(NODES, WEIGHTS))
-            for a, b in ((0.0, cut_s), (cut_s, time_s))
-        )
+        total = 0.0
+        for start, end in ((0.0, cut_s), (cut_s, time_s)):
+            times = start + 0.5 * (end - start) * (NODES + 1.0)
+            total += 0.5 * (end - start) * float(WEIGHTS @ [self._felt_after(time) for time in times])
+        return total
 
 
 def first_time(reached: Callable[[float], bool], longest_s: float) -> float:

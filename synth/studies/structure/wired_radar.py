@@ -61,9 +61,9 @@ class Runner:
     def __init__(self, diagram: Diagram, signals: Signals) -> None:
         self._diagram, self._signals = diagram, signals
 
-    def __call__(self, *names: str) -> None:
-        """Run these parts at the same moment: each sees what was there before."""
-        found = [self._diagram[name].run(self._signals) for name in names]
+    def __call__(self, *names: str, **other: float) -> None:
+        """Run these parts at the same moment: each sees what was there before. `other`: see `Part.run`."""
+        found = [self._diagram[name].run(self._signals, **other) for name in names]
         for each in found:
             self._signals.update(each)
 
