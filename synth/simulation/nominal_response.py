@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models import Plant, PressureHistory
+from plant_models import Plant, RetarderPosition
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.pads import overpressure_kpa
 from plant_models.stage_regulator import reaches_valves_s
@@ -91,10 +91,8 @@ def nominal_response(plant: Plant, controller: Controller, entry_speed_m_s: floa
         seen = [*state[:2], over_kpa]
         wanted = int(regulator.output(now, memory, seen)[0])
         if wanted != int(memory[0]):
-            history = position.pneumatics.respond(
-                rests_kpa[int(memory[1])], position.stage_pressures_kpa[wanted], position.force.touch_pressure_kpa
-            )
-            schedule = valve_schedule(history, reaches_valves_s(now, sensor.computing_delay_s))
+            command_s = reaches_valves_s(now, sensor.computing_delay_s)
+            schedule = valve_schedule(position, rests_kpa[int(memory[1])], wanted, command_s)
         memory = regulator.dynamics(now, memory, seen)
         sample += 1
         points = played(loop, state, now, phase_s + sample * sensor.sample_period_s, schedule)
@@ -110,8 +108,14 @@ def mean_overpressure_kpa(points: NDArray[np.float64], touch_kpa: float) -> floa
     return float(np.trapezoid(over, time) / (time[-1] - time[0]))
 
 
-def valve_schedule(history: PressureHistory, command_s: float) -> ImpulseTrain:
-    """The valve positions, each held until the next, after a command that reaches the valves at `command_s`."""
+def valve_schedule(position: RetarderPosition, rests_kpa: float, stage: int, command_s: float) -> ImpulseTrain:
+    """The valve positions, each held until the next, after a command of `stage` that reaches them at `command_s`.
+
+    `rests_kpa`: the pressure at which the drive rests when the command is given.
+    """
+    history = position.pneumatics.respond(
+        rests_kpa, position.stage_pressures_kpa[stage], position.force.touch_pressure_kpa
+    )
     valves = np.sign(history.asymptotes_kpa - history.pressures_kpa)
     return (*resting_train(CLOSED), *zip((command_s + history.starts_s).tolist(), valves.tolist(), strict=True))
 
