@@ -92,6 +92,6 @@ def deciding_part(loop: PassageLoop, controller: PassageController) -> Part:
         "compares the speed with the switching speeds of passage and stage in force",
         passage_regulator.stage_at_passage,
         takes=(("passage", "S*[n]"), ("stage", "U[n]"), ("v_m_s", "V*[n]")), gives=("U[n]",),
-        given=(("law", controller.law()),), waits_for=("lock",),
+        given=(("law", controller.law()),), waits_for=("locked",),
         numbers=(Number("K", controller.stages - 1), Number("highest ahead", loop.plant.entrance_stage)),
     )  # fmt: skip

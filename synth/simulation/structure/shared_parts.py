@@ -18,7 +18,7 @@ def lock(actuator: Actuator, clock: RegulatorClock) -> Part:
     """Part of the computer: it decides only after the transient has ended."""
     return Part(
         "lock", "", Block.COMPUTER, "keeps the controller from deciding until the transient has ended",
-        actuator.change, takes=(("mode", "mode"), ("stage", "U[n]")), gives=("mode", "lock"),
+        actuator.change, takes=(("mode", "mode"), ("stage", "U[n]")), gives=("mode", "locked"),
         numbers=(Number("T_c", clock.sample_period_s, "s"),),
     )  # fmt: skip
 
@@ -29,13 +29,13 @@ def command_parts(plant: Plant, clock: RegulatorClock) -> tuple[Part, ...]:
         Part(
             "computing delay", "", Block.COMPUTER, "hands each command on when it has been computed",
             reaches_valves_s, takes=(("decided_s", "tₙ"),), gives=("tₙ + τ_c",),
-            given=(("computing_delay_s", clock.computing_delay_s),), hands_on=(("U[n]", "U[n−τ]"),),
+            given=(("computing_delay_s", clock.computing_delay_s),), hands_on=(("U[n]", "U_τ[n]"),),
             undrawn=("tₙ + τ_c",), numbers=(Number("τ_c", clock.computing_delay_s, "s"),),
         ),
         Part(
             "ideal impulse element", "ИЭ3", Block.COMPUTER,
             "makes an impulse of each command, of the area of the stage's signal",
-            with_command, takes=(("train", "U*[n]"), ("instant_s", "tₙ + τ_c"), ("stage", "U[n−τ]")),
+            with_command, takes=(("train", "U*[n]"), ("instant_s", "tₙ + τ_c"), ("stage", "U_τ[n]")),
             gives=("U*[n]",), given=(("stage_pressures_kpa", plant.position.stage_pressures_kpa),),
             undrawn=("tₙ + τ_c",),
             numbers=tuple(Number(f"U_{k}", p, "kPa") for k, p in enumerate(plant.position.stage_pressures_kpa)),

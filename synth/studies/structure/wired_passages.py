@@ -37,7 +37,9 @@ def wired_passage_pass(
     actuator, stage = stage_locked_actuator(plant.position, sensors, controller.stages - 1, 1), loop.drive.initial_stage
     rest_kpa = float(actuator.mode_pressure_kpa[loop.drive.initial_mode])
     signals = begin(diagram, plant, stage, loop.drive.initial_mode, rest_kpa, speed_m_s)
-    signals.update({"lock": -math.inf, "z_b": 0.0, "believed": np.zeros(6, dtype=np.float32), "heard": WATCHED_FROM_S})
+    signals.update(
+        {"locked": -math.inf, "z_b": 0.0, "believed": np.zeros(6, dtype=np.float32), "heard": WATCHED_FROM_S}
+    )
     begin_cut(signals["believed"])
     run, pressure = Runner(diagram, signals), WiredPressure(diagram, signals)
     coils = coils_of(diagram, len(loop.pulses.path_m))
@@ -63,7 +65,7 @@ def wired_passage_pass(
                     first_s[coil.source] = now
                 elif heard(run, signals, loop, coil.source, now - first_s[coil.source]):
                     begun_s, played = now, 0
-                    signals["lock"] = now + signals["lock"] * sensors.scan_period_s
+                    signals["locked"] = now + signals["locked"] * sensors.scan_period_s
                     end_s = now
             points.append(point(signals))
     return response_of(points, signals["status"] == STALLED)
@@ -96,7 +98,7 @@ def heard(run: Runner, signals: Signals, loop: PassageLoop, source: int, over_ba
     run("relay element of the speed")
     run("relay element of the path")
     before = signals["U[n]"]
-    if outcome_of(signals["S*[n]"], now - 0.5 * over_base_s, signals["lock"]) == DECIDED:
+    if outcome_of(signals["S*[n]"], now - 0.5 * over_base_s, signals["locked"]) == DECIDED:
         run("digital controller")
     if signals["U[n]"] == before:
         return False

@@ -36,13 +36,13 @@ def wired_radar_pass(diagram: Diagram, plant: Plant, controller: TableController
         signals.update({"V[n]": signals["V"], "S[n]": signals["S"]})
         run("relay element of the speed")
         run("relay element of the path")
-        if signals["lock"] == 0:
+        if signals["locked"] == 0:
             before = signals["U[n]"]
             run("digital controller")
             run("interlock of the entrance")
             if signals["U[n]"] != before:
                 run("lock")
-        signals["lock"] = max(0, signals["lock"] - 1)
+        signals["locked"] = max(0, signals["locked"] - 1)
         send(run, signals)
         for i in range(substeps):
             start = signals["tₙ"] + i * period / substeps
@@ -76,7 +76,7 @@ def begin(
     slopes = {"ξ_cut": np.ones(1), "η": np.zeros((1, PATH_CELLS), dtype=np.float32)}
     return {
         "t": 0.0, "n": 0, "S": plant.start_m, "V": float(speed), "cell": 0, "status": MOVING, "used": 0.0,
-        "P": pressure_kpa, "mode": mode, "U[n]": stage, "lock": 0, "z": 0.0,
+        "P": pressure_kpa, "mode": mode, "U[n]": stage, "locked": 0, "z": 0.0,
         "U*[n]": resting_train(plant.position.stage_pressures_kpa[stage]),
         "B(S)": diagram["slope of the pads"].run(slopes)["B(S)"][0],
     }  # fmt: skip
@@ -85,7 +85,7 @@ def begin(
 def send(run: Runner, signals: Signals) -> None:
     """Hand the command of this moment on to the hold."""
     run("computing delay")
-    signals["U[n−τ]"] = signals["U[n]"]
+    signals["U_τ[n]"] = signals["U[n]"]
     run("ideal impulse element")
 
 

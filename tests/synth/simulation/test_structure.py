@@ -126,8 +126,8 @@ def test_the_lock_lasts_whole_periods_that_cover_the_transient(
     for stage in range(1, 5):
         history = position.pneumatics.respond(0.0 + 15.0, position.stage_pressures_kpa[stage], 50.0)
         found = diagram["lock"].run({"mode": 0, "U[n]": stage})
-        assert found["lock"] == math.ceil((delay + history.duration_s) / period - 1e-9)
-        assert diagram["lock"].run({"mode": found["mode"], "U[n]": stage}) == {"mode": found["mode"], "lock": 0}
+        assert found["locked"] == math.ceil((delay + history.duration_s) / period - 1e-9)
+        assert diagram["lock"].run({"mode": found["mode"], "U[n]": stage}) == {"mode": found["mode"], "locked": 0}
 
 
 def test_commands_are_delayed_made_impulses_and_held(radar: Diagram) -> None:
@@ -136,7 +136,7 @@ def test_commands_are_delayed_made_impulses_and_held(radar: Diagram) -> None:
     decided, stages = np.cumsum(rng.uniform(0.05, 1.0, 40)), rng.integers(0, 5, 40)
     signals: dict[str, object] = {"U*[n]": ((-math.inf, 0.0),)}
     for t, k in zip(decided.tolist(), stages.tolist(), strict=True):
-        signals.update({"tₙ": t, "U[n−τ]": k})
+        signals.update({"tₙ": t, "U_τ[n]": k})
         signals.update(radar["computing delay"].run(signals))
         signals.update(radar["ideal impulse element"].run(signals))
     for t in np.linspace(0.0, decided[-1] + 1.0, 500):
