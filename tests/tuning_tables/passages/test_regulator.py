@@ -1,0 +1,126 @@
+"""The step at a pulse pair: its three parts in their order, for every input; compiled, every bit is the same."""
+
+from __future__ import annotations
+
+from types import FunctionType
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numba import njit
+
+from tests.controller_code.passage_tables import passage_table, passage_tables
+from tuning_tables.passages import regulator
+from tuning_tables.passages.passage_table import PassageTable
+from tuning_tables.passages.regulator import at_pulse, rule_of
+from tuning_tables.passages.rule import wanted_stage
+from tuning_tables.passages.tracker import LONGEST_WAIT_S, NONE, begin_cut, believed_passage
+
+TABLES = passage_tables()
+WORDS = st.integers(0, 2**32 - 1)
+NUMBERS = st.floats(width=32) | WORDS.map(lambda bits: float(np.array(bits, np.uint32).view(np.float32)))
+STATES = st.lists(NUMBERS | st.sampled_from([-1.0, 0.0, 1.0, 5.0]), min_size=6, max_size=6)
+TIMES = st.floats(0.0, 5.0) | NUMBERS | st.floats()
+COUNTS = st.integers(-3, 40) | st.sampled_from([-(2**31), 2**31 - 1])
+
+
+def begun() -> npt.NDArray[np.float32]:
+    state = np.zeros(6, dtype=np.float32)
+    begin_cut(state)
+    return state
+
+
+def state_of(values: list[float]) -> npt.NDArray[np.float32]:
+    with np.errstate(all="ignore"):
+        return np.array(values, dtype=np.float32)
+
+
+def compiled_step() -> Any:
+    """The step with its parts, compiled as the docstring says."""
+    parts = {"believed_passage": njit(believed_passage), "wanted_stage": njit(wanted_stage)}
+    return njit(FunctionType(at_pulse.__code__, {**vars(regulator), **parts}))
+
+
+COMPILED = compiled_step()
+
+
+def first_over(table: PassageTable, sensor: int) -> int:
+    """The passage of the first axle over `sensor`, as the tracker numbers passages."""
+    return int(np.flatnonzero(table.heard_sensor == sensor)[0])
+
+
+def pulse(table: PassageTable, state: npt.NDArray[np.float32], sensor: int, since_s: float, v_m_s: float) -> int:
+    """The stage after a pair of a cut at v_m_s while stage 2 is in force and at rest."""
+    return at_pulse(rule_of(table), state, sensor, since_s, 0.2 / v_m_s, 2, True)
+
+
+def test_a_believed_pair_is_decided_by_its_row() -> None:
+    table, state = TABLES[0], begun()
+    fast, slow = 9.0, 1.0
+    assert pulse(table, state, 0, 3.0, fast) == 2  # before the entrance no stage above the entrance stage, 2
+    assert state.tolist() == [0.0, np.float32(np.float32(0.2) / np.float32(0.2 / fast)), 0.0, -1.0, 0.0, 3.0]
+    assert pulse(table, state, 1, 6.0 / fast, fast) == 3  # its row never raises to the top
+    assert pulse(table, begun(), 3, 1.0, fast) == 4
+    assert pulse(table, begun(), 3, 1.0, slow) == 0
+    assert pulse(table, begun(), 6, 1.0, slow) == 2  # behind the exit nothing is decided
+
+
+def test_an_unfinished_change_commands_nothing_but_the_pair_is_known() -> None:
+    rule, state = rule_of(TABLES[0]), begun()
+    assert at_pulse(rule, state, 3, 1.0, 0.2 / 9.0, 2, False) == 2
+    assert state[0] == first_over(TABLES[0], 3)
+    assert at_pulse(rule, state, 4, 7.25 / 9.0, 0.2 / 9.0, 2, True) == 3
+    assert state[0] == first_over(TABLES[0], 4)
+
+
+@pytest.mark.parametrize("over_base_s", [np.nan, np.inf, -0.1, 0.0, 2.0**-21, 2e6, 1e300, -1e300, 1.0, 0.01])
+def test_a_reading_that_cannot_be_is_a_pair_that_is_not_believed(over_base_s: float) -> None:
+    state = begun()
+    for since_s in (0.5, 0.25):
+        assert at_pulse(rule_of(TABLES[0]), state, 3, since_s, over_base_s, 2, True) == 2
+    assert state.tolist() == [-1.0, 0.0, 0.75, -1.0, 0.0, 0.75]
+
+
+@settings(max_examples=400)
+@given(st.sampled_from(TABLES), STATES, COUNTS, TIMES, TIMES, COUNTS, st.booleans())
+def test_for_every_input_the_step_is_its_parts_and_compiled_the_same(
+    table: PassageTable, values: list[float], sensor: int, since_s: float, over_s: float, stage: int, ended: bool
+) -> None:
+    rule, state = rule_of(table), state_of(values)
+    other, third = state.copy(), state.copy()
+    with np.errstate(over="raise", invalid="raise"):
+        answer = at_pulse(rule, state, sensor, since_s, over_s, stage, ended)
+        v = -1.0
+        if 2.0**-20 <= over_s <= 1e6:
+            v = float(np.float32(table.sensors.base_m) / np.float32(over_s))
+        heard = believed_passage(table.heard_path_m, table.heard_sensor, table.limits, other, sensor, since_s, v)
+        passage = -1 if heard < 0 else int(table.heard_passage[heard])
+        wanted = wanted_stage(table.switching_m_s, table.entrance_stage, table.before_entrance, passage, stage, v)
+    assert answer == (wanted if ended else stage)
+    assert COMPILED(rule, third, sensor, since_s, over_s, stage, ended) == answer
+    for found in (other, third):
+        assert np.array_equal(found.view(np.uint32), state.view(np.uint32))
+    # Whatever it was, the state is one that can be.
+    assert -1.0 <= state[0] < len(table.heard_path_m)
+    assert -1.0 <= state[3] < len(table.heard_path_m)
+    assert ((state[[1, 4]] >= 0.0) & (state[[1, 4]] <= table.limits[1])).all()
+    assert ((state[[2, 5]] >= 0.0) & (state[[2, 5]] <= LONGEST_WAIT_S)).all()
+
+
+@pytest.mark.parametrize("place", range(6))
+@pytest.mark.parametrize("value", [np.nan, np.inf, -2.0, 3e38])
+def test_a_state_that_cannot_be_is_begun_anew(place: int, value: float) -> None:
+    table, state = passage_table(), state_of([2.0, 5.0, 0.1, 1.0, 4.0, 0.2])
+    state[place] = value
+    assert believed_passage(table.path_m, table.sensor_of, table.limits, state, 4, 0.5, 3.0) == 4
+    assert state.tolist() == [4.0, 3.0, 0.0, -1.0, 0.0, 0.5]
+
+
+def test_times_are_bounded_however_long_nothing_comes() -> None:
+    table, state = passage_table(), begun()
+    for _ in range(3):
+        assert believed_passage(table.path_m, table.sensor_of, table.limits, state, 9, LONGEST_WAIT_S, 3.0) == NONE
+    assert state[2] == state[5] == LONGEST_WAIT_S

@@ -1,0 +1,99 @@
+"""The point sensors that a table is for: where they stand, how they measure, and at whose passages is decided."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from itertools import pairwise
+from typing import Final
+
+from tuning_tables.errors import InvalidTable
+from tuning_tables.requirement import require_between, require_kind, require_rising
+
+MOST_SENSORS: Final = 32
+SHORTEST_SECTION_M: Final = 0.3
+PLACE_RANGE_M: Final = (-100.0, 500.0)
+BASE_RANGE_M: Final = (0.05, 1.0)
+TOLERANCE_RANGE: Final = (0.0, 0.2)
+TIMER_RANGE_S: Final = (0.0, 0.05)
+DELAY_RANGE_S: Final = (0.0, 2.0)
+SCAN_RANGE_S: Final = (0.001, 0.5)
+
+
+Met = tuple[int, int, float]
+"""Sensor and axle, both numbered from 0, and the path of the first axle when the axle is at the middle of the base."""
+
+
+class DecidesOn(Enum):
+    """Whose passages the regulator decides at; the value is the word in files."""
+
+    FIRST_AXLE = "first_axle"
+    EVERY_AXLE = "every_axle"
+
+    def axles(self, count: int) -> range:
+        """The numbers, from 0, of those axles of a cut with `count` axles."""
+        return range(count if self is DecidesOn.EVERY_AXLE else 1)
+
+
+@dataclass(frozen=True)
+class SensorLayout:
+    """The sensors of a retarder position and the clock of the regulator that listens to them.
+
+    path_m                middle of the base of each sensor, from the entrance of the first retarder, rising, each at
+                          least 0.3 m behind the one before and no base over another; the first before the entrance
+    base_m                distance of the two coils of a sensor; speed is base_m over the time between their pulses
+    base_tolerance        standard deviation of its relative error, lasting for each sensor
+    timer_noise_s         standard deviation of a measured time
+    timer_resolution_s    measured times are whole multiples of it; 0: not rounded
+    computing_delay_s     from the second pulse to the command on the wires of the valves
+    scan_period_s         step of the regulator's clock: a change of stage lasts a whole number of them
+    decides_on            whose passages are decided at
+
+    Raises `InvalidTable`.
+    """
+
+    path_m: tuple[float, ...]
+    base_m: float
+    base_tolerance: float
+    timer_noise_s: float
+    timer_resolution_s: float
+    computing_delay_s: float
+    scan_period_s: float
+    decides_on: DecidesOn
+
+    def __post_init__(self) -> None:
+        require_rising(self.path_m, "sensors.path_m")
+        if len(self.path_m) > MOST_SENSORS:
+            raise InvalidTable(f"sensors.path_m has {len(self.path_m)} entries, but 1 to {MOST_SENSORS} are allowed.")
+        for index, place in enumerate(self.path_m):
+            require_between(place, f"sensors.path_m[{index}]", *PLACE_RANGE_M)
+        require_between(self.base_m, "sensors.base_m", *BASE_RANGE_M)
+        for index, (before, after) in enumerate(pairwise(self.path_m), start=1):
+            if not (after - before >= SHORTEST_SECTION_M and after - before > self.base_m):
+                raise InvalidTable(
+                    f"sensors.path_m[{index}] is {after!r}, but it must be at least {SHORTEST_SECTION_M} m, and more "
+                    f"than sensors.base_m, {self.base_m!r}, behind the sensor before, {before!r}."
+                )
+        require_between(self.base_tolerance, "sensors.base_tolerance", *TOLERANCE_RANGE)
+        require_between(self.timer_noise_s, "sensors.timer_noise_s", *TIMER_RANGE_S)
+        require_between(self.timer_resolution_s, "sensors.timer_resolution_s", *TIMER_RANGE_S)
+        require_between(self.computing_delay_s, "sensors.computing_delay_s", *DELAY_RANGE_S)
+        require_between(self.scan_period_s, "sensors.scan_period_s", *SCAN_RANGE_S)
+        require_kind(self.decides_on, "sensors.decides_on", DecidesOn)
+
+    def heard(self, axle_offsets_m: tuple[float, ...]) -> tuple[Met, ...]:
+        """Every passage of an axle over a sensor, in the order of the path, then of the sensors: each gives pulses."""
+        met = [
+            (sensor, axle, place + offset)
+            for sensor, place in enumerate(self.path_m)
+            for axle, offset in enumerate(axle_offsets_m)
+        ]
+        return tuple(sorted(met, key=lambda each: (each[2], each[0])))
+
+    def passages(self, axle_offsets_m: tuple[float, ...], exit_m: float) -> tuple[Met, ...]:
+        """Those of the passages heard at which is decided: of the axles in question, before `exit_m`.
+
+        At `exit_m`, or behind, nothing is decided any more: less than 1 nm before it counts as there.
+        """
+        axles = self.decides_on.axles(len(axle_offsets_m))
+        return tuple(each for each in self.heard(axle_offsets_m) if each[1] in axles and each[2] < exit_m - 1e-9)
