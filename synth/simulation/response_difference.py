@@ -37,6 +37,8 @@ def response_difference(
     parted = parting(response.commands, commands_of(trace), same_s)
     time = trace.time_s
     counted = time <= min(float(response.time_s[-1]), math.inf if parted is None else parted)
+    if response.stalled and trace.stalled:
+        counted &= time < time[-1]  # at rest both are 0, but a response ends at one of its points shortly after
     speed = np.interp(time[counted], response.time_s, response.speed_m_s)
     apart = speed - trace.speed_m_s[counted]
     largest = float(apart[np.argmax(np.abs(apart))])

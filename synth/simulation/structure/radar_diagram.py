@@ -22,7 +22,12 @@ from synth.simulation.structure.shared_parts import (
 
 
 def radar_diagram(plant: Plant, controller: TableController, first_sample_s: float) -> Diagram:
-    """`plant` under `controller`; `first_sample_s`: when the first sample comes, counted from where the pass begins."""
+    """`plant` under `controller`; `first_sample_s`: when the first sample comes, counted from where the pass begins.
+
+    `ValueError` for a controller with an estimator, which the source does not have.
+    """
+    if controller.table.estimator is not None:
+        raise ValueError("block diagram: a controller with an estimator has parts that are not declared")
     loop = close_loop(plant, controller.stages)
     free = loop.path.gravity_m_s2 - loop.path.drag_m_s2_per_n_kn * plant.resistance.mean_n_per_kn
     return Diagram(
@@ -69,7 +74,7 @@ def deciding_parts(loop: ClosedLoop, controller: TableController) -> tuple[Part,
             "digital controller", "D(z)", Block.COMPUTER, "compares the speed with the lines of the stage in force",
             stage_by_table, takes=(("stage", "U[n]"), ("s_m", "S*[n]"), ("v_m_s", "V*[n]")), gives=("D[n]",),
             given=(("law", controller.law()), ("top", controller.stages - 1)), waits_for=("locked",),
-            numbers=(Number("K", controller.stages - 1)),
+            numbers=(Number("K", controller.stages - 1),),
         ),
         Part(
             "interlock of the entrance", "", Block.COMPUTER,

@@ -11,6 +11,7 @@ import pytest
 from plant_models import Plant, PointSensors, every_axle, first_axle
 from plant_models.point_sensors import Axles
 from synth.simulation.control_system import nominal_loop
+from synth.simulation.filled_trace import filled_trace
 from synth.simulation.impulse_train import resting_train
 from synth.simulation.nominal_pass import nominal_entry_m_s, nominal_plant, one_pass
 from synth.simulation.passage_control_system import passage_regulator_start, passage_regulator_system
@@ -34,6 +35,22 @@ def plant(plant_52t: Plant) -> Plant:
 def simulated(loop: PassageLoop, entry_u: float, limits: tuple[float, ...] = ()) -> PassageTrace:
     controller = braking_rule(loop.plant, loop.sensors, 3.0, limits)
     return loop.follow(controller, loop.draws(one_pass(entry_u, 0.0)))
+
+
+def test_points_between_events_are_the_simulators(plant: Plant) -> None:
+    """With points filled in, the events are still there, and python-control's response runs through every point."""
+    sensors = quantised(first_axle)
+    loop = close_passage_loop(plant, sensors, plant.top_stage + 1)
+    controller = braking_rule(plant, sensors, 3.0)
+    draws = loop.draws(one_pass(0.5, 0.0))
+    trace = loop.follow(controller, draws)
+    filled = filled_trace(loop, trace, draws, 0.05)
+    assert set(trace.time_s) <= set(filled.time_s)
+    assert np.diff(filled.time_s).max() < 0.05 + 1e-9
+    assert np.diff(filled.path_m).min() >= 0.0
+    found = passage_response(loop, controller, nominal_entry_m_s(plant, 0.5))
+    assert np.interp(filled.time_s, found.time_s, found.path_m) == pytest.approx(filled.path_m, abs=1e-3)
+    assert abs(response_difference(found, filled, SAME_PASSAGE_S).largest_m_s) < TOLERANCE_M_S
 
 
 @pytest.mark.parametrize(("axles", "limits"), [(first_axle, ()), (every_axle, CREDIBLE)])
