@@ -33,6 +33,7 @@ class Purpose(IntEnum):
     TRAIN_WIND = 17
     SPEED_READING = 21
     STANDING = 22
+    SENSOR_FAULT = 23
 
 
 def uniform_numbers(seed: int, purpose: Purpose, first: int, count: int, columns: int) -> NDArray[np.float64]:

@@ -43,6 +43,10 @@ class HeardPairs:
         """The pairs but those that `lost`, of a shape like (n, R), marks."""
         return replace(self, after_s=np.where(lost, np.nan, self.after_s))
 
+    def taken(self, rows: NDArray[np.bool_]) -> HeardPairs:
+        """The rows alone that `rows` (R,) marks."""
+        return HeardPairs(self.source[rows], self.sensor[rows], self.after_s[:, rows], self.told_m_s[:, rows])
+
     def also(self, more: HeardPairs) -> HeardPairs:
         """These rows and those of `more`, of the same passes, in the order that the kernel wants."""
         source = np.concatenate([self.source, more.source])

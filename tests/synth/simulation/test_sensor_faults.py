@@ -1,0 +1,274 @@
+"""Faults of point sensors: each does what it says, none breaks the loop, and what is not believed commands nothing."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from plant_models import Plant, PointSensors, every_axle, first_axle
+from plant_models.point_sensors import Axles
+from synth.simulation.credible_motion import credible_motion
+from synth.simulation.passage_loop import PassageLoop, close_passage_loop, simulate_passages
+from synth.simulation.passage_sample import DECIDED, NOT_BELIEVED, NOT_HEARD, PassReadings
+from synth.simulation.random_passes import RandomPasses, random_passes
+from synth.simulation.sensor_fault_figures import FaultCase, fault_figures, single_faults
+from synth.simulation.sensor_faults import (
+    DeadSensor,
+    LateSensor,
+    LoneAxle,
+    MissedPulses,
+    RepeatedPulses,
+    ReversedSensor,
+    SensorFault,
+    SpuriousPulses,
+    StuckReading,
+    SwappedSensors,
+    together,
+)
+from synth.simulation.stratified_passes import stratified_passes
+from tests.synth.conftest import pilot_plant
+from tests.synth.simulation.passage_cases import SENSORS, braking_rule, holding_rule, rule_of, with_approach
+
+
+@pytest.fixture(scope="module")
+def plant() -> Plant:
+    return with_approach(pilot_plant(52.0), 5.0)
+
+
+@pytest.fixture(scope="module")
+def passes() -> RandomPasses:
+    return random_passes(seed=8, first_pass=0, count=400)
+
+
+@pytest.fixture(scope="module")
+def loop(plant: Plant) -> PassageLoop:
+    return close_passage_loop(plant, SENSORS, 5)
+
+
+def heard(loop: PassageLoop, passes: RandomPasses, at: int, *faults: SensorFault) -> PassReadings:
+    """What a regulator that never commands hears of pass `at`."""
+    limits = credible_motion(loop.plant, loop.sensors)
+    controller = holding_rule(loop.plant, loop.sensors, limits)
+    draws = loop.draws(passes.part(at, at + 1))
+    return loop.follow(controller, draws, together(loop.sensors, faults)).readings
+
+
+# -------------------------------------------------------------------------------------------- no fault
+
+
+@pytest.mark.parametrize(("mass_t", "axles"), [*itertools.product([22.0, 52.0, 85.0], [first_axle, every_axle])])
+def test_without_a_fault_the_tracker_believes_the_truth(mass_t: float, axles: Axles) -> None:
+    plant, sensors = with_approach(pilot_plant(mass_t), 5.0), replace(SENSORS, axles=axles)
+    loop = close_passage_loop(plant, sensors, plant.top_stage + 1)
+    draws = loop.draws(stratified_passes(2, 0, 2000))
+    told = loop.run(braking_rule(plant, sensors, 2.0), draws)
+    tracked = loop.run(braking_rule(plant, sensors, 2.0, credible_motion(plant, sensors)), draws)
+    assert not np.any(tracked.outcome == NOT_BELIEVED)
+    assert tracked.exit_speed_m_s.tobytes() == told.exit_speed_m_s.tobytes()
+    assert tracked.outcome.tobytes() == told.outcome.tobytes()
+
+
+@settings(max_examples=40)
+@given(st.data())
+def test_wherever_sensors_stand_the_tracker_believes_the_truth(data: st.DataObject) -> None:
+    plant = with_approach(pilot_plant(data.draw(st.sampled_from([22.0, 52.0, 85.0]))), 3.0)
+    gaps = data.draw(st.lists(st.floats(0.5, 12.0), max_size=8))
+    sensors = PointSensors(tuple(np.cumsum([-3.0, *gaps]).tolist()), base_tolerance=data.draw(st.floats(0.0, 0.02)))
+    rng = np.random.default_rng(data.draw(st.integers(0, 2**32)))
+    loop, top = close_passage_loop(plant, sensors, plant.top_stage + 1), plant.top_stage
+    speeds = np.sort(rng.uniform(2.0, 7.0, (len(loop.pulses.path_m), top + 1, top)), axis=2)
+    tracking = rule_of(plant, sensors, speeds, credible_motion(plant, sensors))
+    sample = loop.run(tracking, loop.draws(stratified_passes(9, 0, 200)))
+    # Beyond 4 standard deviations, or slower than is believed, a pair may be lost; a wrong one is never believed.
+    assert np.count_nonzero(sample.outcome == NOT_BELIEVED) <= 2 + 0.05 * np.count_nonzero(sample.stalled)
+
+
+# ------------------------------------------------------------------------------- each does what it says
+
+
+def test_a_dead_sensor_is_as_one_that_never_commands(plant: Plant, loop: PassageLoop, passes: RandomPasses) -> None:
+    limits, draws = credible_motion(plant, SENSORS), loop.draws(passes)
+    rule = braking_rule(plant, SENSORS, 3.0, limits)
+    for sensor in range(6):
+        speeds = rule.switching_m_s.copy()
+        speeds[sensor] = holding_rule(plant, SENSORS).switching_m_s[sensor]
+        sample = loop.run(rule, draws, together(SENSORS, [DeadSensor(sensor)]))
+        silent = loop.run(rule_of(plant, SENSORS, speeds), draws)
+        assert sample.exit_speed_m_s.tobytes() == silent.exit_speed_m_s.tobytes()
+        assert np.all(sample.outcome[:, sensor] == NOT_HEARD)
+
+
+def test_stuck_reversed_late_and_swapped_sensors_tell_what_they_should(loop: PassageLoop, passes: RandomPasses) -> None:
+    for at in (0, 7):
+        true = heard(loop, passes, at)
+        stuck = heard(loop, passes, at, StuckReading(2, 4.25))
+        assert list(stuck.reading_m_s) == [4.25 if i == 2 else v for i, v in enumerate(true.reading_m_s)]
+        turned = heard(loop, passes, at, ReversedSensor(3))
+        assert turned.reading_m_s[3] < 0.0
+        assert list(turned.believed) == [0, 1, 2, -1, 4, 5]
+        late = heard(loop, passes, at, LateSensor(1, 0.4))
+        assert late.time_s - true.time_s == pytest.approx([0.0, 0.4, 0.0, 0.0, 0.0, 0.0])
+        assert late.middle_s - true.middle_s == pytest.approx([0.0, 0.4, 0.0, 0.0, 0.0, 0.0])
+        swapped = heard(loop, passes, at, SwappedSensors(4))
+        assert list(swapped.told_sensor) == [0, 1, 2, 3, 5, 4]
+        assert list(swapped.passage) == [0, 1, 2, 3, 4, 5]
+        assert list(swapped.believed[:5]) == [0, 1, 2, 3, -1]
+
+
+def test_a_pair_too_many_costs_nothing(plant: Plant, loop: PassageLoop, passes: RandomPasses) -> None:
+    true = heard(loop, passes, 0)
+    again = heard(loop, passes, 0, RepeatedPulses(1, 2, 0.05))
+    assert list(again.told_sensor) == [0, 1, 1, 1, 2, 3, 4, 5]
+    assert again.time_s[1:4] - true.time_s[1] == pytest.approx([0.0, 0.05, 0.1])
+    assert list(again.reading_m_s[1:4]) == [true.reading_m_s[1]] * 3
+    assert list(again.believed) == [0, 1, -1, -1, 2, 3, 4, 5]
+    rule, draws = braking_rule(plant, SENSORS, 3.0, credible_motion(plant, SENSORS)), loop.draws(passes)
+    for fault in (RepeatedPulses(None, 1, 0.05), RepeatedPulses(3, 8, 0.1)):
+        doubled = loop.run(rule, draws, together(SENSORS, [fault]))
+        alone = loop.run(rule, draws)
+        np.testing.assert_allclose(doubled.exit_speed_m_s, alone.exit_speed_m_s, rtol=1e-11)
+        assert np.array_equal(doubled.switchings, alone.switchings)
+
+
+def test_pairs_are_missed_by_chance_and_the_same_for_every_controller(
+    plant: Plant, loop: PassageLoop, passes: RandomPasses
+) -> None:
+    limits, draws = credible_motion(plant, SENSORS), loop.draws(passes)
+    fault = together(SENSORS, [MissedPulses(0.3)])
+    lost = loop.run(holding_rule(plant, SENSORS, limits), draws, fault).outcome == NOT_HEARD
+    assert lost.mean(axis=0) == pytest.approx(0.3, abs=4.5 * np.sqrt(0.21 / 400))
+    assert np.abs(np.corrcoef(lost.T) - np.eye(6)).max() < 4.5 / np.sqrt(400)
+    braked = loop.run(braking_rule(plant, SENSORS, 3.0, limits), draws, fault)
+    went = ~braked.stalled  # one that stalls is not heard farther on
+    assert np.count_nonzero(went) > 200
+    assert np.array_equal(lost[went], braked.outcome[went] == NOT_HEARD)
+    other = loop.run(holding_rule(plant, SENSORS, limits), draws, together(SENSORS, [MissedPulses(0.3, stream=5)]))
+    assert 0.35 < np.mean((other.outcome == NOT_HEARD) != lost) < 0.49
+
+
+def test_spurious_pairs_come_in_their_time_and_lone_axles_by_their_speed(
+    loop: PassageLoop, passes: RandomPasses
+) -> None:
+    false = [heard(loop, passes, at, SpuriousPulses(3, 4.0, (1.0, 2.0))) for at in range(60)]
+    rows = [np.array([each.time_s, each.told_sensor, each.reading_m_s])[:, each.passage < 0] for each in false]
+    assert [row.shape for row in rows] == [(3, 3)] * 60
+    time, sensor, speed = np.concatenate(rows, axis=1)
+    assert np.all((time >= 0.0) & (time <= 4.0))
+    assert time.mean() == pytest.approx(2.0, abs=0.4)
+    assert speed.mean() == pytest.approx(1.5, abs=0.1)
+    assert np.bincount(sensor.astype(int), minlength=6).min() > 12
+    axle = heard(loop, passes, 0, LoneAxle(3.0, 5.0))
+    lone = axle.passage < 0
+    assert axle.time_s[lone] == pytest.approx((np.array(SENSORS.path_m) + 5.0) / 5.0 - 3.0)
+    assert list(axle.told_sensor[lone]) == [0, 1, 2, 3, 4, 5]
+    assert np.all(np.diff(axle.time_s) >= 0.0)
+
+
+def test_a_cut_behind_a_lone_axle_is_believed_from_its_second_sensor_on(
+    loop: PassageLoop, passes: RandomPasses
+) -> None:
+    behind = heard(loop, passes, 0, LoneAxle(30.0, 5.0))
+    assert list(behind.believed) == [0, 1, 2, 3, 4, 5, -1, 1, 2, 3, 4, 5]
+
+
+# --------------------------------------------------------------------------------------- any sequence
+
+
+def any_fault(data: st.DataObject, sensors: int, stream: int) -> SensorFault:
+    """Some fault of some sensor."""
+    sensor = data.draw(st.integers(0, sensors - 1))
+    some = data.draw(st.sampled_from([None, sensor]))
+    faults: list[SensorFault] = [
+        DeadSensor(sensor),
+        StuckReading(sensor, data.draw(st.floats(-1.0, 50.0))),
+        ReversedSensor(sensor),
+        LateSensor(sensor, data.draw(st.floats(0.0, 5.0))),
+        RepeatedPulses(some, data.draw(st.integers(1, 9)), data.draw(st.floats(0.001, 2.0))),
+        MissedPulses(data.draw(st.floats(0.0, 1.0)), some, stream),
+        SpuriousPulses(data.draw(st.integers(1, 6)), data.draw(st.floats(0.1, 60.0)), (0.1, 12.0), stream),
+        LoneAxle(data.draw(st.floats(-20.0, 60.0)), data.draw(st.floats(0.1, 12.0))),
+    ]
+    if sensor + 1 < sensors:
+        faults.append(SwappedSensors(sensor))
+    return data.draw(st.sampled_from(faults))
+
+
+@settings(max_examples=100)
+@given(st.data())
+def test_any_faults_leave_a_sound_loop(data: st.DataObject) -> None:
+    plant = with_approach(pilot_plant(data.draw(st.sampled_from([22.0, 52.0]))), 5.0, 2, data.draw(st.integers(0, 2)))
+    sensors = replace(SENSORS, axles=data.draw(st.sampled_from([first_axle, every_axle])))
+    faults = [any_fault(data, 6, stream) for stream in range(data.draw(st.integers(0, 4)))]
+    loop, top = close_passage_loop(plant, sensors, plant.top_stage + 1), plant.top_stage
+    rng = np.random.default_rng(data.draw(st.integers(0, 2**32)))
+    speeds = np.sort(rng.uniform(0.0, 8.0, (len(loop.pulses.path_m), top + 1, top)), axis=2)
+    rule = rule_of(plant, sensors, speeds, credible_motion(plant, sensors))
+    drawn = stratified_passes(12, data.draw(st.integers(0, 999)), 40)
+    sample = loop.run(rule, loop.draws(drawn), together(sensors, faults))
+    assert np.all(np.isfinite(sample.exit_speed_m_s) & (sample.exit_speed_m_s >= 0.0))
+    assert np.all((sample.exit_speed_m_s == 0.0) == sample.stalled)
+    assert np.all(np.isfinite(sample.transit_time_s) & (sample.transit_time_s <= 300.0))
+    trace = loop.follow(rule, loop.draws(drawn.part(0, 1)), together(sensors, faults))
+    told = trace.readings
+    assert trace.exit_speed_m_s == sample.exit_speed_m_s[0]
+    assert np.all((trace.stage >= 0) & (trace.stage <= top))
+    assert np.all((told.believed >= -1) & (told.believed < len(speeds)))
+    assert np.all((told.outcome == NOT_BELIEVED) == (told.believed < 0))
+    steps = np.diff(told.stage, prepend=plant.approach.initial_stage)
+    changed = steps != 0
+    assert np.all(told.outcome[changed] == DECIDED)
+    assert np.count_nonzero(changed) == sample.switchings[0]
+    early = (steps > 0) & (np.take(loop.pulses.path_m, told.believed) < 0.0)
+    assert np.all(told.stage[early] <= 2)
+
+
+# --------------------------------------------------------------------------------------------- figures
+
+
+def test_faults_do_not_depend_on_threads_and_chunks(plant: Plant) -> None:
+    rule = braking_rule(plant, SENSORS, 3.0, credible_motion(plant, SENSORS))
+    faults = together(SENSORS, [SpuriousPulses(2), MissedPulses(0.1), LateSensor(2, 0.3)])
+    whole = simulate_passages(plant, SENSORS, rule, seed=1, count=4200, faults=faults)
+    threaded = simulate_passages(plant, SENSORS, rule, seed=1, count=2700, first_pass=1500, threads=2, faults=faults)
+    for name, array in vars(whole).items():
+        assert array[1500:].tobytes() == getattr(threaded, name).tobytes()
+
+
+def test_figures_of_all_faults_stand_beside_the_same_passes(plant: Plant, loop: PassageLoop) -> None:
+    rule = braking_rule(plant, SENSORS, 3.0, credible_motion(plant, SENSORS))
+    draws = loop.draws(stratified_passes(1, 0, 400))
+    cases = single_faults(SENSORS, 3.0, 6.0)
+    none, *others = fault_figures(loop, rule, draws, 3.0, [FaultCase("nothing", ()), *cases])
+    assert (none.rms_ratio, none.overspeed_more, others[0].rms_ratio) == (1.0, 0.0, 1.0)
+    assert len({case.name for case in cases}) == len(cases) == 6 * 6 + 5 + 7
+    for found in others:
+        assert found.rms_ratio == pytest.approx(found.statistics.rms_m_s / none.statistics.rms_m_s, rel=1e-12)
+        assert found.rms_ratio_ci95[0] <= found.rms_ratio <= found.rms_ratio_ci95[1]
+        assert found.stalled_more == found.statistics.stalled - none.statistics.stalled
+    worst = {found.name: found.rms_ratio for found in others}
+    assert worst["sensor 3 stuck at the target"] > worst["sensor 3 dead"]
+
+
+def test_what_cannot_be_is_refused(plant: Plant, loop: PassageLoop, passes: RandomPasses) -> None:
+    draws = loop.draws(passes.part(0, 2))
+    with pytest.raises(ValueError, match="cannot be run with faults"):
+        loop.run(braking_rule(plant, SENSORS, 3.0), draws, together(SENSORS, []))
+    tracking = braking_rule(plant, SENSORS, 3.0, credible_motion(plant, SENSORS))
+    nowhere: list[SensorFault] = [DeadSensor(6), StuckReading(-1, 3.0), SwappedSensors(5), LateSensor(6, 1.0)]
+    for fault in (*nowhere, RepeatedPulses(6, 1, 1.0), MissedPulses(0.5, 9)):
+        with pytest.raises(ValueError, match="there is no sensor"):
+            loop.run(tracking, draws, together(SENSORS, [fault]))
+    for make in (
+        lambda: LateSensor(0, -1.0),
+        lambda: MissedPulses(1.5),
+        lambda: SpuriousPulses(0),
+        lambda: RepeatedPulses(None, 1, 0.0),
+        lambda: LoneAxle(61.0, 5.0),
+    ):
+        with pytest.raises(ValueError, match="sensor faults"):
+            make()
