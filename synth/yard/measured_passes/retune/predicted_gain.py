@@ -11,14 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant, PlantError
-from synth.configuration.resolved_config import ResolvedConfig
+from synth.faults.input_error import InputError
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.controllers import TableController
 from synth.simulation.replicates import student_quantile
 from synth.simulation.stratified_passes import stratified_passes
+from synth.yard.measured_passes.config_source import ConfigSource
 from synth.yard.measured_passes.estimate import Estimate
 from synth.yard.measured_passes.holm import rejected
-from synth.yard.measured_passes.identified_plants import with_identified
+from synth.yard.measured_passes.identified_config import with_numbers
 from synth.yard.measured_passes.retune.tuned_books import Case, plants_of
 from synth.yard.measured_passes.unknowns import values_at
 from tuning_tables import ControllerTable
@@ -72,19 +73,21 @@ def better(gains: Sequence[CaseGain]) -> tuple[CaseGain, ...]:
     return tuple(gain for number, gain in enumerate(gains) if number in proven)
 
 
-def likely_plants(config: ResolvedConfig, estimate: Estimate, order: GainOrder) -> tuple[dict[str, Plant], ...]:
+def likely_plants(source: ConfigSource, estimate: Estimate, order: GainOrder) -> tuple[dict[str, Plant], ...]:
     """Plants by label for each of `order.sets` draws of the numbers, normal around the estimate.
 
-    Draws that no plant may have are drawn anew; `PlantError` where there is nothing else.
+    All numbers are drawn, those too that the passes hardly tell. Draws that no plant may have are drawn anew;
+    `InputError` or `PlantError` where there is nothing else.
     """
     rng = np.random.default_rng(order.seed)
     found: list[dict[str, Plant]] = []
-    fault = PlantError("")
+    fault: InputError | PlantError = PlantError("")
     for _ in range(order.sets + MOST_TRIES):
         u = rng.multivariate_normal(estimate.u, estimate.covariance, method="eigh")
         try:
-            found.append(plants_of(with_identified(config, values_at(estimate.unknowns, u), "drawn")))
-        except PlantError as one:
+            drawn = with_numbers(source, values_at(estimate.unknowns, u), "drawn numbers", lambda _: "drawn")
+            found.append(plants_of(drawn.resolved()))
+        except (InputError, PlantError) as one:
             fault = one
         if len(found) == order.sets:
             return tuple(found)
