@@ -1,9 +1,11 @@
 """Tuning tables: the artefact that a trackside controller loads, and the rule by which it decides.
 
-A controller needs `read_json` and `decide_for`; numpy is all they use. Books in HDF5 need h5py when called.
+A controller with a radar needs `read_json` and `decide_for`; one with point sensors needs `read_table`,
+`believed_passage` and `wanted_stage`. numpy is all they use. Books in HDF5 need h5py when called.
 """
 
 from tuning_tables.active_table import ActiveTable
+from tuning_tables.any_table import AnyTable, from_table_json, read_table, to_table_json, write_table
 from tuning_tables.approach import Approach
 from tuning_tables.atomic_file import replacing, write_atomically
 from tuning_tables.csv_file import to_csv, write_csv
@@ -12,6 +14,7 @@ from tuning_tables.errors import (
     InvalidTable,
     NewerVersion,
     OlderVersion,
+    OtherDecisions,
     TableError,
     UnknownFormat,
 )
@@ -19,6 +22,13 @@ from tuning_tables.estimator import Estimator, begin, unseen_samples
 from tuning_tables.figures import Predicted, Validated, ValidRange
 from tuning_tables.hdf5_file import read_book, write_book
 from tuning_tables.json_file import from_json, read_json, to_json, write_json
+from tuning_tables.passages.passage_row import PassageRow
+from tuning_tables.passages.passage_table import PassageTable
+from tuning_tables.passages.plausible_motion import PlausibleMotion
+from tuning_tables.passages.rule import wanted_stage
+from tuning_tables.passages.schema import passage_schema, write_passage_schema
+from tuning_tables.passages.sensor_layout import DecidesOn, SensorLayout
+from tuning_tables.passages.tracker import begin_cut, believed_passage
 from tuning_tables.provenance import CutId, Generator, RetarderId
 from tuning_tables.rule import HOLD, LOWER, RAISE, decide, decide_for, decide_many, speed_for
 from tuning_tables.schema import table_schema, write_schema
@@ -31,18 +41,25 @@ __all__ = [
     "LOWER",
     "RAISE",
     "ActiveTable",
+    "AnyTable",
     "Approach",
     "Choice",
     "ControllerTable",
     "CutId",
     "DamagedTable",
+    "DecidesOn",
     "Estimator",
     "Generator",
     "InvalidTable",
     "NewerVersion",
     "OlderVersion",
+    "OtherDecisions",
+    "PassageRow",
+    "PassageTable",
+    "PlausibleMotion",
     "Predicted",
     "RetarderId",
+    "SensorLayout",
     "Stage",
     "Status",
     "TableBook",
@@ -51,22 +68,31 @@ __all__ = [
     "ValidRange",
     "Validated",
     "begin",
+    "begin_cut",
+    "believed_passage",
     "decide",
     "decide_for",
     "decide_many",
     "from_json",
+    "from_table_json",
+    "passage_schema",
     "read_book",
     "read_json",
+    "read_table",
     "replacing",
     "round_coefficients",
     "speed_for",
     "table_schema",
     "to_csv",
     "to_json",
+    "to_table_json",
     "unseen_samples",
+    "wanted_stage",
     "write_atomically",
     "write_book",
     "write_csv",
     "write_json",
+    "write_passage_schema",
     "write_schema",
+    "write_table",
 ]

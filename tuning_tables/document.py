@@ -7,11 +7,18 @@ from typing import Final
 from tuning_tables.approach import INTERLOCK, Approach
 from tuning_tables.canonical import CHECKSUM_KEY, document_checksum
 from tuning_tables.document_head import require_checksum, require_format, require_version
-from tuning_tables.errors import DamagedTable, InvalidTable
+from tuning_tables.errors import DamagedTable, InvalidTable, OtherDecisions
 from tuning_tables.estimator import Estimator
 from tuning_tables.excerpt import excerpt
-from tuning_tables.figures import Predicted, Validated, ValidRange
-from tuning_tables.provenance import CutId, Generator, RetarderId
+from tuning_tables.figures import ValidRange
+from tuning_tables.figures_document import predicted_document, read_predicted, read_validated, validated_document
+from tuning_tables.provenance_document import (
+    floats,
+    provenance_document,
+    read_cut,
+    read_generator,
+    read_retarder,
+)
 from tuning_tables.section import Section
 from tuning_tables.stage import Stage
 from tuning_tables.table import ControllerTable
@@ -23,6 +30,8 @@ ESTIMATOR_VERSION: Final = 2
 APPROACH_VERSION: Final = 3
 """Of tables with an approach, with or without estimator: an older reader neither acts before the entrance nor knows the
 gate and the interlock there."""
+PASSAGES_VERSION: Final = 4
+"""Of tables that decide at sensor passages (see `tuning_tables.passages`): they have no lines."""
 VARIABLE: Final = "s_m"
 LONGEST_REASON: Final = 400
 
@@ -71,29 +80,13 @@ def to_document(table: ControllerTable) -> dict[str, object]:
         "version": VERSION,
         "id": table.id,
         "created": table.created,
-        "generator": {
-            "name": table.generator.name,
-            "version": table.generator.version,
-            "config_sha256": table.generator.config_sha256,
-        },
-        "retarder": {
-            "name": table.retarder.name,
-            "zones_m": [_floats(zone) for zone in table.retarder.zones_m],
-            "exit_m": float(table.retarder.exit_m),
-            "dead_band_kpa": float(table.retarder.dead_band_kpa),
-        },
-        "cut": {
-            "category": table.cut.category,
-            **({} if table.cut.category_number is None else {"category_number": table.cut.category_number}),
-            "mass_t": float(table.cut.mass_t),
-            "axle_offsets_m": _floats(table.cut.axle_offsets_m),
-        },
+        **provenance_document(table.generator, table.retarder, table.cut),
         "target_speed_m_s": float(table.target_speed_m_s),
         "polynomial": {"variable": VARIABLE, "degree": table.degree},
         "stages": [_stage_document(stage) for stage in table.stages],
-        "valid": {"s_m": _floats(table.valid.s_m), "v_m_s": _floats(table.valid.v_m_s)},
-        "predicted": _predicted_document(table.predicted),
-        "validated": None if table.validated is None else _validated_document(table.validated),
+        "valid": {"s_m": floats(table.valid.s_m), "v_m_s": floats(table.valid.v_m_s)},
+        "predicted": predicted_document(table.predicted),
+        "validated": validated_document(table.validated),
     }
     if table.estimator is not None:
         document |= {"version": ESTIMATOR_VERSION, "estimator": _estimator_document(table.estimator)}
@@ -105,11 +98,18 @@ def to_document(table: ControllerTable) -> dict[str, object]:
 def from_document(document: object, source: str) -> ControllerTable:
     """The table in `document`, as parsed from the file that `source` names in messages.
 
-    Raises `UnknownFormat`, `NewerVersion`, `OlderVersion` for another format or version, and `DamagedTable` for a wrong
-    checksum, a missing or unknown key, a wrong type, and values that make no table. Checked in this order.
+    Raises `UnknownFormat`, `NewerVersion`, `OlderVersion` for another format or version, `OtherDecisions` for a table
+    without lines, and `DamagedTable` for a wrong checksum, a missing or unknown key, a wrong type, and values that make
+    no table. Checked in this order.
     """
     members = require_format(document, source, FORMAT, "a controller table")
-    required, optional = _VERSION_KEYS[require_version(members, source, VERSION, APPROACH_VERSION)]
+    version = require_version(members, source, VERSION, PASSAGES_VERSION)
+    if version == PASSAGES_VERSION:
+        raise OtherDecisions(
+            f"{source}: version is {version}, a table that decides at sensor passages and has no lines over the path, "
+            f"which are needed here; give a table of version {VERSION} to {APPROACH_VERSION}."
+        )
+    required, optional = _VERSION_KEYS[version]
     top = Section(members, source, "", _KEYS + required, optional)
     require_checksum(members, top.text(CHECKSUM_KEY), source)
     polynomial = top.section("polynomial", ("variable", "degree"))
@@ -120,15 +120,15 @@ def from_document(document: object, source: str) -> ControllerTable:
         return ControllerTable(
             id=top.text("id"),
             created=top.text("created"),
-            generator=_generator(top.section("generator", ("name", "version", "config_sha256"))),
-            retarder=_retarder(top.section("retarder", ("name", "zones_m", "exit_m", "dead_band_kpa"))),
-            cut=_cut(top.section("cut", ("category", "mass_t", "axle_offsets_m"), ("category_number",))),
+            generator=read_generator(top),
+            retarder=read_retarder(top),
+            cut=read_cut(top),
             target_speed_m_s=top.number("target_speed_m_s"),
             degree=polynomial.count("degree"),
             stages=tuple(map(_stage, top.sections("stages", ("k", "pressure_kpa", "lower", "upper")))),
             valid=_valid_range(top.section("valid", ("s_m", "v_m_s"))),
-            predicted=_predicted(top, ("p_stall", "passes") if "estimator" in top else ("p_stall",)),
-            validated=_validated(top),
+            predicted=read_predicted(top, ("p_stall", "passes") if "estimator" in top else ("p_stall",)),
+            validated=read_validated(top),
             estimator=_estimator(top.section("estimator", _ESTIMATOR_KEYS)) if "estimator" in top else None,
             approach=_approach(top.section("approach", _APPROACH_KEYS)) if "approach" in top else None,
         )
@@ -137,36 +137,18 @@ def from_document(document: object, source: str) -> ControllerTable:
         raise DamagedTable(f"{source}: {excerpt(str(invalid), LONGEST_REASON)}") from invalid
 
 
-def _floats(values: tuple[float, ...]) -> list[float]:
-    return [float(value) for value in values]
-
-
 def _stage_document(stage: Stage) -> dict[str, object]:
     return {
         "k": stage.k,
         "pressure_kpa": float(stage.pressure_kpa),
-        "lower": None if stage.lower is None else _floats(stage.lower),
-        "upper": None if stage.upper is None else _floats(stage.upper),
+        "lower": None if stage.lower is None else floats(stage.lower),
+        "upper": None if stage.upper is None else floats(stage.upper),
     }
-
-
-def _predicted_document(predicted: Predicted) -> dict[str, object]:
-    document: dict[str, object] = {
-        "rms_m_s": float(predicted.rms_m_s),
-        "bias_m_s": float(predicted.bias_m_s),
-        "p_overspeed": float(predicted.p_overspeed),
-        "switchings": float(predicted.switchings),
-    }
-    if predicted.p_stall is not None:
-        document["p_stall"] = float(predicted.p_stall)
-    if predicted.passes is not None:
-        document["passes"] = predicted.passes
-    return document
 
 
 def _estimator_document(estimator: Estimator) -> dict[str, object]:
     values = {key: getattr(estimator, key) for key in _ESTIMATOR_KEYS}
-    return {key: _floats(value) if isinstance(value, tuple) else float(value) for key, value in values.items()}
+    return {key: floats(value) if isinstance(value, tuple) else float(value) for key, value in values.items()}
 
 
 def _approach_document(approach: Approach) -> dict[str, object]:
@@ -175,33 +157,6 @@ def _approach_document(approach: Approach) -> dict[str, object]:
         "entrance_stage": approach.entrance_stage,
         "interlock": INTERLOCK,
     }
-
-
-def _validated_document(validated: Validated) -> dict[str, object]:
-    return {
-        "passes": validated.passes,
-        "rms_m_s": float(validated.rms_m_s),
-        "rms_ci95_m_s": _floats(validated.rms_ci95_m_s),
-    }
-
-
-def _generator(section: Section) -> Generator:
-    return Generator(section.text("name"), section.text("version"), section.text("config_sha256"))
-
-
-def _retarder(section: Section) -> RetarderId:
-    return RetarderId(
-        section.text("name"), section.pairs("zones_m"), section.number("exit_m"), section.number("dead_band_kpa")
-    )
-
-
-def _cut(section: Section) -> CutId:
-    return CutId(
-        section.text("category"),
-        section.number("mass_t"),
-        section.numbers("axle_offsets_m"),
-        section.count("category_number") if "category_number" in section else None,
-    )
 
 
 def _stage(section: Section) -> Stage:
@@ -215,18 +170,6 @@ def _stage(section: Section) -> Stage:
 
 def _valid_range(section: Section) -> ValidRange:
     return ValidRange(section.pair("s_m"), section.pair("v_m_s"))
-
-
-def _predicted(top: Section, optional: tuple[str, ...]) -> Predicted:
-    section = top.section("predicted", ("rms_m_s", "bias_m_s", "p_overspeed", "switchings"), optional)
-    return Predicted(
-        section.number("rms_m_s"),
-        section.number("bias_m_s"),
-        section.number("p_overspeed"),
-        section.number("switchings"),
-        section.number("p_stall") if "p_stall" in section else None,
-        section.count("passes") if "passes" in section else None,
-    )
 
 
 def _estimator(section: Section) -> Estimator:
@@ -247,10 +190,3 @@ def _approach(section: Section) -> Approach:
     if interlock != INTERLOCK:
         raise InvalidTable(f'approach.interlock is {interlock!r}, but only "{INTERLOCK}" is allowed.')
     return Approach(section.number("length_m"), section.count("entrance_stage"))
-
-
-def _validated(top: Section) -> Validated | None:
-    if top.value("validated") is None:
-        return None
-    section = top.section("validated", ("passes", "rms_m_s", "rms_ci95_m_s"))
-    return Validated(section.count("passes"), section.number("rms_m_s"), section.pair("rms_ci95_m_s"))

@@ -21,6 +21,10 @@ class UnknownFormat(TableError):
     """The file is sound in its own right, but it is not a table or book of this project."""
 
 
+class OtherDecisions(TableError):
+    """The file is sound, but its table decides otherwise than is needed here: give another, or ask `read_table`."""
+
+
 class NewerVersion(TableError):
     """The file was written to a later version of the format than this reader knows: update the reader."""
 

@@ -11,7 +11,7 @@ import os
 
 from tuning_tables.atomic_file import write_atomically
 from tuning_tables.document import from_document, to_document
-from tuning_tables.json_text import LARGEST_FILE_BYTES, compact, read_json_text, require_layout
+from tuning_tables.json_text import LARGEST_FILE_BYTES, laid_out, read_json_text, require_layout
 from tuning_tables.regular_file import read_regular_file
 from tuning_tables.table import ControllerTable
 
@@ -21,8 +21,7 @@ def to_json(table: ControllerTable) -> bytes:
 
     Equal tables give equal bytes. Raises `InvalidTable` where a number is -0.0 (see `document.to_document`).
     """
-    members = [f" {compact(key)}: {_layout(value)}" for key, value in to_document(table).items()]
-    return ("{\n" + ",\n".join(members) + "\n}\n").encode("utf-8")
+    return laid_out(to_document(table))
 
 
 def from_json(content: bytes, source: str = "table") -> ControllerTable:
@@ -45,9 +44,3 @@ def write_json(table: ControllerTable, path: str | os.PathLike[str]) -> None:
 def read_json(path: str | os.PathLike[str]) -> ControllerTable:
     """The table in the file at `path`; raises as `from_json`, and `OSError` for what is no readable regular file."""
     return from_json(read_regular_file(path, LARGEST_FILE_BYTES), source=os.fspath(path))
-
-
-def _layout(value: object) -> str:
-    if isinstance(value, list) and value and isinstance(value[0], dict):
-        return "[\n" + ",\n".join(f"  {compact(item)}" for item in value) + "\n ]"
-    return compact(value)

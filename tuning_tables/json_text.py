@@ -53,6 +53,18 @@ def compact(value: object) -> str:
     return json.dumps(value, ensure_ascii=False, allow_nan=False)
 
 
+def laid_out(document: dict[str, object]) -> bytes:
+    """`document` as tables are exported, UTF-8: a key a line, an object of an array of objects a line."""
+    members = [f" {compact(key)}: {_member(value)}" for key, value in document.items()]
+    return ("{\n" + ",\n".join(members) + "\n}\n").encode("utf-8")
+
+
+def _member(value: object) -> str:
+    if isinstance(value, list) and value and isinstance(value[0], dict):
+        return "[\n" + ",\n".join(f"  {compact(item)}" for item in value) + "\n ]"
+    return compact(value)
+
+
 class _Unacceptable(Exception):
     """JSON as the parser of the standard library would take it, but no JSON as RFC 8259 and I-JSON have it."""
 

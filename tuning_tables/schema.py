@@ -11,11 +11,17 @@ import os
 
 from tuning_tables.approach import INTERLOCK, LENGTH_RANGE_M
 from tuning_tables.atomic_file import write_atomically
-from tuning_tables.category_number import KNOWN_NUMBERS, LARGEST_OWN, LEAST_OWN
 from tuning_tables.document import APPROACH_VERSION, ESTIMATOR_VERSION, FORMAT, VARIABLE, VERSION
 from tuning_tables.estimator import FARTHEST_M, LARGEST_OVERPRESSURE_KPA, LARGEST_WORK, MOST_BREAKS
-from tuning_tables.requirement import SHA256_HEX, UTC_INSTANT
+from tuning_tables.requirement import UTC_INSTANT
 from tuning_tables.schema_parts import DIALECT, above_zero, array_of, number, object_of, pair_of, text, whole
+from tuning_tables.schema_sections import (
+    cut_schema,
+    generator_schema,
+    predicted_schema,
+    retarder_schema,
+    validated_schema,
+)
 from tuning_tables.table import HIGHEST_DEGREE, MOST_STAGES
 
 
@@ -23,27 +29,20 @@ def table_schema() -> dict[str, object]:
     """A new dict with the JSON Schema of the format "retarder-table", versions 1 to 3."""
     line = {"anyOf": [{"type": "null"}, array_of({"type": "number"}, 1, HIGHEST_DEGREE + 1)]}
     stage = object_of(k=whole(0, MOST_STAGES - 1), pressure_kpa=number(0), lower=line, upper=line)
-    validated = object_of(passes=whole(1), rms_m_s=number(0), rms_ci95_m_s=pair_of(number(0)))
-    predicted = object_of(rms_m_s=number(0), bias_m_s=number(), p_overspeed=number(0, 1), switchings=number(0))
-    predicted["properties"]["p_stall"] = number(0, 1)
-    predicted["properties"]["passes"] = whole(1)
-    zones = array_of(pair_of(number()), 1)
-    cut = object_of(category=text(), mass_t=above_zero(), axle_offsets_m=array_of(number(0), 1))
-    cut["properties"]["category_number"] = whole(1, LARGEST_OWN)
     top = object_of(
         format={"const": FORMAT},
         version={"enum": [VERSION, ESTIMATOR_VERSION, APPROACH_VERSION]},
         id=text(),
         created={"type": "string", "pattern": UTC_INSTANT},
-        generator=object_of(name=text(), version=text(), config_sha256={"type": "string", "pattern": SHA256_HEX}),
-        retarder=object_of(name=text(), zones_m=zones, exit_m=number(), dead_band_kpa=number(0)),
-        cut={**cut, "oneOf": _numbered_cuts()},
+        generator=generator_schema(),
+        retarder=retarder_schema(),
+        cut=cut_schema(),
         target_speed_m_s=above_zero(),
         polynomial=object_of(variable={"const": VARIABLE}, degree=whole(0, HIGHEST_DEGREE)),
         stages=array_of(stage, 2, MOST_STAGES),
         valid=object_of(s_m=pair_of(number(-1e6, 1e6)), v_m_s=pair_of(number(0, 1e6))),
-        predicted=predicted,
-        validated={"anyOf": [{"type": "null"}, validated]},
+        predicted=predicted_schema("p_stall", "passes"),
+        validated=validated_schema(),
         crc32={"type": "string", "pattern": "^[0-9a-f]{8}$"},
     )
     top["properties"]["estimator"] = _estimator()
@@ -64,16 +63,6 @@ def _versions() -> list[object]:
         {"properties": {"version": {"const": ESTIMATOR_VERSION}, "approach": False}, "required": ["estimator"]},
         {"properties": {"version": {"const": APPROACH_VERSION}}, "required": ["approach"], **either},
     ]
-
-
-def _numbered_cuts() -> list[object]:
-    """No number is given, or that of the category of the yard, or one of a user's own category."""
-    own = {"category": {"not": {"enum": list(KNOWN_NUMBERS)}}, "category_number": whole(LEAST_OWN, LARGEST_OWN)}
-    known = [
-        {"category": {"const": name}, "category_number": {"const": number}} for name, number in KNOWN_NUMBERS.items()
-    ]
-    stated = [{"properties": each, "required": ["category_number"]} for each in (own, *known)]
-    return [{"properties": {"category_number": False}}, *stated]
 
 
 def _estimator() -> dict[str, dict[str, object]]:

@@ -92,6 +92,17 @@ class Section:
         items = self._array(self._members[key], path)
         return tuple(self._pair(item, f"{path}[{index}]") for index, item in enumerate(items))
 
+    def rows_or_nulls(self, key: str) -> tuple[tuple[float | None, ...], ...]:
+        """The array of arrays of numbers at `key`, None for each null in them."""
+        path = self._dotted(key)
+        return tuple(
+            tuple(
+                None if item is None else self._number(item, f"{path}[{row}][{column}]")
+                for column, item in enumerate(self._array(items, f"{path}[{row}]"))
+            )
+            for row, items in enumerate(self._array(self._members[key], path))
+        )
+
     def _pair(self, value: object, path: str) -> tuple[float, float]:
         numbers = self._numbers(value, path)
         if len(numbers) != 2:

@@ -15,7 +15,7 @@ from typing import Final
 
 from synth.faults.input_error import InputError
 from synth.faults.machine_fault import MACHINE_FAULTS
-from tuning_tables import TableError, read_json
+from tuning_tables import TableError, read_table
 from tuning_tables.atomic_file import faults_naming
 
 SUMMARY = "summary.json"
@@ -145,7 +145,7 @@ def remove_leftovers(path: Path) -> None:
 
 def maker_of_table(file: Path) -> str:
     """Name of the program that made a controller table; `TableError` or `OSError` if it is none."""
-    return read_json(file).generator.name
+    return read_table(file).generator.name
 
 
 def remove_stale(

@@ -87,13 +87,14 @@ def told(call: Callable[[], int]) -> int:
     except ValueError as fault:
         from plant_models import PlantError
         from synth.faults.input_error import InputError
-        from tuning_tables import TableError
+        from tuning_tables import OtherDecisions, TableError
         from tuning_tables.errors import InvalidLog
 
         if not isinstance(fault, InputError | PlantError | TableError | InvalidLog):
             return told_of_unforeseen(fault)
         say_each(fault.sentences if isinstance(fault, InputError) else (str(fault),))
-        return DAMAGED if isinstance(fault, TableError) else INPUT_FAULT
+        damaged = isinstance(fault, TableError) and not isinstance(fault, OtherDecisions)
+        return DAMAGED if damaged else INPUT_FAULT
     except Exception as fault:
         return told_of_unforeseen(fault)
 
