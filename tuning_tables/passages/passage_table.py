@@ -29,8 +29,10 @@ from tuning_tables.requirement import (
 )
 from tuning_tables.table import MOST_STAGES
 
+LONGEST_CUT_M: Final = 1e4
 PATH_ERROR_M: Final = 1e-6
 MOST_PASSAGES: Final = 1024
+MOST_HEARD: Final = 4096
 MOST_SPEEDS: Final = 2**17
 """Switching speeds of a whole table: so its JSON text stays below the 4 MiB that readers take."""
 
@@ -53,13 +55,19 @@ class PassageTable:
     valid_v_m_s       (least, greatest) speed that the switching speeds were made for, >= 0; the rule does not use it
     predicted         figures of the solver, computed without passes; `validated` those of a closed loop, None before
 
-    Derived from these, as arguments of `rule.wanted_stage` and `tracker.believed_passage` (read-only):
+    Derived from these (arrays are read-only). For `rule.wanted_stage`, M passages:
 
     switching_m_s     float32 (M, K + 1, K), −∞ and +∞ as in `PassageRow`
     path_m            float32 (M,), not falling
     sensor_of         int64 (M,)
-    limits            float32 (6,)
     before_entrance   number of passages whose path is below 0: the first ones
+
+    For `tracker.believed_passage`, which must know every axle that gives pulses, all T passages heard:
+
+    heard_path_m      float32 (T,), not falling: every axle over every sensor, also behind the exit; T <= 4096
+    heard_sensor      int64 (T,)
+    heard_passage     int64 (T,): the passage at which is decided, 0 … M − 1, or −1: nothing is decided there
+    limits            float32 (6,)
 
     Raises `InvalidTable`.
     """
@@ -82,6 +90,9 @@ class PassageTable:
     switching_m_s: npt.NDArray[np.float32] = field(init=False, repr=False, compare=False)
     path_m: npt.NDArray[np.float32] = field(init=False, repr=False, compare=False)
     sensor_of: npt.NDArray[np.int64] = field(init=False, repr=False, compare=False)
+    heard_path_m: npt.NDArray[np.float32] = field(init=False, repr=False, compare=False)
+    heard_sensor: npt.NDArray[np.int64] = field(init=False, repr=False, compare=False)
+    heard_passage: npt.NDArray[np.int64] = field(init=False, repr=False, compare=False)
     limits: npt.NDArray[np.float32] = field(init=False, repr=False, compare=False)
     before_entrance: int = field(init=False, repr=False, compare=False)
 
@@ -90,10 +101,15 @@ class PassageTable:
         self._require_stages()
         self._require_approach()
         self._require_passages()
+        heard = self.sensors.heard(self.cut.axle_offsets_m)
+        number = {(row.sensor, row.axle): index for index, row in enumerate(self.passages)}
         arrays: dict[str, npt.NDArray[np.generic]] = {
             "switching_m_s": np.array([row.switching_m_s for row in self.passages], dtype=np.float32),
             "path_m": np.array([row.path_m for row in self.passages], dtype=np.float32),
             "sensor_of": np.array([row.sensor for row in self.passages], dtype=np.int64),
+            "heard_path_m": np.array([path_m for _, _, path_m in heard], dtype=np.float32),
+            "heard_sensor": np.array([sensor for sensor, _, _ in heard], dtype=np.int64),
+            "heard_passage": np.array([number.get(met[:2], -1) for met in heard], dtype=np.int64),
             "limits": np.array(self.plausible.numbers, dtype=np.float32),
         }
         for name, array in arrays.items():
@@ -153,6 +169,13 @@ class PassageTable:
     def _require_passages(self) -> None:
         require_tuple(self.passages, "passages")
         stages = len(self.pressure_kpa)
+        axles = len(self.cut.axle_offsets_m)
+        require_between(self.cut.axle_offsets_m[-1], f"cut.axle_offsets_m[{axles - 1}]", 0.0, LONGEST_CUT_M)
+        if len(self.sensors.path_m) * axles > MOST_HEARD:
+            raise InvalidTable(
+                f"cut.axle_offsets_m has {axles} entries over {len(self.sensors.path_m)} sensors, but at most "
+                f"{MOST_HEARD} passages of axles over sensors are allowed."
+            )
         wanted = self.sensors.passages(self.cut.axle_offsets_m, self.retarder.exit_m)
         if not 1 <= len(wanted) <= MOST_PASSAGES or len(wanted) * stages * (stages - 1) > MOST_SPEEDS:
             raise InvalidTable(

@@ -25,8 +25,9 @@ class PassageRule(NamedTuple):
     """What the step needs of a table: arrays and numbers alone, so that numba takes it as it stands.
 
     `switching_m_s` float32 (M, K + 1, K), `entrance_stage` and `before_entrance` as `rule.wanted_stage` wants them;
-    `path_m` float32 (M,), `sensor_of` int64 (M,) and `limits` float32 (6,) as `tracker.believed_passage`; `base_m`
-    float32, distance of the two coils of a sensor.
+    `path_m` float32 (T,), `sensor_of` int64 (T,) and `limits` float32 (6,) of all passages heard, as
+    `tracker.believed_passage`; `passage_of` int64 (T,): which of the M passages a heard one is, −1 for one at which
+    nothing is decided; `base_m` float32, distance of the two coils of a sensor.
     """
 
     switching_m_s: npt.NDArray[np.float32]
@@ -34,6 +35,7 @@ class PassageRule(NamedTuple):
     before_entrance: int
     path_m: npt.NDArray[np.float32]
     sensor_of: npt.NDArray[np.int64]
+    passage_of: npt.NDArray[np.int64]
     limits: npt.NDArray[np.float32]
     base_m: np.float32
 
@@ -44,8 +46,9 @@ def rule_of(table: PassageTable) -> PassageRule:
         table.switching_m_s,
         table.entrance_stage,
         table.before_entrance,
-        table.path_m,
-        table.sensor_of,
+        table.heard_path_m,
+        table.heard_sensor,
+        table.heard_passage,
         table.limits,
         np.float32(table.sensors.base_m),
     )
@@ -73,7 +76,8 @@ def at_pulse(
     v = NO_SPEED
     if SHORTEST_READING_S <= over_base_s <= LONGEST_WAIT_S:
         v = float(rule.base_m / np.float32(over_base_s))
-    passage = believed_passage(rule.path_m, rule.sensor_of, rule.limits, state, sensor, since_s, v)
-    if not transient_ended:
+    heard = believed_passage(rule.path_m, rule.sensor_of, rule.limits, state, sensor, since_s, v)
+    if heard < 0 or not transient_ended:
         return stage
+    passage = rule.passage_of[heard]
     return wanted_stage(rule.switching_m_s, rule.entrance_stage, rule.before_entrance, passage, stage, v)

@@ -20,6 +20,10 @@ DELAY_RANGE_S: Final = (0.0, 2.0)
 SCAN_RANGE_S: Final = (0.001, 0.5)
 
 
+Met = tuple[int, int, float]
+"""Sensor and axle, both numbered from 0, and the path of the first axle when the axle is at the middle of the base."""
+
+
 class DecidesOn(Enum):
     """Whose passages the regulator decides at; the value is the word in files."""
 
@@ -77,16 +81,19 @@ class SensorLayout:
         require_between(self.scan_period_s, "sensors.scan_period_s", *SCAN_RANGE_S)
         require_kind(self.decides_on, "sensors.decides_on", DecidesOn)
 
-    def passages(self, axle_offsets_m: tuple[float, ...], exit_m: float) -> tuple[tuple[int, int, float], ...]:
-        """(sensor, axle, path in m) of every passage before `exit_m`, in the order of the path, then of the sensors.
-
-        The axle is at the middle of the base when the first axle is at that path. At `exit_m`, or behind, nothing is
-        decided any more: less than 1 nm before it counts as there.
-        """
+    def heard(self, axle_offsets_m: tuple[float, ...]) -> tuple[Met, ...]:
+        """Every passage of an axle over a sensor, in the order of the path, then of the sensors: each gives pulses."""
         met = [
-            (sensor, axle, place + axle_offsets_m[axle])
+            (sensor, axle, place + offset)
             for sensor, place in enumerate(self.path_m)
-            for axle in self.decides_on.axles(len(axle_offsets_m))
+            for axle, offset in enumerate(axle_offsets_m)
         ]
-        deciding = [each for each in met if each[2] < exit_m - 1e-9]
-        return tuple(sorted(deciding, key=lambda each: (each[2], each[0])))
+        return tuple(sorted(met, key=lambda each: (each[2], each[0])))
+
+    def passages(self, axle_offsets_m: tuple[float, ...], exit_m: float) -> tuple[Met, ...]:
+        """Those of the passages heard at which is decided: of the axles in question, before `exit_m`.
+
+        At `exit_m`, or behind, nothing is decided any more: less than 1 nm before it counts as there.
+        """
+        axles = self.decides_on.axles(len(axle_offsets_m))
+        return tuple(each for each in self.heard(axle_offsets_m) if each[1] in axles and each[2] < exit_m - 1e-9)

@@ -2,13 +2,21 @@
 
 A sensor tells its own number, when it was passed and how fast; it does not tell which axle. The tracker holds what it
 believes of the cut: the last passage, the speed there, the time since. A pulse pair belongs to the next passage over
-that sensor whose distance from the last one the cut can have rolled in that time: no farther than with the greatest
-acceleration, no less far than with the greatest deceleration, each from a speed that the reading allows. Where there is
-none, the pair is not believed: nothing is commanded. So lost pulses cost their own passage alone, and a pulse too
-many, too early or from a sensor out of order costs nothing.
+that sensor that the cut can have reached in that time: with the speed there and the speed now, each as far off as
+allowed, it rolls farthest if it gains speed first and loses it last, and least far if it loses first and gains last.
+Where there is no such passage, or the speed now cannot follow from the speed there, the pair is not believed: nothing
+is commanded. So a pulse too many, too early or from a sensor out of order is not believed, unless a cut could have
+made it. Where pulses are lost, a pair may be taken for an earlier passage over the same sensor, never for a later one.
 
 A first pulse can be false itself, and then every true one would contradict it. So a pair that is not believed is kept
 as a *rival*; a pair that follows from the rival and not from what was believed makes the regulator change its mind.
+
+The passages must be those of every axle that gives pulses: the pulses of axles that the tracker does not know follow
+from each other, and make it change its mind.
+
+What faults cost: of a dead sensor its own passages alone. A pair that is not believed costs nothing. With one axle, a
+lost pair costs its own passage alone, and a pair too many at most the next one. With several axles a lost pair may set
+back those that follow, until they contradict.
 
 All arithmetic is float32, one rounding an operation. `limits` float32 (6,): least and greatest credible speed in m/s,
 greatest acceleration and deceleration in m/s² (> 0), relative error allowed of a speed, error allowed of a path in m.
@@ -45,9 +53,10 @@ def believed_passage(
 ) -> int:
     """The passage that a pulse pair of `sensor` is taken for, or −1; `state` is brought up to date.
 
-    `path_m`, `sensor_of` (M,) of the passages in the order of the path; `since_s`: time since the pulse pair before, of
-    whatever sensor, or since `begin_cut`; `v_m_s`: base over time. Raises nothing for any number. `numba.njit` compiles
-    this text as it stands: hence the one loop over what is believed and the rival.
+    `path_m`, `sensor_of` (T,) of all passages heard, in the order of the path, as `PassageTable.heard_path_m` and
+    `heard_sensor`; `since_s`: time since the pulse pair before, of whatever sensor, or since `begin_cut`; `v_m_s`: base
+    over time. Raises nothing for any number. `numba.njit` compiles this text as it stands: hence the one loop over what
+    is believed and the rival.
     """
     none, nought, longest = np.float32(NONE), np.float32(0.0), np.float32(LONGEST_WAIT_S)
     sound = True
@@ -80,9 +89,18 @@ def believed_passage(
             continue
         here, time = int(state[at]), state[at + 2]
         fast, slow = state[at + 1] * (one + limits[4]), state[at + 1] * (one - limits[4])
-        farthest = time * (fast + half * limits[2] * time) + limits[5]
-        rolls = min(time, slow / limits[3])
-        nearest = rolls * (slow - half * limits[3] * rolls) - limits[5]
+        fast_now, slow_now = v * (one + limits[4]), v * (one - limits[4])
+        if slow_now > fast + limits[2] * time or fast_now < slow - limits[3] * time:
+            continue
+        both = limits[2] + limits[3]
+        turn = min(max((fast_now - fast + limits[3] * time) / both, nought), time)
+        rest = time - turn
+        farthest = turn * (fast + half * limits[2] * turn) + rest * (fast_now + half * limits[3] * rest) + limits[5]
+        turn = min(max((slow - slow_now + limits[2] * time) / both, nought), time)
+        rest = time - turn
+        if limits[3] * turn > slow:  # it may have stood in between
+            turn, rest = slow / limits[3], slow_now / limits[2]
+        nearest = turn * (slow - half * limits[3] * turn) + rest * (slow_now - half * limits[2] * rest) - limits[5]
         for passage in range(path_m.shape[0] - 1, here, -1):
             way = path_m[passage] - path_m[here]
             if sensor_of[passage] == sensor and nearest <= way and way <= farthest:
