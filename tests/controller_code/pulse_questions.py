@@ -64,7 +64,7 @@ def _cuts(table: PassageTable, count: int, seed: int) -> Rows:
 def _arbitrary(table: PassageTable, count: int, seed: int) -> Rows:
     """States that can be, one in ten with something that cannot; likely pairs, one number in ten of any bits."""
     rng = np.random.default_rng(seed + 7919)
-    found, passages = np.zeros(count, QUESTION), len(table.passages)
+    found, heard = np.zeros(count, QUESTION), len(table.heard_path_m)
     least, greatest = map(float, table.limits[:2])
 
     def numbers(low: float, high: float, special: tuple[float, ...]) -> npt.NDArray[np.uint32]:
@@ -76,11 +76,11 @@ def _arbitrary(table: PassageTable, count: int, seed: int) -> Rows:
 
     found["mode"] = rng.choice([GIVEN, PAIR], count)
     for first in (0, 3):
-        found["tracker"][:, first] = rng.integers(-1, passages, count).astype(np.int32).view(np.uint32)
+        found["tracker"][:, first] = rng.integers(-1, heard, count).astype(np.int32).view(np.uint32)
         found["tracker"][:, first + 1] = numbers(least, greatest, (0.0, greatest))
         found["tracker"][:, first + 2] = numbers(0.0, 4.0, (0.0, LONGEST_WAIT_S))
     wrong = rng.random(count) < 0.02
-    found["tracker"][wrong, 0] = rng.choice(np.array([-2, passages, 32767], np.int32), wrong.sum()).view(np.uint32)
+    found["tracker"][wrong, 0] = rng.choice(np.array([-2, heard, 32767], np.int32), wrong.sum()).view(np.uint32)
     found["sensor"] = rng.integers(-1, len(table.sensors.path_m) + 1, count)
     found["since_s"] = numbers(0.0, 4.0, (0.0, LONGEST_WAIT_S, np.inf)).view(np.float32)
     speeds = numbers(0.7 * least, 1.1 * greatest, (least, greatest)).view(np.float32)

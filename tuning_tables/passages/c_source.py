@@ -66,6 +66,7 @@ def passage_blanks(tables: Sequence[PassageTable], golden: Sequence[GoldenPassag
             f"#define RETARDER_CATEGORY_{each.macro} {each.number}u /* {comment_text(each.category)} */"
             for each in category_names(exported_numbers(tables))
         ),
+        "HEARD": f"{size.heard}u",
         "PASSAGES": f"{size.passages}u",
         "STAGES": f"{size.stages}u",
         "LONGEST_WAIT_HEX": hex_float(np.float32(LONGEST_WAIT_S)),
@@ -90,7 +91,10 @@ def table_text(table: PassageTable, number: int, size: PassageBlockSize) -> str:
     words = passage_block(table, size)
     floats = words.view(np.float32)
     speeds = floats[size.switching].reshape(size.passages, size.stages, size.stages - 1)
-    counts = ("category", "axles", "stages", "passages", "before the entrance", "entrance stage", "initial stage")
+    counts = (
+        "category", "axles", "stages", "passages heard", "passages", "before the entrance", "entrance stage",
+        "initial stage",
+    )  # fmt: skip
     numbers = (
         "mass, t", "target speed, m/s", "base, m", "least speed, m/s", "greatest speed, m/s", "acceleration, m/s2",
         "deceleration, m/s2", "tolerance of a speed", "tolerance of a path, m",
@@ -103,7 +107,10 @@ def table_text(table: PassageTable, number: int, size: PassageBlockSize) -> str:
             *(f"        {word}u, /* {name} */" for word, name in zip(words[:COUNTS], counts, strict=True)),
             *(f"        {hex_float(v)}, /* {name}: {v:g} */" for v, name in zip(values, numbers, strict=True)),
             f"        {_row(floats[size.path])}, /* path, m */",
-            f"        {{{', '.join(f'{word}u' for word in words[size.sensor])}}}, /* sensor */",
+            *(
+                f"        {{{', '.join(f'{word}u' for word in words[place])}}}, /* {name} */"
+                for place, name in ((size.sensor, "sensor"), (size.deciding, "deciding passage"))
+            ),
             "        {",
             ",\n".join(_passage_text(table, passage, rows) for passage, rows in enumerate(speeds)),
             "        },",

@@ -8,6 +8,7 @@ alone (`believed_passage`), waits at which a pair is just believed and just not,
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from itertools import pairwise
 from typing import Final, TypeAlias
 
@@ -40,7 +41,7 @@ PAIR_ROW: Final = np.dtype(
 BEGUN: Final[State] = (NONE, 0.0, 0.0, NONE, 0.0, 0.0)
 ROUNDS, FEW_ROUNDS = 3, 1
 MOST_PULSES, FEW_PULSES = 600, 80
-MOST_WAYS, FEW_WAYS = 24, 6
+MOST_WAYS, FEW_WAYS = 24, 10
 
 
 def golden_pulses(table: PassageTable) -> npt.NDArray[np.void]:
@@ -70,7 +71,7 @@ def paired(table: PassageTable, asked: list[tuple[State, int, float, float]]) ->
         row["sensor"], row["since_s"], row["reading_m_s"] = sensor, since_s, v_m_s
         state = _begin_row(row, before)
         given = (float(row["since_s"]), float(row["reading_m_s"]))
-        row["answer"] = believed_passage(table.path_m, table.sensor_of, table.limits, state, sensor, *given)
+        row["answer"] = believed_passage(table.heard_path_m, table.heard_sensor, table.limits, state, sensor, *given)
         _end_row(row, state)
     return rows
 
@@ -123,33 +124,48 @@ def _pulses(table: PassageTable, rounds: int) -> npt.NDArray[np.void]:
 
 
 def _edges(table: PassageTable, most: int) -> Iterator[tuple[State, int, float, float]]:
-    """Waits between two passages at which the pair is first and last believed, and their float32 neighbours."""
-    count = len(table.passages)
+    """Waits between two passages at which the pair is first and last believed, and their float32 neighbours.
+
+    Cuts that keep their speed, lose or gain some, crawl, and leave a crawl: so every bound of the way is the one that
+    counts somewhere. Then, over the shortest ways, the least and the greatest speed that may follow.
+    """
+    count = len(table.heard_path_m)
     ways = [(here, there) for here in range(count) for there in range(here + 1, min(here + 4, count))]
     least, greatest = map(float, table.limits[:2])
+    usual, crawl = min(max(table.target_speed_m_s, least), greatest), min(1.25 * least, greatest)
+    lower, higher = max(0.8 * usual, least), min(1.25 * usual, greatest)
+    speeds = ((usual, usual), (usual, lower), (usual, higher), (crawl, crawl), (crawl, lower))
     for place, (here, there) in enumerate(ways[:: -(-len(ways) // most) if ways else 1]):
-        sensor, v = int(table.sensor_of[there]), min(max(table.target_speed_m_s, least), greatest)
+        before_m_s, now_m_s = speeds[place % len(speeds)]
+        sensor = int(table.heard_sensor[there])
         other = (NONE, 0.0, 0.0) if place % 2 else (count - 1, least, 1.0)
-        believed = (here, v, 0.0, *other) if place % 3 else (NONE, 0.0, 0.0, here, v, 0.0)
-        for since_s in _turning_waits(table, here, there, v):
-            yield believed, sensor, since_s, v
+        last = (here, before_m_s, 0.0)
+        waits = [0.0, *np.geomspace(1e-3, 1e3, 61).tolist(), _way(table, here, there) / now_m_s, LONGEST_WAIT_S]
+        for since_s in _turning(partial(_is_believed, table, last, there, v_m_s=now_m_s), waits):
+            yield (*last, *other) if place % 3 else (NONE, 0.0, 0.0, *last), sensor, since_s, now_m_s
+    for here, there in sorted(ways, key=lambda each: _way(table, *each))[:3]:
+        last, since_s = (here, usual, 0.0), float(np.float32(_way(table, here, there) / usual))
+        readings = np.linspace(least, greatest, 41).tolist()
+        for v_m_s in _turning(partial(_is_believed, table, last, there, since_s), readings):
+            yield (*last, NONE, 0.0, 0.0), int(table.heard_sensor[there]), since_s, v_m_s
 
 
-def _turning_waits(table: PassageTable, here: int, there: int, v_m_s: float) -> Iterator[float]:
-    """The neighbours on both sides of every wait at which believing begins or ends."""
+def _way(table: PassageTable, here: int, there: int) -> float:
+    return float(table.heard_path_m[there] - table.heard_path_m[here])
 
-    def is_believed(since_s: float) -> bool:
-        state = np.array((here, v_m_s, 0.0, NONE, 0.0, 0.0), dtype=np.float32)
-        sensor, reading = int(table.sensor_of[there]), float(np.float32(v_m_s))
-        given = (table.path_m, table.sensor_of, table.limits, state, sensor, since_s, reading)
-        return believed_passage(*given) != NONE
 
-    way = float(table.path_m[there] - table.path_m[here])
-    waits = [0.0, *np.geomspace(1e-3, 1e3, 61).tolist(), way / v_m_s, LONGEST_WAIT_S]
-    waits = sorted(float(np.float32(wait)) for wait in waits)
-    for before, after in pairwise(waits):
-        if is_believed(before) != is_believed(after):
-            yield from _last_and_next(is_believed, before, after)
+def _is_believed(table: PassageTable, last: State, there: int, since_s: float, v_m_s: float) -> bool:
+    """Whether a pair of the sensor of `there` is believed where `last` alone was passed."""
+    state = np.array((*last, NONE, 0.0, 0.0), dtype=np.float32)
+    given = (int(table.heard_sensor[there]), since_s, float(np.float32(v_m_s)))
+    return believed_passage(table.heard_path_m, table.heard_sensor, table.limits, state, *given) != NONE
+
+
+def _turning(is_so: Callable[[float], bool], values: list[float]) -> Iterator[float]:
+    """The neighbours on both sides of every float32 number, among those of `values`, at which `is_so` changes."""
+    for before, after in pairwise(sorted(float(np.float32(value)) for value in values)):
+        if is_so(before) != is_so(after):
+            yield from _last_and_next(is_so, before, after)
 
 
 def _last_and_next(is_so: Callable[[float], bool], before: float, after: float) -> tuple[float, float]:
@@ -168,8 +184,8 @@ def _of_bits(bits: int) -> float:
 
 def _odd_pairs(table: PassageTable) -> Iterator[tuple[State, int, float, float]]:
     """Speeds at and beside the limits, times that are none, no such sensor, states that cannot be."""
-    count, (least, greatest) = len(table.passages), (float(each) for each in table.limits[:2])
-    sensor, known = int(table.sensor_of[-1]), (0, greatest, 0.5, NONE, 0.0, 0.0)
+    count, (least, greatest) = len(table.heard_path_m), (float(each) for each in table.limits[:2])
+    sensor, known = int(table.heard_sensor[-1]), (0, greatest, 0.5, NONE, 0.0, 0.0)
     speeds = [least, greatest, _beside(least, 0.0), _beside(greatest, np.inf), -0.0, 0.0, -1.0, LARGEST, SMALLEST]
     for v in (*speeds, np.nan, np.inf, -np.inf):
         yield from ((state, sensor, 0.5, v) for state in (BEGUN, known))

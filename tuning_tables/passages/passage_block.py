@@ -1,11 +1,12 @@
 """A table for point sensors as the block of 32-bit words that the C controller holds, protected by a CRC-32.
 
-Words, each from its lowest byte to its highest: category number, axles, stages (K + 1), passages, how many of them lie
-before the entrance, entrance stage, initial stage; as binary32 mass_t, target speed in m/s, base of a sensor in m, the
-six limits of the tracker, the path of every passage in m; the sensor of every passage; as binary32 the switching speeds
-by passage, stage in force and threshold; and the CRC-32 of all words before it. All tables of an export have blocks of
-one size, that of its table with most passages and stages; what a table has not is 0. An infinite switching speed is the
-largest finite number with its sign: no credible reading is beyond either.
+Words, each from its lowest byte to its highest: category number, axles, stages (K + 1), passages heard, passages at
+which is decided, how many of these lie before the entrance, entrance stage, initial stage; as binary32 mass_t, target
+speed in m/s, base of a sensor in m, the six limits of the tracker; of every passage heard the path in m as binary32,
+then the sensor of each, then the number of the deciding passage that each is (4294967295: none); as binary32 the
+switching speeds by deciding passage, stage in force and threshold; and the CRC-32 of all words before it. All tables of
+an export have blocks of one size, that of its tables with most passages and stages; what a table has not is 0. An
+infinite switching speed is the largest finite number with its sign: no credible reading is beyond either.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from tuning_tables.passages.passage_table import PassageTable
 
 Floats: TypeAlias = npt.NDArray[np.float32]
 
-COUNTS: Final = 7
+COUNTS: Final = 8
 """Words before the numbers: category to initial stage."""
 
 NUMBERS: Final = 9
@@ -34,26 +35,32 @@ LARGEST: Final = np.finfo(np.float32).max
 
 @dataclass(frozen=True)
 class PassageBlockSize:
-    """Passages and stages (K + 1) that there is room for in a block."""
+    """Passages heard, passages at which is decided, and stages (K + 1) that there is room for in a block."""
 
+    heard: int
     passages: int
     stages: int
 
     @property
     def path(self) -> slice:
-        """Where the paths are; the sensors follow them."""
+        """Where the paths are."""
         first = COUNTS + NUMBERS
-        return slice(first, first + self.passages)
+        return slice(first, first + self.heard)
 
     @property
     def sensor(self) -> slice:
         """Where the numbers of the sensors are."""
-        return slice(self.path.stop, self.path.stop + self.passages)
+        return slice(self.path.stop, self.path.stop + self.heard)
+
+    @property
+    def deciding(self) -> slice:
+        """Where the numbers of the deciding passages are."""
+        return slice(self.sensor.stop, self.sensor.stop + self.heard)
 
     @property
     def switching(self) -> slice:
         """Where the switching speeds are, (passages, stages, stages - 1)."""
-        first = self.sensor.stop
+        first = self.deciding.stop
         return slice(first, first + self.passages * self.stages * (self.stages - 1))
 
     @property
@@ -65,7 +72,9 @@ class PassageBlockSize:
 def passage_block_size(tables: Sequence[PassageTable]) -> PassageBlockSize:
     """The least size that every table fits into."""
     return PassageBlockSize(
-        max(len(table.passages) for table in tables), max(len(table.pressure_kpa) for table in tables)
+        max(len(table.heard_path_m) for table in tables),
+        max(len(table.passages) for table in tables),
+        max(len(table.pressure_kpa) for table in tables),
     )
 
 
@@ -76,16 +85,17 @@ def finite_speeds(table: PassageTable) -> Floats:
 
 def passage_block(table: PassageTable, size: PassageBlockSize) -> npt.NDArray[np.uint32]:
     """The words of one table, uint32 (size.words,), checksum last; `InvalidTable` if its category has no number."""
-    passages, stages = len(table.passages), len(table.pressure_kpa)
+    heard, passages, stages = len(table.heard_path_m), len(table.passages), len(table.pressure_kpa)
     category = number_of(table)
     words = np.zeros(size.words, dtype=np.uint32)
-    counts = (category, len(table.cut.axle_offsets_m), stages, passages, table.before_entrance)
+    counts = (category, len(table.cut.axle_offsets_m), stages, heard, passages, table.before_entrance)
     words[:COUNTS] = (*counts, table.entrance_stage, table.initial_stage)
     numbers = (table.cut.mass_t, table.target_speed_m_s, table.sensors.base_m)
     floats = words.view(np.float32)
     floats[COUNTS : size.path.start] = (*numbers, *table.limits)
-    floats[size.path][:passages] = table.path_m
-    words[size.sensor][:passages] = table.sensor_of
+    floats[size.path][:heard] = table.heard_path_m
+    words[size.sensor][:heard] = table.heard_sensor
+    words[size.deciding][:heard] = table.heard_passage.astype(np.int32).view(np.uint32)
     speeds = floats[size.switching].reshape(size.passages, size.stages, size.stages - 1)
     speeds[:passages, :stages, : stages - 1] = finite_speeds(table)
     words[-1] = zlib.crc32(words[:-1].astype("<u4").tobytes())

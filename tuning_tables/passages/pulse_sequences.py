@@ -32,20 +32,14 @@ ODD_TIMES_S: Final = (math.nan, math.inf, -math.inf, -0.1, 0.0, 1e-9, 1e-38, 2.0
 
 
 def true_pairs(table: PassageTable, first_m_s: float, deceleration_m_s2: float) -> Pairs:
-    """Every pair of a cut that has `first_m_s` at the first sensor; of all sensors, also behind the exit."""
-    sensors = table.sensors
-    axles = sensors.decides_on.axles(len(table.cut.axle_offsets_m))
-    met = sorted(
-        (place + table.cut.axle_offsets_m[axle], sensor)
-        for sensor, place in enumerate(sensors.path_m)
-        for axle in axles
-    )
-    pairs, time_s, before_m, v = [], 1.0, met[0][0], first_m_s
-    for path_m, sensor in met:
+    """Every pair of a cut that has `first_m_s` at the first sensor: of all axles, also behind the exit."""
+    met = table.sensors.heard(table.cut.axle_offsets_m)
+    pairs, time_s, before_m, v = [], 1.0, met[0][2], first_m_s
+    for sensor, _, path_m in met:
         squared = v * v - 2.0 * deceleration_m_s2 * (path_m - before_m)
         now = math.sqrt(squared) if squared > SLOWEST_M_S**2 else SLOWEST_M_S
         time_s += 2.0 * (path_m - before_m) / (v + now)
-        pairs.append(PulsePair(sensor, time_s, sensors.base_m / now))
+        pairs.append(PulsePair(sensor, time_s, table.sensors.base_m / now))
         before_m, v = path_m, now
     return pairs
 
@@ -123,6 +117,6 @@ def heard_cuts(table: PassageTable, rounds: int, seed: int = 1) -> Iterator[tupl
         for number in range(rounds):
             random = Random(seed * 1_000_003 + place * 1009 + number)
             first = min((0.7 + 2.0 * random.random()) * table.target_speed_m_s, 1.05 * greatest)
-            ahead = max(table.sensors.path_m[-1] - table.sensors.path_m[0], 1.0)
+            ahead = max(float(table.heard_path_m[-1] - table.heard_path_m[0]), 1.0)
             steady = random.random() * (first**2 - (0.3 * first) ** 2) / (2.0 * ahead)
             yield random, sorted(fault(random, table, true_pairs(table, first, steady)), key=lambda pair: pair.time_s)
