@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
+from tuning_tables.cut_classes import TableForCuts
 from tuning_tables.errors import InvalidTable
-from tuning_tables.table import ControllerTable
 
 
-def category_numbers(tables: Sequence[ControllerTable]) -> Mapping[str, int | None]:
+def category_numbers(tables: Sequence[TableForCuts]) -> Mapping[str, int | None]:
     """The number of every category, None for one without, in order of first appearance.
 
     Raises `InvalidTable` where a category has two numbers, or a number two categories.

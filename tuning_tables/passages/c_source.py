@@ -14,13 +14,15 @@ import numpy.typing as npt
 
 from tuning_tables.c_literals import hex_float
 from tuning_tables.c_template import filled
-from tuning_tables.category_names import category_names, comment_text
+from tuning_tables.category_names import comment_text
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
-from tuning_tables.passages.export_head import export_tag, exported_numbers, origin_lines
+from tuning_tables.passages.export_head import category_texts, export_tag, origin_lines
 from tuning_tables.passages.golden_passages import GoldenPassages, golden_crc, golden_passages, row_words
 from tuning_tables.passages.golden_pulses import PAIR_ROW, PULSE_ROW, WHOLE
+from tuning_tables.passages.golden_selections import GoldenSelection, golden_selections
 from tuning_tables.passages.golden_stages import STAGE_ROW
 from tuning_tables.passages.passage_block import COUNTS, PassageBlockSize, passage_block, passage_block_size
+from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.regulator import SHORTEST_READING_S
 from tuning_tables.passages.tracker import LONGEST_WAIT_S
@@ -37,42 +39,41 @@ Ask: TypeAlias = Callable[[PassageTable], GoldenPassages]
 
 
 def passage_c_files(
-    tables: Sequence[PassageTable], prefix: ExportPrefix = RETARDER, ask: Ask = golden_passages
+    book: PassageBook, prefix: ExportPrefix = RETARDER, ask: Ask = golden_passages
 ) -> Mapping[str, bytes]:
     """The files of the export by name: four of C99, ASCII, and all golden rows as CSV for other languages.
 
-    `ask`: what the self-test asks. Equal tables give equal bytes. Raises `InvalidTable` for a category without number.
+    `ask`: what the self-test asks. Equal books give equal bytes. Raises `InvalidTable` for a category without number.
     """
-    blanks = passage_blanks(tables, [ask(table) for table in tables])
+    blanks = passage_blanks(book, [ask(table) for table in book.tables])
     sources = {prefix.renamed(name): prefix.renamed(filled(name, blanks)).encode("ascii") for name in TEMPLATES}
-    golden = [golden_passages(table) for table in tables]
+    golden = [golden_passages(table) for table in book.tables]
     rows = {
         "golden_stages.csv": [each.stages for each in golden],
         "golden_pairs.csv": [each.pairs for each in golden],
         "golden_pulses.csv": [each.pulses for each in golden],
     }
-    return {**sources, **{prefix.data_file(name): rows_csv(tables, each) for name, each in rows.items()}}
+    return {**sources, **{prefix.data_file(name): rows_csv(book.tables, each) for name, each in rows.items()}}
 
 
-def passage_blanks(tables: Sequence[PassageTable], golden: Sequence[GoldenPassages]) -> Mapping[str, str]:
+def passage_blanks(book: PassageBook, golden: Sequence[GoldenPassages]) -> Mapping[str, str]:
     """What the templates ask for, by the names of their blanks."""
-    size = passage_block_size(tables)
+    size, selections = passage_block_size(book.tables), golden_selections(book)
     kinds = zip(*((each.stages, each.pairs, each.pulses) for each in golden), strict=True)
     stages, pairs, pulses = (np.vstack([row_words(number, rows) for number, rows in enumerate(kind)]) for kind in kinds)
     return {
-        "EXPORT": f"0x{export_tag(tables):08x}u",
-        "ORIGIN": "\n".join(f" * {line}" for line in origin_lines(tables)),
+        "EXPORT": f"0x{export_tag(book):08x}u",
+        "ORIGIN": "\n".join(f" * {line}" for line in origin_lines(book)),
         "CATEGORIES": "\n".join(
-            f"#define RETARDER_CATEGORY_{each.macro} {each.number}u /* {comment_text(each.category)} */"
-            for each in category_names(exported_numbers(tables))
+            f"#define RETARDER_CATEGORY_{macro} {number}u /* {name} */" for macro, number, name in category_texts(book)
         ),
         "HEARD": f"{size.heard}u",
         "PASSAGES": f"{size.passages}u",
         "STAGES": f"{size.stages}u",
         "LONGEST_WAIT_HEX": hex_float(np.float32(LONGEST_WAIT_S)),
         "SHORTEST_READING_HEX": hex_float(np.float32(SHORTEST_READING_S)),
-        "COUNT": f"{len(tables)}",
-        "TABLES": ",\n".join(table_text(table, number, size) for number, table in enumerate(tables)),
+        "COUNT": f"{len(book.tables)}",
+        "TABLES": ",\n".join(table_text(table, number, size) for number, table in enumerate(book.tables)),
         "STAGE_ROWS": f"{len(stages)}",
         "PAIR_ROWS": f"{len(pairs)}",
         "PULSE_ROWS": f"{len(pulses)}",
@@ -80,6 +81,8 @@ def passage_blanks(tables: Sequence[PassageTable], golden: Sequence[GoldenPassag
         "PAIR_WORDS": f"{pairs.shape[1]}",
         "PULSE_WORDS": f"{pulses.shape[1]}",
         "GOLDEN_CRC": f"0x{golden_crc(golden):08x}u",
+        "SELECTIONS": f"{len(selections)}",
+        "GOLDEN_SELECTIONS": ",\n".join(map(_selection_text, selections)),
         "GOLDEN_STAGES": _rows_text(STAGE_ROW, stages),
         "GOLDEN_PAIRS": _rows_text(PAIR_ROW, pairs),
         "GOLDEN_PULSES": _rows_text(PULSE_ROW, pulses),
@@ -118,6 +121,13 @@ def table_text(table: PassageTable, number: int, size: PassageBlockSize) -> str:
             "    }",
         ]
     )
+
+
+def _selection_text(selection: GoldenSelection) -> str:
+    """A golden selection as initialiser."""
+    bits = int(selection.commanded_m_s.view(np.uint32))
+    asked = f"{selection.category}u, {selection.axles}u, 0x{bits:08x}u"
+    return f"    {{{asked}, {int(selection.status)}, {selection.table}u}}"
 
 
 def _passage_text(table: PassageTable, passage: int, rows: npt.NDArray[np.float32]) -> str:

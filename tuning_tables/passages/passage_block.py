@@ -19,7 +19,7 @@ from typing import Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.errors import InvalidTable
+from tuning_tables.cut_classes import exported_number
 from tuning_tables.passages.passage_table import PassageTable
 
 Floats: TypeAlias = npt.NDArray[np.float32]
@@ -86,7 +86,7 @@ def finite_speeds(table: PassageTable) -> Floats:
 def passage_block(table: PassageTable, size: PassageBlockSize) -> npt.NDArray[np.uint32]:
     """The words of one table, uint32 (size.words,), checksum last; `InvalidTable` if its category has no number."""
     heard, passages, stages = len(table.heard_path_m), len(table.passages), len(table.pressure_kpa)
-    category = number_of(table)
+    category = exported_number(table)
     words = np.zeros(size.words, dtype=np.uint32)
     counts = (category, len(table.cut.axle_offsets_m), stages, heard, passages, table.before_entrance)
     words[:COUNTS] = (*counts, table.entrance_stage, table.initial_stage)
@@ -101,13 +101,3 @@ def passage_block(table: PassageTable, size: PassageBlockSize) -> npt.NDArray[np
     words[-1] = zlib.crc32(words[:-1].astype("<u4").tobytes())
     words.setflags(write=False)
     return words
-
-
-def number_of(table: PassageTable) -> int:
-    """The number of the table's weight category; `InvalidTable` where it has none."""
-    if table.cut.number is None:
-        raise InvalidTable(
-            f"{table.id}: the category {table.cut.category} has no number, and controllers know categories by number "
-            "alone; set category_number."
-        )
-    return table.cut.number

@@ -20,7 +20,8 @@ $ORIGIN
 $CATEGORIES
 
    Blocks
-   RETARDER_LOAD_PASSAGES     a table by its number: fills a RETARDER_PASSAGE_TABLE
+   RETARDER_SELECT_PASSAGES   once for a cut, when its class and exit speed are known: fills a RETARDER_PASSAGE_TABLE
+   RETARDER_LOAD_PASSAGES     used by it: a table by its number
    RETARDER_BEGIN_CUT         once for a cut, before its first pulse: nothing is known of it
    RETARDER_AT_PULSE          at the second pulse of every pair, of whatever sensor and axle: the stage to command
    RETARDER_BELIEVED_PASSAGE  used by it: which axle over which sensor the pair was, if it can be believed

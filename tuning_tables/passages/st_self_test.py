@@ -5,7 +5,7 @@ Only rows that have a portable literal are in it: no NaN, no infinity, no denorm
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from string import Template
 from typing import Final
 
@@ -15,9 +15,12 @@ import numpy.typing as npt
 from tuning_tables.category_names import comment_text
 from tuning_tables.passages.c_source import Ask
 from tuning_tables.passages.golden_pulses import WHOLE
+from tuning_tables.passages.golden_selections import golden_selections
 from tuning_tables.passages.passage_block import PassageBlockSize, passage_block_size
+from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.st_members import COUNTS, NUMBERS, arrays_of, counts_of, numbers_of, parts_of
+from tuning_tables.passages.st_select import CHOICE_ASKED, CHOICE_HEAD
 from tuning_tables.st_literals import int_array, is_portable, real, real_array
 from tuning_tables.st_tables import constants
 
@@ -106,18 +109,19 @@ AFTER: Final = """\
 
 RUN_ALL: Final = """\
 FUNCTION_BLOCK RETARDER_PASSAGES_SELF_TEST
-(* Call it once a cycle until Done: each call tests one table. *)
+(* Call it once a cycle until Done: each call tests one table, the last one the choice. *)
 VAR_INPUT
     Restart : BOOL; (* begin again *)
 END_VAR
 VAR_OUTPUT
     Done : BOOL;
-    Failed : INT; (* tables in which something is wrong; 0 when Done: all is as exported *)
-    FirstFailed : INT; (* the first of them; -1: none *)
+    Failed : INT; (* blocks in which something is wrong; 0 when Done: all is as exported *)
+    FirstFailed : INT; (* the first of them, $LAST the choice; -1: none *)
     FirstFault : INT; (* FirstFailed of that block *)
 END_VAR
 VAR
     Loader : RETARDER_LOAD_PASSAGES;
+    Choices : RETARDER_PASSAGES_CHOICES;
 $INSTANCES
     Table : RETARDER_PASSAGE_TABLE;
     Number : INT;
@@ -140,6 +144,10 @@ IF NOT Done THEN
     Loader(TableNo := Number, Table := Table);
     CASE Number OF
 $CASES
+        $LAST:
+            Choices();
+            Faults := Choices.Failed;
+            Fault := Choices.FirstFailed;
     END_CASE;
     IF Faults > 0 THEN
         IF Failed = 0 THEN
@@ -161,15 +169,16 @@ RUN_ONE: Final = """\
             Fault := Test_$NUMBER.FirstFailed;"""
 
 
-def self_test_blocks(tables: Sequence[PassageTable], ask: Ask) -> Iterator[str]:
+def self_test_blocks(book: PassageBook, ask: Ask) -> Iterator[str]:
     """The blocks of the self-test, in an order in which none is used before it is declared."""
-    size = passage_block_size(tables)
+    tables, size = book.tables, passage_block_size(book.tables)
     for number, table in enumerate(tables):
         yield _table_test(number, table, size, ask)
+    yield _choice_test(book)
     yield Template(RUN_ALL).substitute(
         INSTANCES="\n".join(f"    Test_{number} : RETARDER_PASSAGES_TEST_{number};" for number in range(len(tables))),
         CASES="\n".join(Template(RUN_ONE).substitute(NUMBER=number) for number in range(len(tables))),
-        LAST=len(tables) - 1,
+        LAST=len(tables),
     )
 
 
@@ -200,6 +209,28 @@ def _table_test(number: int, table: PassageTable, size: PassageBlockSize, ask: A
         **{f"{kind.upper()}_ROWS": len(rows) for kind, rows in kept.items()},
     )
     return "".join([head, constants(declarations), *statements, "END_FUNCTION_BLOCK\n"])
+
+
+def _choice_test(book: PassageBook) -> str:
+    """RETARDER_PASSAGES_CHOICES: golden choices by status and target."""
+    rows = golden_selections(book)
+    kept = [row for row in rows if is_portable(np.array([row.commanded_m_s]))[0]]
+    targets = [0.0 if row.status < 0 else book.tables[row.table].target_speed_m_s for row in kept]
+    columns = {
+        "Category": np.array([row.category for row in kept]),
+        "Axles": np.array([row.axles for row in kept]),
+        "Commanded": np.array([row.commanded_m_s for row in kept], dtype=np.float32),
+        "Status": np.array([int(row.status) for row in kept]),
+        "Target": np.array(targets, dtype=np.float32),
+    }
+    declarations, statements = [], []
+    for name, values in columns.items():
+        for part, _, piece in parts_of(values):
+            declarations.append((int_array if values.dtype == np.int64 else real_array)(f"{name}_{part}", piece))
+    for part, _, piece in parts_of(columns["Axles"]):
+        statements.append(_loop(len(piece), CHOICE_ASKED.replace("$PART", str(part))))
+    head = Template(CHOICE_HEAD).substitute(CHOICES=len(kept))
+    return "".join([head, constants(declarations), TEST_BEGIN, *statements, "END_FUNCTION_BLOCK\n"])
 
 
 def _same_constants(table: PassageTable) -> str:

@@ -12,13 +12,15 @@ from typing import Final
 
 import numpy as np
 
-from tuning_tables.category_names import category_names, comment_text
+from tuning_tables.category_names import comment_text
+from tuning_tables.cut_classes import exported_number
 from tuning_tables.errors import InvalidTable
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.passages.c_source import Ask
-from tuning_tables.passages.export_head import exported_numbers, origin_lines
+from tuning_tables.passages.export_head import category_texts, origin_lines
 from tuning_tables.passages.golden_passages import golden_passages
 from tuning_tables.passages.passage_block import PassageBlockSize, passage_block_size
+from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.regulator import SHORTEST_READING_S
 from tuning_tables.passages.st_blocks import (
@@ -32,6 +34,7 @@ from tuning_tables.passages.st_blocks import (
     WANTED,
 )
 from tuning_tables.passages.st_members import COUNTS, NUMBERS, arrays_of, counts_of, numbers_of, parts_of
+from tuning_tables.passages.st_select import SELECT_BODY, SELECT_DECLARATIONS
 from tuning_tables.passages.st_self_test import SELF_TEST_HEAD, self_test_blocks
 from tuning_tables.passages.st_tracker import BELIEVED, NEXT
 from tuning_tables.passages.tracker import LONGEST_WAIT_S
@@ -47,42 +50,41 @@ LARGEST_INT: Final = 32767
 
 
 def passage_st_files(
-    tables: Sequence[PassageTable], prefix: ExportPrefix = RETARDER, ask: Ask = golden_passages
+    book: PassageBook, prefix: ExportPrefix = RETARDER, ask: Ask = golden_passages
 ) -> Mapping[str, bytes]:
-    """The files by name, ASCII with LF: the tables with their blocks, and the self-test. Equal tables, equal bytes.
+    """The files by name, ASCII with LF: the tables with their blocks, and the self-test. Equal books, equal bytes.
 
     `ask`: what the self-test asks. Raises `InvalidTable` for a category without number, and for what 16 bits do not
     count.
     """
     files = {
-        TABLE_FILE: "\n".join([_head(tables), *_units(tables)]),
-        SELF_TEST_FILE: "\n".join([SELF_TEST_HEAD, *self_test_blocks(tables, ask)]),
+        TABLE_FILE: "\n".join([_head(book), *_units(book)]),
+        SELF_TEST_FILE: "\n".join([SELF_TEST_HEAD, *self_test_blocks(book, ask)]),
     }
     return {prefix.renamed(name): prefix.renamed(text).encode("ascii") for name, text in files.items()}
 
 
 def passage_st_unit_files(
-    tables: Sequence[PassageTable], prefix: ExportPrefix = RETARDER, ask: Ask = golden_passages
+    book: PassageBook, prefix: ExportPrefix = RETARDER, ask: Ask = golden_passages
 ) -> Mapping[str, bytes]:
     """The same units, a file each; by their names in the order in which they need each other. Raises as above."""
-    first, *others = _units(tables)
-    texts = ["\n".join([_head(tables), first]), *others, *self_test_blocks(tables, ask)]
+    first, *others = _units(book)
+    texts = ["\n".join([_head(book), first]), *others, *self_test_blocks(book, ask)]
     return unit_files([prefix.renamed(text) for text in texts])
 
 
-def _head(tables: Sequence[PassageTable]) -> str:
+def _head(book: PassageBook) -> str:
     return HEAD.substitute(
-        ORIGIN="\n".join(f"   {line}" for line in origin_lines(tables)),
+        ORIGIN="\n".join(f"   {line}" for line in origin_lines(book)),
         CATEGORIES="\n".join(
-            f"   {each.number:9d}  {each.macro}, in tables {comment_text(each.category)}".rstrip()
-            for each in category_names(exported_numbers(tables))
+            f"   {number:9d}  {macro}, in tables {name}".rstrip() for macro, number, name in category_texts(book)
         ),
     )
 
 
-def _units(tables: Sequence[PassageTable]) -> list[str]:
+def _units(book: PassageBook) -> list[str]:
     """Types and blocks, each a text of its own, none before one that it needs."""
-    size = passage_block_size(tables)
+    tables, size = book.tables, passage_block_size(book.tables)
     _require_countable(tables, size)
     numbers = {
         "HEARD": size.heard,
@@ -97,7 +99,19 @@ def _units(tables: Sequence[PassageTable]) -> list[str]:
     }
     blanks = {name: str(number) for name, number in numbers.items()}
     fixed = (TABLE_TYPE, TRACKER_TYPE, BEGIN, WANTED, NEXT, BELIEVED, AT_PULSE)
-    return [*(Template(text).substitute(blanks) for text in fixed), _load_block(tables, size, blanks)]
+    blocks = [*(Template(text).substitute(blanks) for text in fixed), _load_block(tables, size, blanks)]
+    return [*blocks, _select_block(tables, blanks)]
+
+
+def _select_block(tables: Sequence[PassageTable], blanks: Mapping[str, str]) -> str:
+    """RETARDER_SELECT_PASSAGES: what the choice has to know of every table, and the choice."""
+    declarations = [
+        int_array("CategoryOf", [exported_number(table) for table in tables]),
+        int_array("AxlesOf", [len(table.cut.axle_offsets_m) for table in tables]),
+        real_array("MassOf", [table.cut.mass_t for table in tables]),
+        real_array("TargetOf", [table.target_speed_m_s for table in tables]),
+    ]
+    return SELECT_DECLARATIONS + constants(declarations) + Template(SELECT_BODY).substitute(blanks)
 
 
 def _require_countable(tables: Sequence[PassageTable], size: PassageBlockSize) -> None:

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from tests.controller_code.passage_tables import passage_table, passage_tables
+from tests.controller_code.passage_tables import passage_book, passage_table
 from tests.controller_code.pulse_questions import ANSWER, BEGIN, ON, PAIR, WHOLE, Rows, asked, right
 from tests.controller_code.test_correction_code import CORRECTION
 from tests.tuning_tables.st.conftest import shaped_book
@@ -19,6 +19,7 @@ from tests.tuning_tables.st.test_syntax import KEYWORDS
 from tuning_tables import InvalidTable
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.passages.golden_passages import few_golden_passages, golden_passages
+from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.sensor_layout import DecidesOn
 from tuning_tables.passages.st_source import (
@@ -30,8 +31,9 @@ from tuning_tables.passages.st_source import (
 from tuning_tables.st_correction import correction_st_files
 from tuning_tables.st_source import st_files
 
-TABLES = passage_tables()
-FILES = passage_st_files(TABLES)
+BOOK = passage_book()
+TABLES = BOOK.tables
+FILES = passage_st_files(BOOK)
 QUESTIONS = 40_000
 MEMBERS = ("PASSAGE", "SPEED_M_S", "TIME_S", "RIVAL", "RIVALSPEED_M_S", "RIVALTIME_S")
 
@@ -129,7 +131,7 @@ def self_tested(text: str) -> tuple[int, int, int]:
 
 @pytest.mark.parametrize("ask", [golden_passages, few_golden_passages], ids=["full", "small"])
 def test_nothing_is_wrong_with_the_export(ask) -> None:  # type: ignore[no-untyped-def]
-    files = passage_st_files(TABLES, RETARDER, ask)
+    files = passage_st_files(BOOK, RETARDER, ask)
     assert self_tested(b"\n".join(files.values()).decode("ascii")) == (0, -1, -1)
 
 
@@ -149,6 +151,10 @@ CHANGES = (
     ("TransientEnded AND (", "("),
     ("Table.Deciding[Believer.Passage]", "Believer.Passage"),
     ("Tracker.Time_s > 1.000000000E+06", "Tracker.Time_s > 2.000000000E+06"),
+    ("MassOf[Number] >= Heaviest_t", "MassOf[Number] > Heaviest_t"),
+    ("TargetOf[Number] <= Commanded_m_s", "TargetOf[Number] < Commanded_m_s"),
+    ("Slower_m_s >= Commanded_m_s", "Slower_m_s > Commanded_m_s"),
+    ("(AxlesOf[Number] = Axles)", "(AxlesOf[Number] <= Axles)"),
     ("InitialStageOf : ARRAY[0..0] OF INT := [0]", "InitialStageOf : ARRAY[0..0] OF INT := [1]"),
 )
 
@@ -156,7 +162,7 @@ CHANGES = (
 @pytest.mark.parametrize(("before", "after"), CHANGES, ids=[f"{n}" for n in range(len(CHANGES))])
 def test_a_wrong_block_is_found_by_the_small_self_test(before: str, after: str) -> None:
     tables = (passage_table(places_m=(-4.0, 2.0, 5.5, 9.0), axles=(0.0, 1.85)),)
-    text = b"\n".join(passage_st_files(tables, RETARDER, few_golden_passages).values()).decode("ascii")
+    text = b"\n".join(passage_st_files(PassageBook(tables), RETARDER, few_golden_passages).values()).decode("ascii")
     assert before in text
     with suppress(Fault):  # a controller would trap
         assert self_tested(text.replace(before, after, 1))[0] > 0
@@ -164,7 +170,7 @@ def test_a_wrong_block_is_found_by_the_small_self_test(before: str, after: str) 
 
 def test_a_changed_constant_is_found() -> None:
     tables = (passage_table(places_m=(-4.0, 2.0, 9.0), stages=3, axles=(0.0, 1.85)),)
-    files = passage_st_files(tables, RETARDER, few_golden_passages)
+    files = passage_st_files(PassageBook(tables), RETARDER, few_golden_passages)
     text, test = (files[name].decode("ascii") for name in (TABLE_FILE, SELF_TEST_FILE))
     begin = text.index("VAR CONSTANT")
     literals = [part for part in text[begin:].split() if "E+" in part or "E-" in part][:20]
@@ -173,7 +179,7 @@ def test_a_changed_constant_is_found() -> None:
         number = np.float32(literal.strip("[],;"))
         other = f"{float(np.nextafter(number, np.float32(np.inf))):.9E}"
         changed = text[:begin] + text[begin:].replace(literal.strip("[],;"), other, 1)
-        assert self_tested(f"{changed}\n{test}")[0] == 1, literal
+        assert self_tested(f"{changed}\n{test}")[0] >= 1, literal
 
 
 def test_the_text_is_plain_and_fits_beside_all_others() -> None:
@@ -185,15 +191,15 @@ def test_the_text_is_plain_and_fits_beside_all_others() -> None:
     assert all(len(line) <= 120 and line == line.rstrip() and "$" not in line for line in lines)
     names = {node.text.decode("ascii").upper() for node in walk(parse(together)) if node.type == "identifier"}
     assert names & set(KEYWORDS.split()) == set()
-    longest = b"".join(passage_st_files(TABLES, ExportPrefix("TENLETTERS")).values())
+    longest = b"".join(passage_st_files(BOOK, ExportPrefix("TENLETTERS")).values())
     named = {node.text.decode("ascii") for node in walk(parse(longest)) if node.type == "identifier"}
     assert all(len(name) <= 32 for name in named), sorted(named, key=len)[-1]
     assert b"retarder_" not in longest.lower().replace(b"tenletters", b"")
 
 
 def test_a_file_each_unit_holds_the_same() -> None:
-    units = passage_st_unit_files(TABLES, RETARDER, few_golden_passages)
-    assert len(units) == 8 + len(TABLES) + 1
+    units = passage_st_unit_files(BOOK, RETARDER, few_golden_passages)
+    assert len(units) == 9 + len(TABLES) + 2
     assert self_tested(b"\n".join(units.values()).decode("ascii")) == (0, -1, -1)
 
 
@@ -202,4 +208,4 @@ def test_what_sixteen_bits_do_not_count_is_refused() -> None:
         passage_table(stages=31, axles=tuple(1.5 * n for n in range(12)), decides_on=DecidesOn.EVERY_AXLE),
     )
     with pytest.raises(InvalidTable, match="counts to 32767"):
-        passage_st_files(large)
+        passage_st_files(PassageBook(large))
