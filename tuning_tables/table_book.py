@@ -21,23 +21,29 @@ h = T1 - T0 exceeds it by at most h^2/8 max d2V/dT2 <= h^2 / (12 sqrt(3) T0) = 0
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
 from itertools import pairwise
+from typing import Final
 
 import numpy as np
 
 from tuning_tables.active_table import ActiveTable, active, between, interpolable
 from tuning_tables.book_categories import category_numbers
-from tuning_tables.cut_classes import candidates_by_class, exported_number, require_one_position
+from tuning_tables.book_classes import tables_by_class
+from tuning_tables.category_number import LARGEST_OWN, LEAST_OWN
 from tuning_tables.errors import InvalidTable
 from tuning_tables.line_order import UNIT_ROUNDOFF, rounding_bound, smallest_gap
 from tuning_tables.requirement import require_kind, require_tuple
 from tuning_tables.table import ControllerTable
 
 Line = tuple[float, ...]
+
+LEAST_FLOAT32: Final = float(np.finfo(np.float32).smallest_normal)
+LARGEST_FLOAT32: Final = float(np.finfo(np.float32).max)
 
 
 class Status(IntEnum):
@@ -82,7 +88,18 @@ class TableBook:
             raise InvalidTable("a book holds at least one table.")
         for index, table in enumerate(self.tables):
             require_kind(table, f"tables[{index}]", ControllerTable)
-        require_one_position(self.tables)
+        first, times = self.tables[0], Counter(table.id for table in self.tables)
+        for table in self.tables:
+            if position_of(table) != position_of(first):
+                raise InvalidTable(
+                    f"{table.id} is for the retarder {table.retarder.name}, {first.id} for {first.retarder.name}, "
+                    "or their zones or dead bands differ, but a book serves one position: export them apart."
+                )
+            if times[table.id] > 1:
+                raise InvalidTable(f"the id {table.id} is given to {times[table.id]} tables of the book.")
+            for key, value in (("cut.mass_t", table.cut.mass_t), ("target_speed_m_s", table.target_speed_m_s)):
+                if not LEAST_FLOAT32 <= value <= LARGEST_FLOAT32:
+                    raise InvalidTable(f"{key} of {table.id} is {value!r}, which float32 cannot hold.")
         category_numbers(self.tables)
         for slower, faster in self.neighbours():
             require_order_between(slower, faster)
@@ -94,7 +111,15 @@ class TableBook:
 
     def number_of(self, category: str) -> int:
         """What stands for a category of the book in C and Structured Text; `InvalidTable` for one without number."""
-        return exported_number({table.cut.category: table for table in reversed(self.tables)}[category])
+        number = self.category_numbers[category]
+        if number is None:
+            table = next(table for table in self.tables if table.cut.category == category)
+            raise InvalidTable(
+                f"{table.id} is for the category {category}, which has no number, but controller code chooses by "
+                f"number: give the table a cut.category_number in [{LEAST_OWN}, {LARGEST_OWN}] (CutId of "
+                "tuning_tables), then export it."
+            )
+        return number
 
     def exported_numbers(self) -> Mapping[str, int]:
         """`number_of` every category of the book; raises as that."""
@@ -112,7 +137,7 @@ class TableBook:
     @cached_property
     def by_class(self) -> Mapping[tuple[str, int], tuple[int, ...]]:
         """The candidates of every class (category, axles), classes in order of first appearance."""
-        return candidates_by_class(self.tables)
+        return tables_by_class(self.tables)
 
     @cached_property
     def most_stages(self) -> int:
@@ -149,6 +174,11 @@ class TableBook:
             for slower, faster in pairwise(numbers):
                 if interpolable(self.tables[slower], self.tables[faster]):
                     yield self.tables[slower], self.tables[faster]
+
+
+def position_of(table: ControllerTable) -> tuple[object, ...]:
+    """What makes the retarder position of a table; where the pass ends depends on the length of the cut as well."""
+    return table.retarder.name, table.retarder.zones_m, table.retarder.dead_band_kpa
 
 
 def require_order_between(slower: ControllerTable, faster: ControllerTable) -> None:

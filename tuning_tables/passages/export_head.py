@@ -5,7 +5,7 @@ from __future__ import annotations
 import zlib
 
 from tuning_tables.category_names import category_names, comment_text
-from tuning_tables.passages.passage_block import passage_block, passage_block_size
+from tuning_tables.passages.passage_block import exported_number, passage_block, passage_block_size
 from tuning_tables.passages.passage_book import PassageBook
 
 
@@ -27,7 +27,7 @@ def origin_lines(book: PassageBook) -> list[str]:
 
 def category_texts(book: PassageBook) -> list[tuple[str, int, str]]:
     """(macro, number, name for a comment) of every weight category, by number; `InvalidTable` for one without."""
-    names = category_names(book.exported_numbers())
+    names = category_names({table.cut.category: exported_number(table) for table in book.tables})
     return [(each.macro, each.number, comment_text(each.category)) for each in names]
 
 
@@ -37,7 +37,7 @@ def export_tag(book: PassageBook) -> int:
     Without the checksums of the blocks: a CRC over content and its own CRC is the same whatever the content is.
     """
     size = passage_block_size(book.tables)
-    content = "\n".join(["passage tables", *book.exported_numbers()]).encode("utf-8")
+    content = "\n".join(["passage tables", *dict.fromkeys(table.cut.category for table in book.tables)]).encode("utf-8")
     return zlib.crc32(
         content + b"".join(passage_block(table, size)[:-1].astype("<u4").tobytes() for table in book.tables)
     )

@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from tuning_tables.category_number import KNOWN_NUMBERS, LARGEST_OWN
+from tuning_tables.passages.passage_block import exported_number
 from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.table_book import Status
 
@@ -37,7 +38,7 @@ def golden_selections(book: PassageBook) -> tuple[GoldenSelection, ...]:
     category, axles = next(iter(book.by_class))
     target = np.float32(book.tables[0].target_speed_m_s)
     found.append(_answered(book, category, max(axles for _, axles in book.by_class) + 1, target))
-    lacking = sorted({0, 6, LARGEST_OWN, *KNOWN_NUMBERS.values()} - {*book.category_numbers.values()})
+    lacking = sorted({0, 6, LARGEST_OWN, *KNOWN_NUMBERS.values()} - {table.cut.number for table in book.tables})
     found += [GoldenSelection(number, axles, target, Status.NO_CLASS, len(book.tables)) for number in lacking]
     return tuple(found)
 
@@ -45,4 +46,5 @@ def golden_selections(book: PassageBook) -> tuple[GoldenSelection, ...]:
 def _answered(book: PassageBook, category: str, axles: int, commanded_m_s: np.float32) -> GoldenSelection:
     choice = book.choose(category, axles, float(commanded_m_s))
     number = len(book.tables) if choice.number is None else choice.number
-    return GoldenSelection(book.exported_numbers()[category], axles, commanded_m_s, choice.status, number)
+    category_number = next(exported_number(table) for table in book.tables if table.cut.category == category)
+    return GoldenSelection(category_number, axles, commanded_m_s, choice.status, number)

@@ -19,7 +19,8 @@ from typing import Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.cut_classes import exported_number
+from tuning_tables.category_number import LARGEST_OWN, LEAST_OWN
+from tuning_tables.errors import InvalidTable
 from tuning_tables.passages.passage_table import PassageTable
 
 Floats: TypeAlias = npt.NDArray[np.float32]
@@ -84,7 +85,7 @@ def finite_speeds(table: PassageTable) -> Floats:
 
 
 def passage_block(table: PassageTable, size: PassageBlockSize) -> npt.NDArray[np.uint32]:
-    """The words of one table, uint32 (size.words,), checksum last; `InvalidTable` if its category has no number."""
+    """The words of one table, uint32 (size.words,), checksum last; raises as `exported_number`."""
     heard, passages, stages = len(table.heard_path_m), len(table.passages), len(table.pressure_kpa)
     category = exported_number(table)
     words = np.zeros(size.words, dtype=np.uint32)
@@ -101,3 +102,14 @@ def passage_block(table: PassageTable, size: PassageBlockSize) -> npt.NDArray[np
     words[-1] = zlib.crc32(words[:-1].astype("<u4").tobytes())
     words.setflags(write=False)
     return words
+
+
+def exported_number(table: PassageTable) -> int:
+    """What stands for the table's weight category in C and Structured Text; `InvalidTable` for one without number."""
+    if table.cut.number is None:
+        raise InvalidTable(
+            f"{table.id} is for the category {table.cut.category}, which has no number, but controller code chooses by "
+            f"number: give the table a cut.category_number in [{LEAST_OWN}, {LARGEST_OWN}] (CutId of tuning_tables), "
+            "then export it."
+        )
+    return table.cut.number

@@ -13,13 +13,12 @@ from typing import Final
 import numpy as np
 
 from tuning_tables.category_names import comment_text
-from tuning_tables.cut_classes import exported_number
 from tuning_tables.errors import InvalidTable
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.passages.c_source import Ask
 from tuning_tables.passages.export_head import category_texts, origin_lines
 from tuning_tables.passages.golden_passages import golden_passages
-from tuning_tables.passages.passage_block import PassageBlockSize, passage_block_size
+from tuning_tables.passages.passage_block import PassageBlockSize, exported_number, passage_block_size
 from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.regulator import SHORTEST_READING_S
