@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from plant_models.errors import PlantError, require, require_between
 from plant_models.frozen_arrays import frozen_arrays
+from plant_models.pressure_regulator import connected, converted_kpa, flowed_kpa, flowing_time_s, mismatch_kpa, relay
 from plant_models.valve_drive import ValveDrive, wait_after_command
 
 MAX_SWITCHINGS = 40
@@ -97,22 +98,17 @@ class Pneumatics:
         pieces: list[tuple[float, float, float, float]] = []
         time, pressure, drive = 0.0, start_kpa, self.valves(touch_kpa)
         for _ in range(MAX_SWITCHINGS):
-            error = target_kpa - pressure
-            if abs(error) <= self.dead_band_kpa * (1 + 1e-12):
-                pieces.append((time, pressure, pressure, 1.0))
+            sign = relay(mismatch_kpa(target_kpa, converted_kpa(pressure)), drive.band_kpa)
+            pieces.append((time, pressure, *connected(0, pressure, drive)))
+            if sign == 0:
                 return PressureHistory(*(np.array(column) for column in zip(*pieces, strict=True)))
             delay = wait_after_command(pressure, 0.0, pressure, target_kpa, drive)
-            if error > 0:
-                asymptote, constant, until = drive.supply_kpa, drive.fill_s, target_kpa - drive.band_kpa
-            else:
-                asymptote, constant, until = drive.exhaust_kpa, drive.exhaust_s, target_kpa + drive.band_kpa
-            pieces.append((time, pressure, pressure, 1.0))
-            pieces.append((time + delay, pressure, asymptote, constant))
-            open_s = constant * np.log((asymptote - pressure) / (asymptote - until)) + self.closing_delay_s
+            link, edge = connected(sign, pressure, drive), target_kpa - sign * drive.band_kpa
+            pieces.append((time + delay, pressure, *link))
+            open_s = flowing_time_s(pressure, link, edge) + self.closing_delay_s
             time += delay + open_s
-            pressure = float(asymptote + (pressure - asymptote) * np.exp(-open_s / constant))
-            if self.closing_delay_s == 0.0:
-                pressure = until  # exact, so that equal commands end at equal pressures
+            # Exact where the valve shuts at once, so that equal commands end at equal pressures.
+            pressure = edge if self.closing_delay_s == 0.0 else flowed_kpa(pressure, link, open_s)
         raise PlantError(
             f"pneumatics: closing_delay_s is {self.closing_delay_s:g}; with a dead band of ±{self.dead_band_kpa:g} kPa "
             f"the stage regulator hunts around {target_kpa:g} kPa: shorten the delay or widen the band"

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
+from plant_models.pads import overpressure_kpa
 from plant_models.pneumatics import PressureHistory
 from plant_models.retarder import RetarderPosition
 
@@ -51,6 +52,11 @@ class Actuator:
         """The mode in which `stage` rests when it was reached from below."""
         return int(np.argmax(self.mode_stage == stage))
 
+    def change(self, mode: int, stage: int) -> tuple[int, int]:
+        """(mode at the end, duration in sampling periods) of the command of `stage` from `mode`; (mode, 0) if there."""
+        chain = int(self.command[mode, stage])
+        return (mode, 0) if chain < 0 else (int(self.chain_mode[chain]), int(self.chain_samples[chain]))
+
 
 class RegulatorClock(Protocol):
     """How a regulator counts time: radar and point sensors are both one."""
@@ -66,11 +72,17 @@ class RegulatorClock(Protocol):
         ...
 
 
+def reaches_valves_s(decided_s: float, computing_delay_s: float) -> float:
+    """Computing delay: the time at which a command decided at `decided_s` is on the valves' wires."""
+    return decided_s + computing_delay_s
+
+
 def stage_locked_actuator(position: RetarderPosition, clock: RegulatorClock, top_stage: int, substeps: int) -> Actuator:
     """Modes and chains of `position` with its stages 0 … `top_stage` under the regulator's `clock`."""
     touch = position.force.touch_pressure_kpa
     modes = resting_modes(position, top_stage)
     command = np.full((len(modes), top_stage + 1), -1)
+    delay_s = reaches_valves_s(0.0, clock.computing_delay_s)
     ends: list[int] = []
     samples: list[int] = []
     histories: list[tuple[float, PressureHistory]] = []
@@ -82,11 +94,11 @@ def stage_locked_actuator(position: RetarderPosition, clock: RegulatorClock, top
             command[mode, wanted] = len(ends)
             distance = [abs(p - history.end_kpa) if k == wanted else math.inf for k, p in modes]
             ends.append(int(np.argmin(distance)))
-            busy_s = clock.computing_delay_s + history.duration_s
+            busy_s = delay_s + history.duration_s
             samples.append(max(1, math.ceil(busy_s / clock.sample_period_s - 1e-9)))
             histories.append((pressure, history))
     count = max(samples) * substeps
-    edges = np.arange(count + 1) * (clock.sample_period_s / substeps) - clock.computing_delay_s
+    edges = np.arange(count + 1) * (clock.sample_period_s / substeps) - delay_s
     overpressure = np.empty((len(ends), count))
     for chain, (pressure, history) in enumerate(histories):
         before = max(0.0, pressure - touch) * np.minimum(edges, 0.0)
@@ -96,7 +108,7 @@ def stage_locked_actuator(position: RetarderPosition, clock: RegulatorClock, top
     return Actuator(
         mode_stage=np.array([k for k, _ in modes]),
         mode_pressure_kpa=pressures,
-        mode_overpressure_kpa=np.maximum(0.0, pressures - touch),
+        mode_overpressure_kpa=overpressure_kpa(pressures, touch),
         command=command,
         chain_mode=np.array(ends),
         chain_samples=np.array(samples),

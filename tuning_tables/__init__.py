@@ -20,7 +20,7 @@ from tuning_tables.errors import (
 )
 from tuning_tables.estimator import Estimator, begin, unseen_samples
 from tuning_tables.figures import Predicted, Validated, ValidRange
-from tuning_tables.hdf5_file import read_book, write_book
+from tuning_tables.hdf5_file import read_any_book, read_book, write_book
 from tuning_tables.json_file import from_json, read_json, to_json, write_json
 from tuning_tables.passages.passage_row import PassageRow
 from tuning_tables.passages.passage_table import PassageTable
@@ -76,6 +76,7 @@ __all__ = [
     "from_json",
     "from_table_json",
     "passage_schema",
+    "read_any_book",
     "read_book",
     "read_json",
     "read_table",

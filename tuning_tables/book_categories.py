@@ -4,12 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
+from typing import Protocol
 
 from tuning_tables.errors import InvalidTable
-from tuning_tables.table import ControllerTable
+from tuning_tables.provenance import CutId
 
 
-def category_numbers(tables: Sequence[ControllerTable]) -> Mapping[str, int | None]:
+class OfClass(Protocol):
+    """A table of either kind: it has a name and is for a class of cuts."""
+
+    @property
+    def id(self) -> str:
+        """Name of the table."""
+        ...
+
+    @property
+    def cut(self) -> CutId:
+        """The class of cuts."""
+        ...
+
+
+def category_numbers(tables: Sequence[OfClass]) -> Mapping[str, int | None]:
     """The number of every category, None for one without, in order of first appearance.
 
     Raises `InvalidTable` where a category has two numbers, or a number two categories.

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
-import numpy.typing as npt
 
 from tuning_tables.approach import Approach
-from tuning_tables.book_columns import Columns
+from tuning_tables.book_layout import Columns
 from tuning_tables.errors import InvalidTable
 from tuning_tables.estimator import Estimator
-from tuning_tables.figures import Predicted, Validated, ValidRange
-from tuning_tables.provenance import CutId, Generator, RetarderId
+from tuning_tables.figures import ValidRange
+from tuning_tables.row_parts import (
+    Row,
+    cut_of,
+    generator_of,
+    pair_of,
+    predicted_of,
+    retarder_of,
+    text_of,
+    validated_of,
+)
 from tuning_tables.stage import Stage
 from tuning_tables.table import ControllerTable
 
@@ -26,49 +31,31 @@ def tables_of(columns: Columns) -> tuple[ControllerTable, ...]:
     return tuple(_table({name: column[row] for name, column in columns.items()}) for row in range(len(columns["id"])))
 
 
-def _table(row: Mapping[str, Any]) -> ControllerTable:
+def _table(row: Row) -> ControllerTable:
     """The table in one row of every column."""
-    p_stall = float(row["predicted_p_stall"])
     return ControllerTable(
-        id=_text(row["id"]),
-        created=_text(row["created"]),
-        generator=Generator(_text(row["generator_name"]), _text(row["generator_version"]), _text(row["config_sha256"])),
-        retarder=RetarderId(
-            _text(row["retarder"]),
-            tuple((float(begin), float(end)) for begin, end in row["zones_m"] if not np.isnan(begin)),
-            float(row["exit_m"]),
-            float(row["dead_band_kpa"]),
-        ),
-        cut=CutId(
-            _text(row["category"]),
-            float(row["mass_t"]),
-            _present(row["axle_offsets_m"]),
-            int(row.get("category_number", 0)) or None,
-        ),
+        id=text_of(row["id"]),
+        created=text_of(row["created"]),
+        generator=generator_of(row),
+        retarder=retarder_of(row),
+        cut=cut_of(row),
         target_speed_m_s=float(row["target_speed_m_s"]),
         degree=int(row["degree"]),
         stages=_stages(row),
-        valid=ValidRange(_pair(row["valid_s_m"]), _pair(row["valid_v_m_s"])),
-        predicted=Predicted(
-            float(row["predicted_rms_m_s"]),
-            float(row["predicted_bias_m_s"]),
-            float(row["predicted_p_overspeed"]),
-            float(row["predicted_switchings"]),
-            None if np.isnan(p_stall) else p_stall,
-            int(row.get("predicted_passes", 0)) or None,
-        ),
-        validated=_validated(row),
+        valid=ValidRange(pair_of(row["valid_s_m"]), pair_of(row["valid_v_m_s"])),
+        predicted=predicted_of(row),
+        validated=validated_of(row),
         estimator=_estimator(row),
         approach=_approach(row),
     )
 
 
-def _approach(row: Mapping[str, Any]) -> Approach | None:
+def _approach(row: Row) -> Approach | None:
     length_m = float(row.get("approach_length_m", np.nan))
     return None if np.isnan(length_m) else Approach(length_m, int(row["approach_entrance_stage"]))
 
 
-def _estimator(row: Mapping[str, Any]) -> Estimator | None:
+def _estimator(row: Row) -> Estimator | None:
     breaks = int(row.get("estimator_breaks", 0))
     if breaks == 0:
         return None
@@ -88,7 +75,7 @@ def _estimator(row: Mapping[str, Any]) -> Estimator | None:
     )
 
 
-def _stages(row: Mapping[str, Any]) -> tuple[Stage, ...]:
+def _stages(row: Row) -> tuple[Stage, ...]:
     n_stages, degree = int(row["n_stages"]), int(row["degree"])
     most_stages, _, most_powers = row["coefficients"].shape
     if not (2 <= n_stages <= most_stages and 0 <= degree < most_powers):
@@ -99,22 +86,3 @@ def _stages(row: Mapping[str, Any]) -> tuple[Stage, ...]:
         for k in range(n_stages)
     ]
     return tuple(Stage(k, float(row["pressure_kpa"][k]), lower, upper) for k, (lower, upper) in enumerate(lines))
-
-
-def _validated(row: Mapping[str, Any]) -> Validated | None:
-    passes = int(row["validated_passes"])
-    if passes == 0:
-        return None
-    return Validated(passes, float(row["validated_rms_m_s"]), _pair(row["validated_rms_ci95_m_s"]))
-
-
-def _present(values: npt.NDArray[np.float64]) -> tuple[float, ...]:
-    return tuple(values[~np.isnan(values)].tolist())
-
-
-def _pair(values: npt.NDArray[np.float64]) -> tuple[float, float]:
-    return float(values[0]), float(values[1])
-
-
-def _text(value: bytes) -> str:
-    return value.decode("utf-8")

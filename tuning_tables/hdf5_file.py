@@ -1,9 +1,9 @@
 """A book of tables as an HDF5 file, readable by h5py and xarray without this project. Needs h5py, and only when called.
 
 Root attributes: format "retarder-book", schema_version, tool_version, config_sha256, payload_sha256 (see `payload`),
-complete = 1. The schema version is 3 where a table has an approach, else 2 where one has an estimator, else 1.
-Datasets: the columns of that version (`book_columns`), each with attributes `units` and `meaning`, chunked in one piece
-with a fletcher32 checksum.
+complete = 1. The schema version is 4 of tables for point sensors; of tables with lines it is 3 where one has an
+approach, else 2 where one has an estimator, else 1. Datasets: the columns of that version (`book_kinds`), each with
+attributes `units` and `meaning`, chunked in one piece with a fletcher32 checksum.
 Each axis is a dimension scale of its own name, numbered from 0.
 
 Two attributes are for xarray: `_Encoding` has it decode text (fixed-length UTF-8), `coordinates` names what tells the
@@ -27,10 +27,19 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from tuning_tables.any_table import AnyTable
 from tuning_tables.atomic_file import replacing
-from tuning_tables.book_columns import VERSIONS, Column, Columns, Layout, columns_of, layout_of, layout_stored
-from tuning_tables.book_rows import tables_of
-from tuning_tables.errors import DamagedTable, InvalidTable, NewerVersion, OlderVersion, TableError, UnknownFormat
+from tuning_tables.book_kinds import VERSIONS, book_layout, stored_layout, stored_tables
+from tuning_tables.book_layout import Column, Columns, Layout
+from tuning_tables.errors import (
+    DamagedTable,
+    InvalidTable,
+    NewerVersion,
+    OlderVersion,
+    OtherDecisions,
+    TableError,
+    UnknownFormat,
+)
 from tuning_tables.excerpt import excerpt
 from tuning_tables.payload import payload_sha256
 from tuning_tables.provenance import Generator
@@ -55,16 +64,15 @@ COORDINATES: Final = ("id", "category", "mass_t", "target_speed_m_s")
 _ATTRIBUTES: Final = ("complete", "config_sha256", "format", "payload_sha256", "schema_version", "tool_version")
 
 
-def write_book(
-    tables: Sequence[ControllerTable], path: str | os.PathLike[str], generator: Generator | None = None
-) -> None:
-    """Write `tables` to the file at `path`, complete or not at all.
+def write_book(tables: Sequence[AnyTable], path: str | os.PathLike[str], generator: Generator | None = None) -> None:
+    """Write `tables`, all of one kind, to the file at `path`, complete or not at all.
 
     `generator`: the run that bound the book, by default the generator of the tables, which must then be one for all.
-    Raises `InvalidTable` for no tables, an id given twice, generators that differ; `OSError`, also where the file does
-    not read back as it was written; `ImportError` without h5py.
+    Raises `InvalidTable` for no tables, an id given twice, generators that differ, tables of two kinds; `OSError`, also
+    where the file does not read back as it was written; `ImportError` without h5py.
     """
-    arrays, layout = columns_of(tables), layout_of(tables)
+    layout = book_layout(tables)
+    arrays = layout.arrays_of(tables)
     origin = generator or _common_generator(tables)
     attributes: dict[str, str | int] = {
         "complete": 1,
@@ -81,7 +89,19 @@ def write_book(
 
 
 def read_book(path: str | os.PathLike[str]) -> tuple[ControllerTable, ...]:
-    """The tables in the file at `path`, in the order in which they were written.
+    """The tables in the file at `path`, which must have lines, else `OtherDecisions`; raises as `read_any_book`."""
+    tables = read_any_book(path)
+    lines = tuple(table for table in tables if isinstance(table, ControllerTable))
+    if len(lines) < len(tables):
+        raise OtherDecisions(
+            f"{os.fspath(path)}: the tables of this book decide at sensor passages and have no lines over the path, "
+            f"which are needed here; give a book of schema version {VERSIONS[0]} to {VERSIONS[-2]}."
+        )
+    return lines
+
+
+def read_any_book(path: str | os.PathLike[str]) -> tuple[AnyTable, ...]:
+    """The tables in the file at `path`, all of one kind, in the order in which they were written.
 
     Raises `UnknownFormat` for a file that is no HDF5 or holds another sealed format, `NewerVersion`, `OlderVersion` for
     a book of another version, `DamagedTable` for everything that is no complete, unchanged book, unsealed HDF5 files
@@ -90,8 +110,8 @@ def read_book(path: str | os.PathLike[str]) -> tuple[ControllerTable, ...]:
     source = os.fspath(path)
     arrays = _stored_arrays(path)
     try:
-        tables = tables_of(arrays)
-        _require_as_written(arrays, columns_of(tables), source)
+        tables = stored_tables(arrays)
+        _require_as_written(arrays, book_layout(tables).arrays_of(tables), source)
     except InvalidTable as invalid:
         raise DamagedTable(f"{source}: {excerpt(str(invalid), LONGEST_REASON)}") from invalid
     except UnicodeDecodeError as fault:
@@ -152,7 +172,7 @@ def _require_read_back(part: Path, arrays: Columns) -> None:
         raise OSError(errno.EIO, f"what was written does not read back ({reason})")
 
 
-def _common_generator(tables: Sequence[ControllerTable]) -> Generator:
+def _common_generator(tables: Sequence[AnyTable]) -> Generator:
     generators = {table.generator for table in tables}
     if len(generators) > 1:
         raise InvalidTable("the tables have different generators; name the one that binds the book.")
@@ -228,7 +248,7 @@ def _require_lengths(column: Column, arrays: Columns, layout: Layout, source: st
 
 
 def _require_as_written(found: Columns, written: Columns, source: str) -> None:
-    """Padding, lengths of text and missing lines are as `columns_of` makes them; values then are, too."""
+    """Padding, lengths of text and missing lines are as the export makes them; values then are, too."""
     if found.keys() != written.keys():
         surplus = ", ".join(sorted(found.keys() - written.keys()))
         raise DamagedTable(f"{source}: it holds {surplus}, but no table has anything there; export it again.")
@@ -249,4 +269,4 @@ def _layout(file: h5py.File, found: str | int | None, version: str | int | None,
         raise NewerVersion(f"{source}: schema_version is {version}, this reader knows {KNOWN}; update it.")
     if version < VERSIONS[0]:
         raise OlderVersion(f"{source}: schema_version is {version}, not {KNOWN}; export the book again.")
-    return layout_stored(version, set(file))
+    return stored_layout(version, set(file))

@@ -15,7 +15,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tuning_tables.book_columns import Columns, Layout
+from tuning_tables.book_layout import Columns, Layout
 from tuning_tables.canonical import canonical_json
 
 

@@ -9,6 +9,8 @@ from typing import Final
 from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.aim.golden_aims import GoldenAims, few_golden_aims, golden_aims
 from tuning_tables.golden_vectors import GoldenVectors, few_golden_vectors, golden_vectors
+from tuning_tables.passages.golden_passages import GoldenPassages, few_golden_passages, golden_passages
+from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.table import ControllerTable
 
 
@@ -16,7 +18,7 @@ from tuning_tables.table import ControllerTable
 class SelfTestSize:
     """`vectors`: the readings of a table that are decided, and their answers.
 
-    `aims`: likewise the questions that an aim table is asked.
+    `aims`: likewise the questions that an aim table is asked; `passages`: the rows of a table for point sensors.
 
     `line_checks`: of the choices between two tables, how many the Structured Text compares by every coefficient; it
     has no checksum that could do so. Choices and tracks of estimators are the same in every size.
@@ -25,7 +27,8 @@ class SelfTestSize:
     vectors: Callable[[ControllerTable], GoldenVectors]
     line_checks: int
     aims: Callable[[AimTable], GoldenAims]
+    passages: Callable[[PassageTable], GoldenPassages]
 
 
-FULL: Final = SelfTestSize(golden_vectors, 16, golden_aims)
-SMALL: Final = SelfTestSize(few_golden_vectors, 2, few_golden_aims)
+FULL: Final = SelfTestSize(golden_vectors, 16, golden_aims, golden_passages)
+SMALL: Final = SelfTestSize(few_golden_vectors, 2, few_golden_aims, few_golden_passages)

@@ -22,18 +22,18 @@ h = T1 - T0 exceeds it by at most h^2/8 max d2V/dT2 <= h^2 / (12 sqrt(3) T0) = 0
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
 from itertools import pairwise
-from types import MappingProxyType
 from typing import Final
 
 import numpy as np
 
 from tuning_tables.active_table import ActiveTable, active, between, interpolable
 from tuning_tables.book_categories import category_numbers
+from tuning_tables.book_classes import tables_by_class
 from tuning_tables.category_number import LARGEST_OWN, LEAST_OWN
 from tuning_tables.errors import InvalidTable
 from tuning_tables.line_order import UNIT_ROUNDOFF, rounding_bound, smallest_gap
@@ -137,10 +137,7 @@ class TableBook:
     @cached_property
     def by_class(self) -> Mapping[tuple[str, int], tuple[int, ...]]:
         """The candidates of every class (category, axles), classes in order of first appearance."""
-        members: dict[tuple[str, int], list[int]] = {}
-        for number, table in enumerate(self.tables):
-            members.setdefault((table.cut.category, len(table.cut.axle_offsets_m)), []).append(number)
-        return MappingProxyType({each: self._heaviest_by_target(numbers) for each, numbers in members.items()})
+        return tables_by_class(self.tables)
 
     @cached_property
     def most_stages(self) -> int:
@@ -170,14 +167,6 @@ class TableBook:
             return Choice(Status.SLOWER, active(slower), (numbers[place],))
         faster = self.tables[numbers[place + 1]]
         return Choice(Status.BETWEEN, between(slower, faster, target), (numbers[place], numbers[place + 1]))
-
-    def _heaviest_by_target(self, numbers: Sequence[int]) -> tuple[int, ...]:
-        heaviest = max(np.float32(self.tables[number].cut.mass_t) for number in numbers)
-        by_target: dict[float, int] = {}
-        for number in numbers:
-            if np.float32(self.tables[number].cut.mass_t) == heaviest:
-                by_target.setdefault(float(np.float32(self.tables[number].target_speed_m_s)), number)
-        return tuple(by_target[target] for target in sorted(by_target))
 
     def neighbours(self) -> Iterator[tuple[ControllerTable, ControllerTable]]:
         """All pairs of tables that lines may be taken between."""

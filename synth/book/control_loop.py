@@ -50,6 +50,11 @@ class ControlLoop:
     pressure: tuple[tuple[int, PressureCycle], ...]
 
     @property
+    def stages(self) -> int:
+        """Number of stages K + 1."""
+        return len(self.table.stages)
+
+    @property
     def difference(self) -> ResponseDifference:
         """How far the response and the trace are apart."""
         return response_difference(self.response, self.trace)

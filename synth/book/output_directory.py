@@ -23,11 +23,12 @@ SUMMARY = "summary.json"
 
 @dataclass(frozen=True)
 class Layout:
-    """What a command leaves in its directory: `folders`, and a summary of this `form`; `noun`: the command."""
+    """What a command leaves in its directory: `folders`, and a `summary` of this `form`; `noun`: the command."""
 
     noun: str
     form: str
     folders: tuple[str, ...]
+    summary: str = SUMMARY
 
 
 TUNE_LAYOUT: Final = Layout("tune", "retarder-summary", ("tables", "c", "plots"))
@@ -38,9 +39,10 @@ SENSITIVITY_LAYOUT: Final = Layout("sensitivity", "sensitivity-summary", ("plots
 REPLAY_LAYOUT: Final = Layout("replay", "replay-summary", ("plots",))
 RETUNE_LAYOUT: Final = Layout("retune", "retune-summary", ("tables", "plots"))
 IDENTIFY_LAYOUT: Final = Layout("identify", "identify-summary", ("types", "plots"))
+WATCH_LAYOUT: Final = Layout("watch", "watch-summary", (), "watch.json")
 LAYOUTS: Final = (
     TUNE_LAYOUT, AIM_LAYOUT, TRAINS_LAYOUT, COMPUTER_LAYOUT, SENSITIVITY_LAYOUT, REPLAY_LAYOUT, RETUNE_LAYOUT,
-    IDENTIFY_LAYOUT,
+    IDENTIFY_LAYOUT, WATCH_LAYOUT,
 )  # fmt: skip
 LEFTOVER = re.compile(r"\..+\.[0-9a-f]{16}\.part")
 PICTURES = re.compile(
@@ -74,7 +76,7 @@ CSV_MARKS = (b"record,key,", b"\r\ntext,generator.name,retarder-synth,")
 def output_directory(path: Path, layout: Layout = TUNE_LAYOUT) -> Iterator[Path]:
     """Make and hold `path` for one command; `InputError` if it cannot be written or another command holds it.
 
-    Within: no summary.json, which would not belong to what is written next, and no leftovers of a killed command.
+    Within: no summary, which would not belong to what is written next, and no leftovers of a killed command.
     """
     require_no_sweep(path)
     require_no_other(path, layout)
@@ -93,7 +95,7 @@ def output_directory(path: Path, layout: Layout = TUNE_LAYOUT) -> Iterator[Path]
         for folder in layout.folders:
             make_directory(path / folder)
         remove_leftovers(path)
-        (path / SUMMARY).unlink(missing_ok=True)
+        (path / layout.summary).unlink(missing_ok=True)
         with faults_naming(path):
             os.fsync(descriptor)
         yield path
@@ -110,14 +112,19 @@ def require_no_sweep(path: Path) -> None:
 
 def require_no_other(path: Path, layout: Layout) -> None:
     """`InputError` if a command of another layout has left its results in `path`."""
-    try:
-        document = json.loads((path / SUMMARY).read_bytes())
-    except (OSError, ValueError, RecursionError):
-        return
-    form = document.get("format") if isinstance(document, dict) else None
+    forms = {name: form_of(path / name) for name in {each.summary for each in LAYOUTS}}
     for other in LAYOUTS:
-        if form == other.form != layout.form:
+        if forms[other.summary] == other.form != layout.form:
             raise InputError(f"{path}: it holds the results of '{other.noun}'; give another directory by -o")
+
+
+def form_of(summary: Path) -> object:
+    """What a summary says that it is; None for a file that says nothing."""
+    try:
+        document = json.loads(summary.read_bytes())
+    except (OSError, ValueError, RecursionError):
+        return None
+    return document.get("format") if isinstance(document, dict) else None
 
 
 def make_directory(path: Path) -> None:

@@ -3,52 +3,51 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from synth.cli import LIMITS_MISSED, OK, say
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from synth.book.control_loop import ControlLoop
+    from synth.book.passage_control_loop import PassageControlLoop
+    from synth.configuration.resolved_config import ResolvedConfig
+    from tuning_tables.any_table import AnyTable
+
+    AnyLoop: TypeAlias = ControlLoop | PassageControlLoop
 
 DOCUMENT = "loops.json"
 
 
 def loop_command(source: Path, output: Path, config_path: Path | None, as_json: bool) -> int:
     """Draw and tell the loops of the tables in `source`; 1 if python-control and the simulator do not agree on one."""
-    from synth.book.forms.table_file import file_stem, read_tables
+    from synth.book.forms.table_file import file_stem
     from synth.book.output_directory import make_directory
-    from synth.book.validate_table import plant_for
     from synth.cli.interrupt import interruptible
     from synth.configuration.config_file import BUILT_IN, load_config
     from synth.kernels.cache import guarded
 
     config = load_config(config_path)
-    tables = [table for file in read_tables(source, directory_allowed=True) for table in file.tables]
-    plants = [plant_for(table, config, str(config_path or BUILT_IN)) for table in tables]
+    closings = [closing(table, config, str(config_path or BUILT_IN)) for table in any_tables(source)]
     make_directory(output)
-    from synth.book.control_loop import control_loop, loop_document
     from synth.book.summary import plain
     from synth.present.plots.figure_file import save_figure
-    from synth.present.plots.loop_cycle import loop_cycle
-    from synth.present.plots.loop_portrait import loop_portrait
-    from synth.present.plots.loop_response import loop_response
     from tuning_tables.atomic_file import write_atomically
 
-    loops: list[ControlLoop] = []
+    loops: list[AnyLoop] = []
     files: list[str] = []
     with interruptible(output):
-        for table, (label, plant) in zip(tables, plants, strict=True):
-            loop = guarded(control_loop, table, label, plant)
-            figures = {"response": loop_response(loop), "portrait": loop_portrait(loop)}
-            for i, hunting in enumerate(loop.hunting):
-                figures["cycle" if i == 0 else f"cycle-{i + 1}"] = loop_cycle(loop, hunting)
-            for name, figure in figures.items():
-                files += map(str, save_figure(figure, output, f"{file_stem(table)}-{name}"))
+        for close in closings:
+            loop = guarded(close)
+            for name, figure in pictures(loop).items():
+                files += map(str, save_figure(figure, output, f"{file_stem(loop.table)}-{name}"))
             loops.append(loop)
-            say(f"{table.id}: {sentence(loop)}")
-        document = plain({"loops": [loop_document(loop) for loop in loops], "files": files})
+            say(f"{loop.table.id}: {sentence(loop)}")
+        document = plain({"loops": [document_of(loop) for loop in loops], "files": files})
         text = json.dumps(document, indent=1, ensure_ascii=False)
         write_atomically(output / DOCUMENT, f"{text}\n".encode())
     if as_json:
@@ -59,15 +58,72 @@ def loop_command(source: Path, output: Path, config_path: Path | None, as_json: 
     return OK if all(loop.agrees for loop in loops) else LIMITS_MISSED
 
 
-def sentence(loop: ControlLoop) -> str:
+def any_tables(source: Path) -> list[AnyTable]:
+    """The tables at `source`, of both kinds of decision; faults as `read_tables` has them."""
+    from synth.book.forms.table_file import read_table_file, read_tables, table_files
+    from tuning_tables import OtherDecisions
+    from tuning_tables.passages.json_file import read_passage_json
+
+    files = table_files(source) if source.is_dir() else [source]
+    if not files:
+        read_tables(source, directory_allowed=True)
+    tables: list[AnyTable] = []
+    for file in files:
+        try:
+            tables += read_table_file(file).tables
+        except OtherDecisions:
+            tables.append(read_passage_json(file))
+    return tables
+
+
+def closing(table: AnyTable, config: ResolvedConfig, source: str) -> Callable[[], AnyLoop]:
+    """What closes the loop of `table` with the plant of `config` that it is for; `InputError` if there is none."""
+    from synth.book.control_loop import control_loop
+    from synth.book.passage_class import passage_class
+    from synth.book.passage_control_loop import passage_control_loop
+    from synth.book.validate_table import plant_for
+    from tuning_tables.passages.passage_table import PassageTable
+
+    if isinstance(table, PassageTable):
+        return partial(passage_control_loop, table, passage_class(table, config, source))
+    return partial(control_loop, table, *plant_for(table, config, source))
+
+
+def pictures(loop: AnyLoop) -> dict[str, Figure]:
+    """The pictures of a loop by the end of their name."""
+    from synth.book.passage_control_loop import PassageControlLoop
+    from synth.present.plots.loop_cycle import loop_cycle
+    from synth.present.plots.loop_portrait import loop_portrait
+    from synth.present.plots.loop_response import loop_response
+    from synth.present.plots.loop_structure import loop_structure
+
+    if isinstance(loop, PassageControlLoop):
+        return {"response": loop_response(loop), "structure": loop_structure(loop)}
+    figures = {"response": loop_response(loop), "portrait": loop_portrait(loop)}
+    if loop.table.estimator is None:
+        figures["structure"] = loop_structure(loop)
+    for i, hunting in enumerate(loop.hunting):
+        figures["cycle" if i == 0 else f"cycle-{i + 1}"] = loop_cycle(loop, hunting)
+    return figures
+
+
+def document_of(loop: AnyLoop) -> dict[str, Any]:
+    """A loop for programs."""
+    from synth.book.control_loop import loop_document
+    from synth.book.passage_control_loop import PassageControlLoop, passage_loop_document
+
+    return passage_loop_document(loop) if isinstance(loop, PassageControlLoop) else loop_document(loop)
+
+
+def sentence(loop: AnyLoop) -> str:
     """How far response and trace are apart, in words."""
     found = loop.difference
-    part = "" if found.parted_s is None else f" until {found.parted_s:.2f} s, when a sample on a line parts them"
+    parted = "" if found.parted_s is None else f" until {found.parted_s:.2f} s, when a speed on a line parts them"
     word = "agree" if loop.agrees else "DO NOT agree"
-    return f"python-control and the simulator {word}: at most {1e3 * abs(found.largest_m_s):.3f} mm/s apart{part}"
+    return f"python-control and the simulator {word}: at most {1e3 * abs(found.largest_m_s):.3f} mm/s apart{parted}"
 
 
-def print_loops(loops: Sequence[ControlLoop]) -> None:
+def print_loops(loops: Sequence[AnyLoop]) -> None:
     """A table with one row for each loop, and what its columns mean."""
     from rich import box
     from rich.table import Table
@@ -99,13 +155,17 @@ def print_loops(loops: Sequence[ControlLoop]) -> None:
     )
     if any(loop.difference.parted_s is not None for loop in loops):
         console.print(
-            "*: up to a sample whose speed lay on a line. Rounding decides there; from then on these are two passes.",
+            "*: up to a decision at a speed on a line. Rounding decides there; from then on these are two passes.",
             soft_wrap=True,
         )
 
 
-def cycles(loop: ControlLoop) -> str:
-    """The predicted limit cycles in one line."""
+def cycles(loop: AnyLoop) -> str:
+    """The predicted limit cycles in one line; a regulator that decides at passages has no period to hunt with."""
+    from synth.book.passage_control_loop import PassageControlLoop
+
+    if isinstance(loop, PassageControlLoop):
+        return "–"
     if loop.pressure:
         stages = ", ".join(str(stage) for stage, _ in loop.pressure)
         return f"the pressure regulator itself hunts at stage {stages}"

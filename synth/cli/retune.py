@@ -20,27 +20,28 @@ def retune_command(
     from synth.book.output_directory import RETUNE_LAYOUT, output_directory
     from synth.cli.interrupt import interruptible
     from synth.cli.progress import Progress
-    from synth.configuration.config_file import BUILT_IN, load_config
     from synth.kernels.cache import guarded
+    from synth.yard.measured_passes.config_source import config_source
     from synth.yard.measured_passes.loaded_passes import loaded_passes
 
-    config, source = load_config(config_path), str(config_path or BUILT_IN)
+    source = config_source(config_path)
+    config = source.resolved()
     given = None if tables is None else read_tables(tables)[0].tables
     require_date()
-    passes = loaded_passes(logs, mapping, config, source, lambda sentence: say(f"warning: {sentence}"))
+    passes = loaded_passes(logs, mapping, config, source.place, lambda sentence: say(f"warning: {sentence}"))
     from synth.present.measured_outputs import write_retune
     from synth.yard.measured_passes.retune.retune import RetuneOrder, retune
     from synth.yard.measured_passes.retune.retune_summary import retune_sentences
     from synth.yard.measured_passes.retune.tuned_books import tables_by_case
 
-    old = None if given is None else tables_by_case(given, config, source)
+    old = None if given is None else tables_by_case(given, config, source.place)
     with (
         output_directory(output, RETUNE_LAYOUT) as directory,
         interruptible(directory),
         Progress(len(config.problems())) as progress,
     ):
         order = RetuneOrder(old, creation_time(), threads=available())
-        found = guarded(retune, passes, config, order, progress.note)
+        found = guarded(retune, passes, source, order, progress.note)
         write_retune(found, directory)
     if as_json:
         sys.stdout.write((output / "summary.json").read_text(encoding="utf-8"))

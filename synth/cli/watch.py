@@ -27,7 +27,7 @@ class AskedWatch:
 def watch_command(asked: AskedWatch, as_json: bool) -> int:
     """Watch the passes in the logs; 1 if something has drifted."""
     from synth.book.creation_time import creation_time, require_date
-    from synth.book.output_directory import make_directory
+    from synth.book.output_directory import WATCH_LAYOUT, output_directory
     from synth.cli.interrupt import interruptible
     from synth.cli.processors import available
     from synth.configuration.config_file import BUILT_IN, load_config
@@ -43,17 +43,16 @@ def watch_command(asked: AskedWatch, as_json: bool) -> int:
 
     passes = loaded(asked.logs)
     reference = loaded(asked.reference) if asked.reference else None
-    make_directory(asked.output)
     from synth.present.watch_outputs import write_watch
     from synth.yard.measured_passes.drift.baseline import configured, of_reference
     from synth.yard.measured_passes.drift.watch import watch
 
-    with interruptible(asked.output):
+    with output_directory(asked.output, WATCH_LAYOUT) as directory, interruptible(directory, "watch.json"):
         values, slope_key = guarded(configured, passes, config.parameters)
         if reference is not None:
-            values = of_reference(reference, config.parameters, values, available())
+            values = guarded(of_reference, reference, config.parameters, values, available())
         found = guarded(watch, passes, values, slope_key, available())
-        written = write_watch(found, config, creation_time(), asked.output)
+        written = write_watch(found, config, creation_time(), directory)
     if as_json:
         print(written.json, end="")
     else:

@@ -29,6 +29,7 @@ OF_REPLAY = (
 )
 OF_RETUNE = (
     "A sensor that shows too much is not corrected by new tables: see sensor.bias_m_s among the numbers.",
+    "A table counts as better where p passes Holm's rule over all cases at 2.5 %; the interval is of its case alone.",
     "New tables are made for the passes measured. After a repair of valves or sensors measure anew.",
 )
 
@@ -75,7 +76,8 @@ def figures_of(found: Retuned) -> tuple[Figures, ...]:
     """Cases and numbers."""
     cases = [
         (f"{g.label} to {g.target_m_s:g} m/s", f"{g.old_rms_m_s:.4f}", f"{g.new_rms_m_s:.4f}",
-         f"{g.ratio:.3f} [{g.ratio_ci95[0]:.3f}, {g.ratio_ci95[1]:.3f}]", "new" if g.better else "kept: within noise")
+         f"{g.ratio:.3f} [{g.ratio_ci95[0]:.3f}, {g.ratio_ci95[1]:.3f}]", f"{g.p_value:.2g}",
+         "new" if g in found.changed else "kept: within noise")
         for g in found.gains
     ]  # fmt: skip
     numbers = []
@@ -84,7 +86,7 @@ def figures_of(found: Retuned) -> tuple[Figures, ...]:
         value = one.value(float(found.estimate.u[i]))
         numbers.append((one.key, f"{one.value(0.0):.4g}", f"{value:.4g}", f"{low:.4g} to {high:.4g}", one.unit))
     return (
-        Figures("rms by case, m/s", ("case", "before", "after", "ratio [95 %]", "table"), cases),
+        Figures("rms by case, m/s", ("case", "before", "after", "ratio [95 %]", "p, no better", "table"), cases),
         Figures("Numbers", ("key", "configured", "identified", "95 % interval", "unit"), numbers),
     )
 

@@ -10,6 +10,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from synth.book.output_directory import WATCH_LAYOUT
 from synth.book.summary import plain
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.present.plots.control_charts import control_charts
@@ -20,6 +21,9 @@ from synth.present.report.markup import Markup, element, head_row, joined, table
 from synth.yard.measured_passes.drift.charts import RUN_LENGTH
 from synth.yard.measured_passes.drift.watch import Drift, Watch
 from tuning_tables.atomic_file import write_atomically
+
+VERSION = 1
+"""Of `watch.json`."""
 
 CAPTION = (
     "Upper panel: the sum of each chart; the dashed line is its limit. Below: exponentially weighted mean of exit "
@@ -50,7 +54,7 @@ def write_watch(found: Watch, config: ResolvedConfig, created: str, directory: P
     write_atomically(directory / "charts.csv", charts_csv(found).encode())
     save_picture(picture, directory)
     write_atomically(directory / "report.html", document(stamp, box, sections).encode())
-    write_atomically(directory / "watch.json", text.encode())
+    write_atomically(directory / WATCH_LAYOUT.summary, text.encode())
     return WrittenWatch(text, "\n".join(sentences))
 
 
@@ -131,8 +135,9 @@ def watch_document(found: Watch, config_sha256: str, sentences: tuple[str, ...])
         ],
     }  # fmt: skip
     return {
-        "passes": len(found.passes), "limit": found.charts.limit, "run_length": RUN_LENGTH, "config": config_sha256,
-        "verdict": list(sentences), "drift": told, "charts": charts,
+        "format": WATCH_LAYOUT.form, "version": VERSION, "passes": len(found.passes), "config": config_sha256,
+        "limit": found.charts.limit, "run_length": RUN_LENGTH, "verdict": list(sentences), "drift": told,
+        "charts": charts,
     }  # fmt: skip
 
 

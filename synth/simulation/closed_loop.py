@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant, path_breaks_m, path_coefficients
+from plant_models.pads import overpressure_kpa
 from plant_models.stage_regulator import stage_locked_actuator
 from synth.kernels.loop import closed_loop as kernel
 from synth.kernels.loop import closed_loop_lanes as lanes
@@ -63,7 +64,7 @@ class ClosedLoop:
         """max(0, P_k − P0) of the stages, shape (K + 1,)."""
         position = self.plant.position
         nominal = np.asarray(position.stage_pressures_kpa[: self.stages])
-        return np.maximum(0.0, nominal - position.force.touch_pressure_kpa)
+        return overpressure_kpa(nominal, position.force.touch_pressure_kpa)
 
     def draws(self, passes: RandomPasses, cut_factor: float | None = None) -> kernel.Draws:
         """What `passes` mean for this plant; `cut_factor` fixes ξ_cut (the friction is known), for all cuts alike."""
@@ -73,8 +74,6 @@ class ClosedLoop:
             factor, weight = np.full(len(passes), cut_factor, dtype=np.float64), np.ones(len(passes))
         factor, path_z = fixed(factor, np.float64), fixed(passes.path_z, np.float32)
         resistance = self.resistance_n_kn(passes.resistance_u)
-        rows = np.empty((len(passes), len(self.path.gravity_m_s2)))
-        kernel.brake_rows(self.path, factor, path_z, rows)
         return kernel.Draws(
             factor,
             fixed(resistance, np.float64),
@@ -82,7 +81,7 @@ class ClosedLoop:
             fixed(passes.phase_u * plant.sensor.sample_period_s, np.float64),
             path_z,
             fixed(passes.noise_z, np.float32),
-            fixed(rows, np.float64),
+            pad_slopes(self.path, factor, path_z),
             fixed(weight, np.float64),
         )
 
@@ -123,6 +122,17 @@ class ClosedLoop:
         exits = empty_exits(len(draws.cut_factor))
         count = kernel.run_passes(self.path, self.drive, self.sensor, law, draws, exits, events)
         return sample_of(exits, draws), events[:count]
+
+
+def pad_slopes(path: kernel.Path, factor: NDArray[np.float64], path_z: NDArray[np.float32]) -> NDArray[np.float64]:
+    """Slope of the pads in every cell of n passes, (n, C): deceleration by one kPa of overpressure, m/s² per kPa.
+
+    Its mean depends on the number N of braked wheel pairs (`path_coefficients`); `factor` (n,) is ξ_cut, `path_z` the
+    standard normal numbers of η.
+    """
+    slopes = np.empty((len(factor), len(path.gravity_m_s2)))
+    kernel.brake_rows(path, factor, path_z, slopes)
+    return fixed(slopes, np.float64)
 
 
 def empty_exits(passes: int) -> kernel.Exits:

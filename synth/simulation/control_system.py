@@ -114,9 +114,7 @@ def regulator_system(plant: Plant, controller: Controller) -> NonlinearIOSystem:
             return [stage]
         measured = regulator.measure(float(u[1]), 0.0, sensor)
         if law.coefficients.shape[0] > 0:
-            seen = stage, float(u[0]), estimated(x, u, measured)[0]
-            step = regulator.table_decision(law.coefficients, law.has_line, law.valid, law.entrance_stage, *seen)
-            wanted = min(max(stage + step, 0), top)
+            wanted = stage_by_table(law, top, stage, float(u[0]), estimated(x, u, measured)[0])
         else:
             ahead = measured + law.lead_s * filtered_slope(x, measured)
             lines = (law.lower, law.upper, law.start_m, law.spacing_m, law.multi_step)
@@ -127,8 +125,7 @@ def regulator_system(plant: Plant, controller: Controller) -> NonlinearIOSystem:
         [wanted] = stage_wanted(t, x, u, params)
         mode, locked = int(x[MODE]), int(x[LOCKED])
         if wanted != int(x[STAGE]):
-            chain = actuator.command[mode, wanted]
-            mode, locked = int(actuator.chain_mode[chain]), int(actuator.chain_samples[chain])
+            mode, locked = actuator.change(mode, wanted)
         measured = regulator.measure(float(u[1]), 0.0, sensor)
         known = estimated(x, u, measured)[1].tolist()
         return [wanted, mode, max(0, locked - 1), filtered_slope(x, measured), measured, *known]
@@ -142,6 +139,12 @@ def regulator_system(plant: Plant, controller: Controller) -> NonlinearIOSystem:
         dt=period,
         name="regulator",
     )
+
+
+def stage_by_table(law: regulator.Rule, top: int, stage: int, s_m: float, v_m_s: float) -> int:
+    """Digital controller of a radar: the stage wanted at (s, v) while `stage` is in force, one away at most."""
+    step = regulator.table_decision(law.coefficients, law.has_line, law.valid, law.entrance_stage, stage, s_m, v_m_s)
+    return min(max(stage + int(step), 0), top)
 
 
 def regulator_start(plant: Plant, controller: Controller) -> NDArray[np.float64]:

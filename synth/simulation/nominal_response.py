@@ -21,11 +21,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models import Plant, PressureHistory
+from plant_models import Plant, RetarderPosition
 from plant_models.frozen_arrays import frozen_arrays
+from plant_models.pads import overpressure_kpa
+from plant_models.stage_regulator import reaches_valves_s
 from synth.kernels.loop import closed_loop as kernel
 from synth.simulation.closed_loop import Controller
 from synth.simulation.control_system import nominal_loop, regulated_actuator, regulator_start, regulator_system
+from synth.simulation.impulse_train import ImpulseTrain, held, resting_train
 
 if TYPE_CHECKING:
     from control import InterconnectedSystem
@@ -79,7 +82,7 @@ def nominal_response(plant: Plant, controller: Controller, entry_speed_m_s: floa
     memory, over_kpa = regulator_start(plant, controller), 0.0
     initial_kpa = rests_kpa[int(memory[1])]
     start_speed = plant.start_speed_m_s(np.array(entry_speed_m_s), plant.resistance.mean_n_per_kn)
-    schedule = [(-np.inf, CLOSED)]
+    schedule = resting_train(CLOSED)
     points = played(loop, np.array([plant.start_m, float(start_speed), initial_kpa]), 0.0, phase_s, schedule)
     stages = [np.full(points.shape[1], memory[0])]
     parts, sample = [points], 0
@@ -88,10 +91,8 @@ def nominal_response(plant: Plant, controller: Controller, entry_speed_m_s: floa
         seen = [*state[:2], over_kpa]
         wanted = int(regulator.output(now, memory, seen)[0])
         if wanted != int(memory[0]):
-            history = position.pneumatics.respond(
-                rests_kpa[int(memory[1])], position.stage_pressures_kpa[wanted], position.force.touch_pressure_kpa
-            )
-            schedule = valve_schedule(history, now + sensor.computing_delay_s)
+            command_s = reaches_valves_s(now, sensor.computing_delay_s)
+            schedule = valve_schedule(position, rests_kpa[int(memory[1])], wanted, command_s)
         memory = regulator.dynamics(now, memory, seen)
         sample += 1
         points = played(loop, state, now, phase_s + sample * sensor.sample_period_s, schedule)
@@ -103,14 +104,20 @@ def nominal_response(plant: Plant, controller: Controller, entry_speed_m_s: floa
 
 def mean_overpressure_kpa(points: NDArray[np.float64], touch_kpa: float) -> float:
     """Mean of max(0, P − P0) over the time that `points` (4, n) of a response cover."""
-    time, over = points[0], np.maximum(0.0, points[3] - touch_kpa)
+    time, over = points[0], overpressure_kpa(points[3], touch_kpa)
     return float(np.trapezoid(over, time) / (time[-1] - time[0]))
 
 
-def valve_schedule(history: PressureHistory, command_s: float) -> list[tuple[float, float]]:
-    """(instant in s, valve position from then on) after a command that reaches the valves at `command_s`."""
+def valve_schedule(position: RetarderPosition, rests_kpa: float, stage: int, command_s: float) -> ImpulseTrain:
+    """The valve positions, each held until the next, after a command of `stage` that reaches them at `command_s`.
+
+    `rests_kpa`: the pressure at which the drive rests when the command is given.
+    """
+    history = position.pneumatics.respond(
+        rests_kpa, position.stage_pressures_kpa[stage], position.force.touch_pressure_kpa
+    )
     valves = np.sign(history.asymptotes_kpa - history.pressures_kpa)
-    return [(-np.inf, CLOSED), *zip(command_s + history.starts_s, valves, strict=True)]
+    return (*resting_train(CLOSED), *zip((command_s + history.starts_s).tolist(), valves.tolist(), strict=True))
 
 
 def played(
@@ -118,7 +125,7 @@ def played(
     state: NDArray[np.float64],
     start_s: float,
     end_s: float,
-    schedule: list[tuple[float, float]],
+    schedule: ImpulseTrain,
 ) -> NDArray[np.float64]:
     """Response from `start_s` to `end_s`, columns (time, s, v, p), one stretch of constant valve position at a time."""
     import control
@@ -128,7 +135,7 @@ def played(
     for start, stop in pairwise(cuts):
         if stop - start < 1e-12:
             continue
-        valve = next(position for t, position in reversed(schedule) if t <= start)
+        valve = held(schedule, start)
         times = np.linspace(start, stop, max(2, math.ceil((stop - start) / OUTPUT_STEP_S) + 1))
         response = control.input_output_response(
             loop, times, np.full((1, times.size), valve), state, solve_ivp_kwargs=SOLVER

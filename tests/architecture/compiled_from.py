@@ -6,6 +6,7 @@ import ast
 import inspect
 import sys
 from collections.abc import Iterable, Iterator
+from functools import cache
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 from typing import Any
@@ -66,16 +67,21 @@ def names_in(code: CodeType) -> Iterator[str]:
 
 def definer(name: str, module: ModuleType) -> Path:
     """The file that gives the constant `name` its value: that of `module`, or where it was imported from."""
-    try:
-        tree = ast.parse(inspect.getsource(module))
-    except (OSError, TypeError):
-        return file_of(module)
-    for node in tree.body:
+    for node in top_of(module):
         if isinstance(node, ast.ImportFrom) and node.module and not node.level:
             for alias in node.names:
                 if (alias.asname or alias.name) == name and (source := sys.modules.get(node.module)) is not None:
                     return definer(alias.name, source)
     return file_of(module)
+
+
+@cache
+def top_of(module: ModuleType) -> tuple[ast.stmt, ...]:
+    """The statements at the top of its source; none where it has no source."""
+    try:
+        return tuple(ast.parse(inspect.getsource(module)).body)
+    except (OSError, TypeError):
+        return ()
 
 
 def is_ours(file: Path) -> bool:

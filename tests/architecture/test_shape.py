@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping
+from functools import cache
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
@@ -60,14 +62,46 @@ def test_files_are_short() -> None:
     assert len(list(long_files({"a.py": "x = 1\n" * (MOST_LINES + 1), "b.py": "x = 1\n" * MOST_LINES}))) == 1
 
 
-def measured(text: str) -> Iterator[tuple[str, int, int]]:
-    """(name, lines, arguments but `self` and `cls`) of every function in a source."""
-    for node in ast.walk(ast.parse(text)):
-        if isinstance(node, Function):
-            given = node.args
-            names = [each.arg for each in (*given.posonlyargs, *given.args, *given.kwonlyargs)]
-            arguments = [name for name in names if name not in ("self", "cls")]
-            yield node.name, (node.end_lineno or node.lineno) - node.lineno + 1, len(arguments)
+class Source(NamedTuple):
+    """What the rules ask of a source: (name, lines, arguments but `self` and `cls`) of its functions, every module or
+    name in a module that it imports, inside functions too, and its dataclasses."""
+
+    functions: tuple[tuple[str, int, int], ...]
+    imported: tuple[str, ...]
+    dataclasses: tuple[ast.ClassDef, ...]
+
+
+@cache
+def read(text: str) -> Source:
+    """A source, parsed once for all rules: that takes far longer than to judge it."""
+    nodes = list(ast.walk(ast.parse(text)))
+    return Source(
+        tuple(measured(node) for node in nodes if isinstance(node, Function)),
+        tuple(name for node in nodes for name in imported(node)),
+        tuple(node for node in nodes if isinstance(node, ast.ClassDef) and is_dataclass(node)),
+    )
+
+
+def measured(node: Function) -> tuple[str, int, int]:
+    """Name, lines, and number of arguments but `self` and `cls`."""
+    given = node.args
+    names = [each.arg for each in (*given.posonlyargs, *given.args, *given.kwonlyargs)]
+    arguments = [name for name in names if name not in ("self", "cls")]
+    return node.name, (node.end_lineno or node.lineno) - node.lineno + 1, len(arguments)
+
+
+def imported(node: ast.AST) -> Iterator[str]:
+    """The modules, and names in modules, that a statement imports."""
+    if isinstance(node, ast.ImportFrom) and node.module:
+        yield node.module
+        yield from (f"{node.module}.{alias.name}" for alias in node.names)
+    elif isinstance(node, ast.Import):
+        yield from (alias.name for alias in node.names)
+
+
+def is_dataclass(node: ast.ClassDef) -> bool:
+    """Whether a class is decorated as one."""
+    return any(part.startswith("dataclass") for part in decorators(node))
 
 
 def large_functions(sources: Mapping[str, str]) -> Iterator[str]:
@@ -76,7 +110,7 @@ def large_functions(sources: Mapping[str, str]) -> Iterator[str]:
         kernel = "/kernels/" in name
         lines_allowed = KERNEL_FUNCTION_LINES if kernel else MOST_FUNCTION_LINES
         arguments_allowed = KERNEL_ARGUMENTS if kernel else MOST_ARGUMENTS
-        for function, lines, arguments in measured(text):
+        for function, lines, arguments in read(text).functions:
             if lines > lines_allowed:
                 yield f"{name}: {function} has {lines} lines"
             if arguments > arguments_allowed:
@@ -88,7 +122,7 @@ def test_functions_are_short_and_take_few_arguments() -> None:
 
 
 def test_the_ceilings_of_kernels_are_no_higher_than_they_must_be() -> None:
-    kernels = [found for name, text in SOURCES.items() if "/kernels/" in name for found in measured(text)]
+    kernels = [found for name, text in SOURCES.items() if "/kernels/" in name for found in read(text).functions]
     assert max(lines for _, lines, _ in kernels) == KERNEL_FUNCTION_LINES
     assert max(arguments for _, _, arguments in kernels) == KERNEL_ARGUMENTS
 
@@ -115,16 +149,6 @@ def module_of(name: str) -> str:
     return name.removesuffix(".py").replace("/", ".").removesuffix(".__init__")
 
 
-def imported(text: str) -> Iterator[str]:
-    """Every module, or name in a module, that a source imports, inside functions too."""
-    for node in ast.walk(ast.parse(text)):
-        if isinstance(node, ast.ImportFrom) and node.module:
-            yield node.module
-            yield from (f"{node.module}.{alias.name}" for alias in node.names)
-        elif isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-
-
 def reached(sources: Mapping[str, str], roots: set[str]) -> set[str]:
     """The modules that importing `roots` and running all their functions would import."""
     modules = {module_of(name): text for name, text in sources.items()}
@@ -134,13 +158,13 @@ def reached(sources: Mapping[str, str], roots: set[str]) -> set[str]:
         if module in seen or module not in modules:
             continue
         seen.add(module)
-        waiting += [module.rpartition(".")[0], *imported(modules[module])]
+        waiting += [module.rpartition(".")[0], *read(modules[module]).imported]
     return seen
 
 
 def circles(sources: Mapping[str, str]) -> list[list[str]]:
     """Groups of modules that import each other, be it inside functions or for types alone."""
-    modules = {module_of(name): set(imported(text)) for name, text in sources.items()}
+    modules = {module_of(name): set(read(text).imported) for name, text in sources.items()}
     graph = {module: known & modules.keys() - {module} for module, known in modules.items()}
     while leaves := [module for module, known in graph.items() if not known]:
         for module in leaves:
@@ -207,6 +231,7 @@ def array_words(sources: Mapping[str, str]) -> set[str]:
     aliases = {
         ast.unparse(node.targets[0])
         for text in sources.values()
+        if "NDArray" in text
         for node in ast.parse(text).body
         if isinstance(node, ast.Assign) and "NDArray" in set(type_names(node.value))
     }
@@ -217,9 +242,7 @@ def with_arrays(sources: Mapping[str, str]) -> Iterator[tuple[str, ast.ClassDef,
     """(file, class, fields that are arrays) of every dataclass that has some."""
     words = array_words(sources)
     for name, text in sources.items():
-        for node in ast.walk(ast.parse(text)):
-            if not isinstance(node, ast.ClassDef) or not any(part.startswith("dataclass") for part in decorators(node)):
-                continue
+        for node in read(text).dataclasses:
             if fields := array_fields(node, words):
                 yield name, node, fields
 

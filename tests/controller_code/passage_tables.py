@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from tests.controller_code.sample_book import FOUR_AXLES, SIX_AXLES
 from tuning_tables import CutId, Generator, Predicted, RetarderId
 from tuning_tables.approach import Approach
+from tuning_tables.passages.passage_book import PassageBook
 from tuning_tables.passages.passage_row import PassageRow
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.plausible_motion import PlausibleMotion
@@ -72,26 +74,31 @@ def switching_rows(target_m_s: float, stages: int, left_m: float, index: int) ->
 
 
 def odd_table() -> PassageTable:
-    """Two stages, one sensor, extreme numbers: 0, the smallest and the largest float32, narrow limits."""
+    """Two stages and extreme numbers: 0, the smallest and the largest float32, wide and narrow limits."""
     largest, smallest = float(np.finfo(np.float32).max), float(np.finfo(np.float32).smallest_subnormal)
     made = passage_table(
-        "odd", "Т", FOUR_AXLES, 3.0, 2, (-0.5, 1.0, 1.3), DecidesOn.EVERY_AXLE,
+        "odd", "Т", FOUR_AXLES, 3.0, 2, BUNCH, DecidesOn.EVERY_AXLE,
         PlausibleMotion((0.01, 40.0), 10.0, 0.001, 0.9, 0.0), 1,
     )  # fmt: skip
     speeds = [((0.0,), (0.0,)), ((smallest,), (largest,)), ((math.inf,), (-math.inf,))]
     rows = tuple(
         PassageRow(row.sensor, row.axle, row.path_m, speeds[index % 3]) for index, row in enumerate(made.passages)
     )
-    fields = {name: getattr(made, name) for name in made.__dataclass_fields__ if made.__dataclass_fields__[name].init}
-    return PassageTable(**{**fields, "passages": rows})
+    return replace(made, passages=rows)
+
+
+def passage_book() -> PassageBook:
+    """The book of all of them."""
+    return PassageBook(passage_tables())
 
 
 def passage_tables() -> tuple[PassageTable, ...]:
-    """Two targets of a class on the first axle; another on every axle; many stages; odd numbers."""
+    """Two targets of a class on the first axle, another one lighter; one on every axle; many stages; odd numbers."""
     return (
         passage_table("to 2.5"),
+        replace(passage_table("shadow", target_m_s=3.0), cut=CutId("Л", 22.0, FOUR_AXLES)),
         passage_table("to 3.5", target_m_s=3.5, entrance_stage=4),
         passage_table("every axle", "С", SIX_AXLES, 2.0, decides_on=DecidesOn.EVERY_AXLE, entrance_stage=0),
-        passage_table("many stages", "СТ", stages=9, places_m=(-12.0, -3.0, 8.0)),
+        passage_table("many stages", "СТ", stages=9),
         odd_table(),
     )

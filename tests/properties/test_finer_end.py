@@ -43,7 +43,7 @@ def test_an_end_that_is_no_finer_changes_nothing(
     """Handed over at any node, below any ceiling: the same exits, stalls and commands, but for what is negligible."""
     chain = small().quantised() if staircase else small()
     lines = random_lines(chain, seed)
-    end = finer_end(chain, lines, length_m, 1)
+    end = finer_end(chain, lines.at_decisions(chain.decisions), length_m, 1)
     found, whole = density_by_end(chain, lines, end), exit_density(chain, lines)
     assert end.node == len(chain.drive_m_s2) - max(1, round(length_m / chain.grid.path_step_m))
     np.testing.assert_allclose(found.probability, whole.probability, atol=2e-6)
@@ -61,7 +61,9 @@ def test_a_finer_end_of_the_whole_path_is_a_finer_chain(small: Callable[[], Chai
     lines = random_lines(chain, 7)
     finer = replace(chain.resolution, speed_step_m_s=chain.resolution.speed_step_m_s / times)
     wanted = exit_density(chain_of(chain.plant, finer, chain.scenarios), lines).rms_m_s(2.5)
-    found = density_by_end(chain, lines, finer_end(chain, lines, 100.0, times)).rms_m_s(2.5)
+    found = density_by_end(chain, lines, finer_end(chain, lines.at_decisions(chain.decisions), 100.0, times)).rms_m_s(
+        2.5
+    )
     print(times, found / wanted - 1.0, exit_density(chain, lines).rms_m_s(2.5) / wanted - 1.0)
     assert found == pytest.approx(wanted, rel=2e-4)
 
@@ -73,7 +75,7 @@ def test_landings_between_energies_are_those_of_the_motion(small: Callable[[], C
     """
     plant, resolution = small().plant, small().resolution
     chain = chain_of(plant, replace(resolution, speed_step_m_s=0.015), small().scenarios)
-    end = finer_end(chain, random_lines(chain, 3), 4.0, 3)
+    end = finer_end(chain, random_lines(chain, 3).at_decisions(chain.decisions), 4.0, 3)
     finer = replace(chain.resolution, speed_step_m_s=0.005)
     wanted = chain_of(chain.plant, finer, chain.scenarios).landings
     count = end.chain.landings.points - 40

@@ -16,7 +16,7 @@ from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import Chain, persistent_chain
 from synth.solver.evaluation import Evaluation
 from synth.solver.policy_density import density_and_occupancy
-from synth.solver.polish import polish, whitening
+from synth.solver.polish import Evaluate, polish, whitening
 from synth.solver.polynomial_fit import Fit, fit_lines
 from synth.solver.polynomial_lines import MINIMUM_GAP_M_S, PolynomialLines, gap_of, opened
 from synth.solver.switching_lines import SwitchingLines
@@ -40,7 +40,7 @@ def fit(design: Chain) -> Fit:
     return fit_lines(solution, occupancy.samples, 3)
 
 
-def evaluate_on(design: Chain) -> Callable[[SwitchingLines], tuple[float, np.ndarray, np.ndarray]]:
+def evaluate_on(design: Chain) -> Evaluate:
     return lambda lines: Evaluation(design, Aim(TARGET_M_S, CRITERION)).gradient(lines)
 
 

@@ -15,7 +15,7 @@ def test_the_same_lines_are_evaluated_once() -> None:
 
     def evaluate(lines: SwitchingLines) -> Gradient:
         asked.append(lines)
-        return float(len(asked)), lines.lower_m_s, lines.upper_m_s
+        return float(len(asked)), lines.lower_m_s
 
     def lines(lower: float, upper: float) -> SwitchingLines:
         return SwitchingLines(np.zeros(1), np.full((2, 1), lower), np.full((2, 1), upper))

@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 import json
+import math
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from synth.configuration.config_file import load_config
+from tests.synth.conftest import GONDOLA_OFFSETS_M
 from tests.system.conftest import Command
+from tuning_tables import Approach, CutId, Generator, Predicted, RetarderId
+from tuning_tables.passages.json_file import write_passage_json
+from tuning_tables.passages.passage_row import PassageRow
+from tuning_tables.passages.passage_table import PassageTable
+from tuning_tables.passages.plausible_motion import PlausibleMotion
+from tuning_tables.passages.sensor_layout import DecidesOn, SensorLayout
 
 pytest.importorskip("control")
 
@@ -26,7 +37,7 @@ def test_a_directory_gives_pictures_figures_and_a_table(
     assert [each["id"] for each in document["loops"]] == [TABLE, "gondola-4-30t-to-1.5-m-s"]
     names = {path.name for path in out.iterdir()} - {"loops.json"}
     assert {str(out / name) for name in names} == set(document["files"])
-    assert {f"{TABLE}-response.png", f"{TABLE}-portrait.svg"} <= names
+    assert {f"{TABLE}-response.png", f"{TABLE}-portrait.svg", f"{TABLE}-structure.svg"} <= names
     assert all((out / name).read_bytes()[:4] == b"\x89PNG" for name in names if name.endswith(".png"))
     for each in document["loops"]:
         assert each["difference"]["agrees"] is True
@@ -35,6 +46,66 @@ def test_a_directory_gives_pictures_figures_and_a_table(
         cycles = sum(name.startswith(f"{each['id']}-cycle") for name in names)
         assert cycles == 2 * len(each["limit_cycles"])  # PNG and SVG
     assert "Python-control and the simulator agree where" in ran.out
+
+
+def test_a_table_for_point_sensors_is_shown_too(command: Command, two_classes: Path, tmp_path: Path) -> None:
+    """The class is found though a configuration knows no sensors; a table of another cut is refused by name."""
+    table = tmp_path / "points.json"
+    write_passage_json(passage_table(two_classes), table)
+    ran = command("loop", table, "-o", tmp_path / "out", "--config", two_classes, "--json")
+    assert ran.code == 0, ran.err
+    [found] = json.loads(ran.out)["loops"]
+    assert found["label"] == "gondola-4-22t"
+    assert found["difference"]["agrees"] is True
+    assert found["difference"]["parted_s"] is None
+    assert found["simulator"]["commands"]
+    assert [each["sensor"] for each in found["simulator"]["readings"]] == [0, 1, 2, 3]
+    names = {path.name for path in (tmp_path / "out").iterdir()}
+    assert names == {
+        "loops.json",
+        *(f"points-{name}.{form}" for name in ("response", "structure") for form in ("png", "svg")),
+    }
+    told = command("loop", table, "-o", tmp_path / "again", "--config", two_classes)
+    assert told.code == 0
+    assert "–" in told.out
+    changed = replace(passage_table(two_classes), cut=CutId("Л", 23.0, GONDOLA_OFFSETS_M, 1))
+    write_passage_json(changed, table)
+    refused = command("loop", table, "-o", tmp_path / "no", "--config", two_classes)
+    assert refused.code == 2
+    assert "the nearest, gondola-4-22t, differs in cut.mass_t (22, in the table 23)" in refused.sentence
+
+
+def braking_speed(left_m: float, stage: int) -> float:
+    """From which speed on the stage above `stage` is wanted, so many metres before the exit: a float32 number."""
+    return float(np.float32(math.sqrt(1.5**2 + 0.3 * (stage + 0.5) * left_m)))
+
+
+def passage_table(config_path: Path) -> PassageTable:
+    """Sensors around the position of the first class, and rows that brake the faster the cut."""
+    _, plant = load_config(config_path).plants()[0]
+    sensors = SensorLayout((-3.0, 2.0, 6.0, 12.0), 0.2, 0.002, 1e-4, 1e-4, 0.02, 0.02, DecidesOn.FIRST_AXLE)
+    offsets, top = plant.cut.axle_offsets_m, plant.top_stage
+    position = plant.position
+    passages = tuple(
+        PassageRow(*met, (tuple(braking_speed(plant.exit_m - max(met[2], 0.0), j) for j in range(top)),) * (top + 1))
+        for met in sensors.passages(offsets, plant.exit_m)
+    )
+    return PassageTable(
+        id="points",
+        created="2026-11-22T22:46:00Z",
+        generator=Generator("retarder-synth", "0.1.0", "0123456789abcdef" * 4),
+        retarder=RetarderId(position.name, position.zones_m, plant.exit_m, position.pneumatics.dead_band_kpa),
+        cut=CutId(plant.cut.category, plant.cut.mass_t, offsets, plant.cut.category_number),
+        target_speed_m_s=1.5,
+        pressure_kpa=position.stage_pressures_kpa[: top + 1],
+        sensors=sensors,
+        approach=Approach(3.0, top),
+        initial_stage=0,
+        passages=passages,
+        plausible=PlausibleMotion((0.1, 15.0), 0.5, 3.0, 0.05, 0.3),
+        valid_v_m_s=(0.5, 9.0),
+        predicted=Predicted(0.08, -0.001, 0.01, 3.1, 0.0),
+    )
 
 
 def test_json_is_the_file_and_the_same_table_gives_the_same_bytes(

@@ -7,7 +7,7 @@ import h5py
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.book_columns import layout_stored
+from tuning_tables.book_kinds import stored_layout
 from tuning_tables.canonical import canonical_json
 from tuning_tables.payload import payload_sha256
 from tuning_tables.seal import seal_of
@@ -47,7 +47,7 @@ def _correct_payload(file: h5py.File) -> None:
     attributes = {name: value.item() if isinstance(value, np.generic) else value for name, value in file.attrs.items()}
     attributes.pop("payload_sha256", None)
     try:
-        layout = layout_stored(file.attrs.get("schema_version"), set(file))
+        layout = stored_layout(file.attrs.get("schema_version"), set(file))
         arrays = {column.name: file[column.name][()] for column in layout.columns}
         canonical_json(attributes)
     except (KeyError, ValueError):

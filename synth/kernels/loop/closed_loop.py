@@ -21,6 +21,7 @@ from synth.kernels.loop.regulator import (
     Sensor,
     admitted,
     estimated_speed,
+    impulse_time_s,
     measure,
     stage_by_lines,
     table_decision,
@@ -202,7 +203,7 @@ def run_pass(
                 kpa = chain_kpa[chain, at + i]
                 while i < substeps and chain_kpa[chain, at + i] == kpa:
                     i += 1  # dead times and rests are one step
-                time = first_sample_s + sample * period + first * part
+                time = impulse_time_s(first_sample_s, sample, period) + first * part
                 count = note(events, count, time, s, v, kpa, stage, measured)
                 measured = math.nan
                 cell, s, v, used, status = advance(edges_m, free, brake, kpa, (i - first) * part, cell, s, v)
@@ -211,7 +212,7 @@ def run_pass(
                 mode, chain = chain_mode[chain], -1
         sample += 1
         if status == MOVING:
-            time = first_sample_s + sample * period  # not by summing up: the clock must not drift
+            time = impulse_time_s(first_sample_s, sample, period)
         else:
             time += used
     count = note(events, count, time, s, v, kpa, stage, math.nan)

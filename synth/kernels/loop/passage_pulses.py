@@ -70,16 +70,34 @@ class Memory(NamedTuple):
 
 
 @borrowing_inline
+def coils_of(pulses: Pulses, source: int, z: float) -> Any:
+    """Impulse element: (path of the first pulse, of the second) of `source`; `z`: the error of the base, in stds."""
+    scale = 1.0 + pulses.base_tolerance * z
+    if not scale >= SHORTEST_BASE:
+        scale = 1.0 if math.isnan(scale) else SHORTEST_BASE
+    half = 0.5 * pulses.base_m * scale
+    return pulses.path_m[source] - half, pulses.path_m[source] + half
+
+
+@borrowing_inline
+def read_speed_m_s(pulses: Pulses, true_s: float, z: float) -> float:
+    """Relay element of the speed: base over the measured time, which has the noise `z` in stds and is rounded.
+
+    NaN where `z` is: nothing was measured.
+    """
+    measured_s: float = true_s + pulses.timer_noise_s * z
+    if pulses.timer_resolution_s > 0.0:
+        measured_s = np.rint(measured_s / pulses.timer_resolution_s) * pulses.timer_resolution_s
+    return pulses.base_m / measured_s
+
+
+@borrowing_inline
 def place_coils(pulses: Pulses, noise_z: NDArray[np.float32], memory: Memory) -> None:
     """Where the first axle is at each pulse of this pass, and the order of the pulses."""
     sources = pulses.path_m.shape[0]
     for e in range(sources):
         z = noise_z[BASE_COLUMN - pulses.sensor[e]]
-        scale = 1.0 + pulses.base_tolerance * z
-        if not scale >= SHORTEST_BASE:
-            scale = 1.0 if math.isnan(scale) else SHORTEST_BASE
-        half = 0.5 * pulses.base_m * scale
-        memory.place_m[e], memory.place_m[sources + e] = pulses.path_m[e] - half, pulses.path_m[e] + half
+        memory.place_m[e], memory.place_m[sources + e] = coils_of(pulses, e, z)
     for at in range(2 * sources):  # by insertion: all but in order already
         coil = pulses.coils[at]
         place, slot = memory.place_m[coil], at
@@ -131,18 +149,16 @@ def rows_of_source(
 ) -> int:  # fmt: skip
     """Have the rows of `source` heard, whose second pulse comes at `time_s`; returns how many rows are waited for.
 
-    The measured time has the noise `z` in standard deviations and is rounded; NaN: nothing was measured. A time that is
-    measured as 0 or less tells an infinite or negative speed: the rule holds, and the tracker does not believe it.
+    `z`: noise of the timer in standard deviations, NaN: nothing was measured. A time that is measured as 0 or less
+    tells an infinite or negative speed: the rule holds, and the tracker does not believe it.
     """
     true_s = time_s - memory.first_s[source]
-    measured_s = true_s + pulses.timer_noise_s * z
-    if pulses.timer_resolution_s > 0.0:
-        measured_s = np.rint(measured_s / pulses.timer_resolution_s) * pulses.timer_resolution_s
-    if math.isnan(measured_s):
+    read = read_speed_m_s(pulses, true_s, z)
+    if math.isnan(read):
         return waiting
     for row in range(pulses.first_row[source], pulses.first_row[source + 1]):
         if not math.isnan(after_s[row]):
-            v = pulses.base_m / measured_s if math.isnan(told_m_s[row]) else told_m_s[row]
+            v = read if math.isnan(told_m_s[row]) else told_m_s[row]
             waiting = wait_for(row, source, time_s + after_s[row], 0.5 * true_s, v, waiting, memory)
     return waiting
 

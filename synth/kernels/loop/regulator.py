@@ -57,6 +57,12 @@ estimated_speed = njit(cache=True, nogil=True)(estimator.observe)
 
 
 @borrowing_inline
+def impulse_time_s(first_s: float, sample: int, period_s: float) -> float:
+    """Impulse element of a radar: when it reads; not by summing up periods, for the clock must not drift."""
+    return first_s + sample * period_s
+
+
+@borrowing_inline
 def measure(v: float, z: float, sensor: Sensor) -> float:
     """Speed that the sensor reports; it has no sign. A missing reading, z = NaN, stays NaN: the rule holds."""
     value: float = v + sensor.noise_m_s * z

@@ -33,6 +33,7 @@ from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.passes import ExitSample, PassTrace
 from synth.solver.tabulate import lines_of
 from tuning_tables import ControllerTable
+from tuning_tables.passages.passage_table import PassageTable
 
 LINE_POINTS = 201
 FACTORS = (0.8, 1.0, 1.2)
@@ -149,7 +150,7 @@ def draw_exits(axes: Axes, table: ControllerTable, sample: ExitSample) -> None:
     dress(axes, title, "exit speed, m/s", "cuts, %")
 
 
-def subject(table: ControllerTable) -> str:
+def subject(table: ControllerTable | PassageTable) -> str:
     """What the table is for, in one line."""
     cut, axles = table.cut, len(table.cut.axle_offsets_m)
     return f"{table.id} · {table.retarder.name} · category {cut.category}, {cut.mass_t:g} t, {axles} axles"

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from plant_models.pressure_gauge import PressureGauge
-from synth.configuration.config_file import parse_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.simulation.closed_loop import simulate
 from synth.simulation.controllers import TableController
@@ -25,8 +24,9 @@ from synth.studies.markdown_table import MarkdownTable, span, table
 from synth.studies.options import option
 from synth.studies.study import Findings, Method, Tell
 from synth.studies.tuned_table import CREATED
+from synth.yard.measured_passes.config_source import ConfigSource, source_of_text
 from synth.yard.measured_passes.fitting_passes import fitting_passes
-from synth.yard.measured_passes.identified_plants import with_identified
+from synth.yard.measured_passes.identified_config import with_numbers
 from synth.yard.measured_passes.retune.retune import RetuneOrder, retune
 from synth.yard.measured_passes.retune.tuned_books import Case, class_setups, tuned_tables
 from tuning_tables import ControllerTable
@@ -146,8 +146,9 @@ def cells(rows: list[Row]) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Yards:
-    """The assumed plant and the true one, tables tuned for both, and passes of the true one."""
+    """The assumed plant, also as `source`, and the true one, tables tuned for both, and passes of the true one."""
 
+    source: ConfigSource
     assumed: ResolvedConfig
     truth: ResolvedConfig
     old: dict[Case, ControllerTable]
@@ -162,15 +163,16 @@ class Yards:
 
 def run(options: Options, tell: Tell) -> Retunings:
     """Logs of all sizes, of the changed plant and of the assumed one."""
-    config = parse_config(TEXT, "retuning")
+    source = source_of_text(TEXT, "retuning")
+    config = source.resolved()
     known = {value.key: value.value for value in config.parameters}
     slope, exhaust = known[SLOPE], known[EXHAUST]
     assert isinstance(slope, float)
     assert isinstance(exhaust, float)
     changes = {SLOPE: options.friction * slope, EXHAUST: options.exhaust * exhaust}
-    truth = with_identified(config, changes, "truth")
+    truth = with_numbers(source, changes, "truth", lambda _: "truth").resolved()
     old, best = (tuned_tables(each, class_setups(each, CREATED), 2, tell) for each in (config, truth))
-    yards = Yards(config, truth, old, best, stratified_passes(FRESH, 0, options.passes))
+    yards = Yards(source, config, truth, old, best, stratified_passes(FRESH, 0, options.passes))
     rows: list[Row] = []
     unchanged = []
     for logged in options.logged:
@@ -189,14 +191,14 @@ def retuned(yards: Yards, logged: int, seed: int) -> list[Row]:
     classes = [LoggedClass(plants[case[0]], TableController(each), case[1]) for case, each in yards.old.items()]
     log = mixed_log(classes, [logged] * len(classes), 1000 + seed, PressureGauge(2.0, 1.0))
     passes = fitting_passes(log, yards.assumed.plants(), "retuning")
-    found = retune(passes, yards.assumed, RetuneOrder(yards.old, CREATED, threads=2), lambda _: None)
+    found = retune(passes, yards.source, RetuneOrder(yards.old, CREATED, threads=2), lambda _: None)
     rows = []
     for gain in found.gains:
         tables = (yards.old[gain.case], found.new[gain.case], yards.best[gain.case])
         old, new, best = (yards.rms(gain.case, each) for each in tables)
         share = (old - new) / (old - best) if abs(old - best) > 1e-12 else 0.0
         name = f"{gain.label} to {gain.target_m_s:g} m/s"
-        rows.append(Row(logged, seed, name, gain.better, old, new, best, share, gain.ratio, gain.ratio_ci95))
+        rows.append(Row(logged, seed, name, gain in found.changed, old, new, best, share, gain.ratio, gain.ratio_ci95))
     return rows
 
 

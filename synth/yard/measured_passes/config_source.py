@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from plant_models.library import BUILT_IN, Library
+from synth.configuration.config_file import BUILT_IN as BUILT_IN_PLACE
 from synth.configuration.config_file import valid_settings
 from synth.configuration.own_types import with_own_types
 from synth.configuration.resolved_config import ResolvedConfig, resolve
@@ -28,6 +29,11 @@ class ConfigSource:
 def config_source(path: Path | None) -> ConfigSource:
     """The configuration in the file `path`; `InputError` on any fault."""
     if path is None:
-        return ConfigSource("built-in configuration", {}, BUILT_IN)
-    tree, library = with_own_types(toml_tree(read_text(path), str(path)), str(path))
-    return ConfigSource(str(path), tree, library)
+        return ConfigSource(BUILT_IN_PLACE, {}, BUILT_IN)
+    return source_of_text(read_text(path), str(path))
+
+
+def source_of_text(text: str, place: str) -> ConfigSource:
+    """The configuration written in `text`; `place`: what messages call it, and where paths in it begin."""
+    tree, library = with_own_types(toml_tree(text, place), place)
+    return ConfigSource(place, tree, library)

@@ -23,9 +23,9 @@ from synth.yard.measured_passes.unknowns import OF_VALVES, VALVE_TIMES, Unknown,
 
 Floats = NDArray[np.float64]
 
-STEP, SIDE = 1e-3, 5e-3
+STEP, SIDE = 1e-3, (3e-3, 6e-3)
 """Of the differences that stand for derivatives, in standard deviations of what is known before: to both sides of a
-point, and to one of them."""
+point; and, from there, begin and end of those on one side, which begins behind an edge that lies close to the point."""
 
 CHUNK = 125
 """Passes whose derivatives are in memory at a time."""
@@ -42,6 +42,13 @@ MOST_STEPS = 100
 
 NEAR, ROUGHLY = 0.01, 0.1
 """How near to the summit a search ends, in standard errors: of the estimate, and of the point that it starts from."""
+
+FALL95 = 1.9207294103470202
+"""Half the 95 % quantile of χ² with one degree of freedom."""
+
+NEAR_EDGE, MOST_EDGES = 0.2, 4
+"""A summit lies on an edge where its gentle sides still rise, to a place so many standard errors away or more. And how
+many edges are left one after the other."""
 
 
 @dataclass(frozen=True)
@@ -145,8 +152,7 @@ class Posterior:
 def estimate(passes: FittingPasses, unknowns: tuple[Unknown, ...], threads: int = 1) -> Estimate:
     """The most likely numbers. The result does not depend on `threads`."""
     whole = posterior(passes, unknowns, threads)
-    u = highest(whole, first_estimate(passes, unknowns, threads), NEAR)
-    there = gentlest(whole, u)
+    u, there = beside_edges(whole, highest(whole, first_estimate(passes, unknowns, threads), NEAR))
     bread = np.linalg.inv(np.eye(len(u)) + there.information)
     apart = there.scores - there.scores.mean(axis=0)
     # As many scores as numbers are used up: without this the intervals of short logs are too short.
@@ -177,11 +183,29 @@ def gentlest(target: Posterior, u: Floats) -> Linearised:
     Where a flow begins or ends just at a reading of the gauge, the likelihood has an edge: steep on one side, flat on
     the other. The summit often lies on it, and the number may be anywhere on the flat side.
     """
-    sides = [Side(start, start + SIDE) for start in (0.0, -SIDE)]
+    sides = [Side(*SIDE), Side(-SIDE[1], -SIDE[0])]
     found = [target.linearised_by(u, dict.fromkeys(OF_VALVES, side)) for side in sides]
     above, below = (np.diag(each.information) for each in found)
     chosen = {unknown.key: sides[int(below[j] < above[j])] for j, unknown in enumerate(target.unknowns)}
     return target.linearised_by(u, {key: side for key, side in chosen.items() if key in OF_VALVES})
+
+
+def beside_edges(target: Posterior, u: Floats) -> tuple[Floats, Linearised]:
+    """The summit `u`, or, where that lies on an edge and the flat side is still rising away from it, the summit there.
+
+    A summit on an edge owes its height to the noise of the readings at which a flow just begins. It is a hundred times
+    as narrow as the flat side, so the number is hardly there; it is left where it is no more than `FALL95` higher.
+    """
+    there = gentlest(target, u)
+    for _ in range(MOST_EDGES):
+        information = np.eye(len(u)) + there.information
+        slope = there.scores.sum(axis=0) - u
+        step = np.linalg.solve(information, slope)
+        if step @ slope < NEAR_EDGE**2 or target.value(u + step) > target.value(u) + FALL95:
+            break
+        u = highest(target, u + step, NEAR)
+        there = gentlest(target, u)
+    return u, there
 
 
 @frozen_arrays

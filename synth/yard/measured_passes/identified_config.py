@@ -5,63 +5,59 @@ Numbers that the passes do not tell stay as they were, and stay assumed.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from synth.configuration.plant_settings import DEFAULT_CUTS
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.configuration.toml_file import Tree
 from synth.configuration.toml_text import toml_text
 from synth.yard.measured_passes import unknowns as asked
 from synth.yard.measured_passes.config_source import ConfigSource
+from synth.yard.measured_passes.configured_numbers import configured_numbers
 from synth.yard.measured_passes.estimate import Estimate
 from synth.yard.measured_passes.identifiability import Finding, findings_of
-from synth.yard.measured_passes.identified_plants import FACTORS, factors_by_axles
 
 TYPES: Final = "types"
 DIGITS: Final = 6
 
 
 def identified(source: ConfigSource, found: Estimate, origin: str) -> ConfigSource:
-    """`source` with the numbers of `found`; `origin` says of which passes."""
-    config = source.resolved()
+    """`source` with the numbers of `found` that the passes tell; `origin` says of which passes."""
+    told = {finding.key: finding for finding in findings_of(found) if is_told(finding)}
+
+    def sentence(key: str) -> str:
+        low, high = told[key].interval
+        return f"identified from {origin}, 95 % interval {low:.4g} to {high:.4g} {told[key].unit}".strip()
+
+    values = {key: finding.value for key, finding in told.items()}
+    return with_numbers(source, values, f"identified from {origin}", sentence)
+
+
+def is_told(finding: Finding) -> bool:
+    """Whether a configuration takes the number: where it may be 0, a slope by axles is told as well by one slope."""
+    low, high = finding.interval
+    return finding.identified and not (finding.key == asked.SLOPE_BY_AXLES and low <= 0.0 <= high)
+
+
+def with_numbers(
+    source: ConfigSource, values: Mapping[str, float], place: str, origin: Callable[[str], str]
+) -> ConfigSource:
+    """`source` with the identified numbers `values` by key, called `place`; `origin` of a key says where it is from."""
     tree: Tree = {key: value for key, value in source.tree.items() if key not in ("cut", "sources")}
     cuts = [dict(cut) for cut in source.tree.get("cut") or [cut.model_dump(exclude_unset=True) for cut in DEFAULT_CUTS]]
     sources: dict[str, str] = {}
-    for finding in findings_of(found):
-        for key, value in values_of(finding, config):
-            *path, name = key.split(".")
-            table = cuts[int(path[0][4:-1])] if path[0].startswith("cut[") else tree
-            for part in path[1:] if table is not tree else path:
-                table[part] = table = dict(table.get(part, {}))
-            table[name] = value
-            low, high = finding.interval
-            sources[key] = f"identified from {origin}, 95 % interval {low:.4g} to {high:.4g} {finding.unit}".strip()
+    for number in configured_numbers(values, source.resolved()):
+        *path, name = number.key.split(".")
+        table = tree
+        if path[0].startswith("cut["):
+            table = cuts[int(path.pop(0)[4:-1])]
+        for part in path:
+            table[part] = table = dict(table.get(part, {}))
+        table[name] = [*map(rounded, number.value)] if isinstance(number.value, tuple) else rounded(number.value)
+        sources[number.key] = origin(number.by)
     kept = {k: v for k, v in source.tree.get("sources", {}).items() if k not in sources}
     tree["cut"], tree["sources"] = cuts, kept | sources
-    return ConfigSource(f"identified from {origin}", tree, source.library)
-
-
-def values_of(finding: Finding, config: ResolvedConfig) -> Iterator[tuple[str, float | list[float]]]:
-    """(key of the configuration, value) of what a finding changes."""
-    if not finding.identified or finding.key in (asked.BIAS, asked.GAUGE_NOISE):
-        return
-    value = rounded(finding.value)
-    if finding.key == asked.SLOPE_BY_AXLES:
-        low, high = finding.interval
-        if low > 0.0 or high < 0.0:  # else the force is as well told by one slope
-            yield FACTORS, [rounded(c) for c in factors_by_axles(config, finding.value)]
-    elif finding.key == asked.RESISTANCE_SPREAD:
-        for number, of_class in enumerate(config.cuts):
-            std = of_class.resistance.std_n_per_kn
-            yield f"cut[{number}].rolling_resistance.std_n_per_kn", rounded(std * finding.value)
-    elif finding.key.startswith(asked.RESISTANCE):
-        category = finding.key.removeprefix(asked.RESISTANCE)
-        for number, of_class in enumerate(config.cuts):
-            if of_class.cut.category == category:
-                yield f"cut[{number}].rolling_resistance.mean_n_per_kn", value
-    else:
-        yield finding.key, value
+    return ConfigSource(place, tree, source.library)
 
 
 def rounded(value: float) -> float:

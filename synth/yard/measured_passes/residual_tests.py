@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from synth.yard.measured_passes import unknowns as asked
 from synth.yard.measured_passes.estimate import STEP, Estimate, Posterior, posterior
 from synth.yard.measured_passes.fitting_passes import FittingPasses
+from synth.yard.measured_passes.holm import rejected
 from synth.yard.measured_passes.likelihood import Likelihood
 
 Floats = NDArray[np.float64]
@@ -58,13 +59,7 @@ def residual_tests(passes: FittingPasses, found: Estimate, threads: int = 1) -> 
 
 def wrong(tests: tuple[ResidualTest, ...]) -> tuple[ResidualTest, ...]:
     """Those that say that the model is wrong, by Holm's rule, the clearest first."""
-    order = sorted(tests, key=lambda test: test.p)
-    said: list[ResidualTest] = []
-    for place, test in enumerate(order):
-        if test.p * (len(order) - place) > SIGNIFICANCE:
-            break
-        said.append(test)
-    return tuple(said)
+    return tuple(tests[number] for number in rejected([test.p for test in tests], SIGNIFICANCE))
 
 
 def law_tests(whole: Posterior, found: Estimate) -> Iterator[ResidualTest]:

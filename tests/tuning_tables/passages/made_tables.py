@@ -92,7 +92,7 @@ def passage_tables(draw: st.DrawFn, names: st.SearchStrategy[str] = texts) -> Pa
     steps = draw(st.lists(st.floats(0.5, 10.0), max_size=5))
     axles = (0.0, *(float(x) for x in np.cumsum(steps)))
     cut = draw(cuts())
-    begin, length, beyond = draw(numbers(-10.0, 10.0)), draw(st.floats(0.5, 30.0)), draw(st.floats(0.0, 30.0))
+    begin, length, beyond = draw(numbers(0.0, 10.0)), draw(st.floats(0.5, 30.0)), draw(st.floats(0.0, 30.0))
     exit_m = begin + length + beyond
     pressures = sorted(draw(st.lists(numbers(0.0, 1e4), unique=True, min_size=2, max_size=5)))
     entrance = draw(st.integers(0, len(pressures) - 1))

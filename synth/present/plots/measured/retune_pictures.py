@@ -31,7 +31,8 @@ def retune_pictures(found: Retuned) -> Iterator[Picture]:
     yield picture(
         gains(found), "retune-gains", "What is gained", "rms after over rms before",
         "rms of exit less target under the new table over that under the old one, on the plants the passes leave "
-        "likely; bars: 95 % intervals, of passes and estimate. Grey: within noise, the case keeps its table.",
+        "likely; bars: 95 % intervals of each case alone, of passes and estimate. Grey: within noise when all cases "
+        "are judged together (Holm), the case keeps its table.",
     )  # fmt: skip
     most = min(found.changed or found.gains, key=lambda gain: gain.ratio)
     yield picture(
@@ -50,10 +51,11 @@ def gains(found: Retuned) -> Figure:
     dress(axes, "rms after / rms before, 95 % intervals", "ratio", "")
     for row, gain in enumerate(found.gains):
         low, high = gain.ratio_ci95
-        colour = BLUE if gain.better else GREY
+        better = gain in found.changed
+        colour = BLUE if better else GREY
         axes.errorbar(
             [gain.ratio], [row], xerr=[[gain.ratio - low], [high - gain.ratio]], color=colour,
-            marker="o" if gain.better else "s", markersize=4.5, capsize=3,
+            marker="o" if better else "s", markersize=4.5, capsize=3,
         )  # fmt: skip
     axes.axvline(1.0, color=VERMILLION, linewidth=1.0)
     axes.set_yticks(range(n), [f"{gain.label} to {gain.target_m_s:g} m/s" for gain in found.gains])

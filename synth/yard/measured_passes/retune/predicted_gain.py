@@ -11,18 +11,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant, PlantError
-from synth.configuration.resolved_config import ResolvedConfig
+from synth.faults.input_error import InputError
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.controllers import TableController
 from synth.simulation.replicates import student_quantile
 from synth.simulation.stratified_passes import stratified_passes
+from synth.yard.measured_passes.config_source import ConfigSource
 from synth.yard.measured_passes.estimate import Estimate
-from synth.yard.measured_passes.identified_plants import with_identified
+from synth.yard.measured_passes.holm import rejected
+from synth.yard.measured_passes.identified_config import with_numbers
 from synth.yard.measured_passes.retune.tuned_books import Case, plants_of
 from synth.yard.measured_passes.unknowns import values_at
 from tuning_tables import ControllerTable
 
 Floats = NDArray[np.float64]
+
+MOST_FALSE = 0.025
+"""Chance that any case is called better whose new table is not, of all cases together."""
 
 MOST_TRIES = 50
 """Draws of numbers that no plant may have, before that is a fault of the estimate."""
@@ -41,7 +46,8 @@ class GainOrder:
 class CaseGain:
     """One case: rms of exit − target under both tables on the identified plants, m/s, and new / old.
 
-    `ratio_ci95` holds the chance of the passes and what the estimate leaves open.
+    `ratio_ci95` holds the chance of the passes and what the estimate leaves open; it is of this case alone. `p_value`:
+    of as small a ratio or a smaller one where the new table is no better (Student's law, one side).
     """
 
     label: str
@@ -50,31 +56,38 @@ class CaseGain:
     new_rms_m_s: float
     ratio: float
     ratio_ci95: tuple[float, float]
+    p_value: float
 
     @property
     def case(self) -> Case:
         """Label and target."""
         return self.label, self.target_m_s
 
-    @property
-    def better(self) -> bool:
-        """The new table is shown to be better: the interval ends below 1."""
-        return self.ratio_ci95[1] < 1.0
+
+def better(gains: Sequence[CaseGain]) -> tuple[CaseGain, ...]:
+    """Those whose new table is shown to be better, in their order.
+
+    By Holm's rule over all cases: a book of a hundred cases would else have cases called better by chance alone.
+    """
+    proven = set(rejected([gain.p_value for gain in gains], MOST_FALSE))
+    return tuple(gain for number, gain in enumerate(gains) if number in proven)
 
 
-def likely_plants(config: ResolvedConfig, estimate: Estimate, order: GainOrder) -> tuple[dict[str, Plant], ...]:
+def likely_plants(source: ConfigSource, estimate: Estimate, order: GainOrder) -> tuple[dict[str, Plant], ...]:
     """Plants by label for each of `order.sets` draws of the numbers, normal around the estimate.
 
-    Draws that no plant may have are drawn anew; `PlantError` where there is nothing else.
+    All numbers are drawn, those too that the passes hardly tell. Draws that no plant may have are drawn anew;
+    `InputError` or `PlantError` where there is nothing else.
     """
     rng = np.random.default_rng(order.seed)
     found: list[dict[str, Plant]] = []
-    fault = PlantError("")
+    fault: InputError | PlantError = PlantError("")
     for _ in range(order.sets + MOST_TRIES):
         u = rng.multivariate_normal(estimate.u, estimate.covariance, method="eigh")
         try:
-            found.append(plants_of(with_identified(config, values_at(estimate.unknowns, u), "drawn")))
-        except PlantError as one:
+            drawn = with_numbers(source, values_at(estimate.unknowns, u), "drawn numbers", lambda _: "drawn")
+            found.append(plants_of(drawn.resolved()))
+        except (InputError, PlantError) as one:
             fault = one
         if len(found) == order.sets:
             return tuple(found)
@@ -95,9 +108,19 @@ def case_gain(
             squares[number, column] = sample.weight @ error**2 / sample.weight.sum()
     old, new = np.sqrt(squares.mean(axis=0)).tolist()
     of_log = 0.5 * np.log(squares[:, 1] / squares[:, 0])
-    half = student_quantile(len(plants) - 1) * float(of_log.std(ddof=1)) * math.sqrt(1.0 + 1.0 / len(plants))
-    middle = float(of_log.mean())
-    return CaseGain(*case, old, new, math.exp(middle), (math.exp(middle - half), math.exp(middle + half)))
+    middle, spread = float(of_log.mean()), float(of_log.std(ddof=1)) * math.sqrt(1.0 + 1.0 / len(plants))
+    half = student_quantile(len(plants) - 1) * spread
+    ends = (math.exp(middle - half), math.exp(middle + half))
+    return CaseGain(*case, old, new, math.exp(middle), ends, no_better(middle, spread, len(plants) - 1))
+
+
+def no_better(log_ratio: float, spread: float, freedom: int) -> float:
+    """P value of a logarithm of new / old that is `log_ratio` with the standard deviation `spread`."""
+    from scipy.special import stdtr  # start-up: scipy only where it is needed
+
+    if spread == 0.0:
+        return 0.0 if log_ratio < 0.0 else 1.0
+    return float(stdtr(freedom, log_ratio / spread))
 
 
 def predicted_gains(

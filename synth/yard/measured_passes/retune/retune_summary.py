@@ -20,7 +20,7 @@ def retune_sentences(found: Retuned) -> tuple[str, ...]:
     if not changed:
         return (
             f"within noise: no table tuned for what {n} passes say is better beyond doubt than the old one in any of "
-            f"{len(found.gains)} cases; no book is written",
+            f"{len(found.gains)} cases, judged together; no book is written",
         )
     most = min(changed, key=lambda gain: gain.ratio)
     low, high = most.ratio_ci95
@@ -55,7 +55,8 @@ def retune_summary(found: Retuned, file_hashes: Mapping[str, str]) -> Document:
         ],
         "cases": [
             {"label": g.label, "target_speed_m_s": g.target_m_s, "old_rms_m_s": g.old_rms_m_s,
-             "new_rms_m_s": g.new_rms_m_s, "ratio": g.ratio, "ratio_ci95": g.ratio_ci95, "changed": g.better}
+             "new_rms_m_s": g.new_rms_m_s, "ratio": g.ratio, "ratio_ci95": g.ratio_ci95, "p_value": g.p_value,
+             "changed": g in found.changed}
             for g in found.gains
         ],
         "files": dict(file_hashes),

@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from synth.studies.identification.truths import TRUTHS, Yard
 from synth.yard.measured_passes import unknowns as asked
-from synth.yard.measured_passes.estimate import Estimate, estimate, posterior
+from synth.yard.measured_passes.estimate import SIDE, Estimate, Side, estimate, posterior
 from synth.yard.measured_passes.fitting_passes import FittingPasses
 from synth.yard.measured_passes.identifiability import findings_of
 from synth.yard.measured_passes.unknowns import unknowns_of
@@ -36,12 +37,17 @@ def test_scores_are_the_slope_of_the_likelihood(passes: FittingPasses, found: Es
         assert abs(gradient[j] - slope) < 1e-3 * max(1.0, abs(slope))
 
 
-def test_threads_change_nothing(yard: Yard, passes: FittingPasses) -> None:
-    some = passes.taken(np.arange(45))
-    unknowns = unknowns_of(some, yard.config.parameters)
-    one, two = (estimate(some, unknowns, threads) for threads in (1, 2))
-    assert one.u.tobytes() == two.u.tobytes()
-    assert one.covariance.tobytes() == two.covariance.tobytes()
+def test_threads_change_nothing(passes: FittingPasses, found: Estimate, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An estimate is made of these alone. Four parts of the log, so that threads have something to do."""
+    monkeypatch.setattr("synth.yard.measured_passes.estimate.CHUNK", 20)
+    one, two = (posterior(passes, found.unknowns, threads) for threads in (1, 2))
+    assert len(one.parts) == 4
+    for u in (found.u, 0.5 * found.u):
+        assert one.value(u) == two.value(u)
+        by_one, by_two = (target.linearised_by(u, {asked.FILL: Side(*SIDE)}) for target in (one, two))
+        assert by_one.log_likelihood == by_two.log_likelihood
+        assert by_one.scores.tobytes() == by_two.scores.tobytes()
+        assert by_one.information.tobytes() == by_two.information.tobytes()
 
 
 def test_a_summit_on_an_edge_is_no_sharp_number(found: Estimate) -> None:

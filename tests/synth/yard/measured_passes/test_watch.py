@@ -6,16 +6,19 @@ import json
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from synth.book.output_directory import output_directory
 from synth.cli import main
 from synth.configuration.config_file import load_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.studies.tuned_table import tuned_table
 from synth.studies.watch.pools import CHANGES, GAUGE, IN_ORDER, Change, simulated
 from synth.yard.measured_passes import unknowns as asked
+from synth.yard.measured_passes.drift import baseline
 from synth.yard.measured_passes.drift.baseline import configured
 from synth.yard.measured_passes.drift.causes import causes_of
 from synth.yard.measured_passes.drift.drift_size import drift_size
@@ -29,6 +32,7 @@ from tuning_tables.pass_log.log_files import write_log
 from tuning_tables.pass_log.pass_log import PassLog
 
 CALM = 60
+SLOW_EXHAUST, BIASED = CHANGES[2:4]
 
 
 @pytest.fixture(scope="module")
@@ -131,7 +135,7 @@ def test_a_size_lies_where_the_likelihood_is_highest(config: ResolvedConfig, tab
 
 def test_the_command_tells_a_day(config: ResolvedConfig, table: ControllerTable, tmp_path: Path) -> None:
     log = tmp_path / "day.csv"
-    write_log(day(config, table, CHANGES[2], 30), log)
+    write_log(day(config, table, SLOW_EXHAUST, 30), log)
     assert main(["watch", str(log), "-o", str(tmp_path / "out")]) == 1
     told = json.loads((tmp_path / "out" / "watch.json").read_text(encoding="utf-8"))
     assert told["drift"]["cause"] == "exhaust constant"
@@ -145,3 +149,53 @@ def test_the_command_tells_a_day(config: ResolvedConfig, table: ControllerTable,
     write_log(day(config, table, IN_ORDER, 30), log)
     assert main(["watch", str(log), "-o", str(tmp_path / "calm")]) == 0
     assert main(["watch", str(tmp_path / "none.csv"), "-o", str(tmp_path / "calm")]) == 2
+
+
+def test_drifts_are_counted_from_the_reference(
+    config: ResolvedConfig,
+    table: ControllerTable,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The sensor always showed 0.1 m/s too much: that is no drift. From pass 31 on it shows the truth: that is one."""
+    monkeypatch.setattr(baseline, "LEAST_REFERENCE", 60)  # these tell a bias well enough, and sooner
+    tables = [(config.plants()[0][1], table)]
+    reference, biased = (simulated(tables, BIASED, n, seed, None) for n, seed in ((60, 5), (30, 6)))
+    log = one_after_the_other(join_logs([biased, simulated(tables, IN_ORDER, 30, 7, None)]), 30.0)
+    write_log(replace(log, cut_id=tuple(f"cut-{number}" for number in range(len(log)))), tmp_path / "day.csv")
+    write_log(reference, tmp_path / "reference.csv")
+
+    def told(out: str, *words: str) -> dict[str, Any]:
+        assert main(["watch", str(tmp_path / "day.csv"), *words, "-o", str(tmp_path / out)]) == 1
+        drift: dict[str, Any] = json.loads((tmp_path / out / "watch.json").read_text(encoding="utf-8"))["drift"]
+        assert drift["cause"] == "sensor bias"
+        return drift
+
+    against_reference = told("by-reference", "--reference", str(tmp_path / "reference.csv"))
+    assert against_reference["begin"] == 31
+    assert against_reference["size"] == pytest.approx(-0.1, abs=0.005)
+    against_configuration = told("by-configuration")
+    assert against_configuration["begin"] == 1
+    assert against_configuration["size"] > 0.02
+
+    write_log(reference.taken(np.arange(59)), tmp_path / "reference.csv")
+    words = ["--reference", str(tmp_path / "reference.csv"), "-o", str(tmp_path / "short")]
+    assert main(["watch", str(tmp_path / "day.csv"), *words]) == 2
+    assert "the reference has 59 passes; give 60 or more" in capsys.readouterr().err
+
+
+def test_its_directory_is_held_and_no_other_command_writes_there(
+    config: ResolvedConfig, table: ControllerTable, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    log, out = tmp_path / "day.csv", tmp_path / "out"
+    write_log(day(config, table, IN_ORDER, 2).taken(np.arange(5)), log)
+    with output_directory(out):
+        assert main(["watch", str(log), "-o", str(out)]) == 2
+    assert "another watch is writing there" in capsys.readouterr().err
+    assert main(["watch", str(log), "-o", str(out)]) == 0
+    assert main(["retune", str(log), "-o", str(out)]) == 2
+    assert "it holds the results of 'watch'" in capsys.readouterr().err
+    (out / "summary.json").write_text('{"format": "retune-summary"}', encoding="utf-8")
+    assert main(["watch", str(log), "-o", str(out)]) == 2
+    assert "it holds the results of 'retune'" in capsys.readouterr().err

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import pytest
 
-from synth.configuration.config_file import parse_config
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.yard.measured_passes.identified_plants import with_identified
+from synth.yard.measured_passes.config_source import ConfigSource, source_of_text
+from synth.yard.measured_passes.identified_config import with_numbers
 from synth.yard.measured_passes.retune.tuned_books import Case, class_setups, tuned_tables
 from tuning_tables import ControllerTable
 
@@ -39,21 +39,23 @@ mass_t = 52.0
 
 @dataclass(frozen=True)
 class Yard:
-    """A configuration with its tables by case."""
+    """A configuration, as it is written and as it is, with its tables by case."""
 
+    source: ConfigSource
     config: ResolvedConfig
     tables: dict[Case, ControllerTable]
 
 
-def yard_of(config: ResolvedConfig) -> Yard:
-    """`config`, tuned."""
-    return Yard(config, tuned_tables(config, class_setups(config, CREATED), 2, lambda _: None))
+def yard_of(source: ConfigSource) -> Yard:
+    """`source`, tuned."""
+    config = source.resolved()
+    return Yard(source, config, tuned_tables(config, class_setups(config, CREATED), 2, lambda _: None))
 
 
 @pytest.fixture(scope="session")
 def assumed() -> Yard:
     """What the library says."""
-    return yard_of(parse_config(TEXT, "test"))
+    return yard_of(source_of_text(TEXT, "test"))
 
 
 @pytest.fixture(scope="session")
@@ -64,4 +66,5 @@ def worn(assumed: Yard) -> Yard:
     old = known[slope], known[exhaust]
     assert isinstance(old[0], float)
     assert isinstance(old[1], float)
-    return yard_of(with_identified(assumed.config, {slope: 0.7 * old[0], exhaust: 1.5 * old[1]}, "truth"))
+    worse = {slope: 0.7 * old[0], exhaust: 1.5 * old[1]}
+    return yard_of(with_numbers(assumed.source, worse, "truth", lambda _: "truth"))

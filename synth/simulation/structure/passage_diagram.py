@@ -1,0 +1,97 @@
+"""The block diagram of the regulator with point sensors: quantised by path (zhukovitsky-2012, figure 4)."""
+
+from __future__ import annotations
+
+from plant_models.stage_regulator import stage_locked_actuator
+from synth.kernels.loop import passage_loop as kernel
+from synth.kernels.loop import passage_pulses, passage_regulator
+from synth.simulation.passage_controller import PassageController
+from synth.simulation.passage_loop import PassageLoop
+from synth.simulation.structure.diagram import Diagram
+from synth.simulation.structure.part import Block, Number, Part
+from synth.simulation.structure.shared_parts import (
+    command_parts,
+    integrators,
+    lock,
+    pad_parts,
+    pressure_parts,
+)
+
+
+def passage_diagram(loop: PassageLoop, controller: PassageController) -> Diagram:
+    """The plant and sensors of `loop` under `controller`."""
+    plant, sensors, path = loop.plant, loop.sensors, loop.radar.path
+    free = path.gravity_m_s2 - path.drag_m_s2_per_n_kn * plant.resistance.mean_n_per_kn
+    actuator = stage_locked_actuator(plant.position, sensors, controller.stages - 1, 1)
+    constants = (("edges_m", path.edges_m), ("free", free))
+    return Diagram(
+        "point sensors: quantised by path",
+        (
+            *measuring_parts(loop, controller, constants),
+            deciding_part(loop, controller),
+            lock(actuator, sensors),
+            *command_parts(plant, sensors),
+            *pressure_parts(plant),
+            *pad_parts(plant, path),
+            *integrators(plant, kernel.roll, (*constants, ("to_m", float("inf")))),
+        ),
+    )
+
+
+def measuring_parts(
+    loop: PassageLoop, controller: PassageController, constants: tuple[tuple[str, object], ...]
+) -> tuple[Part, ...]:
+    """Functional converter, impulse element, and the two relay elements."""
+    sensors, count = loop.sensors, len(set(loop.pulses.sensor.tolist()))
+    return (
+        Part(
+            "functional converter", "φ{F⁻¹(S)}", Block.MEASURING,
+            "turns functions of time into functions of path: when is a place reached",
+            kernel.roll,
+            takes=(
+                ("overpressure", "p"), ("brake", "B(S)"), ("duration_s", "Δt"), ("cell", "cell"), ("s", "S"),
+                ("v", "V"), ("to_m", "coil"),
+            ),
+            gives=("", "", "", "F⁻¹(S)", "reached"), given=constants, undrawn=("p", "B(S)", "cell", "coil", "reached"),
+        ),
+        Part(
+            "impulse element", "ИЭ1", Block.MEASURING, "lets through where a wheel passes the coils of a sensor",
+            passage_pulses.coils_of, takes=(("source", "m"), ("z", "z_b")), gives=("first coil", "second coil"),
+            given=(("pulses", loop.pulses),),
+            hands_on=(("F⁻¹(S)", "t_V[n]"), ("F⁻¹(S)", "m[n]"), ("F⁻¹(S)", "Δt[n]")), undrawn=("m",),
+            numbers=(
+                Number("sensors", count), Number("SB", sensors.base_m, "m"),
+                Number("tolerance of SB", sensors.base_tolerance),
+            ),
+        ),
+        Part(
+            "relay element of the speed", "РЭ2", Block.MEASURING, "base over the time, which has noise and is rounded",
+            passage_pulses.read_speed_m_s, takes=(("true_s", "t_V[n]"), ("z", "z")), gives=("V*[n]",),
+            given=(("pulses", loop.pulses),),
+            numbers=(
+                Number("timer", sensors.timer_resolution_s, "s"), Number("noise", sensors.timer_noise_s, "s"),
+            ),
+        ),
+        Part(
+            "relay element of the path", "РЭ3", Block.MEASURING, "tells which passage it was: the number of the place",
+            passage_regulator.passage_of_pair,
+            takes=(
+                ("sensor", "m[n]"), ("since_s", "Δt[n]"), ("v_m_s", "V*[n]"), ("true_passage", "m"),
+                ("state", "believed"),
+            ),
+            gives=("S*[n]",), given=(("law", controller.law()),), undrawn=("m", "believed"),
+            numbers=(Number("passages", len(loop.pulses.path_m)),),
+        ),
+    )  # fmt: skip
+
+
+def deciding_part(loop: PassageLoop, controller: PassageController) -> Part:
+    """The digital controller; the interlock of the entrance is part of its rule."""
+    return Part(
+        "digital controller", "D(z)", Block.COMPUTER,
+        "compares the speed with the switching speeds of passage and stage in force",
+        passage_regulator.stage_at_passage,
+        takes=(("passage", "S*[n]"), ("stage", "U[n]"), ("v_m_s", "V*[n]")), gives=("U[n]",),
+        given=(("law", controller.law()),), waits_for=("locked",),
+        numbers=(Number("K", controller.stages - 1), Number("highest ahead", loop.plant.entrance_stage)),
+    )  # fmt: skip

@@ -1,0 +1,1 @@
+"""Study `structure`: do the named parts of the loop, run one by one as they are wired, give the simulator's pass?"""

@@ -1,0 +1,372 @@
+"""The exported C of tables for point sensors: bit for bit Python in every build, clean, its self-test finds faults."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+import subprocess
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from synth.studies.in_the_loop.builds import BUILDS, Build
+from synth.studies.in_the_loop.controller_process import CONTRACT, BuildError, compile_with
+from tests.controller_code.conftest import Tool
+from tests.controller_code.passage_tables import passage_book, passage_table
+from tests.controller_code.pulse_questions import ANSWER, PAIR, Rows, asked, right
+from tests.controller_code.sample_book import sample_book
+from tests.controller_code.test_export import FLOAT_H, PEDANTIC
+from tuning_tables.c_correction import correction_c_files
+from tuning_tables.c_source import c_files
+from tuning_tables.correction import Correction
+from tuning_tables.export_prefix import RETARDER, ExportPrefix
+from tuning_tables.passages.c_source import Ask, passage_c_files
+from tuning_tables.passages.golden_passages import few_golden_passages, golden_passages
+from tuning_tables.passages.passage_block import passage_block, passage_block_size
+from tuning_tables.passages.passage_book import PassageBook
+from tuning_tables.passages.rule import wanted_stage
+
+QUESTIONS = 40_000
+SOURCES = ("retarder_passages.c", "retarder_passages_self_test.c")
+BOOK = passage_book()
+TABLES = BOOK.tables
+PROGRAM = r"""
+#include <stdio.h>
+#include <string.h>
+#include "retarder_passages_self_test.h"
+int main(int count, char **arguments)
+{
+    int32_t asked[15];
+    retarder_tracker tracker;
+    retarder_begin_cut(&tracker);
+    if (count > 1 && strcmp(arguments[1], "self-test") == 0) {
+        uint32_t where = 0u;
+        const int fault = retarder_passages_self_test(&where);
+        printf("fault %d at %u\n", fault, (unsigned)where);
+        return 0;
+    }
+    if (count > 1 && strcmp(arguments[1], "dump") == 0) {
+        fwrite(retarder_passage_tables, sizeof(retarder_passage_table), retarder_passage_table_count, stdout);
+        return 0;
+    }
+    if (count > 1 && strcmp(arguments[1], "about") == 0) {
+        unsigned number;
+        for (number = 0u; number < retarder_passage_table_count; ++number) {
+            const retarder_passage_table *table = &retarder_passage_tables[number];
+            printf("%g %d %d\n", (double)retarder_passages_target(table), retarder_passages_entrance_stage(table),
+                   retarder_passages_initial_stage(table));
+        }
+        return 0;
+    }
+    if (count > 1 && strcmp(arguments[1], "intact") == 0) {
+        static retarder_passage_table damaged;
+        while (fread(&damaged, sizeof damaged, 1, stdin) == 1) {
+            putchar(retarder_passages_intact(&damaged) ? '1' : '0');
+            retarder_begin_cut(&tracker);
+            putchar('0' + retarder_at_pulse(&damaged, &tracker, 0, 1.0f, 0.05f, 1, 1));
+        }
+        return 0;
+    }
+    while (fread(asked, sizeof asked, 1, stdin) == 1) {
+        const retarder_passage_table *table = &retarder_passage_tables[asked[0]];
+        int32_t answer[8];
+        float since_s, over_base_s, v_m_s;
+        memcpy(&since_s, asked + 9, 4);
+        memcpy(&over_base_s, asked + 10, 4);
+        memcpy(&v_m_s, asked + 14, 4);
+        if (asked[1] == 1) {
+            retarder_begin_cut(&tracker);
+        }
+        if (asked[1] > 1) {
+            memcpy(&tracker, asked + 2, sizeof tracker);
+        }
+        answer[0] = asked[1] == 3
+            ? retarder_believed_passage(table, &tracker, (int)asked[8], since_s, v_m_s)
+            : retarder_at_pulse(table, &tracker, (int)asked[8], since_s, over_base_s, (int)asked[11], (int)asked[12]);
+        memcpy(answer + 1, &tracker, sizeof tracker);
+        answer[7] = retarder_wanted_stage(table, (int)asked[13], (int)asked[11], v_m_s);
+        fwrite(answer, sizeof answer, 1, stdout);
+    }
+    return 0;
+}
+"""
+
+
+@cache
+def questions(count: int = QUESTIONS) -> tuple[Rows, Rows]:
+    """Questions and the answers of the Python text."""
+    found = asked(TABLES, count, 20261123)
+    return found, right(TABLES, found)
+
+
+@cache
+def exported(book: PassageBook, ask: Ask) -> Mapping[str, bytes]:
+    """The exported files."""
+    return passage_c_files(book, RETARDER, ask)
+
+
+def built(
+    folder: Path,
+    build: Build,
+    change: tuple[str, str] | None = None,
+    book: PassageBook = BOOK,
+    ask: Ask = golden_passages,
+) -> list[str]:
+    """The command that runs a program with the exported files in it."""
+    for name, content in exported(book, ask).items():
+        text = content.decode()
+        if change and name == SOURCES[0]:
+            assert change[0] in text
+            text = text.replace(*change, 1)
+        (folder / name).write_text(text, newline="")
+    (folder / "main.c").write_text(PROGRAM)
+    objects = []
+    for name in SOURCES:
+        objects.append(str(folder / f"{name}.o"))
+        compile_with([build.compiler, *build.contract, *build.flags, "-c", str(folder / name), "-o", objects[-1]])
+    program = str(folder / "program")
+    compile_with([build.compiler, *build.flags, *build.link, str(folder / "main.c"), *objects, "-o", program])
+    return [*build.emulator, program]
+
+
+def told(command: Sequence[str], *arguments: str, given: bytes = b"") -> bytes:
+    return subprocess.run([*command, *arguments], input=given, capture_output=True, timeout=300, check=True).stdout
+
+
+def differences(command: Sequence[str], build: Build, found: Rows, answers: Rows) -> int:
+    """How many answers of a program have another bit."""
+    given = found.view("i4").astype(f"{build.order}i4").tobytes()
+    words = np.frombuffer(told(command, given=given), f"{build.order}i4").astype(np.int32)
+    return int(np.count_nonzero((words.reshape(-1, 8) != answers.view("i4").reshape(-1, 8)).any(axis=1)))
+
+
+@pytest.mark.parametrize("build", BUILDS, ids=str)
+def test_c_does_as_python_to_the_last_bit(build: Build, tmp_path: Path, tool: Tool) -> None:
+    for name in build.missing():
+        tool(name)
+    command = built(tmp_path, build)
+    assert differences(command, build, *questions()) == 0
+    assert told(command, "self-test") == b"fault 0 at 0\n"
+    size = passage_block_size(TABLES)
+    words = np.frombuffer(told(command, "dump"), f"{build.order}u4").reshape(len(TABLES), size.words)
+    assert np.array_equal(words, [passage_block(table, size) for table in TABLES])
+    about = [f"{each.target_speed_m_s:g} {each.entrance_stage} {each.initial_stage}" for each in TABLES]
+    assert told(command, "about").decode().split("\n") == [*about, ""]
+
+
+def test_the_questions_reach_much() -> None:
+    found, answers = questions()
+    assert ANSWER.itemsize == 32
+    alone = found["mode"] == PAIR
+    believed = answers["stage"][alone] >= 0
+    commanded = (answers["stage"] != found["stage"])[~alone]
+    changed = answers["wanted"] != found["stage"]
+    jumped = np.abs(answers["wanted"] - found["stage"]) > 1
+    rival = answers["tracker"][:, 3].view(np.int32) >= 0
+    for share in (believed.mean(), commanded.mean(), changed.mean(), jumped.mean(), rival.mean()):
+        assert 0.04 < share < 0.96
+
+
+@pytest.mark.parametrize("compiler", ["gcc", "clang", "arm-linux-gnueabihf-gcc"])
+def test_compilers_and_checkers_have_nothing_to_say(compiler: str, tmp_path: Path, tool: Tool) -> None:
+    built(tmp_path, Build(tool(compiler), ("-O1",)), ask=few_golden_passages)
+    weak = ("-Weverything", "-Wno-padded", "-Wno-unsafe-buffer-usage", "-Wno-unknown-warning-option",
+            "-Wno-declaration-after-statement")  # fmt: skip
+    switches = {"gcc": ("-fanalyzer",), "clang": weak}.get(compiler, ("-mcpu=cortex-m4", "-mthumb"))
+    for name in SOURCES:
+        said = compile_with([compiler, *PEDANTIC, *switches, str(tmp_path / name), "-o", str(tmp_path / "o")])
+        assert said == ""
+
+
+def test_cppcheck_has_nothing_to_say(tmp_path: Path, tool: Tool) -> None:
+    checker = tool("cppcheck")
+    built(tmp_path, Build(tool("gcc"), ("-O1",)))
+    checks = ["--enable=all", "--inconclusive", "--std=c99", "--quiet", "--error-exitcode=3"]
+    files = [str(tmp_path / name) for name in (*SOURCES, "main.c")]
+    assert compile_with([checker, *checks, "--suppress=missingIncludeSystem", *FLOAT_H, *files]) == ""
+
+
+@pytest.mark.parametrize("standard", ["c++98", "c++17"])
+def test_cxx_takes_the_headers_and_since_17_the_code(standard: str, tmp_path: Path, tool: Tool) -> None:
+    built(tmp_path, Build(tool("gcc"), ("-O1",)))
+    caller = '#include "retarder_passages_self_test.h"\nint main() { return retarder_passages_self_test(0); }\n'
+    (tmp_path / "caller.cpp").write_text(caller)
+    compiler = [tool("clang"), "-x", "c++", f"-std={standard}", "-pedantic-errors", "-c", "-o", str(tmp_path / "o")]
+    compile_with([*compiler, str(tmp_path / "caller.cpp")])
+    if standard == "c++17":
+        for name in SOURCES:
+            compile_with([*compiler, "-ffp-contract=off", str(tmp_path / name)])
+
+
+def test_it_links_beside_all_other_code_and_needs_nothing(tmp_path: Path, tool: Tool) -> None:
+    files = {**c_files(sample_book()), **correction_c_files(Correction()), **passage_c_files(BOOK)}
+    sources = [name for name in files if name.endswith(".c")]
+    for name, content in files.items():
+        (tmp_path / name).write_bytes(content)
+    for name in sources:
+        compile_with([tool("gcc"), *CONTRACT, "-Os", "-c", str(tmp_path / name), "-o", str(tmp_path / f"{name}.o")])
+    (tmp_path / "main.c").write_text(
+        '#include "retarder_table.h"\n#include "retarder_correction.h"\n#include "retarder_passages.h"\n'
+        "int main(void)\n{\n    retarder_tracker t;\n    retarder_begin_cut(&t);\n    retarder_begin_cut(0);\n"
+        "    return (retarder_at_pulse(0, &t, 0, 1.0f, 0.1f, 3, 1) != 3)\n"
+        "        + (retarder_at_pulse(retarder_passage_tables, 0, 0, 1.0f, 0.1f, 3, 1) != 3)\n"
+        "        + (retarder_believed_passage(0, &t, 0, 1.0f, 2.0f) != RETARDER_NO_PASSAGE)\n"
+        "        + (retarder_wanted_stage(0, 0, 3, 2.0f) != 3) + retarder_passages_intact(0)\n"
+        "        + retarder_passages_entrance_stage(0) + retarder_passages_initial_stage(0)\n"
+        "        + (retarder_passages_target(0) > 0.0f) + !(retarder_passages_target(retarder_passage_tables) > 2.0f)\n"
+        "        + (retarder_passages_entrance_stage(retarder_passage_tables) != 2)\n"
+        "        + (retarder_passages_initial_stage(retarder_passage_tables) != 0);\n}\n"
+    )
+    objects = [str(tmp_path / f"{name}.o") for name in sources]
+    compile_with([tool("gcc"), "-std=c99", str(tmp_path / "main.c"), *objects, "-o", str(tmp_path / "m")])
+    assert subprocess.run([tmp_path / "m"], check=False).returncode == 0
+    listed = compile_with(["nm", *(each for each in objects if "passages" in each)])
+    undefined = {line.split()[-1] for line in listed.splitlines() if " U " in line}
+    assert {name for name in undefined if not name.startswith("retarder_")} <= {"memcpy", "memset"}
+    assert not re.search(r" [dDbBC] ", listed)
+
+
+def test_every_changed_byte_of_a_table_is_found(tmp_path: Path, tool: Tool) -> None:
+    tables = (passage_table(stages=3, places_m=(-4.0, 2.0, 9.0)),)
+    command = built(tmp_path, Build(tool("gcc"), ("-O1",)), book=PassageBook(tables))
+    block = passage_block(tables[0], passage_block_size(tables)).view(np.uint8)
+    assert told(command, "intact", given=block.tobytes()) in (b"10", b"11", b"12")
+    damaged = np.repeat(block[None, :], 255 * len(block), axis=0)
+    place, change = np.divmod(np.arange(255 * len(block)), 255)
+    damaged[np.arange(255 * len(block)), place] ^= (change + 1).astype(np.uint8)
+    answers = told(command, "intact", given=damaged.tobytes())
+    assert len(answers) == 2 * len(damaged)
+    assert set(answers[::2]) == set(b"0")
+    assert set(answers[1::2]) <= set(b"012")  # no stage that the table has not
+
+
+def test_files_of_two_exports_are_not_compiled_together(tmp_path: Path, tool: Tool) -> None:
+    built(tmp_path, Build(tool("gcc"), ("-O1",)))
+    (tmp_path / SOURCES[0]).write_bytes(passage_c_files(PassageBook(TABLES[1:]))[SOURCES[0]])
+    with pytest.raises(BuildError, match=r"retarder_passages\.h is of another export"):
+        compile_with(["gcc", *CONTRACT, "-c", str(tmp_path / SOURCES[0]), "-o", str(tmp_path / "o")])
+
+
+MUTANTS = (
+    ("0xEDB88320u", "0xEDB88321u", 1),
+    ("0x1.99999ap-3f, /* base", "0x1.99999cp-3f, /* base", 2),
+    ("v_m_s >= 0.0f && v_m_s <= FLT_MAX", "v_m_s <= FLT_MAX", 4),
+    ("v_m_s >= 0.0f && v_m_s <= FLT_MAX", "v_m_s >= 0.0f", 4),
+    ("v_m_s > speeds[wanted]", "v_m_s >= speeds[wanted]", 4),
+    ("v_m_s < speeds[wanted - 1]", "v_m_s <= speeds[wanted - 1]", 4),
+    ("(uint32_t)passage < table->before_entrance", "(uint32_t)passage <= table->before_entrance", 4),
+    ("(uint32_t)passage < table->before_entrance", "0", 4),
+    ("(int)table->entrance_stage > stage ? (int)table->entrance_stage : stage", "stage", 4),
+    ("highest = (int)table->stages - 1;", "highest = (int)table->stages - 2;", 4),
+    ("passage < 0 || (uint32_t)passage", "(uint32_t)(passage < 0 ? 0 : passage)", 4),
+    ("since_s >= 0.0f && since_s", "since_s", 5),
+    ("since_s <= LONGEST_WAIT_S", "since_s < LONGEST_WAIT_S", 5),
+    ("v_m_s >= table->least_m_s", "v_m_s > table->least_m_s", 5),
+    ("v_m_s <= table->greatest_m_s))", "v_m_s < table->greatest_m_s))", 5),
+    ("rounded(1.0f + table->speed_tolerance)", "1.0f", 5),
+    ("rounded(1.0f - table->speed_tolerance)", "1.0f", 5),
+    ("slow_now > rounded(fast + gained) ||", "", 5),
+    (" || fast_now < rounded(slow - lost)", "", 5),
+    ("slow_now > rounded(fast + gained)", "slow_now >= rounded(fast + 0.999f * gained)", 5),
+    ("rounded(rounded(fast_now - fast) + lost)", "rounded(fast_now - fast)", 5),
+    ("rounded(rounded(slow - slow_now) + gained)", "rounded(slow - slow_now)", 5),
+    ("0.0f > part ? 0.0f : part", "part", 5),
+    ("time_s < begun ? time_s : begun", "begun", 5),
+    ("rounded(difference / both)", "rounded(difference * (1.0f / both))", 5),
+    ("rounded(v_m_s + rounded(half * part_s))", "(float)((double)v_m_s + (double)half * (double)part_s)", 5),
+    ("way_in(turn, fast, 0.5f * gain)", "way_in(turn, fast, 0.5f * loss)", 5),
+    ("way_in(rest, fast_now, 0.5f * loss)", "way_in(rest, fast_now, 0.5f * gain)", 5),
+    ("way_in(turn, slow, -0.5f * loss)", "way_in(turn, slow, -0.5f * gain)", 5),
+    ("way_in(rest, slow_now, -0.5f * gain)", "way_in(rest, slow_now, -0.5f * loss)", 5),
+    ("rounded(loss * turn) > slow", "0", 5),
+    ("turn = rounded(slow / loss);", "", 5),
+    ("rest = rounded(slow_now / gain);", "", 5),
+    ("                     + table->path_tolerance_m);", ");", 5),
+    ("                     - table->path_tolerance_m);", ");", 5),
+    ("way[0] <= rolled", "way[0] < rolled + 1e-6f", 5),
+    ("rolled <= way[1]", "rolled - 1e-6f < way[1]", 5),
+    ("table->sensor[passage] == (uint32_t)sensor && way", "way", 5),
+    ("(int)last->passage + 1; passage <", "(int)last->passage; passage <", 5),
+    ("last->passage < (int32_t)table->heard", "1", 5),
+    ("last->v_m_s <= table->greatest_m_s", "1", 5),
+    ("last->time_s <= LONGEST_WAIT_S", "1", 5),
+    ("last->time_s = time_s < LONGEST_WAIT_S ? time_s : LONGEST_WAIT_S;", "last->time_s = time_s;", 5),
+    ("    wait_longer(&tracker->rival, since_s);\n", "", 5),
+    ("!is_sound(table, &tracker->believed) ||", "", 5),
+    (" || !is_sound(table, &tracker->rival)", "", 5),
+    ("found = next_passage(table, &tracker->rival, sensor, v_m_s);", "found = RETARDER_NO_PASSAGE;", 5),
+    ("        tracker->rival.passage = first;\n", "", 5),
+    ("    tracker->rival.passage = RETARDER_NO_PASSAGE;\n", "", 5),
+    ("    tracker->believed.time_s = 0.0f;\n", "", 5),
+    ("rounded(table->base_m / over_base_s)", "rounded(0.20001f / over_base_s)", 6),
+    ("|| transient_ended == 0", "", 6),
+    ("(int)table->deciding[heard]", "(int)table->deciding[heard] + 1", 6),
+    ("retarder_deciding_passage(table, heard)", "heard", 6),
+    ("tracker->rival = no_passage;", "(void)no_passage;", 5),
+    ("table->category != category ||", "", 8),
+    (" || table->axles != axles", "", 8),
+    ("table->mass_t > heaviest_t", "table->mass_t < heaviest_t || heaviest_t < 0.0f", 8),
+    ("table->mass_t >= heaviest_t &&", "", 8),
+    ("table->target_m_s <= speed_m_s &&", "", 8),
+    ("table->target_m_s <= speed_m_s &&", "table->target_m_s < speed_m_s &&", 8),
+    (" && speed_m_s <= FLT_MAX", "", 8),
+    ("table->target_m_s > slower->target_m_s", "table->target_m_s < slower->target_m_s", 8),
+    ("slower->target_m_s >= speed_m_s", "slower->target_m_s > speed_m_s", 8),
+)
+
+
+@pytest.mark.parametrize(("before", "after", "fault"), MUTANTS, ids=[f"{n}" for n in range(len(MUTANTS))])
+@pytest.mark.parametrize("ask", [golden_passages, few_golden_passages], ids=["full", "small"])
+def test_the_self_test_finds_a_wrong_controller(
+    before: str, after: str, fault: int, ask: Ask, tmp_path: Path, tool: Tool
+) -> None:
+    tool("gcc")
+    command = built(tmp_path, Build("gcc", ("-O1",), ("-std=c99", "-w")), (before, after), ask=ask)
+    assert told(command, "self-test").decode().startswith(f"fault {fault} at")
+
+
+def test_damaged_golden_rows_are_told_from_a_wrong_rule(tmp_path: Path, tool: Tool) -> None:
+    built(tmp_path, Build(tool("gcc"), ("-O1",)))
+    text = (tmp_path / SOURCES[1]).read_text()
+    changed, count = re.subn(r"(?m)^(    \{0u, 0, 0, 0x[0-9a-f]{8}u, )0\}", r"\g<1>1}", text, count=1)
+    assert count == 1
+    (tmp_path / SOURCES[1]).write_text(changed)
+    compile_with(
+        ["gcc", "-std=c99", *(str(tmp_path / name) for name in (*SOURCES, "main.c")), "-o", str(tmp_path / "p")]
+    )
+    assert told([str(tmp_path / "p")], "self-test") == b"fault 3 at 0\n"
+
+
+def test_golden_stages_as_csv_are_answered_as_they_say() -> None:
+    rows = list(csv.DictReader(io.StringIO(passage_c_files(BOOK)["golden_stages.csv"].decode(), newline="")))
+    assert len(rows) > 200 * len(TABLES)
+    for row in rows:
+        table = TABLES[int(row["table"])]
+        v = np.array([int(row["v_m_s_bits"], 16)], np.uint32).view(np.float32)[0]
+        assert np.array_equal(np.float32(row["v_m_s"]), v, equal_nan=True)
+        arguments = (table.switching_m_s, table.entrance_stage, table.before_entrance)
+        assert wanted_stage(*arguments, int(row["passage"]), int(row["stage"]), float(v)) == int(row["answer"])
+        assert table.id == row["id"]
+
+
+def test_names_take_the_prefix_and_equal_tables_give_equal_bytes() -> None:
+    files = passage_c_files(BOOK, ExportPrefix("BUNCH"))
+    assert list(files) == [
+        "bunch_passages.h", "bunch_passages.c", "bunch_passages_self_test.h", "bunch_passages_self_test.c",
+        "bunch_golden_stages.csv", "bunch_golden_pairs.csv", "bunch_golden_pulses.csv",
+    ]  # fmt: skip
+    assert b"retarder_" not in b"".join(files.values()).lower()
+    assert passage_c_files(BOOK) == passage_c_files(passage_book())
+    first = TABLES[0]
+    assert passage_c_files(PassageBook((first,))) != passage_c_files(PassageBook((replace(first, initial_stage=1),)))
+    for name in list(files)[:4]:
+        text = files[name].decode("ascii")
+        assert "@" not in text
+        assert all(line == line.rstrip() for line in text.splitlines())
+        data = ("{", "        {", "            {", "                {", "    {", "        0x")
+        assert [line for line in text.splitlines() if len(line) > 120 and not line.startswith(data)] == []

@@ -1,0 +1,152 @@
+"""The drawn block diagrams: every wire has its route, no route crosses a box or lies on another signal's."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import combinations, pairwise
+
+import pytest
+from matplotlib.text import Text
+
+from plant_models import Plant
+from synth.present.plots.block_diagram import block_diagram, branches, in_mathtext, parting
+from synth.present.plots.block_layout import (
+    HEIGHT_IN,
+    POINT_SENSOR_ROUTES,
+    RADAR_ROUTES,
+    SIZE_IN,
+    WIDTH_IN,
+    Place,
+    Route,
+    centre,
+    corners,
+)
+from synth.present.plots.figure_file import draw
+from synth.simulation.controllers import TableController
+from synth.simulation.passage_loop import close_passage_loop
+from synth.simulation.structure.diagram import Diagram
+from synth.simulation.structure.passage_diagram import passage_diagram
+from synth.simulation.structure.radar_diagram import radar_diagram
+from synth.simulation.structure.signals import SIGNALS
+from tests.synth.simulation.passage_cases import SENSORS, braking_rule, with_approach
+from tests.synth.test_control_system import table_for
+
+Routes = Mapping[tuple[str, str], Route]
+
+
+@pytest.fixture(scope="module")
+def drawn(plant_52t: Plant) -> dict[str, tuple[Diagram, Routes]]:
+    plant = with_approach(plant_52t, 5.0)
+    controller = braking_rule(plant, SENSORS, 3.0)
+    points = passage_diagram(close_passage_loop(plant, SENSORS, controller.stages), controller)
+    radar = radar_diagram(plant_52t, TableController(table_for(plant_52t)), 0.0)
+    return {"radar": (radar, RADAR_ROUTES), "points": (points, POINT_SENSOR_ROUTES)}
+
+
+KINDS = pytest.mark.parametrize("kind", ["radar", "points"])
+
+
+@KINDS
+def test_every_wire_has_a_route_and_every_route_a_wire(drawn: dict[str, tuple[Diagram, Routes]], kind: str) -> None:
+    diagram, routes = drawn[kind]
+    assert {(wire.signal, wire.target) for wire in diagram.wires} == set(routes)
+    assert len(diagram.wires) == len(routes)
+
+
+@KINDS
+def test_every_signal_on_a_wire_has_a_meaning(drawn: dict[str, tuple[Diagram, Routes]], kind: str) -> None:
+    diagram, _ = drawn[kind]
+    assert {wire.signal for wire in diagram.wires} - set(SIGNALS) == set()
+
+
+def inside(a: Place, b: Place, name: str) -> float:
+    """Length of the stretch from a to b within the box of a part, its border not counted."""
+    x, y = centre(name)
+    low = max(min(a[0], b[0]), x - 0.5 * WIDTH_IN), max(min(a[1], b[1]), y - 0.5 * HEIGHT_IN)
+    high = min(max(a[0], b[0]), x + 0.5 * WIDTH_IN), min(max(a[1], b[1]), y + 0.5 * HEIGHT_IN)
+    on_border = (a[0] == b[0] and abs(abs(a[0] - x) - 0.5 * WIDTH_IN) < 1e-9) or (
+        a[1] == b[1] and abs(abs(a[1] - y) - 0.5 * HEIGHT_IN) < 1e-9
+    )
+    return 0.0 if on_border or low[0] > high[0] or low[1] > high[1] else high[0] - low[0] + high[1] - low[1]
+
+
+def stretches(diagram: Diagram, routes: Routes) -> Iterator[tuple[str, str, Place, Place]]:
+    """(signal, source, from, to) of every straight stretch."""
+    for wire in diagram.wires:
+        for a, b in pairwise(corners(wire.source, wire.target, routes[wire.signal, wire.target])):
+            yield wire.signal, wire.source, a, b
+
+
+@KINDS
+def test_wires_run_along_the_axes_and_through_no_box(drawn: dict[str, tuple[Diagram, Routes]], kind: str) -> None:
+    diagram, routes = drawn[kind]
+    for signal, _, a, b in stretches(diagram, routes):
+        assert a != b, signal
+        assert a[0] == pytest.approx(b[0]) or a[1] == pytest.approx(b[1]), (signal, a, b)
+        for x, y in (a, b):
+            assert 0.0 < x < SIZE_IN[0]
+            assert 0.0 < y < SIZE_IN[1] - 0.5
+        for part in diagram.parts:
+            assert inside(a, b, part.name) < 1e-9, (signal, part.name)
+
+
+def together(a: Place, b: Place, c: Place, d: Place) -> float:
+    """Length over which the stretches a–b and c–d lie on each other."""
+    for along, across in ((0, 1), (1, 0)):
+        if max(abs(p[across] - a[across]) for p in (b, c, d)) < 1e-9:
+            low, high = (
+                max(min(a[along], b[along]), min(c[along], d[along])),
+                min(max(a[along], b[along]), max(c[along], d[along])),
+            )
+            return max(0.0, high - low)
+    return 0.0
+
+
+@KINDS
+def test_no_signal_runs_on_the_line_of_another(drawn: dict[str, tuple[Diagram, Routes]], kind: str) -> None:
+    for (one, _, a, b), (other, _, c, d) in combinations(stretches(*drawn[kind]), 2):
+        if one != other:
+            assert together(a, b, c, d) < 1e-9, (one, other)
+
+
+def test_what_these_rules_are_to_find_they_find() -> None:
+    x, y = centre("converter")
+    assert inside((x - 3.0, y), (x + 3.0, y), "converter") == pytest.approx(WIDTH_IN)
+    assert together((0.0, 1.0), (5.0, 1.0), (3.0, 1.0), (9.0, 1.0)) == 2.0
+    assert together((0.0, 1.0), (5.0, 1.0), (3.0, 2.0), (9.0, 2.0)) == 0.0
+
+
+@KINDS
+def test_a_diagram_is_drawn_the_same_again(drawn: dict[str, tuple[Diagram, Routes]], kind: str) -> None:
+    first, second = (draw(block_diagram(*drawn[kind], "subject")) for _ in range(2))
+    assert first == second
+    assert first.png[:4] == b"\x89PNG"
+    shown = block_diagram(*drawn[kind]).findobj(Text)
+    texts = {each.get_text() for each in shown if isinstance(each, Text)}
+    for part in drawn[kind][0].parts:
+        assert any(part.name in text.replace("\n", " ") for text in texts), part.name
+    for wire in drawn[kind][0].wires:
+        assert in_mathtext(wire.signal) in texts, wire
+
+
+def test_wires_of_one_signal_branch_with_a_dot(drawn: dict[str, tuple[Diagram, Routes]]) -> None:
+    diagram, routes = drawn["radar"]
+    found = branches(diagram, routes)
+    assert len(found) == 2  # of U[n] behind the interlock and of P under the drive
+    assert parting([(0.0, 0.0), (2.0, 0.0), (2.0, 1.0)], [(0.0, 0.0), (3.0, 0.0)]) == (2.0, 0.0)
+    assert parting([(0.0, 0.0), (2.0, 0.0), (2.0, 1.0)], [(0.0, 0.0), (2.0, 0.0), (2.0, -1.0)]) == (2.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("symbol", "shown"),
+    [
+        ("РЭ1", "РЭ1"),
+        ("locked", "locked"),
+        ("V*[n]", "$V^{*}[n]$"),
+        ("P_in, T", r"$P_{\mathrm{in}},\ T$"),
+        ("ε_U", r"$\varepsilon_{U}$"),
+        ("φ{F⁻¹(S)}", r"$φ\{F^{-1}(S)\}$"),
+    ],
+)
+def test_symbols_are_set_as_mathematics(symbol: str, shown: str) -> None:
+    assert in_mathtext(symbol) == shown

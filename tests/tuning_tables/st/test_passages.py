@@ -1,0 +1,211 @@
+"""Tables for point sensors in Structured Text, run from the parse tree: bit for bit the Python text; the self-test."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from functools import cache
+
+import numpy as np
+import pytest
+
+from tests.controller_code.passage_tables import passage_book, passage_table
+from tests.controller_code.pulse_questions import ANSWER, BEGIN, ON, PAIR, WHOLE, Rows, asked, right
+from tests.controller_code.test_correction_code import CORRECTION
+from tests.tuning_tables.st.conftest import shaped_book
+from tests.tuning_tables.st.evaluator import Program
+from tests.tuning_tables.st.storage import Fault, Real
+from tests.tuning_tables.st.syntax import faults, parse, walk
+from tests.tuning_tables.st.test_syntax import KEYWORDS
+from tuning_tables import InvalidTable
+from tuning_tables.export_prefix import RETARDER, ExportPrefix
+from tuning_tables.passages.golden_passages import few_golden_passages, golden_passages
+from tuning_tables.passages.passage_book import PassageBook
+from tuning_tables.passages.passage_table import PassageTable
+from tuning_tables.passages.sensor_layout import DecidesOn
+from tuning_tables.passages.st_source import (
+    SELF_TEST_FILE,
+    TABLE_FILE,
+    passage_st_files,
+    passage_st_unit_files,
+)
+from tuning_tables.st_correction import correction_st_files
+from tuning_tables.st_source import st_files
+
+BOOK = passage_book()
+TABLES = BOOK.tables
+FILES = passage_st_files(BOOK)
+QUESTIONS = 40_000
+MEMBERS = ("PASSAGE", "SPEED_M_S", "TIME_S", "RIVAL", "RIVALSPEED_M_S", "RIVALTIME_S")
+
+
+@cache
+def questions(count: int = QUESTIONS) -> tuple[Rows, Rows]:
+    """Questions that stand for themselves, each with the tracker before it, and the answers of the Python text."""
+    found = asked(TABLES, count, 20261124)
+    answers = right(TABLES, found)
+    on = np.flatnonzero(found["mode"] == ON)
+    found["tracker"][on] = answers["tracker"][on - 1]
+    found["tracker"][found["mode"] == BEGIN] = np.array([-1, 0, 0, -1, 0, 0], np.int32).view(np.uint32)
+    return found, answers
+
+
+def answers_of(program: Program, number: int, asked_now: Rows) -> Rows:
+    """What the blocks make of every question of table `number`, a lane each."""
+    table = program.new("RETARDER_PASSAGE_TABLE")
+    program.call("RETARDER_LOAD_PASSAGES", program.new("RETARDER_LOAD_PASSAGES"), TableNo=number, Table=table)
+    found = np.zeros(len(asked_now), ANSWER)
+    sensor, stage, passage = (asked_now[name].astype(np.int64) for name in ("sensor", "stage", "passage"))
+    for alone in (False, True):
+        chosen = (asked_now["mode"] == PAIR) == alone
+        tracker = program.new("RETARDER_TRACKER")
+        for place, name in enumerate(MEMBERS):
+            words = np.ascontiguousarray(asked_now["tracker"][chosen, place])
+            value = words.view(np.int32).astype(np.int64) if place in WHOLE else words.view(np.float32)
+            tracker[name].store(value, None)
+        given = {"Sensor": sensor[chosen], "Since_s": asked_now["since_s"][chosen], "Table": table, "Tracker": tracker}
+        if alone:
+            block = program.new("RETARDER_BELIEVED_PASSAGE")
+            program.call("RETARDER_BELIEVED_PASSAGE", block, Speed_m_s=asked_now["v_m_s"][chosen], **given)
+            found["stage"][chosen] = block["PASSAGE"].value
+        else:
+            given |= {"Stage": stage[chosen], "TransientEnded": asked_now["ended"][chosen] != 0}
+            block = program.new("RETARDER_AT_PULSE")
+            program.call("RETARDER_AT_PULSE", block, OverBase_s=asked_now["over_base_s"][chosen], **given)
+            found["stage"][chosen] = block["COMMAND"].value
+        for place, name in enumerate(MEMBERS):
+            kind = np.int32 if place in WHOLE else np.float32
+            found["tracker"][chosen, place] = tracker[name].value.astype(kind).view(np.uint32)
+    wanter = program.new("RETARDER_WANTED_STAGE")
+    program.call(
+        "RETARDER_WANTED_STAGE", wanter, Passage=passage, Stage=stage, Speed_m_s=asked_now["v_m_s"], Table=table
+    )
+    found["wanted"] = wanter["WANTED"].value
+    return found
+
+
+def differences(found: Rows, answers: Rows) -> int:
+    """How many answers differ; 0 has no sign in Structured Text."""
+    wrong = (found["stage"] != answers["stage"]) | (found["wanted"] != answers["wanted"])
+    for place in range(6):
+        mine, due = (np.ascontiguousarray(each["tracker"][:, place]) for each in (found, answers))
+        wrong |= (mine != due) if place in WHOLE else (mine.view(np.float32) != due.view(np.float32))
+    return int(np.count_nonzero(wrong))
+
+
+@pytest.mark.parametrize("real", [np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
+def test_every_question_is_answered_as_by_python(real: Real) -> None:
+    program = Program(FILES[TABLE_FILE], real)
+    found, answers = questions()
+    for number in range(len(TABLES)):
+        chosen = found["table"] == number
+        assert chosen.sum() >= QUESTIONS / len(TABLES)
+        assert differences(answers_of(program, number, found[chosen]), answers[chosen]) == 0
+
+
+def test_a_table_that_was_not_loaded_commands_nothing() -> None:
+    program = Program(FILES[TABLE_FILE])
+    table, tracker, block = (
+        program.new(name) for name in ("RETARDER_PASSAGE_TABLE", "RETARDER_TRACKER", "RETARDER_AT_PULSE")
+    )
+    loader = program.new("RETARDER_LOAD_PASSAGES")
+    for number in (None, -1, len(TABLES)):
+        if number is not None:
+            program.call("RETARDER_LOAD_PASSAGES", loader, TableNo=number, Table=table)
+            assert not loader["FOUND"].value
+        given = {"Sensor": 0, "Since_s": np.float32(1), "OverBase_s": np.float32(0.1), "TransientEnded": True}
+        program.call("RETARDER_AT_PULSE", block, Stage=3, Table=table, Tracker=tracker, **given)
+        assert block["COMMAND"].value == 3
+
+
+def self_tested(text: str) -> tuple[int, int, int]:
+    """Failed, FirstFailed and FirstFault after all calls of the self-test."""
+    program = Program(text.encode("ascii"))
+    block = program.new("RETARDER_PASSAGES_SELF_TEST")
+    calls = 0
+    while not block["DONE"].value:
+        program.call("RETARDER_PASSAGES_SELF_TEST", block, Restart=False)
+        calls += 1
+        assert calls < 20
+    return tuple(int(block[name].value) for name in ("FAILED", "FIRSTFAILED", "FIRSTFAULT"))  # type: ignore[return-value]
+
+
+@pytest.mark.parametrize("ask", [golden_passages, few_golden_passages], ids=["full", "small"])
+def test_nothing_is_wrong_with_the_export(ask) -> None:  # type: ignore[no-untyped-def]
+    files = passage_st_files(BOOK, RETARDER, ask)
+    assert self_tested(b"\n".join(files.values()).decode("ascii")) == (0, -1, -1)
+
+
+CHANGES = (
+    ("Speed_m_s > Table.Switching_m_s[First + Index]", "Speed_m_s >= Table.Switching_m_s[First + Index]"),
+    ("Speed_m_s < Table.Switching_m_s[First + Index]", "Speed_m_s <= Table.Switching_m_s[First + Index]"),
+    ("Passage < Table.BeforeEntrance", "Passage <= Table.BeforeEntrance"),
+    ("NOT Sound", "FALSE"),
+    ("Turn := Turn + Lost;", ""),
+    ("Part := Fast + Part;", "Part := Fast;"),
+    ("IF Part > Slow THEN", "IF FALSE THEN"),
+    ("(SlowNow <= Most) AND ", ""),
+    ("Nearest <= Way", "Nearest < Way"),
+    ("Way <= Farthest", "Way < Farthest"),
+    ("Tracker.RivalTime_s := Tracker.RivalTime_s + Since_s;", ""),
+    ("            Tracker.Rival := -1;\n", ""),
+    ("TransientEnded AND (", "("),
+    ("Table.Deciding[Believer.Passage]", "Believer.Passage"),
+    ("Tracker.Time_s > 1.000000000E+06", "Tracker.Time_s > 2.000000000E+06"),
+    ("MassOf[Number] >= Heaviest_t", "MassOf[Number] > Heaviest_t"),
+    ("TargetOf[Number] <= Commanded_m_s", "TargetOf[Number] < Commanded_m_s"),
+    ("Slower_m_s >= Commanded_m_s", "Slower_m_s > Commanded_m_s"),
+    ("(AxlesOf[Number] = Axles)", "(AxlesOf[Number] <= Axles)"),
+    ("InitialStageOf : ARRAY[0..0] OF INT := [0]", "InitialStageOf : ARRAY[0..0] OF INT := [1]"),
+)
+
+
+@pytest.mark.parametrize(("before", "after"), CHANGES, ids=[f"{n}" for n in range(len(CHANGES))])
+def test_a_wrong_block_is_found_by_the_small_self_test(before: str, after: str) -> None:
+    tables = (passage_table(places_m=(-4.0, 2.0, 5.5, 9.0), axles=(0.0, 1.85)),)
+    text = b"\n".join(passage_st_files(PassageBook(tables), RETARDER, few_golden_passages).values()).decode("ascii")
+    assert before in text
+    with suppress(Fault):  # a controller would trap
+        assert self_tested(text.replace(before, after, 1))[0] > 0
+
+
+def test_a_changed_constant_is_found() -> None:
+    tables = (passage_table(places_m=(-4.0, 2.0, 9.0), stages=3, axles=(0.0, 1.85)),)
+    files = passage_st_files(PassageBook(tables), RETARDER, few_golden_passages)
+    text, test = (files[name].decode("ascii") for name in (TABLE_FILE, SELF_TEST_FILE))
+    begin = text.index("VAR CONSTANT")
+    literals = [part for part in text[begin:].split() if "E+" in part or "E-" in part][:20]
+    assert len(literals) == 20
+    for literal in literals:
+        number = np.float32(literal.strip("[],;"))
+        other = f"{float(np.nextafter(number, np.float32(np.inf))):.9E}"
+        changed = text[:begin] + text[begin:].replace(literal.strip("[],;"), other, 1)
+        assert self_tested(f"{changed}\n{test}")[0] >= 1, literal
+
+
+def test_the_text_is_plain_and_fits_beside_all_others() -> None:
+    others = [*st_files(shaped_book(3, 1)).values(), *correction_st_files(CORRECTION).values()]
+    together = b"\n".join([*FILES.values(), *others])
+    assert faults(parse(together)) == []
+    assert {"RETARDER_DECIDE", "RETARDER_AT_PULSE"} <= set(Program(together).blocks)
+    lines = b"".join(FILES.values()).decode("ascii").split("\n")
+    assert all(len(line) <= 120 and line == line.rstrip() and "$" not in line for line in lines)
+    names = {node.text.decode("ascii").upper() for node in walk(parse(together)) if node.type == "identifier"}
+    assert names & set(KEYWORDS.split()) == set()
+    longest = b"".join(passage_st_files(BOOK, ExportPrefix("TENLETTERS")).values())
+    named = {node.text.decode("ascii") for node in walk(parse(longest)) if node.type == "identifier"}
+    assert all(len(name) <= 32 for name in named), sorted(named, key=len)[-1]
+    assert b"retarder_" not in longest.lower().replace(b"tenletters", b"")
+
+
+def test_a_file_each_unit_holds_the_same() -> None:
+    units = passage_st_unit_files(BOOK, RETARDER, few_golden_passages)
+    assert len(units) == 9 + len(TABLES) + 2
+    assert self_tested(b"\n".join(units.values()).decode("ascii")) == (0, -1, -1)
+
+
+def test_what_sixteen_bits_do_not_count_is_refused() -> None:
+    large: tuple[PassageTable, ...] = (
+        passage_table(stages=31, axles=tuple(1.5 * n for n in range(12)), decides_on=DecidesOn.EVERY_AXLE),
+    )
+    with pytest.raises(InvalidTable, match="counts to 32767"):
+        passage_st_files(PassageBook(large))

@@ -1,0 +1,73 @@
+"""Golden stages of a table: readings at passages where a wrong implementation of the rule shows, with the right stages.
+
+Their speeds lie on, next to (one float32 step) and beyond the switching speeds of every passage and stage in force.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from tuning_tables.golden_vectors import LARGEST, LEAST_NORMAL, SMALLEST, STAGE_LIMITS
+from tuning_tables.passages.passage_table import PassageTable
+from tuning_tables.passages.rule import wanted_stage
+
+Reading: TypeAlias = tuple[int, int, float]
+"""Passage, stage in force, speed in m/s."""
+
+STAGE_ROW: Final = np.dtype([("passage", np.int32), ("stage", np.int32), ("v_m_s", np.float32), ("answer", np.int32)])
+
+MOST_ROWS: Final = 4000
+"""Readings beside switching speeds; of a table with more of these, speeds evenly spread over it are taken."""
+
+FEW_ROWS: Final = 240
+
+
+def golden_stages(table: PassageTable) -> npt.NDArray[np.void]:
+    """Rows of `STAGE_ROW`: up to `MOST_ROWS` beside switching speeds, and what cannot be. Equal tables, equal rows."""
+    return answered(table, [*_beside_speeds(table, MOST_ROWS), *_odd_readings(table, len(table.passages))])
+
+
+def few_golden_stages(table: PassageTable) -> npt.NDArray[np.void]:
+    """The same for a small controller: up to `FEW_ROWS` beside switching speeds, odd readings at one passage."""
+    return answered(table, [*_beside_speeds(table, FEW_ROWS), *_odd_readings(table, 1)])
+
+
+def answered(table: PassageTable, readings: list[Reading]) -> npt.NDArray[np.void]:
+    """The readings with the stages that the rule wants."""
+    rows = np.zeros(len(readings), dtype=STAGE_ROW)
+    for row, (passage, stage, v_m_s) in zip(rows, readings, strict=True):
+        row["passage"], row["stage"], row["v_m_s"] = passage, stage, v_m_s
+        v = float(row["v_m_s"])
+        row["answer"] = wanted_stage(
+            table.switching_m_s, table.entrance_stage, table.before_entrance, passage, stage, v
+        )
+    return rows
+
+
+def _beside_speeds(table: PassageTable, most: int) -> Iterator[Reading]:
+    """Every finite switching speed and its two neighbours, or as many of them as may be."""
+    places = np.argwhere(np.isfinite(table.switching_m_s))
+    every = max(1, -(-3 * len(places) // most))
+    for passage, stage, threshold in places[::every].tolist():
+        speed = table.switching_m_s[passage, stage, threshold]
+        with np.errstate(over="ignore"):  # beyond the largest number is infinity, and held at
+            beside = (np.nextafter(speed, np.float32(-np.inf)), speed, np.nextafter(speed, np.float32(np.inf)))
+        yield from ((passage, stage, float(v)) for v in beside)
+
+
+def _odd_readings(table: PassageTable, passages: int) -> Iterator[Reading]:
+    """What cannot be true, or only just can, at some passages in every stage; no such passage, no such stage."""
+    count, stages = len(table.passages), len(table.pressure_kpa)
+    speeds = (np.nan, np.inf, -np.inf, -1.0, -SMALLEST, -0.0, 0.0, SMALLEST, LEAST_NORMAL, LARGEST, -LARGEST)
+    for passage in np.unique(np.linspace(0, count - 1, min(passages, 4)).astype(int)).tolist():
+        yield from ((passage, stage, v) for stage in range(stages) for v in speeds)
+    for stage in (-1, stages, *STAGE_LIMITS):
+        yield from ((0, stage, v) for v in (0.0, 100.0))
+    for passage in (-1, count, *STAGE_LIMITS):
+        yield from ((passage, stages // 2, v) for v in (0.0, 100.0))
+    for passage in {max(table.before_entrance - 1, 0), min(table.before_entrance, count - 1)}:
+        yield from ((passage, stage, v) for stage in range(stages) for v in (0.0, 100.0))

@@ -1,0 +1,97 @@
+"""The tables for point sensors of one position, and the choice of the one to regulate a cut with.
+
+The choice is that of `tuning_tables.table_book`, but for its rule 5: between two targets there are no switching speeds
+in between, and the table of the lower target is taken. So no choice aims at more than the commanded speed. Switching
+speeds depend on the target, and at the infinite ones there is nothing to interpolate: who needs more exit speeds tunes
+more tables.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from tuning_tables.book_categories import category_numbers
+from tuning_tables.book_classes import tables_by_class
+from tuning_tables.errors import InvalidTable
+from tuning_tables.passages.passage_table import PassageTable
+from tuning_tables.requirement import require_kind, require_tuple
+from tuning_tables.table_book import LARGEST_FLOAT32, LEAST_FLOAT32, Status
+
+
+@dataclass(frozen=True)
+class PassageChoice:
+    """The chosen table and its number in the book, both None where `status` is below 0."""
+
+    status: Status
+    table: PassageTable | None
+    number: int | None
+
+
+@dataclass(frozen=True)
+class PassageBook:
+    """The tables of one position, numbered in their order from 0.
+
+    Ids differ. Retarder position and sensors are the same in all: a controller is wired to one set of sensors, whatever
+    the cut. A category has one number and a number one category. Raises `InvalidTable`.
+    """
+
+    tables: tuple[PassageTable, ...]
+
+    def __post_init__(self) -> None:
+        require_tuple(self.tables, "tables")
+        if not self.tables:
+            raise InvalidTable("a book holds at least one table.")
+        for index, table in enumerate(self.tables):
+            require_kind(table, f"tables[{index}]", PassageTable)
+        first, times = self.tables[0], Counter(table.id for table in self.tables)
+        for table in self.tables:
+            if position_of(table) != position_of(first):
+                raise InvalidTable(
+                    f"{table.id} and {first.id} are for other retarders, dead bands or sensors, but a book "
+                    "serves one position: export them apart."
+                )
+            if times[table.id] > 1:
+                raise InvalidTable(f"the id {table.id} is given to {times[table.id]} tables of the book.")
+            for key, value in (("cut.mass_t", table.cut.mass_t), ("target_speed_m_s", table.target_speed_m_s)):
+                if not LEAST_FLOAT32 <= value <= LARGEST_FLOAT32:
+                    raise InvalidTable(f"{key} of {table.id} is {value!r}, which float32 cannot hold.")
+        category_numbers(self.tables)
+
+    @cached_property
+    def by_class(self) -> Mapping[tuple[str, int], tuple[int, ...]]:
+        """The candidates of every class (category, axles), by rising target."""
+        return tables_by_class(self.tables)
+
+    def shadowed(self) -> tuple[PassageTable, ...]:
+        """The tables that no choice can use: another of the same category and axles is heavier, or comes first."""
+        used = {number for numbers in self.by_class.values() for number in numbers}
+        return tuple(table for number, table in enumerate(self.tables) if number not in used)
+
+    def choose(self, category: str, axles: int, commanded_m_s: float) -> PassageChoice:
+        """The table for a cut of `category` on `axles` axles that shall leave with `commanded_m_s`."""
+        numbers = self.by_class.get((category, axles), ())
+        if not numbers:
+            return PassageChoice(Status.NO_CLASS, None, None)
+        with np.errstate(over="ignore"):
+            target = np.float32(commanded_m_s)
+        targets = [np.float32(self.tables[number].target_speed_m_s) for number in numbers]
+        if not (np.isfinite(target) and target >= targets[0]):
+            return PassageChoice(Status.NO_TARGET, None, None)
+        place = max(index for index, tuned in enumerate(targets) if tuned <= target)
+        status = Status.TUNED if targets[place] == target else Status.SLOWER
+        return PassageChoice(status, self.tables[numbers[place]], numbers[place])
+
+
+def position_of(table: PassageTable) -> tuple[object, ...]:
+    """What makes the position that a table is for; where the pass ends depends on the length of the cut as well."""
+    return (
+        table.retarder.name,
+        table.retarder.zones_m,
+        table.retarder.dead_band_kpa,
+        table.sensors,
+    )
