@@ -143,7 +143,7 @@ def sensor_words(book: SensorBook) -> Markup:
 
 
 def heard_table(book: SensorBook) -> Markup:
-    """What came of each passage at which is decided."""
+    """The passages at which something came between, of all at which is decided."""
     rows = [
         (
             [case.name, str(number), str(row.axle + 1), str(row.sensor + 1), f"{row.path_m:g}",
@@ -154,6 +154,12 @@ def heard_table(book: SensorBook) -> Markup:
         for number, (row, unfinished, not_believed) in enumerate(
             zip(case.table.passages, case.heard.unfinished, case.heard.not_believed, strict=True), start=1
         )
+        if unfinished[0] > 0.0 or not_believed[0] > 0.0
     ]  # fmt: skip
-    lead = element("p", "Of the cuts that come there. Axles and sensors are counted from 1 here, in files from 0.")
-    return joined((lead, table("Passages", (head_row(*HEARD_COLUMNS),), rows, kind="cases")))
+    if not rows:
+        return element("p", "No simulated cut found a change of stage unfinished, and no pulses were left out.")
+    words = (
+        "Passages at which a simulated cut found a change of stage unfinished, or its pulses were not believed: shares "
+        "of the cuts that come there. Axles and sensors are counted from 1 here, in files from 0."
+    )
+    return joined((element("p", words), table("Passages", (head_row(*HEARD_COLUMNS),), rows, kind="cases")))

@@ -83,7 +83,9 @@ def finish_speed(axes: Axes, table: PassageTable, traces: tuple[PassageTrace, ..
     mark_sensors(axes, table)
     dress(axes, "true speed (lines) and speed read (marks), m/s", "path of the first axle, m")
     highest = max((float(trace.speed_m_s.max()) for trace in traces), default=table.valid_v_m_s[1])
-    axes.set(xlim=(start_m - 0.3, table.retarder.exit_m), ylim=(0.0, 1.1 * highest))
+    lowest = min((float(trace.speed_m_s.min()) for trace in traces), default=0.0)
+    low = max(0.0, min(lowest, table.target_speed_m_s) - 0.5)
+    axes.set(xlim=(start_m - 0.3, table.retarder.exit_m), ylim=(low, highest + 0.1 * (highest - low)))
 
 
 def finish_time(pressure: Axes, stage: Axes, table: PassageTable, traces: tuple[PassageTrace, ...]) -> None:

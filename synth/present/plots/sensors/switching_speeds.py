@@ -32,7 +32,9 @@ HOLD = "#f2f2f2"
 LIGHTEST, DARKEST = 0.28, 0.85
 """Part of the colour in a column of a stage one away from that in force, and the farthest away."""
 
-WIDEST_COLUMN_M = 1.6
+WIDEST_COLUMN_M, BETWEEN_COLUMNS = 1.6, 0.94
+"""A column reaches half the way to its neighbours, less a little; nowhere farther than half of the widest."""
+
 MOST_NUMBERED = 14
 """With more passages the columns are too narrow for the numbers of stages."""
 
@@ -45,8 +47,8 @@ def switching_speeds(subject: str, tables: Sequence[PassageTable], traces: Seque
     `traces`: passes of each table, drawn while they were in the stage; none is fine.
     """
     stages = max(stages_in_use(table) for table in tables)
-    figure = new_figure(2.9 * stages + 0.75, 2.5 * len(tables) + 1.75, "Stage wanted at each passage", subject)
-    place(figure, left=0.62, right=0.15, bottom=1.05, top=0.95, w=0.08, h=0.22)
+    figure = new_figure(2.9 * stages + 0.9, 2.5 * len(tables) + 1.75, "Stage wanted at each passage", subject)
+    place(figure, left=0.78, right=0.15, bottom=1.05, top=0.95, w=0.08, h=0.22)
     grid = figure.subplots(len(tables), stages, sharex=True, squeeze=False)
     for row, table in enumerate(tables):
         for stage in range(stages):
@@ -62,28 +64,31 @@ def switching_speeds(subject: str, tables: Sequence[PassageTable], traces: Seque
 def draw_stage(axes: Axes, table: PassageTable, stage: int, traces: Sequence[PassTrace]) -> None:
     """Columns of the stages wanted while `stage` is in force."""
     low, high = speed_window_m_s(table, traces)
-    path, width = table.path_m.astype(float), column_width_m(table)
-    for passage, place_m in enumerate(path):
+    columns = columns_m(table)
+    numbered = len(columns) <= MOST_NUMBERED
+    for passage, (left, right) in enumerate(columns):
         edges = wanted_edges_m_s(table, passage, stage, (low, high))
         for wanted, (bottom, top) in enumerate(pairwise(edges)):
             if top > bottom:
-                colour = colour_of(wanted, stage, len(table.pressure_kpa) - 1)
-                axes.bar(place_m, top - bottom, width, bottom, color=colour, edgecolor=GREY, linewidth=0.3, zorder=2)
-                if len(path) <= MOST_NUMBERED and top - bottom > 0.05 * (high - low):
-                    axes.text(
-                        place_m, 0.5 * (bottom + top), f"{wanted}", ha="center", va="center", fontsize=7, zorder=3
-                    )
+                axes.bar(
+                    left, top - bottom, right - left, bottom, align="edge", zorder=2,
+                    color=colour_of(wanted, stage, len(table.pressure_kpa) - 1), edgecolor=GREY,
+                    linewidth=0.3 if numbered else 0.0,
+                )  # fmt: skip
+                if numbered and top - bottom > 0.05 * (high - low):
+                    middle = 0.5 * (left + right), 0.5 * (bottom + top)
+                    axes.text(*middle, f"{wanted}", ha="center", va="center", fontsize=7, zorder=3)
     for trace in traces:
         inside = trace.stage == stage
         inside[1:] |= inside[:-1].copy()  # a stage holds up to the next event
         axes.plot(
             trace.path_m, np.where(inside, trace.speed_m_s, np.nan), color=INK, linewidth=0.9, zorder=4, alpha=0.8
         )
-    axes.axhline(table.target_speed_m_s, color=INK, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1)
+    axes.axhline(table.target_speed_m_s, color=INK, linewidth=0.8, linestyle=(0, (4, 3)), zorder=2.5)
     mark_zones(axes, table.retarder.zones_m, -table.approach.length_m)
     mark_sensors(axes, table)
     dress(axes, f"in force: stage {stage}, {table.pressure_kpa[stage]:g} kPa")
-    axes.set(xlim=(path[0] - 0.7 * width, table.retarder.exit_m), ylim=(low, high))
+    axes.set(xlim=(columns[0][0] - 0.2, table.retarder.exit_m), ylim=(low, high))
 
 
 def wanted_edges_m_s(
@@ -115,10 +120,12 @@ def speed_window_m_s(table: PassageTable, traces: Sequence[PassTrace]) -> tuple[
     return max(0.0, table.target_speed_m_s - BELOW_TARGET_M_S), highest + ABOVE_FASTEST_M_S
 
 
-def column_width_m(table: PassageTable) -> float:
-    """A little less than the least distance of two passages that are not almost at one place."""
-    apart = np.diff(table.path_m.astype(float))
-    return float(0.8 * min(WIDEST_COLUMN_M, max(apart.min(initial=WIDEST_COLUMN_M), 0.25)))
+def columns_m(table: PassageTable) -> list[tuple[float, float]]:
+    """Left and right end of the column of each passage; neighbours do not meet."""
+    path = table.path_m.astype(float)
+    apart = np.minimum(np.diff(path, prepend=-np.inf, append=np.inf), WIDEST_COLUMN_M)
+    half = 0.5 * BETWEEN_COLUMNS * apart
+    return list(zip((path - half[:-1]).tolist(), (path + half[1:]).tolist(), strict=True))
 
 
 def colour_of(wanted: int, stage: int, top: int) -> str:
@@ -132,11 +139,11 @@ def colour_of(wanted: int, stage: int, top: int) -> str:
 
 
 def mark_sensors(axes: Axes, table: PassageTable) -> None:
-    """The sensors before the exit as triangles that stand on the upper edge of a panel over path."""
+    """The sensors before the exit as triangles below the upper edge of a panel over path."""
     shown = [place_m for place_m in table.sensors.path_m if place_m <= table.retarder.exit_m]
     axes.plot(
-        shown, np.full(len(shown), 1.015), "v", color=INK, markersize=4.5, zorder=6,
-        transform=axes.get_xaxis_transform(), clip_on=False,
+        shown, np.full(len(shown), 0.97), "v", color=INK, markersize=5.5, markeredgecolor="white", markeredgewidth=0.6,
+        zorder=6, transform=axes.get_xaxis_transform(),
     )  # fmt: skip
 
 
