@@ -1,0 +1,18 @@
+"""What a configuration asks of a layout of point sensors."""
+
+from __future__ import annotations
+
+from plant_models import PointSensors
+from synth.book.sensors.candidate_places import LayoutCase
+from synth.book.sensors.layout_plan import LayoutProblem
+from synth.configuration.resolved_config import ResolvedConfig
+from synth.problem.aim import Aim
+
+
+def layout_problem(config: ResolvedConfig) -> tuple[LayoutProblem, tuple[str, ...]]:
+    """The problem of all cut classes and targets, and the labels of the classes; [sensors] path_m is not read."""
+    cases = tuple(
+        LayoutCase(plant, tuple(Aim(target, config.criterion) for target in config.targets_of(label)))
+        for label, plant in config.plants()
+    )
+    return LayoutProblem(cases, PointSensors((0.0,)), config.resolution), tuple(label for label, _ in config.plants())
