@@ -12,6 +12,7 @@ from synth.faults.input_error import InputError
 from synth.faults.machine_fault import MACHINE_FAULTS
 from tuning_tables import ControllerTable, read_book, read_json
 from tuning_tables.aim.aim_table import AimTable
+from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.regular_file import first_bytes
 
 HDF5_SIGNATURE = b"\x89HDF"
@@ -67,7 +68,7 @@ def read_table_file(path: Path) -> TableFile:
         raise InputError(f"{path}: cannot be read ({error.strerror}); check the path and its permissions") from None
 
 
-def file_stem(table: ControllerTable | AimTable) -> str:
+def file_stem(table: ControllerTable | AimTable | PassageTable) -> str:
     """The table's id as a file name: a file may hold any id, so no slash and no leading dot gets through."""
     return re.sub(r"[^\w.-]+", "-", table.id).lstrip(".-") or "table"
 
