@@ -17,7 +17,7 @@ import pytest
 from synth.studies.in_the_loop.builds import BUILDS, Build
 from synth.studies.in_the_loop.controller_process import CONTRACT, BuildError, compile_with
 from tests.controller_code.conftest import Tool
-from tests.controller_code.passage_tables import passage_book, passage_table
+from tests.controller_code.passage_tables import every_axle_book, passage_book, passage_table
 from tests.controller_code.pulse_questions import ANSWER, PAIR, Rows, asked, right
 from tests.controller_code.sample_book import sample_book
 from tests.controller_code.test_export import FLOAT_H, PEDANTIC
@@ -98,10 +98,10 @@ int main(int count, char **arguments)
 
 
 @cache
-def questions(count: int = QUESTIONS) -> tuple[Rows, Rows]:
+def questions(book: PassageBook = BOOK) -> tuple[Rows, Rows]:
     """Questions and the answers of the Python text."""
-    found = asked(TABLES, count, 20261123)
-    return found, right(TABLES, found)
+    found = asked(book.tables, QUESTIONS, 20261123)
+    return found, right(book.tables, found)
 
 
 @cache
@@ -157,6 +157,13 @@ def test_c_does_as_python_to_the_last_bit(build: Build, tmp_path: Path, tool: To
     assert np.array_equal(words, [passage_block(table, size) for table in TABLES])
     about = [f"{each.target_speed_m_s:g} {each.entrance_stage} {each.initial_stage}" for each in TABLES]
     assert told(command, "about").decode().split("\n") == [*about, ""]
+
+
+def test_c_does_as_python_on_every_axle(tmp_path: Path, tool: Tool) -> None:
+    build, book = Build(tool("gcc"), ("-O2",)), every_axle_book()
+    command = built(tmp_path, build, book=book)
+    assert differences(command, build, *questions(book)) == 0
+    assert told(command, "self-test") == b"fault 0 at 0\n"
 
 
 def test_the_questions_reach_much() -> None:
