@@ -10,6 +10,7 @@ from plant_models.library.catalogue import (
     load_sensor,
     load_track,
     load_weight_categories,
+    load_wheel_sensor,
     position_names,
     retarder_names,
 )
@@ -30,11 +31,13 @@ from plant_models.library.type_file import (
     SENSORS,
     TRACKS,
     WEIGHT_CATEGORIES,
+    WHEEL_SENSORS,
     Kind,
     TypeFile,
     TypeFileError,
 )
 from plant_models.library.weight_category import WeightCategories, WeightCategory
+from plant_models.library.wheel_sensor_entry import WheelSensorEntry
 
 __all__ = [
     "BUILT_IN",
@@ -46,6 +49,7 @@ __all__ = [
     "SENSORS",
     "TRACKS",
     "WEIGHT_CATEGORIES",
+    "WHEEL_SENSORS",
     "YARD_CATEGORIES",
     "CarEntry",
     "HumpEntry",
@@ -62,6 +66,7 @@ __all__ = [
     "Value",
     "WeightCategories",
     "WeightCategory",
+    "WheelSensorEntry",
     "car_names",
     "hump_names",
     "load_car",
@@ -71,6 +76,7 @@ __all__ = [
     "load_sensor",
     "load_track",
     "load_weight_categories",
+    "load_wheel_sensor",
     "position_names",
     "retarder_names",
     "sources",

@@ -15,8 +15,10 @@ from plant_models.library.type_file import (
     SENSORS,
     TRACKS,
     WEIGHT_CATEGORIES,
+    WHEEL_SENSORS,
 )
 from plant_models.library.weight_category import WeightCategories, categories_from
+from plant_models.library.wheel_sensor_entry import WheelSensorEntry, wheel_sensor_from
 
 YARD_CATEGORIES = "hump-norm"
 """The set of weight categories that counts where none is named."""
@@ -55,6 +57,11 @@ def load_car(name: str, library: Library = BUILT_IN) -> CarEntry:
 def load_sensor(name: str, library: Library = BUILT_IN) -> SensorEntry:
     """The sensor `name`; `PlantError` as `load_position`."""
     return sensor_from(library.file(SENSORS, name))
+
+
+def load_wheel_sensor(name: str, library: Library = BUILT_IN) -> WheelSensorEntry:
+    """The wheel sensor `name`; `PlantError` as `load_position`."""
+    return wheel_sensor_from(library.file(WHEEL_SENSORS, name))
 
 
 def load_weight_categories(name: str = YARD_CATEGORIES, library: Library = BUILT_IN) -> WeightCategories:

@@ -35,8 +35,9 @@ POSITIONS: Final = Kind("positions", "position")
 TRACKS: Final = Kind("tracks", "track")
 CAR_MIXES: Final = Kind("car_mixes", "car mix")
 HUMPS: Final = Kind("humps", "hump")
+WHEEL_SENSORS: Final = Kind("wheel_sensors", "wheel sensor")
 
-KINDS: Final = (POSITIONS, RETARDERS, CARS, SENSORS, WEIGHT_CATEGORIES, TRACKS, CAR_MIXES)
+KINDS: Final = (POSITIONS, RETARDERS, CARS, SENSORS, WHEEL_SENSORS, WEIGHT_CATEGORIES, TRACKS, CAR_MIXES)
 """Kinds of which a configuration may name a user's file; humps are files of their own."""
 
 

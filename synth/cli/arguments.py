@@ -78,7 +78,10 @@ GaugeStd = Annotated[
     ),
 ]
 
-NAME_OPTIONS = ("--retarder", "--position", "--car", "--sensor", "--weight-categories", "--aim", "--hump", "--computer")
+NAME_OPTIONS = (
+    "--retarder", "--position", "--car", "--sensor", "--wheel-sensor", "--sensors", "--weight-categories", "--aim",
+    "--hump", "--computer",
+)  # fmt: skip
 """Options of init whose value may be left out."""
 
 

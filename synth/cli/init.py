@@ -16,7 +16,8 @@ def init_command(types: dict[str, str | None], show_list: bool, as_json: bool) -
     `types`: by folder of the library, the type that is asked for; '' for a usual one, None for none. A position under
     "retarders" asks for a configuration with it: so the option --retarder was, before there were files of types. Under
     "aim" '' asks for an aim configuration, a name for the file of a track or a car mix; under "hump" '' asks for a hump
-    trial configuration, a name for the file of a hump; under "computer" '' asks for that of a control computer.
+    trial configuration, a name for the file of a hump; under "computer" '' asks for that of a control computer; under
+    "point sensors" '' or the name of a position asks for a configuration with point sensors.
     """
     if show_list:
         return print_list(as_json)
@@ -35,7 +36,8 @@ def asked_for(types: dict[str, str | None]) -> tuple[str, str]:
 
     asked = [kind for kind in KINDS if types.get(kind.folder) is not None]
     aim, hump, computer = types.get("aim"), types.get("hump"), types.get("computer")
-    if len(asked) + sum(each is not None for each in (aim, hump, computer)) > 1:
+    sensors = types.get("point sensors")
+    if len(asked) + sum(each is not None for each in (aim, hump, computer, sensors)) > 1:
         raise InputError("init prints one file at a time; give one of its options")
     if aim is not None:
         return aim_file(aim)
@@ -43,6 +45,8 @@ def asked_for(types: dict[str, str | None]) -> tuple[str, str]:
         return hump_file(hump)
     if computer is not None:
         return computer_file(computer)
+    if sensors is not None:
+        return sensors_file(sensors)
     if not asked:
         return "configuration", default_config_toml()
     (kind,) = asked
@@ -93,6 +97,16 @@ def computer_file(name: str) -> tuple[str, str]:
     if name:
         raise InputError(f"init --computer {name}: the library has no control computers; leave the name out")
     return "configuration", default_computer_toml()
+
+
+def sensors_file(name: str) -> tuple[str, str]:
+    """As `asked_for`: a configuration with point sensors, of the position `name`."""
+    from plant_models.library import BUILT_IN, POSITIONS
+    from synth.configuration.point_sensors.template import DUMPER_POSITION, default_sensors_toml
+    from synth.configuration.position_choice import require_held
+
+    require_held("retarder-synth init: --sensors", POSITIONS, name or DUMPER_POSITION, BUILT_IN)
+    return "configuration", default_sensors_toml(name or DUMPER_POSITION)
 
 
 def print_list(as_json: bool) -> int:

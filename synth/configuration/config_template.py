@@ -16,6 +16,7 @@ from plant_models.library import (
     position_names,
     sources_cited_in,
 )
+from plant_models.library.sourced_value import SET_BY_USER
 from synth.configuration.cut_class import CutClass
 from synth.configuration.plant_settings import DEFAULT_POSITION, PositionSettings
 from synth.configuration.resolved_config import ResolvedConfig, resolve
@@ -102,7 +103,9 @@ def cut_lines(cut_class: CutClass) -> Iterator[str]:
     yield "# From the mass per axle follow (remove the leading # to change one):"
     yield f"# category = {quoted(cut_class.cut.category)}  # or L, LS, S, ST, T"
     yield f"# entrance_stage = {cut_class.entrance_stage}  # {origin(by_name['entrance_stage'])}"
-    yield f"# allowed_stage = {cut_class.cut.allowed_stage}  # {origin(by_name['allowed_stage'])}"
+    allowed = by_name["allowed_stage"]
+    mark = "" if allowed.source == SET_BY_USER else "# "
+    yield f"{mark}allowed_stage = {cut_class.cut.allowed_stage}  # {origin(allowed)}"
     yield f"# rolling_resistance.mean_n_per_kn = {mean.value!r}  # {origin(mean)}"
     yield f"# rolling_resistance.std_n_per_kn = {std.value!r}  # {origin(std)}"
     yield "# Of the class alone: targets_m_s = [3.0], entry = { low_m_s = 5.0, high_m_s = 6.0 }; of several types of"

@@ -26,6 +26,7 @@ KEY_OF_PLANT_MESSAGE: Final = {
     "entry: the last of ": "entry: the last of ",
     "friction: ": "friction.",
     "sensor: ": "sensor.",
+    "sensors: ": "sensors.",
     "regulator: ": "regulator.",
     "criterion: ": "criterion.",
     "targets: target_speed_m_s": "targets.exit_speeds_m_s",

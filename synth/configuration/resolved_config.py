@@ -22,6 +22,7 @@ from plant_models.library.sourced_value import SET_BY_USER
 from synth.configuration.cut_class import CutClass, Surroundings, category_warnings, resolve_cut
 from synth.configuration.grid_warnings import grid_warnings
 from synth.configuration.plant_fault import in_file
+from synth.configuration.point_sensors.resolved_sensors import ResolvedSensors, require_served, resolve_sensors
 from synth.configuration.position_choice import require_held, resolve_position
 from synth.configuration.section import Section, setting_limits, setting_source, setting_unit
 from synth.configuration.settings import (
@@ -54,12 +55,13 @@ class ResolvedConfig:
 
     `parameters`: every number with unit, range, source, confidence and whether it is assumed; source
     'configuration' marks what the user changed. `retarder`: the position, with what [regulator] says of it. `entry`,
-    `targets_m_s`: of the classes that have none of their own. `warnings`: sentences about values outside their sensible
-    range.
+    `targets_m_s`: of the classes that have none of their own. `sensors`: point sensors, None where the file has none.
+    `warnings`: sentences about values outside their sensible range.
     """
 
     title: str
     retarder: PositionEntry
+    sensors: ResolvedSensors | None
     entry: EntryLaw
     cuts: tuple[CutClass, ...]
     targets_m_s: tuple[float, ...]
@@ -140,9 +142,11 @@ class ResolvedConfig:
                 table = table.setdefault(part, {})
             table[name] = parameter.value
         tree["cut"] = [c.canonical() for c in self.cuts]
-        if self.retarder.approach.length_m > 0.0:
+        if self.retarder.approach.length_m > 0.0 or self.sensors is not None:
             stages = (self.plant_of(c).entrance_stage for c in self.cuts)
             tree["cut"] = [{**c, "entrance_stage": stage} for c, stage in zip(tree["cut"], stages, strict=True)]
+        if self.sensors is not None:
+            tree["sensors"] = self.sensors.canonical()
         tree.setdefault("regulator", {})["estimator"] = self.regulator.estimator
         sections = {
             "criterion": self.criterion_settings,
@@ -167,8 +171,10 @@ def resolve(settings: Settings, file: str, library: Library = BUILT_IN) -> Resol
     with in_file(file):
         categories = load_weight_categories(settings.weight_categories, library)
     cuts = resolve_cuts(settings, Surroundings(position, categories, library, file))
+    sensors = None if settings.sensors is None else resolve_sensors(settings.sensors, file, library)
     parameters = (
         *position.provenance,
+        *(sensors.provenance if sensors is not None else ()),
         *(value for c in cuts for value in c.provenance),
         *(value for name in NUMERICAL_SECTIONS for value in setting_values(name, getattr(settings, name))),
     )
@@ -176,6 +182,7 @@ def resolve(settings: Settings, file: str, library: Library = BUILT_IN) -> Resol
     config = ResolvedConfig(
         title=position.title if settings.title is None else settings.title,
         retarder=position,
+        sensors=sensors,
         entry=position.entry,
         cuts=cuts,
         targets_m_s=position.target_speeds_m_s,
@@ -190,7 +197,10 @@ def resolve(settings: Settings, file: str, library: Library = BUILT_IN) -> Resol
         warnings=tuple(range_warnings(parameters)) + tuple(category_warnings(cuts, categories)),
     )
     with in_file(file):
-        return with_grid_warnings(config, file)
+        config = with_grid_warnings(config, file)
+    if sensors is not None:
+        require_served(sensors, config.plants(), file)
+    return config
 
 
 def with_sources(parameters: tuple[SourcedValue, ...], settings: Settings, file: str) -> tuple[SourcedValue, ...]:

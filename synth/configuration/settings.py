@@ -24,6 +24,7 @@ from synth.configuration.plant_settings import (
     TargetSettings,
     TrackSettings,
 )
+from synth.configuration.point_sensors.settings import PointSensorSettings
 from synth.configuration.section import Section, setting
 from synth.configuration.value_forms import Source, Title
 from synth.problem.criterion import Criterion
@@ -163,6 +164,7 @@ class Settings(Section):
     entry: EntrySettings = EntrySettings()
     friction: FrictionSettings = FrictionSettings()
     sensor: SensorSettings = SensorSettings()
+    sensors: PointSensorSettings | None = None
     targets: TargetSettings = TargetSettings()
     cut: tuple[CutSettings, ...] = Field(DEFAULT_CUTS, min_length=1, max_length=1000, strict=False)
     grid: GridSettings = GridSettings()

@@ -14,12 +14,14 @@ from plant_models.library import (
     SENSORS,
     TRACKS,
     WEIGHT_CATEGORIES,
+    WHEEL_SENSORS,
     YARD_CATEGORIES,
     Kind,
     sources_cited_in,
 )
 from synth.configuration.aim.settings import DEFAULT_MIX, DEFAULT_TRACK
 from synth.configuration.plant_settings import DEFAULT_POSITION
+from synth.configuration.point_sensors.settings import DEFAULT_WHEEL_SENSOR
 from synth.configuration.position_choice import require_held
 
 START_FROM: Final = {
@@ -27,6 +29,7 @@ START_FROM: Final = {
     RETARDERS: "knp-5",
     POSITIONS: DEFAULT_POSITION,
     SENSORS: "doppler-radar",
+    WHEEL_SENSORS: DEFAULT_WHEEL_SENSOR,
     WEIGHT_CATEGORIES: YARD_CATEGORIES,
     TRACKS: DEFAULT_TRACK,
     CAR_MIXES: DEFAULT_MIX,
@@ -38,6 +41,7 @@ NAMED_IN: Final = {
     RETARDERS: 'retarder = "{0}" in a position file',
     POSITIONS: 'name = "{0}" in [position]',
     SENSORS: 'sensor = "{0}" in a position file',
+    WHEEL_SENSORS: 'type = "{0}" in [sensors]',
     WEIGHT_CATEGORIES: 'weight_categories = "{0}"',
     TRACKS: 'name = "{0}" in [track] of an aim configuration',
     CAR_MIXES: 'mix = "{0}" in [cuts] of an aim configuration',
@@ -64,6 +68,12 @@ FORM: Final = {
 # [friction]: mean_cv, how uncertain the mean friction itself is, may be left out, too: then it is taken as known.""",
     SENSORS: """\
 # resolution_m_s: 0 means not quantised.""",
+    WHEEL_SENSORS: """\
+# base_m: distance of the coils; base_tolerance: standard deviation of its relative error, lasting for each sensor and
+# unknown to the regulator. timer_noise_s: standard deviation of a measured time. timer_resolution_s: times are whole
+# multiples of it; 0: not rounded. computing_delay_s: from the second pulse to the command on the wires.
+# scan_period_s: step of the regulator's clock; changes of stage last whole steps. Where the sensors stand, says
+# path_m in [sensors] of a configuration.""",
     WEIGHT_CATEGORIES: """\
 # One table for each category, the lightest first. name: in tables; the table's own name is a second one, for keyboards.
 # number: stands for the category in controllers for good: 16 to 255; 1 to 5 only for Л, ЛС, С, СТ, Т.

@@ -75,8 +75,10 @@ def ordered(switching_m_s: NDArray[np.float64]) -> NDArray[np.float64]:
         up[:] = np.maximum.accumulate(up, axis=1) if stage < stages - 1 else up
         if 0 < stage < stages - 1:
             near_down, near_up = down[:, -1:], up[:, :1]
-            close = np.isfinite(near_down) & np.isfinite(near_up) & (near_up - near_down < SMALLEST_GAP_M_S)
-            middle = np.where(close, 0.5 * (near_down + near_up), 0.0)
+            both = np.isfinite(near_down) & np.isfinite(near_up)
+            low, high = np.where(both, near_down, 0.0), np.where(both, near_up, 0.0)
+            close = both & (high - low < SMALLEST_GAP_M_S)
+            middle = 0.5 * (low + high)
             down[:] = np.where(close, np.minimum(down, middle - 0.5 * SMALLEST_GAP_M_S), down)
             up[:] = np.where(close, np.maximum(up, middle + 0.5 * SMALLEST_GAP_M_S), up)
     return t

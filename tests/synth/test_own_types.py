@@ -26,6 +26,7 @@ USED = {
     "retarders": '[retarder]\ntype = "mine"\n',
     "cars": '[[cut]]\ncar = "mine"\nmass_t = 22\n',
     "sensors": '[sensor]\ntype = "mine"\n',
+    "wheel_sensors": '[sensors]\ntype = "mine"\npath_m = [-4.0, 6.0]\n',
     "weight_categories": 'weight_categories = "mine"\n',
 }
 """A configuration that uses the type "mine", by its kind; tracks and car mixes are of an aim configuration."""
@@ -65,6 +66,7 @@ def test_what_init_prints_reads_back_as_a_type_of_ones_own(kind: Kind, tmp_path:
     same = config_in(tmp_path, text.replace("mine", START_FROM[kind]))
     assert changed.plants()[0][1].cut == same.plants()[0][1].cut
     assert changed.retarder.sensor == same.retarder.sensor
+    assert [each.sensors and each.sensors.sensors for each in (changed, same)].count(None) in (0, 2)
     assert changed.retarder.position.zones_m == same.retarder.position.zones_m
     traced = {p.key for p in changed.parameters if p.source.endswith(f"(my/{kind.folder}/mine.toml)")}
     assert traced, "the numbers must name the user's file"

@@ -35,7 +35,7 @@ def test_help_imports_nothing_numeric(arguments: list[str]) -> None:
     assert modules_after(*arguments).isdisjoint(HEAVY | {"numpy"})
 
 
-@pytest.mark.parametrize("arguments", [["init"], ["init", "--aim"], ["init", "--hump"]])
+@pytest.mark.parametrize("arguments", [["init"], ["init", "--aim"], ["init", "--hump"], ["init", "--sensors"]])
 def test_init_needs_no_solver(arguments: list[str]) -> None:
     assert modules_after(*arguments).isdisjoint(HEAVY)
 

@@ -68,14 +68,14 @@ class SensorPassages:
         place_m = np.array([each.path_m for each in self.passages(plant)]) - plant.start_m
         least = max(4, round(length_m / resolution.path_step_m), math.ceil(1.5 * len(place_m)))
         tried = np.unique(np.linspace(least, FINER_AT_MOST * least, STEPS_TRIED).astype(int))
-        off = [np.abs(place_m - nodes_of(place_m, length_m / n) * (length_m / n)).max() for n in tried]
+        off = [np.abs(place_m - nodes_of(place_m, length_m / n, int(n)) * (length_m / n)).max() for n in tried]
         best = int(tried[int(np.argmin(np.round(off, 9)))])
         return make_grid(plant, replace(resolution, path_step_m=length_m / best))
 
     def decisions(self, plant: Plant, grid: Grid) -> Decisions:
         """At the node next to the middle of each base, and no two at one."""
         place_m = np.array([each.path_m for each in self.passages(plant)]) - plant.start_m
-        node = nodes_of(place_m, grid.path_step_m)
+        node = nodes_of(place_m, grid.path_step_m, len(grid.path_m) - 1)
         return Decisions(node, place_m + 0.5 * self.clock.base_m - node * grid.path_step_m, plant.top_stage)
 
     def entry(self, plant: Plant, grid: Grid) -> NDArray[np.float64]:
@@ -120,11 +120,14 @@ def held_m_s2(plant: Plant, grid: Grid, decisions: Decisions) -> NDArray[np.floa
     return held
 
 
-def nodes_of(place_m: NDArray[np.float64], step_m: float) -> NDArray[np.int64]:
-    """Nodes, `step_m` apart from 0 on, next to rising places; where two would share one, the later takes the next."""
+def nodes_of(place_m: NDArray[np.float64], step_m: float, steps: int) -> NDArray[np.int64]:
+    """Nodes, `step_m` apart from 0 on, next to rising places; where two would share one, the later takes the next.
+
+    None is the last of the path, node `steps`: there the cut has left. Those that would come there stay before it.
+    """
     node = np.rint(place_m / step_m).astype(np.int64)
     rank = np.arange(len(node))
-    return np.maximum.accumulate(node - rank) + rank
+    return np.minimum(np.maximum.accumulate(node - rank), steps - len(node)) + rank
 
 
 def with_point_sensors(plant: Plant, sensors: PointSensors, entrance_stage: int | None = None) -> Plant:

@@ -1,0 +1,1 @@
+"""The section [sensors] of a configuration: point sensors along the position."""
