@@ -40,10 +40,11 @@ SENSITIVITY_LAYOUT: Final = Layout("sensitivity", "sensitivity-summary", ("plots
 REPLAY_LAYOUT: Final = Layout("replay", "replay-summary", ("plots",))
 RETUNE_LAYOUT: Final = Layout("retune", "retune-summary", ("tables", "plots"))
 IDENTIFY_LAYOUT: Final = Layout("identify", "identify-summary", ("types", "plots"))
+SENSOR_PLAN_LAYOUT: Final = Layout("sensors plan", "sensor-plan-summary", ("plots",))
 WATCH_LAYOUT: Final = Layout("watch", "watch-summary", (), "watch.json")
 LAYOUTS: Final = (
     TUNE_LAYOUT, SENSORS_LAYOUT, AIM_LAYOUT, TRAINS_LAYOUT, COMPUTER_LAYOUT, SENSITIVITY_LAYOUT, REPLAY_LAYOUT,
-    RETUNE_LAYOUT, IDENTIFY_LAYOUT, WATCH_LAYOUT,
+    RETUNE_LAYOUT, IDENTIFY_LAYOUT, WATCH_LAYOUT, SENSOR_PLAN_LAYOUT,
 )  # fmt: skip
 LEFTOVER = re.compile(r"\..+\.[0-9a-f]{16}\.part")
 PICTURES = re.compile(
@@ -52,7 +53,7 @@ PICTURES = re.compile(
 )
 """File names of the pictures that a tune draws."""
 
-SENSOR_PICTURES = re.compile(r"(switching-speeds|exit-density|sample-passes)-.+\.(png|svg)")
+PASSAGE_PICTURES = re.compile(r"(switching-speeds|exit-density|sample-passes)-.+\.(png|svg)")
 """Those of a tune for point sensors."""
 
 AIM_PICTURES = re.compile(r"aim-(track|gaps|commands-by-cars|commands-by-resistance|chances-.+)\.(png|svg)")
@@ -69,6 +70,9 @@ SENSITIVITY_PICTURES = re.compile(r"sensitivity-[a-z-]+\.(png|svg)")
 
 MEASURED_PICTURES = re.compile(r"(identify|replay|retune)-[a-z-]+\.(png|svg)")
 """Those of measured passes."""
+
+SENSOR_PICTURES = re.compile(r"sensors-[a-z-]+\.(png|svg)")
+"""Those of a plan of point sensors."""
 
 SWEEP_LEDGER, SWEPT_CONFIG = "sweep/ledger.jsonl", "config.toml"
 """What is in every directory of a sweep, and beside every book of one."""

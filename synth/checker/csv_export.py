@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from synth.checker.canonical import canonical_form, crc32
 from synth.checker.finding import DamagedError, shown
-from synth.checker.table_reading import Table
 
 Rows = dict[tuple[str, str], tuple[str, ...]]
 
@@ -38,11 +38,10 @@ def read_rows(content: bytes) -> Rows:
     return found
 
 
-def differences(rows: Rows, table: Table) -> Iterator[str]:
-    """Each row that is not what `table` says."""
-    wanted = dict(rows_of(dict(table.document), ""))
-    checksum = f"{crc32(canonical_form(dict(table.document)).encode('utf-8')):08x}"
-    wanted["text", "crc32"] = [checksum]
+def differences(rows: Rows, document: Mapping[str, Any]) -> Iterator[str]:
+    """Each row that is not what the document of a table, less its checksum, says."""
+    wanted = dict(rows_of(dict(document), ""))
+    wanted["text", "crc32"] = [f"{crc32(canonical_form(dict(document)).encode('utf-8')):08x}"]
     for key in sorted(wanted.keys() | rows.keys()):
         name = ",".join(key)
         if key not in rows:
@@ -61,6 +60,8 @@ def rows_of(value: Any, key: str) -> Iterator[tuple[tuple[str, str], list[Any]]]
         for name, member in value.items():
             if name in ("lower", "upper") and member is not None:
                 yield (name, str(value["k"])), member
+            elif name == "switching_m_s":
+                yield from switching_rows(member, key.rpartition(".")[2])
             elif name not in ("lower", "upper"):
                 yield from rows_of(member, f"{key}.{name}".lstrip("."))
     elif isinstance(value, list) and isinstance(value[0], dict | list):
@@ -68,6 +69,13 @@ def rows_of(value: Any, key: str) -> Iterator[tuple[tuple[str, str], list[Any]]]
             yield from rows_of(item, f"{key}.{index}")
     elif value is not None:
         yield ("number", key), value if isinstance(value, list) else [value]
+
+
+def switching_rows(rows: list[list[float | None]], passage: str) -> Iterator[tuple[tuple[str, str], list[Any]]]:
+    """The rows of one passage: null is −inf below the stage in force, inf from it on."""
+    for k, row in enumerate(rows):
+        speeds = [(-math.inf if j < k else math.inf) if speed is None else speed for j, speed in enumerate(row)]
+        yield ("switching", f"{passage}.{k}"), speeds
 
 
 def same(record: str, cells: tuple[str, ...], values: list[Any]) -> bool:

@@ -82,10 +82,10 @@ KNOWN_VERSIONS: Final = (1, 2, 3)
 
 
 def require_document(document: Mapping[str, Any]) -> None:
-    """Raise `DamagedError` unless `document` is of a known version and looks as that must."""
+    """Raise `DamagedError` unless `document`, of a table with lines, is of a known version and looks as that must."""
     version = document.get("version")
     if isinstance(version, bool) or not isinstance(version, int) or version not in KNOWN_VERSIONS:
-        raise DamagedError(f"its version is {shown(version)}, but this checker knows the versions 1 to 3 only")
+        raise DamagedError(f"its version is {shown(version)}, but tables with lines are of the versions 1 to 3 only")
     estimating = version == 2 or (version == 3 and "estimator" in document)
     require_shape(document, SHAPES[version, estimating], "")
 

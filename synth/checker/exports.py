@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -13,8 +13,9 @@ from synth.checker import c_export, csv_export, golden_export, st_export, track_
 from synth.checker.aim.exports import check_aim_exports, is_aim_csv
 from synth.checker.book_categories import without_number
 from synth.checker.code_file import CodeFile, c_files, require_layout, st_files
-from synth.checker.export_check import Differences, findings_of
+from synth.checker.export_check import Check, Differences, findings_of
 from synth.checker.finding import Finding, Kind
+from synth.checker.passages.reading import PassageTable
 from synth.checker.source import Source, named
 from synth.checker.source_file import content_of
 from synth.checker.table_reading import Table
@@ -43,8 +44,22 @@ def check_exports(source: Source, folder: Path) -> ExportReport:
 
     if source.aims:
         check_aim_exports(source.aims, folder, check)
-    if not source.tables and source.aims:
-        return ExportReport(tuple(files), tuple(findings))
+    if source.tables or not (source.aims or source.passages):
+        check_code(source, folder, check)
+    tables: dict[str, Table | PassageTable] = {table.id: table for table in source.tables}
+    tables |= {table.id: table for table in source.passages}
+    csv_files = [file for file in sorted((folder / "tables").glob("*.csv")) if not is_aim_csv(file)]
+    seen: set[str] = set()
+    for file in csv_files:
+        check(file, partial(csv_differences, file, tables, seen))
+    if csv_files:
+        missing = sorted(tables.keys() - seen)
+        findings += [Finding(Kind.DISAGREES, name, "other tables have a CSV file, it has none") for name in missing]
+    return ExportReport(tuple(files), tuple(findings))
+
+
+def check_code(source: Source, folder: Path, check: Check) -> None:
+    """Compare the controller code for tables with lines, and its golden vectors and tracks."""
     for place in FOLDERS:
         for code in c_files(folder / place):
             check(code.path, partial(c_differences, code, source))
@@ -54,15 +69,6 @@ def check_exports(source: Source, folder: Path) -> ExportReport:
             check(file, partial(track_differences, file, source))
         for code in st_files(folder / place):
             check(code.path, partial(st_differences, code, source))
-    tables = {table.id: table for table in source.tables}
-    csv_files = [file for file in sorted((folder / "tables").glob("*.csv")) if not is_aim_csv(file)]
-    seen: set[str] = set()
-    for file in csv_files:
-        check(file, partial(csv_differences, file, tables, seen))
-    if csv_files:
-        missing = sorted(tables.keys() - seen)
-        findings += [Finding(Kind.DISAGREES, name, "other tables have a CSV file, it has none") for name in missing]
-    return ExportReport(tuple(files), tuple(findings))
 
 
 def c_differences(code: CodeFile, source: Source) -> Differences:
@@ -97,7 +103,7 @@ def track_differences(file: Path, source: Source) -> Differences:
     return track_export.differences(content_of(file), source.tables, source.has_book)
 
 
-def csv_differences(file: Path, tables: dict[str, Table], seen: set[str]) -> Differences:
+def csv_differences(file: Path, tables: Mapping[str, Table | PassageTable], seen: set[str]) -> Differences:
     """The CSV table in `file`, whose id is added to `seen`."""
     rows = csv_export.read_rows(content_of(file))
     name = (rows.get(("text", "id")) or ("",))[0]
@@ -105,7 +111,7 @@ def csv_differences(file: Path, tables: dict[str, Table], seen: set[str]) -> Dif
         yield "", f"it is of the table {name!r}, which no other file holds"
         return
     seen.add(name)
-    yield from ((name, sentence) for sentence in csv_export.differences(rows, tables[name]))
+    yield from ((name, sentence) for sentence in csv_export.differences(rows, tables[name].document))
 
 
 def in_order(source: Source, text: str) -> list[Table]:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from synth.checker.aim.reading import MARK, Aim, read_aim
 from synth.checker.book_categories import contradictions
@@ -13,14 +13,19 @@ from synth.checker.book_reading import SIGNATURE, read_documents
 from synth.checker.canonical import canonical_form
 from synth.checker.document_shape import require_document
 from synth.checker.finding import DamagedError, Finding, Kind, NothingToVerifyError, shown
+from synth.checker.passages.reading import MARK as PASSAGES_MARK
+from synth.checker.passages.reading import PassageTable, read_passage_table
 from synth.checker.source_file import content_of
 from synth.checker.table_reading import Table, read_table, table_of
+
+Kept = TypeVar("Kept", Table, Aim, PassageTable)
 
 
 @dataclass(frozen=True)
 class Source:
-    """The tables at `path`, in the order of the book where there is one, else by file name; and the aim tables.
+    """The tables at `path`, in the order of the book where there is one, else by file name; and those of other kinds.
 
+    `aims` are aim tables, `passages` tables for point sensors.
     `folder` is the directory whose other exports belong to them, None for a single file. `files`: what was read.
     """
 
@@ -31,6 +36,7 @@ class Source:
     files: tuple[str, ...]
     findings: tuple[Finding, ...]
     aims: tuple[Aim, ...] = ()
+    passages: tuple[PassageTable, ...] = ()
 
 
 def read_source(path: Path) -> Source:
@@ -44,6 +50,8 @@ def read_source(path: Path) -> Source:
         content = content_of(path)
         if MARK.search(content):
             return Source(path, None, (), False, (str(path),), (), (read_aim(content),))
+        if PASSAGES_MARK.search(content):
+            return Source(path, None, (), False, (str(path),), (), (), (read_passage_table(content),))
         if content.startswith(SIGNATURE) or path.suffix in (".h5", ".hdf5"):
             tables, is_book = tables_of_book(content), True
         else:
@@ -65,23 +73,18 @@ def read_directory(path: Path) -> Source:
     findings: list[Finding] = []
     single: dict[str, Table] = {}
     aims: dict[str, Aim] = {}
+    passages: dict[str, PassageTable] = {}
     for file in files:
         try:
             content = content_of(file)
             if MARK.search(content):
-                aim = read_aim(content)
-                if aim.id in aims:
-                    findings.append(
-                        Finding(Kind.DISAGREES, named(file, path), f"another file has the id {aim.id}, too")
-                    )
-                aims[aim.id] = aim
-                continue
-            table = read_table(content)
+                findings += added(read_aim(content), aims, named(file, path))
+            elif PASSAGES_MARK.search(content):
+                findings += added(read_passage_table(content), passages, named(file, path))
+            else:
+                findings += added(read_table(content), single, named(file, path))
         except DamagedError as fault:
             findings.append(Finding(Kind.DAMAGED, named(file, path), str(fault)))
-            continue
-        findings += twice(table.id, single, named(file, path))
-        single[table.id] = table
     bound: tuple[Table, ...] = ()
     if book_file.exists():
         try:
@@ -94,12 +97,15 @@ def read_directory(path: Path) -> Source:
     order += [table for table in single.values() if table.id not in {each.id for each in bound}]
     findings += [Finding(Kind.DISAGREES, name, sentence) for name, sentence in contradictions(order)]
     names = [named(file, path) for file in files] + (["book.h5"] if book_file.exists() else [])
-    return Source(path, path, tuple(order), bool(bound), tuple(names), tuple(findings), tuple(aims.values()))
+    others = tuple(aims.values()), tuple(passages.values())
+    return Source(path, path, tuple(order), bool(bound), tuple(names), tuple(findings), *others)
 
 
-def twice(name: str, seen: Container[str], file: str) -> list[Finding]:
-    """What is wrong with the file if the id `name` in it was `seen` before."""
-    return [Finding(Kind.DISAGREES, file, f"another file has the id {name}, too")] if name in seen else []
+def added(table: Kept, known: dict[str, Kept], file: str) -> list[Finding]:
+    """Add a table to the `known` ones, by id; what is wrong with its file if there was one of that id before."""
+    before = known.get(table.id)
+    known[table.id] = table
+    return [] if before is None else [Finding(Kind.DISAGREES, file, f"another file has the id {table.id}, too")]
 
 
 def named(file: Path, path: Path) -> str:

@@ -15,6 +15,9 @@ from synth.checker.coarse_simulation import simulate
 from synth.checker.estimator_sense import estimator_faults
 from synth.checker.exports import ExportReport, check_exports
 from synth.checker.finding import DamagedError, Finding, Kind
+from synth.checker.passages.reading import PassageTable
+from synth.checker.passages.sense import claim_faults as passage_claim_faults
+from synth.checker.passages.sense import sense as passage_sense
 from synth.checker.plant import UnusableConfigError
 from synth.checker.source import Source, read_source
 from synth.checker.statistics import ExitFigures, figures_of
@@ -45,6 +48,14 @@ class AimVerdict:
 
 
 @dataclass(frozen=True)
+class PassageVerdict:
+    """One table for point sensors, and what was found."""
+
+    table: PassageTable
+    findings: tuple[Finding, ...]
+
+
+@dataclass(frozen=True)
 class Verdict:
     """Everything about a source; `others` are findings that belong to no sound table."""
 
@@ -55,11 +66,12 @@ class Verdict:
     others: tuple[Finding, ...]
     files: tuple[str, ...]
     aims: tuple[AimVerdict, ...] = ()
+    passages: tuple[PassageVerdict, ...] = ()
 
     @property
     def findings(self) -> tuple[Finding, ...]:
         """All of them."""
-        verdicts: tuple[TableVerdict | AimVerdict, ...] = (*self.tables, *self.aims)
+        verdicts: tuple[TableVerdict | AimVerdict | PassageVerdict, ...] = (*self.tables, *self.aims, *self.passages)
         return tuple(finding for each in verdicts for finding in each.findings) + self.others
 
     @property
@@ -76,15 +88,18 @@ def verify(path: Path, passes: int, seed: int) -> Verdict:
     require_right_crc32()
     source = read_source(path)
     report = check_exports(source, source.folder) if source.folder else ExportReport((), ())
-    of_tables = bool(source.tables or not source.aims)  # the summary of a tune says nothing of aim tables
+    # The summary of a tune says nothing of the other kinds.
+    of_tables = bool(source.tables or not (source.aims or source.passages))
     summary, summary_findings = summary_beside(source) if of_tables else (None, [])
     found = [*source.findings, *report.findings, *summary_findings]
     tables = tuple(judge(table, summary, passes, seed, found) for table in source.tables)
     aims = tuple(judge_aim(aim, found) for aim in source.aims)
-    ids = {table.id for table in source.tables} | {aim.id for aim in source.aims}
+    passages = tuple(judge_passages(each, found) for each in source.passages)
+    ids = {each.id for each in source.tables} | {each.id for each in source.aims}
+    ids |= {each.id for each in source.passages}
     others = tuple(finding for finding in found if finding.about not in ids)
     files = (*source.files, *report.files, *([summary.path.name] if summary else []))
-    return Verdict(path, passes, seed, tables, others, files, aims)
+    return Verdict(path, passes, seed, tables, others, files, aims, passages)
 
 
 def judge_aim(aim: Aim, found: list[Finding]) -> AimVerdict:
@@ -93,6 +108,17 @@ def judge_aim(aim: Aim, found: list[Finding]) -> AimVerdict:
     senseless = [Finding(Kind.DAMAGED, aim.id, sentence) for sentence in aim_sense(aim)]
     claims = [] if senseless else [Finding(Kind.CLAIM, aim.id, sentence) for sentence in claim_faults(aim)]
     return AimVerdict(aim, (*findings, *senseless, *claims))
+
+
+def judge_passages(table: PassageTable, found: list[Finding]) -> PassageVerdict:
+    """Everything about one table for point sensors but its figures against a simulation: there is none for these."""
+    findings = [finding for finding in found if finding.about == table.id]
+    senseless = [Finding(Kind.DAMAGED, table.id, sentence) for sentence in passage_sense(table)]
+    limits = DEFAULT_HONESTY
+    claims = [
+        Finding(Kind.CLAIM, table.id, sentence) for sentence in passage_claim_faults(table, limits.low, limits.high)
+    ]
+    return PassageVerdict(table, (*findings, *senseless, *claims))
 
 
 def judge(table: Table, summary: Summary | None, passes: int, seed: int, found: list[Finding]) -> TableVerdict:

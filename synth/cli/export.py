@@ -11,7 +11,12 @@ from synth.cli import say
 from synth.faults.input_error import InputError
 
 if TYPE_CHECKING:
-    from tuning_tables import ControllerTable
+    from collections.abc import Sequence
+
+    from synth.book.forms.code_options import CodeOptions
+    from synth.book.forms.table_forms import Files
+    from tuning_tables import ControllerTable, PassageTable
+    from tuning_tables.aim import AimTable
 
 
 @dataclass(frozen=True)
@@ -27,9 +32,8 @@ class AskedCode:
 def export_command(source: Path, form: str, output: Path, asked: AskedCode, as_json: bool) -> int:
     """Write the tables in `source` as `form` into the directory `output`, and print the names of the files."""
     from synth.book.forms.aim_file import read_aims
-    from synth.book.forms.aim_forms import AIM_FORMS
     from synth.book.forms.code_options import code_options
-    from synth.book.forms.correction_form import correction_files
+    from synth.book.forms.passage_file import read_passages
     from synth.book.forms.table_file import read_tables
     from synth.book.forms.table_forms import FORMS
     from synth.book.output_directory import make_directory
@@ -39,16 +43,14 @@ def export_command(source: Path, form: str, output: Path, asked: AskedCode, as_j
         raise InputError(f"--format {form}: there is no such form; give {', '.join(FORMS)}")
     options = code_options(form, asked.prefix, asked.self_test, asked.split, asked.correction_m_s)
     aims = [file.table for file in read_aims(source)]
-    tables = () if aims else read_tables(source)[0].tables
+    passages = () if aims else read_passages(source)
+    tables = () if aims or passages else read_tables(source)[0].tables
     try:
-        files = {
-            **(AIM_FORMS[form](aims, options) if aims else FORMS[form](tables, options)),
-            **correction_files(form, tables, options),
-        }
+        files = exported_files(form, aims, passages, tables, options)
     except (InputError, InvalidTable) as fault:  # each table is right, but together they make no export
         raise InputError(f"{source}: {fault}") from None
-    if form in ("c", "st") and tables:
-        warn_of_shadows(source, tables)
+    if form in ("c", "st"):
+        warn_of_shadows(source, passages, tables)
     make_directory(output)
     for name, content in files.items():
         write_atomically(output / name, content)
@@ -57,11 +59,39 @@ def export_command(source: Path, form: str, output: Path, asked: AskedCode, as_j
     return 0
 
 
-def warn_of_shadows(source: Path, tables: tuple[ControllerTable, ...]) -> None:
-    """Say which tables a controller will never choose."""
-    from tuning_tables.table_book import TableBook
+def exported_files(
+    form: str,
+    aims: Sequence[AimTable],
+    passages: Sequence[PassageTable],
+    tables: Sequence[ControllerTable],
+    options: CodeOptions,
+) -> Files:
+    """The files in `form` of the tables, which are of one of the three kinds, and of a correction if one is asked."""
+    from synth.book.forms.aim_forms import AIM_FORMS
+    from synth.book.forms.correction_form import correction_files
+    from synth.book.forms.passage_forms import PASSAGE_FORMS
+    from synth.book.forms.table_forms import FORMS
 
-    for table in TableBook(tables).shadowed():
+    if aims:
+        files = AIM_FORMS[form](aims, options)
+    elif passages:
+        files = PASSAGE_FORMS[form](passages, options)
+    else:
+        files = FORMS[form](tables, options)
+    return {**files, **correction_files(form, tables, options)}
+
+
+def warn_of_shadows(source: Path, passages: Sequence[PassageTable], tables: Sequence[ControllerTable]) -> None:
+    """Say which tables a controller will never choose."""
+    from tuning_tables import TableBook
+    from tuning_tables.passages.passage_book import PassageBook
+
+    shadowed: list[PassageTable | ControllerTable] = []
+    if passages:
+        shadowed += PassageBook(tuple(passages)).shadowed()
+    if tables:
+        shadowed += TableBook(tuple(tables)).shadowed()
+    for table in shadowed:
         say(
             f"warning: {source}: {table.id} is never chosen, for another table of category {table.cut.category} on "
             f"{len(table.cut.axle_offsets_m)} axles is heavier or comes first; give it a category or book of its own"

@@ -34,7 +34,8 @@ class Wanted:
 
 def study_command(name: str | None, words: list[str], wanted: Wanted, general_help: Callable[[], str]) -> int:
     """Run the study `name` with the options in `words`, or tell what is asked; the exit code."""
-    from synth.studies.registry import STUDIES, study_named
+    from synth.studies.named_study import study_named
+    from synth.studies.registry import STUDIES
 
     if wanted.show_list:
         print(listing(STUDIES, wanted.as_json))

@@ -11,7 +11,7 @@ from synth.cli import INPUT_FAULT, say
 
 if TYPE_CHECKING:
     from synth.checker.finding import Finding
-    from synth.checker.verdict import AimVerdict, TableVerdict, Verdict
+    from synth.checker.verdict import AimVerdict, PassageVerdict, TableVerdict, Verdict
 
 
 def verify_command(source: Path, passes: int, seed: int, as_json: bool) -> int:
@@ -42,6 +42,7 @@ def document(verdict: Verdict) -> dict[str, Any]:
         "files": list(verdict.files),
         "tables": [table_document(each) for each in verdict.tables],
         "aims": [aim_document(each) for each in verdict.aims],
+        "passages": [passages_document(each) for each in verdict.passages],
         "findings": [
             {"about": finding.about, "kind": finding.kind.value, "sentence": finding.sentence}
             for finding in verdict.findings
@@ -88,6 +89,17 @@ def aim_words(each: AimVerdict) -> list[str]:
     return [f"{each.aim.id}: {state(each.findings)}; {checked}", *finding_lines(each.findings)]
 
 
+def passages_document(each: PassageVerdict) -> dict[str, Any]:
+    """The verdict of one table for point sensors, for programs."""
+    return {"id": each.table.id, "ok": not each.findings, "passages": len(each.table.passages)}
+
+
+def passages_words(each: PassageVerdict) -> list[str]:
+    """The verdict of one table for point sensors in lines."""
+    checked = f"{len(each.table.passages)} passages over point sensors; not simulated"
+    return [f"{each.table.id}: {state(each.findings)}; {checked}", *finding_lines(each.findings)]
+
+
 def state(findings: Sequence[Finding]) -> str:
     """How many findings there are, in words."""
     return f"{len(findings)} finding{'s' if len(findings) > 1 else ''}" if findings else "ok"
@@ -114,6 +126,8 @@ def words(verdict: Verdict) -> list[str]:
         lines.append(f"{table.id}: {state(each.findings)}; {checked}")
         lines += finding_lines(each.findings)
     lines += [line for each in verdict.aims for line in aim_words(each)]
+    lines += [line for each in verdict.passages for line in passages_words(each)]
     lines += [f"{finding.about}: {finding.kind.value}: {finding.sentence}" for finding in verdict.others]
     found = state(verdict.findings) if verdict.findings else "nothing found"
-    return [*lines, f"{len(verdict.tables) + len(verdict.aims)} tables, {len(verdict.files)} files: {found}"]
+    count = len(verdict.tables) + len(verdict.aims) + len(verdict.passages)
+    return [*lines, f"{count} tables, {len(verdict.files)} files: {found}"]

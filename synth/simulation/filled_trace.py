@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from synth.kernels.loop.closed_loop import Draws
 from synth.kernels.loop.passage_loop import roll
@@ -33,13 +35,16 @@ def filled_trace(loop: PassageLoop, trace: PassageTrace, draws: Draws, step_s: f
     times = np.array([time for time, *_ in added])
     events = np.array([event for *_, event in added], dtype=np.int64)
     order = np.argsort(np.concatenate([trace.time_s, times]), kind="stable")
-    columns = {
-        "time_s": times,
-        "path_m": np.array([s for _, s, _, _ in added]),
-        "speed_m_s": np.array([v for _, _, v, _ in added]),
-        "overpressure_kpa": trace.overpressure_kpa[events],
-        "stage": trace.stage[events],
-        "measured_m_s": np.full(times.size, np.nan),
-    }
-    filled = {name: np.concatenate([getattr(trace, name), new])[order] for name, new in columns.items()}
-    return replace(trace, **filled)
+
+    def with_points(events_of: NDArray[Any], points: NDArray[Any]) -> NDArray[Any]:
+        return np.concatenate([events_of, points])[order]
+
+    return replace(
+        trace,
+        time_s=with_points(trace.time_s, times),
+        path_m=with_points(trace.path_m, np.array([s for _, s, _, _ in added])),
+        speed_m_s=with_points(trace.speed_m_s, np.array([v for _, _, v, _ in added])),
+        overpressure_kpa=with_points(trace.overpressure_kpa, trace.overpressure_kpa[events]),
+        stage=with_points(trace.stage, trace.stage[events]),
+        measured_m_s=with_points(trace.measured_m_s, np.full(times.size, np.nan)),
+    )

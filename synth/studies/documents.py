@@ -2,7 +2,7 @@
 
 In a checkout docs/studies holds NAME.json, the result of a run with default options, for every study that a document
 shows. Between <!-- study NAME TABLE --> and <!-- end --> stands that table of it; between <!-- studies --> and
-<!-- end --> the list of all studies.
+<!-- end --> the list of all studies. Pictures: `document_pictures`.
 """
 
 from __future__ import annotations
@@ -14,8 +14,10 @@ from pathlib import Path
 
 from plant_models.library.near_miss import near_miss
 from synth.faults.input_error import InputError
+from synth.studies.document_pictures import is_stale, pictures_of, write_picture
 from synth.studies.markdown_table import table
-from synth.studies.registry import STUDIES, study_named
+from synth.studies.named_study import study_named
+from synth.studies.registry import STUDIES
 from synth.studies.result import Result, read_result
 
 KEPT = Path("docs/studies")
@@ -86,14 +88,25 @@ def written(root: Path) -> list[Path]:
         if text != path.read_text(encoding="utf-8"):
             path.write_text(text, encoding="utf-8")
             changed.append(path)
+        for study, name, file in pictures_of(path):
+            result = result_of(root, study)
+            if is_stale(file, result, name):
+                write_picture(file, result, name)
+                changed.append(file)
     return changed
 
 
 def stale(root: Path) -> list[str]:
-    """A sentence for every document whose tables are not those of the kept results."""
+    """A sentence for every document whose tables, and every picture that, are not those of the kept results."""
     result_of.cache_clear()
-    return [
-        f"{path.relative_to(root)}: its tables are not those of {KEPT}; 'retarder-synth study --document' writes them"
-        for path in documents(root)
-        if filled(path, root) != path.read_text(encoding="utf-8")
-    ]
+    mend = "'retarder-synth study --document' writes them"
+    found = []
+    for path in documents(root):
+        if filled(path, root) != path.read_text(encoding="utf-8"):
+            found.append(f"{path.relative_to(root)}: its tables are not those of {KEPT}; {mend}")
+        found += [
+            f"{file.relative_to(root)}: this is not the picture that {KEPT}/{study}.json gives; {mend}"
+            for study, name, file in pictures_of(path)
+            if is_stale(file, result_of(root, study), name)
+        ]
+    return found

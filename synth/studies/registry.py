@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from plant_models.library.near_miss import near_miss
-from synth.faults.input_error import InputError
 from synth.studies.study import Study
 
 STUDIES: tuple[Study, ...] = (
@@ -243,6 +241,14 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.solver_scaling.picture",
     ),
     Study(
+        "structure",
+        "Do the named parts of the loop, run one by one as they are wired, give the simulator's pass?",
+        20.0,
+        "structure.md",
+        "synth.studies.structure.study",
+        "synth.studies.structure.picture",
+    ),
+    Study(
         "sweep-speed",
         "How fast does a sweep make tables, what memory does it take, and what would 10 000 tables need?",
         104.0,
@@ -290,11 +296,3 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.yard_chain.pictures",
     ),
 )
-
-
-def study_named(name: str) -> Study:
-    """The study called `name`. Raises `InputError` with a hint for another word."""
-    known = {study.name: study for study in STUDIES}
-    if name not in known:
-        raise InputError(f"study: there is no study {name!r}; {near_miss(name, known)} ('study --list' tells all)")
-    return known[name]

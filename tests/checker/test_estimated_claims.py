@@ -31,7 +31,7 @@ def table(estimated_once: Path) -> Table:
 
 @pytest.fixture(scope="module")
 def many(summary: Summary, table: Table) -> Passes:
-    return simulate(summary.plant(table), table, 3000, 9)
+    return simulate(summary.plant(table), table, 1200, 9)
 
 
 def test_the_closed_loop_with_the_estimator_is_that_of_the_simulator(many: Passes, table: Table) -> None:

@@ -73,11 +73,11 @@ def switching_rows(target_m_s: float, stages: int, left_m: float, index: int) ->
     return tuple(rows)
 
 
-def odd_table() -> PassageTable:
+def odd_table(decides_on: DecidesOn = DecidesOn.FIRST_AXLE) -> PassageTable:
     """Two stages and extreme numbers: 0, the smallest and the largest float32, wide and narrow limits."""
     largest, smallest = float(np.finfo(np.float32).max), float(np.finfo(np.float32).smallest_subnormal)
     made = passage_table(
-        "odd", "Т", FOUR_AXLES, 3.0, 2, BUNCH, DecidesOn.EVERY_AXLE,
+        "odd", "Т", FOUR_AXLES, 3.0, 2, BUNCH, decides_on,
         PlausibleMotion((0.01, 40.0), 10.0, 0.001, 0.9, 0.0), 1,
     )  # fmt: skip
     speeds = [((0.0,), (0.0,)), ((smallest,), (largest,)), ((math.inf,), (-math.inf,))]
@@ -88,17 +88,26 @@ def odd_table() -> PassageTable:
 
 
 def passage_book() -> PassageBook:
-    """The book of all of them."""
-    return PassageBook(passage_tables())
+    """Two targets of a class, between them one lighter; six axles; many stages; odd numbers. On the first axle."""
+    return PassageBook(
+        (
+            passage_table("to 2.5"),
+            replace(passage_table("shadow", target_m_s=3.0), cut=CutId("Л", 22.0, FOUR_AXLES)),
+            passage_table("to 3.5", target_m_s=3.5, entrance_stage=4),
+            passage_table("six axles", "С", SIX_AXLES, 2.0, entrance_stage=0),
+            passage_table("many stages", "СТ", stages=9),
+            odd_table(),
+        )
+    )
 
 
-def passage_tables() -> tuple[PassageTable, ...]:
-    """Two targets of a class on the first axle, another one lighter; one on every axle; many stages; odd numbers."""
-    return (
-        passage_table("to 2.5"),
-        replace(passage_table("shadow", target_m_s=3.0), cut=CutId("Л", 22.0, FOUR_AXLES)),
-        passage_table("to 3.5", target_m_s=3.5, entrance_stage=4),
-        passage_table("every axle", "С", SIX_AXLES, 2.0, decides_on=DecidesOn.EVERY_AXLE, entrance_stage=0),
-        passage_table("many stages", "СТ", stages=9),
-        odd_table(),
+def every_axle_book() -> PassageBook:
+    """Tables that decide on every axle."""
+    every = DecidesOn.EVERY_AXLE
+    return PassageBook(
+        (
+            passage_table("four axles", decides_on=every),
+            passage_table("six axles", "С", SIX_AXLES, 2.0, decides_on=every, entrance_stage=0),
+            odd_table(every),
+        )
     )

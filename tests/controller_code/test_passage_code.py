@@ -17,7 +17,7 @@ import pytest
 from synth.studies.in_the_loop.builds import BUILDS, Build
 from synth.studies.in_the_loop.controller_process import CONTRACT, BuildError, compile_with
 from tests.controller_code.conftest import Tool
-from tests.controller_code.passage_tables import passage_book, passage_table
+from tests.controller_code.passage_tables import every_axle_book, passage_book, passage_table
 from tests.controller_code.pulse_questions import ANSWER, PAIR, Rows, asked, right
 from tests.controller_code.sample_book import sample_book
 from tests.controller_code.test_export import FLOAT_H, PEDANTIC
@@ -98,10 +98,10 @@ int main(int count, char **arguments)
 
 
 @cache
-def questions(count: int = QUESTIONS) -> tuple[Rows, Rows]:
+def questions(book: PassageBook = BOOK) -> tuple[Rows, Rows]:
     """Questions and the answers of the Python text."""
-    found = asked(TABLES, count, 20261123)
-    return found, right(TABLES, found)
+    found = asked(book.tables, QUESTIONS, 20261123)
+    return found, right(book.tables, found)
 
 
 @cache
@@ -157,6 +157,13 @@ def test_c_does_as_python_to_the_last_bit(build: Build, tmp_path: Path, tool: To
     assert np.array_equal(words, [passage_block(table, size) for table in TABLES])
     about = [f"{each.target_speed_m_s:g} {each.entrance_stage} {each.initial_stage}" for each in TABLES]
     assert told(command, "about").decode().split("\n") == [*about, ""]
+
+
+def test_c_does_as_python_on_every_axle(tmp_path: Path, tool: Tool) -> None:
+    build, book = Build(tool("gcc"), ("-O2",)), every_axle_book()
+    command = built(tmp_path, build, book=book)
+    assert differences(command, build, *questions(book)) == 0
+    assert told(command, "self-test") == b"fault 0 at 0\n"
 
 
 def test_the_questions_reach_much() -> None:
@@ -352,6 +359,25 @@ def test_golden_stages_as_csv_are_answered_as_they_say() -> None:
         arguments = (table.switching_m_s, table.entrance_stage, table.before_entrance)
         assert wanted_stage(*arguments, int(row["passage"]), int(row["stage"]), float(v)) == int(row["answer"])
         assert table.id == row["id"]
+
+
+def test_the_page_tells_what_is_asked_here() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "controllers.md").read_text("utf-8")
+    assert f"answer {QUESTIONS // 1000} 000 pairs alike" in page
+    assert f"{len(MUTANTS)} faults put into the C" in page
+
+
+def test_a_table_and_a_tracker_take_what_the_page_says(tmp_path: Path, tool: Tool) -> None:
+    built(tmp_path, Build(tool("gcc"), ("-O1",)))
+    heard, passages, stages = 7 * 6, 6, 8
+    (tmp_path / "size.c").write_text(
+        '#include "retarder_passages.h"\n'
+        f"typedef char table_is_so_large[sizeof(retarder_passage_table) == "
+        f"{4 * (18 + 3 * heard + passages * (stages + 1) * stages)}u ? 1 : -1];\n"
+        "typedef char tracker_is_so_large[sizeof(retarder_tracker) == 24u ? 1 : -1];\n"
+        "int main(void) { return 0; }\n"
+    )
+    compile_with(["gcc", "-std=c99", "-c", str(tmp_path / "size.c"), "-o", str(tmp_path / "o")])
 
 
 def test_names_take_the_prefix_and_equal_tables_give_equal_bytes() -> None:

@@ -24,10 +24,10 @@ from synth.present.plots.block_layout import (
 from synth.present.plots.figure_file import draw
 from synth.simulation.controllers import TableController
 from synth.simulation.passage_loop import close_passage_loop
-from synth.simulation.structure.diagram import Diagram
+from synth.simulation.structure.diagram import Sketch
 from synth.simulation.structure.passage_diagram import passage_diagram
 from synth.simulation.structure.radar_diagram import radar_diagram
-from synth.simulation.structure.signals import SIGNALS
+from synth.studies.structure.signals import SIGNALS
 from tests.synth.simulation.passage_cases import SENSORS, braking_rule, with_approach
 from tests.synth.test_control_system import table_for
 
@@ -35,26 +35,26 @@ Routes = Mapping[tuple[str, str], Route]
 
 
 @pytest.fixture(scope="module")
-def drawn(plant_52t: Plant) -> dict[str, tuple[Diagram, Routes]]:
+def drawn(plant_52t: Plant) -> dict[str, tuple[Sketch, Routes]]:
     plant = with_approach(plant_52t, 5.0)
     controller = braking_rule(plant, SENSORS, 3.0)
     points = passage_diagram(close_passage_loop(plant, SENSORS, controller.stages), controller)
     radar = radar_diagram(plant_52t, TableController(table_for(plant_52t)), 0.0)
-    return {"radar": (radar, RADAR_ROUTES), "points": (points, POINT_SENSOR_ROUTES)}
+    return {"radar": (radar.sketch, RADAR_ROUTES), "points": (points.sketch, POINT_SENSOR_ROUTES)}
 
 
 KINDS = pytest.mark.parametrize("kind", ["radar", "points"])
 
 
 @KINDS
-def test_every_wire_has_a_route_and_every_route_a_wire(drawn: dict[str, tuple[Diagram, Routes]], kind: str) -> None:
+def test_every_wire_has_a_route_and_every_route_a_wire(drawn: dict[str, tuple[Sketch, Routes]], kind: str) -> None:
     diagram, routes = drawn[kind]
     assert {(wire.signal, wire.target) for wire in diagram.wires} == set(routes)
     assert len(diagram.wires) == len(routes)
 
 
 @KINDS
-def test_every_signal_on_a_wire_has_a_meaning(drawn: dict[str, tuple[Diagram, Routes]], kind: str) -> None:
+def test_every_signal_on_a_wire_has_a_meaning(drawn: dict[str, tuple[Sketch, Routes]], kind: str) -> None:
     diagram, _ = drawn[kind]
     assert {wire.signal for wire in diagram.wires} - set(SIGNALS) == set()
 
@@ -70,7 +70,7 @@ def inside(a: Place, b: Place, name: str) -> float:
     return 0.0 if on_border or low[0] > high[0] or low[1] > high[1] else high[0] - low[0] + high[1] - low[1]
 
 
-def stretches(diagram: Diagram, routes: Routes) -> Iterator[tuple[str, str, Place, Place]]:
+def stretches(diagram: Sketch, routes: Routes) -> Iterator[tuple[str, str, Place, Place]]:
     """(signal, source, from, to) of every straight stretch."""
     for wire in diagram.wires:
         for a, b in pairwise(corners(wire.source, wire.target, routes[wire.signal, wire.target])):
@@ -78,7 +78,7 @@ def stretches(diagram: Diagram, routes: Routes) -> Iterator[tuple[str, str, Plac
 
 
 @KINDS
-def test_wires_run_along_the_axes_and_through_no_box(drawn: dict[str, tuple[Diagram, Routes]], kind: str) -> None:
+def test_wires_run_along_the_axes_and_through_no_box(drawn: dict[str, tuple[Sketch, Routes]], kind: str) -> None:
     diagram, routes = drawn[kind]
     for signal, _, a, b in stretches(diagram, routes):
         assert a != b, signal
@@ -86,7 +86,7 @@ def test_wires_run_along_the_axes_and_through_no_box(drawn: dict[str, tuple[Diag
         for x, y in (a, b):
             assert 0.0 < x < SIZE_IN[0]
             assert 0.0 < y < SIZE_IN[1] - 0.5
-        for part in diagram.parts:
+        for part in diagram.boxes:
             assert inside(a, b, part.name) < 1e-9, (signal, part.name)
 
 
@@ -103,7 +103,7 @@ def together(a: Place, b: Place, c: Place, d: Place) -> float:
 
 
 @KINDS
-def test_no_signal_runs_on_the_line_of_another(drawn: dict[str, tuple[Diagram, Routes]], kind: str) -> None:
+def test_no_signal_runs_on_the_line_of_another(drawn: dict[str, tuple[Sketch, Routes]], kind: str) -> None:
     for (one, _, a, b), (other, _, c, d) in combinations(stretches(*drawn[kind]), 2):
         if one != other:
             assert together(a, b, c, d) < 1e-9, (one, other)
@@ -117,19 +117,19 @@ def test_what_these_rules_are_to_find_they_find() -> None:
 
 
 @KINDS
-def test_a_diagram_is_drawn_the_same_again(drawn: dict[str, tuple[Diagram, Routes]], kind: str) -> None:
+def test_a_diagram_is_drawn_the_same_again(drawn: dict[str, tuple[Sketch, Routes]], kind: str) -> None:
     first, second = (draw(block_diagram(*drawn[kind], "subject")) for _ in range(2))
     assert first == second
     assert first.png[:4] == b"\x89PNG"
     shown = block_diagram(*drawn[kind]).findobj(Text)
     texts = {each.get_text() for each in shown if isinstance(each, Text)}
-    for part in drawn[kind][0].parts:
+    for part in drawn[kind][0].boxes:
         assert any(part.name in text.replace("\n", " ") for text in texts), part.name
     for wire in drawn[kind][0].wires:
         assert in_mathtext(wire.signal) in texts, wire
 
 
-def test_wires_of_one_signal_branch_with_a_dot(drawn: dict[str, tuple[Diagram, Routes]]) -> None:
+def test_wires_of_one_signal_branch_with_a_dot(drawn: dict[str, tuple[Sketch, Routes]]) -> None:
     diagram, routes = drawn["radar"]
     found = branches(diagram, routes)
     assert len(found) == 2  # of U[n] behind the interlock and of P under the drive

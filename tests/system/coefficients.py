@@ -40,9 +40,10 @@ CONFIGURATIONS = {
 
 
 def tuned(config: ResolvedConfig) -> Iterator[ControllerTable]:
-    """The tables of a configuration, not simulated."""
+    """The tables of the first and the last class of a configuration, not simulated."""
     passes, origin = validation_passes(config), origin_of(config.sha256, CREATED)
-    for label, plant in config.plants():
+    classes = config.plants()
+    for label, plant in (classes[0], classes[-1]) if len(classes) > 1 else classes:
         setup = class_setup(config, label, plant, passes, origin)
         aims = [Aim(target, config.criterion) for target in config.targets_m_s]
         for solution in solutions(setup.design, aims):

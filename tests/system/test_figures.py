@@ -14,7 +14,7 @@ from synth.simulation.controllers import full_brake
 from synth.simulation.exit_statistics import brake_power, exit_statistics
 from synth.simulation.passes import ExitSample
 from synth.studies.documents import KEPT
-from synth.studies.registry import study_named
+from synth.studies.named_study import study_named
 from synth.studies.result import read_result, run_study
 from tuning_tables import ControllerTable, read_json
 

@@ -74,7 +74,7 @@ def check_file(path: Path) -> None:
             json.loads(content)
 
 
-MOMENTS = (("", 3.0), ("", 3.0), ("computed in", 0.9), ("pictures drawn", 0.12), ("pictures drawn", 0.12))
+MOMENTS = (("", 3.0), ("computed in", 0.9), ("pictures drawn", 0.12))
 """(what to wait for, longest further wait in seconds) of each kill."""
 
 

@@ -15,7 +15,7 @@ from tests.tuning_tables.damaged_inputs import Attempt, attempts
 from tests.tuning_tables.reader_trial import Finding, outcome_of
 from tuning_tables import ControllerTable, from_json, to_json
 
-COUNT, FIRST_SEED = int(os.environ.get("FUZZ_COUNT", "2500")), int(os.environ.get("FUZZ_SEED", "0"))
+COUNT, FIRST_SEED = int(os.environ.get("FUZZ_COUNT", "1200")), int(os.environ.get("FUZZ_SEED", "0"))
 
 
 @pytest.mark.parametrize("seed", range(FIRST_SEED, FIRST_SEED + 2))

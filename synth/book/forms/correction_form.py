@@ -21,12 +21,14 @@ def correction_files(form: str, tables: Sequence[ControllerTable], options: Code
     """The code in `form` ("c" or "st") of a correction up to `options.correction_m_s`; no file where none is asked for.
 
     The spread of exits is the median of what the tables predict of theirs, with that of a reading. `InputError` without
-    controller tables: aim tables command speeds and regulate none.
+    tables with lines: aim tables regulate nothing, and a passage over sensors has no samples to judge it by.
     """
     if options.correction_m_s is None:
         return {}
     if not tables:
-        raise InputError("--correction is for controller tables, and these are aim tables; leave it out")
+        raise InputError(
+            "--correction is for tables with lines, and these are aim tables or tables for point sensors; leave it out"
+        )
     correction = correction_of(tables, options.correction_m_s)
     if form == "c":
         from tuning_tables.c_correction import correction_c_files

@@ -10,8 +10,9 @@ from synth.book.forms.table_file import file_stem
 from synth.faults.input_error import InputError
 from tuning_tables import ControllerTable, to_csv, to_json
 from tuning_tables.aim.aim_table import AimTable
+from tuning_tables.passages.passage_table import PassageTable
 
-_Table = TypeVar("_Table", ControllerTable, AimTable)
+_Table = TypeVar("_Table", ControllerTable, AimTable, PassageTable)
 Files = Mapping[str, bytes]
 Form = Callable[[Sequence[ControllerTable], CodeOptions], Files]
 

@@ -14,8 +14,8 @@ from matplotlib.patches import FancyBboxPatch, Rectangle
 
 from synth.present.plots.block_layout import HEIGHT_IN, NAMES, SIZE_IN, WIDTH_IN, Place, Route, centre, corners
 from synth.present.plots.house_style import GREY, INK, new_figure
-from synth.simulation.structure.diagram import Diagram, Wire
-from synth.simulation.structure.part import Block, Part
+from synth.simulation.structure.diagram import Box, Sketch, Wire
+from synth.simulation.structure.part import Block
 
 FILLS: Mapping[Block, str] = {
     Block.MEASURING: "#eaf4fb",
@@ -32,26 +32,26 @@ MATHTEXT = {"{": r"\{", "}": r"\}", "⁻¹": "^{-1}", "*": "^{*}", " ": r"\ ", "
 GREEK = {"ε": r"\varepsilon", "ξ": r"\xi", "η": r"\eta", "τ": r"\tau", "σ": r"\sigma", "Δ": r"\Delta ", "−": "-"}
 
 
-def block_diagram(diagram: Diagram, routes: Mapping[tuple[str, str], Route], subject: str = "") -> Figure:
-    """The parts of `diagram` as boxes in their blocks, its signals as wires on `routes`. `KeyError` for no route."""
-    figure = new_figure(*SIZE_IN, f"Regulator and plant, {diagram.title}", subject)
+def block_diagram(sketch: Sketch, routes: Mapping[tuple[str, str], Route], subject: str = "") -> Figure:
+    """The parts of a diagram as boxes in their blocks, its signals as wires on `routes`. `KeyError` for no route."""
+    figure = new_figure(*SIZE_IN, f"Regulator and plant, {sketch.title}", subject)
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set(xlim=(0.0, SIZE_IN[0]), ylim=(0.0, SIZE_IN[1]))
     axes.set_axis_off()
     for block in Block:
-        draw_block(axes, block, [part for part in diagram.parts if part.block is block])
-    for wire in diagram.wires:
+        draw_block(axes, block, [box for box in sketch.boxes if box.block == block.value])
+    for wire in sketch.wires:
         draw_wire(axes, wire, routes[wire.signal, wire.target])
-    for x, y in branches(diagram, routes):
+    for x, y in branches(sketch, routes):
         axes.plot(x, y, marker="o", markersize=4.0, color=INK, zorder=2)
-    for part in diagram.parts:
-        draw_part(axes, part)
+    for box in sketch.boxes:
+        draw_part(axes, box)
     return figure
 
 
-def draw_block(axes: Axes, block: Block, parts: list[Part]) -> None:
+def draw_block(axes: Axes, block: Block, boxes: list[Box]) -> None:
     """A pale field behind the parts of a block, with its name."""
-    places = [centre(part.name) for part in parts]
+    places = [centre(box.name) for box in boxes]
     left, right = (edge(x for x, _ in places) for edge in (min, max))
     low, high = (edge(y for _, y in places) for edge in (min, max))
     x, y = left - 0.5 * WIDTH_IN - MARGIN_IN, low - 0.5 * HEIGHT_IN - MARGIN_IN
@@ -65,17 +65,17 @@ def draw_block(axes: Axes, block: Block, parts: list[Part]) -> None:
     )  # fmt: skip
 
 
-def draw_part(axes: Axes, part: Part) -> None:
+def draw_part(axes: Axes, box: Box) -> None:
     """A box with the name of the part and its symbol in the source."""
-    x, y = centre(part.name)
+    x, y = centre(box.name)
     corner = x - 0.5 * WIDTH_IN, y - 0.5 * HEIGHT_IN
-    box = FancyBboxPatch(
+    frame = FancyBboxPatch(
         corner, WIDTH_IN, HEIGHT_IN, boxstyle="round,pad=0,rounding_size=0.05", facecolor="white", edgecolor=INK,
         linewidth=1.1, zorder=3,
     )  # fmt: skip
-    axes.add_patch(box)
-    name = textwrap.fill(part.name, LETTERS_A_LINE)
-    text = f"{name}\n{in_mathtext(part.symbol)}" if part.symbol else name
+    axes.add_patch(frame)
+    name = textwrap.fill(box.name, LETTERS_A_LINE)
+    text = f"{name}\n{in_mathtext(box.symbol)}" if box.symbol else name
     axes.text(x, y, text, ha="center", va="center", fontsize=8.5, linespacing=1.15, color=INK, zorder=4)
 
 
@@ -105,10 +105,10 @@ def draw_name(axes: Axes, signal: str, start: Place, end: Place) -> None:
         axes.text(x + 0.06, y, text, ha="left", va="center", fontsize=9.5, color=INK, zorder=5)
 
 
-def branches(diagram: Diagram, routes: Mapping[tuple[str, str], Route]) -> set[Place]:
+def branches(sketch: Sketch, routes: Mapping[tuple[str, str], Route]) -> set[Place]:
     """Where two wires of one signal part that have left their source together."""
     found = set()
-    for one, other in combinations(diagram.wires, 2):
+    for one, other in combinations(sketch.wires, 2):
         if (one.signal, one.source) == (other.signal, other.source) and one.source:
             paths = [corners(each.source, each.target, routes[each.signal, each.target]) for each in (one, other)]
             if paths[0][0] == paths[1][0]:

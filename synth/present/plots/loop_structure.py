@@ -17,6 +17,8 @@ from synth.simulation.structure.radar_diagram import radar_diagram
 def loop_structure(loop: ControlLoop | PassageControlLoop) -> Figure:
     """The parts of the loop and their wires. `ValueError` for a table with an estimator."""
     if isinstance(loop, PassageControlLoop):
-        return block_diagram(passage_diagram(loop.loop, loop.controller), POINT_SENSOR_ROUTES, subject(loop.table))
+        return block_diagram(
+            passage_diagram(loop.loop, loop.controller).sketch, POINT_SENSOR_ROUTES, subject(loop.table)
+        )
     diagram = radar_diagram(loop.plant, TableController(loop.table), 0.5 * loop.plant.sensor.sample_period_s)
-    return block_diagram(diagram, RADAR_ROUTES, subject(loop.table))
+    return block_diagram(diagram.sketch, RADAR_ROUTES, subject(loop.table))

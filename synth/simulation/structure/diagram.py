@@ -17,6 +17,24 @@ class Wire:
     target: str
 
 
+@dataclass(frozen=True)
+class Box:
+    """A part as it is drawn: its name, its symbol in the source, the name of its block."""
+
+    name: str
+    symbol: str
+    block: str
+
+
+@dataclass(frozen=True)
+class Sketch:
+    """What is drawn of a diagram: plain values."""
+
+    title: str
+    boxes: tuple[Box, ...]
+    wires: tuple[Wire, ...]
+
+
 @dataclass(frozen=True, eq=False)
 class Diagram:
     """The parts of a closed loop. `ValueError` for two parts of a name or two that give the same signal."""
@@ -47,6 +65,11 @@ class Diagram:
         return tuple(
             sorted(Wire(signal, source.get(signal, ""), part.name) for part in self.parts for signal in part.inputs)
         )
+
+    @property
+    def sketch(self) -> Sketch:
+        """What is drawn of it."""
+        return Sketch(self.title, tuple(Box(p.name, p.symbol, p.block.value) for p in self.parts), self.wires)
 
     @property
     def outside(self) -> tuple[str, ...]:

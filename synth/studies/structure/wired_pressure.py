@@ -67,7 +67,8 @@ class WiredPressure:
         return int(then["sgn ε_U"])
 
     def _felt_after(self, time_s: float) -> float:
-        return float(self._diagram["dead zone of the pads"].run({"P": self._pressure_after(time_s)})["p"])
+        then = {**self._signals, "P": self._pressure_after(time_s)}
+        return float(self._diagram["dead zone of the pads"].run(then)["p"])
 
     def _integral(self, time_s: float) -> float:
         """∫p dt over the next `time_s`; where the pads touch or let go, the stretch is cut in two."""

@@ -7,20 +7,19 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from plant_models import Plant
 from synth.configuration.config_file import parse_config
-from synth.studies.tuned_table import tuned_table
 from synth.yard.measured_passes import unknowns as asked
 from synth.yard.measured_passes.config_source import ConfigSource, config_source
 from synth.yard.measured_passes.fitting_passes import fitting_passes
 from synth.yard.measured_passes.identified_config import identified
 from synth.yard.measured_passes.identify import Identified, identify
+from tests.studies.identification.coarse_table import coarse_table
 from tests.studies.identification.conftest import MASSES_T, TARGET_M_S
 from tests.studies.identification.foreign.foreign_log import foreign_exits, foreign_log
 from tests.studies.identification.foreign.foreign_plant import ForeignPlant
 from tuning_tables import ControllerTable
 
-PASSES, SEED, EXITS = 150, 5, 1200
+PASSES, SEED, EXITS = 100, 5, 500
 
 CLASSES = "".join(
     f'[[cut]]\nlabel = "{label}"\ncar = "gondola-4"\nmass_t = {mass}\ntargets_m_s = [{TARGET_M_S}]\n'
@@ -32,7 +31,7 @@ Found = tuple[Identified, ConfigSource]
 
 @pytest.fixture(scope="module")
 def found(assumed_tables: Mapping[str, ControllerTable], foreign_plants: Mapping[str, ForeignPlant]) -> Found:
-    """What 300 passes of the foreign railway say."""
+    """What 200 passes of the foreign railway say."""
     source = ConfigSource("the assumed numbers", {**config_source(None).tree, **tree()}, config_source(None).library)
     config = source.resolved()
     log = foreign_log(assumed_tables, foreign_plants, PASSES, SEED)
@@ -61,7 +60,6 @@ def test_the_tests_say_that_the_model_does_not_hold(found: Found) -> None:
 @pytest.mark.slow
 def test_a_table_for_what_was_identified_beats_the_assumed_one(
     found: Found,
-    assumed_plants: Mapping[str, Plant],
     assumed_tables: Mapping[str, ControllerTable],
     foreign_plants: Mapping[str, ForeignPlant],
 ) -> None:
@@ -70,12 +68,10 @@ def test_a_table_for_what_was_identified_beats_the_assumed_one(
     new = identified(source, told.estimate, told.origin).resolved()
     assert new.retarder.friction.common_cv == pytest.approx(told.estimate.values[asked.COMMON_CV], rel=1e-5)
     plants = dict(new.plants())
-    old_config = source.resolved()
     gains = []
     for label in ("empty", "half"):
-        before = tuned_table(old_config, dict(old_config.plants())[label], TARGET_M_S)
-        after = tuned_table(new, plants[label], TARGET_M_S)
-        ends = [foreign_exits(table, foreign_plants[label], EXITS, SEED + 1) for table in (before, after)]
+        after = coarse_table(plants[label], TARGET_M_S)
+        ends = [foreign_exits(t, foreign_plants[label], EXITS, SEED + 1) for t in (assumed_tables[label], after)]
         square = [np.where(e.stalled, TARGET_M_S, e.speed_m_s - TARGET_M_S) ** 2 for e in ends]
         gain = square[0] - square[1]
         gains.append(float(gain.mean() / (gain.std() / np.sqrt(EXITS))))

@@ -15,7 +15,7 @@ from synth.configuration.hump import parse_hump
 from synth.faults.input_error import InputError
 from tests.plant_models.hump.test_hump_file import LINES, SMALL
 
-FILES = int(os.environ.get("RETARDER_SYNTH_FUZZED_HUMPS", "10000"))
+FILES = int(os.environ.get("RETARDER_SYNTH_FUZZED_HUMPS", "4000"))
 """How many; 100 000 are tried by hand before a release."""
 
 PIECES = (

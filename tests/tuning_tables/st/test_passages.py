@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from contextlib import suppress
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from tests.controller_code.passage_tables import passage_book, passage_table
+from tests.controller_code.passage_tables import every_axle_book, passage_book, passage_table
 from tests.controller_code.pulse_questions import ANSWER, BEGIN, ON, PAIR, WHOLE, Rows, asked, right
 from tests.controller_code.test_correction_code import CORRECTION
 from tests.tuning_tables.st.conftest import shaped_book
@@ -39,10 +40,10 @@ MEMBERS = ("PASSAGE", "SPEED_M_S", "TIME_S", "RIVAL", "RIVALSPEED_M_S", "RIVALTI
 
 
 @cache
-def questions(count: int = QUESTIONS) -> tuple[Rows, Rows]:
+def questions(book: PassageBook) -> tuple[Rows, Rows]:
     """Questions that stand for themselves, each with the tracker before it, and the answers of the Python text."""
-    found = asked(TABLES, count, 20261124)
-    answers = right(TABLES, found)
+    found = asked(book.tables, QUESTIONS, 20261124)
+    answers = right(book.tables, found)
     on = np.flatnonzero(found["mode"] == ON)
     found["tracker"][on] = answers["tracker"][on - 1]
     found["tracker"][found["mode"] == BEGIN] = np.array([-1, 0, 0, -1, 0, 0], np.int32).view(np.uint32)
@@ -92,13 +93,14 @@ def differences(found: Rows, answers: Rows) -> int:
     return int(np.count_nonzero(wrong))
 
 
+@pytest.mark.parametrize("book", [BOOK, every_axle_book()], ids=["first axle", "every axle"])
 @pytest.mark.parametrize("real", [np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
-def test_every_question_is_answered_as_by_python(real: Real) -> None:
-    program = Program(FILES[TABLE_FILE], real)
-    found, answers = questions()
-    for number in range(len(TABLES)):
+def test_every_question_is_answered_as_by_python(real: Real, book: PassageBook) -> None:
+    program = Program(passage_st_files(book)[TABLE_FILE], real)
+    found, answers = questions(book)
+    for number in range(len(book.tables)):
         chosen = found["table"] == number
-        assert chosen.sum() >= QUESTIONS / len(TABLES)
+        assert chosen.sum() >= QUESTIONS / len(book.tables)
         assert differences(answers_of(program, number, found[chosen]), answers[chosen]) == 0
 
 
@@ -166,6 +168,12 @@ def test_a_wrong_block_is_found_by_the_small_self_test(before: str, after: str) 
     assert before in text
     with suppress(Fault):  # a controller would trap
         assert self_tested(text.replace(before, after, 1))[0] > 0
+
+
+def test_the_page_tells_what_is_asked_here() -> None:
+    page = (Path(__file__).parents[3] / "docs" / "controllers.md").read_text("utf-8")
+    assert f"answer {QUESTIONS // 1000} 000 pairs alike" in page
+    assert f"{len(CHANGES)} in the Structured Text" in page
 
 
 def test_a_changed_constant_is_found() -> None:

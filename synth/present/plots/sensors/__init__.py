@@ -1,1 +1,1 @@
-"""Pictures of tables for point sensors."""
+"""Pictures of point sensors: where they stand, and what their tables do."""

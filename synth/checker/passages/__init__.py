@@ -1,0 +1,1 @@
+"""The checker's own reading of tables for point sensors."""

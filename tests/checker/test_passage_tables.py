@@ -1,0 +1,219 @@
+"""Tables for point sensors by the checker's own reading: sound ones pass, every planted fault is found."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from synth.checker.finding import DamagedError, Kind
+from synth.checker.passages.reading import read_passage_table
+from synth.checker.passages.rule import passages_heard, wanted
+from synth.cli import main
+from tests.checker.planted_fault import Document, found, look, rewrite
+from tests.controller_code.passage_tables import every_axle_book, passage_book
+from tests.tuning_tables.passages.made_tables import passage_tables as any_tables
+from tests.tuning_tables.passages.made_tables import table_of
+from tuning_tables import wanted_stage
+from tuning_tables.passages.csv_file import to_passage_csv
+from tuning_tables.passages.json_file import to_passage_json
+from tuning_tables.passages.passage_table import PassageTable
+from tuning_tables.passages.sensor_layout import DecidesOn
+
+TABLES = (table_of(), replace(table_of(DecidesOn.EVERY_AXLE), id="every", validated=None))
+
+
+@pytest.fixture(scope="session")
+def exported_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two tables with CSV beside them; not to be changed."""
+    folder = tmp_path_factory.mktemp("passages") / "out"
+    (folder / "tables").mkdir(parents=True)
+    for table in TABLES:
+        (folder / "tables" / f"{table.id}.json").write_bytes(to_passage_json(table))
+        (folder / "tables" / f"{table.id}.csv").write_bytes(to_passage_csv(table))
+    return folder
+
+
+@pytest.fixture
+def exported(exported_once: Path, tmp_path: Path) -> Path:
+    """A copy of it, to be changed at will."""
+    return Path(shutil.copytree(exported_once, tmp_path / "out"))
+
+
+def test_sound_tables_and_exports_are_confirmed(exported_once: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    verdict = look(exported_once)
+    assert verdict.findings == ()
+    assert {each.table.id for each in verdict.passages} == {table.id for table in TABLES}
+    assert len(verdict.files) == 4
+    alone = exported_once / "tables" / "every.json"
+    assert main(["verify", str(alone)]) == 0
+    assert "every: ok; 14 passages over point sensors; not simulated" in capsys.readouterr().out
+    assert main(["verify", str(alone), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)["passages"]
+    assert told == [{"id": "every", "ok": True, "passages": 14}]
+
+
+@pytest.mark.parametrize("table", (*passage_book().tables, *every_axle_book().tables)[:4], ids=lambda table: table.id)
+def test_the_checkers_rule_is_the_rule_to_the_last_bit(table: PassageTable) -> None:
+    read, rng = read_passage_table(to_passage_json(table)), np.random.default_rng(5)
+    speeds = np.unique(table.switching_m_s[np.isfinite(table.switching_m_s)]).astype(float)
+    near = [0.0, *speeds, *np.nextafter(speeds.astype(np.float32), np.float32(99)).astype(float), 50.0, -1.0, np.nan]
+    for _ in range(4000):
+        passage, stage = int(rng.integers(-1, len(table.passages) + 1)), int(rng.integers(-1, 11))
+        v = float(rng.choice(near) if rng.random() < 0.5 else rng.uniform(0.0, 12.0))
+        entrance, before = table.entrance_stage, table.before_entrance
+        right = wanted_stage(table.switching_m_s, entrance, before, passage, stage, v)
+        assert wanted(read, passage, stage, v) == right
+    heard = passages_heard(read.sensors_m, read.axle_offsets_m)
+    assert [np.float32(path) for path, _, _ in heard] == table.heard_path_m.tolist()
+    assert [sensor for _, sensor, _ in heard] == table.heard_sensor.tolist()
+
+
+@given(any_tables())
+@settings(derandomize=True, max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+def test_every_table_that_can_be_written_is_read(table: PassageTable) -> None:
+    read = read_passage_table(to_passage_json(table))
+    assert read.id == table.id
+    speeds = [list(map(list, passage.rows)) for passage in read.passages]
+    assert np.array_equal(np.array(speeds, dtype=np.float32), table.switching_m_s)
+
+
+def change(*place: str | int, to: Any) -> Callable[[Document], None]:
+    """A change of one member of the document."""
+
+    def edit(document: Document) -> None:
+        parent: Any = document
+        for step in place[:-1]:
+            parent = parent[step]
+        parent[place[-1]] = to
+
+    return edit
+
+
+@pytest.mark.parametrize(
+    ("edit", "words"),
+    [
+        (change("decisions", to="in_time"), "its version is 4"),
+        (change("sensors", "decides_on", to="last_axle"), "sensors.decides_on"),
+        (change("approach", "interlock", to="none"), "approach.interlock"),
+        (change("cut", "category_number", to=2), "category_number"),
+        (change("stages", 1, "k", to=2), r"stages\[1\].k"),
+        (change("surplus", to=1), "unknown keys"),
+        (change("passages", 0, "switching_m_s", to=[[1.0, 2.0]]), "the number of rows"),
+        (change("passages", 0, "switching_m_s", 1, to=[1.0]), "the length of row 1"),
+        (change("target_speed_m_s", to=30.0), "target"),
+        (change("stages", 2, "pressure_kpa", to=100.0), "pressures"),
+        (change("retarder", "exit_m", to=40.0), "exit"),
+        (change("valid", "v_m_s", to=[4.0, 9.0]), "target"),
+        (change("generator", "config_sha256", to="0"), "config_sha256"),
+        (change("created", to="today"), "date"),
+        (change("sensors", "base_m", to=2.0), "sensors.base_m"),
+        (change("sensors", "path_m", to=[-4.0, 3.0, 3.1, 30.0, 45.0]), "too near"),
+        (change("sensors", "path_m", to=[-4.0, 3.0, 9.6, 30.0, 45.0]), "passage 2 must be"),
+        (change("approach", "length_m", to=5.0), "begin at the first sensor"),
+        (change("approach", "initial_stage", to=2), "before the entrance"),
+        (change("plausible", "speed_m_s", to=[0.3, 41.0]), "credible speeds"),
+        (change("plausible", "deceleration_m_s2", to=0.0), "deceleration"),
+        (change("passages", 1, "axle", to=1), "passage 1 must be"),
+        (change("passages", 1, "path_m", to=3.1), "passage 1 must be"),
+        (change("sensors", "decides_on", to="every_axle"), "it has 4 passages"),
+        (change("passages", 2, "switching_m_s", 1, 0, to=4.1), "float32"),
+        (change("passages", 2, "switching_m_s", 0, 0, to=-1.0), "float32"),
+        (change("passages", 2, "switching_m_s", 2, to=[7.0, 5.5]), "fall"),
+        (change("passages", 2, "switching_m_s", 1, to=[6.25, 6.25]), "lower and to raise"),
+        (change("passages", to=[]), "array"),
+    ],
+)
+def test_what_makes_no_sense_is_damage(exported: Path, edit: Callable[[Document], None], words: str) -> None:
+    file = exported / "tables" / f"{TABLES[0].id}.json"
+    rewrite(file, edit)
+    assert found(look(file), Kind.DAMAGED, words)
+
+
+def test_a_table_that_never_acts_is_found(tmp_path: Path) -> None:
+    never = ((None, None), (None, None), (None, None))
+    file = tmp_path / "table.json"
+    file.write_bytes(to_passage_json(TABLES[0]))
+
+    def edit(document: Document) -> None:
+        for passage in document["passages"]:
+            passage["switching_m_s"] = never
+
+    rewrite(file, edit)
+    verdict = look(file)
+    assert found(verdict, Kind.DAMAGED, "at no passage is the brake applied")
+    assert found(verdict, Kind.DAMAGED, "at no passage is the highest stage left")
+
+
+@pytest.mark.parametrize(
+    ("edit", "words"),
+    [
+        (change("predicted", "rms_m_s", to=0.04), "does not agree with the validated one"),
+        (change("predicted", "rms_m_s", to=0.16), "does not agree with the validated one"),
+        (change("predicted", "bias_m_s", to=0.5), "exceeds the predicted rms"),
+        (change("predicted", "p_overspeed", to=1.5), "over-speed is 1.5"),
+        (change("predicted", "p_stall", to=-0.5), "a stall is -0.5"),
+        (change("predicted", "switchings", to=-1.0), "switchings"),
+        (change("validated", "rms_m_s", to=0.09), "not within its interval"),
+    ],
+)
+def test_claims_that_contradict_one_another_are_found(
+    exported: Path, edit: Callable[[Document], None], words: str
+) -> None:
+    file = exported / "tables" / f"{TABLES[0].id}.json"
+    rewrite(file, edit)
+    assert found(look(file), Kind.CLAIM, words)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("switching,1.1,4.5,6.25", "switching,1.1,4.5,6.26", "the row switching,1.1 holds"),
+        ("switching,1.2,-inf,5.5", "switching,1.2,inf,5.5", "the row switching,1.2 holds"),
+        ("switching,3.0,5.0,inf", "switching,4.0,5.0,inf", "the row switching,3.0 is missing"),
+        ("number,sensors.base_m,0.2", "number,sensors.base_m,0.3", "sensors.base_m holds"),
+        ("text,id,leer-22t-3.0", "text,id,other", "which no other file holds"),
+    ],
+)
+def test_one_changed_cell_of_the_sheet_is_found(exported: Path, old: str, new: str, words: str) -> None:
+    file = exported / "tables" / f"{TABLES[0].id}.csv"
+    text = file.read_bytes().decode("utf-8")
+    place = text.index(old)
+    file.write_bytes((text[:place] + new + text[place + len(old) :]).encode("utf-8"))
+    assert found(look(exported), Kind.DISAGREES, words)
+
+
+def test_an_id_given_twice_is_found(exported: Path) -> None:
+    shutil.copy(exported / "tables" / "every.json", exported / "tables" / "twin.json")
+    assert found(look(exported), Kind.DISAGREES, "another file has the id every, too")
+
+
+def test_no_flipped_bit_changes_what_is_read() -> None:
+    """A flipped bit is refused, or is in white space: layout is the exporter's, content the checker's."""
+    least = table_of(places_m=(-0.5, 26.0), axles_m=(0.0,), rows=((3.0,), (2.5,)), pressures=(0.0, 9.0))
+    content = to_passage_json(least)
+    read, unchanged = read_passage_table(content), 0
+    for at in range(0, len(content), 2):
+        for bit in range(8):
+            changed = content[:at] + bytes([content[at] ^ 1 << bit]) + content[at + 1 :]
+            try:
+                assert read_passage_table(changed) == read
+                unchanged += 1
+            except DamagedError:
+                continue
+    assert unchanged < 30
+
+
+@given(st.binary(max_size=60))
+@settings(derandomize=True, max_examples=50)
+def test_noise_is_damage(content: bytes) -> None:
+    with pytest.raises(DamagedError):
+        read_passage_table(content)
