@@ -1,8 +1,8 @@
 """Kernel of the sensors in the loop of passages: where the coils lie for this pass, and what a pulse pair tells.
 
 A *source* is an axle that rolls over a sensor. What the regulator hears are *rows*: pulse pairs, each with the number
-of the sensor that it is told, after so long, and with the measured time over the base or another. Without faults there is one row a
-source; `synth.simulation.sensor_faults` adds and takes away.
+of the sensor that it is told, after so long, and with the measured time over the base or another. Without faults there
+is one row a source; `synth.simulation.sensor_faults` adds and takes away.
 """
 
 from __future__ import annotations
