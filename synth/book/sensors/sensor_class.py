@@ -15,11 +15,12 @@ from synth.configuration.point_sensors.resolved_sensors import ResolvedSensors
 from synth.kernels.loop.closed_loop import Draws
 from synth.problem.resolution import Resolution
 from synth.simulation.filled_trace import filled_trace
-from synth.simulation.passage_controller import PassageController
+from synth.simulation.passage_controller import LIMITS, PassageController
 from synth.simulation.passage_loop import PassageLoop, close_passage_loop
 from synth.simulation.passage_sample import PassageSample, PassageTrace
 from synth.simulation.random_passes import RandomPasses
 from synth.solver.tabulate import LOWEST_VALID_SPEED_M_S
+from tuning_tables.passages.regulator import PassageRule
 
 TRACE_STEP_S = 0.05
 """Between points of a traced pass, which has events of its own only at coils and changes of pressure."""
@@ -86,11 +87,17 @@ def sensor_passes(plant: Plant, sensors: PointSensors, passes: RandomPasses) -> 
 
 def full_brake(loop: PassageLoop) -> PassageController:
     """The rule that wants the highest stage allowed at every passage; it is told which passage each is."""
-    passages, top, stages = len(loop.pulses.path_m), loop.plant.top_stage, loop.stages
+    heard, passages, top, stages = loop.heard, len(loop.deciding.path_m), loop.plant.top_stage, loop.stages
     rows = np.full((passages, stages, stages - 1), -np.inf, dtype=np.float32)
     for stage in range(stages):
         rows[:, stage, stage:] = LOWEST_VALID_SPEED_M_S
         rows[:, stage, max(stage, top) :] = np.inf
-    sensor = np.array(loop.pulses.sensor, dtype=np.int64)
-    path = np.asarray(loop.pulses.path_m, dtype=np.float32)
-    return PassageController(rows, path, sensor, loop.plant.entrance_stage, np.empty(0, dtype=np.float32))
+    passage_of = np.full(len(heard.path_m), -1)
+    passage_of[loop.deciding.number] = np.arange(passages)
+    path, sensor = np.array(heard.path_m, dtype=np.float32), np.array(heard.sensor, dtype=np.int64)
+    before = int((loop.deciding.path_m < 0.0).sum())
+    rule = PassageRule(
+        rows, loop.plant.entrance_stage, before, path, sensor, passage_of, np.zeros(LIMITS, np.float32),
+        np.float32(heard.base_m),
+    )  # fmt: skip
+    return PassageController(rule, tracks=False)

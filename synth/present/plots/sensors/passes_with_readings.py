@@ -63,10 +63,11 @@ def passes_figure(
 def draw_readings(axes: Axes, table: PassageTable, trace: PassageTrace, colour: str, mark: str) -> None:
     """The speeds that the regulator read, at the places of their passages; hollow: it could not decide on them."""
     read = trace.readings
+    deciding = (read.believed >= 0) & (table.heard_passage[read.believed] >= 0)
     for decided, fill in ((True, "full"), (False, "none")):
-        shown = (read.believed >= 0) & ((read.outcome == DECIDED) == decided)
+        shown = deciding & ((read.outcome == DECIDED) == decided)
         axes.plot(
-            table.path_m[read.believed[shown]], read.reading_m_s[shown], linestyle="", marker=mark, color=colour,
+            table.heard_path_m[read.believed[shown]], read.reading_m_s[shown], linestyle="", marker=mark, color=colour,
             fillstyle=fill, markersize=5, zorder=5,
         )  # fmt: skip
 

@@ -135,7 +135,8 @@ def colour_of(wanted: int, stage: int, top: int) -> str:
     away, farthest = abs(wanted - stage), max(top, 2)
     part = LIGHTEST + (DARKEST - LIGHTEST) * (away - 1) / (farthest - 1)
     full = np.array(to_rgb(BLUE if wanted < stage else VERMILLION))
-    return to_hex(tuple(float(c) for c in 1.0 - part * (1.0 - full)))
+    red, green, blue = (float(c) for c in 1.0 - part * (1.0 - full))
+    return to_hex((red, green, blue))
 
 
 def mark_sensors(axes: Axes, table: PassageTable) -> None:
