@@ -53,7 +53,7 @@ PICTURES = re.compile(
 )
 """File names of the pictures that a tune draws."""
 
-SENSOR_PICTURES = re.compile(r"(switching-speeds|exit-density|sample-passes)-.+\.(png|svg)")
+PASSAGE_PICTURES = re.compile(r"(switching-speeds|exit-density|sample-passes)-.+\.(png|svg)")
 """Those of a tune for point sensors."""
 
 AIM_PICTURES = re.compile(r"aim-(track|gaps|commands-by-cars|commands-by-resistance|chances-.+)\.(png|svg)")

@@ -10,15 +10,10 @@ import typer
 
 from synth.cli.arguments import Json, directory, whole_number
 
-sensors_app = typer.Typer(help="Point sensors along a retarder position: where they should stand, and tables for them.")
+app = typer.Typer(help="Point sensors along a retarder position: where they should stand, and tables for them.")
 
 
-def add_sensors_commands(app: typer.Typer) -> None:
-    """Add the commands to `app`."""
-    app.add_typer(sensors_app, name="sensors")
-
-
-@sensors_app.command()
+@app.command()
 def tune(
     config: Annotated[
         Path | None,
@@ -44,7 +39,7 @@ def tune(
     return sensors_tune_command(config, output, workers, as_json)
 
 
-@sensors_app.command()
+@app.command()
 def plan(
     config: Annotated[Path | None, typer.Argument(metavar="CONFIG.toml", help="Built-in unless given.")] = None,
     output: Annotated[

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from synth.book.acceptance import Verdict
-from synth.book.output_directory import SENSOR_PICTURES, SUMMARY, remove_stale
+from synth.book.output_directory import PASSAGE_PICTURES, SUMMARY, remove_stale
 from synth.book.sensors.sensor_summary import sensor_summary
 from synth.book.sensors.sensor_tune import SensorBook
 from synth.book.summary import Document
@@ -44,7 +44,7 @@ def write_sensors(book: SensorBook, verdict: Verdict, directory: Path, say: Say)
         page = directory / "report.html"
         write_atomically(page, sensor_page(SensorReport(book, verdict, hashes, pictures)).encode())
         hashes |= file_hashes(directory, [page])
-    for name in remove_stale(directory, set(hashes), pictures=SENSOR_PICTURES):
+    for name in remove_stale(directory, set(hashes), pictures=PASSAGE_PICTURES):
         say(f"{name} was there before; it is no readable table of this tool and was left alone")
     summary = sensor_summary(book, verdict, hashes)
     write_atomically(directory / SUMMARY, canonical_json(summary) + b"\n")

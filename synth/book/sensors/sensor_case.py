@@ -22,12 +22,12 @@ from tuning_tables.passages.passage_table import PassageTable
 class HeardShares:
     """Of the cuts heard at every passage at which is decided, in its order, the shares with 95 % intervals.
 
-    `unfinished`: found a change of stage unfinished, so that nothing was decided; `not_believed`: the tracker did not
-    take the pulses for this passage. NaN where no cut came.
+    `unfinished`: found a change of stage unfinished, so that nothing was decided; `mistaken`: the tracker took the
+    pulses for no passage, or for one at which nothing is decided. NaN where no cut came.
     """
 
     unfinished: tuple[tuple[float, Interval], ...]
-    not_believed: tuple[tuple[float, Interval], ...]
+    mistaken: tuple[tuple[float, Interval], ...]
 
 
 @frozen_arrays

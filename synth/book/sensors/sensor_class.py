@@ -87,17 +87,19 @@ def sensor_passes(plant: Plant, sensors: PointSensors, passes: RandomPasses) -> 
 
 def full_brake(loop: PassageLoop) -> PassageController:
     """The rule that wants the highest stage allowed at every passage; it is told which passage each is."""
-    heard, passages, top, stages = loop.heard, len(loop.deciding.path_m), loop.plant.top_stage, loop.stages
-    rows = np.full((passages, stages, stages - 1), -np.inf, dtype=np.float32)
+    top, stages, heard, deciding = loop.plant.top_stage, loop.stages, loop.heard, loop.deciding
+    rows = np.full((len(deciding.path_m), stages, stages - 1), -np.inf, dtype=np.float32)
     for stage in range(stages):
         rows[:, stage, stage:] = LOWEST_VALID_SPEED_M_S
         rows[:, stage, max(stage, top) :] = np.inf
-    passage_of = np.full(len(heard.path_m), -1)
-    passage_of[loop.deciding.number] = np.arange(passages)
-    path, sensor = np.array(heard.path_m, dtype=np.float32), np.array(heard.sensor, dtype=np.int64)
-    before = int((loop.deciding.path_m < 0.0).sum())
     rule = PassageRule(
-        rows, loop.plant.entrance_stage, before, path, sensor, passage_of, np.zeros(LIMITS, np.float32),
-        np.float32(heard.base_m),
-    )  # fmt: skip
+        rows,
+        loop.plant.entrance_stage,
+        int(np.count_nonzero(deciding.path_m < 0.0)),
+        heard.path_m.astype(np.float32),
+        heard.sensor,
+        heard.decides,
+        np.zeros(LIMITS, dtype=np.float32),
+        np.float32(loop.sensors.base_m),
+    )
     return PassageController(rule, tracks=False)

@@ -81,10 +81,10 @@ def passages_of(case: SensorCase) -> list[Document]:
             "axle": row.axle,
             "path_m": row.path_m,
             **shares("unfinished", unfinished),
-            **shares("not_believed", not_believed),
+            **shares("mistaken", mistaken),
         }
-        for row, unfinished, not_believed in zip(
-            case.table.passages, case.heard.unfinished, case.heard.not_believed, strict=True
+        for row, unfinished, mistaken in zip(
+            case.table.passages, case.heard.unfinished, case.heard.mistaken, strict=True
         )
     ]
 

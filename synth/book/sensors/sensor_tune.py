@@ -23,7 +23,7 @@ from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.simulation.exit_statistics import brake_power, exit_statistics
 from synth.simulation.passage_controller import of_table
-from synth.simulation.passage_sample import NOT_BELIEVED, NOT_HEARD, PassageSample, unfinished_shares
+from synth.simulation.passage_sample import NO_DECISION, NOT_BELIEVED, NOT_HEARD, PassageSample, unfinished_shares
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from synth.simulation.replicates import Interval, rms_of, share_of
@@ -139,13 +139,14 @@ def unavoidable_rms(sample: ExitSample, full_brake: ExitSample, target_m_s: floa
 
 
 def heard_shares(sample: PassageSample) -> HeardShares:
-    """Passages that found a change of stage unfinished, or were not believed."""
-    not_believed = []
+    """Passages that found a change of stage unfinished, or were mistaken."""
+    mistaken = []
     for outcome in sample.outcome.T:
         weight = np.where(outcome != NOT_HEARD, sample.weight, 0.0)
         nothing = (float("nan"), (float("nan"), float("nan")))
-        not_believed.append(share_of(outcome == NOT_BELIEVED, weight) if weight.any() else nothing)
-    return HeardShares(tuple(unfinished_shares(sample)), tuple(not_believed))
+        lost = np.isin(outcome, (NOT_BELIEVED, NO_DECISION))
+        mistaken.append(share_of(lost, weight) if weight.any() else nothing)
+    return HeardShares(tuple(unfinished_shares(sample)), tuple(mistaken))
 
 
 def write_and_read_back(table: PassageTable, directory: Path) -> PassageTable:

@@ -39,7 +39,7 @@ HEARD_COLUMNS = (
     "sensor",
     "path, m",
     "change unfinished, % [95 %]",
-    "not believed, % [95 %]",
+    "pulses mistaken, % [95 %]",
 )
 
 LIMITS = (
@@ -147,19 +147,22 @@ def heard_table(book: SensorBook) -> Markup:
     rows = [
         (
             [case.name, str(number), str(row.axle + 1), str(row.sensor + 1), f"{row.path_m:g}",
-             share_cell(*unfinished), share_cell(*not_believed)],
+             share_cell(*unfinished), share_cell(*mistaken)],
             "",
         )
         for case in book.cases
-        for number, (row, unfinished, not_believed) in enumerate(
-            zip(case.table.passages, case.heard.unfinished, case.heard.not_believed, strict=True), start=1
+        for number, (row, unfinished, mistaken) in enumerate(
+            zip(case.table.passages, case.heard.unfinished, case.heard.mistaken, strict=True), start=1
         )
-        if unfinished[0] > 0.0 or not_believed[0] > 0.0
+        if unfinished[0] > 0.0 or mistaken[0] > 0.0
     ]  # fmt: skip
     if not rows:
-        return element("p", "No simulated cut found a change of stage unfinished, and no pulses were left out.")
+        return element(
+            "p",
+            "No simulated cut found a change of stage unfinished, and no pulses were taken for no passage or another.",
+        )
     words = (
-        "Passages at which a simulated cut found a change of stage unfinished, or its pulses were not believed: shares "
+        "Passages at which a simulated cut found a change of stage unfinished, or its pulses were taken for no passage or another: shares "
         "of the cuts that come there. Axles and sensors are counted from 1 here, in files from 0."
     )
     return joined((element("p", words), table("Passages", (head_row(*HEARD_COLUMNS),), rows, kind="cases")))

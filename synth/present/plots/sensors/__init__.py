@@ -1,1 +1,1 @@
-"""Pictures of point sensors: their tables, and where they stand."""
+"""Pictures of point sensors: where they stand, and what their tables do."""

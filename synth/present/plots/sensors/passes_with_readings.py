@@ -20,7 +20,7 @@ from synth.present.plots.house_style import (
 )
 from synth.present.plots.sample_passes import outcome
 from synth.present.plots.sensors.switching_speeds import mark_sensors
-from synth.simulation.passage_sample import DECIDED, PassageTrace
+from synth.simulation.passage_sample import DECIDED, UNFINISHED, PassageTrace
 from tuning_tables.passages.passage_table import PassageTable
 
 
@@ -63,9 +63,8 @@ def passes_figure(
 def draw_readings(axes: Axes, table: PassageTable, trace: PassageTrace, colour: str, mark: str) -> None:
     """The speeds that the regulator read, at the places of their passages; hollow: it could not decide on them."""
     read = trace.readings
-    deciding = (read.believed >= 0) & (table.heard_passage[read.believed] >= 0)
-    for decided, fill in ((True, "full"), (False, "none")):
-        shown = deciding & ((read.outcome == DECIDED) == decided)
+    for outcome_of_pair, fill in ((DECIDED, "full"), (UNFINISHED, "none")):
+        shown = read.outcome == outcome_of_pair
         axes.plot(
             table.heard_path_m[read.believed[shown]], read.reading_m_s[shown], linestyle="", marker=mark, color=colour,
             fillstyle=fill, markersize=5, zorder=5,
