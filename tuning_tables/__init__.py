@@ -22,9 +22,12 @@ from tuning_tables.estimator import Estimator, begin, unseen_samples
 from tuning_tables.figures import Predicted, Validated, ValidRange
 from tuning_tables.hdf5_file import read_any_book, read_book, write_book
 from tuning_tables.json_file import from_json, read_json, to_json, write_json
+from tuning_tables.passages.csv_file import to_passage_csv, write_passage_csv
+from tuning_tables.passages.passage_book import PassageBook, PassageChoice
 from tuning_tables.passages.passage_row import PassageRow
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.plausible_motion import PlausibleMotion
+from tuning_tables.passages.regulator import PassageRule, at_pulse, rule_of
 from tuning_tables.passages.rule import wanted_stage
 from tuning_tables.passages.schema import passage_schema, write_passage_schema
 from tuning_tables.passages.sensor_layout import DecidesOn, SensorLayout
@@ -54,7 +57,10 @@ __all__ = [
     "NewerVersion",
     "OlderVersion",
     "OtherDecisions",
+    "PassageBook",
+    "PassageChoice",
     "PassageRow",
+    "PassageRule",
     "PassageTable",
     "PlausibleMotion",
     "Predicted",
@@ -67,6 +73,7 @@ __all__ = [
     "UnknownFormat",
     "ValidRange",
     "Validated",
+    "at_pulse",
     "begin",
     "begin_cut",
     "believed_passage",
@@ -82,10 +89,12 @@ __all__ = [
     "read_table",
     "replacing",
     "round_coefficients",
+    "rule_of",
     "speed_for",
     "table_schema",
     "to_csv",
     "to_json",
+    "to_passage_csv",
     "to_table_json",
     "unseen_samples",
     "wanted_stage",
@@ -93,6 +102,7 @@ __all__ = [
     "write_book",
     "write_csv",
     "write_json",
+    "write_passage_csv",
     "write_passage_schema",
     "write_schema",
     "write_table",

@@ -32,6 +32,7 @@ _KERNEL_SOURCES = (
     "plant_models/valve_drive.py",
     "synth/**/kernels/**/*.py",
     "tuning_tables/estimator.py",
+    "tuning_tables/passages/regulator.py",
     "tuning_tables/passages/rule.py",
     "tuning_tables/passages/tracker.py",
     "tuning_tables/rule.py",

@@ -22,9 +22,9 @@ BY_THE_CLOCK = -1
 class HeardPairs:
     """R rows, each a pulse pair that may be heard in each of n passes.
 
-    `source` (R,): the passage that the pair comes from, not falling, then `BY_THE_CLOCK`; `sensor` (R,): the number
-    under which it is heard. `after_s` (n, R): from the second pulse of the source on, or the time in the pass; NaN: not
-    heard. `told_m_s` (n, R): the speed told; NaN: that which is measured.
+    `source` (R,): the axle over a sensor that the pair comes from, not falling, then `BY_THE_CLOCK`; `sensor` (R,): the
+    number under which it is heard. `after_s` (n, R): from the second pulse of the source on, or the time in the pass;
+    NaN: not heard. `told_m_s` (n, R): the speed told; NaN: that which is measured.
     """
 
     source: Ints
@@ -68,6 +68,6 @@ class HeardPairs:
 
 
 def as_given(sensor: Ints, passes: int) -> HeardPairs:
-    """Every passage is heard once, at once, as it was measured; `sensor` (M,) of the passages."""
+    """Every axle over a sensor is heard once, at once, as it was measured; `sensor` (E,) of each."""
     shape = (passes, len(sensor))
     return HeardPairs(np.arange(len(sensor)), np.array(sensor), np.zeros(shape), np.full(shape, np.nan))

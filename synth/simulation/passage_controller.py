@@ -3,104 +3,66 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
-from synth.kernels.loop.passage_regulator import PassageLaw
 from synth.simulation.controllers import fixed
+from tuning_tables.passages.passage_table import PassageTable
+from tuning_tables.passages.regulator import PassageRule, rule_of
 
 LIMITS = 6
 """Numbers that the tracker's `limits` has."""
 
 
-class SwitchingTable(Protocol):
-    """What a regulator takes from a table for point sensors, as in `tuning_tables.passages`."""
-
-    @property
-    def switching_m_s(self) -> NDArray[np.float32]:
-        """Switching speeds, (M, K + 1, K)."""
-        ...
-
-    @property
-    def path_m(self) -> NDArray[np.float32]:
-        """Path of the passages, (M,)."""
-        ...
-
-    @property
-    def sensor_of(self) -> NDArray[np.int64]:
-        """Sensor of each passage, (M,)."""
-        ...
-
-    @property
-    def limits(self) -> NDArray[np.float32]:
-        """Limits of the tracker, (6,)."""
-        ...
-
-    @property
-    def entrance_stage(self) -> int:
-        """Highest stage that may be entered before the entrance."""
-        ...
-
-
-@frozen_arrays
 @dataclass(frozen=True, eq=False)
 class PassageController:
-    """Switching speeds for every passage and stage in force, and what the regulator knows of the passages.
+    """The rule that a controller holds, and whether it `tracks`.
 
-    `switching_m_s` float32 (M, K + 1, K), rows not falling, −∞ and +∞ allowed (`tuning_tables.passages.rule`);
-    `path_m` (M,) not falling and `sensor_of` (M,) of the passages in the order of the path; `entrance_stage`: the
-    highest that is entered at path below 0. `limits` (6,) of `tuning_tables.passages.tracker`, or (0,): the regulator
-    is told which passage a pulse pair is, as if no sensor ever failed. `ValueError` for arrays that do not fit.
+    With the tracker the regulator hears every axle and finds out itself which passage a pulse pair is; each pair goes
+    through `tuning_tables.passages.regulator.at_pulse`. Without it hears only the passages at which is decided, and is
+    told which each pair is, as if no sensor ever failed. The arrays of `rule` become read-only. `ValueError` for arrays
+    that do not fit.
     """
 
-    switching_m_s: NDArray[np.float32]
-    path_m: NDArray[np.float32]
-    sensor_of: NDArray[np.int64]
-    entrance_stage: int
-    limits: NDArray[np.float32]
+    rule: PassageRule
+    tracks: bool
 
     def __post_init__(self) -> None:
-        shape = self.switching_m_s.shape
+        rule = self.rule
+        shape = rule.switching_m_s.shape
         if len(shape) != 3 or shape[1] != shape[2] + 1 or shape[2] < 1:
             raise ValueError(f"passage controller: switching_m_s has shape {shape}; it must be (M, K + 1, K), K >= 1")
-        if np.isnan(self.switching_m_s).any() or (self.switching_m_s[..., 1:] < self.switching_m_s[..., :-1]).any():
+        if np.isnan(rule.switching_m_s).any() or (rule.switching_m_s[..., 1:] < rule.switching_m_s[..., :-1]).any():
             raise ValueError("passage controller: switching_m_s must not fall along a row and have no NaN")
-        if self.path_m.shape != shape[:1] or self.sensor_of.shape != shape[:1] or (np.diff(self.path_m) < 0.0).any():
-            raise ValueError(f"passage controller: path_m (rising) and sensor_of must have {shape[0]} entries")
-        if self.limits.shape not in ((0,), (LIMITS,)) or not np.all(np.isfinite(self.limits) & (self.limits >= 0.0)):
-            raise ValueError("passage controller: limits must be six numbers that are not negative, or none")
+        heard = rule.passage_of.shape
+        if rule.path_m.shape != heard or rule.sensor_of.shape != heard or (np.diff(rule.path_m) < 0.0).any():
+            raise ValueError("passage controller: path_m (rising), sensor_of and passage_of must be of one length")
+        if not np.array_equal(rule.passage_of[rule.passage_of != -1], np.arange(shape[0])):
+            raise ValueError(f"passage controller: passage_of must name each of {shape[0]} passages once, in order")
+        if rule.limits.shape != (LIMITS,) or not np.all(np.isfinite(rule.limits) & (rule.limits >= 0.0)):
+            raise ValueError("passage controller: limits must be six numbers that are not negative")
+        object.__setattr__(self, "rule", for_kernel(rule))
 
     @property
     def stages(self) -> int:
         """Number of stages K + 1."""
-        return int(self.switching_m_s.shape[1])
-
-    @property
-    def tracks(self) -> bool:
-        """Whether the regulator finds out itself which passage a pulse pair is."""
-        return self.limits.size > 0
-
-    def law(self) -> PassageLaw:
-        """The rule as the kernel takes it."""
-        return self._law
-
-    @cached_property
-    def _law(self) -> PassageLaw:
-        return PassageLaw(
-            fixed(self.switching_m_s, np.float32),
-            self.entrance_stage,
-            int(np.count_nonzero(self.path_m < 0.0)),
-            fixed(self.path_m, np.float32),
-            fixed(self.sensor_of, np.int64),
-            fixed(self.limits, np.float32),
-        )
+        return int(self.rule.switching_m_s.shape[1])
 
 
-def of_table(table: SwitchingTable, tracking: bool) -> PassageController:
+def for_kernel(rule: PassageRule) -> PassageRule:
+    """`rule` as the kernel takes it."""
+    return PassageRule(
+        fixed(rule.switching_m_s, np.float32),
+        int(rule.entrance_stage),
+        int(rule.before_entrance),
+        fixed(rule.path_m, np.float32),
+        fixed(rule.sensor_of, np.int64),
+        fixed(rule.passage_of, np.int64),
+        fixed(rule.limits, np.float32),
+        np.float32(rule.base_m),
+    )
+
+
+def of_table(table: PassageTable, tracking: bool) -> PassageController:
     """The regulator that runs `table`; `tracking`: with the tracker, as in a controller, else told each passage."""
-    limits = table.limits if tracking else np.empty(0, dtype=np.float32)
-    return PassageController(table.switching_m_s, table.path_m, table.sensor_of, table.entrance_stage, limits)
+    return PassageController(rule_of(table), tracking)

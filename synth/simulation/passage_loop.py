@@ -10,11 +10,13 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models import Plant, PointSensors, deciding_passages
+from plant_models import Plant, PointSensors
 from plant_models.stage_regulator import Actuator, stage_locked_actuator
 from synth.kernels.loop import closed_loop as radar_kernel
 from synth.kernels.loop import passage_loop as kernel
 from synth.kernels.loop import passage_pulses
+from synth.kernels.loop.passage_regulator import STATE_FIELDS
+from synth.simulation.axle_pulses import deciding_pulses, every_pulse
 from synth.simulation.closed_loop import SUBSTEP_S, ClosedLoop, chunk_bounds, close_loop, empty_exits, trace_of
 from synth.simulation.controllers import fixed
 from synth.simulation.heard_pairs import HeardPairs, as_given
@@ -32,12 +34,17 @@ Faults = Callable[[HeardPairs, radar_kernel.Draws], HeardPairs]
 
 @dataclass(frozen=True)
 class PassageLoop:
-    """A plant with point sensors made ready for the kernel. Build it with `close_passage_loop`."""
+    """A plant with point sensors made ready for the kernel. Build it with `close_passage_loop`.
+
+    A regulator with tracker hears the pulses of every axle, `heard`, as a controller does. One that is told its
+    passages needs those alone at which it decides, `deciding`.
+    """
 
     sensors: PointSensors
     radar: ClosedLoop
     drive: kernel.PieceDrive
-    pulses: passage_pulses.Pulses
+    heard: passage_pulses.Pulses
+    deciding: passage_pulses.Pulses
 
     @property
     def plant(self) -> Plant:
@@ -56,7 +63,7 @@ class PassageLoop:
     def run(
         self, controller: PassageController, draws: radar_kernel.Draws, faults: Faults | None = None
     ) -> PassageSample:
-        """All passes of `draws` under `controller`; with `faults` it must have limits for the tracker."""
+        """All passes of `draws` under `controller`; with `faults` it must have the tracker."""
         nothing = np.empty((0, kernel.READING_FIELDS))
         return self._alone(controller, draws, faults, np.empty((0, radar_kernel.EVENT_FIELDS)), nothing)[0]
 
@@ -64,17 +71,15 @@ class PassageLoop:
         self, controller: PassageController, draws: radar_kernel.Draws, faults: Faults | None = None
     ) -> PassageTrace:
         """The only pass of `draws` under `controller`, event by event."""
-        pairs = len(self._pairs(draws, faults).source)
+        pairs = len(pairs_of(self._pulses(controller), draws, faults).source)
         events = np.empty(((pairs + 1) * (len(self.drive.kpa) + 1) + 2, radar_kernel.EVENT_FIELDS))
         seen = np.empty((pairs, kernel.READING_FIELDS))
         sample, events, seen = self._alone(controller, draws, faults, events, seen)
         motion = trace_of(events, bool(sample.stalled[0]))
         return PassageTrace(**vars(motion), readings=readings_of(seen))
 
-    def _pairs(self, draws: radar_kernel.Draws, faults: Faults | None) -> HeardPairs:
-        if faults is None:
-            return as_given(self.pulses.sensor, 1)
-        return faults(as_given(self.pulses.sensor, len(draws.cut_factor)), draws)
+    def _pulses(self, controller: PassageController) -> passage_pulses.Pulses:
+        return self.heard if controller.tracks else self.deciding
 
     def _alone(
         self,
@@ -86,15 +91,16 @@ class PassageLoop:
     ) -> tuple[PassageSample, NDArray[np.float64], NDArray[np.float64]]:
         """One pass after the other, with the events and pulse pairs of the last."""
         self._require_fit(controller, faults)
-        pairs, sources, passes = self._pairs(draws, faults), len(self.pulses.path_m), len(draws.cut_factor)
-        pulses = self.pulses._replace(
+        every, passes = self._pulses(controller), len(draws.cut_factor)
+        pairs, sources = pairs_of(every, draws, faults), len(every.path_m)
+        pulses = every._replace(
             first_row=fixed(pairs.first_row(sources), np.int64), told_sensor=fixed(pairs.sensor, np.int64)
         )
-        exits, outcome = empty_exits(passes), np.empty((passes, sources), dtype=np.uint8)
+        exits, outcome = empty_exits(passes), np.empty((passes, len(self.deciding.path_m)), dtype=np.uint8)
         memory = pass_memory(sources, len(pairs.source))
         count, heard = kernel.run_passage_passes(
-            self.radar.path, self.drive, pulses, pairs.for_kernel(), controller.law(), draws, memory, exits, outcome,
-            events, seen,
+            self.radar.path, self.drive, pulses, pairs.for_kernel(), controller.rule, controller.tracks, draws, memory,
+            exits, outcome, events, seen,
         )  # fmt: skip
         sample = PassageSample(
             exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s, draws.weight, outcome=outcome
@@ -107,10 +113,19 @@ class PassageLoop:
         if controller.tracks:
             return
         if faults is not None:
-            raise ValueError("passage loop: a regulator without limits for its tracker cannot be run with faults")
-        path = self.pulses.path_m
-        if controller.path_m.shape != path.shape or np.abs(controller.path_m - path).max(initial=0.0) > PATH_ERROR_M:
+            raise ValueError("passage loop: a regulator without tracker cannot be run with faults")
+        known, here = np.flatnonzero(controller.rule.passage_of >= 0), self.deciding
+        if not np.array_equal(known, here.number) or (
+            np.abs(controller.rule.path_m[known] - here.path_m).max(initial=0.0) > PATH_ERROR_M
+        ):
             raise ValueError("passage loop: the passages of the controller are not those of sensors and cut")
+
+
+def pairs_of(pulses: passage_pulses.Pulses, draws: radar_kernel.Draws, faults: Faults | None) -> HeardPairs:
+    """The pulse pairs that are heard in the passes of `draws`."""
+    if faults is None:
+        return as_given(pulses.sensor, 1)
+    return faults(as_given(pulses.sensor, len(draws.cut_factor)), draws)
 
 
 def close_passage_loop(plant: Plant, sensors: PointSensors, stages: int, substeps: int | None = None) -> PassageLoop:
@@ -120,35 +135,22 @@ def close_passage_loop(plant: Plant, sensors: PointSensors, stages: int, substep
     `SUBSTEP_S`. `ValueError` where a sensor stands ahead of the place from which on the regulator acts, where no
     passage is before the exit, or for more stages than the position has.
     """
-    met = deciding_passages(sensors, plant.cut, plant.exit_m)
-    if not met:
-        raise ValueError("passage loop: no axle passes a sensor before the exit")
-    if met[0].path_m < plant.start_m - 1e-9:
+    first_m = sensors.path_m[0] + plant.cut.axle_offsets_m[0]
+    if first_m < plant.start_m - 1e-9:
         raise ValueError(
-            f"passage loop: the first sensor stands at {met[0].path_m:g} m and the plant begins at "
+            f"passage loop: the first sensor stands at {first_m:g} m and the plant begins at "
             f"{plant.start_m:g} m: make the approach as long as that sensor is ahead of the entrance"
         )
+    pulses = every_pulse(plant, sensors)
+    deciding = deciding_pulses(pulses)
+    if not len(deciding.path_m):
+        raise ValueError("passage loop: no axle at which is decided passes a sensor before the exit")
     radar = close_loop(plant, stages)
     if substeps is None:
         substeps = math.ceil(sensors.scan_period_s / SUBSTEP_S - 1e-9)
     actuator = stage_locked_actuator(plant.position, sensors, stages - 1, substeps)
-    path = np.array([max(each.path_m, plant.start_m) for each in met])
-    sensor = np.array([each.sensor for each in met], dtype=np.int64)
-    coils = np.argsort(np.concatenate([path - 0.5 * sensors.base_m, path + 0.5 * sensors.base_m]), kind="stable")
-    pulses = passage_pulses.Pulses(
-        fixed(path, np.float64),
-        fixed(sensor, np.int64),
-        fixed(coils, np.int64),
-        fixed(np.arange(len(met) + 1), np.int64),
-        fixed(sensor, np.int64),
-        sensors.base_m,
-        sensors.base_tolerance,
-        sensors.timer_noise_s,
-        sensors.timer_resolution_s,
-    )
-    return PassageLoop(
-        sensors, radar, piece_drive(actuator, sensors.scan_period_s, plant.approach.initial_stage), pulses
-    )
+    drive = piece_drive(actuator, sensors.scan_period_s, plant.approach.initial_stage)
+    return PassageLoop(sensors, radar, drive, pulses, deciding)
 
 
 def piece_drive(actuator: Actuator, period_s: float, initial_stage: int) -> kernel.PieceDrive:
@@ -181,15 +183,15 @@ def pass_memory(sources: int, rows: int) -> passage_pulses.Memory:
     return passage_pulses.Memory(
         np.empty(coils), np.empty(coils, dtype=np.int64), np.empty(sources),
         np.empty(rows), np.empty(rows), np.empty(rows),
-        np.empty(rows, dtype=np.int64), np.empty(rows, dtype=np.int64), np.empty(6, dtype=np.float32),
+        np.empty(rows, dtype=np.int64), np.empty(rows, dtype=np.int64), np.empty(STATE_FIELDS, dtype=np.float32),
     )  # fmt: skip
 
 
 def readings_of(seen: NDArray[np.float64]) -> PassReadings:
     """The pulse pairs that the kernel has noted, (pairs, `READING_FIELDS`), for reading."""
-    time, middle, told, source, believed, reading, outcome, stage = np.ascontiguousarray(seen.T)
-    told, source, believed, stage = (each.astype(np.int64) for each in (told, source, believed, stage))
-    return PassReadings(time, middle, told, source, believed, reading, outcome.astype(np.uint8), stage)
+    time, middle, told, passage, believed, reading, outcome, stage = np.ascontiguousarray(seen.T)
+    told, passage, believed, stage = (each.astype(np.int64) for each in (told, passage, believed, stage))
+    return PassReadings(time, middle, told, passage, believed, reading, outcome.astype(np.uint8), stage)
 
 
 def simulate_passages(

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
-from synth.kernels.loop.passage_regulator import DECIDED, NOT_BELIEVED, NOT_HEARD, UNFINISHED
+from synth.kernels.loop.passage_regulator import DECIDED, NO_DECISION, NOT_BELIEVED, NOT_HEARD, UNFINISHED
 from synth.simulation.passes import ExitSample, PassTrace
 from synth.simulation.replicates import Interval, share_of
 
@@ -16,6 +16,7 @@ __all__ = [
     "DECIDED",
     "NOT_BELIEVED",
     "NOT_HEARD",
+    "NO_DECISION",
     "UNFINISHED",
     "PassReadings",
     "PassageSample",
@@ -27,10 +28,11 @@ __all__ = [
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class PassageSample(ExitSample):
-    """Exits of n passes, and `outcome` uint8 (n, M): what came of the first pulse pair of each passage.
+    """Exits of n passes, and `outcome` uint8 (n, M): what came of the first pulse pair of each deciding passage.
 
     `NOT_HEARD`: the cut did not come there, or no pair was heard; `DECIDED`: the rule was asked; `UNFINISHED`: a
-    transient had not ended by the middle of the reading; `NOT_BELIEVED`: the tracker took the pair for no passage.
+    transient had not ended by the middle of the reading; `NOT_BELIEVED`: the tracker took the pair for no passage;
+    `NO_DECISION`: it took the pair for a passage at which nothing is decided.
     """
 
     outcome: NDArray[np.uint8]
@@ -42,8 +44,9 @@ class PassReadings:
     """The pulse pairs that the regulator heard in one pass, in their order, arrays (pairs,).
 
     `time_s` of the second pulse as heard and `middle_s` of the reading; `told_sensor`; `passage`, the true one, −1 if
-    the pair was none; `believed`, the passage that the regulator took it for, −1: none; `reading_m_s`; `outcome` as in
-    `PassageSample`; `stage` commanded from then on.
+    the pair was none; `believed`, the passage that the regulator took it for, −1: none; both are numbers among all
+    passages heard, as in `PassageTable.heard_path_m`. `reading_m_s` as told; `outcome` as in `PassageSample`; `stage`
+    commanded from then on.
     """
 
     time_s: NDArray[np.float64]

@@ -80,11 +80,10 @@ def polish(
         calls += 1
         lines = unpack(y)
         cost, by_lines = evaluate(lines.at(nodes_m)) if y.any() else first
-        by_lower, by_upper = (np.ascontiguousarray(each.T) for each in by_lines)
         # Below 0 the grid is too coarse for these lines, and its error would be what is minimised.
         if 0.0 < cost < best[0][0] and gap_of(lines) >= 0.5 * MINIMUM_GAP_M_S:
             best[0] = (cost, lines)
-        gradient = np.stack([by_lower @ matrix, by_upper @ matrix], axis=1)[free]
+        gradient = np.stack([np.ascontiguousarray(each.T) @ matrix for each in by_lines], axis=1)[free]
         return cost / before, np.einsum("lab,la->lb", scale, gradient).ravel() / before
 
     options: Any = {"maxiter": max_iterations, "ftol": tolerance}

@@ -19,7 +19,7 @@ from synth.checker.passages.reading import read_passage_table
 from synth.checker.passages.rule import passages_heard, wanted
 from synth.cli import main
 from tests.checker.planted_fault import Document, found, look, rewrite
-from tests.controller_code.passage_tables import passage_tables
+from tests.controller_code.passage_tables import every_axle_book, passage_book
 from tests.tuning_tables.passages.made_tables import passage_tables as any_tables
 from tests.tuning_tables.passages.made_tables import table_of
 from tuning_tables import wanted_stage
@@ -61,7 +61,7 @@ def test_sound_tables_and_exports_are_confirmed(exported_once: Path, capsys: pyt
     assert told == [{"id": "every", "ok": True, "passages": 14}]
 
 
-@pytest.mark.parametrize("table", passage_tables()[:4], ids=lambda table: table.id)
+@pytest.mark.parametrize("table", (*passage_book().tables, *every_axle_book().tables)[:4], ids=lambda table: table.id)
 def test_the_checkers_rule_is_the_rule_to_the_last_bit(table: PassageTable) -> None:
     read, rng = read_passage_table(to_passage_json(table)), np.random.default_rng(5)
     speeds = np.unique(table.switching_m_s[np.isfinite(table.switching_m_s)]).astype(float)

@@ -45,7 +45,8 @@ def asked(tables: tuple[PassageTable, ...], count: int, seed: int) -> Rows:
 
 def _cuts(table: PassageTable, count: int, seed: int) -> Rows:
     """The pairs of cuts with every fault in turn."""
-    rng, rows, rounds = np.random.default_rng(seed), [], 0
+    rng, rounds = np.random.default_rng(seed), 0
+    rows: list[tuple[int, int, float, float]] = []
     while len(rows) < count:
         rounds += 1
         for _, pairs in heard_cuts(table, 1, 1000 * seed + rounds):
@@ -103,7 +104,8 @@ def _decisions(table: PassageTable, found: Rows, rng: np.random.Generator) -> No
     with np.errstate(over="ignore"):
         beside = np.nextafter(speed, rng.choice([-np.inf, np.inf], count).astype(np.float32))
     beside = np.where(rng.random(count) < 0.3, speed, beside)
-    likely = rng.uniform(*map(float, table.limits[:2]), count).astype(np.float32)
+    least, greatest = map(float, table.limits[:2])
+    likely = rng.uniform(least, greatest, count).astype(np.float32)
     any_bits = rng.integers(0, 2**32, count, np.uint32).view(np.float32)
     kind = rng.random(count)
     found["v_m_s"] = np.select([kind < 0.5, kind < 0.9], [beside, likely], any_bits)
@@ -123,7 +125,7 @@ def right(tables: tuple[PassageTable, ...], questions: Rows) -> Rows:
     """The answers of the Python text to `questions`."""
     believed, wanted, step = compiled_step()
 
-    @njit  # type: ignore[untyped-decorator]
+    @njit
     def all_answers(rule: PassageRule, whole: Any, numbers: Any, states: Any, stages: Any, trackers: Any) -> None:
         state = np.zeros(6, np.float32)
         for i in range(len(whole)):

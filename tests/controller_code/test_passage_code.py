@@ -361,6 +361,25 @@ def test_golden_stages_as_csv_are_answered_as_they_say() -> None:
         assert table.id == row["id"]
 
 
+def test_the_page_tells_what_is_asked_here() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "controllers.md").read_text("utf-8")
+    assert f"answer {QUESTIONS // 1000} 000 pairs alike" in page
+    assert f"{len(MUTANTS)} faults put into the C" in page
+
+
+def test_a_table_and_a_tracker_take_what_the_page_says(tmp_path: Path, tool: Tool) -> None:
+    built(tmp_path, Build(tool("gcc"), ("-O1",)))
+    heard, passages, stages = 7 * 6, 6, 8
+    (tmp_path / "size.c").write_text(
+        '#include "retarder_passages.h"\n'
+        f"typedef char table_is_so_large[sizeof(retarder_passage_table) == "
+        f"{4 * (18 + 3 * heard + passages * (stages + 1) * stages)}u ? 1 : -1];\n"
+        "typedef char tracker_is_so_large[sizeof(retarder_tracker) == 24u ? 1 : -1];\n"
+        "int main(void) { return 0; }\n"
+    )
+    compile_with(["gcc", "-std=c99", "-c", str(tmp_path / "size.c"), "-o", str(tmp_path / "o")])
+
+
 def test_names_take_the_prefix_and_equal_tables_give_equal_bytes() -> None:
     files = passage_c_files(BOOK, ExportPrefix("BUNCH"))
     assert list(files) == [

@@ -85,7 +85,7 @@ def test_what_makes_no_export_is_refused(command: Command, folder: Path, tmp_pat
     damaged = (folder / "tables" / "0.json").read_bytes().replace(b"2.5", b"2.6", 1)
     (tmp_path / "damaged.json").write_bytes(damaged)
     ran = command("export", tmp_path / "damaged.json", "--format", "c")
-    assert ran.code == 2
+    assert ran.code == 3
     assert "damaged.json" in ran.sentence
     assert command("export", tmp_path / "missing.json", "--format", "c").code == 2
 

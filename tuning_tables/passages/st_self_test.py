@@ -252,4 +252,5 @@ def _told(indent: str) -> str:
 def _portable(rows: npt.NDArray[np.void]) -> npt.NDArray[np.bool_]:
     """Which rows have a literal in every language."""
     names = [name for name in rows.dtype.names or () if name not in WHOLE]
-    return np.logical_and.reduce([is_portable(rows[name]) for name in names])
+    portable: npt.NDArray[np.bool_] = np.logical_and.reduce([is_portable(rows[name]) for name in names])
+    return portable

@@ -34,8 +34,11 @@ import numpy.typing as npt
 NONE: Final = -1
 LONGEST_WAIT_S: Final = 1e6
 
+Floats = npt.NDArray[np.float32]
+Numbers = npt.NDArray[np.int64]
 
-def begin_cut(state: npt.NDArray[np.float32]) -> None:
+
+def begin_cut(state: Floats) -> None:
     """Forget the cut before: `state` (6,) as it is when a new one is expected."""
     state[:] = 0.0
     state[0] = NONE
@@ -43,20 +46,13 @@ def begin_cut(state: npt.NDArray[np.float32]) -> None:
 
 
 def believed_passage(
-    path_m: npt.NDArray[np.float32],
-    sensor_of: npt.NDArray[np.int64],
-    limits: npt.NDArray[np.float32],
-    state: npt.NDArray[np.float32],
-    sensor: int,
-    since_s: float,
-    v_m_s: float,
+    path_m: Floats, sensor_of: Numbers, limits: Floats, state: Floats, sensor: int, since_s: float, v_m_s: float
 ) -> int:
     """The passage that a pulse pair of `sensor` is taken for, or −1; `state` is brought up to date.
 
     `path_m`, `sensor_of` (T,) of all passages heard, in the order of the path, as `PassageTable.heard_path_m` and
     `heard_sensor`; `since_s`: time since the pulse pair before, of whatever sensor, or since `begin_cut`; `v_m_s`: base
-    over time. Raises nothing for any number. `numba.njit` compiles this text as it stands: hence the one loop over what
-    is believed and the rival.
+    over time. Raises nothing for any number. `numba.njit` compiles this text as it is: hence one loop over both.
     """
     none, nought, longest = np.float32(NONE), np.float32(0.0), np.float32(LONGEST_WAIT_S)
     sound = True
@@ -81,9 +77,7 @@ def believed_passage(
             first = passage
     if first == NONE:
         return NONE
-    found = NONE
-    if state[0] == none and state[3] == none:
-        found = first
+    found = first if state[0] == none and state[3] == none else NONE
     for at in range(0, 6, 3):
         if found != NONE or state[at] == none:
             continue

@@ -88,7 +88,7 @@ def plan_layouts(
     places = np.arange(-ahead_m, problem.exit_m - LAST_SECTION_M, PLACE_STEP_M)
     tell("searching places")
     cases = tuple(candidate_places(case, problem.sensors, float(ahead_m)) for case in problem.cases)
-    search = LayoutSearch(cases, places, problem.first_m, problem.exit_m, threads)
+    search = LayoutSearch(cases, tuple(places.tolist()), problem.first_m, problem.exit_m, threads)
     found = search.best_layouts(counts)
     asked = [search.places_m(found[count]) for count in counts]
     asked += [equal_layout(problem.first_m, problem.exit_m, count) for count in counts]

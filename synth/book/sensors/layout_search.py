@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models.point_sensors import SHORTEST_SECTION_M
 from synth.book.sensors.candidate_places import CandidatePlaces
@@ -36,7 +35,7 @@ class LayoutSearch:
     """
 
     cases: tuple[CandidatePlaces, ...]
-    path_m: NDArray[np.float64]
+    path_m: tuple[float, ...]
     first_m: float
     exit_m: float
     threads: int = 1
@@ -52,11 +51,11 @@ class LayoutSearch:
 
     def places_m(self, layout: Numbers) -> tuple[float, ...]:
         """The places of a layout."""
-        return tuple(round(float(self.path_m[number]), 3) for number in layout)
+        return tuple(round(self.path_m[number], 3) for number in layout)
 
     def numbers(self, places_m: Sequence[float]) -> Numbers:
         """The numbers of the places next to these."""
-        return tuple(int(np.argmin(np.abs(self.path_m - place))) for place in places_m)
+        return tuple(int(np.argmin(np.abs(np.array(self.path_m) - place))) for place in places_m)
 
     def best_layouts(self, counts: Sequence[int]) -> dict[int, Numbers]:
         """The best layout found for each of the `counts` of deciding sensors."""
@@ -93,7 +92,7 @@ class LayoutSearch:
     def _cost(self, layout: Numbers) -> float:
         if any(number < 0 or number >= len(self.path_m) for number in layout):
             return float("inf")
-        places = [float(self.path_m[number]) for number in layout]
+        places = [self.path_m[number] for number in layout]
         if any(b - a < SHORTEST_SECTION_M for a, b in pairwise(places)) or places[0] > 0.0:
             return float("inf")
         return sum(case.mean_cost(places) for case in self.cases) / len(self.cases)

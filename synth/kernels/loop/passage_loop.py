@@ -17,8 +17,6 @@ from numpy.typing import NDArray
 
 from synth.kernels.loop.closed_loop import LEFT, LONGEST_PASS_S, MOVING, STALLED, Draws, Exits, Path, note
 from synth.kernels.loop.passage_pulses import (
-    BASE_COLUMN,
-    MOST_BASES,
     Heard,
     Memory,
     Pulses,
@@ -29,17 +27,9 @@ from synth.kernels.loop.passage_pulses import (
     rows_of_source,
     take_row,
 )
-from synth.kernels.loop.passage_regulator import (
-    DECIDED,
-    NOT_BELIEVED,
-    NOT_HEARD,
-    UNFINISHED,
-    PassageLaw,
-    begin_cut,
-    passage_of_pair,
-    stage_at_passage,
-)
+from synth.kernels.loop.passage_regulator import NOT_HEARD, begin_cut, outcome_of, stage_after_pair
 from synth.kernels.vector.borrowing import borrowing, borrowing_inline
+from tuning_tables.passages.regulator import PassageRule
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -52,8 +42,8 @@ WATCHED_FROM_S = -60.0
 """The regulator expects the cut from then on, time 0 being where the pass begins."""
 
 READING_FIELDS = 8
-"""Columns of the pulse pairs heard: time, middle of the reading, sensor told, source, passage that it was taken for
-(−1: none), speed told, what came of it, stage in force afterwards."""
+"""Columns of the pulse pairs heard: time, middle of the reading, sensor told, true passage, passage that it was taken
+for (−1: none), speed told, what came of it, stage in force afterwards; passages by their number among those heard."""
 
 
 class PieceDrive(NamedTuple):
@@ -106,22 +96,15 @@ def roll(
 
 
 @borrowing_inline
-def outcome_of(passage: int, middle_s: float, rests_from_s: float) -> int:
-    """What comes of a pulse pair: only what was read after the last transient counts."""
-    if passage < 0:
-        return NOT_BELIEVED
-    return DECIDED if middle_s >= rests_from_s else UNFINISHED
-
-
-@borrowing_inline
 def note_pair(
-    seen: Floats, count: int, time_s: float, row: int, told: int, passage: int, outcome: int, stage: int, memory: Memory
-) -> int:
+    seen: Floats, count: int, time_s: float, half_s: float, told: int, passage: int, taken_for: int, read_m_s: float,
+    outcome: int, stage: int,
+) -> int:  # fmt: skip
     """Write one pulse pair, if that is wanted (`seen` not empty); returns the number of pairs."""
     if count < seen.shape[0]:
-        seen[count, 0], seen[count, 1] = time_s, time_s - memory.half_s[row]
-        seen[count, 2], seen[count, 3], seen[count, 4] = told, memory.row_source[row], passage
-        seen[count, 5], seen[count, 6], seen[count, 7] = memory.reading_m_s[row], outcome, stage
+        seen[count, 0], seen[count, 1] = time_s, time_s - half_s
+        seen[count, 2], seen[count, 3], seen[count, 4] = told, passage, taken_for
+        seen[count, 5], seen[count, 6], seen[count, 7] = read_m_s, outcome, stage
         return count + 1
     return count
 
@@ -129,12 +112,12 @@ def note_pair(
 @borrowing
 def run_passage_pass(
     edges_m: Floats, free: Floats, brake: Floats, drive: PieceDrive, pulses: Pulses, after_s: Floats, told_m_s: Floats,
-    law: PassageLaw, start_m_s: float, noise_z: NDArray[np.float32], memory: Memory, outcomes: Outcomes,
+    law: PassageRule, tracks: bool, start_m_s: float, noise_z: NDArray[np.float32], memory: Memory, outcomes: Outcomes,
     events: Floats, seen: Floats,
 ) -> Any:  # fmt: skip
     """One pass from where the regulator acts to the exit; returns (v, time, status, switchings, events, pairs).
 
-    `outcomes` (E,): what came of the first pair heard from each source.
+    `outcomes` (M,): what came of the first pair heard from each source at which is decided.
     """
     sources, resting = pulses.path_m.shape[0], drive.command.shape[0]
     place_coils(pulses, noise_z, memory)
@@ -170,7 +153,7 @@ def run_passage_pass(
                 memory.first_s[source] = time
             else:
                 source -= sources
-                z = noise_z[source % (BASE_COLUMN + 1 - MOST_BASES)]
+                z = noise_z[pulses.column[source]]
                 waiting = rows_of_source(pulses, source, time, z, after_s, told_m_s, waiting, memory)
         elif until_s == LONGEST_PASS_S:
             time, status = max(time, until_s), STALLED  # it creeps
@@ -182,28 +165,33 @@ def run_passage_pass(
         else:
             time = max(time, until_s)
             row, waiting = take_row(at, waiting, memory)
-            told, source, read = pulses.told_sensor[row], memory.row_source[row], memory.reading_m_s[row]
-            passage = passage_of_pair(law, memory.state, told, due_s - heard_s, read, source)
+            told, source, half_s = pulses.told_sensor[row], memory.row_source[row], memory.half_s[row]
+            over_s = memory.over_s[row]
+            read = pulses.base_m / over_s
+            passage = pulses.number[source] if source >= 0 else -1
+            ended = due_s - half_s >= rests_from_s
+            wanted, taken_for = stage_after_pair(
+                law, tracks, memory.state, told, due_s - heard_s, over_s, read, passage, stage, ended
+            )
             heard_s = due_s
-            outcome = outcome_of(passage, due_s - memory.half_s[row], rests_from_s)
-            if source >= 0 and outcomes[source] == NOT_HEARD:
-                outcomes[source] = outcome
-            wanted = stage_at_passage(law, passage, stage, read) if outcome == DECIDED else stage
+            outcome = outcome_of(law, taken_for, ended)
+            if source >= 0 and pulses.decides[source] >= 0 and outcomes[pulses.decides[source]] == NOT_HEARD:
+                outcomes[pulses.decides[source]] = outcome
             if wanted != stage:
                 piece, stage, begun_s, rests_from_s = drive.command[piece, wanted], wanted, due_s, math.inf
                 switchings += 1
             count = note(events, count, due_s, s, v, drive.kpa[piece], stage, read)
-            pairs = note_pair(seen, pairs, due_s, row, told, passage, outcome, stage, memory)
+            pairs = note_pair(seen, pairs, due_s, half_s, told, passage, taken_for, read, outcome, stage)
     count = note(events, count, time, s, v, drive.kpa[piece], stage, math.nan)
     return v, time, status, switchings, count, pairs
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def run_passage_passes(
-    path: Path, drive: PieceDrive, pulses: Pulses, heard: Heard, law: PassageLaw, draws: Draws, memory: Memory,
-    exits: Exits, outcomes: Outcomes, events: Floats, seen: Floats,
+    path: Path, drive: PieceDrive, pulses: Pulses, heard: Heard, law: PassageRule, tracks: bool, draws: Draws,
+    memory: Memory, exits: Exits, outcomes: Outcomes, events: Floats, seen: Floats,
 ) -> Any:  # fmt: skip
-    """Simulate all passes of `draws` into `exits` and `outcomes` (n, E); returns (events, pairs) of the last pass."""
+    """Simulate all passes of `draws` into `exits` and `outcomes` (n, M); returns (events, pairs) of the last pass."""
     free, count, pairs = np.empty(path.gravity_m_s2.shape[0]), 0, 0
     alike = heard.after_s.shape[0] == 1
     for i in range(draws.cut_factor.shape[0]):
@@ -213,7 +201,7 @@ def run_passage_passes(
         row = 0 if alike else i
         v, time, status, switchings, count, pairs = run_passage_pass(
             path.edges_m, free, draws.brake_m_s2_per_kpa[i], drive, pulses, heard.after_s[row], heard.told_m_s[row],
-            law, draws.entry_m_s[i], draws.noise_z[i], memory, outcomes[i], events, seen,
+            law, tracks, draws.entry_m_s[i], draws.noise_z[i], memory, outcomes[i], events, seen,
         )  # fmt: skip
         exits.stalled[i] = status != LEFT
         exits.speed_m_s[i] = v if status == LEFT else 0.0

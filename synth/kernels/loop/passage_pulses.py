@@ -1,8 +1,8 @@
 """Kernel of the sensors in the loop of passages: where the coils lie for this pass, and what a pulse pair tells.
 
 A *source* is an axle that rolls over a sensor. What the regulator hears are *rows*: pulse pairs, each with the number
-of the sensor that it is told, after so long, and with the measured speed or another. Without faults there is one row a
-source; `synth.simulation.sensor_faults` adds and takes away.
+of the sensor that it is told, after so long, and with the measured time over the base or another. Without faults there
+is one row a source; `synth.simulation.sensor_faults` adds and takes away.
 """
 
 from __future__ import annotations
@@ -28,13 +28,18 @@ BASE_COLUMN, MOST_BASES = 255, 32
 class Pulses(NamedTuple):
     """E sources and R rows, alike in all passes.
 
-    `path_m` (E,): path of the first axle where the axle is at the middle of the base; `sensor` (E,); `coils` (2E,):
-    first coils e and second coils E + e, in the order of the path if bases have no error. Rows of source e are
-    `first_row[e]` … `first_row[e + 1]` − 1, `first_row` (E + 1,); those behind come by the clock. `told_sensor` (R,).
+    `path_m` (E,): path of the first axle where the axle is at the middle of the base; `sensor` (E,); `number` (E,):
+    among all passages heard; `decides` (E,): among those at which is decided, or −1; `column` (E,): which number of a
+    pass is the noise of the timer. `coils` (2E,): first coils e and second coils E + e, in the order of the path if
+    bases have no error. Rows of source e are `first_row[e]` … `first_row[e + 1]` − 1, `first_row` (E + 1,); those
+    behind come by the clock. `told_sensor` (R,).
     """
 
     path_m: Floats
     sensor: Ints
+    number: Ints
+    decides: Ints
+    column: Ints
     coils: Ints
     first_row: Ints
     told_sensor: Ints
@@ -56,14 +61,14 @@ class Heard(NamedTuple):
 
 
 class Memory(NamedTuple):
-    """Room for one pass: coils (2E,), pulse times (E,), rows (R,) and those of them that wait, tracker (6,)."""
+    """Room for one pass: coils (2E,), pulse times (E,), rows (R,) and those of them that wait, and the tracker."""
 
     place_m: Floats
     order: Ints
     first_s: Floats
     due_s: Floats
     half_s: Floats
-    reading_m_s: Floats
+    over_s: Floats
     row_source: Ints
     waiting: Ints
     state: NDArray[np.float32]
@@ -80,15 +85,21 @@ def coils_of(pulses: Pulses, source: int, z: float) -> Any:
 
 
 @borrowing_inline
-def read_speed_m_s(pulses: Pulses, true_s: float, z: float) -> float:
-    """Relay element of the speed: base over the measured time, which has the noise `z` in stds and is rounded.
+def measured_over_base_s(pulses: Pulses, true_s: float, z: float) -> float:
+    """The measured time over the base: it has the noise `z` in standard deviations and is rounded.
 
     NaN where `z` is: nothing was measured.
     """
     measured_s: float = true_s + pulses.timer_noise_s * z
     if pulses.timer_resolution_s > 0.0:
         measured_s = np.rint(measured_s / pulses.timer_resolution_s) * pulses.timer_resolution_s
-    return pulses.base_m / measured_s
+    return measured_s
+
+
+@borrowing_inline
+def read_speed_m_s(pulses: Pulses, true_s: float, z: float) -> float:
+    """Relay element of the speed: base over the measured time."""
+    return pulses.base_m / measured_over_base_s(pulses, true_s, z)
 
 
 @borrowing_inline
@@ -123,9 +134,9 @@ def pulses_before(start_m: float, free_m_s2: float, v: float, memory: Memory) ->
 
 
 @borrowing_inline
-def wait_for(row: int, source: int, due_s: float, half_s: float, v_m_s: float, waiting: int, memory: Memory) -> int:
+def wait_for(row: int, source: int, due_s: float, half_s: float, over_s: float, waiting: int, memory: Memory) -> int:
     """Have `row` heard at `due_s`; returns how many rows are waited for."""
-    memory.due_s[row], memory.half_s[row], memory.reading_m_s[row] = due_s, half_s, v_m_s
+    memory.due_s[row], memory.half_s[row], memory.over_s[row] = due_s, half_s, over_s
     memory.row_source[row] = source
     memory.waiting[waiting] = row
     return waiting + 1
@@ -137,8 +148,9 @@ def rows_by_the_clock(pulses: Pulses, after_s: Floats, told_m_s: Floats, memory:
     waiting = 0
     for row in range(pulses.first_row[pulses.path_m.shape[0]], pulses.told_sensor.shape[0]):
         if not math.isnan(after_s[row]):
-            half_s = 0.5 * pulses.base_m / told_m_s[row] if told_m_s[row] > 0.0 else 0.0
-            waiting = wait_for(row, -1, after_s[row], half_s, told_m_s[row], waiting, memory)
+            over_s = pulses.base_m / told_m_s[row]
+            half_s = 0.5 * over_s if told_m_s[row] > 0.0 else 0.0
+            waiting = wait_for(row, -1, after_s[row], half_s, over_s, waiting, memory)
     return waiting
 
 
@@ -153,13 +165,13 @@ def rows_of_source(
     tells an infinite or negative speed: the rule holds, and the tracker does not believe it.
     """
     true_s = time_s - memory.first_s[source]
-    read = read_speed_m_s(pulses, true_s, z)
-    if math.isnan(read):
+    measured_s = measured_over_base_s(pulses, true_s, z)
+    if math.isnan(measured_s):
         return waiting
     for row in range(pulses.first_row[source], pulses.first_row[source + 1]):
         if not math.isnan(after_s[row]):
-            v = read if math.isnan(told_m_s[row]) else told_m_s[row]
-            waiting = wait_for(row, source, time_s + after_s[row], 0.5 * true_s, v, waiting, memory)
+            over_s = measured_s if math.isnan(told_m_s[row]) else pulses.base_m / told_m_s[row]
+            waiting = wait_for(row, source, time_s + after_s[row], 0.5 * true_s, over_s, waiting, memory)
     return waiting
 
 

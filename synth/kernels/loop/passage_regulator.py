@@ -1,57 +1,77 @@
-"""Kernel of the regulator with point sensors: which passage a pulse pair is taken for, and which stage it then wants.
+"""Kernel of the regulator with point sensors: what a controller does at a pulse pair.
 
-The tables' own rule and tracker are compiled here unchanged, so that the loop is driven by what a controller runs.
+The step of the tables, with its tracker and rule, is compiled here unchanged, so that the loop is driven by what a
+controller runs.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from types import FunctionType
+from typing import Any
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 from synth.kernels.vector.borrowing import borrowing_inline
-from tuning_tables.passages import rule, tracker
+from tuning_tables.passages import regulator, rule, tracker
+from tuning_tables.passages.regulator import PassageRule
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
+State = NDArray[np.float32]
 
-NOT_HEARD, DECIDED, UNFINISHED, NOT_BELIEVED = 0, 1, 2, 3
-"""What came of a passage: never heard of, the rule was asked, a transient was unfinished, taken for no passage."""
+NOT_HEARD, DECIDED, UNFINISHED, NOT_BELIEVED, NO_DECISION = 0, 1, 2, 3, 4
+"""What came of a passage: never heard of, the rule was asked, a transient was unfinished, taken for no passage, taken
+for a passage at which nothing is decided."""
 
-
-class PassageLaw(NamedTuple):
-    """A rule of switching speeds (`tuning_tables.passages.rule`) and, where `limits` is not empty, the tracker.
-
-    `switching_m_s` float32 (M, K + 1, K); `path_m` float32 and `sensor_of` (M,) as the controller knows them; `limits`
-    float32 (6,) or (0,). Without limits the regulator is told which passage each pulse pair is.
-    """
-
-    switching_m_s: NDArray[np.float32]
-    entrance_stage: int
-    before_entrance: int
-    path_m: NDArray[np.float32]
-    sensor_of: Ints
-    limits: NDArray[np.float32]
-
+TAKEN_FOR, STATE_FIELDS = 6, 7
+"""Behind the six numbers of the tracker's state stands the heard passage that it took the last pair for, or −1."""
 
 wanted_stage = njit(cache=True, nogil=True)(rule.wanted_stage)
 begin_cut = njit(cache=True, nogil=True)(tracker.begin_cut)
 believed_passage = njit(cache=True, nogil=True)(tracker.believed_passage)
 
 
-@borrowing_inline
-def passage_of_pair(
-    law: PassageLaw, state: NDArray[np.float32], sensor: int, since_s: float, v_m_s: float, true_passage: int
+@njit(cache=True, nogil=True)
+def noted_passage(
+    path_m: State, sensor_of: NDArray[np.int64], limits: State, state: State, sensor: int, since_s: float, v_m_s: float
 ) -> int:
-    """The passage that a pair heard from `sensor` is taken for, or −1; `state` is the tracker's."""
-    if law.limits.shape[0] == 0:
-        return true_passage
-    return int(believed_passage(law.path_m, law.sensor_of, law.limits, state, sensor, since_s, v_m_s))
+    """`believed_passage`, which notes its answer too: the step tells only the stage."""
+    found = believed_passage(path_m, sensor_of, limits, state, sensor, since_s, v_m_s)
+    state[TAKEN_FOR] = found
+    return int(found)
+
+
+at_pulse = njit(cache=True, nogil=True)(
+    FunctionType(
+        regulator.at_pulse.__code__,
+        {**vars(regulator), "believed_passage": noted_passage, "wanted_stage": wanted_stage},
+    )
+)
 
 
 @borrowing_inline
-def stage_at_passage(law: PassageLaw, passage: int, stage: int, v_m_s: float) -> int:
-    """The stage that the rule wants at `passage`, where `v_m_s` was read while `stage` is in force."""
-    return int(wanted_stage(law.switching_m_s, law.entrance_stage, law.before_entrance, passage, stage, v_m_s))
+def stage_after_pair(
+    law: PassageRule, tracks: bool, state: State, sensor: int, since_s: float, over_base_s: float, reading_m_s: float,
+    true_passage: int, stage: int, transient_ended: bool,
+) -> Any:  # fmt: skip
+    """(stage wanted, heard passage that the pair is taken for or −1); without tracker the passage is told."""
+    if tracks:
+        wanted = int(at_pulse(law, state, sensor, since_s, over_base_s, stage, transient_ended))
+        return wanted, int(state[TAKEN_FOR])
+    wanted = stage
+    if transient_ended:
+        passage = law.passage_of[true_passage]
+        wanted = int(
+            wanted_stage(law.switching_m_s, law.entrance_stage, law.before_entrance, passage, stage, reading_m_s)
+        )
+    return wanted, true_passage
+
+
+@borrowing_inline
+def outcome_of(law: PassageRule, taken_for: int, transient_ended: bool) -> int:
+    """What comes of a pair that is taken for the heard passage `taken_for`."""
+    if taken_for < 0:
+        return NOT_BELIEVED
+    if law.passage_of[taken_for] < 0:
+        return NO_DECISION
+    return DECIDED if transient_ended else UNFINISHED

@@ -46,21 +46,15 @@ def sweep(
     count, nodes, width = factor.shape[0], drive.shape[0], stalled.shape[0]
     modes, size, points = pressure.shape[0], levels.shape[0], speed.shape[0]
     commands, decisions, stages = lines.shape[0], lines.shape[1], lines.shape[2]
-    ring = probability.shape[1] + 3
-    row, kind = points * width, terminal.dtype
-    recent = np.zeros((count, ring, modes, size, row), kind)
-    mixed = np.zeros((count, ring, modes, size, row), kind)
-    ahead = np.empty((count, reach, modes, size, row), kind)
-    holds = np.empty((count, modes, size, row), kind)
+    ring, row, kind = probability.shape[1] + 3, points * width, terminal.dtype
+    recent, mixed = np.zeros((count, ring, modes, size, row), kind), np.zeros((count, ring, modes, size, row), kind)
+    ahead, holds = np.empty((count, reach, modes, size, row), kind), np.empty((count, modes, size, row), kind)
     changes = np.zeros((count, modes, size, commands, row), kind)
-    quanta = np.empty((count, modes, size, points))
-    shift = np.empty((count, modes, size))
-    gains = np.empty((commands, stages, row), kind)
-    chance = np.empty((commands, row), kind)
+    quanta, shift = np.empty((count, modes, size, points)), np.empty((count, modes, size))
+    gains, chance = np.empty((commands, stages, row), kind), np.empty((commands, row), kind)
     best, chosen = np.empty(points + 1), np.empty((commands // 2, points + 1), np.int64)
     possible, least_ahead = np.empty((2, stages), np.int64), 0.0 if period > 0.0 else 1.0
-    undecided = np.empty(points, np.bool_)
-    scratch = np.empty(row, kind)
+    undecided, scratch = np.empty(points, np.bool_), np.empty(row, kind)
     crossed, runs, place, weight = landing_scratch(ends.shape[4], size, kind)
     met, slope = landing_tables(
         factor, extra, factors, probability, mean, std, levels, pressure, drive, brake, path_step
@@ -74,14 +68,10 @@ def sweep(
         gains[:], possible[:] = 0.0, 0
         for i in range(count):
             shifts(n, factor[i], levels, drive, brake, pressure, extra[i], path_step, energy_step, shift[i])
-            for r in range(reach - 2, 0, -1):
-                pull(ahead[i, r], points, transition, shift[i], stalled, 1, points, ahead[i, r + 1], scratch)
-            pull(recent[i, (n + 1) % ring], points, transition, shift[i], stalled, 1, points, ahead[i, 1], scratch)
-            for h in range(modes):
-                for q in range(size):
-                    a = shift[i, h, q] * energy_step / path_step
-                    quanta_to_next_sample(speed, 0, points, a, period, path_step, quanta[i, h, q])
-                    hold_values(ahead[i], h * size + q, quanta[i, h, q], width, holds[i, h, q])
+            hold_everywhere(
+                recent[i, (n + 1) % ring], shift[i], transition, stalled, speed, period, path_step, energy_step,
+                ahead[i], quanta[i], holds[i], scratch,
+            )  # fmt: skip
             for command in range(commands if decision < decisions else 0):
                 side, by = command % 2, command // 2 + 1
                 for h in range(modes):
@@ -103,23 +93,18 @@ def sweep(
                         )  # fmt: skip
                         add_gains(holds[i, h, q], changed, prior[i, h, q], rounding, width, gains[command, stage[h]])
         for k in range(stages):
+            undecided[:] = False
             if decision < decisions:
                 for command in range(commands):
                     spread(gains[command, k], smear_start, smear, width, scratch)
                     apart(scratch, width, gain[command, decision, k])
-                for t in range(lines.shape[3]):
-                    find_lines(
-                        gain[:, decision, k, t], possible[:, k], reading, tolerance, best, chosen,
-                        lines[:, decision, k, t],
-                    )  # fmt: skip
+                find_lines(
+                    gain[:, decision, k], possible[:, k], reading, tolerance, best, chosen, lines[:, decision, k]
+                )  # fmt: skip
                 command_chances(lines[:, decision, k], reading, noise, width, chance, undecided)
-            else:
-                undecided[:] = False
-            for h in range(modes):
-                if stage[h] != k:
-                    continue
-                for i in range(count):
-                    for q in range(size):
+            for i in range(count):
+                for h in range(modes):
+                    for q in range(size if stage[h] == k else 0):
                         sampled_values(
                             chance, changes[i, h, q], ahead[i, 1, h, q], holds[i, h, q],
                             quanta[i, h, q], undecided, stalled, recent[i, n % ring, h, q],
@@ -127,6 +112,26 @@ def sweep(
         for i in range(count):
             mix_values(recent[i, n % ring], transition, 1, points, stalled, mixed[i, n % ring])
         copy_out(recent[:, n % ring], values, n, points)
+
+
+@borrowing
+def hold_everywhere(
+    following, shift, transition, stalled, speed, period, path_step, energy_step, ahead, quanta, holds, scratch
+):
+    """Values of one scenario that holds at a node, in all modes and levels, into `holds` (H, L, E·T).
+
+    `following` (H, L, E·T): at the next node; `ahead` (M + 1, H, L, E·T) on the way to later samples is brought one
+    node back; `quanta` (H, L, E) becomes the path to the next sample.
+    """
+    modes, size, points = quanta.shape
+    for r in range(ahead.shape[0] - 2, 0, -1):
+        pull(ahead[r], points, transition, shift, stalled, 1, points, ahead[r + 1], scratch)
+    pull(following, points, transition, shift, stalled, 1, points, ahead[1], scratch)
+    for h in range(modes):
+        for q in range(size):
+            a = shift[h, q] * energy_step / path_step
+            quanta_to_next_sample(speed, 0, points, a, period, path_step, quanta[h, q])
+            hold_values(ahead, h * size + q, quanta[h, q], stalled.shape[0], holds[h, q])
 
 
 @borrowing

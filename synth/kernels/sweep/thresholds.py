@@ -9,21 +9,22 @@ from synth.kernels.vector.borrowing import borrowing
 
 @borrowing
 def find_lines(gain, possible, reading, tolerance, best, chosen, lines):
-    """The lines (C,) of one stage from the gains (C, E) of its commands, 2·d − 2 down and 2·d − 1 up by d stages.
+    """The lines (C, T) of one stage from the gains (C, T, E) of its commands, 2·d − 2 down and 2·d − 1 up by d stages.
 
     `possible` (2,): by how many stages it can go down and up. A line of a command to go farther lies no nearer than
     that of the next one: together they have the largest total gain that ordered lines can have. `best` (E + 1,) and
     `chosen` (C/2, E + 1) are memory.
     """
     lines[0::2], lines[1::2] = -np.inf, np.inf
-    if lines.shape[0] == 2:
-        lines[0] = lower_threshold(gain[0], reading, tolerance)
-        lines[1] = max(upper_threshold(gain[1], reading, tolerance), lines[0])
-        return
-    ordered_thresholds(gain[0::2], possible[0], reading, tolerance, -1, best, chosen, lines[0::2])
-    ordered_thresholds(gain[1::2], possible[1], reading, tolerance, 1, best, chosen, lines[1::2])
-    for up in range(1, lines.shape[0], 2):
-        lines[up] = max(lines[up], lines[0])
+    for t in range(lines.shape[1]):
+        if lines.shape[0] == 2:
+            lines[0, t] = lower_threshold(gain[0, t], reading, tolerance)
+            lines[1, t] = max(upper_threshold(gain[1, t], reading, tolerance), lines[0, t])
+            continue
+        ordered_thresholds(gain[0::2, t], possible[0], reading, tolerance, -1, best, chosen, lines[0::2, t])
+        ordered_thresholds(gain[1::2, t], possible[1], reading, tolerance, 1, best, chosen, lines[1::2, t])
+        for up in range(1, lines.shape[0], 2):
+            lines[up, t] = max(lines[up, t], lines[0, t])
 
 
 @borrowing

@@ -62,10 +62,10 @@ def test_the_cost_of_a_layout_is_that_of_its_own_chain(plant_22t: Plant) -> None
 def test_the_search_finds_what_exhaustive_search_finds(places: CandidatePlaces) -> None:
     """Three sensors on sixteen places, all 560 layouts."""
     grid = np.array([-9.0, -6.0, -3.0, 0.0, *np.arange(3.0, 36.5, 3.0)])
-    search = LayoutSearch((places,), grid, -8.0, 37.0)
+    search = LayoutSearch((places,), tuple(grid.tolist()), -8.0, 37.0)
     every = [layout for layout in itertools.combinations(range(len(grid)), 3) if grid[layout[0]] <= 0.0]
     costs = search.costs(every)
-    fresh = LayoutSearch((places,), grid, -8.0, 37.0)
+    fresh = LayoutSearch((places,), tuple(grid.tolist()), -8.0, 37.0)
     found = fresh.best_layouts((3,))[3]
     assert len(fresh.known) < 0.4 * len(every)
     assert fresh.known[found] <= min(costs) * (1.0 + 1e-3)
@@ -88,8 +88,10 @@ def test_a_plan_is_never_worse_than_equal_sections(plant_22t: Plant) -> None:
 def test_a_plan_does_not_depend_on_threads(places: CandidatePlaces, threads: int) -> None:
     """The same layout."""
     grid = np.arange(-8.0, 36.0, 4.0)
-    search = LayoutSearch((places,), grid, -8.0, 37.0, threads)
-    assert search.best_layouts((4,))[4] == LayoutSearch((places,), grid, -8.0, 37.0).best_layouts((4,))[4]
+    search = LayoutSearch((places,), tuple(grid.tolist()), -8.0, 37.0, threads)
+    assert (
+        search.best_layouts((4,))[4] == LayoutSearch((places,), tuple(grid.tolist()), -8.0, 37.0).best_layouts((4,))[4]
+    )
 
 
 def test_prediction_and_simulation_of_a_table_agree(plant_of: Callable[[float], Plant]) -> None:

@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models import Approach, Plant, PointSensors, deciding_passages
+from plant_models import Approach, Plant, PointSensors, deciding_passages, every_axle, passages
 from synth.simulation.passage_controller import PassageController
 from synth.simulation.passage_loop import PassageLoop
 from synth.simulation.passage_sample import PassageTrace
 from synth.simulation.random_passes import RandomPasses
+from tuning_tables.passages.regulator import PassageRule
 
 SENSORS = PointSensors((-5.0, 4.0, 10.0, 17.0, 24.0, 30.0))
 CREDIBLE = (0.2, 9.0, 0.15, 3.5, 0.06, 0.3)
@@ -30,15 +31,20 @@ def exact(sensors: PointSensors) -> PointSensors:
 def rule_of(
     plant: Plant, sensors: PointSensors, switching_m_s: NDArray[np.floating], limits: tuple[float, ...] = ()
 ) -> PassageController:
-    """The regulator with these switching speeds, (M, K + 1, K)."""
+    """The regulator with these switching speeds, (M, K + 1, K); with `limits` it tracks, else it is told."""
     met = deciding_passages(sensors, plant.cut, plant.exit_m)
-    return PassageController(
+    heard = passages(replace(sensors, axles=every_axle), plant.cut)
+    rule = PassageRule(
         switching_m_s.astype(np.float32),
-        np.array([each.path_m for each in met], dtype=np.float32),
-        np.array([each.sensor for each in met], dtype=np.int64),
         plant.entrance_stage,
-        np.array(limits, dtype=np.float32),
+        sum(each.path_m < 0.0 for each in met),
+        np.array([each.path_m for each in heard], dtype=np.float32),
+        np.array([each.sensor for each in heard], dtype=np.int64),
+        np.array([met.index(each) if each in met else -1 for each in heard], dtype=np.int64),
+        np.array(limits or CREDIBLE, dtype=np.float32),
+        np.float32(sensors.base_m),
     )
+    return PassageController(rule, bool(limits))
 
 
 def braking_rule(

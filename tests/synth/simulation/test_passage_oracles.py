@@ -96,7 +96,7 @@ class IntegratedPass:
         self.told.append((t, t - 0.5 * took, reading, counts, self.stage))
 
     def decide(self, number: int, reading: float, t: float) -> None:
-        row = self.rule.switching_m_s[number, self.stage].astype(float)
+        row = self.rule.rule.switching_m_s[number, self.stage].astype(float)
         allowed = self.plant.entrance_stage if self.met[number].path_m < 0 else self.plant.top_stage
         above = int(np.count_nonzero(reading > row))
         wanted = min(above, allowed) if above > self.stage else int(np.count_nonzero(reading >= row))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -167,6 +168,12 @@ def test_a_wrong_block_is_found_by_the_small_self_test(before: str, after: str) 
     assert before in text
     with suppress(Fault):  # a controller would trap
         assert self_tested(text.replace(before, after, 1))[0] > 0
+
+
+def test_the_page_tells_what_is_asked_here() -> None:
+    page = (Path(__file__).parents[3] / "docs" / "controllers.md").read_text("utf-8")
+    assert f"answer {QUESTIONS // 1000} 000 pairs alike" in page
+    assert f"{len(CHANGES)} in the Structured Text" in page
 
 
 def test_a_changed_constant_is_found() -> None:
