@@ -10,6 +10,7 @@ from synth.book.case_result import CaseResult
 from synth.book.judgement import Judgement, interval_text, judgement
 from synth.book.printed_numbers import counted
 from synth.configuration.settings import AcceptanceSettings
+from synth.simulation.exit_statistics import ExitStatistics
 from synth.simulation.replicates import share_of
 
 
@@ -50,7 +51,12 @@ class Verdict:
 def judge(cases: Sequence[CaseResult], limits: AcceptanceSettings) -> Verdict:
     """The verdict on the simulated passes of `cases`."""
     judged = tuple(judge_case(case, limits) for case in cases)
-    feasible = [(case, verdict) for case, verdict in zip(cases, judged, strict=True) if verdict.feasible]
+    return verdict_on(judged, [case.comparison.table.statistics for case in cases], limits)
+
+
+def verdict_on(judged: tuple[CaseVerdict, ...], found: Sequence[ExitStatistics], limits: AcceptanceSettings) -> Verdict:
+    """What the verdicts on all cases, of which `found` was simulated, come to."""
+    feasible = [(each, verdict) for each, verdict in zip(found, judged, strict=True) if verdict.feasible]
     bad = [verdict for _, verdict in feasible if verdict.judgement.missed]
     open_ones = [verdict for _, verdict in feasible if verdict.judgement.word == "not decidable"]
     if not feasible:
@@ -63,11 +69,10 @@ def judge(cases: Sequence[CaseResult], limits: AcceptanceSettings) -> Verdict:
             f"{counted(len(feasible), 'feasible case')} ({told(open_ones)}); raise validation.passes"
         )
     else:
-        worst = max((case for case, _ in feasible), key=lambda case: case.comparison.table.statistics.rms_m_s)
-        found = worst.comparison.table.statistics
+        worst, of_worst = max(feasible, key=lambda pair: pair[0].rms_m_s)
         sentence = (
-            f"the limits are kept in {counted(len(feasible), 'feasible case')}; the worst rms is {found.rms_m_s:.4f} "
-            f"{interval_text(found.rms_ci95_m_s)} m/s ({case_name(worst)}) where {limits.rms_m_s:g} m/s are allowed"
+            f"the limits are kept in {counted(len(feasible), 'feasible case')}; the worst rms is {worst.rms_m_s:.4f} "
+            f"{interval_text(worst.rms_ci95_m_s)} m/s ({of_worst.name}) where {limits.rms_m_s:g} m/s are allowed"
         )
     outside = [f"{verdict.name} ({verdict.obstacle})" for verdict in judged if not verdict.feasible]
     if outside:

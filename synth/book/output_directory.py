@@ -32,6 +32,7 @@ class Layout:
 
 
 TUNE_LAYOUT: Final = Layout("tune", "retarder-summary", ("tables", "c", "plots"))
+SENSORS_LAYOUT: Final = Layout("sensors tune", "sensor-summary", ("tables", "c", "st", "plots"))
 AIM_LAYOUT: Final = Layout("aim", "aim-summary", ("tables", "c", "st", "plots"))
 TRAINS_LAYOUT: Final = Layout("hump simulate", "hump-trial-summary", ("batches", "inputs", "plots"))
 COMPUTER_LAYOUT: Final = Layout("computer", "control-computer-summary", ("plots",))
@@ -42,8 +43,8 @@ IDENTIFY_LAYOUT: Final = Layout("identify", "identify-summary", ("types", "plots
 SENSOR_PLAN_LAYOUT: Final = Layout("sensors plan", "sensor-plan-summary", ("plots",))
 WATCH_LAYOUT: Final = Layout("watch", "watch-summary", (), "watch.json")
 LAYOUTS: Final = (
-    TUNE_LAYOUT, AIM_LAYOUT, TRAINS_LAYOUT, COMPUTER_LAYOUT, SENSITIVITY_LAYOUT, REPLAY_LAYOUT, RETUNE_LAYOUT,
-    IDENTIFY_LAYOUT, WATCH_LAYOUT, SENSOR_PLAN_LAYOUT,
+    TUNE_LAYOUT, SENSORS_LAYOUT, AIM_LAYOUT, TRAINS_LAYOUT, COMPUTER_LAYOUT, SENSITIVITY_LAYOUT, REPLAY_LAYOUT,
+    RETUNE_LAYOUT, IDENTIFY_LAYOUT, WATCH_LAYOUT, SENSOR_PLAN_LAYOUT,
 )  # fmt: skip
 LEFTOVER = re.compile(r"\..+\.[0-9a-f]{16}\.part")
 PICTURES = re.compile(
@@ -51,6 +52,9 @@ PICTURES = re.compile(
     r"\.(png|svg)"
 )
 """File names of the pictures that a tune draws."""
+
+SENSOR_PICTURES = re.compile(r"(switching-speeds|exit-density|sample-passes)-.+\.(png|svg)")
+"""Those of a tune for point sensors."""
 
 AIM_PICTURES = re.compile(r"aim-(track|gaps|commands-by-cars|commands-by-resistance|chances-.+)\.(png|svg)")
 """Those of an aim."""
@@ -67,7 +71,7 @@ SENSITIVITY_PICTURES = re.compile(r"sensitivity-[a-z-]+\.(png|svg)")
 MEASURED_PICTURES = re.compile(r"(identify|replay|retune)-[a-z-]+\.(png|svg)")
 """Those of measured passes."""
 
-SENSOR_PICTURES = re.compile(r"sensors-[a-z-]+\.(png|svg)")
+SENSOR_PLAN_PICTURES = re.compile(r"sensors-[a-z-]+\.(png|svg)")
 """Those of a plan of point sensors."""
 
 SWEEP_LEDGER, SWEPT_CONFIG = "sweep/ledger.jsonl", "config.toml"

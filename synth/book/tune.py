@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
-from plant_models import Plant, PlantError
+from plant_models import Plant
+from synth.book.case_error import naming
 from synth.book.case_result import CaseResult, DegreeStudy
 from synth.book.class_setup import TUNING_PASSES, Origin, class_setup, origin_of, validation_passes
 from synth.book.creation_time import creation_time
@@ -33,23 +33,6 @@ CaseDone = Callable[[CaseResult], None]
 
 def no_notice(case: CaseResult) -> None:
     """Nobody wants to know of a finished case."""
-
-
-class CaseError(Exception):
-    """One case of a book cannot be computed; `case`: its class and target. The message says why."""
-
-    def __init__(self, case: str, reason: str) -> None:
-        super().__init__(reason)
-        self.case = case
-
-
-@contextmanager
-def naming(label: str, target_m_s: float) -> Iterator[None]:
-    """Within, a `PlantError` becomes a `CaseError` that names the case."""
-    try:
-        yield
-    except PlantError as fault:
-        raise CaseError(f"{label} to {target_m_s:g} m/s", str(fault)) from None
 
 
 @dataclass(frozen=True)

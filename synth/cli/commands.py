@@ -24,6 +24,7 @@ from synth.cli.arguments import (
 from synth.cli.init_commands import add_init_command
 from synth.cli.measured_commands import add_measured_commands
 from synth.cli.measuring_commands import add_measuring_commands
+from synth.cli.sensors_commands import add_sensors_commands
 from synth.cli.yard_commands import add_yard_commands
 
 app = typer.Typer(
@@ -92,6 +93,7 @@ def tune(
     return tune_command(config, output, workers, as_json)
 
 
+add_sensors_commands(app)
 add_yard_commands(app)
 add_measuring_commands(app)
 add_measured_commands(app)

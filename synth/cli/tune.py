@@ -46,8 +46,9 @@ def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, worker
         wanted = config.output.plots or config.output.report
         studio = stack.enter_context(Studio(workers if wanted else 1))
         from synth.book.acceptance import judge
+        from synth.book.case_error import CaseError
         from synth.book.printed_numbers import counted
-        from synth.book.tune import CaseError, no_notice, tune
+        from synth.book.tune import no_notice, tune
         from synth.present.outputs import write_outputs
         from tuning_tables import InvalidTable
 

@@ -94,14 +94,13 @@ def mark_plainly(axis: Axis, low: float, high: float) -> None:
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
 
 
-def mark_zones(axes: Axes, case: CaseResult) -> None:
-    """The retarders as dark bars along the bottom of a panel over path."""
-    zones = case.plant.position.zones_m
+def mark_zones(axes: Axes, zones_m: Sequence[tuple[float, float]], start_m: float) -> None:
+    """The retarders as dark bars along the bottom of a panel over path; `start_m`: where the regulator acts from."""
     axes.broken_barh(
-        [(start, end - start) for start, end in zones], (0.0, 0.025), transform=axes.get_xaxis_transform(),
+        [(start, end - start) for start, end in zones_m], (0.0, 0.025), transform=axes.get_xaxis_transform(),
         facecolor=INK, zorder=4,
     )  # fmt: skip
-    mark_entrance(axes, case.plant.start_m)
+    mark_entrance(axes, start_m)
 
 
 def mark_entrance(axes: Axes, start_m: float) -> None:

@@ -87,7 +87,7 @@ def draw_stage(axes: Axes, case: CaseResult, stage: int) -> None:
         axes.plot(raw.nodes_m, finite(dots[stage]), ".", color=colour, markersize=2.2, zorder=3)
         axes.plot(exported.nodes_m, finite(line[stage]), style, color=colour, linewidth=2.2, zorder=5)
     axes.plot(*parts_in_stage(case.study.traces[:PASSES_SHOWN], stage), color=INK, linewidth=0.8, zorder=6)
-    mark_zones(axes, case)
+    mark_zones(axes, case.plant.position.zones_m, case.plant.start_m)
     dress(axes, f"stage {stage} · {case.plant.position.stage_pressures_kpa[stage]:g} kPa")
     axes.grid(False)
     axes.set(xlim=ends_m, ylim=(low, high))

@@ -62,7 +62,7 @@ def finish_speed(axes: Axes, case: CaseResult) -> None:
         target_name(case), (case.plant.start_m, case.target_speed_m_s), (4.0, -4.0), textcoords="offset points",
         va="top", fontsize=8.5,
     )  # fmt: skip
-    mark_zones(axes, case)
+    mark_zones(axes, case.plant.position.zones_m, case.plant.start_m)
     last_end = case.plant.position.zones_m[-1][1]
     axes.annotate(
         "retarder zones", (last_end, 0.012), (4.0, 0.0), xycoords=("data", "axes fraction"),

@@ -22,7 +22,7 @@ from synth.present.plots.house_style import (
     VERMILLION,
     dress,
     legend_below,
-    mark_entrance,
+    mark_zones,
     new_figure,
     place,
 )
@@ -96,9 +96,7 @@ def draw_stage(axes: Axes, table: ControllerTable, stage: int, passes: Passes | 
     axes.plot(path, finite(upper), "-", color=VERMILLION, linewidth=2.0, zorder=5)
     if passes:
         axes.plot(*parts_in_stage(passes.traces, stage), color=INK, linewidth=0.8, zorder=6)
-    bars = [(start, end - start) for start, end in table.retarder.zones_m]
-    axes.broken_barh(bars, (0.0, 0.025), transform=axes.get_xaxis_transform(), facecolor=INK, zorder=4)
-    mark_entrance(axes, table.valid.s_m[0])
+    mark_zones(axes, table.retarder.zones_m, table.valid.s_m[0])
     dress(axes, f"stage {stage} · {table.stages[stage].pressure_kpa:g} kPa")
     axes.grid(False)
     axes.set(xlim=table.valid.s_m, ylim=(low, high))

@@ -1,1 +1,1 @@
-"""Pictures of point sensors."""
+"""Pictures of point sensors: their tables, and where they stand."""

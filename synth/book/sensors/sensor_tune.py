@@ -1,0 +1,155 @@
+"""Tables for point sensors from a resolved configuration: every cut class and target, simulated as read back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from plant_models import Plant
+from synth.book.case_error import naming
+from synth.book.class_setup import Origin, origin_of, validation_passes
+from synth.book.creation_time import creation_time
+from synth.book.sensors.passage_table import passage_table
+from synth.book.sensors.sensor_case import HeardShares, SensorCase
+from synth.book.sensors.sensor_class import SensorClass, sensor_class
+from synth.book.sensors.tuned_passages import tuned_passages
+from synth.book.work_queue import run_nested
+from synth.configuration.point_sensors.resolved_sensors import ResolvedSensors
+from synth.configuration.resolved_config import ResolvedConfig
+from synth.problem.aim import Aim
+from synth.simulation.exit_statistics import brake_power, exit_statistics
+from synth.simulation.passage_controller import of_table
+from synth.simulation.passage_sample import NOT_BELIEVED, NOT_HEARD, PassageSample, unfinished_shares
+from synth.simulation.passes import ExitSample
+from synth.simulation.random_passes import RandomPasses
+from synth.simulation.replicates import Interval, rms_of, share_of
+from synth.solver.one_blas_thread import one_blas_thread
+from tuning_tables import Validated
+from tuning_tables.passages.json_file import read_passage_json, write_passage_json
+from tuning_tables.passages.passage_table import PassageTable
+
+TRACE_FACTORS = (0.8, 1.0, 1.2)
+
+Progress = Callable[[str], None]
+Store = Callable[[PassageTable], PassageTable]
+"""Keeps a table, and gives it back as a controller will read it."""
+
+
+@dataclass(frozen=True)
+class SensorBook:
+    """Result of a tune for point sensors: all cases, classes in the order of the configuration."""
+
+    config: ResolvedConfig
+    sensors: ResolvedSensors
+    created: str
+    cases: tuple[SensorCase, ...]
+
+
+@dataclass(frozen=True)
+class SensorRun:
+    """What all classes share; `progress` is told a sentence whenever a case is done."""
+
+    config: ResolvedConfig
+    sensors: ResolvedSensors
+    origin: Origin
+    passes: RandomPasses
+    store: Store
+    progress: Progress
+
+
+@one_blas_thread()
+def tune_sensors(
+    config: ResolvedConfig, sensors: ResolvedSensors, tables: Path, progress: Progress, workers: int = 2
+) -> SensorBook:
+    """Tune every cut class and target of `config` for `sensors`; tables are written into the directory `tables`.
+
+    Work runs on `workers` threads; the result does not depend on how many. Raises `CaseError` for a case that cannot
+    be computed, `InvalidTable` for switching speeds that make no table.
+    """
+    run = SensorRun(
+        config=config,
+        sensors=sensors,
+        origin=origin_of(config.sha256, creation_time()),
+        passes=validation_passes(config),
+        store=partial(write_and_read_back, directory=tables),
+        progress=progress,
+    )
+    starts = [partial(class_tasks, run, label, plant) for label, plant in config.plants()]
+    results = run_nested(starts, workers)
+    return SensorBook(config, sensors, run.origin.created, tuple(case for cases in results for case in cases))
+
+
+def class_tasks(run: SensorRun, label: str, plant: Plant) -> list[Callable[[], SensorCase]]:
+    """Prepare a class; a task for each of its targets."""
+    targets = run.config.targets_of(label)
+    with naming(label, targets[0]):
+        setup = sensor_class(label, plant, run.sensors, run.config.resolution, run.passes, run.origin)
+    return [partial(case_task, run, setup, Aim(target, run.config.criterion)) for target in targets]
+
+
+def case_task(run: SensorRun, setup: SensorClass, aim: Aim) -> SensorCase:
+    """One case tuned, and told of."""
+    with naming(setup.label, aim.target_speed_m_s):
+        case = sensor_case(setup, aim, run.store)
+    found = case.statistics
+    low, high = found.rms_ci95_m_s
+    told = f"{setup.label} to {aim.target_speed_m_s:g} m/s"
+    run.progress(f"{told}: rms {found.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s in {found.passes} passes")
+    for warning in case.warnings:
+        run.progress(f"warning: {told}: {warning}")
+    return case
+
+
+def sensor_case(setup: SensorClass, aim: Aim, store: Store) -> SensorCase:
+    """Tune one case; the table is simulated as read back from where it is stored, and stored with the figures."""
+    tuned = tuned_passages(setup.chains, aim)
+    table = passage_table(tuned, setup.origin.generator, setup.table_id(aim.target_speed_m_s), setup.origin.created)
+    kept, target = store(table), aim.target_speed_m_s
+    controller = of_table(kept, tracking=True)
+    sample = setup.passes.run(controller)
+    found = exit_statistics(sample, target)
+    unavoidable, unavoidable_ci95 = unavoidable_rms(sample, setup.passes.at_full_brake, target)
+    return SensorCase(
+        label=setup.label,
+        plant=setup.plant,
+        sensors=setup.sensors,
+        table=store(kept.with_validated(Validated(found.passes, found.rms_m_s, found.rms_ci95_m_s))),
+        predicted=tuned.predicted,
+        polish=tuned.polish,
+        exit_speeds_m_s=sample.exit_speed_m_s.astype(np.float32),
+        exit_weight=sample.weight,
+        statistics=found,
+        brake_power=brake_power(sample, setup.passes.at_full_brake, target),
+        unavoidable_rms_m_s=unavoidable,
+        unavoidable_ci95_m_s=unavoidable_ci95,
+        heard=heard_shares(sample),
+        traces=tuple(setup.passes.trace(controller, i, factor) for i, factor in enumerate(TRACE_FACTORS)),
+        trace_factors=TRACE_FACTORS,
+    )
+
+
+def unavoidable_rms(sample: ExitSample, full_brake: ExitSample, target_m_s: float) -> tuple[float, Interval]:
+    """Rms, with its 95 % interval, of what the cuts leave too fast by in the slower of two closed loops."""
+    slowest = np.minimum(sample.exit_speed_m_s, full_brake.exit_speed_m_s)
+    return rms_of(np.maximum(slowest - target_m_s, 0.0), sample.weight)
+
+
+def heard_shares(sample: PassageSample) -> HeardShares:
+    """Passages that found a change of stage unfinished, or were not believed."""
+    not_believed = []
+    for outcome in sample.outcome.T:
+        weight = np.where(outcome != NOT_HEARD, sample.weight, 0.0)
+        nothing = (float("nan"), (float("nan"), float("nan")))
+        not_believed.append(share_of(outcome == NOT_BELIEVED, weight) if weight.any() else nothing)
+    return HeardShares(tuple(unfinished_shares(sample)), tuple(not_believed))
+
+
+def write_and_read_back(table: PassageTable, directory: Path) -> PassageTable:
+    """The table as a controller will load it."""
+    path = directory / f"{table.id}.json"
+    write_passage_json(table, path)
+    return read_passage_json(path)

@@ -1,0 +1,110 @@
+"""`retarder-synth sensors tune`: everything that can be refused is refused before anything is computed or written."""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from synth.cli import LIMITS_MISSED, OK, say
+from synth.cli.processors import available
+
+if TYPE_CHECKING:
+    from synth.configuration.point_sensors.resolved_sensors import ResolvedSensors
+    from synth.configuration.resolved_config import ResolvedConfig
+
+BUILT_IN = "built-in configuration with point sensors"
+
+
+def sensors_tune_command(path: Path | None, output: Path, workers: int | None, as_json: bool) -> int:
+    """Tune the configuration in `path` for its point sensors into the directory `output`; the exit code."""
+    from synth.book.creation_time import require_date
+    from synth.book.output_directory import SENSORS_LAYOUT, output_directory
+
+    place, config, sensors = read_configuration(path)
+    workers = workers or min(len(config.cuts), available())
+    require_room(config, sensors, place, workers)
+    require_date()
+    with output_directory(output, SENSORS_LAYOUT) as directory:
+        for warning in config.warnings:
+            say(f"warning: {warning}")
+        return tune_into(directory, config, sensors, place, workers, as_json)
+
+
+def read_configuration(path: Path | None) -> tuple[str, ResolvedConfig, ResolvedSensors]:
+    """(what messages call it, the configuration, its sensors); `InputError` where it asks for what is not possible."""
+    from synth.configuration.config_file import load_config, parse_config
+    from synth.configuration.point_sensors.template import default_sensors_toml
+    from synth.faults.input_error import InputError
+
+    place = BUILT_IN if path is None else str(path)
+    config = parse_config(default_sensors_toml(), BUILT_IN) if path is None else load_config(path)
+    if config.sensors is None:
+        raise InputError(
+            f"{place}: the section [sensors] is missing; 'retarder-synth init --sensors' prints one to start from, and "
+            "'retarder-synth tune' makes tables for the radar"
+        )
+    if config.regulator.estimator:
+        raise InputError(f"{place}: regulator.estimator is true, but tables for point sensors have none; leave it out")
+    if config.criterion.requirement is not None:
+        raise InputError(
+            f"{place}: criterion.p_overspeed and criterion.worst_friction_* can be kept only by tables for a radar; "
+            "set them back to 1"
+        )
+    return place, config, config.sensors
+
+
+def tune_into(
+    directory: Path, config: ResolvedConfig, sensors: ResolvedSensors, place: str, workers: int, as_json: bool
+) -> int:
+    """The work itself, and what is said about it."""
+    from synth.cli.interrupt import interruptible
+    from synth.cli.progress import Progress
+    from synth.kernels.cache import cache_in_use, guarded
+
+    started, cache = time.monotonic(), cache_in_use()
+    with interruptible(directory), Progress(len(config.problems())) as progress:
+        if cache is None or next(cache.rglob("*.nbi"), None) is None:
+            progress.note("compiling the kernels for this machine, once; this takes a few minutes")
+        from synth.book.case_error import CaseError
+        from synth.book.printed_numbers import counted
+        from synth.book.sensors.sensor_acceptance import judge_sensors
+        from synth.book.sensors.sensor_tune import tune_sensors
+        from synth.faults.input_error import InputError
+        from synth.present.sensor_outputs import write_sensors
+        from tuning_tables import InvalidTable
+
+        try:
+            book = guarded(tune_sensors, config, sensors, directory / "tables", progress.done, workers)
+            progress.note(f"{counted(len(book.cases), 'case')} computed in {time.monotonic() - started:.1f} s")
+            verdict = judge_sensors(book)
+            summary = write_sensors(book, verdict, directory, progress.note)
+        except CaseError as fault:
+            raise InputError(
+                f"{place}: no table for {fault.case}: {fault}; now grid.path_step_m is {config.grid.path_step_m:g} and "
+                f"grid.speed_step_m_s {config.grid.speed_step_m_s:g}"
+            ) from None
+        except InvalidTable as fault:
+            raise InputError(f"{place}: what was found makes no tables: {fault}") from None
+        progress.note(f"all files written after {time.monotonic() - started:.1f} s")
+    if as_json:
+        sys.stdout.write((directory / "summary.json").read_text(encoding="utf-8"))
+    else:
+        from synth.cli.sensors_table import print_sensors
+
+        print_sensors(summary, directory)
+    return OK if verdict.accepted else LIMITS_MISSED
+
+
+def require_room(config: ResolvedConfig, sensors: ResolvedSensors, place: str, workers: int) -> None:
+    """`InputError` if the grid would not fit into memory."""
+    from plant_models import PlantError
+    from synth.faults.input_error import InputError
+    from synth.solver.chain.grid import require_memory
+
+    for label, plant in config.plants():
+        try:
+            require_memory(label, sensors.serving(plant), (config.resolution,), workers)
+        except PlantError as error:
+            raise InputError(f"{place}: {str(error).replace('grid: ', 'grid.', 1)}") from None
