@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from synth.cli import hump_commands
+from synth.cli import hump_commands, sensors_commands
 from synth.cli.arguments import Config, Json, directory, whole_number
 
 Configuration = Annotated[Path | None, typer.Argument(metavar="CONFIG.toml", help="Built-in unless given.")]
@@ -25,6 +25,7 @@ def add_yard_commands(app: typer.Typer) -> None:
     app.command()(computer)
     app.command()(watch)
     app.add_typer(hump_commands.app, name="hump")
+    app.add_typer(sensors_commands.app, name="sensors")
 
 
 def aim(

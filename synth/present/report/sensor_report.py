@@ -162,7 +162,7 @@ def heard_table(book: SensorBook) -> Markup:
             "No simulated cut found a change of stage unfinished, and no pulses were taken for no passage or another.",
         )
     words = (
-        "Passages at which a simulated cut found a change of stage unfinished, or its pulses were taken for no passage or another: shares "
-        "of the cuts that come there. Axles and sensors are counted from 1 here, in files from 0."
+        "Passages at which a simulated cut found a change of stage unfinished, or its pulses were taken for no passage "
+        "or another: shares of the cuts that come there. Axles and sensors are counted from 1 here, in files from 0."
     )
     return joined((element("p", words), table("Passages", (head_row(*HEARD_COLUMNS),), rows, kind="cases")))
