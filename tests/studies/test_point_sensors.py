@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from plant_models import PointSensors
+from synth.book.sensors.candidate_places import CandidatePlaces, LayoutCase, candidate_places
 from synth.book.sensors.layout import equal_layout, with_layout
-from synth.book.sensors.layout_plan import JudgedLayout, LayoutProblem
+from synth.book.sensors.layout_plan import LayoutProblem
 from synth.book.sensors.tuned_passages import PassageChains, TunedPassages, passage_chains, tuned_passages
 from synth.faults.input_error import InputError
 from synth.problem.resolution import Resolution
@@ -21,11 +22,17 @@ from synth.solver.chain.sensor_passages import with_point_sensors
 from synth.solver.policy_density import exit_density
 from synth.studies.point_sensors.fault_losses import fault_rows
 from synth.studies.point_sensors.findings import FaultRow, ManyRow, PointSensorWorth, SensorRow
+from synth.studies.point_sensors.layouts import (
+    LEAST_COST_M2_S2,
+    SEARCH,
+    HonestPlaces,
+    equal_sections,
+    planned,
+)
 from synth.studies.point_sensors.sensor_table import AXLES, SensorTable, tabulated, unfinished_share
 from synth.studies.point_sensors.sites import TEXTS, Site, single_stage, site_of, sites
 from synth.studies.point_sensors.tables import kind_of, tables_of
 from synth.studies.point_sensors.told import speeds_for, squares_at, told_bound
-from synth.studies.point_sensors.worth import exportable
 
 COARSE = Resolution(path_step_m=0.5, speed_step_m_s=0.05, friction_nodes=5)
 DECIDING = 5
@@ -52,7 +59,7 @@ def made(site: Site) -> tuple[PassageChains, TunedPassages, SensorTable]:
 def test_the_bound_begins_with_the_prediction_of_the_table(
     site: Site, made: tuple[PassageChains, TunedPassages, SensorTable]
 ) -> None:
-    """The same nodes and weights: the mean squares of single frictions make up the density of all scenarios together."""
+    """The same nodes and weights: mean squares of single frictions make up the density of all scenarios together."""
     chains, tuned, _ = made
     bound = told_bound(chains, tuned.speeds, site.target_m_s, 13)
     together = exit_density(chains.check, tuned.speeds).rms_m_s(site.target_m_s)
@@ -108,15 +115,24 @@ def test_the_unfinished_share_is_of_the_passages_heard() -> None:
     assert low <= value <= high
 
 
-def test_a_layout_at_the_entrance_is_moved_ahead_of_it() -> None:
-    class Judge:
-        def judged(self, deciding_m: tuple[float, ...]) -> JudgedLayout:
-            return JudgedLayout(deciding_m, ())
+@pytest.mark.parametrize("axles", list(AXLES))
+def test_planned_layouts_can_be_tables_and_beat_equal_sections_by_the_cost_searched(site: Site, axles: str) -> None:
+    kind = PointSensors((0.0,), axles=AXLES[axles])
+    problem = LayoutProblem((LayoutCase(site.plant, (site.aim,)),), kind, COARSE)
+    (places,) = planned(problem, [3])
+    assert places[0] < 0.0
+    assert list(places) == sorted(places)
+    every = candidate_places(problem.cases[0], kind, 6.0, SEARCH)
+    (equal,) = equal_sections(problem, [3])
+    assert every.mean_cost(places) < every.mean_cost(equal)
+    assert planned(problem, []) == ()
 
-    problem: LayoutProblem = Judge()  # type: ignore[assignment]  # only this is asked of it
-    ahead = JudgedLayout((-2.0, 4.0), ())
-    assert exportable(problem, ahead) is ahead
-    assert exportable(problem, JudgedLayout((0.0, 4.0), ())).deciding_m == (-0.5, 4.0)
+
+def test_the_search_never_goes_below_the_errors_of_the_grid(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(CandidatePlaces, "mean_cost", lambda self, sensors_m: -1.0)
+    places = HonestPlaces(None, (), (0.0,))  # type: ignore[arg-type]  # its chain is not asked
+    assert places.mean_cost((-2.0, 5.0)) == LEAST_COST_M2_S2
+    assert places.mean_cost((0.0, 5.0)) == float("inf")
 
 
 def test_sites_are_named() -> None:

@@ -24,7 +24,7 @@ def fault_rows(site: Site, axles: str, made: SensorTable, passes: RandomPasses) 
     """A row for every fault, after the one without; all on the same passes."""
     target, draws, loop = site.target_m_s, made.loop.draws(passes), made.loop
     controller = of_table(made.table, tracking=True)
-    wide = replace(controller, limits=np.array(WIDE_LIMITS, dtype=np.float32))
+    wide = replace(controller, rule=controller.rule._replace(limits=np.array(WIDE_LIMITS, dtype=np.float32)))
     whole = loop.run(controller, draws, together(loop.sensors, ()))
     cases = single_faults(loop.sensors, target, made.plant.entry.high_m_s)
     figures = fault_figures(loop, controller, draws, target, cases)

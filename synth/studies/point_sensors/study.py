@@ -36,9 +36,10 @@ class Options:
 
     cases: tuple[str, ...] = option(tuple(TEXTS), "sites: position and mass or axles")
     sensors: tuple[int, ...] = option((3, 4, 6, 8, 10, 12), "numbers of sensors, with that behind the exit", (3, 32))
+    planned: tuple[int, ...] = option((3, 4, 6, 8), "those of them that a layout is planned for", (3, 32))
     faulty: tuple[int, ...] = option((6,), "numbers of sensors whose faults are tried", (3, 32))
     passes: int = option(20_000, "stratified passes of each table", (200, 10**7))
-    fault_passes: int = option(20_000, "the first of them, for each fault", (200, 10**7))
+    fault_passes: int = option(10_000, "the first of them, for each fault", (200, 10**7))
     frictions: int = option(9, "values of friction that speeds are made for", (3, 101))
     path_step_m: float = option(0.25, "path step of the grid, m", (0.05, 2.0))
     speed_step_m_s: float = option(0.015, "speed step of the grid, m/s", (0.002, 0.2))
@@ -63,7 +64,7 @@ def run(options: Options, tell: Tell) -> PointSensorWorth:
 
     def of_order(order: tuple[Compared, str]) -> tuple[list[SensorRow], list[FaultRow]]:
         compared, axles = order
-        made = list(sensor_rows(compared, axles, options.sensors))
+        made = list(sensor_rows(compared, axles, options.sensors, options.planned))
         tell(f"{compared.site.title}, {axles} axle: {len(made)} layouts")
         few = passes.part(0, min(options.fault_passes, len(passes)))
         return [each.row for each in made], list(faults_of(compared.site, made, options.faulty, few))
@@ -124,7 +125,8 @@ def grid_row(site: Site, axles: str, sensors: int, grid: Resolution, passes: Ran
 
 
 SMALLEST = Options(
-    cases=("park-22",), sensors=(3, 4), faulty=(4,), passes=400, fault_passes=200, frictions=3, path_step_m=1.0,
-    speed_step_m_s=0.1, friction_nodes=3, many=(5,), many_std_m_s=(0.05,), grid_cases=("park-22",), grid_sensors=3,
+    cases=("park-22",), sensors=(3, 4), planned=(4,), faulty=(4,), passes=400, fault_passes=200, frictions=3,
+    path_step_m=1.0, speed_step_m_s=0.1, friction_nodes=3, many=(5,), many_std_m_s=(0.05,), grid_cases=("park-22",),
+    grid_sensors=3,
 )  # fmt: skip
 METHOD = Method(Options, SMALLEST, PointSensorWorth, run)

@@ -11,48 +11,58 @@ from synth.studies.markdown_table import ABSENT, MarkdownTable, around, plus_min
 if TYPE_CHECKING:
     from synth.studies.point_sensors.findings import FaultRow, PointSensorWorth, SensorRow
 
+COLUMNS = tuple((axles, layout) for axles in ("first", "every") for layout in ("equal", "planned"))
+"""Axles and layout of the columns of `worth`."""
+
 _NUMBERED = re.compile(r"^sensors? (\d+)( and \d+)? ")
 
 
 def tables_of(found: PointSensorWorth) -> Mapping[str, MarkdownTable]:
-    """`worth`: a row a case and number; `layouts`: what the layout is worth; `exits`: besides the rms; `faults`: the
-    worst sensor of each kind of fault; `many`: towards a radar; `grid`: what the grid of a table is worth."""
+    """`worth`: a row a case and number; `proof`: beside the radar, honesty, regret; `layouts`: what a layout is worth;
+    `exits`: besides the rms; `faults`: the worst sensor of each kind; `many`: towards a radar; `grid`: by grid."""
     return {
-        "worth": worth(found), "layouts": layouts(found), "exits": exits(found), "faults": faults(found),
-        "many": many(found), "grid": grid(found),
+        "worth": worth(found), "proof": proof(found), "layouts": layouts(found), "exits": exits(found),
+        "faults": faults(found), "many": many(found), "grid": grid(found),
     }  # fmt: skip
 
 
 def worth(found: PointSensorWorth) -> MarkdownTable:
-    """Planned layouts."""
-    rows = [row for row in found.sensors if row.layout == "planned"]
-    radar = {row.case: row for row in found.radar}
+    """rms by number, axles and layout, and of the radar."""
     cells = []
-    for case, sensors in dict.fromkeys((row.case, row.sensors) for row in rows):
-        mine = {row.axles: row for row in rows if (row.case, row.sensors) == (case, sensors)}
-        pair = [mine.get(axles) for axles in ("first", "every")]
-        cells.append((case, str(sensors), *(each for row in pair for each in worth_cells(row))))
-    for case, row in radar.items():
-        cells.append((case, "radar", rms(row.rms_m_s, row.rms_ci95_m_s), "1", f"{row.predicted_m_s / row.rms_m_s:.2f}",
-                      *(ABSENT,) * 5))  # fmt: skip
-    cells.sort(key=lambda row: list(radar).index(row[0]))
-    each = ("rms", "rms / radar", "honesty", "regret")
+    for radar in found.radar:
+        mine = {(row.sensors, row.axles, row.layout): row for row in found.sensors if row.case == radar.case}
+        numbers = dict.fromkeys(number for number, _, layout in mine if layout != "rule")
+        cells += [
+            (radar.case, str(number), *(rms_of(mine.get((number, *column))) for column in COLUMNS))
+            for number in numbers
+        ]
+        cells.append((radar.case, "radar", rms(radar.rms_m_s, radar.rms_ci95_m_s), *(ABSENT,) * 3))
     return table(
-        "rms, m/s ± half its 95 % interval, of planned layouts, deciding on the first axle (left) and on every axle; "
-        "honesty: predicted / simulated rms; regret: rms / rms of speeds made for each friction, both predicted",
-        ("case", "sensors", *(f"{axles}: {head}" for axles in ("first axle", "every axle") for head in each)),
+        "rms, m/s ± half its 95 % interval; sensors are counted with the one behind the exit",
+        ("case", "sensors", *(f"{axles} axle, {layout}" for axles, layout in COLUMNS)),
         cells,
     )
 
 
-def worth_cells(row: SensorRow | None) -> tuple[str, ...]:
-    """rms, over that of the radar, honesty, regret."""
-    if row is None:
-        return (ABSENT,) * 4
-    return (
-        rms(row.rms_m_s, row.rms_ci95_m_s), around(row.radar_ratio, row.radar_ratio_ci95, 2), f"{row.honesty:.2f}",
-        ABSENT if row.told is None else f"{row.told.regret:.2f}",
-    )  # fmt: skip
+def rms_of(row: SensorRow | None) -> str:
+    """The cell of a layout."""
+    return ABSENT if row is None else rms(row.rms_m_s, row.rms_ci95_m_s)
+
+
+def proof(found: PointSensorWorth) -> MarkdownTable:
+    """What stands behind the rms: beside the radar, honesty, regret."""
+    rows = [
+        (row.case, row.axles, str(row.sensors), row.layout, around(row.radar_ratio, row.radar_ratio_ci95, 2),
+         f"{row.predicted_m_s:.4f}", around(row.honesty, row.honesty_ci95, 2), f"{row.told.regret:.2f}")
+        for row in found.sensors
+        if row.told is not None
+    ]  # fmt: skip
+    return table(
+        "rms / rms of the radar on the same passes; predicted rms, m/s; honesty: predicted / simulated rms; regret: "
+        "predicted rms / predicted rms of speeds made for each friction",
+        ("case", "axles", "sensors", "layout", "rms / radar", "predicted", "honesty", "regret"),
+        rows,
+    )
 
 
 def layouts(found: PointSensorWorth) -> MarkdownTable:

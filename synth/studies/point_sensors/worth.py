@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from plant_models import PointSensors
 from synth.book.sensors.candidate_places import LayoutCase
-from synth.book.sensors.layout import rule_layout
-from synth.book.sensors.layout_plan import PLACE_STEP_M, JudgedLayout, LayoutProblem, plan_layouts
+from synth.book.sensors.layout_plan import LayoutProblem
 from synth.book.sensors.tuned_passages import TunedPassages, passage_chains
 from synth.book.tuned_table import predict
 from synth.problem.resolution import Resolution, finer_for_check
@@ -20,13 +19,11 @@ from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from synth.solver.chain.chain import check_chain
 from synth.studies.point_sensors.findings import RadarRow, SensorRow, Told
+from synth.studies.point_sensors.layouts import Layouts, Places, by_rule, equal_sections, planned
 from synth.studies.point_sensors.sensor_table import AXLES, tabulated, unfinished_share
 from synth.studies.point_sensors.sites import Site
 from synth.studies.point_sensors.told import told_bound
 from synth.studies.tuned_table import tuned_table
-
-Layouts = Callable[[LayoutProblem, Sequence[int]], "dict[str, list[JudgedLayout]]"]
-"""Layouts by their kind, for numbers of deciding sensors, each with its tuned tables."""
 
 
 @dataclass(frozen=True)
@@ -48,24 +45,6 @@ class MadeLayout:
     tuned: TunedPassages
 
 
-def planned_and_others(problem: LayoutProblem, deciding: Sequence[int]) -> dict[str, list[JudgedLayout]]:
-    """'planned' and 'equal' for each number of deciding sensors, and 'rule': the one layout of zhukovitsky-2012."""
-    plans = plan_layouts(problem, deciding)
-    (case,) = problem.cases
-    by_rule = rule_layout(case.plant, problem.sensors, case.aims[0].target_speed_m_s)
-    return {
-        "planned": [exportable(problem, plan.best) for plan in plans],
-        "equal": [plan.equal for plan in plans],
-        "rule": [problem.judged(by_rule)],
-    }
-
-
-def exportable(problem: LayoutProblem, layout: JudgedLayout) -> JudgedLayout:
-    """The layout, its first sensor moved ahead where it stands at the entrance: no table can begin there."""
-    first_m, *others = layout.deciding_m
-    return layout if first_m < 0.0 else problem.judged((-PLACE_STEP_M, *others))
-
-
 def radar_row(site: Site, passes: RandomPasses) -> tuple[RadarRow, ExitSample]:
     """The table of the radar as a tune makes it, and its exits."""
     common = common_passes(site.plant, passes)
@@ -83,26 +62,33 @@ def radar_row(site: Site, passes: RandomPasses) -> tuple[RadarRow, ExitSample]:
 
 
 def sensor_rows(
-    given: Compared, axles: str, sensors: Sequence[int], layouts: Layouts = planned_and_others
+    given: Compared, axles: str, sensors: Sequence[int], to_plan: Sequence[int], plan: Layouts = planned
 ) -> Iterator[MadeLayout]:
-    """A row for every layout; `sensors` are counted with the one behind the exit, which decides nothing."""
+    """A row for every layout; `sensors` are counted with the one behind the exit, which decides nothing.
+
+    Equal sections for each number, planned ones for those `to_plan`, the rule's own. Regret is asked of planned
+    layouts, and of equal sections where none is planned.
+    """
     site = given.site
-    problem = LayoutProblem((LayoutCase(site.plant, (site.aim,)),), PointSensors((0.0,), axles=AXLES[axles]),
-                            given.resolution)  # fmt: skip
-    found = layouts(problem, [count - 1 for count in sensors])
-    equal = {len(each.deciding_m): run_of(given, tuned_of(each)) for each in found.get("equal", [])}
-    for kind, made in found.items():
-        for each in made:
-            tuned = tuned_of(each)
-            sample = equal[len(each.deciding_m)] if kind == "equal" else run_of(given, tuned)
-            beside = equal.get(len(each.deciding_m)) if kind == "planned" else None
-            told = told_row(given, tuned) if kind == "planned" else None
-            yield MadeLayout(row_of(given, (axles, kind), tuned, (sample, beside), told), tuned)
+    kind = PointSensors((0.0,), axles=AXLES[axles])
+    problem = LayoutProblem((LayoutCase(site.plant, (site.aim,)),), kind, given.resolution)
+    planned_at = dict(zip(to_plan, plan(problem, [count - 1 for count in to_plan]), strict=True))
+    for count, places in zip(sensors, equal_sections(problem, [count - 1 for count in sensors]), strict=True):
+        tuned = tuned_at(problem, places)
+        sample = run_of(given, tuned)
+        told = None if count in planned_at else told_row(given, tuned)
+        yield MadeLayout(row_of(given, (axles, "equal"), tuned, (sample, None), told), tuned)
+        if count in planned_at:
+            better = tuned_at(problem, planned_at[count])
+            pair = run_of(given, better), sample
+            yield MadeLayout(row_of(given, (axles, "planned"), better, pair, told_row(given, better)), better)
+    tuned = tuned_at(problem, by_rule(problem))
+    yield MadeLayout(row_of(given, (axles, "rule"), tuned, (run_of(given, tuned), None), None), tuned)
 
 
-def tuned_of(layout: JudgedLayout) -> TunedPassages:
-    """The only table of a layout that was made for one case and one aim."""
-    ((tuned,),) = layout.tuned
+def tuned_at(problem: LayoutProblem, places: Places) -> TunedPassages:
+    """The only table of a layout for one case and one aim."""
+    ((tuned,),) = problem.judged(places).tuned
     return tuned
 
 
