@@ -71,7 +71,7 @@ SENSITIVITY_PICTURES = re.compile(r"sensitivity-[a-z-]+\.(png|svg)")
 MEASURED_PICTURES = re.compile(r"(identify|replay|retune)-[a-z-]+\.(png|svg)")
 """Those of measured passes."""
 
-SENSOR_PICTURES = re.compile(r"sensors-[a-z-]+\.(png|svg)")
+SENSOR_PLAN_PICTURES = re.compile(r"sensors-[a-z-]+\.(png|svg)")
 """Those of a plan of point sensors."""
 
 SWEEP_LEDGER, SWEPT_CONFIG = "sweep/ledger.jsonl", "config.toml"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
-from synth.book.output_directory import SENSOR_PICTURES, SUMMARY, remove_stale
+from synth.book.output_directory import SENSOR_PLAN_PICTURES, SUMMARY, remove_stale
 from synth.book.sensors.layout_results import LayoutResults
 from synth.book.sensors.layout_summary import layout_summary, layout_toml
 from synth.book.summary import Document
@@ -33,7 +33,7 @@ def write_sensor_plan(
         write_atomically(chosen, layout_toml(results, results.chosen).encode())
         files.append(chosen)
     hashes = file_hashes(directory, files)
-    remove_stale(directory, set(hashes), pictures=SENSOR_PICTURES)
+    remove_stale(directory, set(hashes), pictures=SENSOR_PLAN_PICTURES)
     summary = layout_summary(results, config_sha256, created, hashes)
     write_atomically(directory / SUMMARY, canonical_json(summary) + b"\n")
     return summary

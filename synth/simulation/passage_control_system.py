@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.stage_regulator import Actuator, stage_locked_actuator
-from synth.kernels.loop.passage_loop import outcome_of
 from synth.kernels.loop.passage_pulses import read_speed_m_s
-from synth.kernels.loop.passage_regulator import DECIDED, passage_of_pair, stage_at_passage
+from synth.kernels.loop.passage_regulator import DECIDED, believed_passage, outcome_of, stage_at_passage
 from synth.simulation.passage_controller import PassageController
 from synth.simulation.passage_loop import PassageLoop
 from tuning_tables.passages.tracker import begin_cut
@@ -32,21 +31,23 @@ TRACKED = 6
 def passage_regulator_system(loop: PassageLoop, controller: PassageController) -> NonlinearIOSystem:
     """The regulator as a discrete-time system of one step a pulse pair; it begins as `passage_regulator_start`.
 
-    Inputs: `passage`, the true one; `time`, of the second pulse, s; `over_base`, time from the first pulse, s (true; it
-    is quantised here); `since`, time since the pulse pair before, s. Output: the commanded stage. States: stage,
-    resting mode (index of `Actuator`), time from which on the last transient has ended, and those of the tracker.
+    Inputs: `source`, which of the pulses heard; `time`, of the second pulse, s; `over_base`, time from the first pulse,
+    s (true; it is quantised here); `since`, time since the pulse pair before, s. Output: the commanded stage. States:
+    stage, resting mode (index of `Actuator`), time from which on the last transient has ended, and the tracker's.
     """
     import control  # start-up: python-control only where it is needed
 
-    actuator, law = passage_actuator(loop, controller), controller.law()
-    sensor_of, period = loop.pulses.sensor, loop.sensors.scan_period_s
+    actuator, law = passage_actuator(loop, controller), controller.rule
+    pulses, period = loop.pulses_of(controller), loop.sensors.scan_period_s
 
     def heard(x: Any, u: Any) -> tuple[int, NDArray[np.float32]]:
         source, time, over_base, since = int(u[0]), float(u[1]), float(u[2]), float(u[3])
         known, stage = np.array(x[BELIEVED:], dtype=np.float32), int(x[STAGE])
-        read = float(read_speed_m_s(loop.pulses, over_base, 0.0))
-        passage = passage_of_pair(law, known, int(sensor_of[source]), since, read, source)
-        if outcome_of(passage, time - 0.5 * over_base, float(x[RESTS_S])) == DECIDED:
+        read, passage = float(read_speed_m_s(pulses, over_base, 0.0)), int(pulses.number[source])
+        if controller.tracks:
+            sensor = int(pulses.sensor[source])
+            passage = believed_passage(law.path_m, law.sensor_of, law.limits, known, sensor, since, read)
+        if outcome_of(law, passage, time - 0.5 * over_base >= float(x[RESTS_S])) == DECIDED:
             stage = stage_at_passage(law, passage, stage, read)
         return stage, known
 
@@ -61,7 +62,7 @@ def passage_regulator_system(loop: PassageLoop, controller: PassageController) -
     return control.nlsys(
         next_state,
         lambda t, x, u, params: [heard(x, u)[0]],
-        inputs=["passage", "time", "over_base", "since"],
+        inputs=["source", "time", "over_base", "since"],
         outputs=["stage"],
         states=["stage", "mode", "rests", *(f"believed{i}" for i in range(TRACKED))],
         dt=True,

@@ -71,14 +71,15 @@ class PassageLoop:
         self, controller: PassageController, draws: radar_kernel.Draws, faults: Faults | None = None
     ) -> PassageTrace:
         """The only pass of `draws` under `controller`, event by event."""
-        pairs = len(pairs_of(self._pulses(controller), draws, faults).source)
+        pairs = len(pairs_of(self.pulses_of(controller), draws, faults).source)
         events = np.empty(((pairs + 1) * (len(self.drive.kpa) + 1) + 2, radar_kernel.EVENT_FIELDS))
         seen = np.empty((pairs, kernel.READING_FIELDS))
         sample, events, seen = self._alone(controller, draws, faults, events, seen)
         motion = trace_of(events, bool(sample.stalled[0]))
         return PassageTrace(**vars(motion), readings=readings_of(seen))
 
-    def _pulses(self, controller: PassageController) -> passage_pulses.Pulses:
+    def pulses_of(self, controller: PassageController) -> passage_pulses.Pulses:
+        """The pulses that `controller` hears."""
         return self.heard if controller.tracks else self.deciding
 
     def _alone(
@@ -91,7 +92,7 @@ class PassageLoop:
     ) -> tuple[PassageSample, NDArray[np.float64], NDArray[np.float64]]:
         """One pass after the other, with the events and pulse pairs of the last."""
         self._require_fit(controller, faults)
-        every, passes = self._pulses(controller), len(draws.cut_factor)
+        every, passes = self.pulses_of(controller), len(draws.cut_factor)
         pairs, sources = pairs_of(every, draws, faults), len(every.path_m)
         pulses = every._replace(
             first_row=fixed(pairs.first_row(sources), np.int64), told_sensor=fixed(pairs.sensor, np.int64)

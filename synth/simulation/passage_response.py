@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from plant_models.stage_regulator import reaches_valves_s
 from synth.kernels.loop.closed_loop import LONGEST_PASS_S
 from synth.kernels.loop.passage_loop import WATCHED_FROM_S
-from synth.kernels.loop.passage_pulses import coils_of
+from synth.kernels.loop.passage_pulses import Pulses, coils_of
 from synth.simulation.control_system import nominal_loop
 from synth.simulation.impulse_train import ImpulseTrain, held, resting_train
 from synth.simulation.nominal_response import CLOSED, NominalResponse, played, to_the_end, valve_schedule
@@ -44,7 +44,7 @@ NEWTON_STEPS, REACHED_M = 3, 1e-6
 
 @dataclass(frozen=True, order=True)
 class Coil:
-    """Where the first axle is when a coil tells a wheel; `second`: which of the two; `source`: the passage."""
+    """Where the first axle is when a coil tells a wheel; `second`: which of the two; `source`: the pulses."""
 
     path_m: float
     second: bool
@@ -62,10 +62,11 @@ def passage_response(loop: PassageLoop, controller: PassageController, entry_spe
     rests_kpa = passage_actuator(loop, controller).mode_pressure_kpa
     speed = float(plant.start_speed_m_s(np.array(entry_speed_m_s), plant.resistance.mean_n_per_kn))
     point = np.array([0.0, plant.start_m, speed, rests_kpa[int(memory[1])]])
-    first_s = pulses_before(loop, float(motion.dynamics(0.0, point[1:], [CLOSED])[1]), speed)
+    met = coils(loop.pulses_of(controller))
+    first_s = pulses_before(met, plant.start_m, float(motion.dynamics(0.0, point[1:], [CLOSED])[1]), speed)
     parts, schedule, heard_s = [point[:, None]], resting_train(CLOSED), WATCHED_FROM_S
     stages = resting_train(memory[0])
-    for coil in coils(loop)[len(first_s) :]:
+    for coil in met[len(first_s) :]:
         if coil.path_m >= plant.exit_m:
             break
         points = rolled(motion, point, coil.path_m, schedule)
@@ -89,20 +90,20 @@ def passage_response(loop: PassageLoop, controller: PassageController, entry_spe
     return to_the_end(points, np.array([held(stages, time) for time in points[0]]), plant.exit_m)
 
 
-def coils(loop: PassageLoop) -> list[Coil]:
+def coils(pulses: Pulses) -> list[Coil]:
     """All coils in the order of the path."""
     found = []
-    for source in range(len(loop.pulses.path_m)):
-        first, second = coils_of(loop.pulses, source, 0.0)
+    for source in range(len(pulses.path_m)):
+        first, second = coils_of(pulses, source, 0.0)
         found += [Coil(first, False, source), Coil(second, True, source)]
     return sorted(found)
 
 
-def pulses_before(loop: PassageLoop, free_m_s2: float, speed_m_s: float) -> dict[int, float]:
+def pulses_before(met: list[Coil], start_m: float, free_m_s2: float, speed_m_s: float) -> dict[int, float]:
     """Times of the first pulses ahead of where the pass begins: there nothing brakes."""
     found = {}
-    for coil in coils(loop):
-        way = loop.plant.start_m - coil.path_m
+    for coil in met:
+        way = start_m - coil.path_m
         if way > 0.0:
             found[coil.source] = -2.0 * way / (speed_m_s + math.sqrt(speed_m_s**2 - 2.0 * free_m_s2 * way))
     return found

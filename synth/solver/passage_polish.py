@@ -45,7 +45,7 @@ def polish_passages(solution: Solution, max_iterations: int = 40, tolerance: flo
     free = np.isfinite(start.switching_m_s)
     evaluation = Evaluation(solution.chain, solution.aim)
     before = evaluation.gradient(start)[0]
-    unit = np.minimum(np.sqrt(before / (being_off(solution, start)[free] + 1e-12)), LOOSE_M_S)
+    unit = np.minimum(np.sqrt(before / (np.maximum(being_off(solution, start)[free], 0.0) + 1e-12)), LOOSE_M_S)
     best: list[tuple[float, PassageSpeeds]] = [(before, start)]
     calls = 0
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from synth.studies.study import Study
+from synth.studies.yard_studies import YARD_STUDIES
 
-STUDIES: tuple[Study, ...] = (
+POSITION_STUDIES: tuple[Study, ...] = (
     Study(
         "accuracy-grid",
         "How near are the tables to what physics leaves, over a whole grid of cases, and are all limits kept?",
@@ -12,21 +13,6 @@ STUDIES: tuple[Study, ...] = (
         "estimator.md#the-whole-grid",
         "synth.studies.accuracy_grid.study",
         "synth.studies.accuracy_grid.picture",
-    ),
-    Study(
-        "aim-tables",
-        "How large are the gaps where the default aim tables are used?",
-        12.0,
-        "aim.md#results",
-        "synth.studies.aim_tables",
-    ),
-    Study(
-        "aimed-braking",
-        "How far does a position aim: gap against over-speed, which assumption moves it, what would measuring bring?",
-        240.0,
-        "aimed-braking.md",
-        "synth.studies.aimed_braking.study",
-        "synth.studies.aimed_braking.pictures",
     ),
     Study(
         "approach",
@@ -50,13 +36,6 @@ STUDIES: tuple[Study, ...] = (
         8.0,
         "results.md",
         "synth.studies.book",
-    ),
-    Study(
-        "control-computer",
-        "How fast and how reliable must the control computer be, what does it pay, and which controller does it today?",
-        500.0,
-        "control-computer.md",
-        "synth.studies.control_computer.study",
     ),
     Study(
         "controller-agreement",
@@ -149,14 +128,6 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.friction_known",
     ),
     Study(
-        "hump-day",
-        "How fast can trains be humped, and at what price in catch-ups, over-speeds and gaps?",
-        1500.0,
-        "hump-day.md",
-        "synth.studies.humping.study",
-        "synth.studies.humping.pictures",
-    ),
-    Study(
         "identification",
         "How true are the numbers that measured passes tell, and do their intervals hold?",
         1200.0,
@@ -188,6 +159,14 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.limits.picture",
     ),
     Study(
+        "point-sensors",
+        "What are point sensors worth beside a radar: by number, places and axles, and what do their faults cost?",
+        400.0,
+        "point-sensors.md",
+        "synth.studies.point_sensors.study",
+        "synth.studies.point_sensors.pictures",
+    ),
+    Study(
         "rare-events",
         "How often does a cut leave far too fast, down to one in a million and below?",
         126.0,
@@ -217,13 +196,6 @@ STUDIES: tuple[Study, ...] = (
         "robustness.md",
         "synth.studies.robustness.study",
         "synth.studies.robustness.pictures",
-    ),
-    Study(
-        "rolling",
-        "How fast and how exactly do cuts roll, beside numpy and scipy, and by which step?",
-        40.0,
-        "rolling.md",
-        "synth.studies.rolling.study",
     ),
     Study(
         "software-in-the-loop",
@@ -287,12 +259,6 @@ STUDIES: tuple[Study, ...] = (
         "synth.studies.watch.study",
         "synth.studies.watch.picture",
     ),
-    Study(
-        "yard-chain",
-        "What do exact exits and measured resistance bring the yard: metres of gap and damaging couplings?",
-        510.0,
-        "aimed-braking.md#the-chain",
-        "synth.studies.yard_chain.study",
-        "synth.studies.yard_chain.pictures",
-    ),
 )
+
+STUDIES: tuple[Study, ...] = tuple(sorted((*POSITION_STUDIES, *YARD_STUDIES), key=lambda study: study.name))

@@ -87,6 +87,12 @@ def odd_table(decides_on: DecidesOn = DecidesOn.FIRST_AXLE) -> PassageTable:
     return replace(made, passages=rows)
 
 
+def passage_tables() -> tuple[PassageTable, ...]:
+    """Those of both books: usual ones on the first and on every axle, then the odd ones."""
+    first, every = passage_book().tables, every_axle_book().tables
+    return (first[0], *every[:2], first[4], first[1], first[2], first[3], first[5], every[2])
+
+
 def passage_book() -> PassageBook:
     """Two targets of a class, between them one lighter; six axles; many stages; odd numbers. On the first axle."""
     return PassageBook(

@@ -28,7 +28,7 @@ from synth.simulation.structure.diagram import Sketch
 from synth.simulation.structure.passage_diagram import passage_diagram
 from synth.simulation.structure.radar_diagram import radar_diagram
 from synth.studies.structure.signals import SIGNALS
-from tests.synth.simulation.passage_cases import SENSORS, braking_rule, with_approach
+from tests.synth.simulation.passage_cases import CREDIBLE, SENSORS, braking_rule, with_approach
 from tests.synth.test_control_system import table_for
 
 Routes = Mapping[tuple[str, str], Route]
@@ -37,7 +37,7 @@ Routes = Mapping[tuple[str, str], Route]
 @pytest.fixture(scope="module")
 def drawn(plant_52t: Plant) -> dict[str, tuple[Sketch, Routes]]:
     plant = with_approach(plant_52t, 5.0)
-    controller = braking_rule(plant, SENSORS, 3.0)
+    controller = braking_rule(plant, SENSORS, 3.0, CREDIBLE)
     points = passage_diagram(close_passage_loop(plant, SENSORS, controller.stages), controller)
     radar = radar_diagram(plant_52t, TableController(table_for(plant_52t)), 0.0)
     return {"radar": (radar.sketch, RADAR_ROUTES), "points": (points.sketch, POINT_SENSOR_ROUTES)}

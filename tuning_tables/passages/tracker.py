@@ -55,36 +55,29 @@ def believed_passage(
     over time. Raises nothing for any number. `numba.njit` compiles this text as it is: hence one loop over both.
     """
     none, nought, longest = np.float32(NONE), np.float32(0.0), np.float32(LONGEST_WAIT_S)
-    sound = True
     for at in range(0, 6, 3):  # comparisons so that NaN fails
         known = none <= state[at] < path_m.shape[0] and nought <= state[at + 1] <= limits[1]
-        sound = sound and known and nought <= state[at + 2] <= longest
-    if not sound:
-        state[:] = nought
-        state[0], state[3] = none, none
+        if not (known and nought <= state[at + 2] <= longest):
+            state[:] = nought
+            state[0], state[3] = none, none
     if not 0.0 <= since_s <= LONGEST_WAIT_S:
         return NONE
-    since = np.float32(since_s)
-    state[2] = min(state[2] + since, longest)
-    state[5] = min(state[5] + since, longest)
-    # In double precision: then no number overflows when it is compared.
-    if not (float(limits[0]) <= v_m_s <= float(limits[1])):
+    for at in range(2, 6, 3):
+        state[at] = min(state[at] + np.float32(since_s), longest)
+    if not (float(limits[0]) <= v_m_s <= float(limits[1])):  # in double precision no number overflows here
         return NONE
-    v = np.float32(v_m_s)
-    first, one, half = NONE, np.float32(1.0), np.float32(0.5)
+    v, one, half, first = np.float32(v_m_s), np.float32(1.0), np.float32(0.5), NONE
     for passage in range(path_m.shape[0] - 1, -1, -1):
-        if sensor_of[passage] == sensor:
-            first = passage
+        first = passage if sensor_of[passage] == sensor else first
     if first == NONE:
         return NONE
     found = first if state[0] == none and state[3] == none else NONE
     for at in range(0, 6, 3):
-        if found != NONE or state[at] == none:
-            continue
         here, time = int(state[at]), state[at + 2]
         fast, slow = state[at + 1] * (one + limits[4]), state[at + 1] * (one - limits[4])
         fast_now, slow_now = v * (one + limits[4]), v * (one - limits[4])
-        if slow_now > fast + limits[2] * time or fast_now < slow - limits[3] * time:
+        follows = slow_now <= fast + limits[2] * time and fast_now >= slow - limits[3] * time
+        if found != NONE or state[at] == none or not follows:
             continue
         both = limits[2] + limits[3]
         turn = min(max((fast_now - fast + limits[3] * time) / both, nought), time)
@@ -102,6 +95,5 @@ def believed_passage(
     if found == NONE:
         state[3], state[4], state[5] = np.float32(first), v, nought
         return NONE
-    state[0], state[1], state[2] = np.float32(found), v, nought
-    state[3] = none
+    state[0], state[1], state[2], state[3] = np.float32(found), v, nought, none
     return found

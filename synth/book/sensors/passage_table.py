@@ -1,10 +1,11 @@
-"""A table for point sensors from tuned switching speeds, and the limits by which its tracker believes a pulse pair."""
+"""A table for point sensors from tuned switching speeds."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from plant_models import Plant, PointSensors, deciding_passages, every_axle, path_coefficients
+from plant_models import Plant, PointSensors, deciding_passages, every_axle
+from plant_models.credible_motion import credible_motion
 from synth.book.sensors.tuned_passages import TunedPassages
 from synth.solver.tabulate import LOWEST_VALID_SPEED_M_S, prediction_of
 from tuning_tables import CutId, Generator, RetarderId
@@ -16,8 +17,6 @@ from tuning_tables.passages.sensor_layout import DecidesOn, SensorLayout
 
 ABOVE_FASTEST_M_S = 2.0
 """Speeds are valid up to so much more than the position takes."""
-
-STDS_OF_FRICTION, STDS_OF_READING = 4.0, 5.0
 
 
 def passage_table(tuned: TunedPassages, generator: Generator, table_id: str, created: str) -> PassageTable:
@@ -44,7 +43,7 @@ def passage_table(tuned: TunedPassages, generator: Generator, table_id: str, cre
             PassageRow(each.sensor, each.axle, float(each.path_m), tuple(tuple(map(float, row)) for row in speeds))
             for each, speeds in zip(met, rows, strict=True)
         ),
-        plausible=plausible_motion(plant, sensors, highest),
+        plausible=plausible_motion(plant, sensors),
         valid_v_m_s=(LOWEST_VALID_SPEED_M_S, highest),
         predicted=prediction_of(tuned.predicted, tuned.aim.target_speed_m_s),
     )
@@ -78,24 +77,13 @@ def layout_of(sensors: PointSensors) -> SensorLayout:
     )
 
 
-def plausible_motion(plant: Plant, sensors: PointSensors, highest_m_s: float) -> PlausibleMotion:
-    """What a cut can do: full brake at a friction four standard deviations high, the steepest grade without resistance.
-
-    A reading is believed within five standard deviations, a path within a base.
-    """
-    cells = path_coefficients(plant.position, plant.cut, plant.profile, np.linspace(plant.start_m, plant.exit_m, 401))
-    over = max(0.0, plant.position.stage_pressures_kpa[plant.top_stage] - plant.position.force.touch_pressure_kpa)
-    spread = 1.0 + STDS_OF_FRICTION * plant.friction_cv
-    local = 1.0 + STDS_OF_FRICTION * plant.friction.path_std
-    slowed = float((cells.brake_m_s2_per_kpa * over * spread * local - cells.gravity_m_s2).max())
-    resisted = cells.resistance_m_s2_per_n_kn * (
-        plant.resistance.mean_n_per_kn + STDS_OF_FRICTION * plant.resistance.std_n_per_kn
-    )
-    tolerance = STDS_OF_READING * float(sensors.reading_std_m_s(highest_m_s)) / highest_m_s
+def plausible_motion(plant: Plant, sensors: PointSensors) -> PlausibleMotion:
+    """The limits of the tracker, as a table holds them."""
+    limits = credible_motion(plant, sensors)
     return PlausibleMotion(
-        speed_m_s=(0.1, highest_m_s),
-        acceleration_m_s2=max(float(cells.gravity_m_s2.max()), 0.0) + 0.05,
-        deceleration_m_s2=max(slowed, 0.0) + resisted + 0.05,
-        speed_tolerance=min(tolerance, 0.5),
-        path_tolerance_m=sensors.base_m,
+        limits.speed_m_s,
+        limits.acceleration_m_s2,
+        limits.deceleration_m_s2,
+        limits.speed_tolerance,
+        limits.path_tolerance_m,
     )

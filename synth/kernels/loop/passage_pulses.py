@@ -99,7 +99,8 @@ def measured_over_base_s(pulses: Pulses, true_s: float, z: float) -> float:
 @borrowing_inline
 def read_speed_m_s(pulses: Pulses, true_s: float, z: float) -> float:
     """Relay element of the speed: base over the measured time."""
-    return pulses.base_m / measured_over_base_s(pulses, true_s, z)
+    over_s: float = measured_over_base_s(pulses, true_s, z)
+    return pulses.base_m / over_s
 
 
 @borrowing_inline

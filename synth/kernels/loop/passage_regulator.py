@@ -50,6 +50,13 @@ at_pulse = njit(cache=True, nogil=True)(
 
 
 @borrowing_inline
+def stage_at_passage(law: PassageRule, heard: int, stage: int, v_m_s: float) -> int:
+    """Digital controller: the stage wanted at the heard passage `heard` while `stage` is in force, as in `at_pulse`."""
+    passage = law.passage_of[heard]
+    return int(wanted_stage(law.switching_m_s, law.entrance_stage, law.before_entrance, passage, stage, v_m_s))
+
+
+@borrowing_inline
 def stage_after_pair(
     law: PassageRule, tracks: bool, state: State, sensor: int, since_s: float, over_base_s: float, reading_m_s: float,
     true_passage: int, stage: int, transient_ended: bool,
@@ -60,10 +67,7 @@ def stage_after_pair(
         return wanted, int(state[TAKEN_FOR])
     wanted = stage
     if transient_ended:
-        passage = law.passage_of[true_passage]
-        wanted = int(
-            wanted_stage(law.switching_m_s, law.entrance_stage, law.before_entrance, passage, stage, reading_m_s)
-        )
+        wanted = stage_at_passage(law, true_passage, stage, reading_m_s)
     return wanted, true_passage
 
 

@@ -19,7 +19,9 @@ from synth.simulation.structure.shared_parts import (
 
 
 def passage_diagram(loop: PassageLoop, controller: PassageController) -> Diagram:
-    """The plant and sensors of `loop` under `controller`."""
+    """The plant and sensors of `loop` under `controller`, which must have the tracker; else `ValueError`."""
+    if not controller.tracks:
+        raise ValueError("passage diagram: a regulator that is told its passages has no relay element of the path")
     plant, sensors, path = loop.plant, loop.sensors, loop.radar.path
     free = path.gravity_m_s2 - path.drag_m_s2_per_n_kn * plant.resistance.mean_n_per_kn
     actuator = stage_locked_actuator(plant.position, sensors, controller.stages - 1, 1)
@@ -42,7 +44,7 @@ def measuring_parts(
     loop: PassageLoop, controller: PassageController, constants: tuple[tuple[str, object], ...]
 ) -> tuple[Part, ...]:
     """Functional converter, impulse element, and the two relay elements."""
-    sensors, count = loop.sensors, len(set(loop.pulses.sensor.tolist()))
+    sensors, pulses, rule = loop.sensors, loop.pulses_of(controller), controller.rule
     return (
         Part(
             "functional converter", "φ{F⁻¹(S)}", Block.MEASURING,
@@ -57,30 +59,28 @@ def measuring_parts(
         Part(
             "impulse element", "ИЭ1", Block.MEASURING, "lets through where a wheel passes the coils of a sensor",
             passage_pulses.coils_of, takes=(("source", "m"), ("z", "z_b")), gives=("first coil", "second coil"),
-            given=(("pulses", loop.pulses),),
+            given=(("pulses", pulses),),
             hands_on=(("F⁻¹(S)", "t_V[n]"), ("F⁻¹(S)", "m[n]"), ("F⁻¹(S)", "Δt[n]")), undrawn=("m",),
             numbers=(
-                Number("sensors", count), Number("SB", sensors.base_m, "m"),
+                Number("sensors", len(set(pulses.sensor.tolist()))), Number("SB", sensors.base_m, "m"),
                 Number("tolerance of SB", sensors.base_tolerance),
             ),
         ),
         Part(
             "relay element of the speed", "РЭ2", Block.MEASURING, "base over the time, which has noise and is rounded",
             passage_pulses.read_speed_m_s, takes=(("true_s", "t_V[n]"), ("z", "z")), gives=("V*[n]",),
-            given=(("pulses", loop.pulses),),
+            given=(("pulses", pulses),),
             numbers=(
                 Number("timer", sensors.timer_resolution_s, "s"), Number("noise", sensors.timer_noise_s, "s"),
             ),
         ),
         Part(
             "relay element of the path", "РЭ3", Block.MEASURING, "tells which passage it was: the number of the place",
-            passage_regulator.passage_of_pair,
-            takes=(
-                ("sensor", "m[n]"), ("since_s", "Δt[n]"), ("v_m_s", "V*[n]"), ("true_passage", "m"),
-                ("state", "believed"),
-            ),
-            gives=("S*[n]",), given=(("law", controller.law()),), undrawn=("m", "believed"),
-            numbers=(Number("passages", len(loop.pulses.path_m)),),
+            passage_regulator.believed_passage,
+            takes=(("sensor", "m[n]"), ("since_s", "Δt[n]"), ("v_m_s", "V*[n]"), ("state", "believed")),
+            gives=("S*[n]",),
+            given=(("path_m", rule.path_m), ("sensor_of", rule.sensor_of), ("limits", rule.limits)),
+            undrawn=("believed",), numbers=(Number("passages", len(rule.path_m)),),
         ),
     )  # fmt: skip
 
@@ -91,7 +91,7 @@ def deciding_part(loop: PassageLoop, controller: PassageController) -> Part:
         "digital controller", "D(z)", Block.COMPUTER,
         "compares the speed with the switching speeds of passage and stage in force",
         passage_regulator.stage_at_passage,
-        takes=(("passage", "S*[n]"), ("stage", "U[n]"), ("v_m_s", "V*[n]")), gives=("U[n]",),
-        given=(("law", controller.law()),), waits_for=("locked",),
+        takes=(("heard", "S*[n]"), ("stage", "U[n]"), ("v_m_s", "V*[n]")), gives=("U[n]",),
+        given=(("law", controller.rule),), waits_for=("locked",),
         numbers=(Number("K", controller.stages - 1), Number("highest ahead", loop.plant.entrance_stage)),
     )  # fmt: skip

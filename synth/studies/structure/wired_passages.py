@@ -9,8 +9,8 @@ import numpy as np
 
 from plant_models.stage_regulator import stage_locked_actuator
 from synth.kernels.loop.closed_loop import MOVING, STALLED
-from synth.kernels.loop.passage_loop import ON_COIL, WATCHED_FROM_S, outcome_of
-from synth.kernels.loop.passage_regulator import DECIDED
+from synth.kernels.loop.passage_loop import ON_COIL, WATCHED_FROM_S
+from synth.kernels.loop.passage_regulator import DECIDED, outcome_of
 from synth.simulation.closed_loop import SUBSTEP_S
 from synth.simulation.nominal_response import NominalResponse
 from synth.simulation.passage_controller import PassageController
@@ -22,7 +22,7 @@ from tuning_tables.passages.tracker import begin_cut
 
 
 class Coil(NamedTuple):
-    """Where the first axle is when a coil tells a wheel; `second`: which of the two; `source`: the passage."""
+    """Where the first axle is when a coil tells a wheel; `second`: which of the two; `source`: the pulses."""
 
     path_m: float
     second: bool
@@ -42,7 +42,7 @@ def wired_passage_pass(
     )
     begin_cut(signals["believed"])
     run, pressure = Runner(diagram, signals), WiredPressure(diagram, signals)
-    coils = coils_of(diagram, len(loop.pulses.path_m))
+    coils = coils_of(diagram, len(loop.pulses_of(controller).path_m))
     first_s = pulses_before(coils, plant.start_m, signals["V"], dict(diagram[INTEGRATORS[0]].given)["free"][0])
     coils = coils[len(first_s) :]
     part_s = sensors.scan_period_s / math.ceil(sensors.scan_period_s / SUBSTEP_S - 1e-9)
@@ -63,7 +63,7 @@ def wired_passage_pass(
                 coil, *coils = coils
                 if not coil.second:
                     first_s[coil.source] = now
-                elif heard(run, signals, loop, coil.source, now - first_s[coil.source]):
+                elif heard(run, signals, loop, controller, coil.source, now - first_s[coil.source]):
                     begun_s, played = now, 0
                     signals["locked"] = now + signals["locked"] * sensors.scan_period_s
                     end_s = now
@@ -71,10 +71,10 @@ def wired_passage_pass(
     return response_of(points, signals["status"] == STALLED)
 
 
-def coils_of(diagram: Diagram, passages: int) -> list[Coil]:
+def coils_of(diagram: Diagram, sources: int) -> list[Coil]:
     """All coils in the order of the path."""
     element, found = diagram["impulse element"], []
-    for source in range(passages):
+    for source in range(sources):
         places = element.run({"m": source, "z_b": 0.0})
         found += [Coil(places["first coil"], False, source), Coil(places["second coil"], True, source)]
     return sorted(found)
@@ -90,15 +90,17 @@ def pulses_before(coils: list[Coil], start_m: float, speed_m_s: float, free_m_s2
     return found
 
 
-def heard(run: Runner, signals: Signals, loop: PassageLoop, source: int, over_base_s: float) -> bool:
+def heard(
+    run: Runner, signals: Signals, loop: PassageLoop, controller: PassageController, source: int, over_base_s: float
+) -> bool:
     """Let the regulator hear the second pulse of `source`; whether it commands a change of stage."""
-    now = signals["t"]
-    signals.update({"m": source, "m[n]": int(loop.pulses.sensor[source]), "t_V[n]": over_base_s, "tₙ": now})
+    now, pulses = signals["t"], loop.pulses_of(controller)
+    signals.update({"m": source, "m[n]": int(pulses.sensor[source]), "t_V[n]": over_base_s, "tₙ": now})
     signals["Δt[n]"], signals["heard"] = now - signals["heard"], now
     run("relay element of the speed")
     run("relay element of the path")
     before = signals["U[n]"]
-    if outcome_of(signals["S*[n]"], now - 0.5 * over_base_s, signals["locked"]) == DECIDED:
+    if outcome_of(controller.rule, signals["S*[n]"], now - 0.5 * over_base_s >= signals["locked"]) == DECIDED:
         run("digital controller")
     if signals["U[n]"] == before:
         return False

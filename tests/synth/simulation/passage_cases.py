@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Approach, Plant, PointSensors, deciding_passages, every_axle, passages
+from synth.book.sensors.passage_table import plausible_motion
 from synth.simulation.passage_controller import PassageController
 from synth.simulation.passage_loop import PassageLoop
 from synth.simulation.passage_sample import PassageTrace
@@ -26,6 +27,11 @@ def with_approach(plant: Plant, length_m: float, entrance_stage: int = 31, initi
 def exact(sensors: PointSensors) -> PointSensors:
     """`sensors` without any error."""
     return replace(sensors, base_tolerance=0.0, timer_noise_s=0.0, timer_resolution_s=0.0)
+
+
+def limits_of(plant: Plant, sensors: PointSensors) -> tuple[float, ...]:
+    """Limits of the tracker, as a table for `plant` has them."""
+    return plausible_motion(plant, sensors).numbers
 
 
 def rule_of(

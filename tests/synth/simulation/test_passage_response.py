@@ -108,7 +108,7 @@ def test_a_stall_is_reported(plant: Plant) -> None:
     sensors = quantised(first_axle)
     loop = close_passage_loop(plant, sensors, plant.top_stage + 1)
     hard = braking_rule(plant, sensors, 0.01)
-    hard = replace(hard, switching_m_s=np.full_like(hard.switching_m_s, 0.2))
+    hard = replace(hard, rule=hard.rule._replace(switching_m_s=np.full_like(hard.rule.switching_m_s, 0.2)))
     found = passage_response(loop, hard, 5.0)
     trace = loop.follow(hard, loop.draws(one_pass(0.0, 0.0)))
     assert trace.stalled
@@ -133,7 +133,8 @@ def test_the_regulator_is_a_discrete_system_of_no_period(plant: Plant) -> None:
     memory = system.dynamics(0.0, start, first)
     assert memory[2] > over / 2
     assert memory[3] == 0.0
-    soon = [1.0, 1.4, over, 1.4]
+    since = float(loop.heard.path_m[1] - loop.heard.path_m[0]) / 6.0  # the second axle over the same sensor
+    soon = [1.0, over / 2 + since, over, since]
     rests = memory.copy()
     rests[2] = 2.0
     assert list(system.output(0.0, rests, soon)) == [stage]

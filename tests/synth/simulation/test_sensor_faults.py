@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 from plant_models import Plant, PointSensors, every_axle, first_axle
 from plant_models.point_sensors import Axles
-from synth.simulation.credible_motion import credible_motion
 from synth.simulation.passage_loop import PassageLoop, close_passage_loop, simulate_passages
 from synth.simulation.passage_sample import DECIDED, NOT_BELIEVED, NOT_HEARD, PassReadings
 from synth.simulation.random_passes import RandomPasses, random_passes
@@ -32,7 +31,7 @@ from synth.simulation.sensor_faults import (
 )
 from synth.simulation.stratified_passes import stratified_passes
 from tests.synth.conftest import pilot_plant
-from tests.synth.simulation.passage_cases import SENSORS, braking_rule, holding_rule, rule_of, with_approach
+from tests.synth.simulation.passage_cases import SENSORS, braking_rule, holding_rule, limits_of, rule_of, with_approach
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +51,7 @@ def loop(plant: Plant) -> PassageLoop:
 
 def heard(loop: PassageLoop, passes: RandomPasses, at: int, *faults: SensorFault) -> PassReadings:
     """What a regulator that never commands hears of pass `at`."""
-    limits = credible_motion(loop.plant, loop.sensors)
+    limits = limits_of(loop.plant, loop.sensors)
     controller = holding_rule(loop.plant, loop.sensors, limits)
     draws = loop.draws(passes.part(at, at + 1))
     return loop.follow(controller, draws, together(loop.sensors, faults)).readings
@@ -67,7 +66,7 @@ def test_without_a_fault_the_tracker_believes_the_truth(mass_t: float, axles: Ax
     loop = close_passage_loop(plant, sensors, plant.top_stage + 1)
     draws = loop.draws(stratified_passes(2, 0, 2000))
     told = loop.run(braking_rule(plant, sensors, 2.0), draws)
-    tracked = loop.run(braking_rule(plant, sensors, 2.0, credible_motion(plant, sensors)), draws)
+    tracked = loop.run(braking_rule(plant, sensors, 2.0, limits_of(plant, sensors)), draws)
     assert not np.any(tracked.outcome == NOT_BELIEVED)
     np.testing.assert_allclose(tracked.exit_speed_m_s, told.exit_speed_m_s, rtol=1e-9)
     assert np.array_equal(tracked.switchings, told.switchings)
@@ -83,7 +82,7 @@ def test_wherever_sensors_stand_the_tracker_believes_the_truth(data: st.DataObje
     rng = np.random.default_rng(data.draw(st.integers(0, 2**32)))
     loop, top = close_passage_loop(plant, sensors, plant.top_stage + 1), plant.top_stage
     speeds = np.sort(rng.uniform(2.0, 7.0, (len(loop.deciding.path_m), top + 1, top)), axis=2)
-    tracking = rule_of(plant, sensors, speeds, credible_motion(plant, sensors))
+    tracking = rule_of(plant, sensors, speeds, limits_of(plant, sensors))
     sample = loop.run(tracking, loop.draws(stratified_passes(9, 0, 200)))
     # Beyond 4 standard deviations, or slower than is believed, a pair may be lost; a wrong one is never believed.
     assert np.count_nonzero(sample.outcome == NOT_BELIEVED) <= 2 + 0.05 * np.count_nonzero(sample.stalled)
@@ -93,7 +92,7 @@ def test_wherever_sensors_stand_the_tracker_believes_the_truth(data: st.DataObje
 
 
 def test_a_dead_sensor_is_as_one_that_never_commands(plant: Plant, loop: PassageLoop, passes: RandomPasses) -> None:
-    limits, draws = credible_motion(plant, SENSORS), loop.draws(passes)
+    limits, draws = limits_of(plant, SENSORS), loop.draws(passes)
     rule = braking_rule(plant, SENSORS, 3.0, limits)
     for sensor in range(6):
         speeds = rule.rule.switching_m_s.copy()
@@ -137,7 +136,7 @@ def test_a_pair_too_many_costs_nothing(plant: Plant, loop: PassageLoop, passes: 
         assert list(again.believed[same]) == [i, -1, -1]
     rest = again.told_sensor != 1
     assert list(again.believed[rest]) == list(again.passage[rest])
-    rule, draws = braking_rule(plant, SENSORS, 3.0, credible_motion(plant, SENSORS)), loop.draws(passes)
+    rule, draws = braking_rule(plant, SENSORS, 3.0, limits_of(plant, SENSORS)), loop.draws(passes)
     for fault in (RepeatedPulses(None, 1, 0.05), RepeatedPulses(3, 8, 0.1)):
         doubled = loop.run(rule, draws, together(SENSORS, [fault]))
         alone = loop.run(rule, draws)
@@ -148,7 +147,7 @@ def test_a_pair_too_many_costs_nothing(plant: Plant, loop: PassageLoop, passes: 
 def test_pairs_are_missed_by_chance_and_the_same_for_every_controller(
     plant: Plant, loop: PassageLoop, passes: RandomPasses
 ) -> None:
-    limits, draws = credible_motion(plant, SENSORS), loop.draws(passes)
+    limits, draws = limits_of(plant, SENSORS), loop.draws(passes)
     fault = together(SENSORS, [MissedPulses(0.3)])
     lost = loop.run(holding_rule(plant, SENSORS, limits), draws, fault).outcome == NOT_HEARD
     assert lost.mean(axis=0) == pytest.approx(0.3, abs=4.5 * np.sqrt(0.21 / 400))
@@ -217,7 +216,7 @@ def test_any_faults_leave_a_sound_loop(data: st.DataObject) -> None:
     loop, top = close_passage_loop(plant, sensors, plant.top_stage + 1), plant.top_stage
     rng = np.random.default_rng(data.draw(st.integers(0, 2**32)))
     speeds = np.sort(rng.uniform(0.0, 8.0, (len(loop.deciding.path_m), top + 1, top)), axis=2)
-    rule = rule_of(plant, sensors, speeds, credible_motion(plant, sensors))
+    rule = rule_of(plant, sensors, speeds, limits_of(plant, sensors))
     drawn = stratified_passes(12, data.draw(st.integers(0, 999)), 40)
     sample = loop.run(rule, loop.draws(drawn), together(sensors, faults))
     assert np.all(np.isfinite(sample.exit_speed_m_s) & (sample.exit_speed_m_s >= 0.0))
@@ -241,7 +240,7 @@ def test_any_faults_leave_a_sound_loop(data: st.DataObject) -> None:
 
 
 def test_faults_do_not_depend_on_threads_and_chunks(plant: Plant) -> None:
-    rule = braking_rule(plant, SENSORS, 3.0, credible_motion(plant, SENSORS))
+    rule = braking_rule(plant, SENSORS, 3.0, limits_of(plant, SENSORS))
     faults = together(SENSORS, [SpuriousPulses(2), MissedPulses(0.1), LateSensor(2, 0.3)])
     whole = simulate_passages(plant, SENSORS, rule, seed=1, count=4200, faults=faults)
     threaded = simulate_passages(plant, SENSORS, rule, seed=1, count=2700, first_pass=1500, threads=2, faults=faults)
@@ -250,7 +249,7 @@ def test_faults_do_not_depend_on_threads_and_chunks(plant: Plant) -> None:
 
 
 def test_figures_of_all_faults_stand_beside_the_same_passes(plant: Plant, loop: PassageLoop) -> None:
-    rule = braking_rule(plant, SENSORS, 3.0, credible_motion(plant, SENSORS))
+    rule = braking_rule(plant, SENSORS, 3.0, limits_of(plant, SENSORS))
     draws = loop.draws(stratified_passes(1, 0, 400))
     cases = single_faults(SENSORS, 3.0, 6.0)
     none, *others = fault_figures(loop, rule, draws, 3.0, [FaultCase("nothing", ()), *cases])
@@ -268,7 +267,7 @@ def test_what_cannot_be_is_refused(plant: Plant, loop: PassageLoop, passes: Rand
     draws = loop.draws(passes.part(0, 2))
     with pytest.raises(ValueError, match="cannot be run with faults"):
         loop.run(braking_rule(plant, SENSORS, 3.0), draws, together(SENSORS, []))
-    tracking = braking_rule(plant, SENSORS, 3.0, credible_motion(plant, SENSORS))
+    tracking = braking_rule(plant, SENSORS, 3.0, limits_of(plant, SENSORS))
     nowhere: list[SensorFault] = [DeadSensor(6), StuckReading(-1, 3.0), SwappedSensors(5), LateSensor(6, 1.0)]
     for fault in (*nowhere, RepeatedPulses(6, 1, 1.0), MissedPulses(0.5, 9)):
         with pytest.raises(ValueError, match="there is no sensor"):

@@ -19,6 +19,8 @@ from synth.simulation.structure.passage_diagram import passage_diagram
 from synth.simulation.structure.radar_diagram import radar_diagram
 from tests.synth.simulation.passage_cases import CREDIBLE, SENSORS, braking_rule, with_approach
 from tests.synth.test_control_system import table_for
+from tuning_tables.passages.regulator import PassageRule, at_pulse
+from tuning_tables.passages.tracker import NONE, begin_cut
 
 VALVES = ValveDrive(700.0, 0.0, 0.1, 0.2, 0.15, 0.3, 0.4, 15.0, 50.0)
 
@@ -58,8 +60,12 @@ def test_the_path_has_the_precision_of_the_rule(radar: Diagram) -> None:
     assert abs(read - 12.3456789) <= 2.0**-24 * 16.0
 
 
-def test_the_impulse_element_of_point_sensors_lets_through_at_both_coils(points: Diagram) -> None:
-    for m, place in enumerate(SENSORS.path_m[:6]):
+def test_the_impulse_element_of_point_sensors_lets_through_at_both_coils(points: Diagram, plant_52t: Plant) -> None:
+    """At every axle: where the first axle is when another is at a sensor."""
+    places = sorted(place + behind for place in SENSORS.path_m for behind in plant_52t.cut.axle_offsets_m)
+    met = [place for place in places if place < plant_52t.exit_m]
+    assert given(points["impulse element"], "pulses").path_m.size == len(met) > len(SENSORS.path_m)  # type: ignore[attr-defined]
+    for m, place in enumerate(met):
         found = points["impulse element"].run({"m": m, "z_b": -1.5})
         half = 0.1 * (1.0 - 1.5 * 0.002)
         assert (found["first coil"], found["second coil"]) == pytest.approx((place - half, place + half))
@@ -100,12 +106,50 @@ def test_the_controller_of_a_radar_compares_with_the_lines(radar: Diagram, plant
 
 
 def test_the_controller_of_point_sensors_counts_the_speeds_below(points: Diagram) -> None:
-    """Equal rows for all stages: the stage wanted is the number of switching speeds under the reading."""
+    """Equal rows for all stages: the stage wanted is the number of switching speeds under the reading.
+
+    Where nothing is decided the stage in force is held.
+    """
     part = points["digital controller"]
-    speeds = given(part, "law").switching_m_s[3, 0]  # type: ignore[attr-defined]
+    law = given(part, "law")
+    assert isinstance(law, PassageRule)
+    speeds, [heard], other = law.switching_m_s[3, 0], np.flatnonzero(law.passage_of == 3), int(law.passage_of.argmin())
     for v in np.linspace(0.5, 8.0, 301):
-        wanted = part.run({"S*[n]": 3, "U[n]": 2, "V*[n]": v})["U[n]"]
+        wanted = part.run({"S*[n]": heard, "U[n]": 2, "V*[n]": v})["U[n]"]
         assert wanted == int(np.sum(np.float32(v) > speeds))
+        assert part.run({"S*[n]": other, "U[n]": 2, "V*[n]": v})["U[n]"] == 2
+
+
+def test_the_parts_of_point_sensors_are_the_step_of_a_controller(points: Diagram) -> None:
+    """РЭ2, РЭ3 and D(z) one after the other against `at_pulse` in Python, on pulse pairs of which many are believed."""
+    rng, believed, changed = np.random.default_rng(4), 0, 0
+    rule = given(points["digital controller"], "law")
+    assert isinstance(rule, PassageRule)
+    for _ in range(100):
+        state, stage = np.zeros(6, dtype=np.float32), 2
+        begin_cut(state)
+        signals: dict[str, object] = {"believed": state.copy(), "z": 0.0, "U[n]": stage}
+        for _ in range(10):
+            since_s, over_s = float(rng.uniform(0.1, 2.0)), 1e-4 * int(rng.integers(250, 900))
+            signals.update({"m[n]": int(rng.integers(0, 6)), "Δt[n]": since_s, "t_V[n]": over_s})
+            signals.update(points["relay element of the speed"].run(signals))
+            signals.update(points["relay element of the path"].run(signals))
+            if signals["S*[n]"] != NONE:
+                believed += 1
+                signals.update(points["digital controller"].run(signals))
+            before, stage = stage, at_pulse(rule, state, int(str(signals["m[n]"])), since_s, over_s, stage, True)
+            changed += stage != before
+            assert signals["U[n]"] == stage
+            np.testing.assert_allclose(state, np.asarray(signals["believed"]), rtol=3e-7)
+    assert believed > 100
+    assert changed > 20
+
+
+def test_without_tracker_there_is_no_diagram(plant_52t: Plant) -> None:
+    plant = with_approach(plant_52t, 5.0)
+    told = braking_rule(plant, SENSORS, 3.0)
+    with pytest.raises(ValueError, match="told its passages"):
+        passage_diagram(close_passage_loop(plant, SENSORS, told.stages), told)
 
 
 def test_the_interlock_of_the_entrance(plant_52t: Plant) -> None:

@@ -12,14 +12,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numba import njit
 
-from tests.controller_code.passage_tables import every_axle_book, passage_book, passage_table
+from tests.controller_code.passage_tables import passage_table, passage_tables
 from tuning_tables.passages import regulator
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.regulator import at_pulse, rule_of
 from tuning_tables.passages.rule import wanted_stage
 from tuning_tables.passages.tracker import LONGEST_WAIT_S, NONE, begin_cut, believed_passage
 
-TABLES = (*passage_book().tables, *every_axle_book().tables)
+TABLES = passage_tables()
 WORDS = st.integers(0, 2**32 - 1)
 NUMBERS = st.floats(width=32) | WORDS.map(lambda bits: float(np.array(bits, np.uint32).view(np.float32)))
 STATES = st.lists(NUMBERS | st.sampled_from([-1.0, 0.0, 1.0, 5.0]), min_size=6, max_size=6)

@@ -1,0 +1,217 @@
+"""The study of point sensors: its bound, its shares, its claims, each against a second computation or by hand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from plant_models import PointSensors
+from synth.book.sensors.candidate_places import CandidatePlaces, LayoutCase, candidate_places
+from synth.book.sensors.layout import equal_layout, with_layout
+from synth.book.sensors.layout_plan import LayoutProblem
+from synth.book.sensors.tuned_passages import PassageChains, TunedPassages, passage_chains, tuned_passages
+from synth.faults.input_error import InputError
+from synth.problem.resolution import Resolution
+from synth.simulation.exit_statistics import exit_statistics
+from synth.simulation.passage_sample import DECIDED, NOT_HEARD, UNFINISHED, PassageSample
+from synth.simulation.stratified_passes import stratified_passes
+from synth.solver.chain.sensor_passages import with_point_sensors
+from synth.solver.policy_density import exit_density
+from synth.studies.point_sensors.fault_losses import fault_rows
+from synth.studies.point_sensors.findings import FaultRow, ManyRow, PointSensorWorth, SensorRow
+from synth.studies.point_sensors.layouts import (
+    LEAST_COST_M2_S2,
+    SEARCH,
+    HonestPlaces,
+    equal_sections,
+    planned,
+)
+from synth.studies.point_sensors.sensor_table import AXLES, SensorTable, tabulated, unfinished_share
+from synth.studies.point_sensors.sites import TEXTS, Site, single_stage, site_of, sites
+from synth.studies.point_sensors.tables import kind_of, tables_of
+from synth.studies.point_sensors.told import speeds_for, squares_at, told_bound
+
+COARSE = Resolution(path_step_m=0.5, speed_step_m_s=0.05, friction_nodes=5)
+DECIDING = 5
+
+
+@pytest.fixture(scope="module")
+def site() -> Site:
+    return site_of("park-22")
+
+
+@pytest.fixture(scope="module")
+def made(site: Site) -> tuple[PassageChains, TunedPassages, SensorTable]:
+    """A table of six sensors in equal sections, every axle."""
+    places = equal_layout(-3.4, site.plant.exit_m, DECIDING)
+    sensors = with_layout(PointSensors((0.0,), axles=AXLES["every"]), places, site.plant.exit_m)
+    chains = passage_chains(with_point_sensors(site.plant, sensors), sensors, COARSE)
+    tuned = tuned_passages(chains, site.aim)
+    return chains, tuned, tabulated(site, tuned)
+
+
+# ------------------------------------------------------------------------------------------------ the bound
+
+
+def test_the_bound_begins_with_the_prediction_of_the_table(
+    site: Site, made: tuple[PassageChains, TunedPassages, SensorTable]
+) -> None:
+    """The same nodes and weights: mean squares of single frictions make up the density of all scenarios together."""
+    chains, tuned, _ = made
+    bound = told_bound(chains, tuned.speeds, site.target_m_s, 13)
+    together = exit_density(chains.check, tuned.speeds).rms_m_s(site.target_m_s)
+    assert bound.table_rms_m_s == pytest.approx(together, rel=1e-6)
+    assert bound.table_rms_m_s == pytest.approx(tuned.rms_m_s, rel=0.02)  # its last metres are on finer energies
+    assert 1.0 < bound.regret < 2.0
+    assert bound.table_better <= bound.frictions
+
+
+def test_speeds_for_a_friction_do_in_the_loop_what_is_predicted_of_them(
+    site: Site, made: tuple[PassageChains, TunedPassages, SensorTable]
+) -> None:
+    """Passes with that friction alone, the running resistance at its mean."""
+    chains, tuned, _ = made
+    factor = 0.9
+    own = speeds_for(chains.design, site.target_m_s, factor)
+    predicted = np.sqrt(squares_at(chains.check, own, site.target_m_s, np.array([factor])))[0]
+    known = tabulated(site, replace(tuned, speeds=own))
+    draws = known.loop.draws(stratified_passes(3, 0, 4000), cut_factor=factor)
+    draws = draws._replace(resistance_n_kn=np.full_like(draws.resistance_n_kn, site.plant.resistance.mean_n_per_kn))
+    found = exit_statistics(known.loop.run(known_controller(known), draws), site.target_m_s)
+    assert predicted == pytest.approx(found.rms_m_s, rel=0.1)
+    assert predicted < np.sqrt(squares_at(chains.check, tuned.speeds, site.target_m_s, np.array([factor])))[0]
+
+
+def known_controller(table: SensorTable) -> Any:
+    from synth.simulation.passage_controller import of_table
+
+    return of_table(table.table, tracking=False)
+
+
+def test_who_is_told_what_everybody_knows_gains_little(site: Site) -> None:
+    """Without a spread of friction the regret is 1 but for what the polish leaves."""
+    plant = replace(site.plant, friction=replace(site.plant.friction, common_cv=0.0))
+    sensors = with_layout(PointSensors((0.0,)), equal_layout(-3.4, plant.exit_m, 3), plant.exit_m)
+    chains = passage_chains(with_point_sensors(plant, sensors), sensors, COARSE)
+    tuned = tuned_passages(chains, site.aim)
+    bound = told_bound(chains, tuned.speeds, site.target_m_s, 3)
+    assert bound.frictions == 1  # all nodes are the same factor
+    assert 1.0 <= bound.regret < 1.1
+
+
+# --------------------------------------------------------------------------------------- shares and layouts
+
+
+def test_the_unfinished_share_is_of_the_passages_heard() -> None:
+    outcome = np.array([[DECIDED, UNFINISHED, NOT_HEARD], [DECIDED, DECIDED, UNFINISHED]] * 100, dtype=np.uint8)
+    weight = np.tile([1.0, 3.0], 100)
+    nothing = np.zeros(200)
+    sample = PassageSample(nothing, nothing > 0.0, nothing.astype(np.int32), nothing, weight, outcome=outcome)
+    value, (low, high) = unfinished_share(sample)
+    assert value == pytest.approx((1.0 + 3.0) / (2.0 + 9.0))
+    assert low <= value <= high
+
+
+@pytest.mark.parametrize("axles", list(AXLES))
+def test_planned_layouts_can_be_tables_and_beat_equal_sections_by_the_cost_searched(site: Site, axles: str) -> None:
+    kind = PointSensors((0.0,), axles=AXLES[axles])
+    problem = LayoutProblem((LayoutCase(site.plant, (site.aim,)),), kind, COARSE)
+    (places,) = planned(problem, [3])
+    assert places[0] < 0.0
+    assert list(places) == sorted(places)
+    every = candidate_places(problem.cases[0], kind, 6.0, SEARCH)
+    (equal,) = equal_sections(problem, [3])
+    assert every.mean_cost(places) < every.mean_cost(equal)
+    assert planned(problem, []) == ()
+
+
+def test_the_search_never_goes_below_the_errors_of_the_grid(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(CandidatePlaces, "mean_cost", lambda self, sensors_m: -1.0)
+    places = HonestPlaces(None, (), (0.0,))  # type: ignore[arg-type]  # its chain is not asked
+    assert places.mean_cost((-2.0, 5.0)) == LEAST_COST_M2_S2
+    assert places.mean_cost((0.0, 5.0)) == float("inf")
+
+
+def test_sites_are_named() -> None:
+    found = sites(tuple(TEXTS))
+    assert len({site.title for site in found}) == len(TEXTS)
+    oiled, dry = found[list(TEXTS).index("dumper-4")].plant, found[list(TEXTS).index("park-22")].plant
+    slopes = [plant.position.force.slope_kn_per_kpa(plant.cut, 4) for plant in (oiled, dry)]
+    assert slopes[0] < 0.7 * slopes[1]
+    assert oiled.friction_cv == pytest.approx(0.25)
+    assert single_stage(found[0], 300.0).plant.top_stage == 1
+    with pytest.raises(InputError, match="there is no case 'park-23'; did you mean park-22"):
+        site_of("park-23")
+
+
+# --------------------------------------------------------------------------------------------------- faults
+
+
+def test_without_fault_wide_limits_change_nothing(
+    site: Site, made: tuple[PassageChains, TunedPassages, SensorTable]
+) -> None:
+    rows = list(fault_rows(site, "every", made[2], stratified_passes(4, 0, 400)))
+    assert rows[0].fault == "no fault"
+    assert (rows[0].ratio, rows[0].wide_ratio) == (1.0, pytest.approx(1.0, rel=1e-9))
+    names = [row.fault for row in rows]
+    assert len(names) == len(set(names)) == 1 + 6 * (DECIDING + 1) + DECIDING + 7
+    dead = [row for row in rows if row.fault.endswith("dead")]
+    assert max(row.ratio for row in dead) > 1.0
+
+
+def test_kinds_of_fault_have_no_number() -> None:
+    assert kind_of("sensor 3 dead") == "dead"
+    assert kind_of("sensors 3 and 4 swapped") == "swapped"
+    assert kind_of("lone axle 2 s ahead") == "lone axle 2 s ahead"
+
+
+# --------------------------------------------------------------------------------------------------- claims
+
+
+def sensor_row(predicted: float, ratio: float, layout: str = "planned") -> SensorRow:
+    near = (0.98, 1.02)
+    equal = (ratio, (ratio - 0.01, ratio + 0.01)) if layout == "planned" else None
+    return SensorRow("park", "first", layout, (-2.0, 5.0, 20.0), predicted, 1.0, near, 1.0, near, equal, None, 0.0,
+                     (0.0, 0.1), 2.0, 0.0, (0.0, 0.1), 0.0, (0.0, 0.1))  # fmt: skip
+
+
+def fault_row(fault: str, rms: float) -> FaultRow:
+    near = (0.9 * rms, 1.1 * rms)
+    return FaultRow("park", "first", fault, rms, near, rms, near, 1.0, near, 0.0, near, 0.0, near)
+
+
+def many_row(ratio: float) -> ManyRow:
+    return ManyRow("0.05 m/s", 31, 99, 0.25, 0.08, 1.0, 1.0, (0.9, 1.1), 1.0, (0.9, 1.1), ratio,
+                   (ratio - 0.01, ratio + 0.01))  # fmt: skip
+
+
+def worth(rows: tuple[SensorRow, ...], ratio: float) -> PointSensorWorth:
+    faulty = (fault_row("no fault", 1.0), fault_row("sensor 0 dead", 2.0), fault_row("sensor 1 dead", 3.0))
+    return PointSensorWorth(1, 200, 200, 0.25, 0.015, 7, (), rows, faulty, (many_row(0.5), many_row(ratio)), ())
+
+
+def test_claims_that_hold_are_no_faults() -> None:
+    assert worth((sensor_row(1.1, 0.8), sensor_row(0.9, 0.8, "equal")), 1.05).faults() == ()
+
+
+@pytest.mark.parametrize(
+    ("rows", "ratio", "sentence"),
+    [
+        ((sensor_row(1.15, 0.8),), 1.0, "predicted / simulated is 1.150"),
+        ((sensor_row(0.85, 0.8),), 1.0, "predicted / simulated is 0.850"),
+        ((sensor_row(1.0, 1.02),), 1.0, "worse than equal sections, ratio 1.020"),
+        ((), 1.2, "rms / rms of the radar is 1.200"),
+    ],
+)
+def test_a_claim_that_fails_is_a_fault(rows: tuple[SensorRow, ...], ratio: float, sentence: str) -> None:
+    (fault,) = worth(rows, ratio).faults()
+    assert sentence in fault
+
+
+def test_of_each_kind_of_fault_the_worst_sensor_is_shown() -> None:
+    rows = tables_of(worth((), 1.0))["faults"].rows
+    assert [row[2] for row in rows] == ["no fault", "sensor 1 dead"]
+    assert rows[1][3] == "3.0000 ± 0.3000"
