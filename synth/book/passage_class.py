@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from plant_models import Approach, Plant, PointSensors, every_axle, first_axle
 from synth.book.validate_table import alike, numbers
 from synth.configuration.resolved_config import ResolvedConfig
@@ -25,19 +27,22 @@ class PassageClass:
 def passage_class(table: PassageTable, config: ResolvedConfig, source: str) -> PassageClass:
     """The class of `config` that `table` is for; `source` is what a message calls the configuration.
 
-    Sensors and approach are those of the table, for a configuration has a radar. Of several classes that fit, the one
-    whose label begins the table's id. `InputError` names what differs in the nearest.
+    The approach is that of the table. So are the sensors where the configuration has none; where it has, they must
+    stand as in the table, and measure as the configuration says. Of several classes that fit, the one whose label
+    begins the table's id. `InputError` names what differs in the nearest.
     """
     plants = config.plants()
+    here = sensors_of(table.sensors)
+    if config.sensors is not None:
+        require_same_places(here, config.sensors.sensors, f"{source}: the sensors of the table {table.id}")
+        here = config.sensors.sensors
     apart = [tuple(differences(table, plant)) for _, plant in plants]
     fitting = [plants[place] for place, found in enumerate(apart) if not found]
     named = [each for each in fitting if table.id.startswith(f"{each[0]}-to-")]
     if len(named or fitting) == 1:
         label, plant = (named or fitting)[0]
         length, gate = table.approach.length_m, table.approach.entrance_stage
-        return PassageClass(
-            label, replace(plant, approach=Approach(length, gate, table.initial_stage)), sensors_of(table.sensors)
-        )
+        return PassageClass(label, replace(plant, approach=Approach(length, gate, table.initial_stage)), here)
     if fitting:
         labels = ", ".join(label for label, _ in fitting)
         raise InputError(
@@ -60,13 +65,48 @@ def differences(table: PassageTable, plant: Plant) -> Iterator[str]:
         ("retarder.dead_band_kpa", [position.pneumatics.dead_band_kpa], [table.retarder.dead_band_kpa]),
         ("cut.mass_t", [cut.mass_t], [table.cut.mass_t]),
         ("cut.axle_offsets_m", cut.axle_offsets_m, table.cut.axle_offsets_m),
-        ("the highest stage allowed", [plant.top_stage], [top]),
     )  # fmt: skip
     for key, ours, theirs in pairs:
         if len(ours) != len(theirs) or not all(map(alike, ours, theirs)):
             yield f"{key} ({numbers(ours)}, in the table {numbers(theirs)})"
+    if highest_stage(table) > plant.top_stage:
+        yield f"the highest stage allowed ({plant.top_stage}, in the table {highest_stage(table)})"
+    if table.approach.entrance_stage != plant.entrance_stage:
+        yield f"cut.entrance_stage ({plant.entrance_stage}, in the table {table.approach.entrance_stage})"
     if cut.category != table.cut.category:
         yield f"cut.category ({cut.category}, in the table {table.cut.category})"
+
+
+def highest_stage(table: PassageTable) -> int:
+    """The highest stage that the table ever asks for from a lower one; it has rows for those above, too."""
+    top = len(table.pressure_kpa) - 1
+    raised = [
+        wanted + 1
+        for stage in range(top)
+        for wanted in range(stage, top)
+        if np.isfinite(table.switching_m_s[:, stage, wanted]).any()
+    ]
+    return max([table.initial_stage, *raised])
+
+
+def require_same_places(ours: PointSensors, theirs: PointSensors, what: str) -> None:
+    """`InputError` that begins with `what` unless both stand and decide alike, with bases of one length."""
+    pairs = (
+        ("sensors.path_m", ours.path_m, theirs.path_m),
+        ("sensors.base_m", (ours.base_m,), (theirs.base_m,)),
+    )
+    for key, one, other in pairs:
+        if len(one) != len(other) or not all(map(alike, one, other)):
+            raise InputError(
+                f"{what} are not those of the configuration: {key} is {numbers(other)} there, in the table "
+                f"{numbers(one)}; give the configuration that the table was made from by --config, or one without "
+                "[sensors]"
+            )
+    if ours.axles is not theirs.axles:
+        raise InputError(
+            f"{what} are not those of the configuration: sensors.decides_on differs; give the configuration that the "
+            "table was made from by --config, or one without [sensors]"
+        )
 
 
 def sensors_of(layout: SensorLayout) -> PointSensors:

@@ -19,6 +19,7 @@ from synth.simulation.exit_statistics import BrakePower, ExitStatistics, brake_p
 from synth.simulation.passes import ExitSample
 from synth.simulation.replicates import Interval
 from tuning_tables import ControllerTable
+from tuning_tables.any_table import AnyTable
 
 LENGTH_TOLERANCE = 1e-6
 """Relative, for lengths, masses and pressures that must be the same."""
@@ -34,7 +35,7 @@ class Revalidation:
     file calls the case so; `same_config`: the table was made from this very configuration.
     """
 
-    table: ControllerTable
+    table: AnyTable
     label: str
     statistics: ExitStatistics
     brake_power: BrakePower
@@ -82,7 +83,7 @@ def revalidate_all(
 
 
 def revalidation(
-    table: ControllerTable, label: str, sample: ExitSample, power: BrakePower, infeasible: bool, config: ResolvedConfig
+    table: AnyTable, label: str, sample: ExitSample, power: BrakePower, infeasible: bool, config: ResolvedConfig
 ) -> Revalidation:
     """What `sample` says of `table`, beside what the table says of itself."""
     target, limits = table.target_speed_m_s, config.acceptance
@@ -102,7 +103,7 @@ def revalidation(
     )
 
 
-def confirmed(table: ControllerTable, found: ExitStatistics) -> bool | None:
+def confirmed(table: AnyTable, found: ExitStatistics) -> bool | None:
     """Whether the interval that the file states and that of `found` overlap."""
     if table.validated is None:
         return None

@@ -12,8 +12,11 @@ import numpy as np
 
 from synth.book.forms.aim_file import read_aims
 from synth.book.forms.exported_code import exported_code
+from synth.book.forms.passage_file import read_passages
 from synth.book.forms.table_file import TableFile, holds_tables, read_tables, summary_beside
+from synth.book.printed_numbers import counted
 from synth.cli.inspect_aim import aim_document, aim_words
+from synth.cli.inspect_passages import passage_document, passage_words
 from tuning_tables import DamagedTable
 from tuning_tables.approach import Approach
 from tuning_tables.document import to_document
@@ -26,11 +29,13 @@ SHOWN_POINTS = 5
 def inspect_command(source: Path, as_json: bool) -> int:
     """Print the contents of the tables in `source`, and what controller code is there; `TableError` for damage."""
     code = exported_code(source)
-    aims = read_aims(source)
-    files = () if (code or aims) and not holds_tables(source) else read_tables(source, directory_allowed=True)
+    aims, passages = read_aims(source), read_passages(source)
+    nothing_else = bool(code or aims or passages) and not holds_tables(source)
+    files = () if nothing_else else read_tables(source, directory_allowed=True)
     summary = checked_summary(source) if source.is_dir() else None
     if as_json:
         found: dict[str, Any] = {"path": str(source), "files": [*map(file_document, files), *map(aim_document, aims)]}
+        found |= {"passage_tables": [passage_document(table) for table in passages]} if passages else {}
         found |= {"code": [each.document() for each in code]} if code else {}
         if summary is not None:
             found["summary"] = summary
@@ -41,10 +46,14 @@ def inspect_command(source: Path, as_json: bool) -> int:
         print(f"{file.path}: {contents(file)}")
         for table in file.tables:
             print(*table_words(table, mixed), sep="\n")
+    if passages:
+        print(f"{source}: {counted(len(passages), 'table')} for point sensors; their sums are right")
+    for each in passages:
+        print(*passage_words(each), sep="\n")
     for aim in aims:
         print(*aim_words(aim), sep="\n")
-    for each in code:
-        print(f"{each.path}: {each.sentence}")
+    for export in code:
+        print(f"{export.path}: {export.sentence}")
     if summary is not None:
         print(f"{source / 'summary.json'}: {summary['sentence']}")
     return 0

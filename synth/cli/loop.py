@@ -60,20 +60,13 @@ def loop_command(source: Path, output: Path, config_path: Path | None, as_json: 
 
 def any_tables(source: Path) -> list[AnyTable]:
     """The tables at `source`, of both kinds of decision; faults as `read_tables` has them."""
-    from synth.book.forms.table_file import read_table_file, read_tables, table_files
-    from tuning_tables import OtherDecisions
-    from tuning_tables.passages.json_file import read_passage_json
+    from synth.book.forms.passage_file import read_passages
+    from synth.book.forms.table_file import holds_tables, read_tables
 
-    files = table_files(source) if source.is_dir() else [source]
-    if not files:
-        read_tables(source, directory_allowed=True)
-    tables: list[AnyTable] = []
-    for file in files:
-        try:
-            tables += read_table_file(file).tables
-        except OtherDecisions:
-            tables.append(read_passage_json(file))
-    return tables
+    passages = read_passages(source)
+    if passages and not holds_tables(source):
+        return list(passages)
+    return [*passages, *(table for file in read_tables(source, directory_allowed=True) for table in file.tables)]
 
 
 def closing(table: AnyTable, config: ResolvedConfig, source: str) -> Callable[[], AnyLoop]:

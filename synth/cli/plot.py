@@ -3,46 +3,110 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
 
 from synth.cli import say
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from synth.configuration.resolved_config import ResolvedConfig
+    from tuning_tables import ControllerTable
+    from tuning_tables.any_table import AnyTable
+    from tuning_tables.passages.passage_table import PassageTable
+
+Drawn = TypeVar("Drawn")
 
 
 def plot_command(source: Path, output: Path, config_path: Path | None, as_json: bool) -> int:
     """Draw the tables in `source` into `output`; passes only for tables that a class of the configuration fits."""
-    from synth.book.forms.table_file import file_stem, read_tables
+    from synth.book.forms.table_file import file_stem
     from synth.book.output_directory import make_directory
     from synth.cli.interrupt import interruptible
-    from synth.configuration.config_file import BUILT_IN, load_config
-    from synth.faults.input_error import InputError
-    from synth.kernels.cache import guarded
+    from synth.cli.loop import any_tables
+    from synth.cli.tables_configuration import configuration_for
+    from tuning_tables.passages.passage_table import PassageTable
 
-    config = load_config(config_path)
-    tables = [table for file in read_tables(source, directory_allowed=True) for table in file.tables]
+    tables = any_tables(source)
+    config, place = configuration_for(config_path, [table for table in tables if isinstance(table, PassageTable)])
+    around = Surroundings(config, place, config_path is not None)
     make_directory(output)
-    from synth.book.validate_table import plant_for
     from synth.present.plots.figure_file import save_figure
-    from synth.present.plots.table_picture import Passes, drawn_passes, table_lines, table_passes, table_surfaces
-    from tuning_tables import ControllerTable
-
-    def passes_of(table: ControllerTable) -> Passes:
-        plant = plant_for(table, config, str(config_path or BUILT_IN))[1]
-        return drawn_passes(table, plant, config.validation.seed)
 
     written: list[str] = []
     with interruptible(output):
         for table in tables:
-            try:
-                passes = guarded(passes_of, table)
-            except InputError as fault:
-                if config_path is not None:
-                    raise
-                say(f"no passes are drawn: {fault}")
-                passes = None
-            figures = {"lines": table_lines(table, passes), "surfaces": table_surfaces(table, passes)}
-            if passes is not None:
-                figures["passes"] = table_passes(table, passes)
-            for name, figure in figures.items():
+            for name, figure in figures_of(table, around).items():
                 written += map(str, save_figure(figure, output, f"{file_stem(table)}-{name}"))
     print(json.dumps({"files": written}, indent=1, ensure_ascii=False) if as_json else "\n".join(written))
     return 0
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """The configuration that passes are simulated by, what messages call it, and whether the user `asked` for it."""
+
+    config: ResolvedConfig
+    place: str
+    asked: bool
+
+    def passes(self, simulate: Callable[[], Drawn]) -> Drawn | None:
+        """What `simulate` gives; None, with a word why, where no class fits and no configuration was asked for."""
+        from synth.faults.input_error import InputError
+        from synth.kernels.cache import guarded
+
+        try:
+            return guarded(simulate)
+        except InputError as fault:
+            if self.asked:
+                raise
+            say(f"no passes are drawn: {fault}")
+            return None
+
+
+def figures_of(table: AnyTable, around: Surroundings) -> Mapping[str, Figure]:
+    """The pictures of a table by the end of their names."""
+    from tuning_tables.passages.passage_table import PassageTable
+
+    return passage_figures(table, around) if isinstance(table, PassageTable) else line_figures(table, around)
+
+
+def line_figures(table: ControllerTable, around: Surroundings) -> Mapping[str, Figure]:
+    """The pictures of a table with lines by the end of their names."""
+    from synth.book.validate_table import plant_for
+    from synth.present.plots.table_picture import Passes, drawn_passes, table_lines, table_passes, table_surfaces
+
+    def simulate() -> Passes:
+        plant = plant_for(table, around.config, around.place)[1]
+        return drawn_passes(table, plant, around.config.validation.seed)
+
+    passes = around.passes(simulate)
+    figures = {"lines": table_lines(table, passes), "surfaces": table_surfaces(table, passes)}
+    return figures if passes is None else {**figures, "passes": table_passes(table, passes)}
+
+
+def passage_figures(table: PassageTable, around: Surroundings) -> Mapping[str, Figure]:
+    """The pictures of a table for point sensors by the end of their names."""
+    from synth.book.passage_class import passage_class
+    from synth.book.sensors.sensor_class import sensor_passes
+    from synth.present.plots.sensors.passes_with_readings import passes_figure
+    from synth.present.plots.sensors.switching_speeds import switching_speeds
+    from synth.present.plots.table_picture import FACTORS, subject
+    from synth.simulation.passage_controller import of_table
+    from synth.simulation.passage_sample import PassageTrace
+    from synth.simulation.stratified_passes import stratified_passes
+
+    def simulate() -> tuple[PassageTrace, ...]:
+        made_for = passage_class(table, around.config, around.place)
+        few = stratified_passes(around.config.validation.seed, 0, len(FACTORS))
+        passes = sensor_passes(made_for.plant, made_for.sensors, few)
+        return tuple(passes.trace(of_table(table, tracking=True), i, factor) for i, factor in enumerate(FACTORS))
+
+    traces = around.passes(simulate)
+    figures = {"switching-speeds": switching_speeds(subject(table), [table], [traces or ()])}
+    if traces is None:
+        return figures
+    return {**figures, "passes": passes_figure(subject(table), table, traces, FACTORS)}

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from synth.configuration.point_sensors.resolved_sensors import ResolvedSensors
     from synth.configuration.resolved_config import ResolvedConfig
 
-BUILT_IN = "built-in configuration with point sensors"
-
 
 def sensors_tune_command(path: Path | None, output: Path, workers: int | None, as_json: bool) -> int:
     """Tune the configuration in `path` for its point sensors into the directory `output`; the exit code."""
@@ -34,12 +32,12 @@ def sensors_tune_command(path: Path | None, output: Path, workers: int | None, a
 
 def read_configuration(path: Path | None) -> tuple[str, ResolvedConfig, ResolvedSensors]:
     """(what messages call it, the configuration, its sensors); `InputError` where it asks for what is not possible."""
-    from synth.configuration.config_file import load_config, parse_config
-    from synth.configuration.point_sensors.template import default_sensors_toml
+    from synth.configuration.config_file import load_config
+    from synth.configuration.point_sensors.template import BUILT_IN_SENSORS, built_in_sensors
     from synth.faults.input_error import InputError
 
-    place = BUILT_IN if path is None else str(path)
-    config = parse_config(default_sensors_toml(), BUILT_IN) if path is None else load_config(path)
+    place = BUILT_IN_SENSORS if path is None else str(path)
+    config = built_in_sensors() if path is None else load_config(path)
     if config.sensors is None:
         raise InputError(
             f"{place}: the section [sensors] is missing; 'retarder-synth init --sensors' prints one to start from, and "

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from synth.cli import LIMITS_MISSED, OK, say
 from synth.cli.processors import available
+from synth.cli.tune import sensors_left_aside
 from synth.faults.input_error import InputError
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ def run_command(path: Path, output: Path, workers: int | None, scheduler: str | 
     with held(output) as directory:
         task = task_of(file, directory)
         for condition in file.conditions:
-            for warning in condition.config.warnings:
+            for warning in (*condition.config.warnings, *sensors_left_aside(condition.config)):
                 say(f"warning: {condition.name + ': ' if condition.name else ''}{warning}")
         engine = engine_for(task, workers, scheduler)
         with Pace(task) as watcher:

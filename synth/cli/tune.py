@@ -24,9 +24,16 @@ def tune_command(path: Path | None, output: Path, workers: int | None, as_json: 
     require_room(config, path, workers)
     require_date()
     with output_directory(output) as directory:
-        for warning in config.warnings:
+        for warning in (*config.warnings, *sensors_left_aside(config)):
             say(f"warning: {warning}")
         return tune_into(directory, config, path, workers, as_json)
+
+
+def sensors_left_aside(config: ResolvedConfig) -> tuple[str, ...]:
+    """A word about point sensors in a configuration whose tables are made for a radar."""
+    if config.sensors is None:
+        return ()
+    return ("tables are made for the radar of [sensor]; 'retarder-synth sensors tune' makes those for [sensors]",)
 
 
 def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, workers: int, as_json: bool) -> int:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from synth.book.validate_table import Rehearsal, Revalidation
     from tuning_tables import ControllerTable
+    from tuning_tables.passages.passage_table import PassageTable
 
 
 LOG_PASSES, GAUGE_STD_KPA = 200, 2.0
@@ -48,26 +49,37 @@ def validate_command(
     path: Path, config_path: Path | None, passes: int | None, seed: int | None, log: AskedLog | None, as_json: bool
 ) -> int:
     """Simulate the tables in `path`; 1 if one that is not known to be infeasible is not shown to keep every limit."""
-    from synth.book.forms.table_file import is_infeasible, read_tables, summary_beside
+    from synth.book.forms.table_file import is_infeasible, summary_beside
     from synth.cli.interrupt import interruptible
-    from synth.configuration.config_file import BUILT_IN, load_config
+    from synth.cli.tables_configuration import configuration_for
+    from synth.faults.input_error import InputError
     from synth.kernels.cache import guarded
 
-    config, (file,) = load_config(config_path), read_tables(path)
-    source, summary = str(config_path or BUILT_IN), summary_beside(path)
+    passages, tables = tables_in(path)
+    config, source = configuration_for(config_path, passages)
+    summary = summary_beside(path)
+    from synth.book.passage_class import passage_class
+    from synth.book.sensors.revalidate_passages import revalidate_passages
     from synth.book.validate_table import Rehearsal, plant_for, revalidate_all
 
-    for table in file.tables:
+    if passages and log is not None:
+        raise InputError(f"{path}: its tables are for point sensors, whose passes are not logged; leave out --log")
+    for table in tables:
         plant_for(table, config, source)  # refused before anything is simulated
+    for each in passages:
+        passage_class(each, config, source)
     passes = passes or config.validation.passes
     seed = config.validation.seed if seed is None else seed
     rehearsal = Rehearsal(config, source, passes, seed, available())
     with interruptible():
         if log is not None:
-            guarded(write_rehearsed_log, file.tables, rehearsal, log)
-        found = guarded(
-            revalidate_all, file.tables, rehearsal, [is_infeasible(table, summary) for table in file.tables]
-        )
+            guarded(write_rehearsed_log, tables, rehearsal, log)
+        if passages:
+            known = [is_infeasible(table, summary) for table in passages]
+            found = guarded(revalidate_passages, passages, rehearsal, known)
+        else:
+            known = [is_infeasible(table, summary) for table in tables]
+            found = guarded(revalidate_all, tables, rehearsal, known)
     if not all(each.same_config for each in found):
         say(f"warning: {path} was made from another configuration than {source}; the plant may differ")
     if as_json:
@@ -79,6 +91,15 @@ def validate_command(
         if log is not None:
             print(f"{log.passes} passes of each table, as a controller logs them: {log.path}")
     return OK if all(each.judgement.word == "accepted" or each.infeasible for each in found) else LIMITS_MISSED
+
+
+def tables_in(path: Path) -> tuple[tuple[PassageTable, ...], tuple[ControllerTable, ...]]:
+    """The tables of the file at `path`: for point sensors, or with lines; the other part is empty."""
+    from synth.book.forms.passage_file import read_passages
+    from synth.book.forms.table_file import read_tables
+
+    passages = () if path.is_dir() else read_passages(path)
+    return passages, () if passages else read_tables(path)[0].tables
 
 
 def write_rehearsed_log(tables: Sequence[ControllerTable], rehearsal: Rehearsal, asked: AskedLog) -> None:

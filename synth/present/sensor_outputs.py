@@ -13,7 +13,7 @@ from synth.book.summary import Document
 from synth.present.outputs import file_hashes
 from synth.present.plots.picture import Picture, save_picture
 from synth.present.report.sensor_report import SensorReport, sensor_page
-from tuning_tables import InvalidTable, write_atomically, write_book
+from tuning_tables import InvalidTable, write_atomically
 from tuning_tables.canonical import canonical_json
 from tuning_tables.passages.c_source import passage_c_files
 from tuning_tables.passages.csv_file import write_passage_csv
@@ -52,11 +52,9 @@ def write_sensors(book: SensorBook, verdict: Verdict, directory: Path, say: Say)
 
 
 def write_tables(book: SensorBook, directory: Path) -> list[Path]:
-    """The book, and CSV files if asked for; the JSON files are among those that are returned."""
+    """CSV files, if asked for; the JSON files, which are there already, are among those that are returned."""
     tables = [case.table for case in book.cases]
     files = [directory / "tables" / f"{table.id}.json" for table in tables]
-    files.append(directory / "book.h5")
-    write_book(tables, files[-1])
     if book.config.output.csv:
         for table in tables:
             files.append(directory / "tables" / f"{table.id}.csv")

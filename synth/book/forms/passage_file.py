@@ -2,27 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
-from typing import Final
 
-from synth.book.forms.table_file import BOOK_SUFFIXES, HDF5_SIGNATURE
+from synth.book.forms.passage_mark import is_passage_table
+from synth.book.forms.table_file import HDF5_SIGNATURE
 from tuning_tables.hdf5_file import read_any_book
-from tuning_tables.json_text import LARGEST_FILE_BYTES
 from tuning_tables.passages.json_file import read_passage_json
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.regular_file import first_bytes
-
-MARK: Final = re.compile(rb'"decisions"\s*:\s*"at_sensor_passages"')
-"""No text in a JSON document can hold this: its quotes would be escaped."""
-
-
-def is_passage_table(file: Path) -> bool:
-    """Whether a JSON file says that its table decides at sensor passages; what cannot be read does not."""
-    try:
-        return file.suffix not in BOOK_SUFFIXES and MARK.search(first_bytes(file, LARGEST_FILE_BYTES)) is not None
-    except OSError:  # whoever reads it for its tables tells why
-        return False
 
 
 def read_passages(path: Path) -> tuple[PassageTable, ...]:

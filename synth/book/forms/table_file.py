@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from synth.book.forms.aim_file import is_aim_table
+from synth.book.forms.passage_mark import is_passage_table
 from synth.faults.input_error import InputError
 from synth.faults.machine_fault import MACHINE_FAULTS
 from tuning_tables import ControllerTable, read_book, read_json
@@ -17,6 +18,8 @@ from tuning_tables.regular_file import first_bytes
 
 HDF5_SIGNATURE = b"\x89HDF"
 BOOK_SUFFIXES = (".h5", ".hdf5")
+SUMMARIES = ("retarder-summary", "sensor-summary")
+"""Forms of the summaries of a tune, for a radar and for point sensors."""
 
 
 @dataclass(frozen=True)
@@ -44,10 +47,15 @@ def read_tables(path: Path, directory_allowed: bool = False) -> tuple[TableFile,
 
 
 def table_files(directory: Path) -> list[Path]:
-    """The JSON tables of a directory but aim tables, those in tables/ if it has that, else its books."""
+    """The JSON tables with lines of a directory, those in tables/ if it has that; its books where there are no tables.
+
+    Aim tables are not meant. Beside tables for point sensors a book is theirs.
+    """
     folder = directory / "tables" if (directory / "tables").is_dir() else directory
     tables = sorted(file for file in folder.glob("*.json") if file.name != "summary.json")
-    return [file for file in tables if not is_aim_table(file)] or sorted(directory.glob("*.h5"))
+    others = [file for file in tables if not is_aim_table(file)]
+    with_lines = [file for file in others if not is_passage_table(file)]
+    return with_lines or ([] if others else sorted(directory.glob("*.h5")))
 
 
 def holds_tables(path: Path) -> bool:
@@ -81,12 +89,12 @@ def summary_beside(path: Path) -> dict[str, object] | None:
             document = json.loads((folder / "summary.json").read_bytes())
         except (OSError, ValueError):
             continue
-        if isinstance(document, dict) and document.get("format") == "retarder-summary":
+        if isinstance(document, dict) and document.get("format") in SUMMARIES:
             return document
     return None
 
 
-def is_infeasible(table: ControllerTable, summary: dict[str, object] | None) -> bool:
+def is_infeasible(table: ControllerTable | PassageTable, summary: dict[str, object] | None) -> bool:
     """Whether `summary`, of the same configuration, calls the case of `table` infeasible."""
     match summary:
         case {"generator": {"config_sha256": sha256}, "cases": list(cases)} if sha256 == table.generator.config_sha256:

@@ -6,11 +6,12 @@ from collections.abc import Iterator
 from typing import Final
 
 from plant_models.library import BUILT_IN, WHEEL_SENSORS, PositionEntry
+from synth.configuration.config_file import parse_config
 from synth.configuration.config_template import lines, origin, quoted, source_lines, toml_value
 from synth.configuration.plant_settings import DEFAULT_CUTS, CutSettings, PositionSettings
 from synth.configuration.point_sensors.resolved_sensors import SECTION, ResolvedSensors
 from synth.configuration.point_sensors.settings import PointSensorSettings
-from synth.configuration.resolved_config import resolve
+from synth.configuration.resolved_config import ResolvedConfig, resolve
 from synth.configuration.settings import Settings
 
 DUMPER_POSITION: Final = "rnz-2m-dumper"
@@ -20,12 +21,19 @@ EMPTY_CUTS: Final = (
 )
 """What comes behind a car dumper. Stage 3 with oil brakes no harder than stage 2, theirs elsewhere, without."""
 
+BUILT_IN_SENSORS: Final = "built-in configuration with point sensors"
+
 USUAL_SENSORS: Final = 9
 AHEAD_S: Final = 1.0
 """How long the fastest cut rolls from the first sensor to the entrance: a change of stage is over by then."""
 
 LONGEST_CAR_M: Final = 14.5
 """A little more than from the first axle to the last of a car: the last sensor stands behind the exit."""
+
+
+def built_in_sensors() -> ResolvedConfig:
+    """What `sensors tune` takes where no configuration is given."""
+    return parse_config(default_sensors_toml(), BUILT_IN_SENSORS)
 
 
 def default_sensors_toml(position_name: str = DUMPER_POSITION) -> str:

@@ -13,6 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
+from synth.book.passage_class import highest_stage
 from synth.present.plots.house_style import (
     BLUE,
     ENTRANCE_STYLE,
@@ -46,7 +47,7 @@ def switching_speeds(subject: str, tables: Sequence[PassageTable], traces: Seque
 
     `traces`: passes of each table, drawn while they were in the stage; none is fine.
     """
-    stages = max(stages_in_use(table) for table in tables)
+    stages = max(highest_stage(table) for table in tables) + 1
     figure = new_figure(2.9 * stages + 0.9, 2.5 * len(tables) + 1.75, "Stage wanted at each passage", subject)
     place(figure, left=0.78, right=0.15, bottom=1.05, top=0.95, w=0.08, h=0.22)
     grid = figure.subplots(len(tables), stages, sharex=True, squeeze=False)
@@ -99,17 +100,6 @@ def wanted_edges_m_s(
     if passage < table.before_entrance:
         row[max(stage, table.entrance_stage) :] = np.inf
     return np.clip(np.concatenate(([-np.inf], row, [np.inf])), *window_m_s)
-
-
-def stages_in_use(table: PassageTable) -> int:
-    """Number of stages that the table ever asks for from a lower one: those above have no panel."""
-    raised = [
-        wanted + 1
-        for stage in range(len(table.pressure_kpa))
-        for wanted in range(stage, len(table.pressure_kpa) - 1)
-        if np.isfinite(table.switching_m_s[:, stage, wanted]).any()
-    ]
-    return max([table.initial_stage, *raised]) + 1
 
 
 def speed_window_m_s(table: PassageTable, traces: Sequence[PassTrace]) -> tuple[float, float]:

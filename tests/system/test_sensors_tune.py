@@ -1,0 +1,255 @@
+"""`retarder-synth sensors tune`, and what other commands make of its tables."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from synth.cli import main
+from tests.system.conftest import EPOCH, Command, changed
+from tuning_tables.passages.json_file import read_passage_json
+
+CONFIG = """\
+[position]
+name = "rnz-2m-dumper"
+[targets]
+exit_speeds_m_s = [2.0, 2.5]
+[grid]
+path_step_m = 1.0
+speed_step_m_s = 0.04
+friction_scenarios = 3
+[validation]
+passes = 1000
+[acceptance]
+rms_m_s = 0.15
+honesty_low = 0.7
+honesty_high = 1.4
+[output]
+csv = true
+[sensors]
+path_m = [-4.5, 0.0, 4.0, 8.0, 12.0, 16.0, 22.5]
+[[cut]]
+car = "gondola-4"
+mass_t = 22
+allowed_stage = 3
+"""
+"""One empty car behind a car dumper, on a coarse grid."""
+
+TABLE = "gondola-4-22t-to-2-m-s"
+
+
+@pytest.fixture(scope="module")
+def config(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Configuration with point sensors."""
+    path = tmp_path_factory.mktemp("sensors") / "points.toml"
+    path.write_text(CONFIG)
+    return path
+
+
+@pytest.fixture(scope="module")
+def tuned_points(config: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What a tune leaves; not to be changed."""
+    directory = tmp_path_factory.mktemp("points") / "out"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SOURCE_DATE_EPOCH", EPOCH)
+        assert main(["sensors", "tune", str(config), "-o", str(directory), "--workers", "1"]) == 0
+    return directory
+
+
+def test_it_leaves_tables_code_pictures_report_and_a_summary_of_them_all(tuned_points: Path) -> None:
+    summary = json.loads((tuned_points / "summary.json").read_bytes())
+    here = {str(path.relative_to(tuned_points)) for path in tuned_points.rglob("*") if path.is_file()}
+    assert here == {*summary["files"], "summary.json"}
+    assert all(
+        hashlib.sha256((tuned_points / name).read_bytes()).hexdigest() == digest
+        for name, digest in summary["files"].items()
+    )
+    assert {name.partition("/")[0] for name in here} == {
+        "tables", "c", "st", "plots", "report.html", "summary.json",
+    }  # fmt: skip
+    assert {Path(name).suffix for name in here if name.startswith("tables/")} == {".json", ".csv"}
+    assert sum(name.startswith("plots/") for name in here) == 6  # three pictures of the class, PNG and SVG
+    assert "<h2>Sensors and passages</h2>" in (tuned_points / "report.html").read_text(encoding="utf-8")
+    assert summary["accepted"] is True
+    assert [case["target_speed_m_s"] for case in summary["cases"]] == [2.0, 2.5]
+
+
+def test_tables_say_what_was_predicted_and_simulated(tuned_points: Path) -> None:
+    summary = json.loads((tuned_points / "summary.json").read_bytes())
+    for case in summary["cases"]:
+        table = read_passage_json(tuned_points / case["table"])
+        assert table.validated is not None
+        assert table.validated.rms_m_s == case["simulated"]["rms_m_s"]
+        assert table.predicted.rms_m_s == case["predicted"]["rms_m_s"]
+        # Two computations of one number, on a coarse grid and with few passes.
+        assert 0.7 < case["honesty"] < 1.4
+        assert 0.0 < case["unavoidable_rms_m_s"] < case["simulated"]["rms_m_s"]
+        low, high = case["unavoidable_ci95_m_s"]
+        assert low < case["unavoidable_rms_m_s"] < high
+        assert [row["path_m"] for row in case["passages"]] == [-4.5, 0.0, 4.0, 8.0, 12.0, 16.0]
+        assert all(row["mistaken"] == 0.0 for row in case["passages"])
+        assert np.isfinite(table.switching_m_s[:, 0, 0]).all()
+        assert (table.switching_m_s[:, 3, 3] == np.inf).all()  # stage 4 is not allowed
+
+
+def test_one_worker_gives_the_bytes_of_two(
+    command: Command, tuned_points: Path, config: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", EPOCH)
+    assert command("sensors", "tune", config, "-o", tmp_path, "--workers", "2").code == 0
+    names = {path.relative_to(tmp_path) for path in tmp_path.rglob("*") if path.is_file()}
+    assert [name for name in names if (tmp_path / name).read_bytes() != (tuned_points / name).read_bytes()] == []
+
+
+def test_validate_confirms_the_file_and_notices_other_sensors(
+    command: Command, tuned_points: Path, config: Path, tmp_path: Path
+) -> None:
+    table = tuned_points / "tables" / f"{TABLE}.json"
+    ran = command("validate", table, "--config", config, "--json")
+    assert ran.code == 0, ran.err
+    (found,) = json.loads(ran.out)
+    assert (found["confirmed"], found["same_config"]) == (True, True)
+    # The same passes as of the tune, though drawn in bounded memory.
+    assert found["simulated"]["rms_m_s"] == pytest.approx(found["stated"]["validated"]["rms_m_s"], rel=1e-12)
+    worse = tmp_path / "worse.toml"
+    worse.write_text(changed(CONFIG, ("[sensors]\n", "[sensors]\ntimer_noise_s = 0.02\n")))
+    ran = command("validate", table, "--config", worse, "--json")
+    assert json.loads(ran.out)[0]["simulated"]["rms_m_s"] > 1.1 * found["simulated"]["rms_m_s"]
+    moved = tmp_path / "moved.toml"
+    moved.write_text(changed(CONFIG, ("8.0, 12.0", "8.0, 12.5")))
+    ran = command("validate", table, "--config", moved)
+    assert ran.code == 2
+    assert "sensors.path_m is -4.5, 0, 4, 8, 12.5, 16, 22.5 there, in the table -4.5, 0, 4, 8, 12, 16" in ran.sentence
+    ran = command("validate", table, "--config", config, "--log", tmp_path / "log.csv")
+    assert ran.code == 2
+    assert "whose passes are not logged; leave out --log" in ran.sentence
+
+
+def test_without_sensors_in_the_configuration_those_of_the_table_count(
+    command: Command, tuned_points: Path, tmp_path: Path
+) -> None:
+    table, bare = tuned_points / "tables" / f"{TABLE}.json", tmp_path / "bare.toml"
+    bare.write_text(changed(CONFIG, ("[sensors]\npath_m = [-4.5, 0.0, 4.0, 8.0, 12.0, 16.0, 22.5]\n", "")))
+    ran = command("validate", table, "--config", bare, "--json")
+    (found,) = json.loads(ran.out)
+    assert found["simulated"]["rms_m_s"] == pytest.approx(found["stated"]["validated"]["rms_m_s"], rel=1e-12)
+    bare.write_text(changed(bare.read_text(), ("mass_t = 22", "mass_t = 23")))
+    ran = command("validate", table, "--config", bare)
+    assert ran.code == 2
+    assert "differs in cut.mass_t (23, in the table 22)" in ran.sentence
+
+
+def test_inspect_tells_sensors_passages_and_switching_speeds(command: Command, tuned_points: Path) -> None:
+    ran = command("inspect", tuned_points / "tables" / f"{TABLE}.json")
+    table = read_passage_json(tuned_points / "tables" / f"{TABLE}.json")
+    assert ran.code == 0
+    assert "7 at -4.5, 0, 4, 8, 12, 16, 22.5 m" in ran.out
+    rows = [line.split() for line in ran.out.splitlines()]
+    of_third = rows.index(["4.00", "2", "0", "0", *(f"{v:.3f}" for v in table.switching_m_s[2, 0, :3])])
+    assert rows[of_third + 3] == ["3", *(f"{v:.3f}" for v in table.switching_m_s[2, 3, :3])]
+    whole = command("inspect", tuned_points, "--json")
+    document = json.loads(whole.out)
+    assert [each["id"] for each in document["passage_tables"]] == ["gondola-4-22t-to-2-m-s", "gondola-4-22t-to-2.5-m-s"]
+    assert "unchanged" in document["summary"]["sentence"]
+
+
+def test_plot_draws_switching_speeds_and_passes_where_the_plant_is_known(
+    command: Command, tuned_points: Path, config: Path, tmp_path: Path
+) -> None:
+    ran = command("plot", tuned_points, "-o", tmp_path / "all", "--config", config)
+    assert ran.code == 0, ran.err
+    assert {path.name.removeprefix("gondola-4-22t-to-") for path in (tmp_path / "all").glob("*.png")} == {
+        "2-m-s-switching-speeds.png", "2-m-s-passes.png", "2.5-m-s-switching-speeds.png", "2.5-m-s-passes.png",
+    }  # fmt: skip
+    unknown = command("plot", tuned_points / "tables" / f"{TABLE}.json", "-o", tmp_path / "one")
+    assert unknown.code == 0
+    assert "no passes are drawn" in unknown.sentence
+    assert {path.name for path in (tmp_path / "one").iterdir()} == {
+        f"{TABLE}-switching-speeds.png", f"{TABLE}-switching-speeds.svg",
+    }  # fmt: skip
+
+
+def test_a_damaged_table_is_told(command: Command, tuned_points: Path, tmp_path: Path) -> None:
+    table = tmp_path / "table.json"
+    table.write_text((tuned_points / "tables" / f"{TABLE}.json").read_text(encoding="utf-8").replace("rnz", "rnx"))
+    for words in (["inspect"], ["validate"], ["plot", "-o", tmp_path / "out"]):
+        ran = command(*words, table)
+        assert ran.code == 3
+        assert "crc32" in ran.sentence
+
+
+def test_what_needs_lines_refuses_the_table_in_one_sentence(
+    command: Command, tuned_points: Path, tmp_path: Path
+) -> None:
+    table = tuned_points / "tables" / f"{TABLE}.json"
+    ran = command("sensitivity", "--table", table, "-o", tmp_path / "out")
+    assert ran.code == 2
+    assert "a table that decides at sensor passages and has no lines over the path" in ran.sentence
+
+
+REFUSED = {
+    "no sensors": (("[sensors]\npath_m = [-4.5, 0.0, 4.0, 8.0, 12.0, 16.0, 22.5]\n", ""),
+                   "the section [sensors] is missing; 'retarder-synth init --sensors' prints one"),
+    "estimator": (("[grid]", "[regulator]\nestimator = true\n[grid]"), "regulator.estimator is true"),
+    "chance constraint": (("[grid]", "[criterion]\np_overspeed = 0.1\n[grid]"), "criterion.p_overspeed and"),
+    "first sensor": (("[-4.5, 0.0", "[0.5, 1.0"), "sensors.path_m begins at 0.5; the first sensor must stand at"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_makes_no_tables_is_refused_before_anything_is_written(
+    command: Command, name: str, tmp_path: Path
+) -> None:
+    swap, said = REFUSED[name]
+    (tmp_path / "bad.toml").write_text(changed(CONFIG, swap))
+    ran = command("sensors", "tune", tmp_path / "bad.toml", "-o", tmp_path / "out")
+    assert ran.code == 2
+    assert said in ran.sentence
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_directory_of_another_command_is_left_alone(
+    command: Command, tuned_points: Path, config: Path, one_class: Path, tmp_path: Path
+) -> None:
+    copy = Path(shutil.copytree(tuned_points, tmp_path / "copy"))
+    ran = command("tune", one_class, "-o", copy)
+    assert ran.code == 2
+    assert "holds the results of 'sensors tune'" in ran.sentence
+
+
+def test_an_infeasible_case_stands_outside_the_verdict(command: Command, config: Path, tmp_path: Path) -> None:
+    """From 5.5 m/s the oiled brake cannot bring a full car to 2 m/s, whatever the table."""
+    heavy = changed(
+        CONFIG,
+        ("mass_t = 22\nallowed_stage = 3\n", "mass_t = 80\n"),
+        ("[2.0, 2.5]", "[2.0]"),
+        ("[grid]", "[entry]\nlow_m_s = 5.0\nhigh_m_s = 5.5\n[grid]"),
+        ("csv = true", "plots = false\nreport = false"),
+    )
+    (tmp_path / "heavy.toml").write_text(heavy)
+    ran = command("sensors", "tune", tmp_path / "heavy.toml", "-o", tmp_path / "out", "--json")
+    assert ran.code == 1
+    summary = json.loads(ran.out)
+    (case,) = summary["cases"]
+    assert (case["feasible"], case["why_infeasible"]) == (False, "out of brake power")
+    assert case["unavoidable_ci95_m_s"][0] > 0.15
+    assert "no case is feasible" in summary["verdict"]
+    ran = command("validate", tmp_path / "out" / case["table"], "--config", tmp_path / "heavy.toml", "--json")
+    assert ran.code == 0  # known to be infeasible
+    assert json.loads(ran.out)[0]["known_infeasible"] is True
+
+
+def test_tune_tells_that_it_leaves_point_sensors_aside(command: Command, config: Path, tmp_path: Path) -> None:
+    text = changed(
+        CONFIG,
+        ("exit_speeds_m_s = [2.0, 2.5]", "exit_speeds_m_s = [2.5]"),
+        ("csv = true", "plots = false\nreport = false"),
+    )
+    (tmp_path / "one.toml").write_text(text)
+    ran = command("tune", tmp_path / "one.toml", "-o", tmp_path / "out")
+    assert "tables are made for the radar of [sensor]; 'retarder-synth sensors tune' makes those for" in ran.err
