@@ -12,6 +12,8 @@ from tuning_tables.requirement import require_between, require_kind, require_ris
 
 MOST_SENSORS: Final = 32
 SHORTEST_SECTION_M: Final = 0.3
+ROUNDING_M: Final = 1e-9
+"""By so much a difference of places may be off: 1.2 − 0.9 is less than 0.3."""
 PLACE_RANGE_M: Final = (-100.0, 500.0)
 BASE_RANGE_M: Final = (0.05, 1.0)
 TOLERANCE_RANGE: Final = (0.0, 0.2)
@@ -69,7 +71,7 @@ class SensorLayout:
             require_between(place, f"sensors.path_m[{index}]", *PLACE_RANGE_M)
         require_between(self.base_m, "sensors.base_m", *BASE_RANGE_M)
         for index, (before, after) in enumerate(pairwise(self.path_m), start=1):
-            if not (after - before >= SHORTEST_SECTION_M and after - before > self.base_m):
+            if not (after - before >= SHORTEST_SECTION_M - ROUNDING_M and after - before > self.base_m):
                 raise InvalidTable(
                     f"sensors.path_m[{index}] is {after!r}, but it must be at least {SHORTEST_SECTION_M} m, and more "
                     f"than sensors.base_m, {self.base_m!r}, behind the sensor before, {before!r}."

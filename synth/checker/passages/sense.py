@@ -75,7 +75,7 @@ def number_faults(table: PassageTable) -> Iterator[str]:
     sections = [b - a for a, b in pairwise(table.sensors_m)]
     if not -100.0 <= table.sensors_m[0] < table.sensors_m[-1] + 1.0 <= 501.0 or len(table.sensors_m) > 32:
         yield f"its sensors at {table.sensors_m} m are too many or out of the track"
-    if any(length < 0.3 or length <= base for length in sections):
+    if any(length < 0.3 - 1e-9 or length <= base for length in sections):  # 1.2 - 0.9 is less than 0.3
         yield f"two of its sensors at {table.sensors_m} m are too near each other"
     approach = document["approach"]
     if approach["length_m"] != -table.sensors_m[0]:

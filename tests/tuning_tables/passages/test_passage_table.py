@@ -205,3 +205,8 @@ def test_sensors_that_cannot_be_are_refused(change: dict[str, Any], key: str) ->
 def test_limits_that_mean_nothing_are_refused(change: dict[str, Any], key: str) -> None:
     with pytest.raises(InvalidTable, match=f"plausible.{key}"):
         replace(table_of().plausible, **change)
+
+
+def test_sensors_may_stand_as_near_as_the_plant_allows_though_differences_round() -> None:
+    places = (-1.2, -0.9, 0.9, 1.2)  # 1.2 − 0.9 is 0.29999…
+    assert replace(table_of().sensors, path_m=places).path_m == PointSensors(places).path_m

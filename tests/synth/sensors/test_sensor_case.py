@@ -1,0 +1,143 @@
+"""What a tune for point sensors says of brake power, of passages, and of the limits of a configuration."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from plant_models import every_axle
+from plant_models.point_sensors import Axles
+from synth.book.acceptance import CaseVerdict
+from synth.book.sensors.sensor_acceptance import judge_sensor_case
+from synth.book.sensors.sensor_case import HeardShares, SensorCase
+from synth.book.sensors.sensor_class import SensorPasses, full_brake, sensor_passes
+from synth.book.sensors.sensor_tune import heard_shares, unavoidable_rms
+from synth.configuration.settings import AcceptanceSettings
+from synth.simulation.exit_statistics import BrakePower, exit_statistics
+from synth.simulation.passage_sample import DECIDED, NO_DECISION, NOT_BELIEVED, NOT_HEARD, UNFINISHED, PassageSample
+from synth.simulation.passes import ExitSample
+from synth.simulation.random_passes import random_passes
+from synth.solver.exit_density import ExitDensity
+from synth.solver.passage_polish import PassagePolish
+from synth.solver.passage_speeds import PassageSpeeds
+from tests.controller_code.passage_tables import passage_table
+from tests.synth.conftest import pilot_plant
+from tests.synth.simulation.passage_cases import SENSORS, braking_rule, holding_rule, with_approach
+
+COUNT = 400
+
+
+@pytest.fixture(scope="module")
+def passes() -> SensorPasses:
+    """A light cut that may be given stage 2 at the entrance."""
+    plant = with_approach(pilot_plant(36.0), 5.0, entrance_stage=2)
+    return sensor_passes(plant, SENSORS, random_passes(1, 0, COUNT))
+
+
+def test_full_brake_goes_to_the_highest_stage_allowed_at_once(passes: SensorPasses) -> None:
+    top = passes.loop.plant.top_stage
+    for index in range(5):
+        found = passes.trace(full_brake(passes.loop), index, 1.0)
+        read = found.readings
+        assert (read.outcome == DECIDED)[0]
+        assert read.stage[0] == 2  # as much as may be given before the entrance
+        behind = found.path_m > SENSORS.path_m[1] + SENSORS.base_m
+        assert set(found.stage[behind].tolist()) == {top}
+
+
+@pytest.mark.parametrize("axles", [SENSORS.axles, every_axle])
+def test_no_rule_slows_down_a_cut_more_than_full_brake(axles: Axles) -> None:
+    plant = with_approach(pilot_plant(66.0), 5.0)  # may be given all stages
+    sensors = replace(SENSORS, axles=axles)
+    found = sensor_passes(plant, sensors, random_passes(2, 0, COUNT))
+    least = found.at_full_brake.exit_speed_m_s
+    for rule in (holding_rule(plant, sensors), braking_rule(plant, sensors, 2.0), braking_rule(plant, sensors, 4.0)):
+        assert (found.run(rule).exit_speed_m_s >= least - 1e-9).all()
+
+
+def exits(speeds_m_s: np.ndarray) -> ExitSample:
+    """Cuts that left with these speeds."""
+    n = len(speeds_m_s)
+    return ExitSample(speeds_m_s, speeds_m_s == 0.0, np.zeros(n, np.int32), np.ones(n), np.ones(n))
+
+
+def test_what_no_table_can_avoid_is_the_excess_of_the_slower_of_two() -> None:
+    one = np.tile([2.0, 2.6, 3.0, 1.0], 100)
+    other = np.tile([2.9, 2.4, 3.4, 0.0], 100)  # excess over 2 m/s of the slower: 0, 0.4, 1.0, 0
+    rms, (low, high) = unavoidable_rms(exits(one), exits(other), 2.0)
+    assert rms == pytest.approx(math.sqrt((0.4**2 + 1.0**2) / 4.0))
+    assert low <= rms <= high
+    assert unavoidable_rms(exits(np.full(400, 1.9)), exits(other), 3.5) == (0.0, (0.0, 0.0))
+
+
+def test_shares_are_of_the_cuts_that_come_to_a_passage() -> None:
+    first = np.resize([DECIDED, UNFINISHED, DECIDED, NOT_BELIEVED], 400)
+    last = np.resize([NOT_HEARD, NOT_HEARD, NO_DECISION, DECIDED], 400)
+    never = np.full(400, NOT_HEARD)
+    outcome = np.stack([first, last, never], axis=1).astype(np.uint8)
+    sample = PassageSample(**vars(exits(np.full(400, 2.0))), outcome=outcome)
+    found = heard_shares(sample)
+    assert [share for share, _ in found.mistaken[:2]] == pytest.approx([0.25, 0.5])
+    assert found.unfinished[0][0] == pytest.approx(1.0 / 3.0)  # of those that were believed
+    assert math.isnan(found.mistaken[2][0])
+    assert math.isnan(found.unfinished[2][0])
+
+
+def case(spread_m_s: float, unavoidable: float, ci95: tuple[float, float]) -> SensorCase:
+    """A case with normal errors, predicted as simulated."""
+    error = spread_m_s * np.random.default_rng(7).standard_normal(4000)
+    table = passage_table(target_m_s=2.5)
+    found = exit_statistics(exits(2.5 + error), 2.5)
+    return SensorCase(
+        label="made",
+        plant=with_approach(pilot_plant(22.0), 5.0),
+        sensors=SENSORS,
+        table=replace(table, predicted=replace(table.predicted, rms_m_s=found.rms_m_s)),
+        predicted=ExitDensity(np.array([0.0, 2.5]), np.array([0.0, 1.0]), 0.0, 0.0, 4.0),
+        polish=PassagePolish(PassageSpeeds(np.zeros((1, 2, 1))), 1.0, 0.5, 9, True, "done"),
+        exit_speeds_m_s=(2.5 + error).astype(np.float32),
+        exit_weight=np.ones(4000),
+        statistics=found,
+        brake_power=BrakePower(0.0, (0.0, 0.001), found.rms_m_s, found.rms_ci95_m_s),
+        unavoidable_rms_m_s=unavoidable,
+        unavoidable_ci95_m_s=ci95,
+        heard=HeardShares((), ()),
+        traces=(),
+        trace_factors=(),
+    )
+
+
+LIMITS = AcceptanceSettings(rms_m_s=0.1)
+
+
+def verdict(spread_m_s: float, unavoidable: float = 0.0, ci95: tuple[float, float] = (0.0, 0.0)) -> CaseVerdict:
+    """That on a case."""
+    return judge_sensor_case(case(spread_m_s, unavoidable, ci95), LIMITS)
+
+
+def test_a_case_is_judged_by_the_limits_unless_the_brake_alone_misses_them() -> None:
+    assert verdict(0.08).word == "accepted"
+    assert verdict(0.13).word == "missed"
+    assert verdict(0.10).word == "not decidable"
+    assert verdict(0.13, 0.06, (0.05, 0.07)).word == "missed"  # there is brake enough
+    short = verdict(0.3, 0.12, (0.11, 0.13))
+    assert (short.word, short.obstacle) == ("infeasible", "out of brake power")
+    unsure = verdict(0.3, 0.1, (0.09, 0.11))
+    assert unsure.word == "not decidable"
+    assert "too few to tell whether the brake suffices" in unsure.judgement.undecided[-1]
+    assert verdict(0.08, 0.1, (0.09, 0.11)).word == "accepted"
+
+
+def test_warnings_tell_of_a_polish_cut_short_and_of_escaped_probability() -> None:
+    plain = case(0.08, 0.0, (0.0, 0.0))
+    assert plain.warnings == ()
+    doubtful = replace(
+        plain,
+        polish=replace(plain.polish, converged=False, status="Iteration limit reached"),
+        predicted=replace(plain.predicted, escaped=1e-3),
+    )
+    assert "Iteration limit reached" in doubtful.warnings[0]
+    assert "lower grid.speed_step_m_s" in doubtful.warnings[1]
