@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from synth.problem.criterion import Criterion
     from synth.problem.problem import Problem
     from synth.problem.resolution import Resolution
+    from synth.simulation.passage_loop import close_passage_loop
+    from synth.simulation.sensor_fault_figures import fault_figures, single_faults
     from synth.yard.hump.event_file import read_events, write_events
     from synth.yard.hump.hump_control import HumpControl, Operation
     from synth.yard.hump.hump_state import replayed
@@ -57,6 +59,8 @@ __all__ = [
     "Simulated",
     "TrainPopulation",
     "car_names",
+    "close_passage_loop",
+    "fault_figures",
     "fit",
     "load_car",
     "load_config",
@@ -75,6 +79,7 @@ __all__ = [
     "record_of_word",
     "replayed",
     "simulate",
+    "single_faults",
     "solve",
     "tabulate",
     "trace",
@@ -105,6 +110,9 @@ _HOMES = {
     "record_of_word": "synth.yard.hump.machine_record",
     "replayed": "synth.yard.hump.hump_state",
     "write_events": "synth.yard.hump.event_file",
+    "close_passage_loop": "synth.simulation.passage_loop",
+    "fault_figures": "synth.simulation.sensor_fault_figures",
+    "single_faults": "synth.simulation.sensor_fault_figures",
 }
 """Where a public name is defined, if not in `synth.api`."""
 

@@ -18,7 +18,7 @@ from synth.solver.chain.chain import Chain
 from synth.solver.chain.epochs import Policy
 from synth.solver.exit_density import ExitDensity
 from synth.solver.policy_density import (
-    Probabilities,
+    CommandChances,
     commands,
     exit_density,
     forward_one,
@@ -100,8 +100,8 @@ class Evaluation:
 
     def _backward(
         self,
-        policy: Probabilities,
-        slopes: Probabilities,
+        policy: CommandChances,
+        slopes: CommandChances,
         i: int,
         density: NDArray[np.float64],
         band: NDArray[np.int64],

@@ -22,23 +22,23 @@ from synth.solver.chain.decisions import steps_of
 from synth.solver.chain.epochs import Policy
 from synth.solver.exit_density import ExitDensity
 
-Probabilities = NDArray[np.float64]
+CommandChances = NDArray[np.float64]
 """Of each command at every decision, stage and true speed, (C, R, K + 1, E); or their slopes by the lines."""
 
 
-def commands(chain: Chain, lines_m_s: NDArray[np.float64]) -> Probabilities:
+def commands(chain: Chain, lines_m_s: NDArray[np.float64]) -> CommandChances:
     """Probability of each command by `lines_m_s` (C, R, K + 1) under the chain's measurement."""
     return by_lines(command_probabilities, chain, lines_m_s)
 
 
-def slopes_of_commands(chain: Chain, lines_m_s: NDArray[np.float64]) -> Probabilities:
+def slopes_of_commands(chain: Chain, lines_m_s: NDArray[np.float64]) -> CommandChances:
     """How fast the probability to go as far as each command or farther changes with its line."""
     slopes = by_lines(command_slopes, chain, lines_m_s)
     slopes *= chain.measurement.slopes(lines_m_s)[..., None]
     return slopes
 
 
-def by_lines(kernel: Callable[..., None], chain: Chain, lines_m_s: NDArray[np.float64]) -> Probabilities:
+def by_lines(kernel: Callable[..., None], chain: Chain, lines_m_s: NDArray[np.float64]) -> CommandChances:
     """What `kernel` gives for the lines as the measurement has them."""
     lines, noise = chain.measurement.thresholds(lines_m_s)
     lines = np.array(lines)
@@ -50,7 +50,7 @@ def by_lines(kernel: Callable[..., None], chain: Chain, lines_m_s: NDArray[np.fl
     return found
 
 
-def commands_of(chain: Chain, policy: Policy) -> Probabilities:
+def commands_of(chain: Chain, policy: Policy) -> CommandChances:
     """Probability of each command of a policy."""
     return commands(chain, policy.at_decisions(chain.decisions))
 
@@ -100,7 +100,7 @@ def scenario_density(chain: Chain, exits: NDArray[np.float64], totals: NDArray[n
 
 
 def forward_pass(
-    c: Chain, policy: Probabilities, samples: NDArray[np.float64]
+    c: Chain, policy: CommandChances, samples: NDArray[np.float64]
 ) -> tuple[ExitDensity, NDArray[np.int64]]:
     """Forward recursion over all scenarios; `samples` (I, R, H, L, E) is filled unless its length R is 0."""
     weights, points = c.scenarios.weight, len(c.grid.speed_m_s)
@@ -117,7 +117,7 @@ def forward_pass(
 
 
 def forward_one(
-    c: Chain, policy: Probabilities, i: int, density: NDArray[np.float64], band: NDArray[np.int64]
+    c: Chain, policy: CommandChances, i: int, density: NDArray[np.float64], band: NDArray[np.int64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Forward recursion in scenario `i`: exit probabilities (E,) and the kernel's totals (4,)."""
     exits, totals = forward_all(c, policy, slice(i, i + 1), density[None], band[None])
@@ -125,7 +125,7 @@ def forward_one(
 
 
 def forward_all(
-    c: Chain, policy: Probabilities, scenarios: slice, density: NDArray[np.float64], band: NDArray[np.int64]
+    c: Chain, policy: CommandChances, scenarios: slice, density: NDArray[np.float64], band: NDArray[np.int64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Forward recursion in several scenarios: exit probabilities (I, E) and the kernel's totals (I, 4)."""
     factor = c.scenarios.factor[scenarios]

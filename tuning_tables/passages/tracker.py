@@ -76,8 +76,8 @@ def believed_passage(
         here, time = int(state[at]), state[at + 2]
         fast, slow = state[at + 1] * (one + limits[4]), state[at + 1] * (one - limits[4])
         fast_now, slow_now = v * (one + limits[4]), v * (one - limits[4])
-        follows = slow_now <= fast + limits[2] * time and fast_now >= slow - limits[3] * time
-        if found != NONE or state[at] == none or not follows:
+        parted = slow_now > fast + limits[2] * time or fast_now < slow - limits[3] * time
+        if found != NONE or state[at] == none or parted:
             continue
         both = limits[2] + limits[3]
         turn = min(max((fast_now - fast + limits[3] * time) / both, nought), time)

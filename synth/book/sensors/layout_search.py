@@ -17,8 +17,8 @@ from plant_models.point_sensors import SHORTEST_SECTION_M
 from synth.book.sensors.candidate_places import CandidatePlaces
 from synth.book.sensors.layout import equal_layout
 
-Numbers = tuple[int, ...]
-"""Numbers of the places at which deciding sensors stand, rising."""
+PlaceNumbers = tuple[int, ...]
+"""PlaceNumbers of the places at which deciding sensors stand, rising."""
 
 STRIDES = (6, 3, 1)
 """By so many places a sensor is moved, the longest first."""
@@ -39,9 +39,9 @@ class LayoutSearch:
     first_m: float
     exit_m: float
     threads: int = 1
-    known: dict[Numbers, float] = field(default_factory=dict, compare=False, repr=False)
+    known: dict[PlaceNumbers, float] = field(default_factory=dict, compare=False, repr=False)
 
-    def costs(self, layouts: Sequence[Numbers]) -> list[float]:
+    def costs(self, layouts: Sequence[PlaceNumbers]) -> list[float]:
         """Mean costs over the cases; infinite where sensors stand too near to each other or off the path."""
         asked = [each for each in dict.fromkeys(layouts) if each not in self.known]
         with ThreadPoolExecutor(max_workers=self.threads) as pool:
@@ -49,17 +49,17 @@ class LayoutSearch:
                 self.known[layout] = cost
         return [self.known[each] for each in layouts]
 
-    def places_m(self, layout: Numbers) -> tuple[float, ...]:
+    def places_m(self, layout: PlaceNumbers) -> tuple[float, ...]:
         """The places of a layout."""
         return tuple(round(self.path_m[number], 3) for number in layout)
 
-    def numbers(self, places_m: Sequence[float]) -> Numbers:
+    def numbers(self, places_m: Sequence[float]) -> PlaceNumbers:
         """The numbers of the places next to these."""
         return tuple(int(np.argmin(np.abs(np.array(self.path_m) - place))) for place in places_m)
 
-    def best_layouts(self, counts: Sequence[int]) -> dict[int, Numbers]:
+    def best_layouts(self, counts: Sequence[int]) -> dict[int, PlaceNumbers]:
         """The best layout found for each of the `counts` of deciding sensors."""
-        found: dict[int, Numbers] = {}
+        found: dict[int, PlaceNumbers] = {}
         for count in range(1, max(counts) + 1):
             starts = [self.numbers(equal_layout(self.first_m, self.exit_m, count))]
             if count > 1:
@@ -68,13 +68,13 @@ class LayoutSearch:
             found[count] = self.descended(starts[int(np.argmin(costs))])
         return {count: found[count] for count in counts}
 
-    def inserted(self, layout: Numbers) -> list[Numbers]:
+    def inserted(self, layout: PlaceNumbers) -> list[PlaceNumbers]:
         """Layouts with one more sensor, in the middle of a section, before the first or behind the last."""
         ends = [0, *layout, len(self.path_m) - 1]
         new = {(a + b) // 2 for a, b in pairwise(ends)} - set(layout)
         return [tuple(sorted((*layout, number))) for number in sorted(new)]
 
-    def descended(self, layout: Numbers) -> Numbers:
+    def descended(self, layout: PlaceNumbers) -> PlaceNumbers:
         """Sensors moved one by one while that pays."""
         best = layout
         for stride in STRIDES:
@@ -89,7 +89,7 @@ class LayoutSearch:
                         best, moved = tried[least], True
         return best
 
-    def _cost(self, layout: Numbers) -> float:
+    def _cost(self, layout: PlaceNumbers) -> float:
         if any(number < 0 or number >= len(self.path_m) for number in layout):
             return float("inf")
         places = [self.path_m[number] for number in layout]
@@ -98,6 +98,6 @@ class LayoutSearch:
         return sum(case.mean_cost(places) for case in self.cases) / len(self.cases)
 
 
-def shifted(layout: Numbers, sensor: int, by: int) -> Numbers:
+def shifted(layout: PlaceNumbers, sensor: int, by: int) -> PlaceNumbers:
     """`layout` with one sensor moved by so many nodes."""
     return tuple(number + by if which == sensor else number for which, number in enumerate(layout))

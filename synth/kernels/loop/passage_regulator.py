@@ -17,7 +17,7 @@ from synth.kernels.vector.borrowing import borrowing_inline
 from tuning_tables.passages import regulator, rule, tracker
 from tuning_tables.passages.regulator import PassageRule
 
-State = NDArray[np.float32]
+Tracked = NDArray[np.float32]
 
 NOT_HEARD, DECIDED, UNFINISHED, NOT_BELIEVED, NO_DECISION = 0, 1, 2, 3, 4
 """What came of a passage: never heard of, the rule was asked, a transient was unfinished, taken for no passage, taken
@@ -33,7 +33,13 @@ believed_passage = njit(cache=True, nogil=True)(tracker.believed_passage)
 
 @njit(cache=True, nogil=True)
 def noted_passage(
-    path_m: State, sensor_of: NDArray[np.int64], limits: State, state: State, sensor: int, since_s: float, v_m_s: float
+    path_m: Tracked,
+    sensor_of: NDArray[np.int64],
+    limits: Tracked,
+    state: Tracked,
+    sensor: int,
+    since_s: float,
+    v_m_s: float,
 ) -> int:
     """`believed_passage`, which notes its answer too: the step tells only the stage."""
     found = believed_passage(path_m, sensor_of, limits, state, sensor, since_s, v_m_s)
@@ -58,7 +64,7 @@ def stage_at_passage(law: PassageRule, heard: int, stage: int, v_m_s: float) -> 
 
 @borrowing_inline
 def stage_after_pair(
-    law: PassageRule, tracks: bool, state: State, sensor: int, since_s: float, over_base_s: float, reading_m_s: float,
+    law: PassageRule, tracks: bool, state: Tracked, sensor: int, since_s: float, over_base_s: float, reading_m_s: float,
     true_passage: int, stage: int, transient_ended: bool,
 ) -> Any:  # fmt: skip
     """(stage wanted, heard passage that the pair is taken for or −1); without tracker the passage is told."""

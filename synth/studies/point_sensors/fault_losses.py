@@ -12,7 +12,7 @@ from synth.simulation.passage_controller import of_table
 from synth.simulation.random_passes import RandomPasses
 from synth.simulation.sensor_fault_figures import FaultCase, FaultFigures, fault_figures, single_faults
 from synth.simulation.sensor_faults import together
-from synth.studies.point_sensors.findings import FaultRow
+from synth.studies.point_sensors.rows import FaultRow
 from synth.studies.point_sensors.sensor_table import SensorTable
 from synth.studies.point_sensors.sites import Site
 

@@ -21,7 +21,7 @@ from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.tuned_lines import tuned_lines
-from synth.studies.point_sensors.findings import ManyRow
+from synth.studies.point_sensors.rows import ManyRow
 from synth.studies.point_sensors.sensor_table import sensor_table
 from synth.studies.point_sensors.sites import Site, single_stage, site_of
 from synth.studies.tuned_table import rounded

@@ -24,7 +24,7 @@ from synth.present.plots.house_style import (
 from synth.studies.point_sensors.tables import kind_of
 
 if TYPE_CHECKING:
-    from synth.studies.point_sensors.findings import FaultRow, PointSensorWorth, RadarRow, SensorRow
+    from synth.studies.point_sensors.rows import FaultRow, RadarRow, SensorRow, WorthRows
 
 LOOK = {"first": (VERMILLION, "s"), "every": (BLUE, "o")}
 """Colour and marker by the axles that are decided on."""
@@ -32,7 +32,7 @@ LOOK = {"first": (VERMILLION, "s"), "every": (BLUE, "o")}
 COLUMNS = 3
 
 
-def by_number(found: PointSensorWorth) -> Figure:
+def by_number(found: WorthRows) -> Figure:
     """rms over the number of sensors, a panel a case; dashed: equal sections."""
     rows = -(-len(found.radar) // COLUMNS)
     columns = min(COLUMNS, len(found.radar))
@@ -79,7 +79,7 @@ def draw_case(axes: Axes, rows: list[SensorRow], radar: RadarRow) -> None:
     axes.axhline(radar.rms_m_s, color=GREY, ls="--", lw=1.1, zorder=1)
 
 
-def by_fault(found: PointSensorWorth) -> Figure:
+def by_fault(found: WorthRows) -> Figure:
     """The rms of every kind of fault at its worst sensor, a panel a case; hollow: without limits of the tracker."""
     cases = list(dict.fromkeys(row.case for row in found.faulty))
     kinds = list(dict.fromkeys(kind_of(row.fault) for row in found.faulty))
@@ -133,6 +133,6 @@ def draw_faults(axes: Axes, worst: dict[str, FaultRow], kinds: list[str], shift:
         axes.plot([whole * row.wide_ratio], [y], color=colour, marker=marker, ms=7, mfc="none")
 
 
-def figures(found: PointSensorWorth) -> Mapping[str, Figure]:
+def figures(found: WorthRows) -> Mapping[str, Figure]:
     """`number`, `faults`."""
     return {"number": by_number(found), "faults": by_fault(found)}

@@ -18,8 +18,9 @@ from synth.simulation.random_passes import RandomPasses
 from synth.simulation.stratified_passes import stratified_passes
 from synth.studies.options import option
 from synth.studies.point_sensors.fault_losses import fault_rows
-from synth.studies.point_sensors.findings import FaultRow, GridRow, PointSensorWorth, RadarRow, SensorRow
+from synth.studies.point_sensors.findings import PointSensorWorth
 from synth.studies.point_sensors.many_sensors import many_rows
+from synth.studies.point_sensors.rows import FaultRow, GridRow, RadarRow, SensorRow
 from synth.studies.point_sensors.sensor_table import AXLES, sensor_table, tabulated
 from synth.studies.point_sensors.sites import TEXTS, Site, sites
 from synth.studies.point_sensors.worth import Compared, MadeLayout, radar_row, sensor_rows

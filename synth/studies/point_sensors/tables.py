@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from synth.studies.markdown_table import ABSENT, MarkdownTable, around, plus_minus, table
 
 if TYPE_CHECKING:
-    from synth.studies.point_sensors.findings import FaultRow, PointSensorWorth, SensorRow
+    from synth.studies.point_sensors.rows import FaultRow, SensorRow, WorthRows
 
 COLUMNS = tuple((axles, layout) for axles in ("first", "every") for layout in ("equal", "planned"))
 """Axles and layout of the columns of `worth`."""
@@ -17,7 +17,7 @@ COLUMNS = tuple((axles, layout) for axles in ("first", "every") for layout in ("
 _NUMBERED = re.compile(r"^sensors? (\d+)( and \d+)? ")
 
 
-def tables_of(found: PointSensorWorth) -> Mapping[str, MarkdownTable]:
+def tables_of(found: WorthRows) -> Mapping[str, MarkdownTable]:
     """`worth`: a row a case and number; `proof`: beside the radar, honesty, regret; `layouts`: what a layout is worth;
     `exits`: besides the rms; `faults`: the worst sensor of each kind; `many`: towards a radar; `grid`: by grid."""
     return {
@@ -26,7 +26,7 @@ def tables_of(found: PointSensorWorth) -> Mapping[str, MarkdownTable]:
     }  # fmt: skip
 
 
-def worth(found: PointSensorWorth) -> MarkdownTable:
+def worth(found: WorthRows) -> MarkdownTable:
     """rms by number, axles and layout, and of the radar."""
     cells = []
     for radar in found.radar:
@@ -49,7 +49,7 @@ def rms_of(row: SensorRow | None) -> str:
     return ABSENT if row is None else rms(row.rms_m_s, row.rms_ci95_m_s)
 
 
-def proof(found: PointSensorWorth) -> MarkdownTable:
+def proof(found: WorthRows) -> MarkdownTable:
     """What stands behind the rms: beside the radar, honesty, regret."""
     rows = [
         (row.case, row.axles, str(row.sensors), row.layout, around(row.radar_ratio, row.radar_ratio_ci95, 2),
@@ -65,7 +65,7 @@ def proof(found: PointSensorWorth) -> MarkdownTable:
     )
 
 
-def layouts(found: PointSensorWorth) -> MarkdownTable:
+def layouts(found: WorthRows) -> MarkdownTable:
     """Planned beside equal sections and the rule."""
     rows = []
     for row in found.sensors:
@@ -91,7 +91,7 @@ def same(one: SensorRow, other: SensorRow) -> bool:
     return (one.case, one.axles, one.sensors) == (other.case, other.axles, other.sensors)
 
 
-def exits(found: PointSensorWorth) -> MarkdownTable:
+def exits(found: WorthRows) -> MarkdownTable:
     """Switchings, stalls, over-speed of planned layouts and of the radar."""
     rows = [
         (row.case, "radar", ABSENT, f"{row.switchings:.2f}", percent(row.overspeed, row.overspeed_ci95),
@@ -108,11 +108,11 @@ def exits(found: PointSensorWorth) -> MarkdownTable:
     return table(
         "switchings a pass; exits more than 0.3 m/s too fast and cars that stop in the position, % [95 %]",
         ("case", "sensors", "axles", "switchings", "too fast", "stalled"),
-        sorted(rows, key=lambda row: order.index(row[0])),
+        sorted(rows, key=lambda row: order.index(next(iter(row)))),
     )
 
 
-def faults(found: PointSensorWorth) -> MarkdownTable:
+def faults(found: WorthRows) -> MarkdownTable:
     """For each kind of fault the sensor at which it costs most."""
     worst: dict[tuple[str, str, str], FaultRow] = {}
     for row in found.faulty:
@@ -141,7 +141,7 @@ def fault_cells(row: FaultRow) -> tuple[str, ...]:
     )  # fmt: skip
 
 
-def many(found: PointSensorWorth) -> MarkdownTable:
+def many(found: WorthRows) -> MarkdownTable:
     """More and more sensors beside the radar."""
     return table(
         "the same noise, decisions as often: rms, m/s ± half its 95 % interval; ratio paired",
@@ -155,7 +155,7 @@ def many(found: PointSensorWorth) -> MarkdownTable:
     )  # fmt: skip
 
 
-def grid(found: PointSensorWorth) -> MarkdownTable:
+def grid(found: WorthRows) -> MarkdownTable:
     """Equal sections, tables made on several grids."""
     return table(
         "the same layout, equal sections, its table made on several grids: path step, m; speed step, m/s; frictions",

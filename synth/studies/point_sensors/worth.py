@@ -18,8 +18,8 @@ from synth.simulation.passage_sample import PassageSample
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from synth.solver.chain.chain import check_chain
-from synth.studies.point_sensors.findings import RadarRow, SensorRow, Told
 from synth.studies.point_sensors.layouts import Layouts, Places, by_rule, equal_sections, planned
+from synth.studies.point_sensors.rows import RadarRow, SensorRow, Told
 from synth.studies.point_sensors.sensor_table import AXLES, tabulated, unfinished_share
 from synth.studies.point_sensors.sites import Site
 from synth.studies.point_sensors.told import told_bound

@@ -20,7 +20,7 @@ from plant_models.frozen_arrays import frozen_arrays
 from synth.problem.resolution import Resolution, finer_for_check
 from synth.solver.chain.chain import Chain, check_chain
 from synth.solver.chain.scenarios import Scenarios, resistance_scenarios
-from synth.solver.policy_density import Probabilities, commands_of, forward_one
+from synth.solver.policy_density import CommandChances, commands_of, forward_one
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tabulate import lines_of
 from synth.studies.rare_events.adaptive_simpson import adaptive_simpson
@@ -167,7 +167,7 @@ def tail_integral(
     )
 
 
-def policy_of(transitions: Chain, table: ControllerTable) -> Probabilities:
+def policy_of(transitions: Chain, table: ControllerTable) -> CommandChances:
     """Command probabilities of the table's float32 lines, the stages that the cut may use."""
     lines, stages = lines_of(table, transitions.grid.path_m), transitions.actuator.stages
     used = SwitchingLines(lines.nodes_m, lines.lower_m_s[:stages], lines.upper_m_s[:stages])
@@ -182,7 +182,7 @@ def cells_above(transitions: Chain, limits_m_s: NDArray[np.float64]) -> NDArray[
 
 
 def exits_by_scenario(
-    transitions: Chain, policy: Probabilities, threads: int
+    transitions: Chain, policy: CommandChances, threads: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Exit probabilities (I, E) of every hidden scenario, and what is missing (I,): |1 − all that arrived|."""
 

@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from plant_models import Approach, Plant, PointSensors, deciding_passages, every_axle, passages
+from plant_models.credible_motion import credible_motion
 from synth.configuration.config_file import load_config
 from synth.simulation.controllers import TableController
-from plant_models.credible_motion import credible_motion
 from synth.simulation.nominal_pass import nominal_entry_m_s, nominal_pass, nominal_plant, one_pass
 from synth.simulation.nominal_response import NominalResponse, nominal_response
 from synth.simulation.passage_controller import PassageController
