@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from plant_models import Approach, Plant, PointSensors, every_axle, first_axle
+from synth.book.highest_stage import highest_stage
 from synth.book.validate_table import alike, numbers
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.faults.input_error import InputError
@@ -75,18 +74,6 @@ def differences(table: PassageTable, plant: Plant) -> Iterator[str]:
         yield f"cut.entrance_stage ({plant.entrance_stage}, in the table {table.approach.entrance_stage})"
     if cut.category != table.cut.category:
         yield f"cut.category ({cut.category}, in the table {table.cut.category})"
-
-
-def highest_stage(table: PassageTable) -> int:
-    """The highest stage that the table ever asks for from a lower one; it has rows for those above, too."""
-    top = len(table.pressure_kpa) - 1
-    raised = [
-        wanted + 1
-        for stage in range(top)
-        for wanted in range(stage, top)
-        if np.isfinite(table.switching_m_s[:, stage, wanted]).any()
-    ]
-    return max([table.initial_stage, *raised])
 
 
 def require_same_places(ours: PointSensors, theirs: PointSensors, what: str) -> None:

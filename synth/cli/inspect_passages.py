@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from synth.book.passage_class import highest_stage
+from synth.book.highest_stage import highest_stage
 from tuning_tables.passages.document import to_passage_document
 from tuning_tables.passages.passage_row import PassageRow
 from tuning_tables.passages.passage_table import PassageTable

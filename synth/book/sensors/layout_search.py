@@ -85,7 +85,7 @@ class LayoutSearch:
                     tried = [best, *(shifted(best, sensor, by) for by in (-stride, stride))]
                     costs = self.costs(tried)
                     least = int(np.argmin(costs))
-                    if costs[least] < costs[0] * (1.0 - LEAST_GAIN):
+                    if costs[least] < costs[0] - LEAST_GAIN * abs(costs[0]):
                         best, moved = tried[least], True
         return best
 
@@ -93,7 +93,7 @@ class LayoutSearch:
         if any(number < 0 or number >= len(self.path_m) for number in layout):
             return float("inf")
         places = [self.path_m[number] for number in layout]
-        if any(b - a < SHORTEST_SECTION_M for a, b in pairwise(places)) or places[0] > 0.0:
+        if any(b - a < SHORTEST_SECTION_M for a, b in pairwise(places)) or places[0] >= 0.0:
             return float("inf")
         return sum(case.mean_cost(places) for case in self.cases) / len(self.cases)
 

@@ -61,7 +61,7 @@ def test_the_cost_of_a_layout_is_that_of_its_own_chain(plant_22t: Plant) -> None
 
 def test_the_search_finds_what_exhaustive_search_finds(places: CandidatePlaces) -> None:
     """Three sensors on sixteen places, all 560 layouts."""
-    grid = np.array([-9.0, -6.0, -3.0, 0.0, *np.arange(3.0, 36.5, 3.0)])
+    grid = np.array([-9.0, -6.0, -3.0, -0.5, *np.arange(3.0, 36.5, 3.0)])
     search = LayoutSearch((places,), tuple(grid.tolist()), -8.0, 37.0)
     every = [layout for layout in itertools.combinations(range(len(grid)), 3) if grid[layout[0]] <= 0.0]
     costs = search.costs(every)

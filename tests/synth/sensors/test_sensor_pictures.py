@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from synth.book.passage_class import highest_stage
+from synth.book.highest_stage import highest_stage
 from synth.present.plots.figure_file import draw
 from synth.present.plots.sensors.passes_with_readings import passes_figure
 from synth.present.plots.sensors.switching_speeds import colour_of, columns_m, switching_speeds, wanted_edges_m_s

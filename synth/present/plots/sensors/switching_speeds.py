@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from synth.book.passage_class import highest_stage
+from synth.book.highest_stage import highest_stage
 from synth.present.plots.house_style import (
     BLUE,
     ENTRANCE_STYLE,
