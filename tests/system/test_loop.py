@@ -59,7 +59,9 @@ def test_a_table_for_point_sensors_is_shown_too(command: Command, two_classes: P
     assert found["difference"]["agrees"] is True
     assert found["difference"]["parted_s"] is None
     assert found["simulator"]["commands"]
-    assert [each["sensor"] for each in found["simulator"]["readings"]] == [0, 1, 2, 3]
+    heard = [each["sensor"] for each in found["simulator"]["readings"]]  # every axle is heard
+    assert list(dict.fromkeys(heard)) == [0, 1, 2, 3]
+    assert len(heard) > 4
     names = {path.name for path in (tmp_path / "out").iterdir()}
     assert names == {
         "loops.json",
