@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from plant_models import Plant, PointSensors, deciding_passages, every_axle, passages
 from synth.simulation.controllers import fixed
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.regulator import PassageRule, rule_of
@@ -61,6 +63,28 @@ def for_kernel(rule: PassageRule) -> PassageRule:
         fixed(rule.limits, np.float32),
         np.float32(rule.base_m),
     )
+
+
+def of_speeds(
+    plant: Plant, sensors: PointSensors, switching_m_s: NDArray[np.floating], limits: tuple[float, ...] = ()
+) -> PassageController:
+    """The regulator with `switching_m_s` (M, K + 1, K) at the passages at which the cut of `plant` decides.
+
+    With the six `limits` of a tracker (`tuning_tables.passages.tracker`) it tracks, else it is told each passage.
+    """
+    met = deciding_passages(sensors, plant.cut, plant.exit_m)
+    heard = passages(replace(sensors, axles=every_axle), plant.cut)
+    rule = PassageRule(
+        switching_m_s.astype(np.float32),
+        plant.entrance_stage,
+        sum(each.path_m < 0.0 for each in met),
+        np.array([each.path_m for each in heard], dtype=np.float32),
+        np.array([each.sensor for each in heard], dtype=np.int64),
+        np.array([met.index(each) if each in met else -1 for each in heard], dtype=np.int64),
+        np.array(limits or [0.0] * LIMITS, dtype=np.float32),
+        np.float32(sensors.base_m),
+    )
+    return PassageController(rule, tracks=bool(limits))
 
 
 def of_table(table: PassageTable, tracking: bool) -> PassageController:

@@ -29,6 +29,9 @@ CONFIGURATIONS = {
     **{name: f'{FEW}{ENTRANCE}[retarder]\nname = "{name}"\n' for name in position_names()},
     "estimator": f"{FEW}{ENTRANCE}estimator = true\n{KNOWN_MEAN}{GONDOLA}",
     "approach": f"{FEW}{AHEAD}",
+    "example of the README": (
+        f'{FEW}{AHEAD}[targets]\nexit_speeds_m_s = [3.0]\n[[cut]]\ncar = "gondola-4"\nmass_t = 52\n'
+    ),
     "approach, estimator": f"{FEW}{AHEAD}estimator = true\n{KNOWN_MEAN}{GONDOLA}",
     "approach, estimator, reserve": f"{FEW}{AHEAD}estimator = true\n[friction]\nmean_cv = 0.15\n{GONDOLA}",
     "p_overspeed": f"{FEW}{ENTRANCE}[criterion]\np_overspeed = 0.02\n[targets]\nexit_speeds_m_s = [2.0]\n{GONDOLA}",

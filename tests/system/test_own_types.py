@@ -146,5 +146,5 @@ def test_init_prints_every_kind_of_type(command: Command, tmp_path: Path) -> Non
     assert "did you mean gondola-4?" in command("init", "--car", "gondola").sentence
     assert "one file at a time" in command("init", "--car", "--sensor").sentence
     assert set(json.loads(command("init", "--list", "--json").out)["library"]) == {
-        "positions", "retarders", "cars", "sensors", "weight_categories", "tracks", "car_mixes",
+        "positions", "retarders", "cars", "sensors", "wheel_sensors", "weight_categories", "tracks", "car_mixes",
     }  # fmt: skip

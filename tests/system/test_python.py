@@ -186,7 +186,7 @@ def test_the_example_of_the_readme_runs_and_makes_the_table_of_the_default_book(
     printed = run(example + store, tmp_path)
     assert re.fullmatch(r"predicted 0\.0\d+ m/s, Simulated\(20000 passes, seed 1: rms .* m/s\)\n", printed)
     assert (tmp_path / "table.png").read_bytes().startswith(b"\x89PNG")
-    kept = json.loads((ROOT / "tests/system/coefficients.json").read_text())["approach"]
+    kept = json.loads((ROOT / "tests/system/coefficients.json").read_text())["example of the README"]
     assert coefficients_sha256(read_json(tmp_path / "table.json")) == kept["gondola-4-52t-to-3-m-s"]
 
 

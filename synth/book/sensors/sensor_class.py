@@ -15,12 +15,11 @@ from synth.configuration.point_sensors.resolved_sensors import ResolvedSensors
 from synth.kernels.loop.closed_loop import Draws
 from synth.problem.resolution import Resolution
 from synth.simulation.filled_trace import filled_trace
-from synth.simulation.passage_controller import LIMITS, PassageController
+from synth.simulation.passage_controller import PassageController, of_speeds
 from synth.simulation.passage_loop import PassageLoop, close_passage_loop
 from synth.simulation.passage_sample import PassageSample, PassageTrace
 from synth.simulation.random_passes import RandomPasses
 from synth.solver.tabulate import LOWEST_VALID_SPEED_M_S
-from tuning_tables.passages.regulator import PassageRule
 
 TRACE_STEP_S = 0.05
 """Between points of a traced pass, which has events of its own only at coils and changes of pressure."""
@@ -87,19 +86,9 @@ def sensor_passes(plant: Plant, sensors: PointSensors, passes: RandomPasses) -> 
 
 def full_brake(loop: PassageLoop) -> PassageController:
     """The rule that wants the highest stage allowed at every passage; it is told which passage each is."""
-    top, stages, heard, deciding = loop.plant.top_stage, loop.stages, loop.heard, loop.deciding
-    rows = np.full((len(deciding.path_m), stages, stages - 1), -np.inf, dtype=np.float32)
+    top, stages = loop.plant.top_stage, loop.stages
+    rows = np.full((len(loop.deciding.path_m), stages, stages - 1), -np.inf, dtype=np.float32)
     for stage in range(stages):
         rows[:, stage, stage:] = LOWEST_VALID_SPEED_M_S
         rows[:, stage, max(stage, top) :] = np.inf
-    rule = PassageRule(
-        rows,
-        loop.plant.entrance_stage,
-        int(np.count_nonzero(deciding.path_m < 0.0)),
-        heard.path_m.astype(np.float32),
-        heard.sensor,
-        heard.decides,
-        np.zeros(LIMITS, dtype=np.float32),
-        np.float32(loop.sensors.base_m),
-    )
-    return PassageController(rule, tracks=False)
+    return of_speeds(loop.plant, loop.sensors, rows)

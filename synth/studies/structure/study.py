@@ -12,13 +12,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from plant_models import Approach, Plant, PointSensors, deciding_passages, every_axle, passages
-from plant_models.credible_motion import credible_motion
+from plant_models import Approach, Plant, PointSensors, deciding_passages
+from synth.book.sensors.passage_table import plausible_motion
 from synth.configuration.config_file import load_config
 from synth.simulation.controllers import TableController
 from synth.simulation.nominal_pass import nominal_entry_m_s, nominal_pass, nominal_plant, one_pass
 from synth.simulation.nominal_response import NominalResponse, nominal_response
-from synth.simulation.passage_controller import PassageController
+from synth.simulation.passage_controller import PassageController, of_speeds
 from synth.simulation.passage_loop import PassageLoop, close_passage_loop
 from synth.simulation.passage_response import passage_response
 from synth.simulation.passes import PassTrace
@@ -33,7 +33,6 @@ from synth.studies.structure.wired_passages import wired_passage_pass
 from synth.studies.structure.wired_radar import wired_radar_pass
 from synth.studies.study import Findings, Method, Tell
 from synth.studies.tuned_table import tuned_table
-from tuning_tables.passages.regulator import PassageRule
 
 SENSORS = PointSensors((-5.0, 4.0, 10.0, 17.0, 24.0, 30.0))
 BRAKING_STEP_M_S2 = 0.22
@@ -257,18 +256,8 @@ def energy_rule(plant: Plant, sensors: PointSensors, target_m_s: float) -> Passa
     left_m = plant.exit_m - np.array([max(each.path_m, 0.0) for each in met])
     rates = BRAKING_STEP_M_S2 * (np.arange(plant.top_stage) + 0.4)
     speeds = np.sqrt(target_m_s**2 + 2.0 * rates * left_m[:, None])
-    heard = passages(replace(sensors, axles=every_axle), plant.cut)
-    rule = PassageRule(
-        np.repeat(speeds[:, None, :], plant.top_stage + 1, axis=1).astype(np.float32),
-        plant.entrance_stage,
-        sum(each.path_m < 0.0 for each in met),
-        np.array([each.path_m for each in heard], dtype=np.float32),
-        np.array([each.sensor for each in heard], dtype=np.int64),
-        np.array([met.index(each) if each in met else -1 for each in heard], dtype=np.int64),
-        np.array(credible_motion(plant, sensors), dtype=np.float32),
-        np.float32(sensors.base_m),
-    )
-    return PassageController(rule, tracks=True)
+    of_each_stage = np.repeat(speeds[:, None, :], plant.top_stage + 1, axis=1)
+    return of_speeds(plant, sensors, of_each_stage, plausible_motion(plant, sensors).numbers)
 
 
 METHOD = Method(Options, Options(entries=(0.5,)), Structure, run)

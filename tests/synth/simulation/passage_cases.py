@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models import Approach, Plant, PointSensors, deciding_passages, every_axle, passages
+from plant_models import Approach, Plant, PointSensors, deciding_passages
 from synth.book.sensors.passage_table import plausible_motion
-from synth.simulation.passage_controller import PassageController
+from synth.simulation.passage_controller import PassageController, of_speeds
 from synth.simulation.passage_loop import PassageLoop
 from synth.simulation.passage_sample import PassageTrace
 from synth.simulation.random_passes import RandomPasses
-from tuning_tables.passages.regulator import PassageRule
 
 SENSORS = PointSensors((-5.0, 4.0, 10.0, 17.0, 24.0, 30.0))
 CREDIBLE = (0.2, 9.0, 0.15, 3.5, 0.06, 0.3)
@@ -34,25 +32,6 @@ def limits_of(plant: Plant, sensors: PointSensors) -> tuple[float, ...]:
     return plausible_motion(plant, sensors).numbers
 
 
-def rule_of(
-    plant: Plant, sensors: PointSensors, switching_m_s: NDArray[np.floating], limits: tuple[float, ...] = ()
-) -> PassageController:
-    """The regulator with these switching speeds, (M, K + 1, K); with `limits` it tracks, else it is told."""
-    met = deciding_passages(sensors, plant.cut, plant.exit_m)
-    heard = passages(replace(sensors, axles=every_axle), plant.cut)
-    rule = PassageRule(
-        switching_m_s.astype(np.float32),
-        plant.entrance_stage,
-        sum(each.path_m < 0.0 for each in met),
-        np.array([each.path_m for each in heard], dtype=np.float32),
-        np.array([each.sensor for each in heard], dtype=np.int64),
-        np.array([met.index(each) if each in met else -1 for each in heard], dtype=np.int64),
-        np.array(limits or CREDIBLE, dtype=np.float32),
-        np.float32(sensors.base_m),
-    )
-    return PassageController(rule, bool(limits))
-
-
 def braking_rule(
     plant: Plant, sensors: PointSensors, target_m_s: float, limits: tuple[float, ...] = ()
 ) -> PassageController:
@@ -62,14 +41,14 @@ def braking_rule(
     left_m = plant.exit_m - np.array([max(each.path_m, 0.0) for each in met])
     rates = 0.22 * (np.arange(top) + 0.4)
     speeds = np.sqrt(target_m_s**2 + 2.0 * rates * left_m[:, None])
-    return rule_of(plant, sensors, np.repeat(speeds[:, None, :], top + 1, axis=1), limits)
+    return of_speeds(plant, sensors, np.repeat(speeds[:, None, :], top + 1, axis=1), limits)
 
 
 def holding_rule(plant: Plant, sensors: PointSensors, limits: tuple[float, ...] = ()) -> PassageController:
     """No command, whatever is read."""
     top, passages = plant.top_stage, len(deciding_passages(sensors, plant.cut, plant.exit_m))
     never = np.where(np.arange(top) < np.arange(top + 1)[:, None], -np.inf, np.inf)
-    return rule_of(plant, sensors, np.repeat(never[None], passages, axis=0), limits)
+    return of_speeds(plant, sensors, np.repeat(never[None], passages, axis=0), limits)
 
 
 def followed(loop: PassageLoop, controller: PassageController, passes: RandomPasses) -> list[PassageTrace]:

@@ -23,6 +23,7 @@ from plant_models import (
 from plant_models.stage_regulator import stage_locked_actuator
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.exit_statistics import exit_statistics
+from synth.simulation.passage_controller import of_speeds
 from synth.simulation.passage_loop import close_passage_loop, simulate_passages
 from synth.simulation.passage_sample import DECIDED, NOT_HEARD, UNFINISHED, PassageSample, unfinished_shares
 from synth.simulation.random_passes import RandomPasses, random_passes
@@ -34,7 +35,6 @@ from tests.synth.simulation.passage_cases import (
     exact,
     followed,
     holding_rule,
-    rule_of,
     with_approach,
 )
 
@@ -161,7 +161,7 @@ def test_a_reading_that_is_missing_commands_nothing(plant: Plant, passes: Random
     last = np.where(np.arange(6) < 3, 0.0, np.inf)[:, None, None]
     silent = np.where(np.isinf(last), holding_rule(plant, SENSORS).rule.switching_m_s, rule.rule.switching_m_s)
     assert np.array_equal(
-        sample.exit_speed_m_s, loop.run(rule_of(plant, SENSORS, silent), loop.draws(passes)).exit_speed_m_s
+        sample.exit_speed_m_s, loop.run(of_speeds(plant, SENSORS, silent), loop.draws(passes)).exit_speed_m_s
     )
 
 
@@ -195,7 +195,7 @@ def test_a_passage_counts_only_where_the_transient_has_ended(plant: Plant, passe
 
 def test_before_the_entrance_no_higher_stage_is_entered(passes: RandomPasses) -> None:
     plant = with_approach(pilot_plant(52.0), 5.0, entrance_stage=2, initial_stage=1)
-    always = rule_of(plant, SENSORS, np.zeros((6, 5, 4)))
+    always = of_speeds(plant, SENSORS, np.zeros((6, 5, 4)))
     for trace in followed(close_passage_loop(plant, SENSORS, 5), always, passes.part(0, 3)):
         assert trace.stage[0] == 1
         assert list(trace.readings.stage[:2]) == [2, 4]
@@ -270,7 +270,7 @@ def test_any_rule_and_sensors_end_every_pass(data: st.DataObject) -> None:
     rng = np.random.default_rng(data.draw(st.integers(0, 2**32)))
     speeds = np.sort(rng.uniform(0.0, 7.0, (count, top + 1, top)), axis=2)
     speeds[rng.random(speeds.shape) < 0.1] = np.inf
-    sample = simulate_passages(plant, sensors, rule_of(plant, sensors, np.sort(speeds, axis=2)), 11, 60)
+    sample = simulate_passages(plant, sensors, of_speeds(plant, sensors, np.sort(speeds, axis=2)), 11, 60)
     require_sound(sample, top)
 
 
@@ -295,8 +295,8 @@ def test_what_does_not_fit_is_refused(plant: Plant) -> None:
     with pytest.raises(ValueError, match="no axle at which is decided passes"):
         close_passage_loop(plant, PointSensors((80.0,)), 5)
     with pytest.raises(ValueError, match="has shape"):
-        rule_of(plant, SENSORS, np.zeros((6, 4, 4)))
+        of_speeds(plant, SENSORS, np.zeros((6, 4, 4)))
     with pytest.raises(ValueError, match="must not fall"):
-        rule_of(plant, SENSORS, np.tile([4.0, 3.0, 5.0, 6.0], (6, 5, 1)))
+        of_speeds(plant, SENSORS, np.tile([4.0, 3.0, 5.0, 6.0], (6, 5, 1)))
     with pytest.raises(ValueError, match="six numbers"):
         braking_rule(plant, SENSORS, 3.0, limits=(1.0, 2.0))

@@ -25,13 +25,13 @@ from plant_models.point_sensors import Axles
 from synth.kernels.loop.closed_loop import Draws
 from synth.simulation.closed_loop import LineController, close_loop
 from synth.simulation.exit_statistics import exit_statistics
-from synth.simulation.passage_controller import PassageController
+from synth.simulation.passage_controller import PassageController, of_speeds
 from synth.simulation.passage_loop import PassageLoop, close_passage_loop
 from synth.simulation.random_passes import random_passes
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.switching_lines import SwitchingLines
 from tests.synth.conftest import pilot_plant
-from tests.synth.simulation.passage_cases import SENSORS, braking_rule, rule_of, with_approach
+from tests.synth.simulation.passage_cases import SENSORS, braking_rule, with_approach
 
 Floats = NDArray[np.float64]
 
@@ -197,7 +197,7 @@ def test_many_sensors_are_a_radar_with_the_same_noise() -> None:
     radar = replace(plant, sensor=DopplerSensor(9.0 * 2e-4 / 0.05, 0.0, 0.1, 0.02))
     top, passages = plant.top_stage, len(deciding_passages(sensors, plant.cut, plant.exit_m))
     line = np.where(np.arange(top) < np.arange(top + 1)[:, None], 3.0, 3.2)
-    rule = rule_of(plant, sensors, np.repeat(line[None], passages, axis=0))
+    rule = of_speeds(plant, sensors, np.repeat(line[None], passages, axis=0))
     lines = SwitchingLines(
         np.array([0.0, plant.exit_m]),
         np.repeat([[-np.inf]] + [[3.0]] * top, 2, axis=1),

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from plant_models import Plant, PointSensors, every_axle, first_axle
 from plant_models.point_sensors import Axles
+from synth.simulation.passage_controller import of_speeds
 from synth.simulation.passage_loop import PassageLoop, close_passage_loop, simulate_passages
 from synth.simulation.passage_sample import DECIDED, NOT_BELIEVED, NOT_HEARD, PassReadings
 from synth.simulation.random_passes import RandomPasses, random_passes
@@ -31,7 +32,7 @@ from synth.simulation.sensor_faults import (
 )
 from synth.simulation.stratified_passes import stratified_passes
 from tests.synth.conftest import pilot_plant
-from tests.synth.simulation.passage_cases import SENSORS, braking_rule, holding_rule, limits_of, rule_of, with_approach
+from tests.synth.simulation.passage_cases import SENSORS, braking_rule, holding_rule, limits_of, with_approach
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +83,7 @@ def test_wherever_sensors_stand_the_tracker_believes_the_truth(data: st.DataObje
     rng = np.random.default_rng(data.draw(st.integers(0, 2**32)))
     loop, top = close_passage_loop(plant, sensors, plant.top_stage + 1), plant.top_stage
     speeds = np.sort(rng.uniform(2.0, 7.0, (len(loop.deciding.path_m), top + 1, top)), axis=2)
-    tracking = rule_of(plant, sensors, speeds, limits_of(plant, sensors))
+    tracking = of_speeds(plant, sensors, speeds, limits_of(plant, sensors))
     sample = loop.run(tracking, loop.draws(stratified_passes(9, 0, 200)))
     # Beyond 4 standard deviations, or slower than is believed, a pair may be lost; a wrong one is never believed.
     assert np.count_nonzero(sample.outcome == NOT_BELIEVED) <= 2 + 0.05 * np.count_nonzero(sample.stalled)
@@ -98,7 +99,7 @@ def test_a_dead_sensor_is_as_one_that_never_commands(plant: Plant, loop: Passage
         speeds = rule.rule.switching_m_s.copy()
         speeds[sensor] = holding_rule(plant, SENSORS).rule.switching_m_s[sensor]
         sample = loop.run(rule, draws, together(SENSORS, [DeadSensor(sensor)]))
-        silent = loop.run(rule_of(plant, SENSORS, speeds), draws)
+        silent = loop.run(of_speeds(plant, SENSORS, speeds), draws)
         np.testing.assert_allclose(sample.exit_speed_m_s, silent.exit_speed_m_s, rtol=1e-9)
         assert np.array_equal(sample.switchings, silent.switchings)
         assert np.all(sample.outcome[:, sensor] == NOT_HEARD)
@@ -216,7 +217,7 @@ def test_any_faults_leave_a_sound_loop(data: st.DataObject) -> None:
     loop, top = close_passage_loop(plant, sensors, plant.top_stage + 1), plant.top_stage
     rng = np.random.default_rng(data.draw(st.integers(0, 2**32)))
     speeds = np.sort(rng.uniform(0.0, 8.0, (len(loop.deciding.path_m), top + 1, top)), axis=2)
-    rule = rule_of(plant, sensors, speeds, limits_of(plant, sensors))
+    rule = of_speeds(plant, sensors, speeds, limits_of(plant, sensors))
     drawn = stratified_passes(12, data.draw(st.integers(0, 999)), 40)
     sample = loop.run(rule, loop.draws(drawn), together(sensors, faults))
     assert np.all(np.isfinite(sample.exit_speed_m_s) & (sample.exit_speed_m_s >= 0.0))
