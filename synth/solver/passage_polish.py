@@ -9,10 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.solver.backward_induction import Solution
-from synth.solver.chain.decisions import steps_of
 from synth.solver.evaluation import Evaluation
 from synth.solver.one_blas_thread import one_blas_thread
-from synth.solver.passage_speeds import PassageSpeeds, ordered, passage_speeds
+from synth.solver.passage_speeds import PassageSpeeds, ordered, parted_by, passage_speeds
 from synth.solver.policy_density import density_and_occupancy
 from synth.solver.polynomial_fit import off_line_cost, stage_occupancy
 
@@ -78,18 +77,6 @@ def by_switching(by_lines: NDArray[np.float64], stages: int) -> NDArray[np.float
     found = np.zeros((by_lines.shape[1], stages, stages - 1))
     for command, stage, parted in parted_by(len(by_lines), stages):
         found[:, stage, parted] = by_lines[command, :, stage]
-    return found
-
-
-def parted_by(commands: int, stages: int) -> list[tuple[int, int, int]]:
-    """(command, stage, index of the switching speed in its row) of every line that there can be."""
-    found = []
-    for command in range(commands):
-        step = steps_of(command)
-        for stage in range(stages):
-            parted = stage + step if step < 0 else stage + step - 1
-            if 0 <= parted < stages - 1:
-                found.append((command, stage, parted))
     return found
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -38,30 +39,31 @@ class PassageSpeeds:
 
     def at_decisions(self, decisions: Decisions) -> NDArray[np.float64]:
         """The lines (C, R, K + 1) of commands by up to K stages."""
-        passages, stages, top = self.switching_m_s.shape
-        lines = np.empty((decisions.commands, passages, stages))
-        for command in range(decisions.commands):
-            step = steps_of(command)
-            lines[command] = np.inf if step > 0 else -np.inf
-            for stage in range(stages):
-                parted = stage + step if step < 0 else stage + step - 1
-                if 0 <= parted < top:
-                    lines[command, :, stage] = self.switching_m_s[:, stage, parted]
+        lines = np.empty((decisions.commands, *self.switching_m_s.shape[:2]))
+        lines[0::2], lines[1::2] = -np.inf, np.inf
+        for command, stage, parted in parted_by(decisions.commands, self.stages):
+            lines[command, :, stage] = self.switching_m_s[:, stage, parted]
         return lines
+
+
+def parted_by(commands: int, stages: int) -> Iterator[tuple[int, int, int]]:
+    """(command, stage in force, index of the switching speed in its row) of every line that there can be."""
+    for command in range(commands):
+        step = steps_of(command)
+        for stage in range(stages):
+            parted = stage + step if step < 0 else stage + step - 1
+            if 0 <= parted < stages - 1:
+                yield command, stage, parted
 
 
 def passage_speeds(lines_m_s: NDArray[np.float64]) -> PassageSpeeds:
     """The policy of lines (C, R, K + 1); where a line to go down reaches the one to go up, both make room."""
     commands, passages, stages = lines_m_s.shape
-    top = stages - 1
-    t = np.empty((passages, stages, top))
+    t = np.empty((passages, stages, stages - 1))
     for stage in range(stages):
         t[:, stage, :stage], t[:, stage, stage:] = -np.inf, np.inf
-        for command in range(commands):
-            step = steps_of(command)
-            parted = stage + step if step < 0 else stage + step - 1
-            if 0 <= parted < top:
-                t[:, stage, parted] = lines_m_s[command, :, stage]
+    for command, stage, parted in parted_by(commands, stages):
+        t[:, stage, parted] = lines_m_s[command, :, stage]
     return PassageSpeeds(ordered(t))
 
 

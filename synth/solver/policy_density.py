@@ -47,6 +47,7 @@ def by_lines(kernel: Callable[..., None], chain: Chain, lines_m_s: NDArray[np.fl
         lines[command, before, max(chain.plant.entrance_stage + 1 - steps_of(command), 0) :] = np.inf
     found = before_a_pack((*lines.shape, len(chain.grid.speed_m_s)))
     kernel(lines, chain.measurement.readings(chain.grid.speed_m_s), noise, found)
+    found *= chain.epochs.heard
     return found
 
 

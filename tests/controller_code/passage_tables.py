@@ -16,8 +16,9 @@ from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.plausible_motion import PlausibleMotion
 from tuning_tables.passages.sensor_layout import DecidesOn, SensorLayout
 
-BUNCH = (-4.0, 2.0, 9.5, 14.0, 21.25, 30.0, 39.0)
-"""The last one stands behind the exit and logs."""
+BUNCH = (-4.0, 2.0, 10.65, 14.0, 21.25, 30.0, 39.0)
+"""The third one stands two axles of a four-axle car behind the second: their pairs come together. The last one stands
+behind the exit and logs."""
 
 MOTION = PlausibleMotion((0.3, 12.0), 0.6, 2.5, 0.06, 0.25)
 

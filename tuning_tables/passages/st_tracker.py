@@ -6,8 +6,9 @@ from typing import Final
 
 NEXT: Final = """\
 FUNCTION_BLOCK RETARDER_NEXT_PASSAGE
-(* The first passage of a sensor behind the last one that the cut can have reached since, with the speed there and the
-   speed now as far off as allowed. It rolls farthest if it gains speed first and loses it last, least far if it loses
+(* The first passage of a sensor, but for the last one itself, that the cut can have reached since, with the speed there
+   and the speed now as far off as allowed; or just before, when the pairs of two passages near to each other came in the
+   other order. It rolls farthest if it gains speed first and loses it last, least far if it loses
    first and gains last. *)
 VAR_INPUT
     Last : INT; (* the last passage heard; -1: none, and there is no next one *)
@@ -103,8 +104,8 @@ IF (Last >= 0) AND (Last < Table.Heard) AND (Table.Heard <= $HEARD) THEN
         Nearest := Rest * Nearest;
         Nearest := Part + Nearest;
         Nearest := Nearest - Table.PathTolerance_m;
-        FOR Index := Last + 1 TO Table.Heard - 1 DO
-            IF (Passage < 0) AND (Table.Sensor[Index] = Sensor) THEN
+        FOR Index := 0 TO Table.Heard - 1 DO
+            IF (Passage < 0) AND (Index <> Last) AND (Table.Sensor[Index] = Sensor) THEN
                 Way := Table.Path_m[Index] - Table.Path_m[Last];
                 IF (Nearest <= Way) AND (Way <= Farthest) THEN
                     Passage := Index;
@@ -136,6 +137,7 @@ VAR
     Finder : RETARDER_NEXT_PASSAGE;
     Sound : BOOL;
     First : INT;
+    Last : INT;
     Index : INT;
 END_VAR
 
@@ -171,6 +173,7 @@ IF (Table.Heard >= 1) AND (Table.Heard <= $HEARD) THEN
         END_IF;
     END_IF;
     IF First >= 0 THEN
+        Last := Tracker.Passage;
         IF (Tracker.Passage < 0) AND (Tracker.Rival < 0) THEN
             Passage := First;
         ELSE
@@ -178,6 +181,7 @@ IF (Table.Heard >= 1) AND (Table.Heard <= $HEARD) THEN
                 Sensor := Sensor, Now_m_s := Speed_m_s, Table := Table);
             Passage := Finder.Passage;
             IF Passage < 0 THEN
+                Last := Tracker.Rival;
                 Finder(Last := Tracker.Rival, Speed_m_s := Tracker.RivalSpeed_m_s, Time_s := Tracker.RivalTime_s,
                     Sensor := Sensor, Now_m_s := Speed_m_s, Table := Table);
                 Passage := Finder.Passage;
@@ -185,6 +189,9 @@ IF (Table.Heard >= 1) AND (Table.Heard <= $HEARD) THEN
         END_IF;
         IF Passage >= 0 THEN
             Tracker.Passage := Passage;
+            IF Last > Passage THEN
+                Tracker.Passage := Last;
+            END_IF;
             Tracker.Speed_m_s := Speed_m_s;
             Tracker.Time_s := 0.0;
             Tracker.Rival := -1;

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant, PointSensors
 from synth.problem.aim import Aim
@@ -19,27 +18,15 @@ from synth.solver.backward_induction import solve_all
 from synth.solver.chain.chain import Chain, persistent_chain
 from synth.solver.chain.decisions import Decisions
 from synth.solver.chain.grid import Grid, make_grid
-from synth.solver.chain.passage_measurement import PassageMeasurement
-from synth.solver.chain.sensor_passages import entry_at_start
+from synth.solver.chain.sensor_passages import PlaceEpochs
 
 COARSE = Resolution(path_step_m=0.5, speed_step_m_s=0.06, friction_nodes=4, path_levels=2, resistance_nodes=1)
 """What layouts are compared on before the best of them are tuned."""
 
 
 @dataclass(frozen=True)
-class EveryNode:
+class EveryNode(PlaceEpochs):
     """Decisions at every path node, as if there were a sensor `clock` at each."""
-
-    clock: PointSensors
-
-    @property
-    def hold_period_s(self) -> float:
-        """0: the next decision is at a place."""
-        return 0.0
-
-    def substeps(self, resolution: Resolution) -> int:
-        """One: the clock's steps are short."""
-        return 1
 
     def grid(self, plant: Plant, resolution: Resolution) -> Grid:
         """Uniform in path and energy."""
@@ -47,24 +34,9 @@ class EveryNode:
 
     def decisions(self, plant: Plant, grid: Grid) -> Decisions:
         """At every node, with the command half a base behind."""
-        nodes = len(grid.path_m) - 1
-        return Decisions(np.arange(nodes), np.full(nodes, 0.5 * self.clock.base_m), plant.top_stage)
-
-    def entry(self, plant: Plant, grid: Grid) -> NDArray[np.float64]:
-        """All where the regulator begins to act."""
-        return entry_at_start(plant, grid)
-
-    def reading_std_m_s(self, speed_m_s: float) -> float:
-        """That of a sensor."""
-        return float(self.clock.reading_std_m_s(speed_m_s))
-
-    def measurement(self, plant: Plant, grid: Grid) -> PassageMeasurement:
-        """Read at the node itself."""
-        return PassageMeasurement(self.clock, grid.speed_m_s, np.zeros((1, 1)))
-
-    def predicted_measurement(self, plant: Plant, grid: Grid) -> PassageMeasurement:
-        """The same."""
-        return self.measurement(plant, grid)
+        node = np.arange(len(grid.path_m) - 1)
+        lead = np.full(len(node), 0.5 * self.clock.base_m)
+        return Decisions(node, node * grid.path_step_m, lead, plant.top_stage)
 
 
 @dataclass(frozen=True)
@@ -102,7 +74,7 @@ class CandidatePlaces:
         place = np.add.outer(np.asarray(sensors_m), np.asarray(self.axle_offsets_m)).ravel() - c.grid.path_m[0]
         node = np.unique(np.rint(place / step).astype(np.int64))
         node = node[(node >= 0) & (node < len(c.drive_m_s2))]
-        decisions = Decisions(node, c.decisions.lead_m[node], c.decisions.farthest)
+        decisions = Decisions(node, c.decisions.place_m[node], c.decisions.lead_m[node], c.decisions.farthest)
         landings = replace(c.landings, ends=np.ascontiguousarray(c.landings.ends[node]))
         return replace(c, decisions=decisions, landings=landings)
 

@@ -48,15 +48,19 @@ class TunedPassages:
 class PassageChains:
     """The chains of one plant with point sensors: to design switching speeds on, and to predict finished ones."""
 
+    sensors: PointSensors
     design: Chain
     check: Chain
 
 
-def passage_chains(plant: Plant, sensors: PointSensors, resolution: Resolution) -> PassageChains:
-    """Both chains; `plant` begins at the first sensor (`with_point_sensors`)."""
-    epochs = SensorPassages(sensors)
-    design = persistent_chain(plant, resolution, epochs)
-    return PassageChains(design, check_chain(plant, finer_for_check(resolution), epochs))
+def passage_chains(plant: Plant, sensors: PointSensors, resolution: Resolution, missed: float = 0.0) -> PassageChains:
+    """Both chains; `plant` begins at the first sensor (`with_point_sensors`).
+
+    `missed`: share of the passages that the design counts as not heard; the prediction hears all of them.
+    """
+    design = persistent_chain(plant, resolution, SensorPassages(sensors, missed))
+    check = check_chain(plant, finer_for_check(resolution), SensorPassages(sensors))
+    return PassageChains(sensors, design, check)
 
 
 def tuned_passages(chains: PassageChains, aim: Aim) -> TunedPassages:
@@ -65,10 +69,7 @@ def tuned_passages(chains: PassageChains, aim: Aim) -> TunedPassages:
     found = polish_passages(solution)
     speeds = rounded(found.speeds)
     predicted = resolved_density(chains.check, speeds, aim.target_speed_m_s)
-    epochs = chains.design.epochs
-    if not isinstance(epochs, SensorPassages):
-        raise TypeError("tuned passages: the chains are not of point sensors")
-    return TunedPassages(chains.design.plant, epochs.clock, aim, speeds, replace(found, speeds=speeds), predicted)
+    return TunedPassages(chains.design.plant, chains.sensors, aim, speeds, replace(found, speeds=speeds), predicted)
 
 
 def rounded(speeds: PassageSpeeds) -> PassageSpeeds:

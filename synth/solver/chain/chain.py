@@ -37,9 +37,9 @@ class Chain:
     """One plant on the grid of one resolution; everything but policy and aim.
 
     `epochs`: when the regulator decides, and `decisions` where that is on the grid. `measurement`: the measured speed
-    as command probabilities take it. `drive_m_s2`, `brake_m_s2_per_kpa` (N,): cell means. `entry` (M + 1, E):
-    probability of entry energy j with the first decision at path node r. `entry_mode`: the resting mode that the
-    regulator finds.
+    as command probabilities take it. `drive_m_s2`, `brake_m_s2_per_kpa` (N,): cell means, times the cell's width over
+    ΔS. `entry` (M + 1, E): probability of entry energy j with the first decision at path node r. `entry_mode`: the
+    resting mode that the regulator finds.
     """
 
     plant: Plant
@@ -108,8 +108,8 @@ def chain_of(
         measurement=epochs.measurement(plant, grid),
         grid=grid,
         actuator=actuator,
-        drive_m_s2=coefficients.free_m_s2(plant.resistance.mean_n_per_kn),
-        brake_m_s2_per_kpa=coefficients.brake_m_s2_per_kpa,
+        drive_m_s2=coefficients.free_m_s2(plant.resistance.mean_n_per_kn) * grid.stretch,
+        brake_m_s2_per_kpa=coefficients.brake_m_s2_per_kpa * grid.stretch,
         landings=landings,
         path_noise=path_noise,
         transient_noise=noise_on_landings(path_noise, landings, grid),

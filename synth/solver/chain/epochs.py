@@ -34,6 +34,11 @@ class DecisionEpochs(Protocol):
         ...
 
     @property
+    def heard(self) -> float:
+        """Probability that a decision is taken where one may be; else the stage is held."""
+        ...
+
+    @property
     def hold_period_s(self) -> float:
         """Time until the next decision while a stage is held; 0: it is at a place, not a time away."""
         ...

@@ -78,7 +78,7 @@ def finer_end(chain: Chain, lines_m_s: NDArray[np.float64], length_m: float, tim
     gained = float(np.maximum(drive + chain.scenarios.extra_m_s2.max(), 0.0).sum()) * grid.path_step_m
     points = times * min(cells + math.ceil(gained / grid.energy_step_m2_s2) + MARGIN_CELLS, len(grid.speed_m_s))
     energy = grid.energy_step_m2_s2 / times * np.arange(points, dtype=np.float64)
-    finer = Grid(grid.path_m[node:].copy(), energy, np.sqrt(2.0 * energy))
+    finer = Grid(grid.path_m[node:].copy(), grid.path_step_m, energy, np.sqrt(2.0 * energy))
     landings = chain.landings
     ends = np.empty((*landings.ends[first:].shape[:4], len(in_whole_packs(energy))))
     refine_landings(landings.ends, landings.points, first, times, ends)

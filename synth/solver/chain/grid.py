@@ -18,24 +18,35 @@ from synth.problem.resolution import Resolution, finer_for_check
 MARGIN_CELLS = 10
 """Cells of the energy grid above the fastest pass: interpolation there must not ripple into it."""
 
+EVEN = 1e-9
+"""Quanta whose widths differ by no more than this part are alike."""
+
 
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Grid:
     """Nodes of the state space.
 
-    `path_m` (N + 1,): s_n = s_0 + n·ΔS, from where the regulator acts to S_exit; `energy_m2_s2` (E,): e_j = j·Δe,
-    e_0 = 0 standing for a stall; `speed_m_s` (E,) = sqrt(2 e).
+    `path_m` (N + 1,): rising, from where the regulator acts to S_exit; `path_step_m`: their mean distance ΔS;
+    `energy_m2_s2` (E,): e_j = j·Δe, e_0 = 0 standing for a stall; `speed_m_s` (E,) = sqrt(2 e).
+    Sweeps count path in quanta of ΔS. Where the nodes are uneven, each quantum stands for the path between its nodes.
     """
 
     path_m: NDArray[np.float64]
+    path_step_m: float
     energy_m2_s2: NDArray[np.float64]
     speed_m_s: NDArray[np.float64]
 
     @property
-    def path_step_m(self) -> float:
-        """ΔS."""
-        return float(self.path_m[1] - self.path_m[0])
+    def stretch(self) -> NDArray[np.float64] | float:
+        """Width of every quantum over ΔS, (N,); 1 where all are alike."""
+        widths = np.diff(self.path_m) / self.path_step_m
+        return 1.0 if np.ptp(widths) < EVEN else widths
+
+    def counted_m(self, node: int, travel_m: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Path from a node on, as sweeps count it; a stall, −1, stays one."""
+        quanta = np.interp(self.path_m[node] + travel_m, self.path_m, np.arange(len(self.path_m))) - node
+        return np.where(travel_m < 0.0, travel_m, quanta * self.path_step_m)
 
     @property
     def energy_step_m2_s2(self) -> float:
@@ -52,7 +63,8 @@ def make_grid(plant: Plant, resolution: Resolution) -> Grid:
     fastest = plant.start_speed_m_s(np.array(plant.entry.high_m_s), plant.resistance.mean_n_per_kn)
     top = 0.5 * max(plant.entry.high_m_s, float(fastest)) ** 2 + downhill + MARGIN_CELLS * step
     energy = step * np.arange(math.ceil(top / step) + 1, dtype=np.float64)
-    return Grid(np.linspace(plant.start_m, plant.exit_m, quanta + 1), energy, np.sqrt(2.0 * energy))
+    path = np.linspace(plant.start_m, plant.exit_m, quanta + 1)
+    return Grid(path, float(path[1] - path[0]), energy, np.sqrt(2.0 * energy))
 
 
 def memory_estimate_bytes(plant: Plant, designs: Sequence[Resolution]) -> int:

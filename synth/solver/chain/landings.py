@@ -54,7 +54,7 @@ class Landings:
 
     @property
     def travel_m(self) -> NDArray[np.float64]:
-        """Path until the end of the transient, or to S_exit, (R, ·, F, E); −1 for a stall."""
+        """Path until the end of the transient, or to S_exit, as sweeps count it, (R, ·, F, E); −1 for a stall."""
         return self.ends[..., 0, : self.points]
 
     @property
@@ -95,9 +95,12 @@ def make_landings(
     ends = np.empty((len(decisions), len(used), len(factors), 2, len(speed)))
     length_m = (len(grid.path_m) - 1) * grid.path_step_m
     land(
-        decisions.node * grid.path_step_m, decisions.lead_m, np.array(held), length_m / len(drive), work, drive,
+        decisions.place_m, decisions.lead_m, np.array(held), length_m / len(drive), work, drive,
         overpressure, samples, actuator.substeps, period_s / actuator.substeps, factors, speed, ends,
     )  # fmt: skip
+    if not isinstance(grid.stretch, float):
+        for decision, node in enumerate(decisions.node):
+            ends[decision, :, :, 0] = grid.counted_m(node, ends[decision, :, :, 0])
     return Landings(factors, ends, change_chain, actuator.chain_mode[used], overpressure, samples, len(grid.speed_m_s))
 
 

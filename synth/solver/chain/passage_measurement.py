@@ -26,12 +26,11 @@ class PassageMeasurement:
 
     The errors of a good sensor are smaller than the cells of the grid. Without the width of the cell, a command would
     come or go for the mass of a whole cell at once, and the cost would be no smooth function of the lines.
-    `speed_m_s` (E,) of the grid; `ahead_m2_s2` (R, K + 1): what v² grows by from the node to where the speed is read.
+    `speed_m_s` (E,) of the grid.
     """
 
     sensors: PointSensors
     speed_m_s: Floats
-    ahead_m2_s2: Floats
 
     @property
     def std(self) -> float:
@@ -55,36 +54,27 @@ class PassageMeasurement:
         return found
 
     def thresholds(self, lines_m_s: Floats) -> tuple[Floats, float]:
-        """Lines in readings at the node; infinite ones stay so."""
+        """Lines in readings; infinite ones stay so."""
         finite = np.isfinite(lines_m_s)
         found = np.array(lines_m_s)
-        found[finite] = self.readings(self._at_node(lines_m_s)[finite])
+        found[finite] = self.readings(lines_m_s[finite])
         return found, 1.0
 
     def slopes(self, lines_m_s: Floats) -> Floats:
         """Derivatives of the thresholds by the lines; 0 where a line is infinite."""
         v, integral = self._table
-        at_node = np.clip(np.where(np.isfinite(lines_m_s), self._at_node(lines_m_s), v[0]), v[0], v[-1])
-        cell = np.clip(np.searchsorted(v, at_node) - 1, 0, len(v) - 2)
-        slope = (integral[cell + 1] - integral[cell]) / (v[cell + 1] - v[cell])
-        moved = np.where(np.isfinite(lines_m_s), lines_m_s / np.maximum(at_node, SLOWEST_M_S), 0.0)
-        found: Floats = np.where(np.isfinite(lines_m_s), slope * moved, 0.0)
+        finite = np.isfinite(lines_m_s)
+        cell = np.clip(np.searchsorted(v, np.where(finite, lines_m_s, v[0])) - 1, 0, len(v) - 2)
+        found: Floats = np.where(finite, (integral[cell + 1] - integral[cell]) / (v[cell + 1] - v[cell]), 0.0)
         return found
 
     def speeds(self, lines: Floats) -> Floats:
-        """Lines in m/s where the speed is read, of lines in readings at the node."""
+        """Lines in m/s of lines in readings."""
         v, integral = self._table
         finite = np.isfinite(lines)
-        at_node = np.interp(np.where(finite, lines, 0.0), integral, v)
-        read = np.sqrt(np.maximum(at_node**2 + self.ahead_m2_s2, SLOWEST_M_S**2))
-        found: Floats = np.where(finite, read, lines)
+        found: Floats = np.where(finite, np.interp(np.where(finite, lines, 0.0), integral, v), lines)
         return found
 
     def behind(self, first: int, speed_m_s: Floats) -> PassageMeasurement:
-        """The same at the decisions from number `first` on, on another grid."""
-        return PassageMeasurement(self.sensors, speed_m_s, self.ahead_m2_s2[first:])
-
-    def _at_node(self, lines_m_s: Floats) -> Floats:
-        """Speeds at the node of speeds where they are read."""
-        finite = np.where(np.isfinite(lines_m_s), lines_m_s, 1.0)
-        return np.sqrt(np.maximum(finite**2 - self.ahead_m2_s2, SLOWEST_M_S**2))
+        """The same on another grid."""
+        return PassageMeasurement(self.sensors, speed_m_s)

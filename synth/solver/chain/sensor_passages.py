@@ -15,7 +15,6 @@ from plant_models import (
     PlantError,
     PointSensors,
     deciding_passages,
-    path_coefficients,
 )
 from synth.problem.resolution import Resolution
 from synth.solver.chain.decisions import Decisions
@@ -23,25 +22,30 @@ from synth.solver.chain.grid import Grid, make_grid
 from synth.solver.chain.passage_measurement import PassageMeasurement
 from synth.solver.chain.speed_measurement import SpeedMeasurement
 
-FINER_AT_MOST = 1.3
-"""The path step is made finer, by no more than this, until the passages lie near to nodes."""
+APART_M = 1e-3
+"""Passages stand no nearer to each other than this."""
 
-STEPS_TRIED = 60
+QUANTA_A_PASSAGE = 1.5
+"""The grid has at least so many for each passage."""
 
 LEAST_REACH = 3
 """Rows of an entry distribution that the recursions need."""
 
 
 @dataclass(frozen=True)
-class SensorPassages:
-    """The regulator decides at the passages over the sensors `clock`; a command may go to any stage.
+class PlaceEpochs:
+    """Decisions at places at which the sensors `clock` are passed; a command may go to any stage.
 
-    A passage lies at the path node next to the middle of the sensor's base: what is read there is the speed at that
-    place, and the command leaves half a base behind it, after the second pulse. Both are taken at their true places;
-    only whether a transient has ended in time is told at the node.
+    A share `missed` of the passages is not heard, each by itself: nothing is decided there.
     """
 
     clock: PointSensors
+    missed: float = 0.0
+
+    @property
+    def heard(self) -> float:
+        """What is not missed."""
+        return 1.0 - self.missed
 
     @property
     def hold_period_s(self) -> float:
@@ -51,6 +55,39 @@ class SensorPassages:
     def substeps(self, resolution: Resolution) -> int:
         """One: the clock's steps are short."""
         return 1
+
+    def entry(self, plant: Plant, grid: Grid) -> NDArray[np.float64]:
+        """Entry speed by its law, all at the first place; the mean energy is kept."""
+        count = 2000 if plant.entry.high_m_s > plant.entry.low_m_s else 1
+        at_entrance = plant.entry.speed_m_s((np.arange(count) + 0.5) / count)
+        v = plant.start_speed_m_s(at_entrance, plant.resistance.mean_n_per_kn)
+        position = 0.5 * v**2 / grid.energy_m2_s2[1]
+        cell = np.minimum(position.astype(int), len(grid.energy_m2_s2) - 2)
+        entry = np.zeros((LEAST_REACH, len(grid.energy_m2_s2)))
+        np.add.at(entry[0], cell, (1.0 - (position - cell)) / count)
+        np.add.at(entry[0], cell + 1, (position - cell) / count)
+        return entry
+
+    def reading_std_m_s(self, speed_m_s: float) -> float:
+        """That of a sensor."""
+        return float(self.clock.reading_std_m_s(speed_m_s))
+
+    def measurement(self, plant: Plant, grid: Grid) -> SpeedMeasurement:
+        """Timing, tolerance of the base and quantisation as one error."""
+        return PassageMeasurement(self.clock, grid.speed_m_s)
+
+    def predicted_measurement(self, plant: Plant, grid: Grid) -> SpeedMeasurement:
+        """The same: the timer's steps are much finer than its noise and the grid."""
+        return self.measurement(plant, grid)
+
+
+@dataclass(frozen=True)
+class SensorPassages(PlaceEpochs):
+    """The regulator decides at the passages over the sensors `clock`.
+
+    Every passage, the middle of the sensor's base, is a path node: the speed read is that at the node, a transient has
+    ended in time if it ended before the node, and the command leaves half a base behind it, after the second pulse.
+    """
 
     def passages(self, plant: Plant) -> tuple[Passage, ...]:
         """Those that decide, in the order of the path; `PlantError` if the first is not where the plant begins."""
@@ -63,61 +100,27 @@ class SensorPassages:
         return found
 
     def grid(self, plant: Plant, resolution: Resolution) -> Grid:
-        """Of the path steps that are a little finer, the one whose nodes lie nearest to the passages."""
-        length_m = plant.exit_m - plant.start_m
-        place_m = np.array([each.path_m for each in self.passages(plant)]) - plant.start_m
-        least = max(4, round(length_m / resolution.path_step_m), math.ceil(1.5 * len(place_m)))
-        tried = np.unique(np.linspace(least, FINER_AT_MOST * least, STEPS_TRIED).astype(int))
-        off = [np.abs(place_m - nodes_of(place_m, length_m / n, int(n)) * (length_m / n)).max() for n in tried]
-        best = int(tried[int(np.argmin(np.round(off, 9)))])
-        return make_grid(plant, replace(resolution, path_step_m=length_m / best))
+        """Nodes at the passages, and between them evenly."""
+        place_m, length_m = self._places_m(plant), plant.exit_m - plant.start_m
+        step_m = min(resolution.path_step_m, length_m / math.ceil(QUANTA_A_PASSAGE * len(place_m)))
+        even = make_grid(plant, replace(resolution, path_step_m=step_m))
+        quanta = len(even.path_m) - 1
+        node = nodes_of(place_m, even.path_step_m, quanta)
+        path = np.interp(np.arange(quanta + 1), [*node, quanta], [*place_m, length_m])
+        return replace(even, path_m=plant.start_m + path)
 
     def decisions(self, plant: Plant, grid: Grid) -> Decisions:
-        """At the node next to the middle of each base, and no two at one."""
-        place_m = np.array([each.path_m for each in self.passages(plant)]) - plant.start_m
+        """At the nodes of the passages."""
+        place_m = self._places_m(plant)
         node = nodes_of(place_m, grid.path_step_m, len(grid.path_m) - 1)
-        return Decisions(node, place_m + 0.5 * self.clock.base_m - node * grid.path_step_m, plant.top_stage)
+        return Decisions(node, place_m, np.full(len(node), 0.5 * self.clock.base_m), plant.top_stage)
 
-    def entry(self, plant: Plant, grid: Grid) -> NDArray[np.float64]:
-        """Entry speed by its law, all at the first passage."""
-        return entry_at_start(plant, grid)
-
-    def reading_std_m_s(self, speed_m_s: float) -> float:
-        """That of a sensor."""
-        return float(self.clock.reading_std_m_s(speed_m_s))
-
-    def measurement(self, plant: Plant, grid: Grid) -> SpeedMeasurement:
-        """Timing, tolerance of the base and quantisation as one error, read at the true place of the passage."""
-        decisions = self.decisions(plant, grid)
-        off_m = decisions.lead_m - 0.5 * self.clock.base_m
-        return PassageMeasurement(self.clock, grid.speed_m_s, 2.0 * off_m[:, None] * held_m_s2(plant, grid, decisions))
-
-    def predicted_measurement(self, plant: Plant, grid: Grid) -> SpeedMeasurement:
-        """The same: the timer's steps are much finer than its noise and the grid."""
-        return self.measurement(plant, grid)
-
-
-def entry_at_start(plant: Plant, grid: Grid) -> NDArray[np.float64]:
-    """Entry speed by its law, all where the regulator begins to act, (3, E); the mean energy is kept."""
-    count = 2000 if plant.entry.high_m_s > plant.entry.low_m_s else 1
-    at_entrance = plant.entry.speed_m_s((np.arange(count) + 0.5) / count)
-    v = plant.start_speed_m_s(at_entrance, plant.resistance.mean_n_per_kn)
-    position = 0.5 * v**2 / grid.energy_m2_s2[1]
-    cell = np.minimum(position.astype(int), len(grid.energy_m2_s2) - 2)
-    entry = np.zeros((LEAST_REACH, len(grid.energy_m2_s2)))
-    np.add.at(entry[0], cell, (1.0 - (position - cell)) / count)
-    np.add.at(entry[0], cell + 1, (position - cell) / count)
-    return entry
-
-
-def held_m_s2(plant: Plant, grid: Grid, decisions: Decisions) -> NDArray[np.float64]:
-    """Acceleration at every decision while a stage is held, mean friction and resistance, (R, K + 1)."""
-    cells = path_coefficients(plant.position, plant.cut, plant.profile, grid.path_m)
-    free = cells.free_m_s2(plant.resistance.mean_n_per_kn)[decisions.node]
-    pressures = np.array(plant.position.stage_pressures_kpa[: plant.top_stage + 1])
-    over = np.maximum(0.0, pressures - plant.position.force.touch_pressure_kpa)
-    held: NDArray[np.float64] = free[:, None] - cells.brake_m_s2_per_kpa[decisions.node, None] * over
-    return held
+    def _places_m(self, plant: Plant) -> NDArray[np.float64]:
+        """Path of the passages from the first on."""
+        place_m = np.array([each.path_m for each in self.passages(plant)]) - plant.start_m
+        rank = np.arange(len(place_m)) * APART_M
+        apart = np.maximum.accumulate(place_m - rank) + rank
+        return np.minimum(apart, plant.exit_m - plant.start_m - APART_M - rank[::-1])
 
 
 def nodes_of(place_m: NDArray[np.float64], step_m: float, steps: int) -> NDArray[np.int64]:

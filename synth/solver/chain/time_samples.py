@@ -22,6 +22,11 @@ class TimeSamples:
     clock: DopplerSensor
 
     @property
+    def heard(self) -> float:
+        """1: every sample is taken."""
+        return 1.0
+
+    @property
     def hold_period_s(self) -> float:
         """The sampling period."""
         return self.clock.sample_period_s
@@ -37,7 +42,7 @@ class TimeSamples:
     def decisions(self, plant: Plant, grid: Grid) -> Decisions:
         """At every path node, where samples are gathered."""
         nodes = len(grid.path_m) - 1
-        return Decisions(np.arange(nodes), np.zeros(nodes), 1)
+        return Decisions(np.arange(nodes), np.arange(nodes) * grid.path_step_m, np.zeros(nodes), 1)
 
     def entry(self, plant: Plant, grid: Grid) -> NDArray[np.float64]:
         """The first sample lies within a period of where the regulator acts."""

@@ -61,6 +61,21 @@ def test_of_one_axle_a_lost_pair_costs_itself_alone(run: TruePass, data: st.Data
     assert believed(run, [run.pulses[number] for number in kept]) == kept
 
 
+@pytest.mark.parametrize("ahead_m", [-0.002, 0.0, 0.002])
+def test_pairs_of_two_passages_at_one_place_are_believed_in_either_order(ahead_m: float) -> None:
+    """Two sensors as far apart as two axles: the first axle is over the second sensor as the other is over the first."""
+    path = np.array([0.0, 8.65, 8.65 + ahead_m, 17.3])
+    order = np.argsort(path, kind="stable")
+    run = TruePass(path[order].astype(np.float32), np.array([0, 1, 0, 1])[order], ())
+    for at in (2, 1):
+        pulses = [(path[number] / 4.0, number % 2, 4.0) for number in (0, at, 3 - at, 3)]
+        pulses[2] = (max(pulses[1][0], pulses[2][0]), *pulses[2][1:])
+        assert [run.sensor[answer] for answer in believed(run, pulses)] == [sensor for _, sensor, _ in pulses]
+        assert sorted(believed(run, pulses)) == [0, 1, 2, 3]
+        again = believed(run, [*pulses[:3], pulses[2], pulses[3]])
+        assert again[4] == 3
+
+
 def with_one_more(run: TruePass, data: st.DataObject) -> tuple[list[Pulse], int]:
     """The pairs of `run` with a false one, of any sensor, time and speed, and its place."""
     last = run.pulses[-1][0]
