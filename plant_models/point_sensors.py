@@ -45,7 +45,9 @@ class PointSensors:
     `base_m`: distance of the coils; `base_tolerance`: std of its relative error, lasting for each sensor and unknown to
     the regulator. `timer_noise_s`: std of a measured time; `timer_resolution_s`: times are whole multiples of it, 0:
     not quantised. `computing_delay_s`: from the second pulse to the command on the wires. `scan_period_s`: step of
-    the regulator's clock; a transient is over at the first step after its end. `axles`: those that it decides on.
+    the regulator's clock; a transient is over at the first step after its end. `missed_share`: of the passages, each by
+    itself, that the design of a table counts as not heard, so that a lost one costs less; a simulated pass loses none
+    unless a fault says so. `axles`: those that the regulator decides on.
     """
 
     path_m: tuple[float, ...]
@@ -55,6 +57,7 @@ class PointSensors:
     timer_resolution_s: float = 1e-4
     computing_delay_s: float = 0.02
     scan_period_s: float = 0.02
+    missed_share: float = 0.01
     axles: Axles = first_axle
 
     def __post_init__(self) -> None:
@@ -80,6 +83,7 @@ class PointSensors:
         require_between("sensors: timer_resolution_s", self.timer_resolution_s, 0.0, 0.05)
         require_between("sensors: computing_delay_s", self.computing_delay_s, 0.0, 2.0)
         require_between("sensors: scan_period_s", self.scan_period_s, 0.001, 0.5)
+        require_between("sensors: missed_share", self.missed_share, 0.0, 0.5)
 
     @property
     def sample_period_s(self) -> float:

@@ -17,6 +17,7 @@ WHEEL_SENSOR_SCHEMA: Mapping[str, Quantity] = {
     "timer_resolution_s": Quantity("s", number),
     "computing_delay_s": Quantity("s", number),
     "scan_period_s": Quantity("s", number),
+    "missed_share": Quantity("1", number),
 }
 """Every key of a wheel sensor's file."""
 

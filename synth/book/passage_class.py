@@ -101,5 +101,5 @@ def sensors_of(layout: SensorLayout) -> PointSensors:
     return PointSensors(
         layout.path_m, layout.base_m, layout.base_tolerance, layout.timer_noise_s, layout.timer_resolution_s,
         layout.computing_delay_s, layout.scan_period_s,
-        every_axle if layout.decides_on is DecidesOn.EVERY_AXLE else first_axle,
+        axles=every_axle if layout.decides_on is DecidesOn.EVERY_AXLE else first_axle,
     )  # fmt: skip

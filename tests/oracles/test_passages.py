@@ -28,7 +28,10 @@ from synth.solver.passage_speeds import PassageSpeeds, passage_speeds
 from synth.solver.policy_density import commands_of, forward_all
 
 TINY = Resolution(path_step_m=0.5, speed_step_m_s=0.14, friction_nodes=2, path_levels=2)
-SENSORS = PointSensors((-2.0, 0.6, 2.4), timer_noise_s=3e-3, timer_resolution_s=0.0, scan_period_s=0.05)
+SENSORS = PointSensors(
+    (-2.0, 0.6, 2.4), timer_noise_s=3e-3, timer_resolution_s=0.0, scan_period_s=0.05, missed_share=0.15
+)
+HEARD = 0.85
 TARGET_M_S = 2.4
 CRITERION = Criterion(stall_cost_m2_s2=0.5, switching_tolerance_m2_s2=1e-4)
 ROUNDING = 1e-9
@@ -168,7 +171,7 @@ class PlainLoops:
                 chance = {
                     c: probability(line, float(readings[j]), c % 2 == 1) for (kk, c), line in lines.items() if kk == k
                 }
-                exact = {c: p - chance.get(c + 2, 0.0) for c, p in chance.items()}
+                exact = {c: HEARD * (p - chance.get(c + 2, 0.0)) for c, p in chance.items()}
                 value = sum(p * change[c, *x][j] for c, p in exact.items() if p != 0.0)
                 row.append(value + (1.0 - sum(exact.values())) * held[x][j])
             self.value[n, *x] = row

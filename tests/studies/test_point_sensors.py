@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from plant_models import PointSensors
-from synth.book.sensors.candidate_places import CandidatePlaces, LayoutCase, candidate_places
+from synth.book.sensors.candidate_places import LayoutCase, candidate_places
 from synth.book.sensors.layout import equal_layout, with_layout
-from synth.book.sensors.layout_plan import LayoutProblem
+from synth.book.sensors.layout_plan import LayoutProblem, found_layouts
 from synth.book.sensors.tuned_passages import PassageChains, TunedPassages, passage_chains, tuned_passages
 from synth.faults.input_error import InputError
 from synth.problem.resolution import Resolution
@@ -22,13 +22,7 @@ from synth.solver.chain.sensor_passages import with_point_sensors
 from synth.solver.policy_density import exit_density
 from synth.studies.point_sensors.fault_losses import fault_rows
 from synth.studies.point_sensors.findings import PointSensorWorth
-from synth.studies.point_sensors.layouts import (
-    LEAST_COST_M2_S2,
-    SEARCH,
-    HonestPlaces,
-    equal_sections,
-    planned,
-)
+from synth.studies.point_sensors.layouts import equal_sections
 from synth.studies.point_sensors.rows import FaultRow, ManyRow, SensorRow
 from synth.studies.point_sensors.sensor_table import AXLES, SensorTable, tabulated, unfinished_share
 from synth.studies.point_sensors.sites import TEXTS, Site, single_stage, site_of, sites
@@ -120,20 +114,13 @@ def test_the_unfinished_share_is_of_the_passages_heard() -> None:
 def test_planned_layouts_can_be_tables_and_beat_equal_sections_by_the_cost_searched(site: Site, axles: str) -> None:
     kind = PointSensors((0.0,), axles=AXLES[axles])
     problem = LayoutProblem((LayoutCase(site.plant, (site.aim,)),), kind, COARSE)
-    (places,) = planned(problem, [3])
+    (places,) = found_layouts(problem, [3])
     assert places[0] < 0.0
     assert list(places) == sorted(places)
-    every = candidate_places(problem.cases[0], kind, 6.0, SEARCH)
+    every = candidate_places(problem.cases[0], kind, 6.0)
     (equal,) = equal_sections(problem, [3])
     assert every.mean_cost(places) < every.mean_cost(equal)
-    assert planned(problem, []) == ()
-
-
-def test_the_search_never_goes_below_the_errors_of_the_grid(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(CandidatePlaces, "mean_cost", lambda self, sensors_m: -1.0)
-    places = HonestPlaces(None, (), (0.0,))  # type: ignore[arg-type]  # its chain is not asked
-    assert places.mean_cost((-2.0, 5.0)) == LEAST_COST_M2_S2
-    assert places.mean_cost((0.0, 5.0)) == float("inf")
+    assert found_layouts(problem, []) == ()
 
 
 def test_sites_are_named() -> None:

@@ -26,7 +26,7 @@ friction_scenarios = 3
 [validation]
 passes = 1000
 [acceptance]
-rms_m_s = 0.15
+rms_m_s = 0.2
 honesty_low = 0.7
 honesty_high = 1.4
 [output]

@@ -6,9 +6,9 @@ from typing import Final
 
 NEXT: Final = """\
 FUNCTION_BLOCK RETARDER_NEXT_PASSAGE
-(* The first passage of a sensor, but for the last one itself, that the cut can have reached since, with the speed there
-   and the speed now as far off as allowed; or just before, when the pairs of two passages near to each other came in the
-   other order. It rolls farthest if it gains speed first and loses it last, least far if it loses
+(* The first passage of a sensor behind the last one that the cut can have reached since, with the speed there and the
+   speed now as far off as allowed; else the last one before it, as the pairs of two passages near to each other may
+   come in the other order. The cut rolls farthest if it gains speed first and loses it last, least far if it loses
    first and gains last. *)
 VAR_INPUT
     Last : INT; (* the last passage heard; -1: none, and there is no next one *)
@@ -43,6 +43,7 @@ VAR
     Farthest : REAL;
     Nearest : REAL;
     Way : REAL;
+    Better : BOOL;
     Index : INT;
 END_VAR
 
@@ -104,8 +105,9 @@ IF (Last >= 0) AND (Last < Table.Heard) AND (Table.Heard <= $HEARD) THEN
         Nearest := Rest * Nearest;
         Nearest := Part + Nearest;
         Nearest := Nearest - Table.PathTolerance_m;
-        FOR Index := 0 TO Table.Heard - 1 DO
-            IF (Passage < 0) AND (Index <> Last) AND (Table.Sensor[Index] = Sensor) THEN
+        FOR Index := Table.Heard - 1 TO 0 BY -1 DO
+            Better := (Index > Last) OR ((Index < Last) AND (Passage < 0));
+            IF Better AND (Table.Sensor[Index] = Sensor) THEN
                 Way := Table.Path_m[Index] - Table.Path_m[Last];
                 IF (Nearest <= Way) AND (Way <= Farthest) THEN
                     Passage := Index;

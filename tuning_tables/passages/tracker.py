@@ -4,10 +4,11 @@ A sensor tells its own number, when it was passed and how fast; it does not tell
 believes of the cut: the last passage, the speed there, the time since. A pulse pair belongs to the next passage over
 that sensor that the cut can have reached in that time: with the speed there and the speed now, each as far off as
 allowed, it rolls farthest if it gains speed first and loses it last, and least far if it loses first and gains last.
-Passages of two sensors may lie so near to each other that their pairs are told in either order: the cut may then have
-passed the other one already, by less than the error of a path. Where there is no such passage, or the speed now cannot
-follow from the speed there, the pair is not believed: nothing is commanded. So a pulse too many, too early or from a sensor out of order is not believed, unless a cut could have
-made it. Where pulses are lost, a pair may be taken for an earlier passage over the same sensor, never for a later one.
+Passages over two sensors may lie so near to each other that their pairs come in either order: if none follows, the cut
+may have been at the last one before. Where there is no such passage, or the speed now cannot follow from the speed
+there, the pair is not believed: nothing is commanded. So a pulse too many, too early or from a sensor out of order is
+not believed, unless a cut could have made it. Where pulses are lost, a pair may be taken for an earlier passage over
+the same sensor, never for a later one.
 
 A first pulse can be false itself, and then every true one would contradict it. So a pair that is not believed is kept
 as a *rival*; a pair that follows from the rival and not from what was believed makes the regulator change its mind.
@@ -92,7 +93,8 @@ def believed_passage(
         nearest = turn * (slow - half * limits[3] * turn) + rest * (slow_now - half * limits[2] * rest) - limits[5]
         for passage in range(path_m.shape[0] - 1, -1, -1):
             way = path_m[passage] - path_m[here]
-            if passage != here and sensor_of[passage] == sensor and nearest <= way and way <= farthest:
+            better = passage > here or (passage < here and found == NONE)
+            if better and sensor_of[passage] == sensor and nearest <= way and way <= farthest:
                 found, reached = passage, max(passage, here)
     if found == NONE:
         state[3], state[4], state[5] = np.float32(first), v, nought

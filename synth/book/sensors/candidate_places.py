@@ -24,6 +24,10 @@ COARSE = Resolution(path_step_m=0.5, speed_step_m_s=0.06, friction_nodes=4, path
 """What layouts are compared on before the best of them are tuned."""
 
 
+LEAST_COST_M2_S2 = 1e-6
+"""Costs below it are errors of the grid: a search must not descend into them."""
+
+
 @dataclass(frozen=True)
 class EveryNode(PlaceEpochs):
     """Decisions at every path node, as if there were a sensor `clock` at each."""
@@ -66,7 +70,7 @@ class CandidatePlaces:
             )
             for each, mode in ((solution, c.entry_mode) for solution in solutions)
         ]
-        return sum(costs) / len(costs)
+        return max(sum(costs) / len(costs), LEAST_COST_M2_S2)
 
     def at(self, sensors_m: Sequence[float]) -> Chain:
         """The chain that decides at the passages over these sensors alone."""

@@ -84,19 +84,26 @@ def plan_layouts(
     problem: LayoutProblem, counts: Sequence[int], threads: int = 1, tell: Callable[[str], None] = lambda _: None
 ) -> tuple[PlannedLayout, ...]:
     """The best layout found for each number of deciding sensors, never worse than equal sections by its prediction."""
-    ahead_m = PLACE_STEP_M * np.ceil(-FARTHEST_AHEAD * problem.first_m / PLACE_STEP_M)
-    places = np.arange(-ahead_m, problem.exit_m - LAST_SECTION_M, PLACE_STEP_M)
     tell("searching places")
-    cases = tuple(candidate_places(case, problem.sensors, float(ahead_m)) for case in problem.cases)
-    search = LayoutSearch(cases, tuple(places.tolist()), problem.first_m, problem.exit_m, threads)
-    found = search.best_layouts(counts)
-    asked = [search.places_m(found[count]) for count in counts]
+    asked = [*found_layouts(problem, counts, threads)]
     asked += [equal_layout(problem.first_m, problem.exit_m, count) for count in counts]
     tell(f"tuning {len(asked)} layouts")
     with ThreadPoolExecutor(max_workers=threads) as pool:
         judged = list(pool.map(problem.judged, asked))
     pairs = zip(judged[: len(counts)], judged[len(counts) :], strict=True)
     return tuple(PlannedLayout(min(pair, key=lambda each: each.rms_m_s), pair[1]) for pair in pairs)
+
+
+def found_layouts(problem: LayoutProblem, counts: Sequence[int], threads: int = 1) -> tuple[tuple[float, ...], ...]:
+    """Places of the deciding sensors, for each of their numbers, of least expected cost before any polish."""
+    if not counts:
+        return ()
+    ahead_m = PLACE_STEP_M * np.ceil(-FARTHEST_AHEAD * problem.first_m / PLACE_STEP_M)
+    places = np.arange(-ahead_m, problem.exit_m - LAST_SECTION_M, PLACE_STEP_M)
+    cases = tuple(candidate_places(case, problem.sensors, float(ahead_m)) for case in problem.cases)
+    search = LayoutSearch(cases, tuple(places.tolist()), problem.first_m, problem.exit_m, threads)
+    found = search.best_layouts(counts)
+    return tuple(search.places_m(found[count]) for count in counts)
 
 
 def fewest_for(plans: Sequence[PlannedLayout], rms_m_s: float) -> PlannedLayout | None:

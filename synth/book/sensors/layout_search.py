@@ -1,4 +1,4 @@
-"""The layout of least expected cost for a number of sensors: insertion, then descent place by place.
+"""The layout of least expected cost for a number of sensors: from two starts, descent place by place.
 
 The cost is compared on the coarse chains of `candidate_places`. Nothing proves that the descent ends in the best layout
 of all; for three sensors exhaustive search finds the same (tests).
@@ -63,9 +63,10 @@ class LayoutSearch:
         for count in range(1, max(counts) + 1):
             starts = [self.numbers(equal_layout(self.first_m, self.exit_m, count))]
             if count > 1:
-                starts += self.inserted(found[count - 1])
-            costs = self.costs(starts)
-            found[count] = self.descended(starts[int(np.argmin(costs))])
+                inserted = self.inserted(found[count - 1])
+                starts.append(inserted[int(np.argmin(self.costs(inserted)))])
+            ends = [self.descended(start) for start in starts]
+            found[count] = ends[int(np.argmin(self.costs(ends)))]
         return {count: found[count] for count in counts}
 
     def inserted(self, layout: PlaceNumbers) -> list[PlaceNumbers]:

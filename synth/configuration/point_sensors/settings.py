@@ -28,6 +28,7 @@ class PointSensorSettings(Section):
     timer_resolution_s: float | None = None
     computing_delay_s: float | None = None
     scan_period_s: float | None = None
+    missed_share: float | None = None
 
     def replaced_numbers(self) -> dict[str, float]:
         """The values of the type that are replaced, by key."""

@@ -40,8 +40,8 @@ def sweep(
     `smear` (E, W): probability of true speeds given a measured one. `decision_at` (N,): number of the decision at a
     node, R or more where there is none. Of the commands 2·d − 2 goes down, 2·d − 1 up by d stages; `change_chain`
     (C, H) their transients, −1: none. No node below `approach_nodes` raises beyond `entrance_stage`. Outputs: `values`
-    (I, N + 1, H, L, E, T), or of the first nodes only, `lines` (C, R, K + 1, T) in readings, `gain` (C, R, K + 1, T, E):
-    averaged cost saved by the change, by measured speed.
+    (I, N + 1, H, L, E, T), or of the first nodes only, `lines` (C, R, K + 1, T) in readings, `gain` (C, R, K + 1, T,
+    E): averaged cost saved by the change, by measured speed.
     """
     count, nodes, width = factor.shape[0], drive.shape[0], stalled.shape[0]
     modes, size, points = pressure.shape[0], levels.shape[0], speed.shape[0]

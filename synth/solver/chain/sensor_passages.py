@@ -34,18 +34,14 @@ LEAST_REACH = 3
 
 @dataclass(frozen=True)
 class PlaceEpochs:
-    """Decisions at places at which the sensors `clock` are passed; a command may go to any stage.
-
-    A share `missed` of the passages is not heard, each by itself: nothing is decided there.
-    """
+    """Decisions at places at which the sensors `clock` are passed; a command may go to any stage."""
 
     clock: PointSensors
-    missed: float = 0.0
 
     @property
     def heard(self) -> float:
         """What is not missed."""
-        return 1.0 - self.missed
+        return 1.0 - self.clock.missed_share
 
     @property
     def hold_period_s(self) -> float:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from plant_models import PointSensors
 from synth.book.sensors.candidate_places import LayoutCase
-from synth.book.sensors.layout_plan import LayoutProblem
+from synth.book.sensors.layout_plan import LayoutProblem, found_layouts
 from synth.book.sensors.tuned_passages import TunedPassages, passage_chains
 from synth.book.tuned_table import predict
 from synth.problem.resolution import Resolution, finer_for_check
@@ -18,7 +18,7 @@ from synth.simulation.passage_sample import PassageSample
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from synth.solver.chain.chain import check_chain
-from synth.studies.point_sensors.layouts import Layouts, Places, by_rule, equal_sections, planned
+from synth.studies.point_sensors.layouts import Layouts, Places, by_rule, equal_sections
 from synth.studies.point_sensors.rows import RadarRow, SensorRow, Told
 from synth.studies.point_sensors.sensor_table import AXLES, tabulated, unfinished_share
 from synth.studies.point_sensors.sites import Site
@@ -62,7 +62,7 @@ def radar_row(site: Site, passes: RandomPasses) -> tuple[RadarRow, ExitSample]:
 
 
 def sensor_rows(
-    given: Compared, axles: str, sensors: Sequence[int], to_plan: Sequence[int], plan: Layouts = planned
+    given: Compared, axles: str, sensors: Sequence[int], to_plan: Sequence[int], plan: Layouts = found_layouts
 ) -> Iterator[MadeLayout]:
     """A row for every layout; `sensors` are counted with the one behind the exit, which decides nothing.
 

@@ -63,7 +63,7 @@ def test_of_one_axle_a_lost_pair_costs_itself_alone(run: TruePass, data: st.Data
 
 @pytest.mark.parametrize("ahead_m", [-0.002, 0.0, 0.002])
 def test_pairs_of_two_passages_at_one_place_are_believed_in_either_order(ahead_m: float) -> None:
-    """Two sensors as far apart as two axles: the first axle is over the second sensor as the other is over the first."""
+    """Two sensors as far apart as two axles: one is over the second sensor as the other is over the first."""
     path = np.array([0.0, 8.65, 8.65 + ahead_m, 17.3])
     order = np.argsort(path, kind="stable")
     run = TruePass(path[order].astype(np.float32), np.array([0, 1, 0, 1])[order], ())
