@@ -57,7 +57,7 @@ class PointSensors:
     timer_resolution_s: float = 1e-4
     computing_delay_s: float = 0.02
     scan_period_s: float = 0.02
-    missed_share: float = 0.01
+    missed_share: float = 0.003
     axles: Axles = first_axle
 
     def __post_init__(self) -> None:

@@ -179,7 +179,7 @@ def many_row(ratio: float) -> ManyRow:
 
 def worth(rows: tuple[SensorRow, ...], ratio: float) -> PointSensorWorth:
     faulty = (fault_row("no fault", 1.0), fault_row("sensor 0 dead", 2.0), fault_row("sensor 1 dead", 3.0))
-    return PointSensorWorth(1, 200, 200, 0.25, 0.015, 7, (), rows, faulty, (many_row(0.5), many_row(ratio)), ())
+    return PointSensorWorth(1, 200, 200, 0.25, 0.015, 7, (), rows, faulty, (many_row(0.5), many_row(ratio)), (), ())
 
 
 def test_claims_that_hold_are_no_faults() -> None:

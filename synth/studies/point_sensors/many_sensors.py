@@ -51,7 +51,7 @@ class Noise:
     def sensors(self, target_m_s: float) -> PointSensors:
         """Sensors whose timer has that error at the target speed."""
         timer_s = self.std_m_s * BASE_M / target_m_s**2
-        return PointSensors((0.0,), BASE_M, 0.0, timer_s, 0.0, DELAY_S, CLOCK_S, every_axle)
+        return PointSensors((0.0,), BASE_M, 0.0, timer_s, 0.0, DELAY_S, CLOCK_S, 0.0, every_axle)
 
     def radar(self, period_s: float) -> DopplerSensor:
         """A radar with that error at every speed."""

@@ -149,6 +149,25 @@ class GridRow:
 
 
 @dataclass(frozen=True)
+class MissedRow:
+    """A planned layout whose design counts `missed_share` of the passages as not heard: without a fault, and with a
+    dead sensor; `worst`: the one, from 1, whose death costs most; `most_stalled`: of cuts, whichever sensor is dead."""
+
+    case: str
+    axles: str
+    sensors: int
+    missed_share: float
+    predicted_m_s: float
+    rms_m_s: float
+    rms_ci95_m_s: Interval
+    worst: int
+    dead_rms_m_s: float
+    dead_rms_ci95_m_s: Interval
+    most_stalled: float
+    most_stalled_ci95: Interval
+
+
+@dataclass(frozen=True)
 class WorthRows(Findings):
     """All parts; `fault_passes`: those that faults were run on."""
 
@@ -163,3 +182,4 @@ class WorthRows(Findings):
     faulty: tuple[FaultRow, ...]
     many: tuple[ManyRow, ...]
     grids: tuple[GridRow, ...]
+    missed: tuple[MissedRow, ...]

@@ -1,8 +1,8 @@
 """What point sensors are worth: by their number, their places, the axles decided on; what their faults cost.
 
 Tables are made for planned layouts, for equal sections and for the rule of zhukovitsky-2012, and run on the same cuts
-as the table of the radar. They are made on a finer grid than a tune's: sensors read so exactly that speeds fit the
-errors of a coarse one. Asked besides: whether ever more sensors become a radar, and what a coarse grid costs.
+as the table of the radar. They are made on a finer grid than a tune's. Asked besides: whether ever more sensors become
+a radar, what a coarse grid costs, and what it costs and saves to count passages as lost.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from synth.studies.options import option
 from synth.studies.point_sensors.fault_losses import fault_rows
 from synth.studies.point_sensors.findings import PointSensorWorth
 from synth.studies.point_sensors.many_sensors import many_rows
+from synth.studies.point_sensors.missed_shares import missed_row
 from synth.studies.point_sensors.rows import FaultRow, GridRow, RadarRow, SensorRow
 from synth.studies.point_sensors.sensor_table import AXLES, sensor_table, tabulated
 from synth.studies.point_sensors.sites import TEXTS, Site, sites
@@ -49,6 +50,9 @@ class Options:
     many_std_m_s: tuple[float, ...] = option((0.02, 0.05), "errors of a reading there, m/s", (0.001, 0.5))
     grid_cases: tuple[str, ...] = option(("bunch-22", "bunch-52"), "sites of which the grid is varied")
     grid_sensors: int = option(12, "their sensors", (3, 32))
+    missed: tuple[float, ...] = option((0.0, 0.003, 0.01, 0.03), "shares counted as not heard", (0.0, 0.5))
+    missed_cases: tuple[str, ...] = option(("bunch-22", "bunch-52"), "sites where this is varied")
+    missed_sensors: int = option(8, "their sensors", (3, 32))
 
 
 def run(options: Options, tell: Tell) -> PointSensorWorth:
@@ -75,11 +79,14 @@ def run(options: Options, tell: Tell) -> PointSensorWorth:
     many = tuple(many_rows(passes, resolution, options.many, options.many_std_m_s))
     tell("several grids")
     grids = side_by_side(lambda order: grid_row(*order, passes), grid_orders(options, resolution))
+    tell("passages that are not heard")
+    few = passes.part(0, min(options.fault_passes, len(passes)))
+    missed = side_by_side(lambda order: missed_row(*order, resolution, few), missed_orders(options))
     radar_rows: tuple[RadarRow, ...] = tuple(row for row, _ in radars)
     return PointSensorWorth(
         seed, options.passes, min(options.fault_passes, options.passes), options.path_step_m, options.speed_step_m_s,
         options.friction_nodes, radar_rows, tuple(row for rows, _ in found for row in rows),
-        tuple(row for _, rows in found for row in rows), many, grids,
+        tuple(row for _, rows in found for row in rows), many, grids, missed,
     )  # fmt: skip
 
 
@@ -112,6 +119,16 @@ def grid_orders(options: Options, resolution: Resolution) -> list[tuple[Site, st
     return orders
 
 
+def missed_orders(options: Options) -> list[tuple[Site, str, int, float]]:
+    """(site, axles, sensors, share of passages counted as not heard)."""
+    return [
+        (site, axles, options.missed_sensors, share)
+        for site in sites(options.missed_cases)
+        for axles in AXLES
+        for share in options.missed
+    ]
+
+
 def grid_row(site: Site, axles: str, sensors: int, grid: Resolution, passes: RandomPasses) -> GridRow:
     """Equal sections on one grid."""
     kind = PointSensors((0.0,), axles=AXLES[axles])
@@ -128,6 +145,6 @@ def grid_row(site: Site, axles: str, sensors: int, grid: Resolution, passes: Ran
 SMALLEST = Options(
     cases=("park-22",), sensors=(3, 4), planned=(4,), faulty=(4,), passes=400, fault_passes=200, frictions=3,
     path_step_m=1.0, speed_step_m_s=0.1, friction_nodes=3, many=(5,), many_std_m_s=(0.05,), grid_cases=("park-22",),
-    grid_sensors=3,
+    grid_sensors=3, missed=(0.0, 0.1), missed_cases=("park-22",), missed_sensors=3,
 )  # fmt: skip
 METHOD = Method(Options, SMALLEST, PointSensorWorth, run)
