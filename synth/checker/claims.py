@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Protocol
 
 from synth.checker.statistics import (
     QUANTILE,
@@ -27,7 +27,6 @@ from synth.checker.statistics import (
     too_many,
     weighted_mean_and_std,
 )
-from synth.checker.table_reading import Table
 
 RMS_ALLOWANCE: Final = 0.04
 """Relative systematic error of the coarse simulation's rms (measured: docs/verification.md)."""
@@ -52,7 +51,30 @@ class Honesty:
     high: float
 
 
-def own_faults(table: Table, honesty: Honesty) -> Iterator[str]:
+class Claims(Protocol):
+    """What a table of any kind says of its accuracy, by the names of `table_reading.Table`."""
+
+    @property
+    def predicted_rms_m_s(self) -> float: ...
+    @property
+    def bias_m_s(self) -> float: ...
+    @property
+    def p_overspeed(self) -> float: ...
+    @property
+    def switchings(self) -> float: ...
+    @property
+    def p_stall(self) -> float | None: ...
+    @property
+    def predicted_passes(self) -> int | None: ...
+    @property
+    def passes(self) -> int | None: ...
+    @property
+    def validated_rms_m_s(self) -> float | None: ...
+    @property
+    def validated_ci95_m_s(self) -> tuple[float, float] | None: ...
+
+
+def own_faults(table: Claims, honesty: Honesty) -> Iterator[str]:
     """Claims that contradict themselves or one another, without any simulation."""
     rms, bias = table.predicted_rms_m_s, table.bias_m_s
     if rms < 0.0 or abs(bias) > rms * (1.0 + 1e-9):
@@ -92,7 +114,7 @@ def chance_interval(
     return rms_m_s * (ci95_m_s[0] / rms_m_s) ** wider, rms_m_s * (ci95_m_s[1] / rms_m_s) ** wider
 
 
-def simulated_faults(table: Table, found: ExitFigures, honesty: Honesty) -> Iterator[str]:
+def simulated_faults(table: Claims, found: ExitFigures, honesty: Honesty) -> Iterator[str]:
     """Claims that the coarse simulation does not confirm."""
     if table.validated_rms_m_s is not None:
         yield from rms_fault("validated", table.validated_rms_m_s, (1.0, 1.0), found, None)

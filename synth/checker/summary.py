@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
 from synth.checker.canonical import canonical_form, parse_json
 from synth.checker.claims import Honesty
 from synth.checker.finding import DamagedError, shown
+from synth.checker.passages.reading import PassageTable
 from synth.checker.plant import Plant, Reader, UnusableConfigError, config_sha256, plant_of
 from synth.checker.source_file import content_of
 from synth.checker.table_reading import Table
@@ -62,19 +63,24 @@ class Summary:
         estimate = self.cases.get(table.id, {}).get("estimate")
         return not (isinstance(estimate, dict) and estimate.get("used") is False)
 
-    def plant(self, table: Table) -> Plant:
-        """The plant that `table` is for; `UnusableConfigError` if the configuration has none that fits it."""
+    def plant(self, table: Table | PassageTable) -> Plant:
+        """The plant that `table` is for; `UnusableConfigError` if the configuration has none that fits it.
+
+        A table for point sensors says itself where the regulator begins to act.
+        """
         cuts = self.config.get("cut")
         for cut in cuts if isinstance(cuts, list) else []:
             if not isinstance(cut, dict) or cut.get("category") != table.category:
                 continue
             plant = plant_of(self.config, cut)
+            if isinstance(table, PassageTable):
+                plant = replace(plant, approach_m=table.approach_m, initial_stage=table.initial_stage)
             if (plant.mass_t, plant.axle_offsets_m) == (table.mass_t, table.axle_offsets_m):
                 require_fit(plant, table)
                 return plant
         raise UnusableConfigError("the configuration beside it has no cut of its category, mass and axles")
 
-    def case_faults(self, table: Table) -> Iterator[str]:
+    def case_faults(self, table: Table | PassageTable) -> Iterator[str]:
         """Where the summary states other figures than the table."""
         case = self.cases.get(table.id)
         if case is None:
@@ -104,7 +110,7 @@ class Summary:
                 yield name, "its SHA-256 is not the one in summary.json"
 
 
-def require_fit(plant: Plant, table: Table) -> None:
+def require_fit(plant: Plant, table: Table | PassageTable) -> None:
     """Raise `UnusableConfigError` where plant and table differ in what both state."""
     for name, one, other in (
         ("zones", plant.zones_m, table.zones_m),
@@ -130,7 +136,7 @@ def read_summary(path: Path) -> Summary:
     document = parse_json(content_of(path), 64 * 2**20)
     match document:
         case {
-            "format": "retarder-summary",
+            "format": "retarder-summary" | "sensor-summary",
             "config": dict(config),
             "generator": {"config_sha256": str(sha256)},
             "cases": list(cases),

@@ -76,7 +76,7 @@ def read_table(content: bytes) -> Table:
 def table_of(document: Mapping[str, Any]) -> Table:
     """The table in a document of the right shape; `DamagedError` if its parts make no table."""
     retarder, cut, predicted = document["retarder"], document["cut"], document["predicted"]
-    validated, stages, degree = document["validated"], document["stages"], document["polynomial"]["degree"]
+    stages, degree = document["stages"], document["polynomial"]["degree"]
     refuse_unless(document["polynomial"]["variable"] == "s_m", document["polynomial"], "polynomial", "in s_m")
     refuse_unless(0 <= degree <= 9, degree, "polynomial.degree", "from 0 to 9")
     refuse_unless(2 <= len(stages) <= 32, len(stages), "the number of stages", "from 2 to 32")
@@ -105,20 +105,28 @@ def table_of(document: Mapping[str, Any]) -> Table:
         lines=tuple((line_of(stage["lower"]), line_of(stage["upper"])) for stage in stages),
         path_m=pair(document["valid"]["s_m"]),
         speed_m_s=pair(document["valid"]["v_m_s"]),
-        predicted_rms_m_s=float(predicted["rms_m_s"]),
-        bias_m_s=float(predicted["bias_m_s"]),
-        p_overspeed=float(predicted["p_overspeed"]),
-        switchings=float(predicted["switchings"]),
-        p_stall=float(predicted["p_stall"]) if "p_stall" in predicted else None,
-        predicted_passes=predicted.get("passes"),
-        passes=validated["passes"] if validated else None,
-        validated_rms_m_s=float(validated["rms_m_s"]) if validated else None,
-        validated_ci95_m_s=pair(validated["rms_ci95_m_s"]) if validated else None,
+        **stated_figures(document),
         estimator=estimator_of(document["estimator"]) if "estimator" in document else None,
         approach_m=approach_m,
         entrance_stage=entrance_stage,
         document=document,
     )
+
+
+def stated_figures(document: Mapping[str, Any]) -> dict[str, Any]:
+    """What a table says of its accuracy, by the names of `Table`."""
+    predicted, validated = document["predicted"], document["validated"]
+    return {
+        "predicted_rms_m_s": float(predicted["rms_m_s"]),
+        "bias_m_s": float(predicted["bias_m_s"]),
+        "p_overspeed": float(predicted["p_overspeed"]),
+        "switchings": float(predicted["switchings"]),
+        "p_stall": float(predicted["p_stall"]) if "p_stall" in predicted else None,
+        "predicted_passes": predicted.get("passes"),
+        "passes": validated["passes"] if validated else None,
+        "validated_rms_m_s": float(validated["rms_m_s"]) if validated else None,
+        "validated_ci95_m_s": pair(validated["rms_ci95_m_s"]) if validated else None,
+    }
 
 
 def approach_of(document: Mapping[str, Any]) -> tuple[float, int]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,14 +11,14 @@ from synth.checker.aim.sense import claim_faults
 from synth.checker.aim.sense import sense as aim_sense
 from synth.checker.canonical import require_right_crc32
 from synth.checker.claims import own_faults, simulated_faults
-from synth.checker.coarse_simulation import simulate
+from synth.checker.coarse_simulation import Passes, simulate
 from synth.checker.estimator_sense import estimator_faults
 from synth.checker.exports import ExportReport, check_exports
 from synth.checker.finding import DamagedError, Finding, Kind
 from synth.checker.passages.reading import PassageTable
-from synth.checker.passages.sense import claim_faults as passage_claim_faults
 from synth.checker.passages.sense import sense as passage_sense
-from synth.checker.plant import UnusableConfigError
+from synth.checker.passages.simulation import simulate as simulate_passages
+from synth.checker.plant import Plant, UnusableConfigError
 from synth.checker.source import Source, read_source
 from synth.checker.statistics import ExitFigures, figures_of
 from synth.checker.summary import DEFAULT_HONESTY, Summary, read_summary
@@ -49,10 +49,12 @@ class AimVerdict:
 
 @dataclass(frozen=True)
 class PassageVerdict:
-    """One table for point sensors, and what was found."""
+    """One table for point sensors, what was found, what the coarse simulation gave; `skipped` as of `TableVerdict`."""
 
     table: PassageTable
     findings: tuple[Finding, ...]
+    figures: ExitFigures | None
+    skipped: str | None
 
 
 @dataclass(frozen=True)
@@ -88,13 +90,13 @@ def verify(path: Path, passes: int, seed: int) -> Verdict:
     require_right_crc32()
     source = read_source(path)
     report = check_exports(source, source.folder) if source.folder else ExportReport((), ())
-    # The summary of a tune says nothing of the other kinds.
-    of_tables = bool(source.tables or not (source.aims or source.passages))
+    # The summary of a tune says nothing of tables to aim by.
+    of_tables = bool(source.tables or source.passages or not source.aims)
     summary, summary_findings = summary_beside(source) if of_tables else (None, [])
     found = [*source.findings, *report.findings, *summary_findings]
     tables = tuple(judge(table, summary, passes, seed, found) for table in source.tables)
     aims = tuple(judge_aim(aim, found) for aim in source.aims)
-    passages = tuple(judge_passages(each, found) for each in source.passages)
+    passages = tuple(judge_passages(each, summary, passes, seed, found) for each in source.passages)
     ids = {each.id for each in source.tables} | {each.id for each in source.aims}
     ids |= {each.id for each in source.passages}
     others = tuple(finding for finding in found if finding.about not in ids)
@@ -110,24 +112,48 @@ def judge_aim(aim: Aim, found: list[Finding]) -> AimVerdict:
     return AimVerdict(aim, (*findings, *senseless, *claims))
 
 
-def judge_passages(table: PassageTable, found: list[Finding]) -> PassageVerdict:
-    """Everything about one table for point sensors but its figures against a simulation: there is none for these."""
-    findings = [finding for finding in found if finding.about == table.id]
+def judge_passages(
+    table: PassageTable, summary: Summary | None, passes: int, seed: int, found: list[Finding]
+) -> PassageVerdict:
+    """Everything about one table for point sensors; `found` are findings of files, some of them about it."""
     senseless = [Finding(Kind.DAMAGED, table.id, sentence) for sentence in passage_sense(table)]
-    limits = DEFAULT_HONESTY
-    claims = [
-        Finding(Kind.CLAIM, table.id, sentence) for sentence in passage_claim_faults(table, limits.low, limits.high)
-    ]
-    return PassageVerdict(table, (*findings, *senseless, *claims))
+    judged = judge_figures(table, summary, bool(senseless), lambda plant: simulate_passages(plant, table, passes, seed))
+    findings = [finding for finding in found if finding.about == table.id]
+    return PassageVerdict(table, (*findings, *senseless, *judged.findings), judged.figures, judged.skipped)
 
 
 def judge(table: Table, summary: Summary | None, passes: int, seed: int, found: list[Finding]) -> TableVerdict:
     """Everything about one table; `found` are findings of files, some of them about it."""
     findings = [finding for finding in found if finding.about == table.id]
     senseless = list(sense(table))
-    findings += senseless
+    of_estimator: list[Finding] = []
+
+    def simulated(plant: Plant) -> Passes:
+        assert summary is not None
+        others = estimator_faults(table.estimator, plant, summary.estimating(table))
+        of_estimator.extend(Finding(Kind.DISAGREES, table.id, sentence) for sentence in others)
+        return simulate(plant, table, passes, seed)
+
+    judged = judge_figures(table, summary, bool(senseless), simulated)
+    findings += [*senseless, *judged.findings, *of_estimator]
+    return TableVerdict(table, tuple(findings), judged.figures, judged.skipped, exit_gap_m_s(table))
+
+
+@dataclass(frozen=True)
+class FigureVerdict:
+    """What was found of the figures of a table."""
+
+    findings: tuple[Finding, ...]
+    figures: ExitFigures | None
+    skipped: str | None
+
+
+def judge_figures(
+    table: Table | PassageTable, summary: Summary | None, senseless: bool, simulated: Callable[[Plant], Passes]
+) -> FigureVerdict:
+    """The figures of a table against one another, against the summary, and against coarse passes of its plant."""
     honesty = summary.honesty() if summary else DEFAULT_HONESTY
-    claims = list(own_faults(table, honesty))
+    findings, claims = [], list(own_faults(table, honesty))
     figures, skipped = None, None
     if senseless:
         skipped = "its lines make no sense"
@@ -138,16 +164,13 @@ def judge(table: Table, summary: Summary | None, passes: int, seed: int, found: 
     else:
         findings += [Finding(Kind.DISAGREES, table.id, sentence) for sentence in summary.case_faults(table)]
         try:
-            plant = summary.plant(table)
-            others = estimator_faults(table.estimator, plant, summary.estimating(table))
-            findings += [Finding(Kind.DISAGREES, table.id, sentence) for sentence in others]
-            figures = figures_of(simulate(plant, table, passes, seed), table.target_m_s)
+            figures = figures_of(simulated(summary.plant(table)), table.target_m_s)
             claims += simulated_faults(table, figures, honesty)
         except UnusableConfigError as fault:
             findings.append(Finding(Kind.DISAGREES, table.id, str(fault)))
             skipped = "the plant is not known"
     findings += [Finding(Kind.CLAIM, table.id, sentence) for sentence in claims]
-    return TableVerdict(table, tuple(findings), figures, skipped, exit_gap_m_s(table))
+    return FigureVerdict(tuple(findings), figures, skipped)
 
 
 def summary_beside(source: Source) -> tuple[Summary | None, list[Finding]]:
@@ -173,8 +196,9 @@ def directory_findings(source: Source, summary: Summary) -> Iterator[Finding]:
         yield from (Finding(Kind.DISAGREES, name, sentence) for name, sentence in summary.file_faults())
     except DamagedError as fault:
         yield Finding(Kind.DAMAGED, "summary.json", f"a file that it lists is odd: {fault}")
-    for name in sorted(summary.cases.keys() - {table.id for table in source.tables}):
+    there: tuple[Table | PassageTable, ...] = (*source.tables, *source.passages)
+    for name in sorted(summary.cases.keys() - {table.id for table in there}):
         yield Finding(Kind.DISAGREES, "summary.json", f"it tells of {name}, which is not there")
-    for table in source.tables:
+    for table in there:
         if table.config_sha256 != summary.config_sha256:
             yield Finding(Kind.DISAGREES, table.id, "it was made from another configuration than summary.json tells")

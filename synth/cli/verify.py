@@ -11,6 +11,7 @@ from synth.cli import INPUT_FAULT, say
 
 if TYPE_CHECKING:
     from synth.checker.finding import Finding
+    from synth.checker.statistics import ExitFigures
     from synth.checker.verdict import AimVerdict, PassageVerdict, TableVerdict, Verdict
 
 
@@ -52,22 +53,27 @@ def document(verdict: Verdict) -> dict[str, Any]:
 
 def table_document(each: TableVerdict) -> dict[str, Any]:
     """One table's verdict for programs."""
-    figures = each.figures
     return {
         "id": each.table.id,
         "ok": not each.findings,
         "skipped": each.skipped,
         "exit_gap_m_s": each.exit_gap_m_s,
-        "simulated": figures
-        and {
-            "rms_m_s": figures.rms_m_s,
-            "rms_ci95_m_s": figures.rms_ci95_m_s,
-            "bias_m_s": figures.bias_m_s,
-            "passes_as_they_come": figures.plain,
-            "overspeed_of_these": figures.over,
-            "stalls_of_these": figures.stalls,
-            "switchings": figures.switchings,
-        },
+        "simulated": simulated_document(each.figures),
+    }
+
+
+def simulated_document(figures: ExitFigures | None) -> dict[str, Any] | None:
+    """What coarse passes gave, for programs."""
+    if figures is None:
+        return None
+    return {
+        "rms_m_s": figures.rms_m_s,
+        "rms_ci95_m_s": figures.rms_ci95_m_s,
+        "bias_m_s": figures.bias_m_s,
+        "passes_as_they_come": figures.plain,
+        "overspeed_of_these": figures.over,
+        "stalls_of_these": figures.stalls,
+        "switchings": figures.switchings,
     }
 
 
@@ -91,13 +97,29 @@ def aim_words(each: AimVerdict) -> list[str]:
 
 def passages_document(each: PassageVerdict) -> dict[str, Any]:
     """The verdict of one table for point sensors, for programs."""
-    return {"id": each.table.id, "ok": not each.findings, "passages": len(each.table.passages)}
+    return {
+        "id": each.table.id,
+        "ok": not each.findings,
+        "passages": len(each.table.passages),
+        "simulated": simulated_document(each.figures),
+    }
 
 
 def passages_words(each: PassageVerdict) -> list[str]:
     """The verdict of one table for point sensors in lines."""
-    checked = f"{len(each.table.passages)} passages over point sensors; not simulated"
+    checked = f"{len(each.table.passages)} passages over point sensors; {checked_words(each)}"
     return [f"{each.table.id}: {state(each.findings)}; {checked}", *finding_lines(each.findings)]
+
+
+def checked_words(each: TableVerdict | PassageVerdict) -> str:
+    """What the coarse passes gave, or why there are none."""
+    if each.figures is None:
+        return f"not simulated: {each.skipped}"
+    low, high = each.figures.rms_ci95_m_s
+    return (
+        f"rms {each.figures.rms_m_s:.3f} [{low:.3f}, {high:.3f}] m/s in {each.figures.passes} passes, "
+        f"{each.table.predicted_rms_m_s:.3f} predicted"
+    )
 
 
 def state(findings: Sequence[Finding]) -> str:
@@ -114,16 +136,7 @@ def words(verdict: Verdict) -> list[str]:
     """The verdict in lines."""
     lines = []
     for each in verdict.tables:
-        figures, table = each.figures, each.table
-        if figures is not None:
-            low, high = figures.rms_ci95_m_s
-            checked = (
-                f"rms {figures.rms_m_s:.3f} [{low:.3f}, {high:.3f}] m/s in {figures.passes} passes, "
-                f"{table.predicted_rms_m_s:.3f} predicted"
-            )
-        else:
-            checked = f"not simulated: {each.skipped}"
-        lines.append(f"{table.id}: {state(each.findings)}; {checked}")
+        lines.append(f"{each.table.id}: {state(each.findings)}; {checked_words(each)}")
         lines += finding_lines(each.findings)
     lines += [line for each in verdict.aims for line in aim_words(each)]
     lines += [line for each in verdict.passages for line in passages_words(each)]

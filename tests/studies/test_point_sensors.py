@@ -11,7 +11,7 @@ import pytest
 from plant_models import PointSensors
 from synth.book.sensors.candidate_places import LayoutCase, candidate_places
 from synth.book.sensors.layout import equal_layout, with_layout
-from synth.book.sensors.layout_plan import LayoutProblem, found_layouts
+from synth.book.sensors.layout_plan import LayoutProblem, best_places, found_layouts
 from synth.book.sensors.tuned_passages import PassageChains, TunedPassages, passage_chains, tuned_passages
 from synth.faults.input_error import InputError
 from synth.problem.resolution import Resolution
@@ -120,7 +120,7 @@ def test_planned_layouts_can_be_tables_and_beat_equal_sections_by_the_cost_searc
     every = candidate_places(problem.cases[0], kind, 6.0)
     (equal,) = equal_sections(problem, [3])
     assert every.mean_cost(places) < every.mean_cost(equal)
-    assert found_layouts(problem, []) == ()
+    assert found_layouts(problem, []) == best_places(problem, []) == ()
 
 
 def test_sites_are_named() -> None:

@@ -6,11 +6,15 @@ import hashlib
 import json
 import shutil
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from synth.checker.finding import Kind
+from synth.checker.verdict import verify
 from synth.cli import main
+from tests.checker.planted_fault import rewrite
 from tests.system.conftest import EPOCH, Command, changed
 from tuning_tables.passages.json_file import read_passage_json
 
@@ -253,3 +257,25 @@ def test_tune_tells_that_it_leaves_point_sensors_aside(command: Command, config:
     (tmp_path / "one.toml").write_text(text)
     ran = command("tune", tmp_path / "one.toml", "-o", tmp_path / "out")
     assert "tables are made for the radar of [sensor]; 'retarder-synth sensors tune' makes those for" in ran.err
+
+
+def test_the_checkers_own_passes_confirm_the_figures_and_only_true_ones(tuned_points: Path, tmp_path: Path) -> None:
+    verdict = verify(tuned_points, 1500, 3)
+    assert verdict.findings == ()
+    for each in verdict.passages:
+        assert each.figures is not None
+        low, high = each.figures.rms_ci95_m_s
+        assert low / 1.1 < each.table.predicted_rms_m_s < high * 1.1
+        assert each.figures.switchings == pytest.approx(each.table.switchings, rel=0.05)
+    forged = Path(shutil.copytree(tuned_points, tmp_path / "out"))
+
+    def boast(document: dict[str, Any]) -> None:
+        """Claim 0.7 of every rms."""
+        for claim in (document["predicted"], document["validated"]):
+            claim["rms_m_s"] *= 0.7
+        document["validated"]["rms_ci95_m_s"] = [0.7 * end for end in document["validated"]["rms_ci95_m_s"]]
+
+    rewrite(forged / "tables" / f"{TABLE}.json", boast)
+    told = verify(forged, 1500, 3).findings
+    assert {(each.kind, each.about) for each in told} >= {(Kind.CLAIM, TABLE), (Kind.DISAGREES, TABLE)}
+    assert any("but the coarse simulation gives" in each.sentence for each in told)

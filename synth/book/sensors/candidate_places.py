@@ -39,8 +39,8 @@ class EveryNode(PlaceEpochs):
     def decisions(self, plant: Plant, grid: Grid) -> Decisions:
         """At every node, with the command half a base behind."""
         node = np.arange(len(grid.path_m) - 1)
-        lead = np.full(len(node), 0.5 * self.clock.base_m)
-        return Decisions(node, node * grid.path_step_m, lead, plant.top_stage)
+        lead_m = np.full(len(node), 0.5 * self.clock.base_m)
+        return Decisions(node, node.astype(np.float64) * grid.path_step_m, lead_m, plant.top_stage)
 
 
 @dataclass(frozen=True)

@@ -94,6 +94,11 @@ def plan_layouts(
     return tuple(PlannedLayout(min(pair, key=lambda each: each.rms_m_s), pair[1]) for pair in pairs)
 
 
+def best_places(problem: LayoutProblem, counts: Sequence[int]) -> tuple[tuple[float, ...], ...]:
+    """Places of the deciding sensors of the best plan for each of their numbers."""
+    return tuple(plan.best.deciding_m for plan in plan_layouts(problem, counts))
+
+
 def found_layouts(problem: LayoutProblem, counts: Sequence[int], threads: int = 1) -> tuple[tuple[float, ...], ...]:
     """Places of the deciding sensors, for each of their numbers, of least expected cost before any polish."""
     if not counts:

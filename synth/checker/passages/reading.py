@@ -23,11 +23,15 @@ from synth.checker.document_shape import (
     require_shape,
 )
 from synth.checker.finding import DamagedError, shown
+from synth.checker.table_reading import pair, stated_figures
 
 MARK: Final = re.compile(rb'"decisions"\s*:\s*"at_sensor_passages"')
 """No text in a JSON document can hold this: its quotes would be escaped."""
 
 VERSION: Final = 4
+SENSOR_NUMBERS: Final = (
+    "base_m", "base_tolerance", "timer_noise_s", "timer_resolution_s", "computing_delay_s", "scan_period_s",
+)  # fmt: skip
 SHARED: Final = (
     "format", "version", "id", "created", "generator", "retarder", "cut", "target_speed_m_s", "validated", "crc32",
 )  # fmt: skip
@@ -37,8 +41,7 @@ PASSAGE_SHAPE: Final[Mapping[str, Any]] = {
     "stages": [{"k": COUNT, "pressure_kpa": NUMBER}],
     "sensors": {
         "path_m": NUMBERS,
-        **dict.fromkeys(("base_m", "base_tolerance", "timer_noise_s", "timer_resolution_s"), NUMBER),
-        **dict.fromkeys(("computing_delay_s", "scan_period_s"), NUMBER),
+        **dict.fromkeys(SENSOR_NUMBERS, NUMBER),
         "decides_on": TEXT,
     },
     "approach": {"length_m": NUMBER, "entrance_stage": COUNT, "initial_stage": COUNT, "interlock": TEXT},
@@ -78,7 +81,28 @@ class PassageTable:
     every_axle: bool
     entrance_stage: int
     passages: tuple[Passage, ...]
+    base_m: float
+    base_tolerance: float
+    timer_noise_s: float
+    timer_resolution_s: float
+    computing_delay_s: float
+    scan_period_s: float
+    config_sha256: str
+    zones_m: tuple[tuple[float, float], ...]
+    dead_band_kpa: float
+    category: str
+    mass_t: float
+    approach_m: float
+    initial_stage: int
     predicted_rms_m_s: float
+    bias_m_s: float
+    p_overspeed: float
+    switchings: float
+    p_stall: float | None
+    predicted_passes: int | None
+    passes: int | None
+    validated_rms_m_s: float | None
+    validated_ci95_m_s: tuple[float, float] | None
     document: Mapping[str, Any]
 
 
@@ -100,6 +124,7 @@ def read_passage_table(content: bytes) -> PassageTable:
 def passage_table_of(document: Mapping[str, Any]) -> PassageTable:
     """The table in a document of the right shape; `DamagedError` where its parts do not fit together."""
     stages, sensors, approach = document["stages"], document["sensors"], document["approach"]
+    numbers: dict[str, Any] = {key: float(sensors[key]) for key in SENSOR_NUMBERS}
     words = {"first_axle": False, "every_axle": True}
     number_of(document["cut"])
     refuse_unless(document["decisions"] == "at_sensor_passages", document["decisions"], "decisions", "as documented")
@@ -120,7 +145,15 @@ def passage_table_of(document: Mapping[str, Any]) -> PassageTable:
         passages=tuple(
             passage_of(passage, len(stages), f"passages[{index}]") for index, passage in enumerate(document["passages"])
         ),
-        predicted_rms_m_s=float(document["predicted"]["rms_m_s"]),
+        **numbers,
+        config_sha256=document["generator"]["config_sha256"],
+        zones_m=tuple(map(pair, document["retarder"]["zones_m"])),
+        dead_band_kpa=float(document["retarder"]["dead_band_kpa"]),
+        category=document["cut"]["category"],
+        mass_t=float(document["cut"]["mass_t"]),
+        approach_m=float(approach["length_m"]),
+        initial_stage=approach["initial_stage"],
+        **stated_figures(document),
         document=document,
     )
 

@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Iterator
 from itertools import pairwise
-from typing import Any, Final
+from typing import Final
 
 from synth.checker.float32 import is_float32
 from synth.checker.passages.reading import PassageTable
@@ -132,27 +132,3 @@ def deed_faults(table: PassageTable) -> Iterator[str]:
     speeds = [v for passage in table.passages for row in passage.rows for v in row if not math.isinf(v)]
     if speeds and min(speeds) > PLAUSIBLE_SPEED_M_S:
         yield f"all its switching speeds lie above {PLAUSIBLE_SPEED_M_S:g} m/s"
-
-
-def claim_faults(table: PassageTable, low: float, high: float) -> Iterator[str]:
-    """Claims that contradict themselves or one another; predicted over validated rms is to lie within [low, high]."""
-    predicted: dict[str, Any] = table.document["predicted"]
-    validated = table.document["validated"]
-    rms = table.predicted_rms_m_s
-    if rms < 0.0 or abs(predicted["bias_m_s"]) > rms * (1.0 + 1e-9):
-        yield f"the predicted bias of {predicted['bias_m_s']:.4g} m/s exceeds the predicted rms of {rms:.4g} m/s"
-    for name, p in (("over-speed", predicted["p_overspeed"]), ("a stall", predicted.get("p_stall", 0.0))):
-        if not 0.0 <= p <= 1.0:
-            yield f"the predicted probability of {name} is {p:.4g}"
-    if predicted["switchings"] < 0.0:
-        yield f"the predicted number of switchings is {predicted['switchings']:.4g}"
-    if validated is None:
-        return
-    (least, most), stated = validated["rms_ci95_m_s"], validated["rms_m_s"]
-    if validated["passes"] < 1 or not 0.0 <= least <= stated <= most:
-        yield f"the validated rms of {stated:.4g} m/s is not within its interval, {least:.4g} to {most:.4g}"
-    elif not least * low <= rms <= most * high:
-        yield (
-            f"the predicted rms of {rms:.4f} m/s does not agree with the validated one: its interval and the honesty "
-            f"limits allow {least * low:.4f} to {most * high:.4f} m/s"
-        )

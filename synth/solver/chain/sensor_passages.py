@@ -116,7 +116,8 @@ class SensorPassages(PlaceEpochs):
         place_m = np.array([each.path_m for each in self.passages(plant)]) - plant.start_m
         rank = np.arange(len(place_m)) * APART_M
         apart = np.maximum.accumulate(place_m - rank) + rank
-        return np.minimum(apart, plant.exit_m - plant.start_m - APART_M - rank[::-1])
+        places: NDArray[np.float64] = np.minimum(apart, plant.exit_m - plant.start_m - APART_M - rank[::-1])
+        return places
 
 
 def nodes_of(place_m: NDArray[np.float64], step_m: float, steps: int) -> NDArray[np.int64]:

@@ -41,8 +41,8 @@ class TimeSamples:
 
     def decisions(self, plant: Plant, grid: Grid) -> Decisions:
         """At every path node, where samples are gathered."""
-        nodes = len(grid.path_m) - 1
-        return Decisions(np.arange(nodes), np.arange(nodes) * grid.path_step_m, np.zeros(nodes), 1)
+        node = np.arange(len(grid.path_m) - 1)
+        return Decisions(node, node.astype(np.float64) * grid.path_step_m, np.zeros(len(node)), 1)
 
     def entry(self, plant: Plant, grid: Grid) -> NDArray[np.float64]:
         """The first sample lies within a period of where the regulator acts."""

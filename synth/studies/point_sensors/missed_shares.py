@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from plant_models import PointSensors
 from synth.book.sensors.candidate_places import LayoutCase
-from synth.book.sensors.layout_plan import LayoutProblem, found_layouts
+from synth.book.sensors.layout_plan import LayoutProblem, best_places
 from synth.problem.resolution import Resolution
 from synth.simulation.exit_statistics import ExitStatistics, exit_statistics
 from synth.simulation.passage_controller import of_table
@@ -27,7 +27,7 @@ def missed_row(
     """
     kind = replace(PointSensors((0.0,), axles=AXLES[axles]), missed_share=share)
     problem = LayoutProblem((LayoutCase(site.plant, (site.aim,)),), kind, resolution)
-    (places,) = found_layouts(problem, [sensors - 1])
+    (places,) = best_places(problem, [sensors - 1])
     made = tabulated(site, tuned_at(problem, places))
     controller, draws = of_table(made.table, tracking=True), made.loop.draws(passes)
 

@@ -137,7 +137,6 @@ class GridRow:
     sensors: int
     path_step_m: float
     speed_step_m_s: float
-    friction_nodes: int
     predicted_m_s: float
     rms_m_s: float
     rms_ci95_m_s: Interval

@@ -107,16 +107,13 @@ def faults_of(site: Site, made: list[MadeLayout], counts: tuple[int, ...], passe
 
 
 def grid_orders(options: Options, resolution: Resolution) -> list[tuple[Site, str, int, Resolution]]:
-    """(site, axles, sensors, grid): that of a tune, with its steps or frictions made finer, that of the study."""
-    orders = []
-    for site in sites(options.grid_cases):
-        tune = site.config.resolution
-        steps = Resolution(
-            resolution.path_step_m, resolution.speed_step_m_s, tune.reference_speed_m_s, tune.transient_substeps,
-            tune.friction_nodes, tune.path_levels, tune.resistance_nodes,
-        )  # fmt: skip
-        orders += [(site, axles, options.grid_sensors, grid) for axles in AXLES for grid in (tune, steps, resolution)]
-    return orders
+    """(site, axles, sensors, grid): that of a tune, that of the study."""
+    return [
+        (site, axles, options.grid_sensors, grid)
+        for site in sites(options.grid_cases)
+        for axles in AXLES
+        for grid in (site.config.resolution, resolution)
+    ]
 
 
 def missed_orders(options: Options) -> list[tuple[Site, str, int, float]]:
@@ -137,8 +134,8 @@ def grid_row(site: Site, axles: str, sensors: int, grid: Resolution, passes: Ran
     made = sensor_table(site, placed, grid)
     found = exit_statistics(made.run(passes), site.target_m_s)
     return GridRow(
-        site.title, axles, sensors, grid.path_step_m, grid.speed_step_m_s, grid.friction_nodes, made.tuned.rms_m_s,
-        found.rms_m_s, found.rms_ci95_m_s,
+        site.title, axles, sensors, grid.path_step_m, grid.speed_step_m_s, made.tuned.rms_m_s, found.rms_m_s,
+        found.rms_ci95_m_s,
     )  # fmt: skip
 
 

@@ -160,11 +160,11 @@ def many(found: WorthRows) -> MarkdownTable:
 def grid(found: WorthRows) -> MarkdownTable:
     """Equal sections, tables made on several grids."""
     return table(
-        "the same layout, equal sections, its table made on several grids: path step, m; speed step, m/s; frictions",
+        "the same layout, equal sections, its table made on two grids: path step, m; speed step, m/s",
         ("case", "axles", "sensors", "grid", "predicted", "rms", "honesty"),
         (
             (row.case, row.axles, str(row.sensors),
-             f"{row.path_step_m:g}, {row.speed_step_m_s:g}, {row.friction_nodes}",
+             f"{row.path_step_m:g}, {row.speed_step_m_s:g}",
              f"{row.predicted_m_s:.4f}", rms(row.rms_m_s, row.rms_ci95_m_s), f"{row.honesty:.2f}")
             for row in found.grids
         ),

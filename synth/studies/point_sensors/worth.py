@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from plant_models import PointSensors
 from synth.book.sensors.candidate_places import LayoutCase
-from synth.book.sensors.layout_plan import LayoutProblem, found_layouts
+from synth.book.sensors.layout_plan import LayoutProblem, best_places
 from synth.book.sensors.tuned_passages import TunedPassages, passage_chains
 from synth.book.tuned_table import predict
 from synth.problem.resolution import Resolution, finer_for_check
@@ -62,7 +62,7 @@ def radar_row(site: Site, passes: RandomPasses) -> tuple[RadarRow, ExitSample]:
 
 
 def sensor_rows(
-    given: Compared, axles: str, sensors: Sequence[int], to_plan: Sequence[int], plan: Layouts = found_layouts
+    given: Compared, axles: str, sensors: Sequence[int], to_plan: Sequence[int], plan: Layouts = best_places
 ) -> Iterator[MadeLayout]:
     """A row for every layout; `sensors` are counted with the one behind the exit, which decides nothing.
 
