@@ -70,6 +70,11 @@ class LayoutProblem:
             first_sensor_m(case.plant, self.sensors, aim.target_speed_m_s) for case in self.cases for aim in case.aims
         )
 
+    @property
+    def farthest_m(self) -> float:
+        """How far ahead of the entrance the first sensor may stand."""
+        return float(PLACE_STEP_M * np.ceil(-FARTHEST_AHEAD * self.first_m / PLACE_STEP_M))
+
     def judged(self, deciding_m: tuple[float, ...]) -> JudgedLayout:
         """The tables of a layout in every case, tuned and predicted."""
         return JudgedLayout(deciding_m, tuple(self._tuned(case, deciding_m) for case in self.cases))
@@ -103,9 +108,8 @@ def found_layouts(problem: LayoutProblem, counts: Sequence[int], threads: int = 
     """Places of the deciding sensors, for each of their numbers, of least expected cost before any polish."""
     if not counts:
         return ()
-    ahead_m = PLACE_STEP_M * np.ceil(-FARTHEST_AHEAD * problem.first_m / PLACE_STEP_M)
-    places = np.arange(-ahead_m, problem.exit_m - LAST_SECTION_M, PLACE_STEP_M)
-    cases = tuple(candidate_places(case, problem.sensors, float(ahead_m)) for case in problem.cases)
+    places = np.arange(-problem.farthest_m, problem.exit_m - LAST_SECTION_M, PLACE_STEP_M)
+    cases = tuple(candidate_places(case, problem.sensors, problem.farthest_m) for case in problem.cases)
     search = LayoutSearch(cases, tuple(places.tolist()), problem.first_m, problem.exit_m, threads)
     found = search.best_layouts(counts)
     return tuple(search.places_m(found[count]) for count in counts)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from plant_models import Plant
+from synth.book.case_result import PolicyMap
+from synth.book.sensors.anywhere import policy_anywhere
 from synth.book.sensors.candidate_places import LayoutCase
 from synth.book.sensors.layout import rule_layout
 from synth.book.sensors.layout_plan import JudgedLayout, LayoutProblem, PlannedLayout, fewest_for, plan_layouts
@@ -29,7 +31,8 @@ NEAR_RADAR = 1.1
 class LayoutResults:
     """Plans by number of sensors, rising; the layout by the rule; the radar's predicted rms by case and aim.
 
-    `labels`: of the cases. `wanted_rms_m_s`: as asked for, None where the radar decides. `chosen`: the plan of the
+    `labels`: of the cases. `anywhere`: what a regulator would command that could decide anywhere, in the first case for
+    its first aim. `wanted_rms_m_s`: as asked for, None where the radar decides. `chosen`: the plan of the
     fewest sensors that reach it, None if none does.
     """
 
@@ -38,8 +41,14 @@ class LayoutResults:
     plans: tuple[PlannedLayout, ...]
     rule: JudgedLayout
     radar_rms_m_s: tuple[tuple[float, ...], ...]
+    anywhere: PolicyMap
     wanted_rms_m_s: float | None
     chosen: PlannedLayout | None
+
+    @property
+    def shown(self) -> PlannedLayout:
+        """The plan that is drawn: the chosen one, else the one of most sensors."""
+        return self.chosen or self.plans[-1]
 
     @property
     def radar_mean_rms_m_s(self) -> float:
@@ -63,9 +72,10 @@ def layout_results(
     rule = problem.judged(rule_layout(longest.plant, problem.sensors, slowest))
     with ThreadPoolExecutor(max_workers=threads) as pool:
         radar = tuple(pool.map(lambda case: radar_rms(case, problem.resolution), problem.cases))
-    found = LayoutResults(problem, tuple(labels), plans, rule, radar, wanted_rms_m_s, None)
+    anywhere = policy_anywhere(problem.cases[0], problem.sensors, problem.farthest_m)
+    found = LayoutResults(problem, tuple(labels), plans, rule, radar, anywhere, wanted_rms_m_s, None)
     limit = NEAR_RADAR * found.radar_mean_rms_m_s if wanted_rms_m_s is None else wanted_rms_m_s
-    return LayoutResults(problem, tuple(labels), plans, rule, radar, wanted_rms_m_s, fewest_for(plans, limit))
+    return replace(found, chosen=fewest_for(plans, limit))
 
 
 def radar_rms(case: LayoutCase, resolution: Resolution) -> tuple[float, ...]:

@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 
 from plant_models import Plant, PointSensors
+from synth.book.sensors.anywhere import policy_anywhere
 from synth.book.sensors.candidate_places import CandidatePlaces, LayoutCase, candidate_places
 from synth.book.sensors.layout import equal_layout, fastest_m_s, first_sensor_m, longest_change_s, rule_layout
 from synth.book.sensors.layout_plan import LayoutProblem, fewest_for, plan_layouts
 from synth.book.sensors.layout_search import LayoutSearch
 from synth.book.sensors.tuned_passages import passage_chains
+from synth.present.plots.sensors.plan_map import plan_map
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
@@ -112,3 +114,18 @@ def test_prediction_and_simulation_of_a_table_agree(plant_of: Callable[[float], 
     assert table.predicted.rms_m_s == pytest.approx(found.rms_m_s, rel=0.05)
     assert table.predicted.bias_m_s == pytest.approx(found.bias_m_s, abs=0.01)
     assert table.predicted.rms_m_s < 0.06
+
+
+def test_the_map_under_a_plan_brakes_what_is_fast_and_releases_what_is_slow(plant_22t: Plant) -> None:
+    case = LayoutCase(plant_22t, AIMS)
+    policy = policy_anywhere(case, SENSORS, 5.0)
+    near_exit = int(np.argmin(np.abs(policy.path_m - 30.0)))
+    fast, slow = (int(np.argmin(np.abs(policy.speed_m_s - v))) for v in (5.0, 1.5))
+    assert [policy.command[stage, near_exit, fast] for stage in range(3)] == [1, 1, 0]
+    assert [policy.command[stage, near_exit, slow] for stage in range(3)] == [0, -1, -1]
+    problem = LayoutProblem((case,), SENSORS, COARSE)
+    ((tuned,),) = problem.judged((-5.0, 10.0, 20.0)).tuned
+    figure = plan_map("22 t", policy, tuned)
+    shown = [axes for axes in figure.axes if axes.images]
+    assert len(shown) == 3
+    assert all(len(axes.collections) > 0 for axes in shown)  # the passages

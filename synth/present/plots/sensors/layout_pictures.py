@@ -1,4 +1,4 @@
-"""Pictures of a plan of point sensors: rms over their number, and where they stand."""
+"""Pictures of a plan of point sensors: rms over their number, where they stand, and the best command there."""
 
 from __future__ import annotations
 
@@ -25,12 +25,13 @@ from synth.present.plots.house_style import (
     place,
 )
 from synth.present.plots.picture import Picture
+from synth.present.plots.sensors.plan_map import plan_map
 
 SECTION = "Layout"
 
 
 def layout_pictures(results: LayoutResults) -> Iterator[Picture]:
-    """Both pictures."""
+    """All of them."""
     yield Picture(
         "sensors-rms",
         SECTION,
@@ -44,6 +45,16 @@ def layout_pictures(results: LayoutResults) -> Iterator[Picture]:
         "Where the sensors stand",
         "A row for each number of sensors; grey: the retarders. The last sensor stands behind the exit and logs.",
         draw(places_by_number(results)),
+    )
+    tuned = results.shown.best.tuned[0][0]
+    subject = f"{results.labels[0]} to {tuned.aim.target_speed_m_s:g} m/s, {results.shown.deciding + 1} sensors"
+    yield Picture(
+        "sensors-map",
+        SECTION,
+        "Sensors over the best command",
+        "Colours: what a regulator would command that could decide anywhere. Upright lines: where this plan decides, "
+        "with the speeds at which it goes one stage up and down; it may also pass over stages.",
+        draw(plan_map(subject, results.anywhere, tuned)),
     )
 
 
