@@ -12,7 +12,7 @@ from numba import njit
 
 from synth.kernels.sweep.flow import NO_MASS, extent, stencil, widen
 from synth.kernels.sweep.landing_plan import landing_scratch, landing_tables
-from synth.kernels.sweep.policy_density import collect, follow
+from synth.kernels.sweep.policy_density import BEGIN, collect, follow
 from synth.kernels.vector.borrowing import borrowing
 from synth.kernels.vector.packs import EIGHT, load8, scatter
 
@@ -48,7 +48,7 @@ def forward_to_finer_end(
     scratch, fine_scratch = landing_scratch(row, size, speed.dtype), landing_scratch(fine_row, size, speed.dtype)
     basis, rest, late = refinement(times), np.empty(points), np.empty(fine_speed.shape[0])
     unkept, bands = np.empty((0, 0, 0, 0)), np.empty((nodes, 2), np.int64)
-    fine_drive, fine_brake = drive[node:].copy(), brake[node:].copy()
+    fine_drive, fine_brake = drive[node:], brake[node:]
     for i in range(factor.shape[0]):
         met, slope = landing_tables(
             factor[i : i + 1], extra[i : i + 1], factors, probability, mean, std,
@@ -75,7 +75,7 @@ def forward_to_finer_end(
                     hand_over_landed(mixing[at], landed[at], handed, basis, fine_mixing[to], fine_landed[to])
         collect(arriving[nodes % ring], mixing[nodes % ring], heading, rest)
         follow(
-            0, nodes - node, negligible[i], fine_heading, fine_arriving, fine_mixing, fine_memory, fine_scratch,
+            BEGIN, nodes - node, negligible[i], fine_heading, fine_arriving, fine_mixing, fine_memory, fine_scratch,
             fine_spans, arrived, fine_landed, fine_policy, fine_decision_at, fine_speed, stage, pressure,
             change_chain, chain_mode, fine_ends, factors, met[0],
             np.ascontiguousarray(slope[0, :, :, node:]), levels, transition, fine_drive, fine_brake,

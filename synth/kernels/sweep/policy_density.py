@@ -31,6 +31,9 @@ from synth.kernels.vector.packs import (
 NEGLIGIBLE_MASS = 1e-11
 """A state with less mass is left out."""
 
+BEGIN = np.int64(0)
+"""A plain 0 would be a type of its own to numba, and `follow` compiled once more for it."""
+
 MATTERS = 1e-3
 """Energies at which no state has this share of the negligible mass are not looked at."""
 
@@ -72,7 +75,7 @@ def forward(
                 spans[r, entry_mode, q, 1] = points
         totals[i] = 0.0
         follow(
-            0, drive.shape[0], NEGLIGIBLE_MASS, heading, arriving, mixing, memory, scratch, spans, arrived, landed,
+            BEGIN, drive.shape[0], NEGLIGIBLE_MASS, heading, arriving, mixing, memory, scratch, spans, arrived, landed,
             policy, decision_at, speed, stage, pressure, change_chain, chain_mode,
             ends, factors, met[0], slope[0], levels, transition,
             drive, brake, factor[i], extra[i], path_step, energy_step, period, density[i], band[i], totals[i],
