@@ -22,6 +22,7 @@ from synth.book.comparison.measured import Measured
 from synth.book.comparison.pressure_cycle import pressure_hunting
 from synth.book.estimation.estimated_table import EstimatedTable
 from synth.book.tune import Book
+from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.requirement_found import Finding
 from synth.solver.polish import Polish
 from tuning_tables.canonical import LARGEST_EXACT_INTEGER
@@ -35,11 +36,23 @@ Document = dict[str, Any]
 
 def summary_of(book: Book, verdict: Verdict, file_hashes: Mapping[str, str]) -> Document:
     """The document of `book`; `file_hashes`: SHA-256 by file name, all files but summary.json itself."""
-    config = book.config
     document = {
-        "format": FORMAT,
-        "version": VERSION,
-        "created": book.created,
+        **summary_head((FORMAT, VERSION), book.config, book.created, verdict),
+        "overall": overall(book.cases),
+        "cases": [case_of(case, word) for case, word in zip(book.cases, verdict.cases, strict=True)],
+        "degree_studies": [study_of(study) for study in book.degree_studies],
+        "files": dict(file_hashes),
+    }
+    plain_document: Document = plain(document)
+    return plain_document
+
+
+def summary_head(kind: tuple[str, int], config: ResolvedConfig, created: str, verdict: Verdict) -> Document:
+    """What the summaries of all tunes begin with; `kind`: format and version."""
+    return {
+        "format": kind[0],
+        "version": kind[1],
+        "created": created,
         "generator": {"name": "retarder-synth", "version": version("retarder-synth"), "config_sha256": config.sha256},
         "title": config.title,
         "config": json.loads(config.canonical_json()),
@@ -48,13 +61,7 @@ def summary_of(book: Book, verdict: Verdict, file_hashes: Mapping[str, str]) -> 
         "criterion": config.criterion.sentence,
         "accepted": verdict.accepted,
         "verdict": verdict.sentence,
-        "overall": overall(book.cases),
-        "cases": [case_of(case, word) for case, word in zip(book.cases, verdict.cases, strict=True)],
-        "degree_studies": [study_of(study) for study in book.degree_studies],
-        "files": dict(file_hashes),
     }
-    plain_document: Document = plain(document)
-    return plain_document
 
 
 def overall(cases: tuple[CaseResult, ...]) -> Document:

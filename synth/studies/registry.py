@@ -161,7 +161,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
     Study(
         "point-sensors",
         "What are point sensors worth beside a radar: by number, places and axles, and what do their faults cost?",
-        400.0,
+        700.0,
         "point-sensors.md",
         "synth.studies.point_sensors.study",
         "synth.studies.point_sensors.pictures",

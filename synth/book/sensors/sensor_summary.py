@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
-from importlib.metadata import version
 from typing import Any
 
 from synth.book.acceptance import CaseVerdict, Verdict
 from synth.book.comparison.measured import honesty_of
 from synth.book.sensors.sensor_case import SensorCase
 from synth.book.sensors.sensor_tune import SensorBook
-from synth.book.summary import Document, plain
+from synth.book.summary import Document, plain, summary_head
 from synth.simulation.replicates import Interval
 from synth.solver.passage_polish import PassagePolish
 
@@ -22,19 +20,8 @@ VERSION = 1
 
 def sensor_summary(book: SensorBook, verdict: Verdict, file_hashes: Mapping[str, str]) -> Document:
     """The document of `book`; `file_hashes`: SHA-256 by file name, all files but summary.json itself."""
-    config = book.config
     document = {
-        "format": FORMAT,
-        "version": VERSION,
-        "created": book.created,
-        "generator": {"name": "retarder-synth", "version": version("retarder-synth"), "config_sha256": config.sha256},
-        "title": config.title,
-        "config": json.loads(config.canonical_json()),
-        "warnings": config.warnings,
-        "parameters_assumed": [value.key for value in config.parameters if value.assumed],
-        "criterion": config.criterion.sentence,
-        "accepted": verdict.accepted,
-        "verdict": verdict.sentence,
+        **summary_head((FORMAT, VERSION), book.config, book.created, verdict),
         "cases": [case_of(case, word) for case, word in zip(book.cases, verdict.cases, strict=True)],
         "files": dict(file_hashes),
     }

@@ -40,7 +40,7 @@ class Options:
     passes: int = option(200, "passes of a log", (40, 100_000))
     repetitions: int = option(100, "logs of each plant", (2, 10_000))
     long_passes: int = option(2000, "passes of a long log", (40, 100_000))
-    long_repetitions: int = option(24, "long logs of the first plant, 0 for none; 20 s each", (0, 10_000))
+    long_repetitions: int = option(100, "long logs of the first plant, 0 for none; 10 s each", (0, 10_000))
 
 
 @dataclass(frozen=True)

@@ -44,7 +44,7 @@ def missed_row(
         predicted_m_s=made.tuned.rms_m_s,
         rms_m_s=whole.rms_m_s,
         rms_ci95_m_s=whole.rms_ci95_m_s,
-        worst=worst + 1,
+        worst=worst,
         dead_rms_m_s=dead[worst].rms_m_s,
         dead_rms_ci95_m_s=dead[worst].rms_ci95_m_s,
         most_stalled=max(each.stalled for each in dead),

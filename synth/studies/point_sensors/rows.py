@@ -150,7 +150,7 @@ class GridRow:
 @dataclass(frozen=True)
 class MissedRow:
     """A planned layout whose design counts `missed_share` of the passages as not heard: without a fault, and with a
-    dead sensor; `worst`: the one, from 1, whose death costs most; `most_stalled`: of cuts, whichever sensor is dead."""
+    dead sensor; `worst`: the one, from 0, whose death costs most; `most_stalled`: of cuts, whichever sensor is dead."""
 
     case: str
     axles: str

@@ -175,7 +175,7 @@ def missed(found: WorthRows) -> MarkdownTable:
     """What counting passages as not heard costs and saves."""
     return table(
         "planned layouts by the share of passages that the design counts as not heard, %: rms without fault, predicted "
-        "and simulated; the dead sensor that costs most, from 1; most cuts stalled by a dead sensor, %",
+        "and simulated; the dead sensor that costs most, from 0; most cuts stalled by a dead sensor, %",
         ("case", "axles", "sensors", "not heard", "predicted", "rms", "worst dead", "rms with it", "stalled"),
         (
             (row.case, row.axles, str(row.sensors), f"{100.0 * row.missed_share:g}", f"{row.predicted_m_s:.4f}",
