@@ -93,7 +93,7 @@ def solve_all(
     costs = (np.stack(exit_costs, axis=1), stall_costs, change_costs)
     arguments = (
         *(in_packs_of_targets(each, value_type).ravel() for each in costs),
-        TIE_M2_S2, ROUNDINGS * float(np.finfo(value_type).eps), readings, noise, c.epochs.heard, smear_start,
+        TIE_M2_S2, ROUNDINGS * float(np.finfo(value_type).eps), readings, (noise, c.epochs.heard), smear_start,
         smear.astype(value_type), hidden_prior(c).astype(value_type), c.decisions.at_nodes(nodes), *sweep_arguments(c),
         c.scenarios.factor, c.scenarios.extra_m_s2,
         c.grid.path_step_m, c.grid.energy_step_m2_s2, c.epochs.hold_period_s, len(c.entry),

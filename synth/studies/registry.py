@@ -130,7 +130,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
     Study(
         "identification",
         "How true are the numbers that measured passes tell, and do their intervals hold?",
-        1200.0,
+        2400.0,
         "identify.md",
         "synth.studies.identification.study",
     ),

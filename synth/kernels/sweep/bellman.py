@@ -24,7 +24,7 @@ from synth.kernels.vector.packs import EIGHT, choose, load8, magnitude, store
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def sweep(
-    terminal, stalled, change_cost, tolerance, rounding, reading, noise, heard, smear_start, smear, prior, decision_at,
+    terminal, stalled, change_cost, tolerance, rounding, reading, errors, smear_start, smear, prior, decision_at,
     speed, stage, pressure, change_chain, chain_mode,
     ends, factors, probability, mean, std, levels, transition,
     drive, brake, factor, extra, path_step, energy_step, period, reach, approach_nodes, entrance_stage,
@@ -35,9 +35,9 @@ def sweep(
     `terminal` (E·T',) cost by exit energy and target, `stalled` (T',) cost of a stall, `change_cost` (T',) of a
     command, where T' ≥ T are whole packs of eight; values are computed in the type of `terminal`. `tolerance`: an
     averaged gain of less is none; `rounding`: so is one of less than this part of the cost. I scenarios: `factor`,
-    `extra` (I,); `prior` (I, H, L) weights of what is hidden; `reading` (E,) what is measured of the speeds, with
-    errors of std `noise`; `heard`: probability that it is measured at all, else the stage is held; `smear_start` (E,),
-    `smear` (E, W): probability of true speeds given a measured one. `decision_at` (N,): number of the decision at a
+    `extra` (I,); `prior` (I, H, L) weights of what is hidden; `reading` (E,) what is measured of the speeds;
+    `errors`: std of a reading, and probability that there is one, else the stage is held; `smear_start` (E,), `smear`
+    (E, W): probability of true speeds given a measured one. `decision_at` (N,): number of the decision at a
     node, R or more where there is none. Of the commands 2·d − 2 goes down, 2·d − 1 up by d stages; `change_chain`
     (C, H) their transients, −1: none. No node below `approach_nodes` raises beyond `entrance_stage`. Outputs: `values`
     (I, N + 1, H, L, E, T), or of the first nodes only, `lines` (C, R, K + 1, T) in readings, `gain` (C, R, K + 1, T,
@@ -101,7 +101,7 @@ def sweep(
                 find_lines(
                     gain[:, decision, k], possible[:, k], reading, tolerance, best, chosen, lines[:, decision, k]
                 )  # fmt: skip
-                command_chances(lines[:, decision, k], reading, noise, heard, width, chance, undecided)
+                command_chances(lines[:, decision, k], reading, errors, width, chance, undecided)
             for i in range(count):
                 for h in range(modes):
                     for q in range(size if stage[h] == k else 0):
@@ -197,11 +197,12 @@ def apart(row, width, out):
 
 
 @borrowing
-def command_chances(lines, reading, noise, heard, width, out, undecided):
+def command_chances(lines, reading, errors, width, out, undecided):
     """Probability of each command at every true speed and target, `out` (C, E·T); `lines` (C, T) in readings.
 
     `undecided` (E,): whether any target may get another command than holding.
     """
+    noise, heard = errors
     out[:] = 0.0
     for j in range(reading.shape[0]):
         undecided[j] = False

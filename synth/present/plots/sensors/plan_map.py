@@ -57,14 +57,13 @@ def draw_stage(axes: Axes, policy: PolicyMap, tuned: TunedPassages, stage: int) 
 
 def legend_entries() -> list[Patch | Line2D]:
     """What colours, lines and marks mean."""
-    mark = {"linestyle": "", "markersize": 6}
     return [
         Patch(facecolor=UP, edgecolor=GREY, label="best anywhere: up"),
         Patch(facecolor=HOLD, edgecolor=GREY, label="best anywhere: hold"),
         Patch(facecolor=DOWN, edgecolor=GREY, label="best anywhere: down"),
         Patch(facecolor="white", edgecolor=HATCH, hatch="////", label="indifferent: commands cost the same"),
         Line2D([], [], color=INK, linewidth=0.7, label="passage at which this plan decides"),
-        Line2D([], [], color=VERMILLION, marker="^", **mark, label="one stage up above it"),
-        Line2D([], [], color=BLUE, marker="v", **mark, label="one stage down below it"),
+        Line2D([], [], color=VERMILLION, marker="^", linestyle="", markersize=6, label="one stage up above it"),
+        Line2D([], [], color=BLUE, marker="v", linestyle="", markersize=6, label="one stage down below it"),
         Patch(facecolor=INK, label="retarder zones"),
     ]
