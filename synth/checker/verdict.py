@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,14 +11,14 @@ from synth.checker.aim.sense import claim_faults
 from synth.checker.aim.sense import sense as aim_sense
 from synth.checker.canonical import require_right_crc32
 from synth.checker.claims import own_faults, simulated_faults
-from synth.checker.coarse_simulation import Passes, simulate
+from synth.checker.coarse_simulation import simulate
 from synth.checker.estimator_sense import estimator_faults
 from synth.checker.exports import ExportReport, check_exports
 from synth.checker.finding import DamagedError, Finding, Kind
 from synth.checker.passages.reading import PassageTable
 from synth.checker.passages.sense import sense as passage_sense
 from synth.checker.passages.simulation import simulate as simulate_passages
-from synth.checker.plant import Plant, UnusableConfigError
+from synth.checker.plant import UnusableConfigError
 from synth.checker.source import Source, read_source
 from synth.checker.statistics import ExitFigures, figures_of
 from synth.checker.summary import DEFAULT_HONESTY, Summary, read_summary
@@ -117,25 +117,17 @@ def judge_passages(
 ) -> PassageVerdict:
     """Everything about one table for point sensors; `found` are findings of files, some of them about it."""
     senseless = [Finding(Kind.DAMAGED, table.id, sentence) for sentence in passage_sense(table)]
-    judged = judge_figures(table, summary, bool(senseless), lambda plant: simulate_passages(plant, table, passes, seed))
+    judged = judge_figures(table, summary, passes, seed, bool(senseless))
     findings = [finding for finding in found if finding.about == table.id]
     return PassageVerdict(table, (*findings, *senseless, *judged.findings), judged.figures, judged.skipped)
 
 
 def judge(table: Table, summary: Summary | None, passes: int, seed: int, found: list[Finding]) -> TableVerdict:
     """Everything about one table; `found` are findings of files, some of them about it."""
-    findings = [finding for finding in found if finding.about == table.id]
     senseless = list(sense(table))
-    of_estimator: list[Finding] = []
-
-    def simulated(plant: Plant) -> Passes:
-        assert summary is not None
-        others = estimator_faults(table.estimator, plant, summary.estimating(table))
-        of_estimator.extend(Finding(Kind.DISAGREES, table.id, sentence) for sentence in others)
-        return simulate(plant, table, passes, seed)
-
-    judged = judge_figures(table, summary, bool(senseless), simulated)
-    findings += [*senseless, *judged.findings, *of_estimator]
+    judged = judge_figures(table, summary, passes, seed, bool(senseless))
+    findings = [finding for finding in found if finding.about == table.id]
+    findings += [*senseless, *judged.findings]
     return TableVerdict(table, tuple(findings), judged.figures, judged.skipped, exit_gap_m_s(table))
 
 
@@ -149,26 +141,34 @@ class FigureVerdict:
 
 
 def judge_figures(
-    table: Table | PassageTable, summary: Summary | None, senseless: bool, simulated: Callable[[Plant], Passes]
+    table: Table | PassageTable, summary: Summary | None, passes: int, seed: int, senseless: bool
 ) -> FigureVerdict:
     """The figures of a table against one another, against the summary, and against coarse passes of its plant."""
     honesty = summary.honesty() if summary else DEFAULT_HONESTY
-    findings, claims = [], list(own_faults(table, honesty))
+    disagreements: list[str] = []
+    claims = list(own_faults(table, honesty))
     figures, skipped = None, None
     if senseless:
-        skipped = "its lines make no sense"
+        skipped = "it makes no sense"
     elif summary is None:
         skipped = "no usable summary.json of a tune is beside it, so the plant is not known"
     elif summary.config_sha256 != table.config_sha256:
         skipped = "summary.json beside it belongs to another configuration"
     else:
-        findings += [Finding(Kind.DISAGREES, table.id, sentence) for sentence in summary.case_faults(table)]
+        disagreements += summary.case_faults(table)
         try:
-            figures = figures_of(simulated(summary.plant(table)), table.target_m_s)
+            plant = summary.plant(table)
+            if isinstance(table, Table):
+                disagreements += estimator_faults(table.estimator, plant, summary.estimating(table))
+                coarse = simulate(plant, table, passes, seed)
+            else:
+                coarse = simulate_passages(plant, table, passes, seed)
+            figures = figures_of(coarse, table.target_m_s)
             claims += simulated_faults(table, figures, honesty)
         except UnusableConfigError as fault:
-            findings.append(Finding(Kind.DISAGREES, table.id, str(fault)))
+            disagreements.append(str(fault))
             skipped = "the plant is not known"
+    findings = [Finding(Kind.DISAGREES, table.id, sentence) for sentence in disagreements]
     findings += [Finding(Kind.CLAIM, table.id, sentence) for sentence in claims]
     return FigureVerdict(tuple(findings), figures, skipped)
 
