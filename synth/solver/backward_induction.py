@@ -70,13 +70,15 @@ def solve_all(
     aims: Sequence[Aim],
     nodes_kept: int | None = None,
     value_type: type[np.floating[Any]] = np.float32,
+    heard: NDArray[np.float64] | None = None,
 ) -> tuple[Solution, ...]:
     """Backward induction for several aims in one sweep: they share all motion.
 
     Up to eight cost little more than one, and none depends on which others there are. `nodes_kept`: at how many path
     nodes, from the entrance on, the solutions hold values, by default at all; they are most of the memory of a
     solution. `value_type`: of the numbers that values are computed and kept in. float32 takes 0.6 to 0.7 of the time of
-    float64 and half the memory; what it costs: `docs/method.md`.
+    float64 and half the memory; what it costs: `docs/method.md`. `heard` (R, T): the probability that a decision is
+    taken, by aim; by default that of the chain's epochs for all.
     """
     c = chain
     priced = [each.criterion.exit_costs(c.grid.speed_m_s, each.target_speed_m_s) for each in aims]
@@ -88,12 +90,13 @@ def solve_all(
     values = np.empty((len(c.scenarios.factor), kept, *states, width), value_type)
     shape = (c.decisions.commands, len(c.decisions), stages, width)
     lines, gain = np.empty(shape), np.empty((*shape, points))
+    heard = np.full((len(c.decisions), width), c.epochs.heard) if heard is None else heard
     readings, noise = c.measurement.readings(c.grid.speed_m_s), c.measurement.std
     smear_start, smear = true_speed_weights(c.grid.speed_m_s, readings, noise)
     costs = (np.stack(exit_costs, axis=1), stall_costs, change_costs)
     arguments = (
         *(in_packs_of_targets(each, value_type).ravel() for each in costs),
-        TIE_M2_S2, ROUNDINGS * float(np.finfo(value_type).eps), readings, (noise, c.epochs.heard), smear_start,
+        TIE_M2_S2, ROUNDINGS * float(np.finfo(value_type).eps), readings, (noise, heard), smear_start,
         smear.astype(value_type), hidden_prior(c).astype(value_type), c.decisions.at_nodes(nodes), *sweep_arguments(c),
         c.scenarios.factor, c.scenarios.extra_m_s2,
         c.grid.path_step_m, c.grid.energy_step_m2_s2, c.epochs.hold_period_s, len(c.entry),

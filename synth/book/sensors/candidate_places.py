@@ -10,11 +10,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from plant_models import Plant, PointSensors
+from synth.kernels.vector.packs import EIGHT
 from synth.problem.aim import Aim
 from synth.problem.resolution import Resolution
-from synth.solver.backward_induction import solve_all
+from synth.solver.backward_induction import Solution, solve_all
 from synth.solver.chain.chain import Chain, persistent_chain
 from synth.solver.chain.decisions import Decisions
 from synth.solver.chain.grid import Grid, make_grid
@@ -59,28 +61,44 @@ class CandidatePlaces:
     aims: tuple[Aim, ...]
     axle_offsets_m: tuple[float, ...]
 
-    def mean_cost(self, sensors_m: Sequence[float]) -> float:
-        """Mean over the aims of the expected cost with sensors at these places, each taken at the nearest node."""
-        solutions = solve_all(self.at(sensors_m), self.aims, nodes_kept=1)
-        c = self.chain
-        reached = c.entry[0]
-        costs = [
-            float(
-                np.einsum("i,q,j,iqj->", c.scenarios.weight, c.path_noise.stationary, reached, each.values[:, 0, mode])
-            )
-            for each, mode in ((solution, c.entry_mode) for solution in solutions)
-        ]
-        return max(sum(costs) / len(costs), LEAST_COST_M2_S2)
+    @property
+    def together(self) -> int:
+        """How many layouts one sweep takes at little more than the time of one."""
+        return max(1, EIGHT // len(self.aims))
 
-    def at(self, sensors_m: Sequence[float]) -> Chain:
-        """The chain that decides at the passages over these sensors alone."""
+    def mean_costs(self, layouts_m: Sequence[Sequence[float]]) -> list[float]:
+        """Mean over the aims of the expected cost of each layout, its sensors taken at the nearest nodes.
+
+        Layouts share the motion, so they are solved side by side, as aims are: each decides at its own passages alone.
+        """
+        decided = [self.nodes(each) for each in layouts_m]
+        node = np.unique(np.concatenate(decided))
+        chain = self.at(node)
+        heard = [np.isin(node, each) * chain.epochs.heard for each in decided for _ in self.aims]
+        solutions = solve_all(chain, self.aims * len(decided), nodes_kept=1, heard=np.stack(heard, axis=1))
+        costs = np.array([expected_cost(each) for each in solutions]).reshape(len(decided), -1)
+        return [float(max(each, LEAST_COST_M2_S2)) for each in costs.mean(axis=1)]
+
+    def nodes(self, sensors_m: Sequence[float]) -> NDArray[np.int64]:
+        """Path nodes nearest to the passages over these sensors, rising."""
         c, step = self.chain, self.chain.grid.path_step_m
         place = np.add.outer(np.asarray(sensors_m), np.asarray(self.axle_offsets_m)).ravel() - c.grid.path_m[0]
         node = np.unique(np.rint(place / step).astype(np.int64))
-        node = node[(node >= 0) & (node < len(c.drive_m_s2))]
+        return node[(node >= 0) & (node < len(c.drive_m_s2))]
+
+    def at(self, node: NDArray[np.int64]) -> Chain:
+        """The chain that decides at these path nodes alone."""
+        c = self.chain
         decisions = Decisions(node, c.decisions.place_m[node], c.decisions.lead_m[node], c.decisions.farthest)
         landings = replace(c.landings, ends=np.ascontiguousarray(c.landings.ends[node]))
         return replace(c, decisions=decisions, landings=landings)
+
+
+def expected_cost(solution: Solution) -> float:
+    """Of a pass that enters as the chain's cuts do, m²/s²."""
+    c = solution.chain
+    start = solution.values[:, 0, c.entry_mode]
+    return float(np.einsum("i,q,j,iqj->", c.scenarios.weight, c.path_noise.stationary, c.entry[0], start))
 
 
 def candidate_places(

@@ -7,7 +7,7 @@ of all; for three sensors exhaustive search finds the same (tests).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from itertools import pairwise
 
@@ -22,6 +22,9 @@ PlaceNumbers = tuple[int, ...]
 
 STRIDES = (6, 3, 1)
 """By so many places a sensor is moved, the longest first."""
+
+STARTS_AHEAD = 2
+"""Descents from equal sections that may begin before the descent to fewer sensors has ended: they keep threads busy."""
 
 LEAST_GAIN = 1e-4
 """A move must lower the cost by this part of it."""
@@ -44,10 +47,16 @@ class LayoutSearch:
     def costs(self, layouts: Sequence[PlaceNumbers]) -> list[float]:
         """Mean costs over the cases; infinite where sensors stand too near to each other or off the path."""
         asked = [each for each in dict.fromkeys(layouts) if each not in self.known]
-        with ThreadPoolExecutor(max_workers=self.threads) as pool:
-            for layout, cost in zip(asked, pool.map(self._cost, asked), strict=True):
-                self.known[layout] = cost
+        self.known.update((each, float("inf")) for each in asked if not self._can_stand(each))
+        possible = [each for each in asked if each not in self.known]
+        for first in range(0, len(possible), self.together):
+            self._solve(possible[first : first + self.together])
         return [self.known[each] for each in layouts]
+
+    @property
+    def together(self) -> int:
+        """How many layouts are best solved at once."""
+        return min(case.together for case in self.cases)
 
     def places_m(self, layout: PlaceNumbers) -> tuple[float, ...]:
         """The places of a layout."""
@@ -60,13 +69,20 @@ class LayoutSearch:
     def best_layouts(self, counts: Sequence[int]) -> dict[int, PlaceNumbers]:
         """The best layout found for each of the `counts` of deciding sensors."""
         found: dict[int, PlaceNumbers] = {}
-        for count in range(1, max(counts) + 1):
-            starts = [self.numbers(equal_layout(self.first_m, self.exit_m, count))]
-            if count > 1:
-                inserted = self.inserted(found[count - 1])
-                starts.append(inserted[int(np.argmin(self.costs(inserted)))])
-            ends = [self.descended(start) for start in starts]
-            found[count] = ends[int(np.argmin(self.costs(ends)))]
+        equal: dict[int, Future[PlaceNumbers]] = {}
+        most = max(counts)
+        with ThreadPoolExecutor(max_workers=self.threads) as pool:
+            for count in range(1, most + 1):
+                for soon in range(len(equal) + 1, min(count + STARTS_AHEAD, most) + 1):
+                    start = self.numbers(equal_layout(self.first_m, self.exit_m, soon))
+                    equal[soon] = pool.submit(self.descended, start)
+                descents = [equal[count]]
+                if count > 1:
+                    inserted = self.inserted(found[count - 1])
+                    start = inserted[int(np.argmin(self.costs(inserted)))]
+                    descents.append(pool.submit(self.descended, start))
+                ends = [each.result() for each in descents]
+                found[count] = ends[int(np.argmin(self.costs(ends)))]
         return {count: found[count] for count in counts}
 
     def inserted(self, layout: PlaceNumbers) -> list[PlaceNumbers]:
@@ -84,19 +100,36 @@ class LayoutSearch:
                 moved = False
                 for sensor in range(len(layout)):
                     tried = [best, *(shifted(best, sensor, by) for by in (-stride, stride))]
+                    if any(each not in self.known for each in tried):
+                        self.costs([*tried, *self.asked_next(best, sensor, stride)])
                     costs = self.costs(tried)
                     least = int(np.argmin(costs))
                     if costs[least] < costs[0] - LEAST_GAIN * abs(costs[0]):
                         best, moved = tried[least], True
         return best
 
-    def _cost(self, layout: PlaceNumbers) -> float:
+    def asked_next(self, layout: PlaceNumbers, sensor: int, stride: int) -> list[PlaceNumbers]:
+        """Moves of the sensors behind `sensor`, then of those before it, that fill up one solution.
+
+        The descent asks for them next unless it moves first.
+        """
+        order = [*range(sensor + 1, len(layout)), *range(sensor)]
+        moves = (shifted(layout, other, by) for other in order for by in (-stride, stride))
+        unknown = [each for each in moves if each not in self.known and self._can_stand(each)]
+        now = [shifted(layout, sensor, by) for by in (0, -stride, stride)]
+        free = self.together - sum(each not in self.known and self._can_stand(each) for each in now)
+        return unknown[: max(0, free)]
+
+    def _can_stand(self, layout: PlaceNumbers) -> bool:
         if any(number < 0 or number >= len(self.path_m) for number in layout):
-            return float("inf")
+            return False
         places = [self.path_m[number] for number in layout]
-        if any(b - a < SHORTEST_SECTION_M for a, b in pairwise(places)) or places[0] >= 0.0:
-            return float("inf")
-        return sum(case.mean_cost(places) for case in self.cases) / len(self.cases)
+        return places[0] < 0.0 and all(b - a >= SHORTEST_SECTION_M for a, b in pairwise(places))
+
+    def _solve(self, layouts: Sequence[PlaceNumbers]) -> None:
+        places = [[self.path_m[number] for number in layout] for layout in layouts]
+        by_case = np.array([case.mean_costs(places) for case in self.cases])
+        self.known.update(zip(layouts, by_case.mean(axis=0).tolist(), strict=True))
 
 
 def shifted(layout: PlaceNumbers, sensor: int, by: int) -> PlaceNumbers:

@@ -36,12 +36,12 @@ def sweep(
     command, where T' ≥ T are whole packs of eight; values are computed in the type of `terminal`. `tolerance`: an
     averaged gain of less is none; `rounding`: so is one of less than this part of the cost. I scenarios: `factor`,
     `extra` (I,); `prior` (I, H, L) weights of what is hidden; `reading` (E,) what is measured of the speeds;
-    `errors`: std of a reading, and probability that there is one, else the stage is held; `smear_start` (E,), `smear`
-    (E, W): probability of true speeds given a measured one. `decision_at` (N,): number of the decision at a
-    node, R or more where there is none. Of the commands 2·d − 2 goes down, 2·d − 1 up by d stages; `change_chain`
-    (C, H) their transients, −1: none. No node below `approach_nodes` raises beyond `entrance_stage`. Outputs: `values`
-    (I, N + 1, H, L, E, T), or of the first nodes only, `lines` (C, R, K + 1, T) in readings, `gain` (C, R, K + 1, T,
-    E): averaged cost saved by the change, by measured speed.
+    `errors`: std of a reading, and the probability (R, T) that there is one at a decision, else the stage is held;
+    `smear_start` (E,), `smear` (E, W): probability of true speeds given a measured one. `decision_at` (N,): number of
+    the decision at a node, R or more where there is none. Of the commands 2·d − 2 goes down, 2·d − 1 up by d stages;
+    `change_chain` (C, H) their transients, −1: none. No node below `approach_nodes` raises beyond `entrance_stage`.
+    Outputs: `values` (I, N + 1, H, L, E, T), or of the first nodes only, `lines` (C, R, K + 1, T) in readings, `gain`
+    (C, R, K + 1, T, E): averaged cost saved by the change, by measured speed.
     """
     count, nodes, width = factor.shape[0], drive.shape[0], stalled.shape[0]
     modes, size, points = pressure.shape[0], levels.shape[0], speed.shape[0]
@@ -101,7 +101,9 @@ def sweep(
                 find_lines(
                     gain[:, decision, k], possible[:, k], reading, tolerance, best, chosen, lines[:, decision, k]
                 )  # fmt: skip
-                command_chances(lines[:, decision, k], reading, errors, width, chance, undecided)
+                command_chances(
+                    lines[:, decision, k], reading, errors[0], errors[1][decision], width, chance, undecided
+                )  # fmt: skip
             for i in range(count):
                 for h in range(modes):
                     for q in range(size if stage[h] == k else 0):
@@ -197,12 +199,12 @@ def apart(row, width, out):
 
 
 @borrowing
-def command_chances(lines, reading, errors, width, out, undecided):
+def command_chances(lines, reading, noise, heard, width, out, undecided):
     """Probability of each command at every true speed and target, `out` (C, E·T); `lines` (C, T) in readings.
 
-    `undecided` (E,): whether any target may get another command than holding.
+    `heard` (T,): probability that there is a reading. `undecided` (E,): whether any target may get another command
+    than holding.
     """
-    noise, heard = errors
     out[:] = 0.0
     for j in range(reading.shape[0]):
         undecided[j] = False
@@ -211,10 +213,10 @@ def command_chances(lines, reading, errors, width, out, undecided):
             for command in range(lines.shape[0] - 2, -1, -2):
                 down = normal_cdf((lines[command, t] - reading[j]) / noise)
                 up = normal_cdf((reading[j] - lines[command + 1, t]) / noise)
-                out[command, j * width + t] = (down - further_down) * heard
-                out[command + 1, j * width + t] = (up - further_up) * heard
+                out[command, j * width + t] = (down - further_down) * heard[t]
+                out[command + 1, j * width + t] = (up - further_up) * heard[t]
                 further_down, further_up = down, up
-            undecided[j] = undecided[j] or further_down > 0.0 or further_up > 0.0
+            undecided[j] = undecided[j] or (heard[t] > 0.0 and (further_down > 0.0 or further_up > 0.0))
 
 
 @borrowing

@@ -58,7 +58,16 @@ def test_the_cost_of_a_layout_is_that_of_its_own_chain(plant_22t: Plant) -> None
     chains = passage_chains(with_point_sensors(plant_22t, sensors), sensors, resolution)
     solution = solve(chains.design, AIMS[0], np.float64)
     cost = Evaluation(chains.design, AIMS[0]).cost(passage_speeds(solution.lines_m_s))
-    assert probe.mean_cost(layout) == pytest.approx(cost, rel=2e-3)
+    assert probe.mean_costs([layout]) == [pytest.approx(cost, rel=2e-3)]
+
+
+def test_layouts_solved_together_cost_what_each_costs_alone(places: CandidatePlaces) -> None:
+    """To the bit, whatever other layouts decide where: so no search depends on what it asks for at once."""
+    layouts = [(-8.0, 5.0, 20.0), (-8.0, 7.0, 20.0), (-6.0,), (-8.0, 0.0, 10.0, 20.0, 30.0)]
+    alone = [places.mean_costs([each])[0] for each in layouts]
+    assert places.mean_costs(layouts) == alone
+    assert places.mean_costs(layouts[::-1]) == alone[::-1]
+    assert len(set(alone)) == len(alone)
 
 
 def test_the_search_finds_what_exhaustive_search_finds(places: CandidatePlaces) -> None:
