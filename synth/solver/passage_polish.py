@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from synth.solver.backward_induction import Solution
-from synth.solver.evaluation import Evaluation
+from synth.solver.descent import CostAndSlopes, descend
+from synth.solver.evaluation import Evaluation, Gradient
 from synth.solver.one_blas_thread import one_blas_thread
 from synth.solver.passage_speeds import PassageSpeeds, ordered, parted_by, passage_speeds
 from synth.solver.policy_density import density_and_occupancy
@@ -38,38 +38,33 @@ def polish_passages(solution: Solution, max_iterations: int = 40, tolerance: flo
     Sequential quadratic programming in units in which being off costs the same for each. It ends when a step changes
     the cost by less than `tolerance` of the first; the cost of the result is no higher than the start's.
     """
-    from scipy.optimize import LinearConstraint, minimize  # start-up: scipy only where it is needed
+    from scipy.optimize import LinearConstraint  # start-up: scipy only where it is needed
 
     start = passage_speeds(solution.lines_m_s)
     free = np.isfinite(start.switching_m_s)
     evaluation = Evaluation(solution.chain, solution.aim)
-    before = evaluation.gradient(start)[0]
-    unit = np.minimum(np.sqrt(before / (np.maximum(being_off(solution, start)[free], 0.0) + 1e-12)), LOOSE_M_S)
-    best: list[tuple[float, PassageSpeeds]] = [(before, start)]
-    calls = 0
+    first = evaluation.gradient(start)
+    off = np.maximum(being_off(solution, start)[free], 0.0)
+    unit = np.minimum(np.sqrt(first[0] / (off + 1e-12)), LOOSE_M_S)
 
     def policy(y: NDArray[np.float64]) -> PassageSpeeds:
         t = np.array(start.switching_m_s)
         t[free] += unit * y
         return PassageSpeeds(ordered(t))
 
-    def objective(y: Any) -> Any:
-        nonlocal calls
-        calls += 1
-        speeds = policy(y)
-        cost, by_lines = evaluation.gradient(speeds)
-        if 0.0 < cost < best[0][0]:
-            best[0] = cost, speeds
-        return cost / before, by_switching(by_lines, speeds.stages)[free] * unit / before
+    def by_point(cost_and_slopes: Gradient) -> CostAndSlopes:
+        return cost_and_slopes[0], by_switching(cost_and_slopes[1], start.stages)[free] * unit
 
     order = order_of(free)
     gaps = order @ start.switching_m_s[free]
-    constraints = LinearConstraint(order * unit, -gaps, np.inf) if len(order) else ()
-    options: Any = {"maxiter": max_iterations, "ftol": tolerance}
-    y0 = np.zeros(int(free.sum()))
-    result = minimize(objective, y0, jac=True, method="SLSQP", constraints=constraints, options=options)
-    cost, speeds = best[0]
-    return PassagePolish(speeds, before, cost, calls, bool(result.success), str(result.message))
+    constraints = [LinearConstraint(order * unit, -gaps, np.inf)] if len(order) else []
+    found = descend(
+        lambda y: by_point(evaluation.gradient(policy(y))), by_point(first), constraints, max_iterations, tolerance
+    )
+    speeds = policy(found.point) if found.point.any() else start
+    return PassagePolish(
+        speeds, found.cost_before, found.cost_after, found.evaluations, found.converged, found.status
+    )  # fmt: skip
 
 
 def by_switching(by_lines: NDArray[np.float64], stages: int) -> NDArray[np.float64]:

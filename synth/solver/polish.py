@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.errors import require
+from synth.solver.descent import CostAndSlopes, descend
 from synth.solver.one_blas_thread import one_blas_thread
 from synth.solver.polynomial_lines import MINIMUM_GAP_M_S, PolynomialLines, gap_of, opened
 from synth.solver.switching_lines import SwitchingLines
@@ -55,8 +56,6 @@ def polish(
     Sequential quadratic programming in coordinates in which the `curvature` (K + 1, 2, N) of `fit_lines` is
     the unit matrix, so that the first steps are Newton steps.
     """
-    from scipy.optimize import minimize  # start-up: scipy only where it is needed
-
     free, width = np.nonzero(start.has_line), start.degree + 1
     matrix = start.basis(nodes_m)[: curvature.shape[2]]
     first = evaluate(start.at(nodes_m))
@@ -67,36 +66,28 @@ def polish(
         "speed_step_m_s smaller",
     )
     scale = whitening(curvature[free], matrix, before)
-    best: list[tuple[float, PolynomialLines]] = [(before, start)]
-    calls = 0
 
     def unpack(y: NDArray[np.float64]) -> PolynomialLines:
         coefficients = start.coefficients.copy()
         coefficients[free] += np.einsum("lab,lb->la", scale, y.reshape(-1, width))
         return replace(start, coefficients=coefficients)
 
-    def objective(y: Any) -> Any:
-        nonlocal calls
-        calls += 1
-        lines = unpack(y)
-        cost, by_lines = evaluate(lines.at(nodes_m)) if y.any() else first
-        # Below 0 the grid is too coarse for these lines, and its error would be what is minimised.
-        if 0.0 < cost < best[0][0] and gap_of(lines) >= 0.5 * MINIMUM_GAP_M_S:
-            best[0] = (cost, lines)
+    def by_point(cost_and_slopes: tuple[float, NDArray[np.float64]]) -> CostAndSlopes:
+        cost, by_lines = cost_and_slopes
         gradient = np.stack([np.ascontiguousarray(each.T) @ matrix for each in by_lines], axis=1)[free]
-        return cost / before, np.einsum("lab,la->lb", scale, gradient).ravel() / before
+        return cost, np.einsum("lab,la->lb", scale, gradient).ravel()
 
-    options: Any = {"maxiter": max_iterations, "ftol": tolerance}
-    constraints: Any = [gap_constraint(start, free, scale)]
-    y0 = np.zeros(len(free[0]) * width)
-    result = minimize(objective, y0, jac=True, method="SLSQP", constraints=constraints, options=options)
-    cost, found = best[0]
-    lines = opened(found)
-    if lines is not found:
+    found = descend(
+        lambda y: by_point(evaluate(unpack(y).at(nodes_m))), by_point(first), [gap_constraint(start, free, scale)],
+        max_iterations, tolerance, allowed=lambda y: gap_of(unpack(y)) >= 0.5 * MINIMUM_GAP_M_S,
+    )  # fmt: skip
+    cost, best = found.cost_after, unpack(found.point) if found.point.any() else start
+    lines = opened(best)
+    if lines is not best:
         cost = evaluate(lines.at(nodes_m))[0]
     if not 0.0 < cost <= before:
         cost, lines = before, start
-    return Polish(lines, before, cost, calls, bool(result.success), str(result.message))
+    return Polish(lines, before, cost, found.evaluations, found.converged, found.status)
 
 
 def whitening(curvature: NDArray[np.float64], matrix: NDArray[np.float64], cost: float) -> NDArray[np.float64]:

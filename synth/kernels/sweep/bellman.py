@@ -101,9 +101,7 @@ def sweep(
                 find_lines(
                     gain[:, decision, k], possible[:, k], reading, tolerance, best, chosen, lines[:, decision, k]
                 )  # fmt: skip
-                command_chances(
-                    lines[:, decision, k], reading, errors[0], errors[1][decision], width, chance, undecided
-                )  # fmt: skip
+                command_chances(lines[:, decision, k], reading, errors, decision, width, chance, undecided)
             for i in range(count):
                 for h in range(modes):
                     for q in range(size if stage[h] == k else 0):
@@ -199,12 +197,12 @@ def apart(row, width, out):
 
 
 @borrowing
-def command_chances(lines, reading, noise, heard, width, out, undecided):
+def command_chances(lines, reading, errors, decision, width, out, undecided):
     """Probability of each command at every true speed and target, `out` (C, E·T); `lines` (C, T) in readings.
 
-    `heard` (T,): probability that there is a reading. `undecided` (E,): whether any target may get another command
-    than holding.
+    `errors` as of `sweep`. `undecided` (E,): whether any target may get another command than holding.
     """
+    noise, heard = errors[0], errors[1][decision]
     out[:] = 0.0
     for j in range(reading.shape[0]):
         undecided[j] = False

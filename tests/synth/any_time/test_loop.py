@@ -10,8 +10,8 @@ import pytest
 from plant_models import Plant
 from synth.simulation.closed_loop import LineController
 from synth.simulation.random_passes import random_passes
+from synth.solver.any_time.drive_modes import drive_modes
 from synth.solver.switching_lines import SwitchingLines
-from synth.studies.unlocked.drive_modes import drive_modes
 from synth.studies.unlocked.laws import CompactController, SurfaceController, at_rest_only
 from synth.studies.unlocked.loop import unlocked_loop
 

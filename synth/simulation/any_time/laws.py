@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
 from synth.simulation.controllers import fixed
+from synth.solver.any_time.drive_modes import DriveModes
 from synth.solver.switching_lines import SwitchingLines
-from synth.studies.unlocked.drive_modes import DriveModes
 from synth.studies.unlocked.kernels.unlocked_loop import SurfaceLaw
 from synth.studies.unlocked.surfaces import SwitchingSurfaces
 

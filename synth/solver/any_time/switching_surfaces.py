@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
-from synth.studies.unlocked.drive_modes import DriveModes
+from synth.solver.any_time.drive_modes import DriveModes
 
 
 @frozen_arrays

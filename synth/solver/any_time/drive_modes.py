@@ -18,8 +18,8 @@ from plant_models.errors import require
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.stage_regulator import resting_modes
 from plant_models.valve_drive import ValveDrive
-from synth.studies.unlocked.kernels.unlocked_pressure import play_period
-from synth.studies.unlocked.pressure_grid import STENCIL, PressureGrid, pressure_grid
+from synth.kernels.any_time.driven_period import play_period
+from synth.solver.any_time.pressure_grid import STENCIL, PressureGrid, pressure_grid
 
 COMMANDS = (-1, 0, 1)
 """Stages by which the commands of a sample change the stage, in the order of the arrays' second axis."""

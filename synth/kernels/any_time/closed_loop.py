@@ -13,9 +13,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from synth.kernels.any_time.driven_period import play_period
 from synth.kernels.loop.closed_loop import LEFT, LONGEST_PASS_S, MOVING, Draws, Exits, Floats, Path, advance, note
 from synth.kernels.loop.regulator import Sensor, measure
-from synth.studies.unlocked.kernels.unlocked_pressure import play_period
 
 
 class SampledDrive(NamedTuple):

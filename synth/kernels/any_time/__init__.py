@@ -1,0 +1,1 @@
+"""Kernels of regulators that may give a command at every sample, also during a change of stage."""

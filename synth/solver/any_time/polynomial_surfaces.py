@@ -1,0 +1,92 @@
+"""Switching surfaces of few coefficients: for every stage and side, a polynomial of the path and of the pressure."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.frozen_arrays import frozen_arrays
+from synth.solver.any_time.drive_modes import DriveModes
+from synth.solver.polynomial_lines import PolynomialLines, basis
+
+PRESSURE_UNIT_KPA = 100.0
+"""Powers of the pressure count in it."""
+
+CUBIC_AND_SLOPE = (3, 0)
+"""Degrees in the path for the powers of the pressure: a cubic, and one slope."""
+
+CUBIC_ALONE = (3,)
+"""For regulators that do not know their pressure."""
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class PolynomialSurfaces:
+    """V_lo,k and V_hi,k = Σ_i x^i · Σ_j a_ij·L_j(u), x = (P − P_k) / 100 kPa; u is −1 at `start_m` and 1 at S_exit.
+
+    L_j are Legendre polynomials. `stage_kpa` (K + 1,) pressures P_k; `degrees`: of the path, for each power i.
+    `coefficients` (K + 1, 2, T): lower, upper, power after power; `has_line` (K + 1, 2).
+    """
+
+    start_m: float
+    exit_m: float
+    stage_kpa: NDArray[np.float64]
+    degrees: tuple[int, ...]
+    coefficients: NDArray[np.float64]
+    has_line: NDArray[np.bool_]
+
+    @property
+    def lines(self) -> NDArray[np.int64]:
+        """(stage, side) of the surfaces that there are, (·, 2)."""
+        return np.argwhere(self.has_line)
+
+    def terms(self, nodes_m: NDArray[np.float64], stage: int, pressure_kpa: NDArray[np.float64]) -> NDArray[np.float64]:
+        """What the coefficients of `stage` are multiplied by at path nodes and pressures, (N, B, T)."""
+        x = (pressure_kpa - self.stage_kpa[stage]) / PRESSURE_UNIT_KPA
+        parts = [
+            basis(nodes_m, self.start_m, self.exit_m, degree)[:, None, :] * (x**power)[None, :, None]
+            for power, degree in enumerate(self.degrees)
+        ]
+        return np.concatenate(parts, axis=2)
+
+    def at(self, nodes_m: NDArray[np.float64], modes: DriveModes) -> NDArray[np.float64]:
+        """The lines (2, N, M) at path nodes and modes, ±inf where there is none."""
+        found = np.empty((2, len(nodes_m), len(modes.stage)))
+        found[0], found[1] = -np.inf, np.inf
+        for stage, side in self.lines:
+            here = np.flatnonzero(modes.stage == stage)
+            terms = self.terms(nodes_m, int(stage), modes.pressure_kpa[here])
+            found[side][:, here] = terms @ self.coefficients[stage, side]
+        return found
+
+    def powers(self) -> NDArray[np.float64]:
+        """Coefficients (K + 1, 2, powers of x, powers of u), ascending."""
+        found = np.zeros((*self.has_line.shape, len(self.degrees), max(self.degrees) + 1))
+        first = 0
+        for power, degree in enumerate(self.degrees):
+            for stage, side in self.lines:
+                series = self.coefficients[stage, side, first : first + degree + 1]
+                found[stage, side, power, : degree + 1] = np.polynomial.legendre.leg2poly(series)
+            first += degree + 1
+        return found
+
+
+def surfaces_of_lines(
+    lines: PolynomialLines, stage_kpa: NDArray[np.float64], degrees: tuple[int, ...] = CUBIC_AND_SLOPE
+) -> PolynomialSurfaces:
+    """Stage-locked lines at every pressure of their stage."""
+    count = sum(degree + 1 for degree in degrees)
+    coefficients = np.zeros((*lines.has_line.shape, count))
+    shared = min(lines.degree, degrees[0]) + 1
+    coefficients[:, :, :shared] = lines.coefficients[:, :, :shared]
+    return PolynomialSurfaces(lines.start_m, lines.exit_m, stage_kpa, degrees, coefficients, np.array(lines.has_line))
+
+
+def moved_apart(surfaces: PolynomialSurfaces, by_m_s: NDArray[np.float64]) -> PolynomialSurfaces:
+    """Every pair moved apart by `by_m_s` (K + 1,), half of it each."""
+    coefficients = np.array(surfaces.coefficients)
+    coefficients[:, 0, 0] -= 0.5 * by_m_s
+    coefficients[:, 1, 0] += 0.5 * by_m_s
+    return replace(surfaces, coefficients=coefficients)

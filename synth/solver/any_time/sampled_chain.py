@@ -1,0 +1,153 @@
+"""A plant whose regulator may give a command at every sample, as a Markov chain on a grid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models import Plant, path_coefficients
+from plant_models.frozen_arrays import frozen_arrays
+from synth.kernels.any_time.period import NEAREST, ROOM
+from synth.problem.resolution import Resolution
+from synth.solver.any_time.drive_modes import DriveModes, drive_modes
+from synth.solver.chain.entry import entry_distribution
+from synth.solver.chain.grid import Grid, make_grid
+from synth.solver.chain.path_noise import PathNoise, correlated_noise
+from synth.solver.chain.scenarios import Scenarios, persistent_scenarios
+from synth.solver.chain.speed_measurement import SpeedMeasurement, smooth_measurement
+
+NODE_AT_ENTRANCE_M = 1e-9
+"""A path node this near to the entrance is there."""
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Periods:
+    """The different sampling periods that a drive can be in, and where they lead.
+
+    `of_mode` (M, 3): number of the period that follows a command in a mode, −1 where there is none; `overpressure_kpa`
+    (D,) mean of each, `way` (D,) where it leads. `target`, `share` (W, 4): modes, and shares of each, that stand for
+    the drive at the end of a way; the last way leads to the mode at the entry.
+    """
+
+    of_mode: NDArray[np.int64]
+    overpressure_kpa: NDArray[np.float64]
+    way: NDArray[np.int64]
+    target: NDArray[np.int64]
+    share: NDArray[np.float64]
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class SampledChain:
+    """One plant on one grid: all but policy and aim.
+
+    `drive_m2_s2`, `brake_m2_s2_per_kpa` (N + 1,): integrals over the path, up to each node, of the acceleration without
+    brakes and of what one kPa takes away. `noise`: of the path over a period at the reference speed; `mixing` (E, L, L)
+    its transition over the path of a period at each speed. `entry` (A, E): probability of entry energy j with the first
+    sample at node r; `entry_mode` the mode until then. `first_energy` (R + 2,): first speed whose period ends nearest
+    to each number of quanta.
+    """
+
+    plant: Plant
+    resolution: Resolution
+    grid: Grid
+    modes: DriveModes
+    periods: Periods
+    measurement: SpeedMeasurement
+    scenarios: Scenarios
+    noise: PathNoise
+    mixing: NDArray[np.float64]
+    drive_m2_s2: NDArray[np.float64]
+    brake_m2_s2_per_kpa: NDArray[np.float64]
+    entry: NDArray[np.float64]
+    entry_mode: int
+    first_energy: NDArray[np.int64]
+
+    @property
+    def approach_nodes(self) -> int:
+        """Number of path nodes before the entrance."""
+        return int(np.searchsorted(self.grid.path_m, -NODE_AT_ENTRANCE_M))
+
+    @property
+    def quanta_per_period(self) -> NDArray[np.float64]:
+        """Path of a period at every speed, in quanta, (E,)."""
+        quanta: NDArray[np.float64] = self.grid.speed_m_s * (self.plant.sensor.sample_period_s / self.grid.path_step_m)
+        return quanta
+
+
+def sampled_chain(
+    plant: Plant, resolution: Resolution, pressure_step_kpa: float, measurement: SpeedMeasurement | None = None
+) -> SampledChain:
+    """`plant` on a grid; `measurement` by default smooth. Raises `PlantError` for a computing delay beyond a period."""
+    grid = make_grid(plant, resolution)
+    modes = drive_modes(plant, pressure_step_kpa, 1)
+    coefficients = path_coefficients(plant.position, plant.cut, plant.profile, grid.path_m)
+    period_m = grid.speed_m_s * plant.sensor.sample_period_s
+    usual_m = resolution.reference_speed_m_s * plant.sensor.sample_period_s
+    levels = resolution.path_levels
+    middle = np.maximum(np.floor(period_m / grid.path_step_m + 0.5).astype(np.int64), NEAREST)
+    entry_mode = at_rest_from_below(modes, plant.approach.initial_stage)
+    return SampledChain(
+        plant=plant,
+        resolution=resolution,
+        grid=grid,
+        modes=modes,
+        periods=different_periods(modes, entry_mode),
+        measurement=smooth_measurement(plant.sensor) if measurement is None else measurement,
+        scenarios=persistent_scenarios(plant, resolution.friction_nodes, resolution.resistance_nodes),
+        noise=correlated_noise(plant.friction, usual_m, levels),
+        mixing=np.array([correlated_noise(plant.friction, each, levels).transition for each in period_m]),
+        drive_m2_s2=summed(coefficients.free_m_s2(plant.resistance.mean_n_per_kn) * np.diff(grid.path_m)),
+        brake_m2_s2_per_kpa=summed(coefficients.brake_m_s2_per_kpa * np.diff(grid.path_m)),
+        entry=entry_distribution(plant, grid),
+        entry_mode=entry_mode,
+        first_energy=np.searchsorted(middle, np.arange(int(middle[-1]) + 2)),
+    )
+
+
+def at_rest_from_below(modes: DriveModes, stage: int) -> int:
+    """The mode in which `stage` rests after it was reached from below."""
+    resting = np.flatnonzero(modes.rests & (modes.stage == stage))
+    return int(resting[np.argmin(modes.pressure_kpa[resting])])
+
+
+def different_periods(modes: DriveModes, entry_mode: int) -> Periods:
+    """The periods after all commands in all modes, each kept once."""
+    periods: dict[tuple[float, int], int] = {}
+    ways: dict[tuple[tuple[int, ...], tuple[float, ...]], int] = {}
+
+    def way(target: NDArray[np.int64], share: NDArray[np.float64]) -> int:
+        key = tuple(target.tolist()), tuple(np.round(share, 12).tolist())
+        return ways.setdefault(key, len(ways))
+
+    of_mode = np.full(modes.allowed.shape, -1)
+    for mode, command in np.argwhere(modes.allowed):
+        to = way(modes.target[mode, command], modes.weight[mode, command])
+        mean = round(float(modes.overpressure_kpa[mode, command].mean()), 9)
+        of_mode[mode, command] = periods.setdefault((mean, to), len(periods))
+    entry = (entry_mode,) * 4, (1.0, 0.0, 0.0, 0.0)
+    target, share = zip(*ways, entry, strict=True)
+    kpa, leads = zip(*periods, strict=True)
+    return Periods(of_mode, np.array(kpa), np.array(leads), np.array(target), np.array(share))
+
+
+def summed(per_quantum: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Sums up to every node."""
+    return np.append(0.0, np.cumsum(per_quantum))
+
+
+def motion_arguments(c: SampledChain) -> tuple[Any, ...]:
+    """`motion` and `path` as the kernels take them."""
+    period_s, step = c.plant.sensor.sample_period_s, c.grid.path_step_m
+    motion = (
+        np.pad(c.quanta_per_period, (0, ROOM)),
+        0.5 * period_s**2 / step,
+        step,
+        c.grid.energy_step_m2_s2,
+        c.first_energy,
+    )
+    return motion, (c.drive_m2_s2, c.brake_m2_s2_per_kpa)

@@ -1,0 +1,121 @@
+"""What a policy of switching surfaces costs, exactly, with its slopes; where it takes the cuts. Nothing is sampled."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.frozen_arrays import frozen_arrays
+from synth.kernels.any_time.occupancy import occupy
+from synth.kernels.any_time.value import value
+from synth.problem.aim import Aim
+from synth.solver.any_time.sampled_chain import SampledChain, motion_arguments
+from synth.solver.exit_density import ExitDensity
+
+UP = 1
+"""Second of the two sides of a pair of lines."""
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class SurfaceCost:
+    """Expected cost of a policy, and its derivatives by every line value, (2, N, M): by side, node and mode.
+
+    `slopes`: first derivatives; `bends`: second derivatives by each value alone.
+    """
+
+    cost_m2_s2: float
+    slopes: NDArray[np.float64]
+    bends: NDArray[np.float64]
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Followed:
+    """The forward pass of one scenario: its exits (E,), totals (4,), and what the backward pass takes from it."""
+
+    exits: NDArray[np.float64]
+    totals: NDArray[np.float64]
+    density: NDArray[np.float64]
+    band: NDArray[np.int64]
+    way_band: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class SurfaceEvaluation:
+    """Exact figures of policies on one chain; `lines_m_s` (2, N, M) by side, path node and mode; ±inf: no command.
+
+    Scenarios are followed side by side in `threads`; no figure depends on how many.
+    """
+
+    chain: SampledChain
+    threads: int = 1
+
+    def density(self, lines_m_s: NDArray[np.float64]) -> ExitDensity:
+        """Exit-speed density, all scenarios weighted."""
+        c = self.chain
+        found = list(self._each(lambda i: self._followed(self._policy(lines_m_s), i, keep=False)))
+        exits = sum(w * each.exits for w, each in zip(c.scenarios.weight, found, strict=True))
+        totals = sum(w * each.totals for w, each in zip(c.scenarios.weight, found, strict=True))
+        stalled, escaped, down, up = (float(each) for each in np.asarray(totals))
+        return ExitDensity(c.grid.speed_m_s, np.asarray(exits), max(stalled, 0.0), escaped, down + up)
+
+    def gradient(self, lines_m_s: NDArray[np.float64], aim: Aim) -> SurfaceCost:
+        """Expected cost and its derivatives, all scenarios weighted."""
+        policy = self._policy(lines_m_s)
+        cost, slopes, bends = 0.0, np.zeros(policy[0].shape), np.zeros(policy[0].shape)
+        found = self._each(lambda i: self._valued(policy, i, aim))
+        for weight, (one, slope, bend) in zip(self.chain.scenarios.weight, found, strict=True):
+            cost += weight * one
+            slopes += weight * slope
+            bends += weight * bend
+        rate = self.chain.measurement.slopes(lines_m_s)
+        return SurfaceCost(cost, slopes * rate, bends * rate**2)
+
+    def _each(self, work: Any) -> Iterator[Any]:
+        with ThreadPoolExecutor(max_workers=self.threads) as pool:
+            yield from pool.map(work, range(len(self.chain.scenarios.weight)))
+
+    def _policy(self, lines_m_s: NDArray[np.float64]) -> tuple[Any, ...]:
+        """Lines in readings, what is read of true speeds, and the error."""
+        c = self.chain
+        lines, noise = c.measurement.thresholds(lines_m_s)
+        lines = np.array(lines)
+        held = c.modes.stage >= c.plant.entrance_stage
+        lines[UP, : c.approach_nodes, held] = np.inf  # before the entrance, no further
+        return lines, c.measurement.readings(c.grid.speed_m_s), max(noise, 1e-6)
+
+    def _followed(self, policy: tuple[Any, ...], i: int, keep: bool) -> Followed:
+        c = self.chain
+        nodes, modes, points = len(c.drive_m2_s2) - 1, len(c.modes.stage), len(c.grid.speed_m_s)
+        density = np.empty((nodes if keep else 0, modes, len(c.noise.levels), points))
+        band = np.empty((nodes, modes, 2), dtype=np.int64)
+        way_band = np.empty((nodes, len(c.periods.target), 2), dtype=np.int64)
+        exits, totals = np.empty(points), np.empty(4)
+        arguments: tuple[Any, ...] = (*policy, *self._shared(i), density, band, way_band, exits, totals)
+        occupy(*arguments)
+        return Followed(exits, totals, density, band, way_band)
+
+    def _valued(self, policy: tuple[Any, ...], i: int, aim: Aim) -> tuple[float, Any, Any]:
+        f = self._followed(policy, i, keep=True)
+        slopes, bends = np.empty(policy[0].shape), np.empty(policy[0].shape)
+        arguments: tuple[Any, ...] = (
+            *policy, *self._shared(i), *aim.criterion.exit_costs(self.chain.grid.speed_m_s, aim.target_speed_m_s),
+            aim.criterion.switching_tolerance_m2_s2, f.density, f.band, f.way_band, slopes, bends,
+        )  # fmt: skip
+        return value(*arguments), slopes, bends
+
+    def _shared(self, i: int) -> tuple[Any, ...]:
+        """What both passes take of the chain in scenario `i`."""
+        c, p = self.chain, self.chain.periods
+        entry_kpa = float(p.overpressure_kpa[p.of_mode[c.entry_mode, 1]])
+        return (
+            p.of_mode, p.overpressure_kpa, p.way, p.target, p.share, c.entry, len(p.target) - 1, entry_kpa,
+            c.noise.stationary, c.mixing, c.scenarios.factor[i] * (1.0 + c.noise.levels),
+            float(c.scenarios.extra_m_s2[i]), *motion_arguments(c),
+        )  # fmt: skip

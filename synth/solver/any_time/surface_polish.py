@@ -1,0 +1,167 @@
+"""The polish of switching surfaces: the exactly evaluated cost, minimised over all coefficients at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.errors import require
+from synth.problem.aim import Aim
+from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces, moved_apart
+from synth.solver.any_time.surface_evaluation import SurfaceCost, SurfaceEvaluation
+from synth.solver.descent import CostAndSlopes, descend
+from synth.solver.one_blas_thread import one_blas_thread
+from synth.solver.polish import LOOSE_M_S
+from synth.solver.polynomial_lines import MINIMUM_GAP_M_S
+
+GAP_NODES = 13
+"""Places of the path at which the gap is held open while coefficients move."""
+
+
+@dataclass(frozen=True)
+class SurfacePolish:
+    """Result of `polish_surfaces`: the surfaces, cost before and after, evaluations used, how the search ended."""
+
+    surfaces: PolynomialSurfaces
+    cost_before: float
+    cost_after: float
+    evaluations: int
+    converged: bool
+    status: str
+
+
+@dataclass(frozen=True)
+class Terms:
+    """What coefficients are multiplied by at all path nodes and modes of a chain: `of_stage` (N, modes of it, T)."""
+
+    stage: NDArray[np.int64]
+    lines: NDArray[np.int64]
+    of_stage: tuple[NDArray[np.float64], ...]
+
+    def slopes(self, by_lines: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Derivatives by the coefficients of every line (·, T) of those by line values (2, N, M)."""
+        each = [(by_lines[side][:, self.stage == k], self.of_stage[k]) for k, side in self.lines]
+        return np.array([np.einsum("nm,nmt->t", values, terms) for values, terms in each])
+
+    def bends(self, by_lines: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Second derivatives (·, T, T) of those by each line value alone (2, N, M)."""
+        each = [(by_lines[side][:, self.stage == k], self.of_stage[k]) for k, side in self.lines]
+        return np.array([np.einsum("nmt,nm,nmu->tu", terms, values, terms) for values, terms in each])
+
+
+@dataclass(frozen=True)
+class Coordinates:
+    """Coefficients of all lines as a point in which the Hessian at `start` is about the unit matrix times the cost."""
+
+    start: PolynomialSurfaces
+    scale: NDArray[np.float64]
+
+    def surfaces(self, y: NDArray[np.float64]) -> PolynomialSurfaces:
+        """The surfaces at a point."""
+        coefficients, at = np.array(self.start.coefficients), tuple(self.start.lines.T)
+        coefficients[at] += np.einsum("lab,lb->la", self.scale, y.reshape(len(self.scale), -1))
+        return replace(self.start, coefficients=coefficients)
+
+    def slopes(self, by_coefficient: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Derivatives by the point of those by the coefficients of every line (·, T)."""
+        found: NDArray[np.float64] = np.einsum("lab,la->lb", self.scale, by_coefficient).ravel()
+        return found
+
+
+@one_blas_thread()
+def polish_surfaces(
+    start: PolynomialSurfaces,
+    evaluation: SurfaceEvaluation,
+    aim: Aim,
+    max_iterations: int = 60,
+    tolerance: float = 1e-3,
+) -> SurfacePolish:
+    """Minimise the cost over all coefficients, keeping V_hi − V_lo ≥ `MINIMUM_GAP_M_S` at all pressures.
+
+    It ends when a step changes the cost by less than `tolerance` of the first cost. The result costs no more than the
+    start, with its gaps opened. Raises `PlantError` if that cost is not positive: the grid is too coarse.
+    """
+    modes, nodes_m = evaluation.chain.modes, evaluation.chain.grid.path_m[:-1]
+    pressures = [modes.pressure_kpa[modes.stage == k] for k in range(modes.stages)]
+    start = opened(start, pressures)
+    terms = Terms(modes.stage, start.lines, tuple(start.terms(nodes_m, k, each) for k, each in enumerate(pressures)))
+
+    def at(surfaces: PolynomialSurfaces) -> SurfaceCost:
+        return evaluation.gradient(surfaces.at(nodes_m, modes), aim)
+
+    first = at(start)
+    require(
+        first.cost_m2_s2 > 0.0,
+        "the grid is too coarse for these surfaces (an expected square came out negative): make path_step_m and "
+        "speed_step_m_s smaller",
+    )
+    coordinates = Coordinates(start, whitening(terms, first))
+
+    def by_point(cost: SurfaceCost) -> CostAndSlopes:
+        return cost.cost_m2_s2, coordinates.slopes(terms.slopes(cost.slopes))
+
+    found = descend(
+        lambda y: by_point(at(coordinates.surfaces(y))), by_point(first), [gaps_open(coordinates, pressures)],
+        max_iterations, tolerance,
+        allowed=lambda y: least_gap(coordinates.surfaces(y), pressures).min() >= 0.5 * MINIMUM_GAP_M_S,
+    )  # fmt: skip
+    best = coordinates.surfaces(found.point)
+    surfaces, cost = opened(best, pressures), found.cost_after
+    if surfaces is not best:
+        cost = at(surfaces).cost_m2_s2
+    if not 0.0 < cost <= first.cost_m2_s2:
+        surfaces, cost = start, first.cost_m2_s2
+    return SurfacePolish(surfaces, first.cost_m2_s2, cost, found.evaluations, found.converged, found.status)
+
+
+def whitening(terms: Terms, first: SurfaceCost) -> NDArray[np.float64]:
+    """Of each line the matrix (·, T, T) of `polish.whitening`, with the exact second derivatives by each line value."""
+    bends = terms.bends(np.maximum(first.bends, 0.0) / first.cost_m2_s2)
+    every = np.ones_like(first.bends)
+    loose = terms.bends(every) / (terms.bends(every)[:, :1, :1] * LOOSE_M_S**2)
+    lower = np.linalg.cholesky(bends + loose)
+    found: NDArray[np.float64] = np.linalg.inv(lower).transpose(0, 2, 1)
+    return found
+
+
+def opened(surfaces: PolynomialSurfaces, pressures: list[NDArray[np.float64]]) -> PolynomialSurfaces:
+    """Every pair moved apart until its gap is at least the minimum; the same object where none need be."""
+    short = np.maximum(MINIMUM_GAP_M_S - least_gap(surfaces, pressures), 0.0)
+    return moved_apart(surfaces, short) if short.any() else surfaces
+
+
+def least_gap(surfaces: PolynomialSurfaces, pressures: list[NDArray[np.float64]]) -> NDArray[np.float64]:
+    """Smallest V_hi − V_lo of every stage over a fine path mesh and all its pressures, (K + 1,); inf without a pair."""
+    nodes_m = np.linspace(surfaces.start_m, surfaces.exit_m, 201)
+    found = np.full(len(pressures), np.inf)
+    for k in np.flatnonzero(surfaces.has_line.all(axis=1)):
+        gap = surfaces.terms(nodes_m, int(k), ends(pressures[k])) @ np.diff(surfaces.coefficients[k], axis=0)[0]
+        found[k] = gap.min()
+    return found
+
+
+def ends(pressures: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The lowest and the highest: where a gap that is linear in the pressure is smallest."""
+    return np.array([pressures.min(), pressures.max()])
+
+
+def gaps_open(coordinates: Coordinates, pressures: list[NDArray[np.float64]]) -> Any:
+    """Linear constraint V_hi − V_lo ≥ gap at points along the path and both ends of the pressure."""
+    from scipy.optimize import LinearConstraint  # start-up: scipy only where it is needed
+
+    start, scale = coordinates.start, coordinates.scale
+    number = {(int(k), int(side)): i for i, (k, side) in enumerate(start.lines)}
+    nodes_m = np.linspace(start.start_m, start.exit_m, GAP_NODES)
+    rows, least = [np.zeros((0, *scale.shape[:2]))], [np.zeros(0)]
+    for k in np.flatnonzero(start.has_line.all(axis=1)):
+        terms = start.terms(nodes_m, int(k), ends(pressures[k])).reshape(-1, scale.shape[2])
+        row = np.zeros((len(terms), *scale.shape[:2]))
+        row[:, number[k, 0]], row[:, number[k, 1]] = -terms @ scale[number[k, 0]], terms @ scale[number[k, 1]]
+        rows.append(row)
+        least.append(MINIMUM_GAP_M_S - terms @ np.diff(start.coefficients[k], axis=0)[0])
+    matrix = np.concatenate(rows)
+    return LinearConstraint(matrix.reshape(len(matrix), -1), np.concatenate(least), np.inf)

@@ -1,0 +1,65 @@
+"""The descent that every polish makes: a smooth cost by sequential quadratic programming, the best point kept."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.frozen_arrays import frozen_arrays
+
+Vector = NDArray[np.float64]
+CostAndSlopes = tuple[float, Vector]
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class Descent:
+    """The best point met, its cost and the first point's, evaluations used, whether and why the search ended well."""
+
+    point: Vector
+    cost_before: float
+    cost_after: float
+    evaluations: int
+    converged: bool
+    status: str
+
+
+def descend(
+    evaluate: Callable[[Vector], CostAndSlopes],
+    first: CostAndSlopes,
+    constraints: Sequence[Any],
+    max_iterations: int,
+    tolerance: float,
+    allowed: Callable[[Vector], bool] = lambda _: True,
+) -> Descent:
+    """Minimise `evaluate` from 0, where it gives `first`, under `constraints` of scipy.
+
+    It ends when a step changes the cost by less than `tolerance` of the first cost. Coordinates should be such that the
+    second derivatives at the start are about those of half the square of the distance, times the first cost. Points
+    that are not `allowed` are passed through, but not kept; nor are costs below 0, which only a grid that is too coarse
+    can give.
+    """
+    from scipy.optimize import minimize  # start-up: scipy only where it is needed
+
+    before = first[0]
+    best: list[tuple[float, Vector]] = [(before, np.zeros(len(first[1])))]
+    calls = 0
+
+    def objective(y: Any) -> Any:
+        nonlocal calls
+        calls += 1
+        cost, slopes = evaluate(y) if y.any() else first
+        if 0.0 < cost < best[0][0] and allowed(y):
+            best[0] = cost, np.array(y)
+        return cost / before, slopes / before
+
+    options: Any = {"maxiter": max_iterations, "ftol": tolerance}
+    result = minimize(
+        objective, np.zeros(len(first[1])), jac=True, method="SLSQP", constraints=constraints, options=options
+    )
+    cost, point = best[0]
+    return Descent(point, before, cost, calls, bool(result.success), str(result.message))
