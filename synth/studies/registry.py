@@ -15,6 +15,14 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "synth.studies.accuracy_grid.picture",
     ),
     Study(
+        "any-time",
+        "What is gained when a command may be given at every sample, also during a change of stage?",
+        300.0,
+        "any-time.md",
+        "synth.studies.any_time.study",
+        "synth.studies.any_time.pictures",
+    ),
+    Study(
         "approach",
         "What is gained when the regulator acts from before the entrance, and from how far?",
         150.0,
@@ -235,14 +243,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "speed.md",
         "synth.studies.times.study",
         "synth.studies.times.picture",
-    ),
-    Study(
-        "unlocked",
-        "What is gained when a command may be given at every sample, also during a change of stage?",
-        3480.0,
-        "unlocked.md",
-        "synth.studies.unlocked.study",
-        "synth.studies.unlocked.pictures",
     ),
     Study(
         "verification",

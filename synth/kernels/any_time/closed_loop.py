@@ -15,15 +15,21 @@ from numpy.typing import NDArray
 
 from synth.kernels.any_time.driven_period import play_period
 from synth.kernels.loop.closed_loop import LEFT, LONGEST_PASS_S, MOVING, Draws, Exits, Floats, Path, advance, note
-from synth.kernels.loop.regulator import Sensor, measure
+from synth.kernels.loop.regulator import Sensor, admitted, measure
 
 
 class SampledDrive(NamedTuple):
-    """`valves` (`plant_models.valve_drive.ValveDrive`), pressures of the stages (K + 1,), released pressure."""
+    """`valves` (`plant_models.valve_drive.ValveDrive`), pressures of the stages (K + 1,).
+
+    A pass begins with `initial_stage` at rest at `initial_kpa`; before the entrance no higher stage than
+    `entrance_stage` is commanded.
+    """
 
     valves: Any
     stage_kpa: Floats
-    released_kpa: float
+    initial_stage: int
+    initial_kpa: float
+    entrance_stage: int
     computing_delay_s: float
     parts: int
 
@@ -32,12 +38,13 @@ class SurfaceLaw(NamedTuple):
     """Rule at a sample: a polynomial of path and pressure, or surfaces on nodes if there is none (size 0).
 
     `coefficients` (K + 1, 2, 3, r + 1): lower and upper line as a sum over powers 0 … 2 of (P − P_k)/100 kPa, each with
-    a polynomial in u = 2 s/S_exit − 1, ascending; `has_line` (K + 1, 2). Surfaces: `lower`, `upper`
+    a polynomial in u, ascending, −1 at `start_m` and 1 at `exit_m`; `has_line` (K + 1, 2). Surfaces: `lower`, `upper`
     (K + 1, R, B, N + 1) by stage, wait, pressure node and path node, linear in between.
     """
 
     coefficients: Floats
     has_line: NDArray[np.bool_]
+    start_m: float
     exit_m: float
     lower: Floats
     upper: Floats
@@ -60,7 +67,10 @@ def polynomial_line(coefficients: Floats, u: float, x: float) -> float:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def surface_line(surface: Floats, nodes_kpa: Floats, spacing_m: float, pressure: float, s: float) -> float:
-    """Line of `surface` (B, N + 1) at a pressure and a path; beside an infinite node it is infinite: no command."""
+    """Line of `surface` (B, N + 1) at a pressure and a path `s` from its first node.
+
+    Beside an infinite node it is infinite: no command.
+    """
     low = min(max(np.searchsorted(nodes_kpa, pressure + 1e-7) - 1, 0), nodes_kpa.shape[0] - 2)
     share = (pressure - nodes_kpa[low]) / (nodes_kpa[low + 1] - nodes_kpa[low])
     place = s / spacing_m
@@ -87,7 +97,8 @@ def wanted_step(
 ) -> int:
     """−1, 0 or +1 stage."""
     if law.coefficients.shape[0] > 0:
-        u, x = 2.0 * s / law.exit_m - 1.0, 0.01 * (pressure - stage_kpa[stage])
+        u = 2.0 * (s - law.start_m) / (law.exit_m - law.start_m) - 1.0
+        x = 0.01 * (pressure - stage_kpa[stage])
         if law.has_line[stage, 0] and v < polynomial_line(law.coefficients[stage, 0], u, x):
             return -1
         if law.has_line[stage, 1] and v > polynomial_line(law.coefficients[stage, 1], u, x):
@@ -97,31 +108,31 @@ def wanted_step(
     for i in range(law.waits_s.shape[0]):
         if abs(law.waits_s[i] - wait) < abs(law.waits_s[w] - wait):
             w = i
-    if v < surface_line(law.lower[stage, w], law.nodes_kpa, law.spacing_m, pressure, s):
+    if v < surface_line(law.lower[stage, w], law.nodes_kpa, law.spacing_m, pressure, s - law.start_m):
         return -1
-    if v > surface_line(law.upper[stage, w], law.nodes_kpa, law.spacing_m, pressure, s):
+    if v > surface_line(law.upper[stage, w], law.nodes_kpa, law.spacing_m, pressure, s - law.start_m):
         return 1
     return 0
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def run_unlocked_pass(
+def run_any_time_pass(
     edges_m: Floats, free: Floats, brake: Floats, drive: SampledDrive, sensor: Sensor, law: SurfaceLaw,
     entry_m_s: float, first_sample_s: float, noise_z: NDArray[np.float32], events: Floats,
 ) -> Any:  # fmt: skip
-    """One pass from the entrance, released, to the exit; returns (v, time, status, switchings, events)."""
+    """One pass from where the regulator acts to the exit; returns (v, time, status, switchings, events)."""
     stage_kpa, touch = drive.stage_kpa, drive.valves.touch_kpa
     period, top = sensor.period_s, stage_kpa.shape[0] - 1
     over = np.empty(drive.parts)
     part = period / drive.parts
-    pressure, wait, stage, sample, switchings = drive.released_kpa, 0.0, 0, 0, 0
+    pressure, wait, stage, sample, switchings = drive.initial_kpa, 0.0, drive.initial_stage, 0, 0
     kpa = max(0.0, pressure - touch)
-    count = note(events, 0, 0.0, 0.0, entry_m_s, kpa, 0, math.nan)
-    cell, s, v, time, status = advance(edges_m, free, brake, kpa, first_sample_s, 0, 0.0, entry_m_s)
+    count = note(events, 0, 0.0, edges_m[0], entry_m_s, kpa, stage, math.nan)
+    cell, s, v, time, status = advance(edges_m, free, brake, kpa, first_sample_s, 0, edges_m[0], entry_m_s)
     while status == MOVING and time < LONGEST_PASS_S:
         measured = measure(v, noise_z[sample % noise_z.shape[0]], sensor)
         step = wanted_step(law, stage_kpa, stage, pressure, wait, s, measured)
-        before, stage = stage, min(max(stage + step, 0), top)
+        before, stage = stage, admitted(stage, min(max(stage + step, 0), top), s, drive.entrance_stage)
         if stage != before:
             switchings += 1
         pressure, wait = play_period(
@@ -146,7 +157,7 @@ def run_unlocked_pass(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def run_unlocked_passes(
+def run_any_time_passes(
     path: Path, drive: SampledDrive, sensor: Sensor, law: SurfaceLaw, draws: Draws, exits: Exits, events: Floats
 ) -> int:
     """Simulate all passes of `draws` into `exits`; returns the number of events of the last pass."""
@@ -156,7 +167,7 @@ def run_unlocked_passes(
         drag = path.drag_m_s2_per_n_kn * draws.resistance_n_kn[i]
         for j in range(free.shape[0]):
             free[j] = path.gravity_m_s2[j] - drag
-        v, time, status, switchings, count = run_unlocked_pass(
+        v, time, status, switchings, count = run_any_time_pass(
             path.edges_m, free, draws.brake_m_s2_per_kpa[i], drive, sensor, law,
             draws.entry_m_s[i], draws.first_sample_s[i], draws.noise_z[i], events,
         )  # fmt: skip

@@ -17,19 +17,17 @@ from synth.kernels.sweep.flow import interpolation
 from synth.kernels.sweep.thresholds import lower_threshold, upper_threshold
 from synth.kernels.vector.borrowing import borrowing
 
-ROUGH = 1e-3
-"""Share of the cost of a stall; where values bend by more within three cells of energy, they are not smooth."""
-
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def induce(
     reading, noise, smear_start, smear, tolerance, periods, kpa, way, target, share, prior, mixing, factor, extra,
-    motion, path, terminal, stalled, change_cost, allowed, lines,
+    motion, path, terminal, stalled, change_cost, rough_m2_s2, allowed, lines,
 ):  # fmt: skip
     """Fills `lines` (2, N, M) in readings; ∓inf: no command.
 
     `smear_start` (E,), `smear` (E, W): true speeds behind a measured one; a gain below `tolerance` is rounding. `prior`
-    (I, L) weights of scenario and noise level, `factor` (I, L) of the friction, `extra` (I,) acceleration. `allowed`
+    (I, L) weights of scenario and noise level, `factor` (I, L) of the friction, `extra` (I,) acceleration. Where
+    values bend by more than `rough_m2_s2`, interpolated ones are kept between those that they come from. `allowed`
     (2, N, M): whether a mode may be left downward and upward. The rest as of `occupancy.occupy` and `value.value`.
     """
     nodes, modes, (count, levels) = lines.shape[1], lines.shape[2], factor.shape
@@ -41,6 +39,7 @@ def induce(
     of_node, rough = np.zeros(motion[4].shape[0], np.int64), np.zeros((count, ways, levels, ring), np.int64)
     rows[:, :, :, nodes % ring, :points] = terminal
     rows[:, :, :, nodes % ring, 0] = stalled
+    rough[:, :, :, nodes % ring] = rough_until(rows[0, 0, 0, nodes % ring], points, rough_m2_s2)
     for n in range(nodes - 1, -1, -1):
         for r in range(of_node.shape[0]):
             of_node[r] = min(n + r, nodes) % ring
@@ -77,7 +76,7 @@ def induce(
                 for q in range(levels):
                     to = rows[i, w, q, n % ring]
                     at_way(values[i, :, q], target[w], share[w], points, stalled, to)
-                    rough[i, w, q, n % ring] = rough_until(to, points, ROUGH * stalled)
+                    rough[i, w, q, n % ring] = rough_until(to, points, rough_m2_s2)
 
 
 @borrowing

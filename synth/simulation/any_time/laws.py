@@ -1,21 +1,18 @@
-"""What an unlocked regulator runs at every sample: full surfaces, or a compact polynomial of path and pressure."""
+"""What a regulator runs at every sample: full surfaces, or polynomials of path and pressure."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from plant_models.frozen_arrays import frozen_arrays
+from synth.kernels.any_time.closed_loop import SurfaceLaw
 from synth.simulation.controllers import fixed
-from synth.solver.any_time.drive_modes import DriveModes
-from synth.solver.switching_lines import SwitchingLines
-from synth.studies.unlocked.kernels.unlocked_loop import SurfaceLaw
-from synth.studies.unlocked.surfaces import SwitchingSurfaces
+from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
+from synth.solver.any_time.switching_surfaces import SwitchingSurfaces
 
 PRESSURE_POWERS = 3
-"""A compact line may have powers 0, 1 and 2 of the pressure."""
+"""A polynomial may have powers 0, 1 and 2 of the pressure."""
 
 
 @dataclass(frozen=True)
@@ -41,52 +38,38 @@ class SurfaceController:
         return SurfaceLaw(
             fixed(np.empty((0, 2, PRESSURE_POWERS, 1)), np.float64),
             fixed(np.empty((0, 2)), np.bool_),
+            float(surfaces.nodes_m[0]),
             float(surfaces.nodes_m[-1]),
             fixed(lower, np.float64),
             fixed(upper, np.float64),
             fixed(m.waits_s, np.float64),
             fixed(m.grid.nodes_kpa, np.float64),
-            float(surfaces.nodes_m[1]),
+            float(surfaces.nodes_m[1] - surfaces.nodes_m[0]),
         )
 
 
-@frozen_arrays
-@dataclass(frozen=True, eq=False)
-class CompactController:
-    """Lines V(s, P) = Σ_j ((P − P_k)/100 kPa)^j · Σ_i a_ij u^i with u = 2 s/S_exit − 1, one pair for each stage.
+@dataclass(frozen=True)
+class PolynomialController:
+    """A regulator that compares speed with polynomials of path and pressure; what its valves wait for is left out."""
 
-    `coefficients` (K + 1, 2, 3, r + 1): lower, upper; by power of the pressure, then of u. `has_line` (K + 1, 2).
-    A regulator needs its pressure; what its valves wait for is left out.
-    """
-
-    exit_m: float
-    coefficients: NDArray[np.float64]
-    has_line: NDArray[np.bool_]
-
-    def __post_init__(self) -> None:
-        if self.coefficients.shape[:3] != (*self.has_line.shape, PRESSURE_POWERS):
-            raise ValueError(f"compact lines: coefficients of shape {self.coefficients.shape} do not fit")
+    surfaces: PolynomialSurfaces
 
     @property
     def stages(self) -> int:
         """Number of stages K + 1."""
-        return len(self.has_line)
+        return len(self.surfaces.has_line)
 
     def law(self) -> SurfaceLaw:
         """The rule as the kernel takes it."""
+        surfaces = self.surfaces
+        powers = surfaces.powers()
+        coefficients = np.zeros((*powers.shape[:2], PRESSURE_POWERS, powers.shape[3]))
+        coefficients[:, :, : powers.shape[2]] = powers
         none = fixed(np.empty((0, 0, 0, 0)), np.float64)
         return SurfaceLaw(
-            fixed(self.coefficients, np.float64), fixed(self.has_line, np.bool_), self.exit_m,
-            none, none, fixed(np.empty(0), np.float64), fixed(np.empty(0), np.float64), 1.0,
+            fixed(coefficients, np.float64), fixed(np.array(surfaces.has_line), np.bool_), surfaces.start_m,
+            surfaces.exit_m, none, none, fixed(np.empty(0), np.float64), fixed(np.empty(0), np.float64), 1.0,
         )  # fmt: skip
 
 
-UnlockedController = SurfaceController | CompactController
-
-
-def at_rest_only(lines: SwitchingLines, modes: DriveModes) -> SwitchingSurfaces:
-    """Stage-locked `lines` as surfaces: no command but at rest, there that of the stage's lines."""
-    rests = modes.rests[:, None]
-    lower = np.where(rests, lines.lower_m_s[modes.stage], -np.inf)
-    upper = np.where(rests, lines.upper_m_s[modes.stage], np.inf)
-    return SwitchingSurfaces(modes, np.array(lines.nodes_m), lower, upper)
+AnyTimeController = SurfaceController | PolynomialController

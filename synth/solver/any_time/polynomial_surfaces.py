@@ -67,8 +67,8 @@ class PolynomialSurfaces:
         first = 0
         for power, degree in enumerate(self.degrees):
             for stage, side in self.lines:
-                series = self.coefficients[stage, side, first : first + degree + 1]
-                found[stage, side, power, : degree + 1] = np.polynomial.legendre.leg2poly(series)
+                series = np.polynomial.legendre.leg2poly(self.coefficients[stage, side, first : first + degree + 1])
+                found[stage, side, power, : len(series)] = series
             first += degree + 1
         return found
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,13 +11,22 @@ from numpy.typing import NDArray
 from plant_models import Plant, path_coefficients
 from plant_models.frozen_arrays import frozen_arrays
 from synth.kernels.any_time.period import NEAREST, ROOM
-from synth.problem.resolution import Resolution
+from synth.problem.resolution import Resolution, finer_for_check
 from synth.solver.any_time.drive_modes import DriveModes, drive_modes
 from synth.solver.chain.entry import entry_distribution
 from synth.solver.chain.grid import Grid, make_grid
 from synth.solver.chain.path_noise import PathNoise, correlated_noise
-from synth.solver.chain.scenarios import Scenarios, persistent_scenarios
-from synth.solver.chain.speed_measurement import SpeedMeasurement, smooth_measurement
+from synth.solver.chain.scenarios import Scenarios, check_scenarios, persistent_scenarios
+from synth.solver.chain.speed_measurement import SpeedMeasurement, quantised_measurement, smooth_measurement
+
+SPEED_STEP_M_S = 0.02
+"""At the target speed."""
+
+RESISTANCE_NODES = 2
+"""One misses what the running resistance does to light cuts: surfaces for 22 t to 2 m/s came out a quarter worse."""
+
+PRESSURE_STEP_KPA = 30.0
+"""Largest distance of pressures at which the drive is valued; between them a cubic."""
 
 NODE_AT_ENTRANCE_M = 1e-9
 """A path node this near to the entrance is there."""
@@ -79,8 +88,27 @@ class SampledChain:
         return quanta
 
 
+def design_resolution(plant: Plant, target_m_s: float, coarser: float = 1.0) -> Resolution:
+    """The grid on which surfaces for a target are designed: two quanta of path a period at the target speed.
+
+    `coarser`: times both steps. Halving all steps changes predicted rms by about 1 % (tests).
+    """
+    path_step_m = 0.5 * coarser * plant.sensor.sample_period_s * target_m_s
+    return Resolution(path_step_m, coarser * SPEED_STEP_M_S, target_m_s, resistance_nodes=RESISTANCE_NODES)
+
+
+def check_sampled_chain(plant: Plant, design: Resolution) -> SampledChain:
+    """The chain that predicts finished surfaces: half of both steps, more scenarios, and the sensor's staircase."""
+    finer = finer_for_check(design)
+    chain = sampled_chain(plant, finer, quantised_measurement(plant.sensor))
+    return replace(chain, scenarios=check_scenarios(plant, finer.friction_nodes, finer.resistance_nodes))
+
+
 def sampled_chain(
-    plant: Plant, resolution: Resolution, pressure_step_kpa: float, measurement: SpeedMeasurement | None = None
+    plant: Plant,
+    resolution: Resolution,
+    measurement: SpeedMeasurement | None = None,
+    pressure_step_kpa: float = PRESSURE_STEP_KPA,
 ) -> SampledChain:
     """`plant` on a grid; `measurement` by default smooth. Raises `PlantError` for a computing delay beyond a period."""
     grid = make_grid(plant, resolution)
@@ -100,7 +128,9 @@ def sampled_chain(
         measurement=smooth_measurement(plant.sensor) if measurement is None else measurement,
         scenarios=persistent_scenarios(plant, resolution.friction_nodes, resolution.resistance_nodes),
         noise=correlated_noise(plant.friction, usual_m, levels),
-        mixing=np.array([correlated_noise(plant.friction, each, levels).transition for each in period_m]),
+        mixing=np.array(
+            [correlated_noise(plant.friction, each, levels).transition for each in np.maximum(period_m, period_m[1])]
+        ),
         drive_m2_s2=summed(coefficients.free_m_s2(plant.resistance.mean_n_per_kn) * np.diff(grid.path_m)),
         brake_m2_s2_per_kpa=summed(coefficients.brake_m_s2_per_kpa * np.diff(grid.path_m)),
         entry=entry_distribution(plant, grid),

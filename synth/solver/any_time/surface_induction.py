@@ -1,5 +1,4 @@
-"""Switching surfaces by backward induction: a pair of lines for every mode of the drive, one policy for all that is
-hidden."""
+"""Switching surfaces by backward induction: a pair of lines for every mode of the drive, whatever is hidden."""
 
 from __future__ import annotations
 
@@ -11,24 +10,32 @@ from numpy.typing import NDArray
 from synth.kernels.any_time.induction import induce
 from synth.problem.aim import Aim
 from synth.solver.any_time.sampled_chain import SampledChain, motion_arguments
+from synth.solver.any_time.switching_surfaces import SwitchingSurfaces, surfaces_at
 from synth.solver.backward_induction import TIE_M2_S2, true_speed_weights
 
+ROUGH = 1e-3
+"""Of the cost of a stall; values that bend by more within three cells of energy are not smooth."""
 
-def solve_surfaces(chain: SampledChain, aim: Aim) -> NDArray[np.float64]:
-    """The lines (2, N, M) of the common policy by side, path node and mode; ∓inf where no speed gets the command."""
+
+def solve_surfaces(chain: SampledChain, aim: Aim, rough: float = ROUGH) -> SwitchingSurfaces:
+    """The common policy; ∓inf where no speed gets a command.
+
+    Up to the highest energy at which values bend by more than `rough` of the cost of a stall, they are interpolated
+    without leaving the range of what they are interpolated from.
+    """
     c, p = chain, chain.periods
     lines = np.empty((2, len(c.drive_m2_s2) - 1, len(c.modes.stage)))
     readings, noise = c.measurement.readings(c.grid.speed_m_s), max(c.measurement.std, 1e-6)
+    terminal, stalled = aim.criterion.exit_costs(c.grid.speed_m_s, aim.target_speed_m_s)
     arguments: tuple[Any, ...] = (
         readings, noise, *true_speed_weights(c.grid.speed_m_s, readings, noise), TIE_M2_S2,
         p.of_mode, p.overpressure_kpa, p.way, p.target, p.share,
         np.multiply.outer(c.scenarios.weight, c.noise.stationary), c.mixing,
         np.multiply.outer(c.scenarios.factor, 1.0 + c.noise.levels), c.scenarios.extra_m_s2, *motion_arguments(c),
-        *aim.criterion.exit_costs(c.grid.speed_m_s, aim.target_speed_m_s), aim.criterion.switching_tolerance_m2_s2,
-        may_leave(c), lines,
+        terminal, stalled, aim.criterion.switching_tolerance_m2_s2, rough * stalled, may_leave(c), lines,
     )  # fmt: skip
     induce(*arguments)
-    return c.measurement.speeds(lines)
+    return surfaces_at(c.modes, c.grid.path_m, c.measurement.speeds(lines))
 
 
 def may_leave(c: SampledChain) -> NDArray[np.bool_]:

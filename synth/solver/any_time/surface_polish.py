@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -10,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.errors import require
+from plant_models.frozen_arrays import frozen_arrays
 from synth.problem.aim import Aim
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces, moved_apart
 from synth.solver.any_time.surface_evaluation import SurfaceCost, SurfaceEvaluation
@@ -34,7 +34,8 @@ class SurfacePolish:
     status: str
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Terms:
     """What coefficients are multiplied by at all path nodes and modes of a chain: `of_stage` (N, modes of it, T)."""
 
@@ -53,7 +54,8 @@ class Terms:
         return np.array([np.einsum("nmt,nm,nmu->tu", terms, values, terms) for values, terms in each])
 
 
-@dataclass(frozen=True)
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
 class Coordinates:
     """Coefficients of all lines as a point in which the Hessian at `start` is about the unit matrix times the cost."""
 
@@ -157,8 +159,8 @@ def gaps_open(coordinates: Coordinates, pressures: list[NDArray[np.float64]]) ->
     number = {(int(k), int(side)): i for i, (k, side) in enumerate(start.lines)}
     nodes_m = np.linspace(start.start_m, start.exit_m, GAP_NODES)
     rows, least = [np.zeros((0, *scale.shape[:2]))], [np.zeros(0)]
-    for k in np.flatnonzero(start.has_line.all(axis=1)):
-        terms = start.terms(nodes_m, int(k), ends(pressures[k])).reshape(-1, scale.shape[2])
+    for k in np.flatnonzero(start.has_line.all(axis=1)).tolist():
+        terms = start.terms(nodes_m, k, ends(pressures[k])).reshape(-1, scale.shape[2])
         row = np.zeros((len(terms), *scale.shape[:2]))
         row[:, number[k, 0]], row[:, number[k, 1]] = -terms @ scale[number[k, 0]], terms @ scale[number[k, 1]]
         rows.append(row)

@@ -1,4 +1,4 @@
-"""Switching surfaces V_lo,k(S, P) and V_hi,k(S, P) over path and actual pressure."""
+"""Switching surfaces V_lo,k(S, P) and V_hi,k(S, P) over path and actual pressure, on the nodes of a grid."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
 from synth.solver.any_time.drive_modes import DriveModes
+from synth.solver.switching_lines import SwitchingLines
 
 
 @frozen_arrays
@@ -16,7 +17,7 @@ from synth.solver.any_time.drive_modes import DriveModes
 class SwitchingSurfaces:
     """Below `lower_m_s` go a stage down, above `upper_m_s` go a stage up, between them hold; at every sample.
 
-    `nodes_m` (N + 1,) equally spaced from 0 to S_exit; `lower_m_s`, `upper_m_s` (M, N + 1), one pair of lines for
+    `nodes_m` (N + 1,) equally spaced, the last one S_exit; `lower_m_s`, `upper_m_s` (M, N + 1), one pair of lines for
     each mode of `modes`, linear in path and, between modes of one stage and one wait, in pressure; ∓inf: no command.
     """
 
@@ -30,6 +31,10 @@ class SwitchingSurfaces:
         if self.lower_m_s.shape != shape or self.upper_m_s.shape != shape:
             raise ValueError(f"switching surfaces: shape {self.lower_m_s.shape} does not fit {shape} modes and nodes")
 
+    def at_quanta(self) -> NDArray[np.float64]:
+        """The lines by side, start of a path quantum and mode, (2, N, M)."""
+        return np.stack([self.lower_m_s[:, :-1].T, self.upper_m_s[:, :-1].T])
+
     def of_stage(self, stage: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         """(pressures (·,), their modes (·,)) of one commanded stage, by rising pressure.
 
@@ -40,3 +45,17 @@ class SwitchingSurfaces:
         chosen = chosen[np.lexsort((m.waits_s[m.wait[chosen]], m.node[chosen]))]
         _, first = np.unique(m.node[chosen], return_index=True)
         return m.pressure_kpa[chosen[first]], chosen[first]
+
+
+def surfaces_at(modes: DriveModes, nodes_m: NDArray[np.float64], lines_m_s: NDArray[np.float64]) -> SwitchingSurfaces:
+    """Surfaces of the lines (2, N, M) at the starts of the quanta between `nodes_m` (N + 1,); the last one holds on."""
+    lower, upper = (np.concatenate([each, each[-1:]]).T.copy() for each in lines_m_s)
+    return SwitchingSurfaces(modes, np.array(nodes_m), lower, upper)
+
+
+def at_rest_only(lines: SwitchingLines, modes: DriveModes) -> SwitchingSurfaces:
+    """Stage-locked `lines` as surfaces: no command but at rest, there that of the stage's lines."""
+    rests = modes.rests[:, None]
+    lower = np.where(rests, lines.lower_m_s[modes.stage], -np.inf)
+    upper = np.where(rests, lines.upper_m_s[modes.stage], np.inf)
+    return SwitchingSurfaces(modes, np.array(lines.nodes_m), lower, upper)

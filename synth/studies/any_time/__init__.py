@@ -1,1 +1,1 @@
-"""Unlocked mode: a command may be given at every sample, also during a transient."""
+"""Study: commands at any time, and the surfaces by which they are given."""

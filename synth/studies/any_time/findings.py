@@ -1,4 +1,4 @@
-"""What the study `unlocked` has found: controllers on common passes, and the surfaces of one stage."""
+"""What the study `any-time` has found: controllers on common passes, and the surfaces of one stage."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from synth.studies.markdown_table import MarkdownTable, around, table
 from synth.studies.near_target import NEAR_M_S, NearTarget
 from synth.studies.study import Findings
 
-LINES, CUBIC, SEARCHED = "locked lines", "locked cubic, polished", "locked cubic, searched"
-SURFACES, FITTED, COMPACT = "unlocked surfaces", "unlocked fit", "unlocked compact"
-PLAIN, ENERGY = "unlocked, no pressure", "energy rule"
-NAMES = (LINES, CUBIC, SEARCHED, SURFACES, FITTED, COMPACT, PLAIN, ENERGY)
-SHOWN = (SEARCHED, SURFACES, COMPACT, PLAIN, ENERGY)
+LINES, CUBIC = "at rest, lines", "at rest, cubic"
+SURFACES, POLISHED, PLAIN = "any time, surfaces", "any time, cubic and pressure", "any time, cubic"
+ENERGY = "energy rule"
+NAMES = (LINES, CUBIC, SURFACES, POLISHED, PLAIN, ENERGY)
+SHOWN = (SURFACES, POLISHED, PLAIN, ENERGY)
 """Controllers of the pictures of gains."""
 
 
@@ -46,22 +46,31 @@ class Told:
 
 
 @dataclass(frozen=True)
+class Polishing:
+    """Of the polished surfaces: evaluations, whether the search ended well, seconds, and the rms that is predicted."""
+
+    evaluations: int
+    converged: bool
+    seconds: float
+    predicted_rms_m_s: float
+
+
+@dataclass(frozen=True)
 class CaseRow:
-    """One case with valves so many times as fast: all controllers, and ratios of the compact one to others."""
+    """One case with valves so many times as fast: all controllers, and ratios of the polished surfaces to others."""
 
     case: str
     valves: float
-    predicted_cost_m2_s2: float
-    seconds: float
+    polish: Polishing
     controllers: dict[str, Told]
-    compact_to: dict[str, Ratio]
+    polished_to: dict[str, Ratio]
 
 
 @dataclass(frozen=True)
 class SurfaceMap:
     """Both surfaces of one commanded stage, over pressure (rows) and path (columns), None where there is no command.
 
-    `compact`: its lines in the compact form, by side, power of the pressure and power of the path; None for no line.
+    `polished`: the polished lines, by side, power of the pressure and power of the path; None for no line.
     """
 
     case: str
@@ -73,49 +82,47 @@ class SurfaceMap:
     pressure_kpa: tuple[float, ...]
     lower_m_s: tuple[tuple[float | None, ...], ...]
     upper_m_s: tuple[tuple[float | None, ...], ...]
-    compact: tuple[tuple[tuple[float, ...], ...] | None, ...]
+    polished: tuple[tuple[tuple[float, ...], ...] | None, ...]
 
 
 @dataclass(frozen=True)
-class Unlocked(Findings):
+class AnyTime(Findings):
     """All cases."""
 
     config_sha256: str
     seed: int
     passes: int
-    evaluations: int
     rows: tuple[CaseRow, ...]
     surface: SurfaceMap | None
 
     def tables(self) -> Mapping[str, MarkdownTable]:
-        """`gains`: a row a case, what compares like with like; `rms`: all controllers; `ratios`: all ratios."""
-        heads = ("valves", "case", CUBIC, SEARCHED, "compact", "no pressure", ENERGY, f"compact / {SEARCHED}",
-                 f"compact / {ENERGY}", f"near: compact / {CUBIC}")  # fmt: skip
+        """`gains`: a row a case; `rms`: all controllers; `honesty`: what is predicted, and how long a polish takes."""
+        heads = ("valves", "case", CUBIC, POLISHED, PLAIN, ENERGY, f"{POLISHED} / {CUBIC}",
+                 f"{POLISHED} / {ENERGY}", "the same near the target")  # fmt: skip
         every = ("valves", "case", *NAMES)
-        to = (f"compact / {name}" for name in self.rows[0].compact_to)
-        ratios = ("valves", "case", f"compact / {CUBIC}", "near", *to, f"{SURFACES} / {CUBIC}")
+        honesty = ("valves", "case", "predicted / simulated", "evaluations", "ended well", "seconds")
         return {
             "gains": table("rms, m/s / switchings a pass; ratios of the rms [95 %]", heads, map(gain_cells, self.rows)),
             "rms": table(
                 f"rms [within {NEAR_M_S:g} m/s of the target], mm/s / switchings", every, map(rms_cells, self.rows)
             ),
-            "ratios": table("ratios of the rms on the same passes [95 %]", ratios, map(ratio_cells, self.rows)),
+            "honesty": table(f"{POLISHED}: rms of the prediction and of passes", honesty, map(honest_cells, self.rows)),
         }
 
     def sentences(self) -> tuple[str, ...]:
         """How much was simulated, and how long it took."""
-        longest = max(row.seconds for row in self.rows)
+        longest = max(row.polish.seconds for row in self.rows)
         return (
-            f"{self.passes} stratified passes a controller, seed {self.seed}; {self.evaluations} evaluations a search",
-            f"the longest case took {longest:.0f} s, two at a time",
+            f"{self.passes} stratified passes a controller, seed {self.seed}",
+            f"the longest polish took {longest:.1f} s",
         )
 
 
 def gain_cells(row: CaseRow) -> tuple[str, ...]:
     """The cells of one case."""
     c = row.controllers
-    rms = [f"{c[name].rms_m_s:.4f} / {c[name].switchings:.1f}" for name in (CUBIC, SEARCHED, COMPACT, PLAIN, ENERGY)]
-    ratios = [row.compact_to[SEARCHED].cell, row.compact_to[ENERGY].cell, c[COMPACT].near_ratio.cell]
+    rms = [f"{c[name].rms_m_s:.4f} / {c[name].switchings:.1f}" for name in (CUBIC, POLISHED, PLAIN, ENERGY)]
+    ratios = [c[POLISHED].ratio.cell, row.polished_to[ENERGY].cell, c[POLISHED].near_ratio.cell]
     return (f"× {row.valves:g}", row.case, *rms, *ratios)
 
 
@@ -126,8 +133,11 @@ def rms_cells(row: CaseRow) -> tuple[str, ...]:
     return (f"× {row.valves:g}", row.case, *cells)
 
 
-def ratio_cells(row: CaseRow) -> tuple[str, ...]:
-    """All ratios of one case."""
-    compact, surfaces = row.controllers[COMPACT], row.controllers[SURFACES]
-    ratios = (compact.ratio, compact.near_ratio, *row.compact_to.values(), surfaces.ratio)
-    return (f"× {row.valves:g}", row.case, *(ratio.cell for ratio in ratios))
+def honest_cells(row: CaseRow) -> tuple[str, ...]:
+    """Predicted over simulated rms, with the interval of the simulation."""
+    told, polish = row.controllers[POLISHED], row.polish
+    low, high = told.rms_ci95_m_s
+    honesty = around(polish.predicted_rms_m_s / told.rms_m_s,
+                     (polish.predicted_rms_m_s / high, polish.predicted_rms_m_s / low), 2)  # fmt: skip
+    ended = "yes" if polish.converged else "no"
+    return (f"× {row.valves:g}", row.case, honesty, str(polish.evaluations), ended, f"{polish.seconds:.1f}")

@@ -1,4 +1,4 @@
-"""Pictures of the unlocked mode: the surfaces of one stage, and what unlocking gains."""
+"""Pictures of commands at any time: the surfaces of one stage, and what they gain."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from synth.present.plots.house_style import (
     new_figure,
     place,
 )
-from synth.studies.unlocked.findings import CUBIC, SHOWN
+from synth.studies.any_time.findings import CUBIC, SHOWN
 
 if TYPE_CHECKING:
-    from synth.studies.unlocked.findings import CaseRow, SurfaceMap, Unlocked
+    from synth.studies.any_time.findings import AnyTime, CaseRow, SurfaceMap
 
 SLICES = 4
 """Places of the path at which the lines are drawn over pressure."""
@@ -35,7 +35,7 @@ WINDOW_M_S = (2.25, 6.5)
 
 
 def surface_picture(found: SurfaceMap) -> Figure:
-    """V_lo and V_hi of one commanded stage over path and actual pressure as maps, and slices with the compact lines."""
+    """V_lo and V_hi of one commanded stage over path and actual pressure as maps, and slices with the polynomials."""
     title = f"Switching surfaces while stage {found.stage} ({found.stage_kpa:g} kPa) is commanded"
     figure = new_figure(11.0, 7.4, title, found.case)
     place(figure, left=0.75, right=0.35, bottom=0.95, top=0.9, w=0.26, h=0.4)
@@ -63,7 +63,7 @@ def surface_picture(found: SurfaceMap) -> Figure:
         Line2D([], [], color=LINE_COLOURS[i], marker=LINE_MARKERS[i], label=f"s = {s:.1f} m", markersize=4)
         for i, s in enumerate(places)
     ]
-    handles.append(Line2D([], [], color=GREY, linestyle="--", label="compact form at the same places"))
+    handles.append(Line2D([], [], color=GREY, linestyle="--", label="polished polynomials at the same places"))
     legend_below(figure, handles, columns=5)
     return figure
 
@@ -88,14 +88,14 @@ def speed_map(axes: Axes, found: SurfaceMap, lines_m_s: NDArray[np.float64]) -> 
 def slices(
     axes: Axes, found: SurfaceMap, lines_m_s: NDArray[np.float64], side: int, places_m: NDArray[np.float64]
 ) -> None:
-    """Lines over pressure at some places: of the surfaces with marks, of the compact form dashed."""
-    pressure, compact = np.array(found.pressure_kpa), found.compact[side]
+    """Lines over pressure at some places: of the surfaces with marks, of the polynomials dashed."""
+    pressure, powers = np.array(found.pressure_kpa), found.polished[side]
     for i, s in enumerate(places_m):
         column = lines_m_s[:, int(np.abs(np.array(found.path_m) - s).argmin())]
         axes.plot(pressure, column, color=LINE_COLOURS[i], marker=LINE_MARKERS[i], markersize=3.5, linewidth=1.2)
-        if compact is not None:
+        if powers is not None:
             x, u = 0.01 * (pressure - found.stage_kpa), 2.0 * s / found.exit_m - 1.0
-            by_power = np.polynomial.polynomial.polyval(u, np.array(compact).T)
+            by_power = np.polynomial.polynomial.polyval(u, np.array(powers).T)
             axes.plot(pressure, np.polynomial.polynomial.polyval(x, by_power), "--", color=LINE_COLOURS[i])
 
 
@@ -104,7 +104,7 @@ def gain_picture(rows: Sequence[CaseRow], names: Sequence[str], reference: str, 
     speeds = sorted({row.valves for row in rows})
     cases = list(dict.fromkeys(row.case for row in rows))
     what = "rms of the cuts within 0.3 m/s of the target" if near else "rms"
-    figure = new_figure(4.0 * len(speeds) + 1.8, 0.55 * len(cases) + 2.3, f"What unlocking gains: {what}",
+    figure = new_figure(4.0 * len(speeds) + 1.8, 0.55 * len(cases) + 2.3, f"What commands at any time gain: {what}",
                         f"ratio to: {reference}; bars: 95 %, paired; left of 1: better")  # fmt: skip
     place(figure, left=1.75, right=0.2, bottom=1.0, top=0.85, w=0.06)
     panels = np.atleast_1d(figure.subplots(1, len(speeds), sharey=True, sharex=True))
@@ -130,7 +130,7 @@ def gain_picture(rows: Sequence[CaseRow], names: Sequence[str], reference: str, 
     return figure
 
 
-def figures(found: Unlocked) -> Mapping[str, Figure]:
+def figures(found: AnyTime) -> Mapping[str, Figure]:
     """`gains`, `gains-near`, and `surfaces` where they were kept."""
     drawn = {"gains": gain_picture(found.rows, SHOWN, CUBIC, near=False)}
     drawn["gains-near"] = gain_picture(found.rows, SHOWN, CUBIC, near=True)

@@ -1,8 +1,8 @@
-"""The unlocked Bellman equation once more, in plain Python loops from the formulas, on a grid that loops can afford.
+"""Commands at any time once more, in plain Python loops from the formulas, on a grid that loops can afford.
 
 Taken from the package: the grid, the automaton of the drive (it has its own oracle), the integrals of grade and β over
-the path, and the weights of true speeds behind a measured one. Written anew: the motion, where it lands and how the
-value there is interpolated, averaging over what is hidden, thresholds, random commands, entry.
+the path, the levels of the path noise, and the weights of true speeds behind a measured one. Written anew: the motion,
+where it lands and how the value there is interpolated, averaging over what is hidden, thresholds, commands, entry.
 """
 
 from __future__ import annotations
@@ -14,158 +14,136 @@ import numpy as np
 import pytest
 
 from plant_models import Plant, RollingResistance
+from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
+from synth.solver.any_time.sampled_chain import SampledChain, sampled_chain
+from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
+from synth.solver.any_time.surface_induction import solve_surfaces
 from synth.solver.backward_induction import true_speed_weights
-from synth.studies.unlocked.solution import UnlockedPlant, solve_unlocked, unlocked_plant
 
 Row = list[float]
+AIM = Aim(2.5, Criterion())
 
 
 class BruteForce:
-    """Values and lines of one problem, node after node from the exit."""
+    """Values of one problem, node after node from the exit; lines are found unless they are given.
 
-    def __init__(self, p: UnlockedPlant, target_m_s: float, criterion: Criterion) -> None:
-        self.p, self.criterion = p, criterion
-        self.nodes, self.points = len(p.grid.path_m) - 1, len(p.grid.speed_m_s)
-        self.stalled = target_m_s**2 + criterion.stall_cost_m2_s2
-        self.exit_row = [(float(v) - target_m_s) ** 2 for v in p.grid.speed_m_s]
+    `limited`: interpolated values are kept between those that they come from, as where lines are found.
+    """
+
+    def __init__(self, c: SampledChain, lines: np.ndarray | None) -> None:
+        self.c, self.limited = c, lines is None
+        self.nodes, self.points = len(c.grid.path_m) - 1, len(c.grid.speed_m_s)
+        exits, self.stalled = AIM.criterion.exit_costs(c.grid.speed_m_s, AIM.target_speed_m_s)
+        self.exit_row = [self.stalled, *(float(each) for each in exits[1:])]
         self.value: dict[tuple[int, int, int, int], Row] = {}
-        self.lower = np.full((self.nodes, len(p.modes.stage)), -math.inf)
-        self.upper = np.full((self.nodes, len(p.modes.stage)), math.inf)
+        found = np.full((2, self.nodes, len(c.modes.stage)), math.inf) * np.array([-1.0, 1.0])[:, None, None]
+        self.lines = found if lines is None else lines
         for n in reversed(range(self.nodes)):
-            for m in range(len(p.modes.stage)):
+            for m in range(len(c.modes.stage)):
                 self.decide(n, m)
 
-    def over_path(self, table: np.ndarray, s: float) -> float:
-        """An integral over path at s, constant after the exit."""
-        x = s / self.p.plant.exit_m * (len(table) - 1)
-        i = min(int(x), len(table) - 2)
-        return float(table[i] + min(x - i, 1.0) * (table[i + 1] - table[i]))
+    def gained(self, i: int, f: float, kpa: float, a: int, b: int) -> float:
+        """Energy gained from node a to node b; behind the exit nothing changes it."""
+        b = min(b, self.nodes)
+        drive, brake = self.c.drive_m2_s2, self.c.brake_m2_s2_per_kpa
+        extra = float(self.c.scenarios.extra_m_s2[i]) * (b - a) * self.c.grid.path_step_m
+        return float(drive[b] - drive[a]) + extra - f * kpa * float(brake[b] - brake[a])
 
-    def energy_gain(self, i: int, f: float, kpa: float, a: float, b: float) -> float:
-        """Work on the cut from path a to b at a constant overpressure."""
-        exit_m = self.p.plant.exit_m
-        lift = self.over_path(self.p.lift_m2_s2, b) - self.over_path(self.p.lift_m2_s2, a)
-        braked = self.over_path(self.p.work_m2_s2_per_kpa, b) - self.over_path(self.p.work_m2_s2_per_kpa, a)
-        inside = min(b, exit_m) - min(a, exit_m)
-        return lift - f * kpa * braked + float(self.p.scenarios.extra_m_s2[i]) * inside
-
-    def rolled(self, i: int, f: float, s: float, e: float, overs: Row) -> tuple[float, float]:
-        """Path and energy a period on; energy 0: stalled."""
-        part = self.p.plant.sensor.sample_period_s / len(overs)
-        for kpa in overs:
-            v = math.sqrt(2.0 * e)
-            a = self.energy_gain(i, f, kpa, s, s + v * part) / (v * part)
-            if v + a * part <= 0.0:
-                return s, 0.0
-            end = s + v * part + 0.5 * a * part**2
-            e += self.energy_gain(i, f, kpa, s, end)
-            s = end
-            if e <= 0.0:
-                return s, 0.0
-        return s, e
-
-    def in_energy(self, row: Row, e: float) -> float:
-        """Cubic Lagrange, linear at both ends; kept within the four values where they differ as beside a stall."""
-        x = e / self.p.grid.energy_step_m2_s2
-        if x <= 0.0:
-            return self.stalled
+    def in_energy(self, row: Row, x: float, limited: bool) -> float:
+        """Cubic Lagrange at x cells, linear in the first two cells and in the last, constant beyond both ends."""
+        x = min(max(x, 0.0), self.points - 1.0)
         i = min(int(x), self.points - 2)
-        x = min(x, self.points - 1.0)
-        if i < 2 or i == self.points - 2:
-            return row[i] + (x - i) * (row[i + 1] - row[i])
-        total = 0.0
-        for a in range(i - 1, i + 3):
-            total += row[a] * math.prod((x - b) / (a - b) for b in range(i - 1, i + 3) if b != a)
-        four = row[i - 1 : i + 3]
-        return min(max(total, min(four)), max(four)) if max(four) - min(four) > 0.002 * self.stalled else total
+        if x < 2.0 or i == self.points - 2:
+            total = row[i] + (x - i) * (row[i + 1] - row[i])
+        else:
+            total = 0.0
+            for a in range(i - 1, i + 3):
+                total += row[a] * math.prod((x - b) / (a - b) for b in range(i - 1, i + 3) if b != a)
+        j = min(max(i, 1), self.points - 3)
+        four = row[j - 1 : j + 3]
+        return min(max(total, min(four)), max(four)) if limited else total
 
-    def row_at(self, i: int, node: int, q: int, targets: list[int], shares: Row, level: int) -> Row:
-        """Values at a node after the period, interpolated in pressure and averaged over the level there."""
-        steps = self.p.level_steps[node - level]
+    def row_at(self, i: int, node: int, q: int, m: int, a: int) -> Row:
+        """Values where a period leads to, interpolated in pressure; the level changes over the path of the period."""
         if node >= self.nodes:
             return self.exit_row
-        row = []
-        for j in range(self.points):
-            found = [sum(float(steps[q, k]) * self.value[i, node, m, k][j] for k in range(len(steps))) for m in targets]
-            met = [value for value, share in zip(found, shares, strict=True) if share != 0.0]
-            value = sum(share * value for share, value in zip(shares, found, strict=True))
-            row.append(min(max(value, min(met)), max(met)))
+        modes = self.c.modes
+        pairs = [(int(t), float(w)) for t, w in zip(modes.target[m, a], modes.weight[m, a], strict=True) if w != 0.0]
+        row = [self.stalled]
+        for j in range(1, self.points):
+            mixing = self.c.mixing[j, q]
+            each = [sum(float(p) * self.value[i, node, t, k][j] for k, p in enumerate(mixing)) for t, _ in pairs]
+            total = sum(w * value for (_, w), value in zip(pairs, each, strict=True))
+            row.append(min(max(total, min(each)), max(each)) if self.limited else total)
         return row
 
     def command(self, i: int, n: int, m: int, q: int, a: int) -> Row:
         """Value of one command at every speed, its price left out."""
-        p, modes, step = self.p, self.p.modes, self.p.grid.path_step_m
-        f = float(p.scenarios.factor[i] * (1.0 + p.chain.levels[q]))
-        overs, end_kpa = [float(x) for x in modes.overpressure_kpa[m, a]], float(modes.end_overpressure_kpa[m, a])
-        targets, shares = [int(t) for t in modes.target[m, a]], [float(w) for w in modes.weight[m, a]]
+        c, step = self.c, self.c.grid.path_step_m
+        f = float(c.scenarios.factor[i] * (1.0 + c.noise.levels[q]))
+        kpa = float(c.modes.overpressure_kpa[m, a].mean())
+        period_s = c.plant.sensor.sample_period_s
         rows: dict[int, Row] = {}
         out = [self.stalled]
         for j in range(1, self.points):
-            s, e = self.rolled(i, f, n * step, float(p.grid.energy_m2_s2[j]), overs)
-            if e <= 0.0:
-                out.append(self.stalled)
-                continue
-            ahead = max(s / step - n, 1.0)
-            first = max(math.floor(s / step - n + 0.5) - 1, 1)
+            quanta = float(c.grid.speed_m_s[j]) * period_s / step
+            middle = max(math.floor(quanta + 0.5), 2)
+            mean = self.gained(i, f, kpa, n, n + middle) / (middle * step)
+            ahead = max(quanta + 0.5 * mean * period_s**2 / step, 1.0)
             found, total = [], 0.0
-            for node in range(n + first, n + first + 3):
-                if node not in rows:
-                    rows[node] = self.row_at(i, node, q, targets, shares, n)
-                found.append(self.in_energy(rows[node], e + self.energy_gain(i, f, end_kpa, s, node * step)))
-                others = [b for b in range(n + first, n + first + 3) if b != node]
-                total += found[-1] * math.prod((n + ahead - b) / (node - b) for b in others)
-            out.append(min(max(total, min(found)), max(found)))
+            for to in range(middle - 1, middle + 2):
+                if to not in rows:
+                    rows[to] = self.row_at(i, n + to, q, m, a)
+                x = j + self.gained(i, f, kpa, n, n + to) / c.grid.energy_step_m2_s2
+                found.append(self.in_energy(rows[to], x, self.limited))
+                others = [b for b in range(middle - 1, middle + 2) if b != to]
+                total += found[-1] * math.prod((ahead - b) / (to - b) for b in others)
+            out.append(min(max(total, min(found)), max(found)) if self.limited else total)
         return out
 
     def decide(self, n: int, m: int) -> None:
-        """Lines and values at one node and mode."""
-        p, v = self.p, [float(x) for x in self.p.grid.speed_m_s]
-        noise = p.plant.sensor.reading_std_m_s
-        hidden = [(i, q) for i in range(len(p.scenarios.weight)) for q in range(len(p.chain.levels))]
-        value = {(i, q, a): self.command(i, n, m, q, a) for i, q in hidden for a in range(3) if p.modes.allowed[m, a]}
-        start, weights = true_speed_weights(p.grid.speed_m_s, p.grid.speed_m_s, noise)
-        for a in (0, 2):
-            if not p.modes.allowed[m, a]:
-                continue
-            gain = [0.0] * self.points
-            for j in range(1, self.points):
-                for i, q in hidden:
-                    w = float(p.scenarios.weight[i] * p.chain.stationary[q])
-                    gain[j] += w * (value[i, q, 1][j] - value[i, q, a][j] - self.criterion.switching_tolerance_m2_s2)
-            seen = [sum(w * gain[start[j] + b] for b, w in enumerate(weights[j])) for j in range(self.points)]
-            line = best_threshold(
-                [0.0 if abs(g) <= 1e-9 else g - math.copysign(1e-9, g) for g in seen], seen, v, a == 2
-            )
-            if a == 0:
-                self.lower[n, m] = line
-            else:
-                self.upper[n, m] = max(line, self.lower[n, m])
+        """Lines, if they are not given, and values at one node and mode."""
+        c, v = self.c, [float(x) for x in self.c.grid.speed_m_s]
+        noise, price = c.measurement.std, AIM.criterion.switching_tolerance_m2_s2
+        hidden = [(i, q) for i in range(len(c.scenarios.weight)) for q in range(len(c.noise.levels))]
+        asked = [a for a in range(3) if c.modes.allowed[m, a]]
+        value = {(i, q, a): self.command(i, n, m, q, a) for i, q in hidden for a in asked}
+        if self.limited:
+            start, weights = true_speed_weights(c.grid.speed_m_s, c.grid.speed_m_s, noise)
+            for a in set(asked) - {1}:
+                gain = [0.0] * self.points
+                for j in range(1, self.points):
+                    for i, q in hidden:
+                        w = float(c.scenarios.weight[i] * c.noise.stationary[q])
+                        gain[j] += w * (value[i, q, 1][j] - value[i, q, a][j] - price)
+                seen = [sum(w * gain[start[j] + b] for b, w in enumerate(weights[j])) for j in range(self.points)]
+                counted = [0.0 if abs(g) <= 1e-9 else g - math.copysign(1e-9, g) for g in seen]
+                self.lines[a // 2, n, m] = best_threshold(counted, seen, v, a == 2)
+            self.lines[1, n, m] = max(self.lines[1, n, m], self.lines[0, n, m])
         for i, q in hidden:
             row = [self.stalled]
             for j in range(1, self.points):
-                down = chance_below((self.lower[n, m] - v[j]) / noise)
-                up = chance_below((v[j] - self.upper[n, m]) / noise)
-                price = self.criterion.switching_tolerance_m2_s2
+                down = chance_below((self.lines[0, n, m] - v[j]) / noise) if 0 in asked else 0.0
+                up = chance_below((v[j] - self.lines[1, n, m]) / noise) if 2 in asked else 0.0
                 row.append((1.0 - down - up) * value[i, q, 1][j])
                 for a, chance in ((0, down), (2, up)):
-                    if p.modes.allowed[m, a]:
+                    if a in asked:
                         row[-1] += chance * (value[i, q, a][j] + price)
             self.value[i, n, m, q] = row
 
     def cost(self) -> float:
         """Expected cost from the entry on."""
-        p, total = self.p, 0.0
-        for r, row in enumerate(p.entry):
-            for i, weight in enumerate(p.scenarios.weight):
-                for q, share in enumerate(p.chain.stationary):
+        c, total = self.c, 0.0
+        for r, row in enumerate(c.entry):
+            for i, weight in enumerate(c.scenarios.weight):
+                for q, share in enumerate(c.noise.stationary):
+                    mixed = [sum(float(p) * self.value[i, r, 0, k][j] for k, p in enumerate(c.mixing[j, q]))
+                             for j in range(self.points)]  # fmt: skip
                     for j in np.flatnonzero(row):
-                        e = float(p.grid.energy_m2_s2[j]) + self.energy_gain(i, 1.0, 0.0, 0.0, r * p.grid.path_step_m)
-                        x = e / p.grid.energy_step_m2_s2
-                        values = self.value[i, r, 0, q]
-                        at = values[int(x)] + (x - int(x)) * (values[int(x) + 1] - values[int(x)])
-                        total += float(weight * share * row[j]) * at
+                        x = float(j) + self.gained(i, 1.0, 0.0, 0, r) / c.grid.energy_step_m2_s2
+                        total += float(weight * share * row[j]) * self.in_energy([self.stalled, *mixed[1:]], x, False)
         return total
 
 
@@ -190,16 +168,22 @@ def best_threshold(gain: Row, seen: Row, v: Row, above: bool) -> float:
     return line
 
 
-def test_lines_and_cost_are_those_of_plain_loops(plant: Plant) -> None:
+@pytest.fixture(scope="module")
+def tiny(plant: Plant) -> SampledChain:
     sensor = replace(plant.sensor, sample_period_s=0.25, computing_delay_s=0.05, resolution_m_s=0.04)
-    tiny = replace(plant, resistance=RollingResistance(1.75, 0.6), sensor=sensor)
-    coarse = Resolution(path_step_m=0.9, speed_step_m_s=0.13, friction_nodes=2, path_levels=2)
-    problem = unlocked_plant(tiny, coarse, pressure_step_kpa=90.0)
-    criterion = Criterion()
-    solved = solve_unlocked(problem, 2.5, criterion)
-    brute = BruteForce(problem, 2.5, criterion)
-    assert np.isfinite(brute.upper).sum() > 50
-    assert np.isfinite(brute.lower).sum() > 50
-    assert pytest.approx(brute.upper, abs=1e-9) == solved.surfaces.upper_m_s[:, :-1].T
-    assert pytest.approx(brute.lower, abs=1e-9) == solved.surfaces.lower_m_s[:, :-1].T
-    assert solved.cost_m2_s2 == pytest.approx(brute.cost(), abs=1e-9)
+    small = replace(plant, resistance=RollingResistance(1.75, 0.6), sensor=sensor)
+    coarse = Resolution(path_step_m=1.2, speed_step_m_s=0.2, friction_nodes=2, path_levels=2)
+    return sampled_chain(small, coarse, pressure_step_kpa=90.0)
+
+
+def test_lines_are_those_of_plain_loops(tiny: SampledChain) -> None:
+    solved = solve_surfaces(tiny, AIM, rough=0.0).at_quanta()
+    brute = BruteForce(tiny, None)
+    assert np.isfinite(brute.lines).sum(axis=(1, 2)).min() > 50
+    assert solved == pytest.approx(brute.lines, abs=1e-9)
+
+
+def test_cost_of_given_surfaces_is_that_of_plain_loops(tiny: SampledChain) -> None:
+    lines = solve_surfaces(tiny, AIM).at_quanta()
+    cost = SurfaceEvaluation(tiny).gradient(lines, AIM).cost_m2_s2
+    assert cost == pytest.approx(BruteForce(tiny, lines).cost(), abs=1e-9)

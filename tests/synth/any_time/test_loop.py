@@ -1,4 +1,4 @@
-"""The unlocked simulator: the locked one where nobody commands in a transient, and the rule it runs."""
+"""The simulator of commands at any time: the locked one where nobody commands in a transient, and the rule it runs."""
 
 from __future__ import annotations
 
@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 
 from plant_models import Plant
+from synth.simulation.any_time.laws import PolynomialController, SurfaceController
+from synth.simulation.any_time.loop import any_time_loop
 from synth.simulation.closed_loop import LineController
 from synth.simulation.random_passes import random_passes
 from synth.solver.any_time.drive_modes import drive_modes
+from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
+from synth.solver.any_time.switching_surfaces import at_rest_only
 from synth.solver.switching_lines import SwitchingLines
-from synth.studies.unlocked.laws import CompactController, SurfaceController, at_rest_only
-from synth.studies.unlocked.loop import unlocked_loop
 
 
 def falling_lines(plant: Plant, nodes: int) -> SwitchingLines:
@@ -26,7 +28,7 @@ def falling_lines(plant: Plant, nodes: int) -> SwitchingLines:
 
 
 def test_without_commands_in_transients_it_is_the_locked_simulator(plant: Plant) -> None:
-    loop, lines = unlocked_loop(plant), falling_lines(plant, 101)
+    loop, lines = any_time_loop(plant), falling_lines(plant, 101)
     draws = loop.draws(random_passes(11, 0, 2000))
     locked = loop.locked.run(LineController(lines), draws)
     unlocked = loop.run(SurfaceController(at_rest_only(lines, drive_modes(plant, 20.0, 5))), draws)
@@ -36,14 +38,22 @@ def test_without_commands_in_transients_it_is_the_locked_simulator(plant: Plant)
     assert unlocked.transit_time_s == pytest.approx(locked.transit_time_s, abs=1e-9)
 
 
-def test_the_compact_rule_commands_what_its_polynomial_says(plant: Plant) -> None:
+def polynomials(
+    plant: Plant, coefficients: np.ndarray, has_line: np.ndarray, degrees: tuple[int, ...]
+) -> PolynomialSurfaces:
+    stages = np.asarray(plant.position.stage_pressures_kpa)
+    return PolynomialSurfaces(plant.start_m, plant.exit_m, stages, degrees, coefficients, has_line)
+
+
+def test_the_polynomial_rule_commands_what_its_polynomial_says(plant: Plant) -> None:
     rng = np.random.default_rng(4)
-    coefficients = 0.05 * rng.standard_normal((3, 2, 3, 4))
-    coefficients[:, 0, 0, 0], coefficients[:, 1, 0, 0] = 3.1, 3.2
-    coefficients[:, :, 0, 1] = -0.5
+    series = 0.05 * rng.standard_normal((3, 2, 12))
+    series[:, 0, 0], series[:, 1, 0] = 3.1, 3.2
+    series[:, :, 1] = -0.5
     has_line = np.array([[False, True], [True, True], [True, False]])
-    controller = CompactController(plant.exit_m, coefficients, has_line)
-    loop, stages = unlocked_loop(plant), plant.position.stage_pressures_kpa
+    surfaces = polynomials(plant, series, has_line, (3, 3, 3))
+    coefficients, controller = surfaces.powers(), PolynomialController(surfaces)
+    loop, stages = any_time_loop(plant), plant.position.stage_pressures_kpa
     commands = in_transient = 0
     for i in range(20):
         trace = loop.follow(controller, loop.draws(random_passes(12, i, 1)))
@@ -70,11 +80,11 @@ def test_the_compact_rule_commands_what_its_polynomial_says(plant: Plant) -> Non
 
 
 def test_two_stages_can_be_climbed_in_two_samples(plant: Plant) -> None:
-    always_up = np.zeros((3, 2, 3, 1))
-    always_up[:, 1, 0, 0] = 0.5
+    always_up = np.full((3, 2, 1), 0.5)
     has_line = np.array([[False, True], [False, True], [False, False]])
-    trace = unlocked_loop(plant).follow(
-        CompactController(plant.exit_m, always_up, has_line), unlocked_loop(plant).draws(random_passes(1, 0, 1))
+    trace = any_time_loop(plant).follow(
+        PolynomialController(polynomials(plant, always_up, has_line, (0,))),
+        any_time_loop(plant).draws(random_passes(1, 0, 1)),
     )
     times = trace.time_s[1:][np.diff(trace.stage) == 1]
     assert np.diff(times) == pytest.approx([0.1])

@@ -1,0 +1,1 @@
+"""Simulated passes of regulators that may give a command at every sample."""
