@@ -41,10 +41,11 @@ REPLAY_LAYOUT: Final = Layout("replay", "replay-summary", ("plots",))
 RETUNE_LAYOUT: Final = Layout("retune", "retune-summary", ("tables", "plots"))
 IDENTIFY_LAYOUT: Final = Layout("identify", "identify-summary", ("types", "plots"))
 SENSOR_PLAN_LAYOUT: Final = Layout("sensors plan", "sensor-plan-summary", ("plots",))
+PERMISSIONS_LAYOUT: Final = Layout("permissions", "permissions-summary", ("plots",))
 WATCH_LAYOUT: Final = Layout("watch", "watch-summary", (), "watch.json")
 LAYOUTS: Final = (
     TUNE_LAYOUT, SENSORS_LAYOUT, AIM_LAYOUT, TRAINS_LAYOUT, COMPUTER_LAYOUT, SENSITIVITY_LAYOUT, REPLAY_LAYOUT,
-    RETUNE_LAYOUT, IDENTIFY_LAYOUT, WATCH_LAYOUT, SENSOR_PLAN_LAYOUT,
+    RETUNE_LAYOUT, IDENTIFY_LAYOUT, WATCH_LAYOUT, SENSOR_PLAN_LAYOUT, PERMISSIONS_LAYOUT,
 )  # fmt: skip
 LEFTOVER = re.compile(r"\..+\.[0-9a-f]{16}\.part")
 PICTURES = re.compile(
@@ -73,6 +74,9 @@ MEASURED_PICTURES = re.compile(r"(identify|replay|retune)-[a-z-]+\.(png|svg)")
 
 SENSOR_PLAN_PICTURES = re.compile(r"sensors-[a-z-]+\.(png|svg)")
 """Those of a plan of point sensors."""
+
+PERMISSIONS_PICTURES = re.compile(r"permissions\.(png|svg)")
+"""That of permissions of the hardware."""
 
 SWEEP_LEDGER, SWEPT_CONFIG = "sweep/ledger.jsonl", "config.toml"
 """What is in every directory of a sweep, and beside every book of one."""

@@ -1,4 +1,4 @@
-"""The commands about the numbers of a yard; `synth.cli.commands` names them.
+"""The commands about the numbers and the hardware of a yard; `synth.cli.commands` names them.
 
 Annotations are not postponed here: typer would compile every one of them anew at each start.
 """
@@ -14,6 +14,7 @@ from synth.cli.arguments import Json, directory, whole_number
 def add_measuring_commands(app: typer.Typer) -> None:
     """Add the commands to `app`."""
     app.command()(sensitivity)
+    app.command()(permissions)
 
 
 def sensitivity(
@@ -46,3 +47,23 @@ def sensitivity(
     from synth.cli.sensitivity import sensitivity_command
 
     return sensitivity_command(config, table, output, (points, passes, seed), as_json)
+
+
+def permissions(
+    config: Annotated[Path | None, typer.Argument(metavar="CONFIG.toml", help="Built-in unless given.")] = None,
+    output: Annotated[
+        Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where the results go.")
+    ] = Path("out/permissions"),
+    workers: Annotated[
+        int, typer.Option("--workers", parser=whole_number(1, 256), metavar="N", help="Cases compared at a time.")
+    ] = 2,
+    as_json: Json = False,
+) -> int:
+    """Tell what to ask of the hardware: what each permission would give in every case.
+
+    Commands during a change of stage, with and without a pressure gauge; an estimator; the approach. Simulated on the
+    same passes as the tables that a tune makes.
+    """
+    from synth.cli.permissions import permissions_command
+
+    return permissions_command(config, output, workers, as_json)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,11 @@ from synth.kernels.any_time.value import value
 from synth.problem.aim import Aim
 from synth.solver.any_time.sampled_chain import SampledChain, motion_arguments
 from synth.solver.exit_density import ExitDensity
+
+Result = TypeVar("Result")
+
+Valued = tuple[float, NDArray[np.float64], NDArray[np.float64]]
+"""Cost, slopes and bends of one scenario."""
 
 UP = 1
 """Second of the two sides of a pair of lines."""
@@ -37,11 +42,10 @@ class SurfaceCost:
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Followed:
-    """The forward pass of one scenario: its exits (E,), totals (4,), and what the backward pass takes from it."""
+    """The forward pass of one scenario: its exits (E,), totals (4,), and the ranges that the backward pass takes."""
 
     exits: NDArray[np.float64]
     totals: NDArray[np.float64]
-    density: NDArray[np.float64]
     band: NDArray[np.int64]
     way_band: NDArray[np.int64]
 
@@ -58,8 +62,8 @@ class SurfaceEvaluation:
 
     def density(self, lines_m_s: NDArray[np.float64]) -> ExitDensity:
         """Exit-speed density, all scenarios weighted."""
-        c = self.chain
-        found = list(self._each(lambda i: self._followed(self._policy(lines_m_s), i, keep=False)))
+        c, policy = self.chain, self._policy(lines_m_s)
+        found = self._each(lambda i, memory: self._followed(policy, i, memory[:0]))
         exits = sum(w * each.exits for w, each in zip(c.scenarios.weight, found, strict=True))
         totals = sum(w * each.totals for w, each in zip(c.scenarios.weight, found, strict=True))
         stalled, escaped, down, up = (float(each) for each in np.asarray(totals))
@@ -69,7 +73,7 @@ class SurfaceEvaluation:
         """Expected cost and its derivatives, all scenarios weighted."""
         policy = self._policy(lines_m_s)
         cost, slopes, bends = 0.0, np.zeros(policy[0].shape), np.zeros(policy[0].shape)
-        found = self._each(lambda i: self._valued(policy, i, aim))
+        found = self._each(lambda i, memory: self._valued(policy, i, aim, memory))
         for weight, (one, slope, bend) in zip(self.chain.scenarios.weight, found, strict=True):
             cost += weight * one
             slopes += weight * slope
@@ -77,9 +81,18 @@ class SurfaceEvaluation:
         rate = self.chain.measurement.slopes(lines_m_s)
         return SurfaceCost(cost, slopes * rate, bends * rate**2)
 
-    def _each(self, work: Any) -> Iterator[Any]:
+    def _each(self, work: Callable[[int, NDArray[np.float64]], Result]) -> list[Result]:
+        """What `work` gives for every scenario, in their order; each thread has a memory for densities."""
+        c, count = self.chain, len(self.chain.scenarios.weight)
+        shape = (len(c.drive_m2_s2) - 1, len(c.modes.stage), len(c.noise.levels), len(c.grid.speed_m_s))
+
+        def in_turn(first: int) -> list[Result]:
+            memory = np.empty(shape)  # what is not written is never touched
+            return [work(i, memory) for i in range(first, count, self.threads)]
+
         with ThreadPoolExecutor(max_workers=self.threads) as pool:
-            yield from pool.map(work, range(len(self.chain.scenarios.weight)))
+            parts = list(pool.map(in_turn, range(self.threads)))
+        return [parts[i % self.threads][i // self.threads] for i in range(count)]
 
     def _policy(self, lines_m_s: NDArray[np.float64]) -> tuple[Any, ...]:
         """Lines in readings, what is read of true speeds, and the error."""
@@ -90,23 +103,22 @@ class SurfaceEvaluation:
         lines[UP, : c.approach_nodes, held] = np.inf  # before the entrance, no further
         return lines, c.measurement.readings(c.grid.speed_m_s), max(noise, 1e-6)
 
-    def _followed(self, policy: tuple[Any, ...], i: int, keep: bool) -> Followed:
+    def _followed(self, policy: tuple[Any, ...], i: int, density: NDArray[np.float64]) -> Followed:
         c = self.chain
         nodes, modes, points = len(c.drive_m2_s2) - 1, len(c.modes.stage), len(c.grid.speed_m_s)
-        density = np.empty((nodes if keep else 0, modes, len(c.noise.levels), points))
         band = np.empty((nodes, modes, 2), dtype=np.int64)
         way_band = np.empty((nodes, len(c.periods.target), 2), dtype=np.int64)
         exits, totals = np.empty(points), np.empty(4)
         arguments: tuple[Any, ...] = (*policy, *self._shared(i), density, band, way_band, exits, totals)
         occupy(*arguments)
-        return Followed(exits, totals, density, band, way_band)
+        return Followed(exits, totals, band, way_band)
 
-    def _valued(self, policy: tuple[Any, ...], i: int, aim: Aim) -> tuple[float, Any, Any]:
-        f = self._followed(policy, i, keep=True)
+    def _valued(self, policy: tuple[Any, ...], i: int, aim: Aim, density: NDArray[np.float64]) -> Valued:
+        f = self._followed(policy, i, density)
         slopes, bends = np.empty(policy[0].shape), np.empty(policy[0].shape)
         arguments: tuple[Any, ...] = (
             *policy, *self._shared(i), *aim.criterion.exit_costs(self.chain.grid.speed_m_s, aim.target_speed_m_s),
-            aim.criterion.switching_tolerance_m2_s2, f.density, f.band, f.way_band, slopes, bends,
+            aim.criterion.switching_tolerance_m2_s2, density, f.band, f.way_band, slopes, bends,
         )  # fmt: skip
         return value(*arguments), slopes, bends
 

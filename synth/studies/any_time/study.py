@@ -34,7 +34,6 @@ from synth.solver.any_time.polynomial_surfaces import (
 )
 from synth.solver.any_time.sampled_chain import check_sampled_chain, design_resolution, sampled_chain
 from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
-from synth.solver.any_time.surface_induction import solve_surfaces
 from synth.solver.any_time.surface_polish import SurfacePolish, polish_surfaces
 from synth.solver.any_time.switching_surfaces import SwitchingSurfaces
 from synth.solver.backward_induction import solve
@@ -54,6 +53,7 @@ from synth.studies.any_time.findings import (
     SurfaceMap,
     Told,
 )
+from synth.studies.any_time.surface_induction import solve_surfaces
 from synth.studies.cases import Case, named_cases
 from synth.studies.entrance import from_the_entrance
 from synth.studies.near_target import near_ratio, near_target

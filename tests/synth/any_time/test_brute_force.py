@@ -19,8 +19,8 @@ from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.solver.any_time.sampled_chain import SampledChain, sampled_chain
 from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
-from synth.solver.any_time.surface_induction import solve_surfaces
 from synth.solver.backward_induction import true_speed_weights
+from synth.studies.any_time.surface_induction import solve_surfaces
 
 Row = list[float]
 AIM = Aim(2.5, Criterion())

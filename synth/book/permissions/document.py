@@ -1,0 +1,54 @@
+"""Permissions of the hardware for programs: what each gives in every case, as summary.json of the command."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from importlib.metadata import version
+
+from synth.book.output_directory import PERMISSIONS_LAYOUT
+from synth.book.permissions.permission import CasePermissions
+from synth.book.summary import Document, plain
+from synth.configuration.resolved_config import ResolvedConfig
+
+VERSION = 1
+
+
+def permissions_document(
+    config: ResolvedConfig, cases: Sequence[CasePermissions], created: str, hashes: Mapping[str, str]
+) -> Document:
+    """The document; `hashes`: SHA-256 by name of the other files."""
+    document: Document = plain(
+        {
+            "format": PERMISSIONS_LAYOUT.form,
+            "version": VERSION,
+            "created": created,
+            "generator": {
+                "name": "retarder-synth",
+                "version": version("retarder-synth"),
+                "config_sha256": config.sha256,
+            },
+            "title": config.title,
+            "cases": [case_document(case) for case in cases],
+            "files": dict(hashes),
+        }
+    )
+    return document
+
+
+def case_document(case: CasePermissions) -> Document:
+    """One case."""
+    return {
+        "label": case.label,
+        "target_speed_m_s": case.target_speed_m_s,
+        "as_configured": {**asdict(case.table), "predicted_rms_m_s": case.predicted_rms_m_s},
+        "permissions": {
+            each.permission.value: {
+                **asdict(each.statistics),
+                "predicted_rms_m_s": each.predicted_rms_m_s,
+                "ratio": each.ratio,
+                "ratio_ci95": each.ratio_ci95,
+            }
+            for each in case.results
+        },
+    }

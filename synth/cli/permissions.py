@@ -1,0 +1,94 @@
+"""`retarder-synth permissions`: what can be refused is refused before anything is computed or written."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from synth.cli import OK, say
+from synth.faults.input_error import InputError
+
+if TYPE_CHECKING:
+    from synth.book.permissions.permission import CasePermissions
+    from synth.configuration.resolved_config import ResolvedConfig
+
+
+def permissions_command(path: Path | None, output: Path, workers: int, as_json: bool) -> int:
+    """Tell what permissions of the hardware would give in every case of `path`; the exit code."""
+    from synth.book.creation_time import creation_time, require_date
+    from synth.book.output_directory import PERMISSIONS_LAYOUT, SUMMARY, output_directory
+    from synth.cli.interrupt import interruptible
+    from synth.cli.progress import Progress
+    from synth.cli.tune import require_room
+    from synth.configuration.config_file import BUILT_IN, load_config
+    from synth.kernels.cache import guarded
+
+    config, source = load_config(path), str(path or BUILT_IN)
+    if config.criterion.requirement is not None:
+        raise InputError(
+            f"{source}: criterion has p_overspeed or worst_friction_*; commands at any time are designed for the mean "
+            "square error alone: leave these keys out"
+        )
+    require_room(config, path, workers)
+    require_date()
+    started, created = time.monotonic(), creation_time()
+    with output_directory(output, PERMISSIONS_LAYOUT) as directory:
+        for warning in config.warnings:
+            say(f"warning: {warning}")
+        with interruptible(directory), Progress(len(config.problems()), "comparing") as progress:
+            from synth.present.permissions_outputs import write_permissions
+
+            cases = guarded(compared, config, source, created, workers, progress.done)
+            write_permissions(config, cases, created, directory)
+            progress.note(f"all files written after {time.monotonic() - started:.1f} s")
+    if as_json:
+        sys.stdout.write((output / SUMMARY).read_text(encoding="utf-8"))
+    else:
+        print_permissions(cases, output)
+    return OK
+
+
+def compared(
+    config: ResolvedConfig, source: str, created: str, workers: int, tell: Callable[[str], None]
+) -> tuple[CasePermissions, ...]:
+    """All cases; a fault of the plant names the file."""
+    from synth.book.permissions.case_permissions import permissions_of
+    from synth.configuration.plant_fault import in_file
+
+    with in_file(source):
+        return permissions_of(config, created, workers, tell)
+
+
+def print_permissions(cases: Sequence[CasePermissions], directory: Path) -> None:
+    """A table with a row for each case and a column for each permission."""
+    from statistics import median
+
+    from rich import box
+    from rich.table import Table
+
+    from synth.book.permissions.permission import Permission
+    from synth.cli.book_table import plus_minus, stdout_console
+
+    asked = [each for each in Permission if any(case.of(each) for case in cases)]
+    shown = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for name in ("case", "target\nm/s", "rms as configured\nm/s", *(each.value.replace(", ", ",\n") for each in asked)):
+        shown.add_column(name, justify="left" if name == "case" else "right", no_wrap=True)
+    for case in cases:
+        found = [case.of(each) for each in asked]
+        ratios = [plus_minus(each.ratio, each.ratio_ci95) if each else "–" for each in found]
+        rms = plus_minus(case.table.rms_m_s, case.table.rms_ci95_m_s, 4)
+        shown.add_row(case.label, f"{case.target_speed_m_s:g}", rms, *ratios)
+    console = stdout_console()
+    console.print(shown, markup=False)
+    medians = ", ".join(
+        f"{each.value} {median(result.ratio for case in cases if (result := case.of(each))):.2f}" for each in asked
+    )
+    console.print(
+        f"{cases[0].table.passes} stratified passes a case. Columns of permissions: rms over that of the table as "
+        f"configured, on the same passes, ± 95 %. Medians: {medians}.",
+        soft_wrap=True,
+    )
+    console.print(f"{directory}: plots/, summary.json", soft_wrap=True)
