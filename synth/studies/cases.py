@@ -13,6 +13,14 @@ if TYPE_CHECKING:
     from synth.configuration.resolved_config import ResolvedConfig
 
 
+OTHER_PLANTS = (
+    ("park", '[position]\nname = "rnz-2m-park"\n[[cut]]\ncar = "gondola-4"\nmass_t = 36\n'),
+    ("three cars", '[targets]\nexit_speeds_m_s = [4.0]\n[[cut]]\ncar = "gondola-4"\ncars = 3\nmass_t = 156\n'),
+    ("8 axles", '[targets]\nexit_speeds_m_s = [3.5]\n[[cut]]\ncar = "tank-8"\nmass_t = 120\n'),
+)
+"""Configurations besides the default one: name, text."""
+
+
 @dataclass(frozen=True)
 class Case:
     """A plant with the label of its class of cuts, and a target speed."""

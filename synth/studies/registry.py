@@ -17,7 +17,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
     Study(
         "any-time",
         "What is gained when a command may be given at every sample, also during a change of stage?",
-        300.0,
+        480.0,
         "any-time.md",
         "synth.studies.any_time.study",
         "synth.studies.any_time.pictures",

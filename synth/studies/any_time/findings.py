@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from synth.book.permissions.permission import Permission
 from synth.simulation.replicates import Interval
 from synth.studies.markdown_table import MarkdownTable, around, table
 from synth.studies.near_target import NEAR_M_S, NearTarget
@@ -67,6 +68,22 @@ class CaseRow:
 
 
 @dataclass(frozen=True)
+class PermissionRow:
+    """One case as configured, with an approach if its position has one, and what permissions of the hardware give.
+
+    `ratios`: rms over that of the table as configured, by name of the permission; `honesty`: predicted / simulated rms
+    of commands at any time.
+    """
+
+    case: str
+    rms_m_s: float
+    switchings: float
+    ratios: dict[str, Ratio]
+    honesty: float
+    switchings_any_time: float
+
+
+@dataclass(frozen=True)
 class SurfaceMap:
     """Both surfaces of one commanded stage, over pressure (rows) and path (columns), None where there is no command.
 
@@ -93,19 +110,27 @@ class AnyTime(Findings):
     seed: int
     passes: int
     rows: tuple[CaseRow, ...]
+    permissions: tuple[PermissionRow, ...]
     surface: SurfaceMap | None
 
     def tables(self) -> Mapping[str, MarkdownTable]:
-        """`gains`: a row a case; `rms`: all controllers; `honesty`: what is predicted, and how long a polish takes."""
+        """`gains`: a row a case; `rms`: all controllers; `honesty`: what is predicted, and how long a polish takes.
+
+        `permissions`: what they give beside tables as configured.
+        """
         heads = ("valves", "case", CUBIC, POLISHED, PLAIN, ENERGY, f"{POLISHED} / {CUBIC}",
                  f"{POLISHED} / {ENERGY}", "the same near the target")  # fmt: skip
         every = ("valves", "case", *NAMES)
+        names = (Permission.ANY_TIME, Permission.WITHOUT_GAUGE, Permission.ESTIMATOR)
+        granted = ("case", "rms, m/s / switchings", *(each.value for each in names), "predicted / simulated, any time")
+        told = (permission_cells(row, [each.value for each in names]) for row in self.permissions)
         honesty = ("valves", "case", "predicted / simulated", "evaluations", "ended well", "seconds")
         return {
             "gains": table("rms, m/s / switchings a pass; ratios of the rms [95 %]", heads, map(gain_cells, self.rows)),
             "rms": table(
                 f"rms [within {NEAR_M_S:g} m/s of the target], mm/s / switchings", every, map(rms_cells, self.rows)
             ),
+            "permissions": table("rms of the table as configured; ratios to it [95 %]", granted, told),
             "honesty": table(f"{POLISHED}: rms of the prediction and of passes", honesty, map(honest_cells, self.rows)),
         }
 
@@ -124,6 +149,13 @@ def gain_cells(row: CaseRow) -> tuple[str, ...]:
     rms = [f"{c[name].rms_m_s:.4f} / {c[name].switchings:.1f}" for name in (CUBIC, POLISHED, PLAIN, ENERGY)]
     ratios = [c[POLISHED].ratio.cell, row.polished_to[ENERGY].cell, c[POLISHED].near_ratio.cell]
     return (f"× {row.valves:g}", row.case, *rms, *ratios)
+
+
+def permission_cells(row: PermissionRow, names: Sequence[str]) -> tuple[str, ...]:
+    """The cells of one case as configured."""
+    figures = f"{row.rms_m_s:.4f} / {row.switchings:.1f}"
+    first, *others = (row.ratios[name].cell for name in names)
+    return (row.case, figures, f"{first} / {row.switchings_any_time:.1f}", *others, f"{row.honesty:.2f}")
 
 
 def rms_cells(row: CaseRow) -> tuple[str, ...]:

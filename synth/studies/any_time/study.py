@@ -16,6 +16,9 @@ from numpy.typing import NDArray
 
 from plant_models import Plant
 from synth.book.comparison.baselines import tune_baselines
+from synth.book.permissions.case_permissions import permissions_of
+from synth.book.permissions.permission import Permission
+from synth.configuration.config_file import load_config, parse_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.simulation.any_time.laws import PolynomialController, SurfaceController
@@ -48,13 +51,14 @@ from synth.studies.any_time.findings import (
     SURFACES,
     AnyTime,
     CaseRow,
+    PermissionRow,
     Polishing,
     Ratio,
     SurfaceMap,
     Told,
 )
 from synth.studies.any_time.surface_induction import solve_surfaces
-from synth.studies.cases import Case, named_cases
+from synth.studies.cases import OTHER_PLANTS, Case, named_cases
 from synth.studies.entrance import from_the_entrance
 from synth.studies.near_target import near_ratio, near_target
 from synth.studies.options import option
@@ -62,6 +66,12 @@ from synth.studies.study import Method, Tell
 from synth.studies.tuned_table import lines_of_solution
 
 FRESH, TUNING, BASELINE_PASSES = 49979687, 67867967, 1000
+
+MOST_BOOKS = len(OTHER_PLANTS) + 1
+"""The configuration given, and other plants."""
+
+NO_DATE = "2000-01-01T00:00:00Z"
+"""Tables of a study are kept nowhere."""
 
 SURFACE_NODES = 60
 """Places of the path at which kept surfaces are told."""
@@ -79,6 +89,9 @@ class Options:
     passes: int = option(20_000, "fresh passes of each controller", (200, 10**6))
     coarser: float = option(1.0, "times the steps of the grid of the surfaces", (0.5, 8.0))
     threads: int = option(2, "scenarios followed side by side; no figure depends on it", (1, 64))
+    books: int = option(
+        len(OTHER_PLANTS) + 1, "how many configurations permissions are told for", (0, len(OTHER_PLANTS) + 1)
+    )
     shown: str = option("52:3", "case whose surfaces are kept, with the first valves")
     shown_stage: int = option(2, "stage whose surfaces are kept", (0, 7))
 
@@ -128,7 +141,26 @@ def run(options: Options, tell: Tell) -> AnyTime:
                 surface = found
             tell(f"{row.case}, valves × {valves:g}: {row.polish.seconds:.1f} s of polish")
             rows.append(row)
-    return AnyTime(config.sha256, seed, options.passes, tuple(rows), surface)
+    books = [load_config(options.config), *(parse_config(text, name) for name, text in OTHER_PLANTS)][: options.books]
+    permissions = [row for book in books for row in permission_rows(book, options, tell)]
+    return AnyTime(config.sha256, seed, options.passes, tuple(rows), tuple(permissions), surface)
+
+
+def permission_rows(config: ResolvedConfig, options: Options, tell: Tell) -> list[PermissionRow]:
+    """What permissions give in the cases of a configuration, on so many passes of its own validation."""
+    few = replace(config, validation=config.validation.model_copy(update={"passes": options.passes}))
+    found = permissions_of(few, NO_DATE, options.threads, tell)
+    rows = []
+    for case in found:
+        any_time = next(each for each in case.results if each.permission is Permission.ANY_TIME)
+        rows.append(
+            PermissionRow(
+                f"{case.label} to {case.target_speed_m_s:g} m/s", case.table.rms_m_s, case.table.switchings,
+                {each.permission.value: Ratio(each.ratio, each.ratio_ci95) for each in case.results},
+                any_time.predicted_rms_m_s / any_time.statistics.rms_m_s, any_time.statistics.switchings,
+            )
+        )  # fmt: skip
+    return rows
 
 
 def quicker(plant: Plant, times: float) -> Plant:
@@ -222,4 +254,4 @@ def surface_map(case: Case, solved: SwitchingSurfaces, polished: PolynomialSurfa
     )  # fmt: skip
 
 
-METHOD = Method(Options, Options(None, ("52:3",), (1.0,), 200, 1.5), AnyTime, run)
+METHOD = Method(Options, Options(None, ("52:3",), (1.0,), 200, 1.5, 2, 0), AnyTime, run)

@@ -27,7 +27,7 @@ from synth.studies.approach.pair import (
     table_of,
     with_approach,
 )
-from synth.studies.cases import Case, class_cases, named_cases
+from synth.studies.cases import OTHER_PLANTS, Case, class_cases, named_cases
 from synth.studies.options import option
 from synth.studies.side_by_side import side_by_side
 from synth.studies.study import Method, Tell
@@ -36,13 +36,6 @@ FRESH = 14
 """Added to the seed of the configuration: no table was made on these passes."""
 
 TUNING_PASSES = 600
-
-OTHERS = (
-    ("park", '[position]\nname = "rnz-2m-park"\n[[cut]]\ncar = "gondola-4"\nmass_t = 36\n'),
-    ("three cars", '[targets]\nexit_speeds_m_s = [4.0]\n[[cut]]\ncar = "gondola-4"\ncars = 3\nmass_t = 156\n'),
-    ("8 axles", '[targets]\nexit_speeds_m_s = [3.5]\n[[cut]]\ncar = "tank-8"\nmass_t = 120\n'),
-)
-"""Cases besides those of the configuration: name, configuration."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +48,7 @@ class Options:
     lengths_m: tuple[float, ...] = option((0.0, 2.0, 4.0, 6.0, 8.0, 12.0), "approaches compared, m", (0.0, 100.0))
     heavy: tuple[str, ...] = option(("52:2", "66:2", "66:3", "85:2", "85:3", "85:4"), "cases that they are compared on")
     light: tuple[str, ...] = option(("22:2", "36:2"), "cases of which the stage allowed at the entrance is varied")
-    others: int = option(len(OTHERS), "how many of the other plants", (0, len(OTHERS)))
+    others: int = option(len(OTHER_PLANTS), "how many of the other plants", (0, len(OTHER_PLANTS)))
     passes: int = option(20_000, "stratified passes of each table", (200, 10**7))
 
 
@@ -73,7 +66,7 @@ def run(options: Options, tell: Tell) -> Approaches:
         return row
 
     asked = [(case.name, case, given) for case in class_cases(config, options.masses_t, ())]
-    asked += [item for name, text in OTHERS[: options.others] for item in other_cases(name, text, given)]
+    asked += [item for name, text in OTHER_PLANTS[: options.others] for item in other_cases(name, text, given)]
     cases = side_by_side(compared, asked)
     lengths = side_by_side(lambda case: length_row(case, given, options.lengths_m), named_cases(config, options.heavy))
     tell("lengths compared")
