@@ -38,14 +38,16 @@ class SurfaceLaw(NamedTuple):
     """Rule at a sample: a polynomial of path and pressure, or surfaces on nodes if there is none (size 0).
 
     `coefficients` (K + 1, 2, 3, r + 1): lower and upper line as a sum over powers 0 … 2 of (P − P_k)/100 kPa, each with
-    a polynomial in u, ascending, −1 at `start_m` and 1 at `exit_m`; `has_line` (K + 1, 2). Surfaces: `lower`, `upper`
-    (K + 1, R, B, N + 1) by stage, wait, pressure node and path node, linear in between.
+    a polynomial in u, ascending, −1 at `start_m` and 1 at `exit_m`; `has_line` (K + 1, 2); P is taken
+    for `gauge_factor` times itself. Surfaces: `lower`, `upper` (K + 1, R, B, N + 1) by stage, wait, pressure node and
+    path node, linear in between.
     """
 
     coefficients: Floats
     has_line: NDArray[np.bool_]
     start_m: float
     exit_m: float
+    gauge_factor: float
     lower: Floats
     upper: Floats
     waits_s: Floats
@@ -98,7 +100,7 @@ def wanted_step(
     """−1, 0 or +1 stage."""
     if law.coefficients.shape[0] > 0:
         u = 2.0 * (s - law.start_m) / (law.exit_m - law.start_m) - 1.0
-        x = 0.01 * (pressure - stage_kpa[stage])
+        x = 0.01 * (pressure * law.gauge_factor - stage_kpa[stage])
         if law.has_line[stage, 0] and v < polynomial_line(law.coefficients[stage, 0], u, x):
             return -1
         if law.has_line[stage, 1] and v > polynomial_line(law.coefficients[stage, 1], u, x):

@@ -40,6 +40,7 @@ class SurfaceController:
             fixed(np.empty((0, 2)), np.bool_),
             float(surfaces.nodes_m[0]),
             float(surfaces.nodes_m[-1]),
+            1.0,
             fixed(lower, np.float64),
             fixed(upper, np.float64),
             fixed(m.waits_s, np.float64),
@@ -50,9 +51,13 @@ class SurfaceController:
 
 @dataclass(frozen=True)
 class PolynomialController:
-    """A regulator that compares speed with polynomials of path and pressure; what its valves wait for is left out."""
+    """A regulator that compares speed with polynomials of path and pressure; what its valves wait for is left out.
+
+    It takes `gauge_factor` times the true pressure for the pressure.
+    """
 
     surfaces: PolynomialSurfaces
+    gauge_factor: float = 1.0
 
     @property
     def stages(self) -> int:
@@ -68,7 +73,8 @@ class PolynomialController:
         none = fixed(np.empty((0, 0, 0, 0)), np.float64)
         return SurfaceLaw(
             fixed(coefficients, np.float64), fixed(np.array(surfaces.has_line), np.bool_), surfaces.start_m,
-            surfaces.exit_m, none, none, fixed(np.empty(0), np.float64), fixed(np.empty(0), np.float64), 1.0,
+            surfaces.exit_m, self.gauge_factor, none, none, fixed(np.empty(0), np.float64),
+            fixed(np.empty(0), np.float64), 1.0,
         )  # fmt: skip
 
 

@@ -58,13 +58,17 @@ class Polishing:
 
 @dataclass(frozen=True)
 class CaseRow:
-    """One case with valves so many times as fast: all controllers, and ratios of the polished surfaces to others."""
+    """One case with valves so many times as fast: all controllers, and ratios of the polished surfaces to others.
+
+    `gauge`: rms with a gauge that shows so many times the true pressure, over that with a true one.
+    """
 
     case: str
     valves: float
     polish: Polishing
     controllers: dict[str, Told]
     polished_to: dict[str, Ratio]
+    gauge: dict[str, Ratio]
 
 
 @dataclass(frozen=True)
@@ -116,7 +120,7 @@ class AnyTime(Findings):
     def tables(self) -> Mapping[str, MarkdownTable]:
         """`gains`: a row a case; `rms`: all controllers; `honesty`: what is predicted, and how long a polish takes.
 
-        `permissions`: what they give beside tables as configured.
+        `permissions`: what they give beside tables as configured; `gauge`: what a wrong one costs.
         """
         heads = ("valves", "case", CUBIC, POLISHED, PLAIN, ENERGY, f"{POLISHED} / {CUBIC}",
                  f"{POLISHED} / {ENERGY}", "the same near the target")  # fmt: skip
@@ -124,12 +128,14 @@ class AnyTime(Findings):
         names = (Permission.ANY_TIME, Permission.WITHOUT_GAUGE, Permission.ESTIMATOR)
         granted = ("case", "rms, m/s / switchings", *(each.value for each in names), "predicted / simulated, any time")
         told = (permission_cells(row, [each.value for each in names]) for row in self.permissions)
+        wrong = ("valves", "case", *(f"shows × {factor}" for factor in self.rows[0].gauge))
         honesty = ("valves", "case", "predicted / simulated", "evaluations", "ended well", "seconds")
         return {
             "gains": table("rms, m/s / switchings a pass; ratios of the rms [95 %]", heads, map(gain_cells, self.rows)),
             "rms": table(
                 f"rms [within {NEAR_M_S:g} m/s of the target], mm/s / switchings", every, map(rms_cells, self.rows)
             ),
+            "gauge": table("rms with a wrong gauge / with a true one [95 %]", wrong, map(gauge_cells, self.rows)),
             "permissions": table("rms of the table as configured; ratios to it [95 %]", granted, told),
             "honesty": table(f"{POLISHED}: rms of the prediction and of passes", honesty, map(honest_cells, self.rows)),
         }
@@ -149,6 +155,11 @@ def gain_cells(row: CaseRow) -> tuple[str, ...]:
     rms = [f"{c[name].rms_m_s:.4f} / {c[name].switchings:.1f}" for name in (CUBIC, POLISHED, PLAIN, ENERGY)]
     ratios = [c[POLISHED].ratio.cell, row.polished_to[ENERGY].cell, c[POLISHED].near_ratio.cell]
     return (f"× {row.valves:g}", row.case, *rms, *ratios)
+
+
+def gauge_cells(row: CaseRow) -> tuple[str, ...]:
+    """What a wrong gauge costs."""
+    return (f"× {row.valves:g}", row.case, *(ratio.cell for ratio in row.gauge.values()))
 
 
 def permission_cells(row: PermissionRow, names: Sequence[str]) -> tuple[str, ...]:

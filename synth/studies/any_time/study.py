@@ -73,6 +73,9 @@ MOST_BOOKS = len(OTHER_PLANTS) + 1
 NO_DATE = "2000-01-01T00:00:00Z"
 """Tables of a study are kept nowhere."""
 
+GAUGE_FACTORS = (0.85, 0.95, 1.05, 1.15)
+"""Pressures that a wrong gauge shows, over the true one."""
+
 SURFACE_NODES = 60
 """Places of the path at which kept surfaces are told."""
 
@@ -196,7 +199,10 @@ def studied(bench: Bench, valves: float, options: Options, fresh: RandomPasses) 
     others = {name: Ratio(*rms_ratio(samples[POLISHED], samples[name], target)) for name in (ENERGY, PLAIN)}
     predicted = bench.predicted_rms_m_s(polish.surfaces)
     polishing = Polishing(polish.evaluations, polish.converged, seconds, predicted)
-    row = CaseRow(bench.case.name, valves, polishing, told, others)
+    draws = bench.loop.draws(fresh)
+    wrong = {factor: bench.loop.run(PolynomialController(polish.surfaces, factor), draws) for factor in GAUGE_FACTORS}
+    gauge = {f"{factor:g}": Ratio(*rms_ratio(each, samples[POLISHED], target)) for factor, each in wrong.items()}
+    row = CaseRow(bench.case.name, valves, polishing, told, others, gauge)
     return row, surface_map(bench.case, solved, polish.surfaces, options.shown_stage)
 
 
