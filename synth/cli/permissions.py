@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from synth.cli import OK, say
+from synth.cli.tables_refused import tables_refused
 from synth.faults.input_error import InputError
 
 if TYPE_CHECKING:
     from synth.book.permissions.permission import CasePermissions
-    from synth.configuration.resolved_config import ResolvedConfig
 
 
 def permissions_command(path: Path | None, output: Path, workers: int, as_json: bool) -> int:
@@ -22,9 +22,10 @@ def permissions_command(path: Path | None, output: Path, workers: int, as_json: 
     from synth.book.output_directory import PERMISSIONS_LAYOUT, SUMMARY, output_directory
     from synth.cli.interrupt import interruptible
     from synth.cli.progress import Progress
-    from synth.cli.tune import require_room
+    from synth.cli.tune import require_room, sensors_left_aside
     from synth.configuration.config_file import BUILT_IN, load_config
     from synth.kernels.cache import guarded
+    from synth.solver.any_time.drive_modes import drive_at_any_time
 
     config, source = load_config(path), str(path or BUILT_IN)
     if config.criterion.requirement is not None:
@@ -33,15 +34,20 @@ def permissions_command(path: Path | None, output: Path, workers: int, as_json: 
             "square error alone: leave these keys out"
         )
     require_room(config, path, workers)
+    with tables_refused(source):
+        for _, plant in config.plants():
+            drive_at_any_time(plant)
     require_date()
     started, created = time.monotonic(), creation_time()
     with output_directory(output, PERMISSIONS_LAYOUT) as directory:
-        for warning in config.warnings:
+        for warning in (*config.warnings, *sensors_left_aside(config)):
             say(f"warning: {warning}")
-        with interruptible(directory), Progress(len(config.problems()), "comparing") as progress:
+        with interruptible(directory, "summary"), Progress(len(config.problems()), "comparing") as progress:
+            from synth.book.permissions.case_permissions import permissions_of
             from synth.present.permissions_outputs import write_permissions
 
-            cases = guarded(compared, config, source, created, workers, progress.done)
+            with tables_refused(source):
+                cases = guarded(permissions_of, config, created, workers, progress.done)
             write_permissions(config, cases, created, directory)
             progress.note(f"all files written after {time.monotonic() - started:.1f} s")
     if as_json:
@@ -49,17 +55,6 @@ def permissions_command(path: Path | None, output: Path, workers: int, as_json: 
     else:
         print_permissions(cases, output)
     return OK
-
-
-def compared(
-    config: ResolvedConfig, source: str, created: str, workers: int, tell: Callable[[str], None]
-) -> tuple[CasePermissions, ...]:
-    """All cases; a fault of the plant names the file."""
-    from synth.book.permissions.case_permissions import permissions_of
-    from synth.configuration.plant_fault import in_file
-
-    with in_file(source):
-        return permissions_of(config, created, workers, tell)
 
 
 def print_permissions(cases: Sequence[CasePermissions], directory: Path) -> None:

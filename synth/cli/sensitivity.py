@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from synth.cli import OK, say
 from synth.cli.processors import available
-from synth.faults.input_error import InputError
+from synth.cli.tables_refused import tables_refused
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -66,18 +66,10 @@ def shared_out(
     """Tune the tables unless they are `given`, and let the plant vary under them."""
     from synth.book.sensitivity.fixed_tables import tables_tuned
     from synth.book.sensitivity.sensitivity import sensitivity
-    from synth.configuration.plant_fault import in_file
-    from tuning_tables import InvalidTable
 
-    try:
-        with in_file(source):
-            fixed = given or tables_tuned(config, created, min(len(config.cuts), available()), tell)
-            return sensitivity(config, fixed, trial, available(), tell)
-    except InvalidTable as fault:
-        raise InputError(
-            f"{source}: the lines that were found make no table ({fault}) make grid.path_step_m or "
-            "grid.speed_step_m_s smaller, or lower fit.degree"
-        ) from None
+    with tables_refused(source):
+        fixed = given or tables_tuned(config, created, min(len(config.cuts), available()), tell)
+        return sensitivity(config, fixed, trial, available(), tell)
 
 
 def print_found(found: Sensitivity, directory: Path) -> None:

@@ -59,7 +59,7 @@ class CaseTuned:
 def permissions_of(config: ResolvedConfig, created: str, workers: int, tell: Tell) -> tuple[CasePermissions, ...]:
     """All cases of `config`, on `workers` threads; no figure depends on how many.
 
-    Raises `PlantError` where the drive or the sensor cannot be commanded at any time.
+    Raises `PlantError` where `drive_at_any_time` does.
     """
     origin, passes = origin_of(config.sha256, created), validation_passes(config)
 

@@ -118,7 +118,7 @@ class AnyTime(Findings):
     surface: SurfaceMap | None
 
     def tables(self) -> Mapping[str, MarkdownTable]:
-        """`gains`: a row a case; `rms`: all controllers; `honesty`: what is predicted, and how long a polish takes.
+        """`gains`: a row a case; `rms`: all controllers; `honesty`: what is predicted, and how a polish ended.
 
         `permissions`: what they give beside tables as configured; `gauge`: what a wrong one costs.
         """
@@ -129,7 +129,7 @@ class AnyTime(Findings):
         granted = ("case", "rms, m/s / switchings", *(each.value for each in names), "predicted / simulated, any time")
         told = (permission_cells(row, [each.value for each in names]) for row in self.permissions)
         wrong = ("valves", "case", *(f"shows × {factor}" for factor in self.rows[0].gauge))
-        honesty = ("valves", "case", "predicted / simulated", "evaluations", "ended well", "seconds")
+        honesty = ("valves", "case", "predicted / simulated", "evaluations", "ended well")
         return {
             "gains": table("rms, m/s / switchings a pass; ratios of the rms [95 %]", heads, map(gain_cells, self.rows)),
             "rms": table(
@@ -183,4 +183,4 @@ def honest_cells(row: CaseRow) -> tuple[str, ...]:
     honesty = around(polish.predicted_rms_m_s / told.rms_m_s,
                      (polish.predicted_rms_m_s / high, polish.predicted_rms_m_s / low), 2)  # fmt: skip
     ended = "yes" if polish.converged else "no"
-    return (f"× {row.valves:g}", row.case, honesty, str(polish.evaluations), ended, f"{polish.seconds:.1f}")
+    return (f"× {row.valves:g}", row.case, honesty, str(polish.evaluations), ended)
