@@ -63,7 +63,7 @@ class SurfaceEvaluation:
     def density(self, lines_m_s: NDArray[np.float64]) -> ExitDensity:
         """Exit-speed density, all scenarios weighted."""
         c, policy = self.chain, self._policy(lines_m_s)
-        found = self._each(lambda i, memory: self._followed(policy, i, memory[:0]))
+        found = self._each(lambda i, memory: self._followed(policy, i, memory), nodes=0)
         exits = sum(w * each.exits for w, each in zip(c.scenarios.weight, found, strict=True))
         totals = sum(w * each.totals for w, each in zip(c.scenarios.weight, found, strict=True))
         stalled, escaped, down, up = (float(each) for each in np.asarray(totals))
@@ -71,20 +71,20 @@ class SurfaceEvaluation:
 
     def gradient(self, lines_m_s: NDArray[np.float64], aim: Aim) -> SurfaceCost:
         """Expected cost and its derivatives, all scenarios weighted."""
-        policy = self._policy(lines_m_s)
+        c, policy = self.chain, self._policy(lines_m_s)
         cost, slopes, bends = 0.0, np.zeros(policy[0].shape), np.zeros(policy[0].shape)
-        found = self._each(lambda i, memory: self._valued(policy, i, aim, memory))
-        for weight, (one, slope, bend) in zip(self.chain.scenarios.weight, found, strict=True):
+        found = self._each(lambda i, memory: self._valued(policy, i, aim, memory), nodes=len(c.drive_m2_s2) - 1)
+        for weight, (one, slope, bend) in zip(c.scenarios.weight, found, strict=True):
             cost += weight * one
             slopes += weight * slope
             bends += weight * bend
-        rate = self.chain.measurement.slopes(lines_m_s)
+        rate = c.measurement.slopes(lines_m_s)
         return SurfaceCost(cost, slopes * rate, bends * rate**2)
 
-    def _each(self, work: Callable[[int, NDArray[np.float64]], Result]) -> list[Result]:
-        """What `work` gives for every scenario, in their order; each thread has a memory for densities."""
+    def _each(self, work: Callable[[int, NDArray[np.float64]], Result], nodes: int) -> list[Result]:
+        """What `work` gives for every scenario, in their order; each thread has a memory for densities at `nodes`."""
         c, count = self.chain, len(self.chain.scenarios.weight)
-        shape = (len(c.drive_m2_s2) - 1, len(c.modes.stage), len(c.noise.levels), len(c.grid.speed_m_s))
+        shape = (nodes, len(c.modes.stage), len(c.noise.levels), len(c.grid.speed_m_s))
 
         def in_turn(first: int) -> list[Result]:
             memory = np.empty(shape)  # what is not written is never touched
