@@ -13,6 +13,7 @@ from synth.kernels.any_time.period import ROOM, ahead_m2_s2, push_period, push_r
 from synth.kernels.sweep.commands import CERTAIN, first_above, normal_cdf
 from synth.kernels.sweep.flow import add_row, clear, extent, widen
 from synth.kernels.vector.borrowing import borrowing
+from synth.kernels.vector.packs import EIGHT
 
 DOWN, HOLD, UP = 0, 1, 2
 """Commands at a sample, by their place among the periods of a mode."""
@@ -83,7 +84,7 @@ def occupy(
                     )  # fmt: skip
             for q in range(levels):
                 clear(here[m, q], first, last)
-                totals[1] += abs(moved[q, points - 1])
+                totals[1] += abs(moved[q, points - 1]) if last == points else 0.0
     for w in range(ways):
         for q in range(levels):
             last_row = heading[w, q, nodes % ring]
@@ -110,7 +111,7 @@ def gather_arrivals(slot, points, heading, spans, target, share, here, span, way
                     m = target[w, b]
                     add_row(row, share[w, b], begin, end, here, (m * heading.shape[1] + q) * here.shape[2])
                     widen(span[m], begin, end)
-            clear(row, begin, end + 8)
+            clear(row, begin, end + EIGHT)
             spans[w, q, slot, 0], spans[w, q, slot, 1] = points, 0
 
 
@@ -123,7 +124,7 @@ def change_levels(arrived, begin, end, points, mixing, out):
     levels = arrived.shape[0]
     first, last = points, 0
     for q in range(levels):
-        clear(out[q], 0, out.shape[1])
+        clear(out[q], begin, end + EIGHT)
         for j in range(max(begin, 1), end):
             for k in range(levels):
                 out[q, j] += arrived[k, j] * mixing[j, k, q]
@@ -131,7 +132,7 @@ def change_levels(arrived, begin, end, points, mixing, out):
         if a < b:
             first, last = min(first, a), max(last, b)
     for q in range(levels):
-        clear(arrived[q], begin, end + 8)
+        clear(arrived[q], begin, end + EIGHT)
     return first, max(first, last)
 
 

@@ -14,6 +14,7 @@ from synth.kernels.any_time.period import ROOM, ahead_m2_s2, pull_period, pull_r
 from synth.kernels.sweep.commands import CERTAIN, first_above, normal_density
 from synth.kernels.sweep.flow import add_row, clear
 from synth.kernels.vector.borrowing import borrowing
+from synth.kernels.vector.packs import EIGHT
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -39,8 +40,9 @@ def value(
         for r in range(of_node.shape[0]):
             of_node[r] = min(n + r, nodes) % ring
         for m in range(modes):
-            values[m] = 0.0
             first, last = band[n, m]
+            for q in range(levels if n + 1 < nodes else 0):
+                clear(values[m, q], band[n + 1, m, 0], band[n + 1, m, 1])
             if first >= last:
                 continue
             chances(lines[0, n, m], lines[1, n, m], reading, scale, periods[m], first, last, chance)
@@ -108,7 +110,7 @@ def at_ways(slot, way_band, values, target, share, stalled, rows):
             continue
         for q in range(values.shape[1]):
             row = rows[w, q, slot]
-            clear(row, begin, end + 8)
+            clear(row, begin, end + EIGHT)
             for b in range(4):
                 if share[w, b] != 0.0:
                     add_row(values[target[w, b], q], share[w, b], begin, end, row, 0)
