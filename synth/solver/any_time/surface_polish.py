@@ -107,7 +107,7 @@ def polish_surfaces(
         return cost.cost_m2_s2, coordinates.slopes(terms.slopes(cost.slopes))
 
     found = descend(
-        lambda y: by_point(at(coordinates.surfaces(y))), by_point(first), [gaps_open(coordinates, pressures)],
+        lambda y: by_point(at(coordinates.surfaces(y))), by_point(first), gaps_open(coordinates, pressures),
         max_iterations, tolerance,
         allowed=lambda y: least_gap(coordinates.surfaces(y), pressures).min() >= 0.5 * MINIMUM_GAP_M_S,
     )  # fmt: skip
@@ -151,19 +151,18 @@ def ends(pressures: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.array([pressures.min(), pressures.max()])
 
 
-def gaps_open(coordinates: Coordinates, pressures: list[NDArray[np.float64]]) -> Any:
-    """Linear constraint V_hi − V_lo ≥ gap at points along the path and both ends of the pressure."""
+def gaps_open(coordinates: Coordinates, pressures: list[NDArray[np.float64]]) -> list[Any]:
+    """Linear constraints V_hi − V_lo ≥ gap at points along the path and both ends of the pressure, for each pair."""
     from scipy.optimize import LinearConstraint  # start-up: scipy only where it is needed
 
     start, scale = coordinates.start, coordinates.scale
     number = {(int(k), int(side)): i for i, (k, side) in enumerate(start.lines)}
     nodes_m = np.linspace(start.start_m, start.exit_m, GAP_NODES)
-    rows, least = [np.zeros((0, *scale.shape[:2]))], [np.zeros(0)]
+    found = []
     for k in np.flatnonzero(start.has_line.all(axis=1)).tolist():
         terms = start.terms(nodes_m, k, ends(pressures[k])).reshape(-1, scale.shape[2])
-        row = np.zeros((len(terms), *scale.shape[:2]))
-        row[:, number[k, 0]], row[:, number[k, 1]] = -terms @ scale[number[k, 0]], terms @ scale[number[k, 1]]
-        rows.append(row)
-        least.append(MINIMUM_GAP_M_S - terms @ np.diff(start.coefficients[k], axis=0)[0])
-    matrix = np.concatenate(rows)
-    return LinearConstraint(matrix.reshape(len(matrix), -1), np.concatenate(least), np.inf)
+        rows = np.zeros((len(terms), *scale.shape[:2]))
+        rows[:, number[k, 0]], rows[:, number[k, 1]] = -terms @ scale[number[k, 0]], terms @ scale[number[k, 1]]
+        least = MINIMUM_GAP_M_S - terms @ np.diff(start.coefficients[k], axis=0)[0]
+        found.append(LinearConstraint(rows.reshape(len(rows), -1), least, np.inf))
+    return found

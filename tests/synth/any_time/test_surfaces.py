@@ -26,6 +26,7 @@ from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.policy_density import exit_density
 from synth.studies.any_time.surface_induction import solve_surfaces
+from tests.synth.any_time.conftest import short_plant
 
 TARGET_M_S = 3.0
 AIM = Aim(TARGET_M_S, Criterion())
@@ -169,6 +170,23 @@ def test_a_regulator_without_gauge_gains_less(plant: Plant, chain: SampledChain,
     bare = replace(start, degrees=CUBIC_ALONE, coefficients=start.coefficients[:, :, :4].copy())
     found = polish_surfaces(bare, SurfaceEvaluation(chain, 2), AIM)
     assert polish.cost_after < found.cost_after * 1.001
+
+
+def test_a_retarder_of_one_stage_has_no_pairs_and_is_polished_too() -> None:
+    plant = short_plant((0.0, 250.0))
+    coefficients = np.zeros((2, 2, 5))
+    coefficients[:, :, 0], coefficients[:, :, 1] = TARGET_M_S + np.array([0.05, 0.35]), -0.25
+    has_line = np.array([[False, True], [True, False]])
+    start = PolynomialSurfaces(0.0, plant.exit_m, np.array([0.0, 250.0]), CUBIC_AND_SLOPE, coefficients, has_line)
+    chain = sampled_chain(plant, design_resolution(plant, TARGET_M_S))
+    found = polish_surfaces(start, SurfaceEvaluation(chain, 2), AIM)
+    assert found.cost_after < 0.9 * found.cost_before
+    draws = any_time_loop(plant).draws(stratified_passes(23, 0, 20_000))
+    before, after = (
+        exit_statistics(any_time_loop(plant).run(PolynomialController(each), draws), TARGET_M_S).rms_m_s
+        for each in (start, found.surfaces)
+    )
+    assert after < before
 
 
 @pytest.mark.parametrize("threads", [2, 4])
