@@ -144,7 +144,7 @@ def run(options: Options, tell: Tell) -> AnyTime:
                 surface = found
             tell(f"{row.case}, valves × {valves:g}: {row.polish.seconds:.1f} s of polish")
             rows.append(row)
-    books = [load_config(options.config), *(parse_config(text, name) for name, text in OTHER_PLANTS)][: options.books]
+    books = [load_config(options.config), *(parse_config(text, name) for name, text in OTHER_PLANTS)][-options.books :]
     permissions = [row for book in books for row in permission_rows(book, options, tell)]
     return AnyTime(config.sha256, seed, options.passes, tuple(rows), tuple(permissions), surface)
 
@@ -260,4 +260,4 @@ def surface_map(case: Case, solved: SwitchingSurfaces, polished: PolynomialSurfa
     )  # fmt: skip
 
 
-METHOD = Method(Options, Options(None, ("52:3",), (1.0,), 200, 1.5, 2, 0), AnyTime, run)
+METHOD = Method(Options, Options(None, ("52:3",), (1.0,), 200, 1.5, 2, 1), AnyTime, run)
