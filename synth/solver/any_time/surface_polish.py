@@ -123,8 +123,8 @@ def polish_surfaces(
 def whitening(terms: Terms, first: SurfaceCost) -> NDArray[np.float64]:
     """Of each line the matrix (·, T, T) of `polish.whitening`, with the exact second derivatives by each line value."""
     bends = terms.bends(np.maximum(first.bends, 0.0) / first.cost_m2_s2)
-    every = np.ones_like(first.bends)
-    loose = terms.bends(every) / (terms.bends(every)[:, :1, :1] * LOOSE_M_S**2)
+    squares = terms.bends(np.ones_like(first.bends))
+    loose = squares / (squares[:, :1, :1] * LOOSE_M_S**2)
     lower = np.linalg.cholesky(bends + loose)
     found: NDArray[np.float64] = np.linalg.inv(lower).transpose(0, 2, 1)
     return found

@@ -20,6 +20,7 @@ from synth.book.permissions.case_permissions import permissions_of
 from synth.book.permissions.permission import Permission
 from synth.configuration.config_file import load_config, parse_config
 from synth.configuration.resolved_config import ResolvedConfig
+from synth.kernels.loop.closed_loop import Draws
 from synth.problem.aim import Aim
 from synth.simulation.any_time.laws import PolynomialController, SurfaceController
 from synth.simulation.any_time.loop import AnyTimeLoop, any_time_loop
@@ -67,9 +68,6 @@ from synth.studies.tuned_table import lines_of_solution
 
 FRESH, TUNING, BASELINE_PASSES = 49979687, 67867967, 1000
 
-MOST_BOOKS = len(OTHER_PLANTS) + 1
-"""The configuration given, and other plants."""
-
 NO_DATE = "2000-01-01T00:00:00Z"
 """Tables of a study are kept nowhere."""
 
@@ -92,9 +90,8 @@ class Options:
     passes: int = option(20_000, "fresh passes of each controller", (200, 10**6))
     coarser: float = option(1.0, "times the steps of the grid of the surfaces", (0.5, 8.0))
     threads: int = option(2, "scenarios followed side by side; no figure depends on it", (1, 64))
-    books: int = option(
-        len(OTHER_PLANTS) + 1, "how many configurations permissions are told for", (0, len(OTHER_PLANTS) + 1)
-    )
+    books: int = option(len(OTHER_PLANTS) + 1, "plants whose permissions are told, the one given as the last to join",
+                        (1, len(OTHER_PLANTS) + 1))  # fmt: skip
     shown: str = option("52:3", "case whose surfaces are kept, with the first valves")
     shown_stage: int = option(2, "stage whose surfaces are kept", (0, 7))
 
@@ -193,13 +190,13 @@ def studied(bench: Bench, valves: float, options: Options, fresh: RandomPasses) 
     seconds = 0.5 * (time.perf_counter() - started)
     chain = bench.evaluation.chain
     solved = solve_surfaces(chain, bench.aim)
-    samples = samples_of(bench, solved, polish.surfaces, plain.surfaces, fresh)
+    draws = bench.loop.draws(fresh)
+    samples = samples_of(bench, solved, polish.surfaces, plain.surfaces, draws)
     target = bench.case.target_m_s
     told = {name: told_of(sample, samples[CUBIC], target) for name, sample in samples.items()}
     others = {name: Ratio(*rms_ratio(samples[POLISHED], samples[name], target)) for name in (ENERGY, PLAIN)}
     predicted = bench.predicted_rms_m_s(polish.surfaces)
     polishing = Polishing(polish.evaluations, polish.converged, seconds, predicted)
-    draws = bench.loop.draws(fresh)
     wrong = {factor: bench.loop.run(PolynomialController(polish.surfaces, factor), draws) for factor in GAUGE_FACTORS}
     gauge = {f"{factor:g}": Ratio(*rms_ratio(each, samples[POLISHED], target)) for factor, each in wrong.items()}
     row = CaseRow(bench.case.name, valves, polishing, told, others, gauge)
@@ -211,14 +208,14 @@ def samples_of(
     solved: SwitchingSurfaces,
     polished: PolynomialSurfaces,
     plain: PolynomialSurfaces,
-    fresh: RandomPasses,
+    draws: Draws,
 ) -> dict[str, ExitSample]:
-    """The fresh passes by every controller."""
+    """The passes of `draws` by every controller."""
     case, loop, locked = bench.case, bench.loop, bench.loop.locked
     rehearsal = random_passes(bench.config.validation.seed + TUNING, 0, BASELINE_PASSES)
     baselines = tune_baselines(common_passes(case.plant, rehearsal), case.target_m_s)
     energy = next(baseline for baseline in baselines if baseline.name == ENERGY)
-    nodes, draws = bench.cubics.nodes_m(301), loop.draws(fresh)
+    nodes = bench.cubics.nodes_m(301)
     return {
         LINES: locked.run(bench.lines, draws),
         CUBIC: locked.run(LineController(bench.cubics.at(nodes)), draws),
