@@ -9,6 +9,7 @@ from tuning_tables.any_table import AnyTable, from_table_json, read_table, to_ta
 from tuning_tables.approach import Approach
 from tuning_tables.atomic_file import replacing, write_atomically
 from tuning_tables.csv_file import to_csv, write_csv
+from tuning_tables.decisions import Decisions
 from tuning_tables.errors import (
     DamagedTable,
     InvalidTable,
@@ -51,6 +52,7 @@ __all__ = [
     "CutId",
     "DamagedTable",
     "DecidesOn",
+    "Decisions",
     "Estimator",
     "Generator",
     "InvalidTable",

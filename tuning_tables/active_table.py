@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.approach import Approach, entrance_stage, same_approach
+from tuning_tables.decisions import Decisions
 from tuning_tables.estimator import Estimator
 from tuning_tables.table import ControllerTable
 
@@ -20,20 +21,31 @@ class ActiveTable:
     coefficients      float32 (K+1, 2, degree+1), ascending powers of s in m; NaN where there is no line
     has_line          bool (K+1, 2)
     valid_range       float32 (4,): s_min, s_max in m, v_min, v_max in m/s
+    slopes            float32 (K+1, 2), m/s per kPa; 0 where a line has none
+    pressures         float32 (K+1,), kPa
     estimator         of the speed that the lines are for; None: for the measured speed
     approach          on which the regulator already acts; None: it acts from the entrance on
+    decisions         at rest or at any time
     """
 
     target_speed_m_s: np.float32
     coefficients: npt.NDArray[np.float32]
     has_line: npt.NDArray[np.bool_]
     valid_range: npt.NDArray[np.float32]
+    slopes: npt.NDArray[np.float32]
+    pressures: npt.NDArray[np.float32]
     estimator: Estimator | None = None
     approach: Approach | None = None
+    decisions: Decisions = Decisions.AT_REST
 
     def __post_init__(self) -> None:
-        for array in (self.coefficients, self.has_line, self.valid_range):
+        for array in (self.coefficients, self.has_line, self.valid_range, self.slopes, self.pressures):
             array.setflags(write=False)
+
+    @property
+    def highest_raised(self) -> int:
+        """The highest stage that the lines ever ask for."""
+        return int(np.argmin(self.has_line[:, 1]))
 
     @property
     def entrance_stage(self) -> int:
@@ -48,19 +60,29 @@ def active(table: ControllerTable) -> ActiveTable:
         table.coefficients.view(),
         table.has_line.view(),
         table.valid_range.view(),
+        table.slopes.view(),
+        table.pressures.view(),
         table.estimator,
         table.approach,
+        table.decisions,
     )
 
 
 def interpolable(slower: ControllerTable, faster: ControllerTable) -> bool:
-    """Whether lines between have a meaning: stages, degree, lines, path range, estimator and approach are the same."""
+    """Whether lines between have a meaning: they differ in nothing but their coefficients.
+
+    Stages, degree, lines, path range, estimator, approach and times of decision are the same, with slopes also the
+    pressures.
+    """
     return (
         slower.coefficients.shape == faster.coefficients.shape
         and np.array_equal(slower.has_line, faster.has_line)
         and np.array_equal(slower.valid_range[:2], faster.valid_range[:2])
         and same_estimator(slower.estimator, faster.estimator)
         and same_approach(slower.approach, faster.approach)
+        and slower.decisions is faster.decisions
+        and slower.has_gauge == faster.has_gauge
+        and (not slower.has_gauge or np.array_equal(slower.pressures, faster.pressures))
     )
 
 
@@ -81,17 +103,21 @@ def same_estimator(one: Estimator | None, other: Estimator | None) -> bool:
 def between(slower: ControllerTable, faster: ControllerTable, target_speed_m_s: np.float32) -> ActiveTable:
     """The lines for a target between those of two `interpolable` tables, all in float32, one rounding an operation.
 
-    w = (T - T0) / (T1 - T0), and every coefficient is c0 + w * (c1 - c0). As 0 <= w <= 1, each line lies between its
-    neighbours, at the exit as at every other place, and lower(s) < upper(s) is inherited from both.
+    w = (T - T0) / (T1 - T0), and every coefficient, slopes too, is c0 + w * (c1 - c0). As 0 <= w <= 1, each line lies
+    between its neighbours, at the exit as at every other place, and lower(s) < upper(s) is inherited from both.
     """
     below, above = np.float32(slower.target_speed_m_s), np.float32(faster.target_speed_m_s)
     weight = (target_speed_m_s - below) / (above - below)
     coefficients = slower.coefficients + weight * (faster.coefficients - slower.coefficients)
+    slopes = slower.slopes + weight * (faster.slopes - slower.slopes)
     return ActiveTable(
         target_speed_m_s,
         coefficients,
         slower.has_line.view(),
         slower.valid_range.view(),
+        slopes,
+        slower.pressures.view(),
         slower.estimator,
         slower.approach,
+        slower.decisions,
     )

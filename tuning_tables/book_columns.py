@@ -2,7 +2,8 @@
 
 Tables of one book may differ in stages, degree, zones and axles: shorter ones are filled up with NaN (float columns) or
 0 (the rest). A `Layout` states every array with its axes, type, unit and meaning, as "book.h5" holds it: `PLAIN`, or
-`WITH_ESTIMATORS` where a table has one; either of them `with_approaches` where a table has one.
+`WITH_ESTIMATORS` where a table has one; either of them `with_approaches` where a table has one, or `at_any_time`
+where a table decides so.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.book_layout import FIGURES, NUMBER, ORIGIN, Column, Layout
+from tuning_tables.decisions import Decisions
 from tuning_tables.table import ControllerTable
 
 AXES: Final[Mapping[str, str]] = {
@@ -76,12 +78,22 @@ APPROACH_COLUMNS: Final[tuple[Column, ...]] = (
            lambda t: -1 if t.approach is None else t.approach.entrance_stage),
 )  # fmt: skip
 
+ANY_TIME_COLUMNS: Final[tuple[Column, ...]] = (
+    Column("at_any_time", ("table",), "|u1", "1", "1: decides at every sample, 0: only when the pressure is reached",
+           lambda t: t.decisions is Decisions.AT_ANY_TIME),
+    Column("has_gauge", ("table",), "|u1", "1", "1: the lines depend on the pressure", lambda t: t.has_gauge),
+    Column("slopes", ("table", "stage", "line"), "<f4", "m/s per kPa",
+           "of the lines over the pressure less that of the stage, 0: none", lambda t: t.slopes),
+)  # fmt: skip
+
 APPROACH_VERSION: Final = 3
+ANY_TIME_VERSION: Final = 5
+"""Of books in which a table decides at any time; they have approaches."""
 
 
 PLAIN: Final = Layout(1, COLUMNS, AXES)
 WITH_ESTIMATORS: Final = Layout(2, COLUMNS + ESTIMATOR_COLUMNS, {**AXES, **ESTIMATOR_AXES})
-VERSIONS: Final = (PLAIN.version, WITH_ESTIMATORS.version, APPROACH_VERSION)
+VERSIONS: Final = (PLAIN.version, WITH_ESTIMATORS.version, APPROACH_VERSION, ANY_TIME_VERSION)
 
 
 def with_approaches(layout: Layout) -> Layout:
@@ -89,23 +101,35 @@ def with_approaches(layout: Layout) -> Layout:
     return layout.extended(APPROACH_VERSION, APPROACH_COLUMNS)
 
 
+def at_any_time(layout: Layout) -> Layout:
+    """The layout with approaches, times of decision and slopes."""
+    return with_approaches(layout).extended(ANY_TIME_VERSION, ANY_TIME_COLUMNS)
+
+
 def layout_of(tables: Sequence[ControllerTable]) -> Layout:
     """The oldest layout that can hold the tables."""
     layout = WITH_ESTIMATORS if any(table.estimator is not None for table in tables) else PLAIN
-    layout = with_approaches(layout) if any(table.approach is not None for table in tables) else layout
+    if any(table.decisions is Decisions.AT_ANY_TIME for table in tables):
+        layout = at_any_time(layout)
+    elif any(table.approach is not None for table in tables):
+        layout = with_approaches(layout)
     return layout.numbered() if any(table.cut.category_number is not None for table in tables) else layout
 
 
 def layout_stored(version: int, names: Set[str]) -> Layout:
     """The layout of a book of this schema version, one of `VERSIONS`, that has datasets of these names.
 
-    Only books with approaches have the columns of estimators or not; where those of numbers are, they belong to it.
+    From version 3 on books have the columns of estimators or not; where those of numbers are, they belong to it.
     """
+    approaching, deciding = version == APPROACH_VERSION, version == ANY_TIME_VERSION
     estimating = version == WITH_ESTIMATORS.version
-    if version == APPROACH_VERSION:
+    if approaching or deciding:
         estimating = not names.isdisjoint(column.name for column in ESTIMATOR_COLUMNS)
     layout = WITH_ESTIMATORS if estimating else PLAIN
-    layout = with_approaches(layout) if version == APPROACH_VERSION else layout
+    if deciding:
+        layout = at_any_time(layout)
+    elif approaching:
+        layout = with_approaches(layout)
     return layout.numbered() if NUMBER.name in names else layout
 
 

@@ -16,7 +16,7 @@ from tuning_tables.passages.book_rows import passage_tables_of
 from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.table import ControllerTable
 
-VERSIONS: Final = (*LINE_VERSIONS, PASSAGES_SCHEMA)
+VERSIONS: Final = tuple(sorted((*LINE_VERSIONS, PASSAGES_SCHEMA)))
 
 
 def book_layout(tables: Sequence[AnyTable]) -> Layout:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from tuning_tables.approach import Approach
 from tuning_tables.book_layout import Columns
+from tuning_tables.decisions import Decisions
 from tuning_tables.errors import InvalidTable
 from tuning_tables.estimator import Estimator
 from tuning_tables.figures import ValidRange
@@ -19,7 +22,7 @@ from tuning_tables.row_parts import (
     text_of,
     validated_of,
 )
-from tuning_tables.stage import Stage
+from tuning_tables.stage import Line, Stage
 from tuning_tables.table import ControllerTable
 
 
@@ -47,6 +50,7 @@ def _table(row: Row) -> ControllerTable:
         validated=validated_of(row),
         estimator=_estimator(row),
         approach=_approach(row),
+        decisions=Decisions.AT_ANY_TIME if row.get("at_any_time", 0) else Decisions.AT_REST,
     )
 
 
@@ -81,8 +85,18 @@ def _stages(row: Row) -> tuple[Stage, ...]:
     if not (2 <= n_stages <= most_stages and 0 <= degree < most_powers):
         raise InvalidTable(f"n_stages {n_stages} or degree {degree} exceeds the coefficients of the book.")
     coefficients = row["coefficients"][:, :, : degree + 1].astype(np.float64)
-    lines = [
+    lines: list[list[Line | None]] = [
         [tuple(coefficients[k, line].tolist()) if row["has_line"][k, line] else None for line in (0, 1)]
         for k in range(n_stages)
     ]
-    return tuple(Stage(k, float(row["pressure_kpa"][k]), lower, upper) for k, (lower, upper) in enumerate(lines))
+    pressures = row["pressure_kpa"].tolist()
+    return tuple(
+        Stage(k, pressures[k], lower, upper, *_slopes(row, k, (lower, upper))) for k, (lower, upper) in enumerate(lines)
+    )
+
+
+def _slopes(row: Row, stage: int, lines: Sequence[Line | None]) -> list[float | None]:
+    """Those of the lines that there are; None for a table without gauge."""
+    if not row.get("has_gauge", 0):
+        return [None, None]
+    return [None if line is None else float(row["slopes"][stage, side]) for side, line in enumerate(lines)]

@@ -6,6 +6,7 @@ from typing import Final
 
 from tuning_tables.approach import INTERLOCK, Approach
 from tuning_tables.canonical import CHECKSUM_KEY, document_checksum
+from tuning_tables.decisions import Decisions
 from tuning_tables.document_head import require_checksum, require_format, require_version
 from tuning_tables.errors import DamagedTable, InvalidTable, OtherDecisions
 from tuning_tables.estimator import Estimator
@@ -20,7 +21,7 @@ from tuning_tables.provenance_document import (
     read_retarder,
 )
 from tuning_tables.section import Section
-from tuning_tables.stage import Stage
+from tuning_tables.stage import SIDES, Stage
 from tuning_tables.table import ControllerTable
 
 FORMAT: Final = "retarder-table"
@@ -32,6 +33,12 @@ APPROACH_VERSION: Final = 3
 gate and the interlock there."""
 PASSAGES_VERSION: Final = 4
 """Of tables that decide at sensor passages (see `tuning_tables.passages`): they have no lines."""
+SURFACES_VERSION: Final = 5
+"""Of tables that decide at any time, with or without slopes, estimator and approach: an older reader would ask them at
+rest only."""
+DECISIONS_KEY: Final = "decisions"
+GAUGE: Final = {"gauge": True, "none": False}
+"""What a table of version 5 says at "pressure": whether its lines depend on it."""
 VARIABLE: Final = "s_m"
 LONGEST_REASON: Final = 400
 
@@ -55,8 +62,11 @@ _VERSION_KEYS: Final = {
     VERSION: ((), ()),
     ESTIMATOR_VERSION: (("estimator",), ()),
     APPROACH_VERSION: (("approach",), ("estimator",)),
+    SURFACES_VERSION: ((DECISIONS_KEY, "pressure"), ("approach", "estimator")),
 }
 """By version: the keys that it must have besides, and those that it may have."""
+_STAGE_KEYS: Final = ("k", "pressure_kpa", *SIDES)
+_SLOPE_KEYS: Final = tuple(f"{side}_slope_m_s_per_kpa" for side in SIDES)
 _APPROACH_KEYS: Final = ("length_m", "entrance_stage", "interlock")
 _ESTIMATOR_KEYS: Final = (
     "speed_noise_m_s",
@@ -83,7 +93,7 @@ def to_document(table: ControllerTable) -> dict[str, object]:
         **provenance_document(table.generator, table.retarder, table.cut),
         "target_speed_m_s": float(table.target_speed_m_s),
         "polynomial": {"variable": VARIABLE, "degree": table.degree},
-        "stages": [_stage_document(stage) for stage in table.stages],
+        "stages": [_stage_document(stage, table.has_gauge) for stage in table.stages],
         "valid": {"s_m": floats(table.valid.s_m), "v_m_s": floats(table.valid.v_m_s)},
         "predicted": predicted_document(table.predicted),
         "validated": validated_document(table.validated),
@@ -92,6 +102,9 @@ def to_document(table: ControllerTable) -> dict[str, object]:
         document |= {"version": ESTIMATOR_VERSION, "estimator": _estimator_document(table.estimator)}
     if table.approach is not None:
         document |= {"version": APPROACH_VERSION, "approach": _approach_document(table.approach)}
+    if table.decisions is Decisions.AT_ANY_TIME:
+        said = next(word for word, gauge in GAUGE.items() if gauge is table.has_gauge)
+        document |= {"version": SURFACES_VERSION, DECISIONS_KEY: table.decisions.value, "pressure": said}
     return {**document, CHECKSUM_KEY: document_checksum(document)}
 
 
@@ -103,11 +116,11 @@ def from_document(document: object, source: str) -> ControllerTable:
     no table. Checked in this order.
     """
     members = require_format(document, source, FORMAT, "a controller table")
-    version = require_version(members, source, VERSION, PASSAGES_VERSION)
+    version = require_version(members, source, VERSION, SURFACES_VERSION)
     if version == PASSAGES_VERSION:
         raise OtherDecisions(
             f"{source}: version is {version}, a table that decides at sensor passages and has no lines over the path, "
-            f"which are needed here; give a table of version {VERSION} to {APPROACH_VERSION}."
+            f"which are needed here; give a table of version {VERSION} to {APPROACH_VERSION} or {SURFACES_VERSION}."
         )
     required, optional = _VERSION_KEYS[version]
     top = Section(members, source, "", _KEYS + required, optional)
@@ -116,6 +129,9 @@ def from_document(document: object, source: str) -> ControllerTable:
     if polynomial.text("variable") != VARIABLE:
         found = polynomial.text("variable")
         raise DamagedTable(f'{source}: polynomial.variable is {found!r:.60}, but only "{VARIABLE}" is allowed.')
+    any_time = version == SURFACES_VERSION
+    gauge = any_time and _has_gauge(top, source)
+    stages = top.sections("stages", _STAGE_KEYS + _SLOPE_KEYS * gauge)
     try:
         return ControllerTable(
             id=top.text("id"),
@@ -125,25 +141,34 @@ def from_document(document: object, source: str) -> ControllerTable:
             cut=read_cut(top),
             target_speed_m_s=top.number("target_speed_m_s"),
             degree=polynomial.count("degree"),
-            stages=tuple(map(_stage, top.sections("stages", ("k", "pressure_kpa", "lower", "upper")))),
+            stages=tuple(_stage(section, gauge) for section in stages),
             valid=_valid_range(top.section("valid", ("s_m", "v_m_s"))),
             predicted=read_predicted(top, ("p_stall", "passes") if "estimator" in top else ("p_stall",)),
             validated=read_validated(top),
             estimator=_estimator(top.section("estimator", _ESTIMATOR_KEYS)) if "estimator" in top else None,
             approach=_approach(top.section("approach", _APPROACH_KEYS)) if "approach" in top else None,
+            decisions=Decisions.AT_ANY_TIME if any_time else Decisions.AT_REST,
         )
     except InvalidTable as invalid:
         # The reason may quote a value, and a file may hold one of any length.
         raise DamagedTable(f"{source}: {excerpt(str(invalid), LONGEST_REASON)}") from invalid
 
 
-def _stage_document(stage: Stage) -> dict[str, object]:
-    return {
-        "k": stage.k,
-        "pressure_kpa": float(stage.pressure_kpa),
-        "lower": None if stage.lower is None else floats(stage.lower),
-        "upper": None if stage.upper is None else floats(stage.upper),
-    }
+def _stage_document(stage: Stage, gauge: bool) -> dict[str, object]:
+    lines = {side: None if line is None else floats(line) for side, line in zip(SIDES, stage.lines, strict=True)}
+    slopes = dict(zip(_SLOPE_KEYS, stage.slopes, strict=True)) if gauge else {}
+    return {"k": stage.k, "pressure_kpa": float(stage.pressure_kpa), **lines, **slopes}
+
+
+def _has_gauge(top: Section, source: str) -> bool:
+    """Whether a table of version 5 has slopes; the document must say when it decides and what of the pressure."""
+    decisions, pressure = top.text(DECISIONS_KEY), top.text("pressure")
+    if decisions != Decisions.AT_ANY_TIME.value:
+        allowed = Decisions.AT_ANY_TIME.value
+        raise DamagedTable(f'{source}: decisions is {decisions!r:.60}, but only "{allowed}" is allowed.')
+    if pressure not in GAUGE:
+        raise DamagedTable(f'{source}: pressure is {pressure!r:.60}, but only "gauge" and "none" are allowed.')
+    return GAUGE[pressure]
 
 
 def _estimator_document(estimator: Estimator) -> dict[str, object]:
@@ -159,13 +184,10 @@ def _approach_document(approach: Approach) -> dict[str, object]:
     }
 
 
-def _stage(section: Section) -> Stage:
-    return Stage(
-        section.count("k"),
-        section.number("pressure_kpa"),
-        section.numbers_or_null("lower"),
-        section.numbers_or_null("upper"),
-    )
+def _stage(section: Section, gauge: bool) -> Stage:
+    lower, upper = (section.numbers_or_null(side) for side in SIDES)
+    slopes = (section.number_or_null(key) for key in _SLOPE_KEYS) if gauge else ()
+    return Stage(section.count("k"), section.number("pressure_kpa"), lower, upper, *slopes)
 
 
 def _valid_range(section: Section) -> ValidRange:

@@ -9,10 +9,12 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.rule import decide_many
+from tuning_tables.rule import NO_GAUGE, decide_many, rises
 from tuning_tables.table import ControllerTable
 
 Floats = npt.NDArray[np.float32]
+Reading = tuple[int, np.float32, np.float32, np.float32]
+"""Stage, path, speed, pressure."""
 
 LARGEST: Final = float(np.finfo(np.float32).max)
 LEAST_NORMAL: Final = float(np.finfo(np.float32).smallest_normal)
@@ -26,14 +28,21 @@ FEW: Final = 20
 ASIDE_M_S: Final = np.float32(0.01)
 """Distance from a line that no rounding bridges."""
 
+OUTSIDE_KPA: Final = np.float32(50.0)
+"""How far outside their range pressures are asked, too."""
+
 
 @dataclass(frozen=True, eq=False)
 class GoldenVectors:
-    """n readings and their answers: stage int32, s_m and v_m_s float32, answer int8 (LOWER, HOLD, RAISE), all (n,)."""
+    """n readings and their answers: stage int32, s_m, v_m_s and pressure_kpa float32, answer int8, all (n,).
+
+    The pressure is NaN, of no meaning, in those of a table without slopes.
+    """
 
     stage: npt.NDArray[np.int32]
     s_m: Floats
     v_m_s: Floats
+    pressure_kpa: Floats
     answer: npt.NDArray[np.int8]
 
     def __post_init__(self) -> None:
@@ -47,12 +56,16 @@ class GoldenVectors:
 def golden_vectors(table: ControllerTable) -> GoldenVectors:
     """Readings on, next to (one float32 step) and beyond every line and both ends of the path, and incredible ones.
 
-    With an approach also on and next to every line on it, just before, at and just behind the entrance. The same table
-    gives the same vectors, in the same order, each once.
+    With an approach also on and next to every line on it, just before, at and just behind the entrance; with slopes all
+    of that at the pressure of the stage and at others, within their range and outside. The same table gives the same
+    vectors, in the same order, each once.
     """
     readings = [*_line_readings(table, _paths(table), STEPS_AND_ASIDE), *_incredible_readings(table)]
     if table.approach is not None:
         readings += _line_readings(table, _entrance_paths(table), STEPS)
+    if table.has_gauge:
+        readings += _line_readings(table, _paths(table), STEPS_AND_ASIDE, _pressures)
+        readings += _line_readings(table, _paths(table)[:2], STEPS_AND_ASIDE, _silent_pressures)
     return _answered(table, readings)
 
 
@@ -60,8 +73,9 @@ def few_golden_vectors(table: ControllerTable) -> GoldenVectors:
     """At most `FEW` readings a line, but 2 without any: on it and next to it, at four places of the path.
 
     The places are the farthest numbers before and behind the range, and two within it; with an approach one of these is
-    just before the entrance. At every stage with a line also a negative speed, none, the largest, and what is not
-    finite, within the range or at the entrance; and stages that do not exist.
+    just before the entrance, and with slopes each place is asked at another pressure. At every stage with a line also a
+    negative speed, none, the largest, and what is not finite, within the range or at the entrance; and stages that do
+    not exist.
     """
     low, high = table.valid_range[0], table.valid_range[1]
     near, far = (low + (high - low) * np.float32(part) for part in (0.25, 0.8125))
@@ -71,23 +85,23 @@ def few_golden_vectors(table: ControllerTable) -> GoldenVectors:
     paths = np.array([-LARGEST, before, far, LARGEST], dtype=np.float32)
     fast, speeds = np.float32(LARGEST), [np.float32(v) for v in (-1.0, 0.0, LARGEST, np.inf, np.nan)]
     lined = np.flatnonzero(table.has_line.any(axis=1)).tolist()
-    readings = [reading for reading in _line_readings(table, paths, STEPS) if reading[0] in lined]
-    readings += [(k, near, v) for k in lined for v in speeds]
-    readings += [(k, np.float32(-np.inf), fast) for k in lined]
-    readings += [(k, near, fast) for k in (-1, len(table.stages))]
+    pressures = _pressures if table.has_gauge else _own_pressures
+    readings = [reading for reading in _line_readings(table, paths, STEPS, pressures) if reading[0] in lined]
+    readings += [(k, near, v, _own(table, k)) for k in lined for v in speeds]
+    readings += [(k, np.float32(-np.inf), fast, _own(table, k)) for k in lined]
+    readings += [(k, near, fast, _own(table, k)) for k in (-1, len(table.stages))]
     return _answered(table, readings)
 
 
-def _answered(table: ControllerTable, readings: Sequence[tuple[int, np.float32, np.float32]]) -> GoldenVectors:
+def _answered(table: ControllerTable, readings: Sequence[Reading]) -> GoldenVectors:
     """The readings, each once, in their order, with their answers."""
     stage = np.array([reading[0] for reading in readings], dtype=np.int32)
-    s_m = np.array([reading[1] for reading in readings], dtype=np.float32)
-    v_m_s = np.array([reading[2] for reading in readings], dtype=np.float32)
+    s_m, v_m_s, kpa = (np.array([reading[i] for reading in readings], dtype=np.float32) for i in (1, 2, 3))
     # By bit pattern, so that NaN equals NaN and -0.0 is not 0.0.
-    bits = np.stack([stage.view(np.uint32), s_m.view(np.uint32), v_m_s.view(np.uint32)], axis=1)
+    bits = np.stack([each.view(np.uint32) for each in (stage, s_m, v_m_s, kpa)], axis=1)
     first = np.sort(np.unique(bits, axis=0, return_index=True)[1])
-    stage, s_m, v_m_s = stage[first], s_m[first], v_m_s[first]
-    return GoldenVectors(stage, s_m, v_m_s, decide_many(table, stage, s_m, v_m_s))
+    asked = stage[first], s_m[first], v_m_s[first], kpa[first]
+    return GoldenVectors(*asked, decide_many(table, *asked))
 
 
 def line_speeds(coefficients: Floats, s_m: Floats) -> Floats:
@@ -98,18 +112,47 @@ def line_speeds(coefficients: Floats, s_m: Floats) -> Floats:
     return speed
 
 
+def _own(table: ControllerTable, stage: int) -> np.float32:
+    """The pressure of `stage`, or of the nearest stage that there is; NaN where none is asked for."""
+    if not table.has_gauge:
+        return np.float32(NO_GAUGE)
+    return np.float32(table.pressures[min(max(stage, 0), len(table.stages) - 1)])
+
+
+def _own_pressures(table: ControllerTable, stage: int, count: int) -> Floats:
+    """That of the stage, `count` times."""
+    return np.full(count, _own(table, stage))
+
+
+def _pressures(table: ControllerTable, stage: int, count: int) -> Floats:
+    """`count` pressures in turn: both ends of their range, its middle, and outside."""
+    low, high = table.pressures[0], table.pressures[table.highest_raised]
+    turn = (high, low, low - OUTSIDE_KPA, (low + high) / np.float32(2.0), high + OUTSIDE_KPA, np.float32(LARGEST))
+    return np.resize(np.roll(np.array(turn, dtype=np.float32), stage), count)
+
+
+def _silent_pressures(table: ControllerTable, stage: int, count: int) -> Floats:
+    """What is no pressure."""
+    return np.resize(np.array([np.nan, np.inf], dtype=np.float32), count)
+
+
 def _line_readings(
-    table: ControllerTable, paths: Floats, places: Sequence[Callable[[Floats], Floats]]
-) -> list[tuple[int, np.float32, np.float32]]:
+    table: ControllerTable,
+    paths: Floats,
+    places: Sequence[Callable[[Floats], Floats]],
+    pressures: Callable[[ControllerTable, int, int], Floats] = _own_pressures,
+) -> list[Reading]:
     """Readings at `paths` and `places` around every line, or around the target speed at a stage that has none."""
     clamped = np.clip(paths, table.valid_range[0], table.valid_range[1])
     target = np.full(paths.shape, table.target_speed_m_s, dtype=np.float32)
     readings = []
     for k in range(len(table.stages)):
-        lines = [line_speeds(table.coefficients[k, i], clamped) for i in (0, 1) if table.has_line[k, i]]
+        kpa = pressures(table, k, len(paths))
+        rise = np.array([rises(table.slopes, table.pressures, table.highest_raised, k, p) for p in kpa])
+        lines = [line_speeds(table.coefficients[k, i], clamped) + rise[:, i] for i in (0, 1) if table.has_line[k, i]]
         for line in lines or [target]:
             for place in places:
-                readings += [(k, s, v) for s, v in zip(paths, place(line), strict=True)]
+                readings += [(k, s, v, p) for s, v, p in zip(paths, place(line), kpa, strict=True)]
     return readings
 
 
@@ -128,7 +171,7 @@ def _entrance_paths(table: ControllerTable) -> Floats:
     return np.array(paths, dtype=np.float32)
 
 
-def _incredible_readings(table: ControllerTable) -> list[tuple[int, np.float32, np.float32]]:
+def _incredible_readings(table: ControllerTable) -> list[Reading]:
     """Readings that cannot be true, or only just can, at every stage; and stages that do not exist."""
     target = np.float32(table.target_speed_m_s)
     middle = (table.valid_range[0] + table.valid_range[1]) / np.float32(2.0)
@@ -141,7 +184,7 @@ def _incredible_readings(table: ControllerTable) -> list[tuple[int, np.float32, 
             readings += [(k, np.float32(s), v) for s in paths]
     for k in (-1, len(table.stages), *STAGE_LIMITS):
         readings += [(k, middle, target), (k, middle, np.float32(100.0)), (k, middle, np.float32(0.0))]
-    return readings
+    return [(*reading, _own(table, reading[0])) for reading in readings]
 
 
 def _next(value: npt.NDArray[np.float32] | np.float32, towards: float) -> npt.NDArray[np.float32]:

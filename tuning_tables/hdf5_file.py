@@ -1,9 +1,11 @@
 """A book of tables as an HDF5 file, readable by h5py and xarray without this project. Needs h5py, and only when called.
 
 Root attributes: format "retarder-book", schema_version, tool_version, config_sha256, payload_sha256 (see `payload`),
-complete = 1. The schema version is 4 of tables for point sensors; of tables with lines it is 3 where one has an
-approach, else 2 where one has an estimator, else 1. Datasets: the columns of that version (`book_kinds`), each with
-attributes `units` and `meaning`, chunked in one piece with a fletcher32 checksum.
+complete = 1. The schema version is 4 of tables for point sensors; of tables with lines it is 5 where one decides at any
+time, else 3 where one has an approach, else 2 where one has an estimator, else 1.
+
+Datasets: the columns of that version (`book_kinds`), each with attributes `units` and `meaning`,
+chunked in one piece with a fletcher32 checksum.
 Each axis is a dimension scale of its own name, numbered from 0.
 
 Two attributes are for xarray: `_Encoding` has it decode text (fixed-length UTF-8), `coordinates` names what tells the
@@ -29,6 +31,7 @@ import numpy.typing as npt
 
 from tuning_tables.any_table import AnyTable
 from tuning_tables.atomic_file import replacing
+from tuning_tables.book_columns import VERSIONS as LINE_VERSIONS
 from tuning_tables.book_kinds import VERSIONS, book_layout, stored_layout, stored_tables
 from tuning_tables.book_layout import Column, Columns, Layout
 from tuning_tables.errors import (
@@ -95,7 +98,7 @@ def read_book(path: str | os.PathLike[str]) -> tuple[ControllerTable, ...]:
     if len(lines) < len(tables):
         raise OtherDecisions(
             f"{os.fspath(path)}: the tables of this book decide at sensor passages and have no lines over the path, "
-            f"which are needed here; give a book of schema version {VERSIONS[0]} to {VERSIONS[-2]}."
+            f"which are needed here; give a book of schema version {', '.join(map(str, LINE_VERSIONS))}."
         )
     return lines
 

@@ -4,13 +4,18 @@
     lower   if the stage has a  lower line and  v < lower(s)
     hold    otherwise; so a tie, v equal to the line, holds
 
+In a table with slopes the lines are surfaces: slope (P - P_k) is added to lower(s) and to upper(s). P is the pressure
+of the gauge, clamped into the pressures from stage 0 to the highest stage that the table raises to; P_k is that of the
+stage asked for. A pressure that is not finite counts as P_k: the gauge is silent, and the valves are going there.
+
 The lower line is looked at first; as lower(s) < upper(s) in every `ControllerTable`, both can never ask at once. Before
 the entrance is s < 0, after rounding and clamping; 0.0 and -0.0 are at the entrance. The entrance stage bounds what the
 rule commands there. It lowers nothing: a cut that is taken over at a higher stage breaks the interlock (`approach`).
 
 All arithmetic is float32, one rounding an operation, Horner's rule from the highest power down, no fused multiply-add:
-c[r], then repeatedly (value * s) + c[i]. A path outside the valid range is clamped into it. The speed is compared as it
-is, however far outside the range of speeds the lines were fitted on: far too fast must still brake.
+c[r], then repeatedly (value * s) + c[i]; with slopes, last, value + slope * (P - P_k). A path outside the valid range
+is clamped into it. The speed is compared as it is, however far outside the range of speeds the lines were fitted on:
+far too fast must still brake.
 
 Safe answer. A reading that cannot be true moves no valve: where path or speed is NaN, infinite or beyond the float32
 numbers, where the speed is negative, or the stage does not exist, the answer is HOLD. A single false reading is then
@@ -20,7 +25,8 @@ rule, which alone knows whether braking fully or releasing is the safe side.
 
 from __future__ import annotations
 
-from typing import Final
+import math
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -34,6 +40,9 @@ HOLD: Final = 0
 RAISE: Final = 1
 
 LARGEST_READING: Final = 3.4028234663852886e38  # the largest float32 number
+NO_RISE: Final = np.float32(0.0)
+NO_GAUGE: Final = math.nan
+"""The pressure, kPa, of a controller without gauge, or whose gauge is out of order."""
 
 
 def decide(
@@ -44,12 +53,14 @@ def decide(
     stage: int,
     s_m: float,
     v_m_s: float,
+    lower_rise: Any = NO_RISE,
+    upper_rise: Any = NO_RISE,
 ) -> int:
     """LOWER, HOLD or RAISE for one reading; the arrays are those of a `ControllerTable`, and only they are trusted.
 
     coefficients float32 (K+1, 2, degree+1), has_line bool (K+1, 2), valid_range float32 (4,), entrance_stage 0..K (K
-    where there is no approach), stage 0..K, path and speed in any float width (rounded to float32 before use). Pure;
-    raises nothing for any number.
+    where there is no approach), stage 0..K, path and speed in any float width (rounded to float32 before use); the
+    rises, float32, are those of `rises`, and 0 for a table without slopes. Pure; raises nothing for any number.
 
     `numba.njit(decide)` compiles this text as it stands and gives the same answers: hence one function without helpers,
     and no literal in the arithmetic, which would promote it to double precision.
@@ -70,20 +81,50 @@ def decide(
         line_speed = coefficients[stage, 0, highest]
         for power in range(highest - 1, -1, -1):
             line_speed = line_speed * s + coefficients[stage, 0, power]
-        if v < line_speed:
+        if v < line_speed + lower_rise:
             return LOWER
     if has_line[stage, 1]:
         line_speed = coefficients[stage, 1, highest]
         for power in range(highest - 1, -1, -1):
             line_speed = line_speed * s + coefficients[stage, 1, power]
-        if v > line_speed and not (s < 0 and stage >= entrance_stage):
+        if v > line_speed + upper_rise and not (s < 0 and stage >= entrance_stage):
             return RAISE
     return HOLD
 
 
-def decide_for(table: ControllerTable | ActiveTable, stage: int, s_m: float, v_m_s: float) -> int:
-    """LOWER, HOLD or RAISE of `table`, or of lines chosen from a book, for one reading of path and speed at `stage`."""
-    return decide(table.coefficients, table.has_line, table.valid_range, table.entrance_stage, stage, s_m, v_m_s)
+def rises(
+    slopes: npt.NDArray[np.float32],
+    pressures: npt.NDArray[np.float32],
+    highest_raised: int,
+    stage: int,
+    pressure_kpa: float,
+) -> Any:
+    """What the pressure adds to the lower and to the upper line of `stage`, float32 m/s; 0 for no such stage.
+
+    slopes float32 (K+1, 2), pressures float32 (K+1,), `highest_raised` the stage to whose pressure the reading is
+    clamped. As `decide`, it can be compiled by numba as it stands.
+    """
+    if stage < 0 or stage >= pressures.shape[0] or not (-LARGEST_READING <= pressure_kpa <= LARGEST_READING):
+        return NO_RISE, NO_RISE
+    p = np.float32(pressure_kpa)
+    if p < pressures[0]:
+        p = pressures[0]
+    if p > pressures[highest_raised]:
+        p = pressures[highest_raised]
+    above = p - pressures[stage]
+    return slopes[stage, 0] * above, slopes[stage, 1] * above
+
+
+def decide_for(
+    table: ControllerTable | ActiveTable, stage: int, s_m: float, v_m_s: float, pressure_kpa: float = NO_GAUGE
+) -> int:
+    """LOWER, HOLD or RAISE of `table`, or of lines chosen from a book, for one reading of path and speed at `stage`.
+
+    `stage` is the one commanded last; a table that decides at rest (`table.decisions`) may only be asked when its
+    pressure is reached. `pressure_kpa`, gauge, is looked at where the table has slopes.
+    """
+    rise = rises(table.slopes, table.pressures, table.highest_raised, stage, pressure_kpa)
+    return decide(table.coefficients, table.has_line, table.valid_range, table.entrance_stage, stage, s_m, v_m_s, *rise)
 
 
 def speed_for(
@@ -105,17 +146,20 @@ def speed_for(
 
 
 def decide_many(
-    table: ControllerTable | ActiveTable, stage: npt.ArrayLike, s_m: npt.ArrayLike, v_m_s: npt.ArrayLike
+    table: ControllerTable | ActiveTable,
+    stage: npt.ArrayLike,
+    s_m: npt.ArrayLike,
+    v_m_s: npt.ArrayLike,
+    pressure_kpa: npt.ArrayLike = NO_GAUGE,
 ) -> npt.NDArray[np.int8]:
-    """`decide` for whole arrays at once, with identical answers.
+    """`decide_for` for whole arrays at once, with identical answers.
 
-    stage (integers), s_m and v_m_s broadcast against each other; the result has the broadcast shape.
+    stage (integers), s_m, v_m_s and pressure_kpa broadcast against each other; the result has the broadcast shape.
     Raises `TypeError` where the stages are not integers.
     """
     with np.errstate(invalid="ignore"):  # a signalling NaN is an incredible reading like any other
-        stages, paths, speeds = np.broadcast_arrays(
-            np.asarray(stage), np.asarray(s_m, dtype=np.float64), np.asarray(v_m_s, dtype=np.float64)
-        )
+        readings = (np.asarray(each, dtype=np.float64) for each in (s_m, v_m_s, pressure_kpa))
+        stages, paths, speeds, kpa = np.broadcast_arrays(np.asarray(stage), *readings)
     if stages.dtype.kind not in "iu":
         raise TypeError(f"stage has dtype {stages.dtype}, but stages are integers.")
     credible = (np.abs(paths) <= LARGEST_READING) & (speeds >= 0) & (speeds <= LARGEST_READING)
@@ -129,8 +173,21 @@ def decide_many(
     line_speed = table.coefficients[index, :, -1]
     for power in range(table.coefficients.shape[2] - 2, -1, -1):
         line_speed = line_speed * s[..., np.newaxis] + table.coefficients[index, :, power]
+    line_speed = line_speed + table.slopes[index] * _above(table, index, kpa)[..., np.newaxis]
     has_line = table.has_line[index] & credible[..., np.newaxis]
     is_gated = (s < 0) & (stages >= table.entrance_stage)
     raises = has_line[..., 1] & (v > line_speed[..., 1]) & ~is_gated
     lowers = has_line[..., 0] & (v < line_speed[..., 0])
     return np.where(lowers, LOWER, np.where(raises, RAISE, HOLD)).astype(np.int8)
+
+
+def _above(
+    table: ControllerTable | ActiveTable, stage: npt.NDArray[np.intp], pressure_kpa: npt.NDArray[np.float64]
+) -> npt.NDArray[np.float32]:
+    """P - P_k, P clamped; 0 where no pressure is known."""
+    known = np.abs(pressure_kpa) <= LARGEST_READING
+    p = np.where(known, pressure_kpa, 0).astype(np.float32)
+    p = np.where(p < table.pressures[0], table.pressures[0], p)
+    p = np.where(p > table.pressures[table.highest_raised], table.pressures[table.highest_raised], p)
+    above: npt.NDArray[np.float32] = np.where(known, p - table.pressures[stage], np.float32(0.0))
+    return above

@@ -8,10 +8,20 @@ from __future__ import annotations
 
 import json
 import os
+from typing import Final
 
 from tuning_tables.approach import INTERLOCK, LENGTH_RANGE_M
 from tuning_tables.atomic_file import write_atomically
-from tuning_tables.document import APPROACH_VERSION, ESTIMATOR_VERSION, FORMAT, VARIABLE, VERSION
+from tuning_tables.decisions import Decisions
+from tuning_tables.document import (
+    APPROACH_VERSION,
+    ESTIMATOR_VERSION,
+    FORMAT,
+    GAUGE,
+    SURFACES_VERSION,
+    VARIABLE,
+    VERSION,
+)
 from tuning_tables.estimator import FARTHEST_M, LARGEST_OVERPRESSURE_KPA, LARGEST_WORK, MOST_BREAKS
 from tuning_tables.requirement import UTC_INSTANT
 from tuning_tables.schema_parts import DIALECT, above_zero, array_of, number, object_of, pair_of, text, whole
@@ -22,16 +32,20 @@ from tuning_tables.schema_sections import (
     retarder_schema,
     validated_schema,
 )
+from tuning_tables.stage import SIDES
 from tuning_tables.table import HIGHEST_DEGREE, MOST_STAGES
+
+_SLOPES: Final = [f"{side}_slope_m_s_per_kpa" for side in SIDES]
 
 
 def table_schema() -> dict[str, object]:
-    """A new dict with the JSON Schema of the format "retarder-table", versions 1 to 3."""
+    """A new dict with the JSON Schema of the format "retarder-table", versions 1 to 3 and 5."""
     line = {"anyOf": [{"type": "null"}, array_of({"type": "number"}, 1, HIGHEST_DEGREE + 1)]}
     stage = object_of(k=whole(0, MOST_STAGES - 1), pressure_kpa=number(0), lower=line, upper=line)
+    stage["properties"] |= {key: {"type": ["number", "null"]} for key in _SLOPES}
     top = object_of(
         format={"const": FORMAT},
-        version={"enum": [VERSION, ESTIMATOR_VERSION, APPROACH_VERSION]},
+        version={"enum": [VERSION, ESTIMATOR_VERSION, APPROACH_VERSION, SURFACES_VERSION]},
         id=text(),
         created={"type": "string", "pattern": UTC_INSTANT},
         generator=generator_schema(),
@@ -49,20 +63,40 @@ def table_schema() -> dict[str, object]:
     top["properties"]["approach"] = object_of(
         length_m=number(*LENGTH_RANGE_M), entrance_stage=whole(0, MOST_STAGES - 1), interlock={"const": INTERLOCK}
     )
-    title = f"{FORMAT} {VERSION} to {APPROACH_VERSION}"
+    top["properties"] |= {"decisions": {"const": Decisions.AT_ANY_TIME.value}, "pressure": {"enum": list(GAUGE)}}
+    title = f"{FORMAT} {VERSION} to {APPROACH_VERSION} and {SURFACES_VERSION}"
     return {"$schema": DIALECT, "title": title, **top, "oneOf": _versions()}
 
 
 def _versions() -> list[object]:
-    """What must and must not be there in each version; version 3 has an estimator or none."""
+    """What must and must not be there in each version; version 3 has an estimator or none, and version 5."""
     exact: dict[str, object] = {"properties": {"passes": False}}
     measured: dict[str, object] = {"estimator": False, "predicted": exact}
-    either = {"anyOf": [{"required": ["estimator"]}, {"properties": measured}]}
+    either: dict[str, object] = {"anyOf": [{"required": ["estimator"]}, {"properties": measured}]}
+    lines: dict[str, object] = {"decisions": False, "pressure": False, "stages": _stages_with_slopes(False)}
     return [
-        {"properties": {"version": {"const": VERSION}, "approach": False, **measured}},
-        {"properties": {"version": {"const": ESTIMATOR_VERSION}, "approach": False}, "required": ["estimator"]},
-        {"properties": {"version": {"const": APPROACH_VERSION}}, "required": ["approach"], **either},
+        {"properties": {"version": {"const": VERSION}, "approach": False} | measured | lines},
+        {
+            "properties": {"version": {"const": ESTIMATOR_VERSION}, "approach": False, **lines},
+            "required": ["estimator"],
+        },
+        {"properties": {"version": {"const": APPROACH_VERSION}, **lines}, "required": ["approach"], **either},
+        *(_version_at_any_time(word, either) for word in GAUGE),
     ]
+
+
+def _version_at_any_time(pressure: str, either: dict[str, object]) -> dict[str, object]:
+    """Version 5 of a table whose "pressure" is so."""
+    said = {"version": {"const": SURFACES_VERSION}, "pressure": {"const": pressure}}
+    stages = {"stages": _stages_with_slopes(GAUGE[pressure])}
+    return {"properties": said | stages, "required": ["decisions", "pressure"], **either}
+
+
+def _stages_with_slopes(sloped: bool) -> dict[str, object]:
+    """Every stage has the keys of both slopes, or none of them."""
+    if sloped:
+        return {"items": {"required": _SLOPES}}
+    return {"items": {"properties": dict.fromkeys(_SLOPES, False)}}
 
 
 def _estimator() -> dict[str, dict[str, object]]:

@@ -74,6 +74,10 @@ class Section:
         """The number at `key`; -0.0 is none."""
         return self._number(self._members[key], self._dotted(key))
 
+    def number_or_null(self, key: str) -> float | None:
+        """The number at `key`, None for null."""
+        return None if self._members[key] is None else self.number(key)
+
     def numbers(self, key: str) -> tuple[float, ...]:
         """The array of numbers at `key`."""
         return self._numbers(self._members[key], self._dotted(key))

@@ -10,10 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.approach import Approach, entrance_stage
+from tuning_tables.decisions import Decisions
 from tuning_tables.errors import InvalidTable
 from tuning_tables.estimator import Estimator
 from tuning_tables.figures import Predicted, Validated, ValidRange
-from tuning_tables.line_order import require_order, require_representable
 from tuning_tables.provenance import CutId, Generator, RetarderId
 from tuning_tables.requirement import (
     UTC_INSTANT,
@@ -24,7 +24,8 @@ from tuning_tables.requirement import (
     require_text,
     require_tuple,
 )
-from tuning_tables.stage import Stage
+from tuning_tables.stage import SIDES, Stage
+from tuning_tables.surface_order import NO_PRESSURE, require_stage
 
 MOST_STAGES: Final = 32
 HIGHEST_DEGREE: Final = 9
@@ -45,14 +46,18 @@ class ControllerTable:
     estimator         with it the lines are for the estimated speed: see `rule.speed_for`; None: for the measured one
     approach          the regulator acts from before the entrance, at s = -approach.length_m, where the path range
                       begins; it ends behind the entrance, and an estimator's breaks begin no later. None: from s = 0
+    decisions         at rest or at any time; at any time all lines of the table have a slope, or none has
 
     Derived from these, as arrays for `rule.decide` (read-only; line 0 is `lower`, line 1 is `upper`):
 
     coefficients      float32 (K+1, 2, degree+1), ascending powers of s in m; NaN where there is no line
     has_line          bool (K+1, 2)
     valid_range       float32 (4,): s_min, s_max in m, v_min, v_max in m/s
+    slopes            float32 (K+1, 2), m/s per kPa; 0 where a line has none
+    pressures         float32 (K+1,), kPa
 
-    On the valid path range lower(s) < upper(s) holds at every stage that has both, also as evaluated in float32.
+    On the valid path range lower(s) < upper(s) holds at every stage that has both, also as evaluated in float32, and
+    with slopes at every pressure from that of stage 0 to that of the highest stage that the table raises to.
 
     Raises `InvalidTable`.
     """
@@ -70,18 +75,26 @@ class ControllerTable:
     validated: Validated | None = None
     estimator: Estimator | None = None
     approach: Approach | None = None
+    decisions: Decisions = Decisions.AT_REST
     coefficients: npt.NDArray[np.float32] = field(init=False, repr=False, compare=False)
     has_line: npt.NDArray[np.bool_] = field(init=False, repr=False, compare=False)
     valid_range: npt.NDArray[np.float32] = field(init=False, repr=False, compare=False)
+    slopes: npt.NDArray[np.float32] = field(init=False, repr=False, compare=False)
+    pressures: npt.NDArray[np.float32] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         self._require_fields()
         self._require_stages()
         valid_range = np.array(self.valid.s_m + self.valid.v_m_s, dtype=np.float32)
         self._require_approach()
-        self._require_lines((float(valid_range[0]), float(valid_range[1])))
+        self._require_slopes()
+        with np.errstate(over="ignore"):  # who has no gauge may give any pressure
+            pressures = np.array([stage.pressure_kpa for stage in self.stages], dtype=np.float32)
+        self._require_lines((float(valid_range[0]), float(valid_range[1])), pressures)
         coefficients, has_line = _line_arrays(self.stages, self.degree)
-        for name, array in (("coefficients", coefficients), ("has_line", has_line), ("valid_range", valid_range)):
+        slopes = np.array([[slope or 0.0 for slope in stage.slopes] for stage in self.stages], dtype=np.float32)
+        arrays = (coefficients, has_line, valid_range, slopes, pressures)
+        for name, array in zip(("coefficients", "has_line", "valid_range", "slopes", "pressures"), arrays, strict=True):
             array.setflags(write=False)
             object.__setattr__(self, name, array)
 
@@ -89,6 +102,16 @@ class ControllerTable:
     def entrance_stage(self) -> int:
         """The highest stage that may be commanded at s < 0, for `rule.decide`: stage K without approach."""
         return entrance_stage(self.approach, len(self.stages))
+
+    @property
+    def has_gauge(self) -> bool:
+        """Whether the lines depend on the pressure, which the controller must then measure."""
+        return any(slope is not None for stage in self.stages for slope in stage.slopes)
+
+    @property
+    def highest_raised(self) -> int:
+        """The highest stage that the table ever asks for."""
+        return next(stage.k for stage in self.stages if stage.upper is None)
 
     def with_validated(self, validated: Validated) -> ControllerTable:
         """The same table with the figures of a closed-loop run filled in."""
@@ -101,6 +124,7 @@ class ControllerTable:
         require_kind(self.retarder, "retarder", RetarderId)
         require_kind(self.cut, "cut", CutId)
         require_positive(self.target_speed_m_s, "target_speed_m_s")
+        require_kind(self.decisions, "decisions", Decisions)
         require_count(self.degree, "polynomial.degree", 0, HIGHEST_DEGREE)
         require_kind(self.valid, "valid", ValidRange)
         require_kind(self.predicted, "predicted", Predicted)
@@ -147,19 +171,37 @@ class ControllerTable:
                 f"{begin_m!r}, or before."
             )
 
-    def _require_lines(self, s_range_m: tuple[float, float]) -> None:
+    def _require_slopes(self) -> None:
+        if not self.has_gauge:
+            return
+        if self.decisions is Decisions.AT_REST:
+            raise InvalidTable("a line has a slope, but a table that decides at rest meets each stage at its pressure.")
         for stage in self.stages:
-            for name, line in (("lower", stage.lower), ("upper", stage.upper)):
-                if line is None:
-                    continue
-                key = f"stages[{stage.k}].{name}"
-                if len(line) != self.degree + 1:
+            for side, line, slope in zip(SIDES, stage.lines, stage.slopes, strict=True):
+                if line is not None and slope is None:
                     raise InvalidTable(
-                        f"{key} has {len(line)} coefficients, but a line of degree {self.degree} has {self.degree + 1}."
+                        f"stages[{stage.k}].{side} has no slope, but another line has: give all of them one, or none."
                     )
-                require_representable(line, s_range_m, key)
-            if stage.lower is not None and stage.upper is not None:
-                require_order(stage.lower, stage.upper, s_range_m, f"stages[{stage.k}]")
+
+    def _require_lines(self, s_range_m: tuple[float, float], pressures: npt.NDArray[np.float32]) -> None:
+        for stage in self.stages:
+            key = f"stages[{stage.k}]"
+            for side, line in zip(SIDES, stage.lines, strict=True):
+                if line is not None and len(line) != self.degree + 1:
+                    raise InvalidTable(
+                        f"{key}.{side} has {len(line)} coefficients, but a line of degree {self.degree} has "
+                        f"{self.degree + 1}."
+                    )
+            require_stage(stage, s_range_m, self._above_kpa(stage, pressures), key)
+
+    def _above_kpa(self, stage: Stage, pressures: npt.NDArray[np.float32]) -> tuple[float, float]:
+        """The pressures that its surfaces are looked at, less that of the stage."""
+        if not self.has_gauge:
+            return NO_PRESSURE
+        if not np.isfinite(pressures).all():
+            raise InvalidTable("stages.pressure_kpa exceeds what float32 can hold, but lines with slopes need it.")
+        own = float(pressures[stage.k])
+        return float(pressures[0]) - own, float(pressures[self.highest_raised]) - own
 
 
 def _line_arrays(stages: tuple[Stage, ...], degree: int) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.bool_]]:
@@ -167,7 +209,7 @@ def _line_arrays(stages: tuple[Stage, ...], degree: int) -> tuple[npt.NDArray[np
     coefficients = np.full((len(stages), 2, degree + 1), np.nan, dtype=np.float32)
     has_line = np.zeros((len(stages), 2), dtype=np.bool_)
     for stage in stages:
-        for index, line in enumerate((stage.lower, stage.upper)):
+        for index, line in enumerate(stage.lines):
             if line is not None:
                 coefficients[stage.k, index] = line
                 has_line[stage.k, index] = True

@@ -36,11 +36,11 @@ from tuning_tables.book_categories import category_numbers
 from tuning_tables.book_classes import tables_by_class
 from tuning_tables.category_number import LARGEST_OWN, LEAST_OWN
 from tuning_tables.errors import InvalidTable
-from tuning_tables.line_order import UNIT_ROUNDOFF, rounding_bound, smallest_gap
+from tuning_tables.line_order import UNIT_ROUNDOFF
 from tuning_tables.requirement import require_kind, require_tuple
+from tuning_tables.stage import Stage
+from tuning_tables.surface_order import NO_PRESSURE, reach_kpa, stage_gap, surface_bound
 from tuning_tables.table import ControllerTable
-
-Line = tuple[float, ...]
 
 LEAST_FLOAT32: Final = float(np.finfo(np.float32).smallest_normal)
 LARGEST_FLOAT32: Final = float(np.finfo(np.float32).max)
@@ -189,10 +189,12 @@ def require_order_between(slower: ControllerTable, faster: ControllerTable) -> N
     """
     path = (float(slower.valid_range[0]), float(slower.valid_range[1]))
     for one, other in zip(slower.stages, faster.stages, strict=True):
-        if one.lower is None or one.upper is None or other.lower is None or other.upper is None:
+        if None in one.lines or None in other.lines:
             continue
-        gap_m_s = min(smallest_gap(one.lower, one.upper, path)[0], smallest_gap(other.lower, other.upper, path)[0])
-        needed_m_s = sum(_loss(pair, path) for pair in ((one.lower, other.lower), (one.upper, other.upper)))
+        own, low, high = (float(slower.pressures[k]) for k in (one.k, 0, slower.highest_raised))
+        above = (low - own, high - own) if slower.has_gauge else NO_PRESSURE
+        gap_m_s = min(stage_gap(one, path, above), stage_gap(other, path, above))
+        needed_m_s = _loss(one, other, path, above)
         if not gap_m_s > needed_m_s:
             raise InvalidTable(
                 f"stages[{one.k}]: the lines between {slower.id} and {faster.id} come within {gap_m_s!r} m/s of each "
@@ -200,9 +202,14 @@ def require_order_between(slower: ControllerTable, faster: ControllerTable) -> N
             )
 
 
-def _loss(pair: tuple[Line, Line], path_m: tuple[float, float]) -> float:
-    """What float32 can change in a line between the two lines of `pair`, m/s."""
-    size = tuple(abs(one) + abs(other) for one, other in zip(*pair, strict=True))
-    reach = max(abs(path_m[0]), abs(path_m[1]))
-    coefficients = 4 * UNIT_ROUNDOFF * sum(value * reach**power for power, value in enumerate(size))
-    return coefficients + rounding_bound(size, path_m)
+def _loss(one: Stage, other: Stage, path_m: tuple[float, float], above_kpa: tuple[float, float]) -> float:
+    """What float32 can change in both lines between those of two stages, m/s."""
+    reach_m, total = max(map(abs, path_m)), 0.0
+    for lines, slopes in zip(
+        zip(one.lines, other.lines, strict=True), zip(one.slopes, other.slopes, strict=True), strict=True
+    ):
+        size = tuple(abs(a) + abs(b) for a, b in zip(*(line or () for line in lines), strict=True))
+        slope = sum(abs(each or 0.0) for each in slopes)
+        coefficients = sum(value * reach_m**power for power, value in enumerate(size)) + slope * reach_kpa(above_kpa)
+        total += 4 * UNIT_ROUNDOFF * coefficients + surface_bound(size, slope, path_m, above_kpa)
+    return total

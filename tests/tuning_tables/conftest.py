@@ -9,6 +9,7 @@ from tuning_tables import (
     Approach,
     ControllerTable,
     CutId,
+    Decisions,
     Estimator,
     Generator,
     Predicted,
@@ -18,7 +19,7 @@ from tuning_tables import (
     ValidRange,
     round_coefficients,
 )
-from tuning_tables.table_book import Line
+from tuning_tables.stage import Line
 
 
 @pytest.fixture(scope="session")
@@ -88,6 +89,24 @@ def approached_estimate(estimated_table: ControllerTable) -> ControllerTable:
         estimator=replace(estimated_table.estimator, s_m=breaks),
         approach=Approach(4.0, 0),
     )
+
+
+@pytest.fixture(scope="session")
+def surface_table(approached_table: ControllerTable) -> ControllerTable:
+    """The table with approach that decides at any time, with a gauge: so of version 5. Raised to stage 2 at most."""
+    slopes = ((None, -0.004), (-0.006, -0.005), (-0.003, None), (0.0, None))
+    rounded = [[None if each is None else round_coefficients([each])[0] for each in pair] for pair in slopes]
+    stages = tuple(
+        replace(stage, lower_slope_m_s_per_kpa=lower, upper_slope_m_s_per_kpa=upper)
+        for stage, (lower, upper) in zip(approached_table.stages, rounded, strict=True)
+    )
+    return replace(approached_table, id="surface", stages=stages, decisions=Decisions.AT_ANY_TIME)
+
+
+@pytest.fixture(scope="session")
+def surface_estimate(approached_estimate: ControllerTable) -> ControllerTable:
+    """The estimated table with approach, at any time, but without gauge: of version 5."""
+    return replace(approached_estimate, id="surface-estimate", decisions=Decisions.AT_ANY_TIME)
 
 
 @pytest.fixture(scope="session")

@@ -1,11 +1,14 @@
 """Valid tables of every shape and size, for hypothesis."""
 
+from dataclasses import replace
+
 from hypothesis import strategies as st
 
 from tuning_tables import (
     Approach,
     ControllerTable,
     CutId,
+    Decisions,
     Estimator,
     Generator,
     InvalidTable,
@@ -18,6 +21,7 @@ from tuning_tables import (
 )
 from tuning_tables.category_number import KNOWN_NUMBERS
 from tuning_tables.line_order import require_order
+from tuning_tables.surface_order import require_stage
 from tuning_tables.table import HIGHEST_DEGREE, MOST_STAGES
 
 # Whatever is printable in any script; but no space other than U+0020 is.
@@ -71,6 +75,17 @@ def stage_lists(draw: st.DrawFn, degree: int, s_m: tuple[float, float]) -> tuple
     return tuple(stages)
 
 
+def sloped(stage: Stage, slope: float, s_m: tuple[float, float]) -> Stage:
+    """Both lines with one slope, so that they keep their distance at every pressure; one where rounding takes it."""
+    lower, upper = (None if line is None else slope for line in stage.lines)
+    kept = replace(stage, lower_slope_m_s_per_kpa=lower, upper_slope_m_s_per_kpa=upper)
+    try:
+        require_stage(kept, s_m, (-1e4, 1e4), "drawn")
+    except InvalidTable:
+        return replace(kept, upper=None, upper_slope_m_s_per_kpa=None)
+    return kept
+
+
 @st.composite
 def estimators(draw: st.DrawFn, latest_m: float = 50.0) -> Estimator:
     """An estimator with two to six breaks, the first at `latest_m` or before."""
@@ -115,6 +130,9 @@ def tables(
     interval = sorted((draw(numbers(0.0)), draw(numbers(0.0))))
     estimator = draw(st.none() | estimators(50.0 if length_m is None else begin_m))
     stages = draw(stage_lists(degree, s_m))
+    decisions = draw(st.sampled_from(Decisions))
+    if decisions is Decisions.AT_ANY_TIME and draw(st.booleans()):
+        stages = tuple(sloped(stage, draw(st.floats(-0.5, 0.5, width=32)) + 0.0, s_m) for stage in stages)
     return ControllerTable(
         id=draw(names),
         created=draw(instants),
@@ -136,4 +154,5 @@ def tables(
         validated=draw(st.none() | st.builds(Validated, st.integers(1, 2**53), numbers(0.0), st.just(tuple(interval)))),
         estimator=estimator,
         approach=None if length_m is None else Approach(length_m, draw(st.integers(0, len(stages) - 1))),
+        decisions=decisions,
     )

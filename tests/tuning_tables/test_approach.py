@@ -144,8 +144,8 @@ def test_a_document_of_version_3_is_read_strictly(
 
 def test_a_reader_refuses_a_version_that_it_does_not_know(approached_table: ControllerTable) -> None:
     # The readers of before know 1 and 2, and refuse 3 by the same comparison.
-    with pytest.raises(NewerVersion, match="version is 5, this reader knows only 1 to 4"):
-        from_json(sealed({**document_of(approached_table), "version": 5}))
+    with pytest.raises(NewerVersion, match="version is 6, this reader knows only 1 to 5"):
+        from_json(sealed({**document_of(approached_table), "version": 6}))
 
 
 def test_books_with_and_without_estimators_hold_approaches(

@@ -108,7 +108,7 @@ def test_every_dataset_tells_its_unit_and_meaning(refuse: Refuse, name: str, att
         ("schema_version", 1, DamagedTable),
         ("schema_version", 2, DamagedTable),
         ("schema_version", 4, DamagedTable),
-        ("schema_version", 5, NewerVersion),
+        ("schema_version", 6, NewerVersion),
         ("schema_version", 2**63 - 1, NewerVersion),
         ("schema_version", 0, OlderVersion),
         ("schema_version", -1, OlderVersion),

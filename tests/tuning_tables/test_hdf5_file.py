@@ -151,7 +151,7 @@ def change_shape(file: h5py.File) -> None:
     ("edit", "error", "reason"),
     [
         (edit_attribute("format", "kea-image"), UnknownFormat, "format is"),
-        (edit_attribute("schema_version", 5), NewerVersion, "schema_version is 5"),
+        (edit_attribute("schema_version", 6), NewerVersion, "schema_version is 6"),
         (edit_attribute("schema_version", 4), DamagedTable, "missing or unknown"),
         (edit_attribute("schema_version", 3), DamagedTable, "missing or unknown"),
         (edit_attribute("schema_version", 2), DamagedTable, "missing or unknown"),

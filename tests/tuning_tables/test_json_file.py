@@ -192,7 +192,7 @@ def test_no_value_of_another_type_gets_through(table: ControllerTable, wrong: ob
         ({"version": 2}, DamagedTable),
         ({"version": 3}, DamagedTable),
         ({"version": 4}, OtherDecisions),
-        ({"version": 5}, NewerVersion),
+        ({"version": 6}, NewerVersion),
         ({"version": 10**12}, NewerVersion),
         ({"version": 0}, OlderVersion),
         ({"version": -1}, OlderVersion),

@@ -10,7 +10,7 @@ import numpy.typing as npt
 import pytest
 
 from tuning_tables import HOLD, LOWER, RAISE, ControllerTable, Stage, ValidRange, decide, decide_for, decide_many
-from tuning_tables.table_book import Line
+from tuning_tables.stage import Line
 
 NAN, INF = float("nan"), float("inf")
 

@@ -21,7 +21,7 @@ from tuning_tables import (
     ValidRange,
     round_coefficients,
 )
-from tuning_tables.table_book import Line
+from tuning_tables.stage import Line
 
 Crossing = Callable[[Line, Line, tuple[float, float]], ControllerTable]
 

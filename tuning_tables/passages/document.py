@@ -6,7 +6,7 @@ from typing import Final
 
 from tuning_tables.approach import INTERLOCK, Approach
 from tuning_tables.canonical import CHECKSUM_KEY, document_checksum
-from tuning_tables.document import FORMAT, LONGEST_REASON, PASSAGES_VERSION, VERSION
+from tuning_tables.document import FORMAT, LONGEST_REASON, PASSAGES_VERSION, SURFACES_VERSION, VERSION
 from tuning_tables.document_head import require_checksum, require_format, require_version
 from tuning_tables.errors import DamagedTable, InvalidTable, OtherDecisions
 from tuning_tables.excerpt import excerpt
@@ -89,7 +89,7 @@ def from_passage_document(document: object, source: str) -> PassageTable:
     table. Checked in this order.
     """
     members = require_format(document, source, FORMAT, "a controller table")
-    version = require_version(members, source, VERSION, PASSAGES_VERSION)
+    version = require_version(members, source, VERSION, SURFACES_VERSION)
     if version != PASSAGES_VERSION:
         raise OtherDecisions(
             f"{source}: version is {version}, a table with lines over the path, but here one is needed that decides at "

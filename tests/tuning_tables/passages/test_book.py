@@ -67,7 +67,7 @@ def test_the_two_kinds_are_kept_apart(table: ControllerTable, tmp_path: Path) ->
     with pytest.raises(InvalidTable, match="of one kind: write two books"):
         write_book([table, FIRST], tmp_path / "book.h5")
     write_book([FIRST], tmp_path / "passages.h5")
-    with pytest.raises(OtherDecisions, match=r"passages\.h5: .* no lines .* schema version 1 to 3\.$"):
+    with pytest.raises(OtherDecisions, match=r"passages\.h5: .* no lines .* schema version 1, 2, 3, 5\.$"):
         read_book(tmp_path / "passages.h5")
     write_book([table], tmp_path / "lines.h5")
     assert read_any_book(tmp_path / "lines.h5") == read_book(tmp_path / "lines.h5") == (table,)
