@@ -18,6 +18,7 @@ from plant_models.retarder import RetarderPosition
 from plant_models.rolling_resistance import RollingResistance
 from plant_models.speed_sensor import DopplerSensor
 from plant_models.track_profile import TrackProfile
+from plant_models.valve_drive import ValveDrive
 
 SLOWEST_START_M_S = 0.3
 
@@ -101,6 +102,15 @@ class Plant:
     def top_stage(self) -> int:
         """Highest stage that position and weight category both allow."""
         return min(self.position.top_stage, self.cut.allowed_stage)
+
+    def drive_at_any_time(self) -> ValveDrive:
+        """The drive for commands at every sample; raises `PlantError` where it cannot be commanded so."""
+        require(
+            self.sensor.computing_delay_s < self.sensor.sample_period_s,
+            f"sensor: computing_delay_s is {self.sensor.computing_delay_s:g}; commands at every sample are modelled "
+            "for delays shorter than sample_period_s",
+        )
+        return self.position.pneumatics.valves_shutting_at_once(self.position.force.touch_pressure_kpa)
 
     @property
     def friction_cv(self) -> float:

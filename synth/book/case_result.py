@@ -22,7 +22,8 @@ from synth.solver.switching_lines import SwitchingLines
 from tuning_tables import ControllerTable
 
 if TYPE_CHECKING:  # who draws or reports a case needs no kernels
-    from synth.book.estimation.estimated_table import EstimatedTable
+    from synth.book.tuned_table import AnyEstimate
+    from synth.solver.any_time.surface_polish import SurfacePolish
     from synth.solver.polish import Polish
 
 
@@ -107,9 +108,9 @@ class CaseResult:
     problem: Problem
     table: ControllerTable
     predicted: ExitDensity
-    polish: Polish
+    polish: Polish | SurfacePolish
     finding: Finding | None
-    estimate: EstimatedTable | None
+    estimate: AnyEstimate | None
     exit_speeds_m_s: NDArray[np.float32]
     exit_weight: NDArray[np.float64]
     brake_power: BrakePower

@@ -10,6 +10,7 @@ from synth.book.estimation.estimated_table import estimator_design
 from synth.book.estimation.simulated_prediction import prediction_passes
 from synth.book.estimation.tuning_days import tuning_row
 from synth.configuration.resolved_config import ResolvedConfig
+from synth.configuration.settings import RegulatorSettings
 from synth.problem.resolution import finer_for_check
 from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.random_passes import PATH_CELLS, RandomPasses
@@ -44,7 +45,8 @@ class EstimatorSetup:
 @dataclass(frozen=True)
 class ClassSetup:
     """`design`: the chain that lines are solved and polished on; `check`: the finer one that tables are predicted on;
-    `passes`: what every controller is simulated on; `table_stem`: how the names of the tables begin."""
+    `passes`: what every controller is simulated on; `table_stem`: how the names of the tables begin; `regulator`: when
+    it commands, and what it knows."""
 
     label: str
     table_stem: str
@@ -55,6 +57,7 @@ class ClassSetup:
     passes: CommonPasses
     origin: Origin
     estimator: EstimatorSetup | None
+    regulator: RegulatorSettings
 
     def table_id(self, target_speed_m_s: float) -> str:
         """Name of the table for a target, also as a file name."""
@@ -76,6 +79,7 @@ def class_setup(
         passes=compared,
         origin=origin,
         estimator=estimator_setup(config, label, compared) if config.regulator.estimator else None,
+        regulator=config.regulator,
     )
 
 

@@ -20,10 +20,11 @@ from synth.book.case_result import CaseResult, DegreeStudy
 from synth.book.comparison.limit_cycle import hunting_report
 from synth.book.comparison.measured import Measured
 from synth.book.comparison.pressure_cycle import pressure_hunting
-from synth.book.estimation.estimated_table import EstimatedTable
 from synth.book.tune import Book
+from synth.book.tuned_table import AnyEstimate
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.requirement_found import Finding
+from synth.solver.any_time.surface_polish import SurfacePolish
 from synth.solver.polish import Polish
 from tuning_tables.canonical import LARGEST_EXACT_INTEGER
 
@@ -135,7 +136,7 @@ def measured_of(entry: Measured) -> Document:
     }
 
 
-def polish_of(polish: Polish) -> Document:
+def polish_of(polish: Polish | SurfacePolish) -> Document:
     """How the search for the lines of least cost ended."""
     return {
         "converged": polish.converged,
@@ -146,7 +147,7 @@ def polish_of(polish: Polish) -> Document:
     }
 
 
-def estimate_of(made: EstimatedTable) -> Document:
+def estimate_of(made: AnyEstimate) -> Document:
     """How lines for the estimated speed were designed."""
     return {
         "error_m_s": made.error_m_s,

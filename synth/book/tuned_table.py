@@ -12,7 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
+from synth.book.any_time.surface_table import polished_surfaces, starting_surfaces, with_surface_prediction
 from synth.book.class_setup import ClassSetup, EstimatorSetup
+from synth.book.estimation.estimated_surfaces import estimated_surfaces
 from synth.book.estimation.estimated_table import EstimatedTable, estimated_table
 from synth.book.estimation.simulated_prediction import density_of, simulated_prediction
 from synth.problem.aim import Aim
@@ -21,6 +23,9 @@ from synth.problem.requirement_found import Finding
 from synth.simulation.closed_loop import TableController
 from synth.simulation.exit_statistics import BrakePower, ExitStatistics, brake_power, exit_statistics
 from synth.simulation.passes import ExitSample
+from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
+from synth.solver.any_time.sampled_chain import design_resolution
+from synth.solver.any_time.surface_polish import SurfacePolish
 from synth.solver.backward_induction import Solution, solve_all
 from synth.solver.chain.chain import Chain
 from synth.solver.exit_density import ExitDensity
@@ -37,8 +42,18 @@ from tuning_tables import ControllerTable, Validated
 NODES_KEPT = 1
 """Path nodes at which a solution keeps its values: the entrance. Nothing after the solve reads more."""
 
+AnyEstimate = EstimatedTable[PolynomialLines] | EstimatedTable[PolynomialSurfaces]
+
 Store = Callable[[ControllerTable], ControllerTable]
 """Keeps a table, and gives it back as a controller will read it."""
+
+
+@dataclass(frozen=True)
+class SurfaceDesign:
+    """How surfaces were polished for the measured speed, and where an estimator is asked for, how those for it."""
+
+    polish: SurfacePolish
+    estimate: EstimatedTable[PolynomialSurfaces] | None
 
 
 @frozen_arrays
@@ -46,9 +61,10 @@ Store = Callable[[ControllerTable], ControllerTable]
 class TunedTable:
     """The rounded table with its prediction, not yet simulated.
 
-    `predicted`: the exit density behind the prediction; `lines`: polished, for the measured speed; `solver_density`:
-    of the solver's own lines on the design chain; `curvature` (K + 1, 2, N) of its cost, as `fit_lines` has it;
-    `estimate`: where an estimator is asked for, how its lines were designed.
+    `predicted`: the exit density behind the prediction; `lines`: polished, for the measured speed and commands at rest;
+    `solver_density`: of the solver's own lines on the design chain; `curvature` (K + 1, 2, N) of its cost, as
+    `fit_lines` has it; `estimate`: where an estimator is asked for, how its lines were designed; `surfaces`: those of a
+    regulator that commands at any time.
     """
 
     table: ControllerTable
@@ -58,7 +74,8 @@ class TunedTable:
     solver_density: ExitDensity
     curvature: NDArray[np.float64]
     finding: Finding | None
-    estimate: EstimatedTable | None
+    estimate: EstimatedTable[PolynomialLines] | None
+    surfaces: SurfaceDesign | None
 
 
 @dataclass(frozen=True)
@@ -88,11 +105,29 @@ def tuned_table(setup: ClassSetup, solution: Solution) -> TunedTable:
     made = None
     if setup.estimator is not None:
         made = estimated_table(problem, setup.estimator.design, kept.lines, setup.estimator.tuning)
-    if setup.estimator is not None and made is not None and made.gains:
-        table, predicted = predicted_by_passes(setup, made, setup.estimator, problem.target_speed_m_s)
+    surfaces = surface_design(setup, solution.aim, kept.lines, made) if setup.regulator.at_any_time else None
+    chosen: PolynomialLines | PolynomialSurfaces = kept.lines if surfaces is None else surfaces.polish.surfaces
+    estimate: AnyEstimate | None = made if surfaces is None else surfaces.estimate
+    if setup.estimator is not None and estimate is not None and estimate.gains:
+        table, predicted = predicted_by_passes(setup, estimate, setup.estimator, problem.target_speed_m_s)
+    elif surfaces is None:
+        table, predicted = with_prediction(setup.check, rounded(setup, chosen, problem.target_speed_m_s))
     else:
-        table, predicted = with_prediction(setup.check, rounded(setup, kept.lines, problem.target_speed_m_s))
-    return TunedTable(table, predicted, kept.lines, kept.polish, density, fit.curvature, kept.finding, made)
+        table, predicted = with_surface_prediction(setup.plant, rounded(setup, chosen, problem.target_speed_m_s))
+    tuned = table, predicted, kept.lines, kept.polish, density, fit.curvature, kept.finding, made, surfaces
+    return TunedTable(*tuned)
+
+
+def surface_design(
+    setup: ClassSetup, aim: Aim, lines: PolynomialLines, made: EstimatedTable[PolynomialLines] | None
+) -> SurfaceDesign:
+    """Surfaces for commands at any time from `lines`; with an estimator also from those that were `made` for it."""
+    plant, gauge = setup.plant, setup.regulator.has_gauge
+    steps = design_resolution(plant, aim.target_speed_m_s)
+    polish = polished_surfaces(plant, aim, starting_surfaces(plant, lines, gauge), steps)
+    if made is None or setup.estimator is None:
+        return SurfaceDesign(polish, None)
+    return SurfaceDesign(polish, estimated_surfaces(Problem(plant, aim), made, polish.surfaces, setup.estimator.tuning))
 
 
 def validated_table(setup: ClassSetup, table: ControllerTable, store: Store) -> ValidatedTable:
@@ -105,14 +140,14 @@ def validated_table(setup: ClassSetup, table: ControllerTable, store: Store) -> 
     return ValidatedTable(store(kept.with_validated(figures)), sample, found, power)
 
 
-def rounded(setup: ClassSetup, lines: PolynomialLines, target_speed_m_s: float) -> ControllerTable:
+def rounded(setup: ClassSetup, lines: PolynomialLines | PolynomialSurfaces, target_speed_m_s: float) -> ControllerTable:
     """The table of `lines` for the measured speed, not yet predicted."""
     origin = (setup.origin.generator, setup.table_id(target_speed_m_s), setup.origin.created)
     return tabulate(setup.plant, lines, target_speed_m_s, UNPREDICTED, *origin)
 
 
 def predicted_by_passes(
-    setup: ClassSetup, made: EstimatedTable, estimator: EstimatorSetup, target_speed_m_s: float
+    setup: ClassSetup, made: AnyEstimate, estimator: EstimatorSetup, target_speed_m_s: float
 ) -> tuple[ControllerTable, ExitDensity]:
     """The rounded table for the estimated speed, with what passes that nothing else uses say of it."""
     origin = (setup.origin.generator, setup.table_id(target_speed_m_s), setup.origin.created)
@@ -123,13 +158,13 @@ def predicted_by_passes(
 
 
 def with_prediction(check: Chain, table: ControllerTable) -> tuple[ControllerTable, ExitDensity]:
-    """`table` with the figures of its exit-speed density on `check`, and the density."""
+    """`table`, which decides at rest, with the figures of its exit-speed density on `check`, and the density."""
     density = predict(check, table)
     return replace(table, predicted=prediction_of(density, table.target_speed_m_s)), density
 
 
 def predict(check: Chain, table: ControllerTable) -> ExitDensity:
-    """Exit-speed density of an exported table on `check`, resolved near its target."""
+    """Exit-speed density of an exported table that decides at rest on `check`, resolved near its target."""
     lines = lines_of(table, check.grid.path_m)
     stages = check.actuator.stages
     used = SwitchingLines(lines.nodes_m, lines.lower_m_s[:stages], lines.upper_m_s[:stages])

@@ -25,7 +25,6 @@ def permissions_command(path: Path | None, output: Path, workers: int, as_json: 
     from synth.cli.tune import require_room, sensors_left_aside
     from synth.configuration.config_file import BUILT_IN, load_config
     from synth.kernels.cache import guarded
-    from synth.solver.any_time.drive_modes import drive_at_any_time
 
     config, source = load_config(path), str(path or BUILT_IN)
     if config.criterion.requirement is not None:
@@ -36,7 +35,7 @@ def permissions_command(path: Path | None, output: Path, workers: int, as_json: 
     require_room(config, path, workers)
     with tables_refused(source):
         for _, plant in config.plants():
-            drive_at_any_time(plant)
+            plant.drive_at_any_time()
     require_date()
     started, created = time.monotonic(), creation_time()
     with output_directory(output, PERMISSIONS_LAYOUT) as directory:

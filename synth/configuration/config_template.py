@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator
 from itertools import groupby
+from typing import Literal, get_origin
 
 from plant_models.library import (
     BUILT_IN,
@@ -79,9 +80,9 @@ def lines(config: ResolvedConfig) -> Iterator[str]:
 
 
 def switch_lines(section: type[Section]) -> Iterator[str]:
-    """The switches of a section, which are on or off."""
+    """The switches of a section: on or off, or one of a few words."""
     for key, field in section.model_fields.items():
-        if field.annotation is bool:
+        if field.annotation is bool or get_origin(field.annotation) is Literal:
             yield from (f"# {field.description}", f"{key} = {json.dumps(field.default)}")
 
 

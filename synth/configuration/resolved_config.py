@@ -125,8 +125,8 @@ class ResolvedConfig:
     def canonical_json(self) -> str:
         """What the results depend on, in the canonical form of RFC 8785.
 
-        Left out are title and [output], what an approach adds, where there is none, and the uncertainty of the mean
-        friction where nothing is designed for it.
+        Left out are title and [output]; what an approach and commands at any time add, where there are none; and the
+        uncertainty of the mean friction where nothing is designed for it.
         """
         left_out_at_0 = {*REGULATOR, MEAN_CV}
         tree: dict[str, Any] = {"format": "retarder-config", "version": 1}
@@ -148,6 +148,8 @@ class ResolvedConfig:
         if self.sensors is not None:
             tree["sensors"] = self.sensors.canonical()
         tree.setdefault("regulator", {})["estimator"] = self.regulator.estimator
+        if self.regulator.at_any_time:
+            tree["regulator"] |= {"commands": self.regulator.commands, "pressure": self.regulator.pressure}
         sections = {
             "criterion": self.criterion_settings,
             "grid": self.grid,
@@ -189,7 +191,7 @@ def resolve(settings: Settings, file: str, library: Library = BUILT_IN) -> Resol
         criterion_settings=settings.criterion,
         grid=settings.grid,
         fit=settings.fit,
-        regulator=RegulatorSettings(estimator=settings.regulator.estimator),
+        regulator=settings.regulator.model_copy(update={"approach_m": None, "initial_stage": None}),
         validation=settings.validation,
         acceptance=settings.acceptance,
         output=settings.output,
@@ -246,18 +248,32 @@ def resolve_cuts(settings: Settings, at: Surroundings) -> tuple[CutClass, ...]:
 
 
 def with_grid_warnings(config: ResolvedConfig, file: str) -> ResolvedConfig:
-    """`config` with a warning where its grid is too coarse; refused where problems or estimator make no sense."""
+    """`config` with a warning where its grid is too coarse; refused where problems or regulator make no sense."""
     config.problems()  # refuses what makes no sense
     lowest = config.lowest_target_m_s
     coarse = tuple(grid_warnings(config.resolution, config.retarder.sensor, (lowest,)))
-    if config.regulator.estimator and config.criterion.requirement is not None:
-        raise InputError(
-            f"{file}: regulator.estimator is true, but criterion.p_overspeed and criterion.worst_friction_* can be "
-            "kept only without an estimator; leave one of the two out"
-        )
+    require_plain_criterion(config, file)
+    if config.regulator.at_any_time:
+        for _, plant in config.plants():
+            plant.drive_at_any_time()  # refuses what is not modelled
     if config.regulator.estimator:
         estimator_resolution(config.resolution, config.retarder.sensor, lowest)
     return replace(config, warnings=config.warnings + coarse)
+
+
+def require_plain_criterion(config: ResolvedConfig, file: str) -> None:
+    """Only a regulator without estimator that commands at rest keeps a requirement; raises `InputError`."""
+    if config.criterion.requirement is None:
+        return
+    for asked, said, kept in (
+        (config.regulator.estimator, "estimator is true", "without an estimator"),
+        (config.regulator.at_any_time, 'commands is "any_time"', 'with commands = "at_rest"'),
+    ):
+        if asked:
+            raise InputError(
+                f"{file}: regulator.{said}, but criterion.p_overspeed and criterion.worst_friction_* can be kept only "
+                f"{kept}; leave one of the two out"
+            )
 
 
 def setting_values(name: str, section: Section) -> Iterator[SourcedValue]:

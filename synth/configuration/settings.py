@@ -7,7 +7,7 @@ What it says of the plant is in `plant_settings`; limits of the numerical settin
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import Field
 
@@ -70,6 +70,22 @@ class RegulatorSettings(Section):
     approach_m: float | None = None
     initial_stage: int | None = None
     estimator: bool = Field(False, description="compare an estimated speed with the lines")
+    commands: Literal["at_rest", "any_time"] = Field(
+        "at_rest", description='"at_rest": a command only when the last one is carried out; "any_time": at every sample'
+    )
+    pressure: Literal["gauge", "none"] = Field(
+        "gauge", description='with commands = "any_time": "gauge" if the regulator measures the pressure, else "none"'
+    )
+
+    @property
+    def at_any_time(self) -> bool:
+        """Whether it may give a command at every sample."""
+        return self.commands == "any_time"
+
+    @property
+    def has_gauge(self) -> bool:
+        """Whether its lines may depend on the pressure."""
+        return self.at_any_time and self.pressure == "gauge"
 
 
 class CriterionSettings(Section):
@@ -178,10 +194,13 @@ class Settings(Section):
     def library_overrides(self) -> dict[str, Value]:
         """Set values by the dotted keys of the library's positions."""
         sections = {"retarder", "track", "entry", "friction", "sensor", "regulator", "targets"}
-        not_of_the_plant = {"retarder": {"name", "type"}, "sensor": {"type"}, "regulator": {"estimator"}}
+        not_of_the_plant = {"retarder": {"name", "type"}, "sensor": {"type"}, "regulator": set(SWITCHES)}
         tree = self.model_dump(include=sections, exclude=not_of_the_plant, exclude_none=True)
         return {key: float(value) if isinstance(value, int) else value for key, value in dotted(tree, "")}
 
+
+SWITCHES = ("estimator", "commands", "pressure")
+"""Of [regulator]: what is no number of the plant."""
 
 NUMERICAL_SECTIONS = ("grid", "fit", "criterion", "validation", "acceptance")
 """Sections made of `setting`s alone."""

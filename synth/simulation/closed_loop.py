@@ -5,22 +5,25 @@ from __future__ import annotations
 import math
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields
+from functools import cached_property
 from itertools import accumulate, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models import Plant, path_breaks_m, path_coefficients
+from plant_models import Plant
 from plant_models.pads import overpressure_kpa
-from plant_models.stage_regulator import stage_locked_actuator
+from plant_models.stage_regulator import resting_modes, stage_locked_actuator
+from synth.kernels.any_time.closed_loop import AnyTimeLaw, SampledDrive, run_any_time_passes
 from synth.kernels.loop import closed_loop as kernel
 from synth.kernels.loop import closed_loop_lanes as lanes
 from synth.kernels.loop import lane_places as places
 from synth.kernels.loop import regulator
-from synth.simulation.controllers import Controller, LineController, TableController, fixed
+from synth.simulation.controllers import Controller, Law, LineController, Regulator, TableController, fixed
 from synth.simulation.drive_pieces import drive_pieces
 from synth.simulation.passes import ExitSample, PassTrace
-from synth.simulation.random_passes import PATH_CELLS, PassRow, RandomPasses
+from synth.simulation.path_cells import path_cells
+from synth.simulation.random_passes import PassRow, RandomPasses
 from synth.simulation.stratified_passes import stratified_passes
 
 __all__ = [
@@ -33,9 +36,6 @@ __all__ = [
     "simulate_many",
     "trace",
 ]
-
-CELL_M = 0.5
-"""Longest path cell, at most a quarter of the correlation length; η is constant in a cell."""
 
 SUBSTEP_S = 0.02
 """Longest part of a transient that is played as its mean (see the convergence test): within 0.1 mm/s at the exit."""
@@ -94,23 +94,44 @@ class ClosedLoop:
 
         return np.asarray(gammaincinv(law.shape, u) * law.scale_n_per_kn, dtype=np.float64)
 
-    def run(self, controller: Controller, draws: kernel.Draws) -> ExitSample:
-        """All passes of `draws` under `controller`."""
+    @cached_property
+    def sampled(self) -> SampledDrive:
+        """The drive for commands at every sample; raises `PlantError` for valves that close late."""
+        position, top = self.plant.position, self.stages - 1
+        first = self.drive.initial_stage
+        return SampledDrive(
+            position.pneumatics.valves_shutting_at_once(position.force.touch_pressure_kpa),
+            fixed(np.asarray(position.stage_pressures_kpa[: top + 1]), np.float64),
+            first,
+            next(kpa for stage, kpa in resting_modes(position, top) if stage == first),
+            self.drive.entrance_stage,
+            self.plant.sensor.computing_delay_s,
+            self.drive.substeps,
+        )
+
+    def run(self, controller: Regulator, draws: kernel.Draws) -> ExitSample:
+        """All passes of `draws` under `controller`; `PlantError` where it commands what valves cannot follow."""
         law = self._law(controller)
+        if isinstance(law, AnyTimeLaw):
+            return self._at_any_time(law, draws, np.empty((0, kernel.EVENT_FIELDS)))[0]
         if law.estimator_work.shape[1] > 0:
             return self._alone(law, draws, np.empty((0, kernel.EVENT_FIELDS)))[0]
         exits = empty_exits(len(draws.cut_factor))
         lanes.run_lanes(self.path, self.pieces, self.sensor, law, draws, exits, lane_memory())
         return sample_of(exits, draws)
 
-    def follow(self, controller: Controller, draws: kernel.Draws) -> PassTrace:
+    def follow(self, controller: Regulator, draws: kernel.Draws) -> PassTrace:
         """The only pass of `draws` under `controller`, event by event."""
         samples = math.ceil(kernel.LONGEST_PASS_S / self.sensor.period_s + 2) + int(self.drive.chain_samples.max())
         events = np.empty((samples * self.drive.substeps + 2, kernel.EVENT_FIELDS))
-        sample, events = self._alone(self._law(controller), draws, events)
+        law = self._law(controller)
+        if isinstance(law, AnyTimeLaw):
+            sample, events = self._at_any_time(law, draws, events)
+        else:
+            sample, events = self._alone(law, draws, events)
         return trace_of(events, bool(sample.stalled[0]))
 
-    def _law(self, controller: Controller) -> regulator.Rule:
+    def _law(self, controller: Regulator) -> Law:
         if controller.stages != self.stages:
             raise ValueError(f"closed loop: the controller has {controller.stages} stages, the loop {self.stages}")
         return controller.law()
@@ -121,6 +142,14 @@ class ClosedLoop:
         """One pass after the other, with the events of the last."""
         exits = empty_exits(len(draws.cut_factor))
         count = kernel.run_passes(self.path, self.drive, self.sensor, law, draws, exits, events)
+        return sample_of(exits, draws), events[:count]
+
+    def _at_any_time(
+        self, law: AnyTimeLaw, draws: kernel.Draws, events: NDArray[np.float64]
+    ) -> tuple[ExitSample, NDArray[np.float64]]:
+        """As `_alone`, with a command at any sample."""
+        exits = empty_exits(len(draws.cut_factor))
+        count = run_any_time_passes(self.path, self.sampled, self.sensor, law, draws, exits, events)
         return sample_of(exits, draws), events[:count]
 
 
@@ -195,49 +224,6 @@ def close_loop(plant: Plant, stages: int, substeps: int | None = None) -> Closed
         sensor=regulator.Sensor(period, sensor.noise_m_s, sensor.resolution_m_s),
         pieces=drive_pieces(drive, period),
     )
-
-
-def path_cells(plant: Plant) -> kernel.Path:
-    """Cells with constant coefficients and constant η."""
-    edges = cell_edges_m(plant)
-    coefficients = path_coefficients(plant.position, plant.cut, plant.profile, edges)
-    length = np.diff(edges)
-    memory = np.append(0.0, plant.friction.path_correlation(0.5 * (length[1:] + length[:-1])))  # none before the first
-    before = int(np.searchsorted(edges, 0.0))
-    memory[before] = 0.0
-    return kernel.Path(
-        fixed(edges, np.float64),
-        fixed(coefficients.gravity_m_s2, np.float64),
-        fixed(coefficients.brake_m_s2_per_kpa, np.float64),
-        fixed(plant.friction.path_cell_std(length), np.float64),
-        fixed(memory, np.float64),
-        fixed(np.sqrt(1.0 - memory**2), np.float64),
-        coefficients.resistance_m_s2_per_n_kn,
-        before,
-    )
-
-
-def cell_edges_m(plant: Plant) -> NDArray[np.float64]:
-    """Edges of at most 512 cells of at most 0.5 m, none of them with a change of N(s) or grade inside.
-
-    Long cuts get longer cells; if their axles alone make too many breaks, cells take the mean over a break. Before the
-    entrance, where nothing brakes, there are no more cells than grades.
-    """
-    ahead = path_breaks_m(plant.position, plant.cut, plant.profile, plant.start_m)
-    return np.concatenate([ahead[ahead < 0.0], braked_edges_m(plant)])
-
-
-def braked_edges_m(plant: Plant) -> NDArray[np.float64]:
-    """Edges of the cells from the entrance to the exit."""
-    breaks = path_breaks_m(plant.position, plant.cut, plant.profile)
-    if breaks.size > PATH_CELLS // 2:
-        return np.linspace(0.0, plant.exit_m, PATH_CELLS + 1)
-    cell_m = min(CELL_M, plant.friction.correlation_length_m / 4.0)
-    count = min(math.ceil(plant.exit_m / cell_m), PATH_CELLS - breaks.size)
-    uniform = np.linspace(0.0, plant.exit_m, count + 1)
-    # A sliver between a break and a node of the mesh would only cost time and digits.
-    far = np.abs(uniform[:, None] - breaks).min(axis=1) > 1e-3
-    return np.sort(np.concatenate([uniform[far], breaks]))
 
 
 def simulate(plant: Plant, controller: Controller, passes: RandomPasses, cut_factor: float | None = None) -> ExitSample:

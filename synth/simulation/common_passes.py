@@ -9,7 +9,7 @@ from functools import cache, cached_property, partial
 from plant_models import Plant
 from synth.kernels.loop.closed_loop import Draws
 from synth.simulation.closed_loop import ClosedLoop, close_loop
-from synth.simulation.controllers import Controller, full_brake
+from synth.simulation.controllers import Regulator, full_brake
 from synth.simulation.passes import ExitSample, PassTrace
 from synth.simulation.random_passes import RandomPasses
 
@@ -29,7 +29,7 @@ class CommonPasses:
     def __len__(self) -> int:
         return len(self.passes)
 
-    def run(self, controller: Controller) -> ExitSample:
+    def run(self, controller: Regulator) -> ExitSample:
         """All passes under `controller`."""
         return self.loop(controller.stages).run(controller, self.draws)
 
@@ -39,7 +39,7 @@ class CommonPasses:
         plant = self.plant
         return self.run(full_brake(plant.top_stage + 1, plant.start_m, plant.exit_m))
 
-    def trace(self, controller: Controller, index: int, cut_factor: float) -> PassTrace:
+    def trace(self, controller: Regulator, index: int, cut_factor: float) -> PassTrace:
         """Pass `index` event by event, but with the friction factor `cut_factor`."""
         loop = self.loop(controller.stages)
         return loop.follow(controller, loop.draws(self.passes.part(index, index + 1), cut_factor))

@@ -94,7 +94,7 @@ def regulator_system(plant: Plant, controller: Controller) -> NonlinearIOSystem:
 
     actuator, period = regulated_actuator(plant, controller), plant.sensor.sample_period_s
     sensor = regulator.Sensor(period, 0.0, plant.sensor.resolution_m_s)
-    law = controller.law()
+    law = controller.rule
     gain = period / (period + law.filter_s)
 
     def filtered_slope(x: Any, measured: float) -> float:

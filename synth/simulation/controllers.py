@@ -4,40 +4,62 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.kernels.any_time.closed_loop import AnyTimeLaw, NodeSurfaces
 from synth.kernels.loop import regulator
 from synth.solver.switching_lines import SwitchingLines
 from tuning_tables.active_table import ActiveTable
+from tuning_tables.decisions import Decisions
 from tuning_tables.estimator import Estimator
 from tuning_tables.table import ControllerTable
 
 Scalar = TypeVar("Scalar", bound=np.generic)
+
+Law = regulator.Rule | AnyTimeLaw
+
+
+def fixed(array: NDArray[Any], dtype: type[Scalar]) -> NDArray[Scalar]:
+    """Contiguous read-only view or copy: the kernel is compiled for exactly such arrays, once."""
+    view: NDArray[Scalar] = np.ascontiguousarray(array, dtype=dtype).view()
+    view.setflags(write=False)
+    return view
+
+
+NO_LINE, NO_NODE = fixed(np.empty((0, 0, 0, 0)), np.float64), fixed(np.empty(0), np.float64)
+NO_SURFACES = NodeSurfaces(NO_LINE, NO_LINE, NO_NODE, NO_NODE, 0.0, 1.0)
 
 
 @dataclass(frozen=True)
 class TableController:
     """A regulator that runs an exported table, or lines chosen from a book, with the tables' own rule.
 
-    If the table has an estimator, the rule is asked with the estimated speed.
+    If the table has an estimator, the rule is asked with the estimated speed. The gauge of a table with slopes shows
+    `gauge_factor` times the true pressure; NaN: it shows none.
     """
 
     table: ControllerTable | ActiveTable
+    gauge_factor: float = 1.0
 
     @property
     def stages(self) -> int:
         """Number of stages K + 1."""
         return int(self.table.coefficients.shape[0])
 
-    def law(self) -> regulator.Rule:
+    def law(self) -> Law:
         """The rule as the kernel takes it."""
-        return self._law
+        table = self.table
+        if table.decisions is Decisions.AT_REST:
+            return self.rule
+        slopes, pressures = fixed(table.slopes, np.float32), fixed(table.pressures, np.float32)
+        return AnyTimeLaw(self.rule, slopes, pressures, table.highest_raised, self.gauge_factor, NO_SURFACES)
 
     @cached_property
-    def _law(self) -> regulator.Rule:
+    def rule(self) -> regulator.Rule:
+        """What is asked at a decision, but for the pressure."""
         none = fixed(np.empty((0, 0)), np.float64)
         table = self.table
         there = np.where(table.has_line[:, :, None], table.coefficients, np.float32(np.nan))
@@ -57,7 +79,8 @@ class LineController:
     `multi_step`: the comparison is repeated at the stage reached before the command is sent, so that one
     command may jump over stages. `lead_s` τ: compared is measured speed + τ·slope, the slope of the
     measured speed being filtered to first order over `slope_filter_s`. With an `estimator` the estimated
-    speed is compared instead of the measured one.
+    speed is compared instead of the measured one. `decisions` at any time: the lines are asked at every sample, with
+    the stage commanded last.
     """
 
     lines: SwitchingLines
@@ -65,14 +88,23 @@ class LineController:
     lead_s: float = 0.0
     slope_filter_s: float = 0.3
     estimator: Estimator | None = None
+    decisions: Decisions = Decisions.AT_REST
 
     @property
     def stages(self) -> int:
         """Number of stages K + 1."""
         return self.lines.stages
 
-    def law(self) -> regulator.Rule:
+    def law(self) -> Law:
         """The rule as the kernel takes it."""
+        if self.decisions is Decisions.AT_REST:
+            return self.rule
+        none = fixed(np.empty((0, 2)), np.float32), fixed(np.empty(0), np.float32)
+        return AnyTimeLaw(self.rule, *none, 0, 1.0, NO_SURFACES)
+
+    @property
+    def rule(self) -> regulator.Rule:
+        """What is asked at a decision."""
         lines = self.lines
         return regulator.Rule(
             fixed(np.empty((0, 0, 0)), np.float32),
@@ -100,15 +132,19 @@ def full_brake(stages: int, start_m: float, exit_m: float) -> LineController:
 Controller = TableController | LineController
 
 
+class Regulator(Protocol):
+    """Whatever the closed loop can run."""
+
+    @property
+    def stages(self) -> int:
+        """Number of stages K + 1."""
+
+    def law(self) -> Law:
+        """The rule as a kernel takes it, asked at rest or at any time."""
+
+
 def estimator_arrays(estimator: Estimator | None) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Parameters and work of the estimator as the kernel takes them; no work for none."""
     if estimator is None:
         return fixed(np.zeros(0), np.float32), fixed(np.zeros((3, 0)), np.float32)
     return fixed(estimator.parameters, np.float32), fixed(estimator.work, np.float32)
-
-
-def fixed(array: NDArray[Any], dtype: type[Scalar]) -> NDArray[Scalar]:
-    """Contiguous read-only view or copy: the kernel is compiled for exactly such arrays, once."""
-    view: NDArray[Scalar] = np.ascontiguousarray(array, dtype=dtype).view()
-    view.setflags(write=False)
-    return view

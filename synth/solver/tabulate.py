@@ -5,14 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from plant_models import Plant
 from synth.solver.exit_density import ExitDensity
+from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.switching_lines import SwitchingLines
 from tuning_tables import (
     Approach,
     ControllerTable,
     CutId,
+    Decisions,
     Estimator,
     Generator,
     Predicted,
@@ -23,7 +26,8 @@ from tuning_tables import (
 )
 
 if TYPE_CHECKING:  # who asks a table for its lines needs no kernels
-    from synth.solver.polynomial_lines import PolynomialLines
+    from synth.solver.any_time.drive_modes import DriveModes
+    from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
 
 OVERSPEED_M_S = 0.3
 """Over-speed counted in `predicted`: exit faster than the target by more than this."""
@@ -35,10 +39,10 @@ UNPREDICTED = Predicted(0.0, 0.0, 0.0, 0.0)
 
 
 def tabulate(
-    plant: Plant, lines: PolynomialLines, target_speed_m_s: float, predicted: Predicted, generator: Generator,
-    table_id: str, created: str, estimator: Estimator | None = None,
+    plant: Plant, lines: PolynomialLines | PolynomialSurfaces, target_speed_m_s: float, predicted: Predicted,
+    generator: Generator, table_id: str, created: str, estimator: Estimator | None = None,
 ) -> ControllerTable:  # fmt: skip
-    """The exported table, with `estimator` for the estimated speed.
+    """The exported table, with `estimator` for the estimated speed; of surfaces, for commands at any time.
 
     A stage that the cut may not use has a lower line above every speed: leave it at once.
 
@@ -46,17 +50,21 @@ def tabulate(
     """
     position = plant.position
     highest = max(9.0, float(np.ceil(position.max_entry_speed_m_s + 2.0)))
-    powers = lines.powers_of_s()
+    if isinstance(lines, PolynomialLines):
+        decisions, path_lines, slopes = Decisions.AT_REST, lines, None
+    else:
+        decisions, path_lines = Decisions.AT_ANY_TIME, lines.at_stage_pressures()
+        slopes = lines.slopes_m_s_per_kpa() if lines.has_slopes else None
+    powers = path_lines.powers_of_s()
     stages = []
-    for k, pressure in enumerate(position.stage_pressures_kpa):
-        lower: tuple[float, ...] | None
-        upper: tuple[float, ...] | None
+    for k, pressure in enumerate(map(float, position.stage_pressures_kpa)):
         if k < len(powers):
-            lower = round_coefficients(powers[k, 0]) if lines.has_line[k, 0] else None
-            upper = round_coefficients(powers[k, 1]) if lines.has_line[k, 1] else None
+            stages.append(
+                rounded_stage(k, pressure, powers[k], lines.has_line[k], None if slopes is None else slopes[k])
+            )
         else:
-            lower, upper = round_coefficients([highest + 1.0] + [0.0] * lines.degree), None
-        stages.append(Stage(k, float(pressure), lower, upper))
+            leave = round_coefficients([highest + 1.0] + [0.0] * path_lines.degree)
+            stages.append(Stage(k, pressure, leave, None, None if slopes is None else 0.0))
     return ControllerTable(
         id=table_id,
         created=created,
@@ -66,13 +74,29 @@ def tabulate(
         ),
         cut=CutId(plant.cut.category, float(plant.cut.mass_t), plant.cut.axle_offsets_m, plant.cut.category_number),
         target_speed_m_s=float(target_speed_m_s),
-        degree=lines.degree,
+        degree=path_lines.degree,
         stages=tuple(stages),
         valid=ValidRange((float(plant.start_m), float(plant.exit_m)), (LOWEST_VALID_SPEED_M_S, highest)),
         predicted=predicted,
         estimator=estimator,
         approach=approach_of(plant),
+        decisions=decisions,
     )
+
+
+def rounded_stage(
+    k: int,
+    pressure_kpa: float,
+    powers: NDArray[np.float64],
+    has_line: NDArray[np.bool_],
+    slopes: NDArray[np.float64] | None,
+) -> Stage:
+    """Stage `k` with the lines, (2, r + 1), that it has, and their slopes (2,), as float32 numbers."""
+    lower, upper = (round_coefficients(line) if here else None for line, here in zip(powers, has_line, strict=True))
+    if slopes is None:
+        return Stage(k, pressure_kpa, lower, upper)
+    steep = (round_coefficients([slope])[0] if here else None for slope, here in zip(slopes, has_line, strict=True))
+    return Stage(k, pressure_kpa, lower, upper, *steep)
 
 
 def approach_of(plant: Plant) -> Approach | None:
@@ -101,3 +125,13 @@ def lines_of(table: ControllerTable, nodes_m: np.ndarray) -> SwitchingLines:
     upper = np.where(table.has_line[:, 1, None], values[:, 1], np.inf)
     upper[table.entrance_stage :, nodes_m < 0.0] = np.inf
     return SwitchingLines(np.array(nodes_m, dtype=np.float64), lower, upper)
+
+
+def surfaces_of(table: ControllerTable, nodes_m: NDArray[np.float64], modes: DriveModes) -> NDArray[np.float64]:
+    """The table's surfaces by side, path node and mode, (2, N, M), from its float32 numbers; ±inf as in `lines_of`."""
+    lines = lines_of(table, nodes_m)
+    lowest, highest = table.pressures[0], table.pressures[table.highest_raised]
+    above = np.clip(modes.pressure_kpa, lowest, highest) - table.pressures[modes.stage]
+    at_stage = np.stack([lines.lower_m_s[modes.stage].T, lines.upper_m_s[modes.stage].T])
+    found: NDArray[np.float64] = at_stage + (table.slopes[modes.stage].T * above)[:, None, :]
+    return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 from plant_models import Plant
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
+from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
 from synth.solver.backward_induction import Solution
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.polynomial_lines import PolynomialLines
@@ -29,8 +30,12 @@ def lines_of_solution(solution: Solution, degree: int) -> PolynomialLines:
 
 
 def rounded(
-    config: ResolvedConfig, plant: Plant, lines: PolynomialLines, target_m_s: float, estimator: Estimator | None = None
+    config: ResolvedConfig,
+    plant: Plant,
+    lines: PolynomialLines | PolynomialSurfaces,
+    target_m_s: float,
+    estimator: Estimator | None = None,
 ) -> ControllerTable:
-    """The table of `lines`."""
+    """The table of `lines`, or of surfaces."""
     maker = Generator("retarder-synth study", "0", config.sha256)
     return tabulate(plant, lines, target_m_s, UNPREDICTED, maker, f"to-{target_m_s:g}", CREATED, estimator)

@@ -7,9 +7,10 @@ are tuned on the rms exit error of simulated passes: a coarse grid, then a simpl
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from math import ceil
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 from synth.simulation.closed_loop import ClosedLoop, LineController
 from synth.simulation.common_passes import CommonPasses
 from synth.solver.switching_lines import SwitchingLines
+from tuning_tables.decisions import Decisions
 
 LINE_NODES = 129
 """Nodes of the lines; only the energy rule's are not constant."""
@@ -65,6 +67,14 @@ class Family:
     names: tuple[str, ...]
     grids: tuple[tuple[float, ...], ...]
     bounds: tuple[tuple[float, float], ...]
+
+    def deciding(self, decisions: Decisions) -> Family:
+        """The same law, asked at rest or at any time."""
+
+        def build(*arguments: Any) -> LineController:
+            return replace(self.build(*arguments), decisions=decisions)
+
+        return replace(self, build=build)
 
 
 def single_threshold(loop: ClosedLoop, target_m_s: float, brake_stage: int, offset_m_s: float) -> LineController:
@@ -170,9 +180,14 @@ FAMILIES = (
 )
 
 
-def tune_baselines(passes: CommonPasses, target_m_s: float) -> tuple[TunedBaseline, ...]:
-    """The four baselines, tuned for least rms exit error on `passes` (600 are as many as the richest law uses)."""
-    return tuple(tune(family, passes, target_m_s) for family in FAMILIES)
+def tune_baselines(
+    passes: CommonPasses, target_m_s: float, decisions: Decisions = Decisions.AT_REST
+) -> tuple[TunedBaseline, ...]:
+    """The four baselines, tuned for least rms exit error on `passes` (600 are as many as the richest law uses).
+
+    At any time they are asked at every sample, with the stage commanded last.
+    """
+    return tuple(tune(family.deciding(decisions), passes, target_m_s) for family in FAMILIES)
 
 
 def tune(family: Family, passes: CommonPasses, target_m_s: float) -> TunedBaseline:

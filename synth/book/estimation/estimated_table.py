@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,8 +25,9 @@ from synth.book.estimation.tuning_days import tuning_days
 from synth.problem.estimator_resolution import estimator_resolution, guessed_error_m_s
 from synth.problem.problem import Problem
 from synth.problem.resolution import Resolution
-from synth.simulation.closed_loop import LineController, close_loop
+from synth.simulation.closed_loop import Controller, LineController, close_loop
 from synth.simulation.random_passes import RandomPasses
+from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
 from synth.solver.chain.chain import Chain, persistent_chain
 from synth.solver.chain.speed_measurement import SmoothMeasurement
 from synth.solver.polynomial_lines import PolynomialLines, opened
@@ -53,9 +54,12 @@ NO_WORSE = 1.03
 """Of the rms without estimator; a table that is worse than this on one of its days has no estimator."""
 
 
+Lines = TypeVar("Lines", PolynomialLines, PolynomialSurfaces)
+
+
 @dataclass(frozen=True)
-class EstimatedTable:
-    """Lines for the estimated speed, the estimator, and the error of its speed where decisions are taken.
+class EstimatedTable(Generic[Lines]):
+    """Lines or surfaces for the estimated speed, the estimator, and the error of its speed where decisions are taken.
 
     `trim_m_s`: what was added to all lower and to all upper lines; `rms_before_m_s`, `rms_after_m_s`: simulated on the
     tuning passes without and with it; `rounds`: designs until the error had settled. `designed`: whether the lines are
@@ -67,7 +71,7 @@ class EstimatedTable:
     of the days' ratios.
     """
 
-    lines: PolynomialLines
+    lines: Lines
     estimator: Estimator
     error_m_s: float
     trim_m_s: tuple[float, float]
@@ -96,7 +100,9 @@ def estimator_design(plant: Plant, resolution: Resolution, lowest_target_m_s: fl
     return persistent_chain(of_any_day, finer)
 
 
-def estimated_table(problem: Problem, design: Chain, measured: PolynomialLines, tuning: RandomPasses) -> EstimatedTable:
+def estimated_table(
+    problem: Problem, design: Chain, measured: PolynomialLines, tuning: RandomPasses
+) -> EstimatedTable[PolynomialLines]:
     """Design the lines of one case for its estimator, on the `estimator_design` of its plant.
 
     `measured`: lines for the measured speed, of the degree wanted; kept where design goes wrong. `tuning` are passes to
@@ -113,29 +119,58 @@ def estimated_table(problem: Problem, design: Chain, measured: PolynomialLines, 
         found = speed_error_m_s(loop, controller, tuning.part(0, min(ERROR_PASSES, len(tuning))))
         settled = abs(found - error) <= SETTLED * error
         error = found
-    days = tuning_days(plant, tuning)
+    design_of_both = Design(lines, measured, estimator, error, rounds, controller_of, opened)
+    return fitted_to_days(problem, design_of_both, tuning)
 
-    def squares(lines: PolynomialLines, estimator: Estimator | None) -> NDArray[np.float64]:
-        return days.mean_squares(controller_of(lines, estimator), problem.target_speed_m_s)
 
-    plain = np.maximum(squares(measured, None), LEAST_SQUARE_M2_S2)
+@dataclass(frozen=True)
+class Design(Generic[Lines]):
+    """Lines or surfaces `designed` for an estimated speed, and those for the `measured` one, both before the trim.
+
+    `controller`: a regulator that compares the estimated speed with such lines, or without an estimator the measured
+    one; `opened`: the lines with every pair far enough apart.
+    """
+
+    designed: Lines
+    measured: Lines
+    estimator: Estimator
+    error_m_s: float
+    rounds: int
+    controller: Callable[[Lines, Estimator | None], Controller]
+    opened: Callable[[Lines], Lines]
+
+    def shifted(self, lines: Lines, lower_m_s: float, upper_m_s: float) -> Lines:
+        """All lower and all upper lines moved, and no pair nearer than the polish allows."""
+        return self.opened(moved(lines, lower_m_s, upper_m_s))
+
+
+def fitted_to_days(problem: Problem, design: Design[Lines], tuning: RandomPasses) -> EstimatedTable[Lines]:
+    """The better of both trimmed on `tuning`, each with the estimator; beside it those measured without."""
+    days, target_m_s = tuning_days(problem.plant, tuning), problem.target_speed_m_s
+
+    def squares(lines: Lines, estimator: Estimator | None) -> NDArray[np.float64]:
+        return days.mean_squares(design.controller(lines, estimator), target_m_s)
+
+    plain = np.maximum(squares(design.measured, None), LEAST_SQUARE_M2_S2)
     share = days.weight * plain[len(plain) // 2] / plain
 
-    def rms(lines: PolynomialLines, estimator: Estimator | None) -> float:
-        return float(np.sqrt(share @ squares(lines, estimator)))
+    def rms(lines: Lines) -> float:
+        return float(np.sqrt(share @ squares(lines, design.estimator)))
 
-    def trim(lines: PolynomialLines) -> tuple[tuple[float, float], float, float]:
-        return trimmed(lambda a, b: rms(shifted(lines, a, b), estimator))
+    def trim(lines: Lines) -> tuple[tuple[float, float], float, float]:
+        return trimmed(lambda a, b: rms(design.shifted(lines, a, b)))
 
+    lines = design.designed
     shifts, before, after = trim(lines)
-    designed = after <= rms(measured, estimator)
+    designed = after <= rms(design.measured)
     if not designed:
-        lines = measured
+        lines = design.measured
         shifts, before, after = trim(lines)
-    kept = shifted(lines, *shifts)
-    worst_day = float(np.sqrt((squares(kept, estimator) / plain).max()))
+    kept = design.shifted(lines, *shifts)
+    worst_day = float(np.sqrt((squares(kept, design.estimator) / plain).max()))
     rms_plain = float(np.sqrt(share @ plain))
-    return EstimatedTable(kept, estimator, error, shifts, before, after, rounds, designed, rms_plain, worst_day)
+    how = design.estimator, design.error_m_s, shifts, before, after, design.rounds, designed
+    return EstimatedTable(kept, *how, rms_plain, worst_day)
 
 
 def designed_lines(problem: Problem, design: Chain, degree: int, error_m_s: float) -> PolynomialLines:
@@ -152,11 +187,16 @@ def controller_of(lines: PolynomialLines, estimator: Estimator | None) -> LineCo
 
 def shifted(lines: PolynomialLines, lower_m_s: float, upper_m_s: float) -> PolynomialLines:
     """All lower and all upper lines moved, and no pair nearer than the polish allows."""
+    return opened(moved(lines, lower_m_s, upper_m_s))
+
+
+def moved(lines: Lines, lower_m_s: float, upper_m_s: float) -> Lines:
+    """All lower and all upper lines moved."""
     coefficients: NDArray[np.float64] = lines.coefficients.copy()
     # The constant Legendre polynomial is 1.
     coefficients[:, 0, 0] += lower_m_s
     coefficients[:, 1, 0] += upper_m_s
-    return opened(replace(lines, coefficients=coefficients))
+    return replace(lines, coefficients=coefficients)
 
 
 def trimmed(rms: Callable[[float, float], float]) -> tuple[tuple[float, float], float, float]:

@@ -61,7 +61,11 @@ class ToldWithEstimator:
 
 
 def told_with_estimator(
-    made: EstimatedTable, design: Chain, curvature: NDArray[np.float64], tuning: CommonPasses, target_m_s: float
+    made: EstimatedTable[PolynomialLines],
+    design: Chain,
+    curvature: NDArray[np.float64],
+    tuning: CommonPasses,
+    target_m_s: float,
 ) -> Sequence[ToldWithEstimator]:
     """Two regulators with the table's estimator, told the friction: with lines polished for it, and with the table's.
 

@@ -6,26 +6,20 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
-import numpy as np
-
 from plant_models import Plant
 from plant_models.approach import Approach
+from synth.book.any_time.surface_table import polished_surfaces, starting_surfaces, with_surface_prediction
 from synth.book.class_setup import ClassSetup, Origin, class_setup, origin_of, validation_passes
 from synth.book.permissions.permission import CasePermissions, Permission, PermissionResult
-from synth.book.tuned_table import TunedTable, solutions, tuned_table
+from synth.book.tuned_table import TunedTable, rounded, solutions, tuned_table
 from synth.book.work_queue import run_nested
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
-from synth.simulation.any_time.laws import PolynomialController
-from synth.simulation.any_time.loop import any_time_loop
 from synth.simulation.closed_loop import TableController
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
-from synth.solver.any_time.polynomial_surfaces import CUBIC_ALONE, CUBIC_AND_SLOPE, surfaces_of_lines
-from synth.solver.any_time.sampled_chain import check_sampled_chain, design_resolution, sampled_chain
-from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
-from synth.solver.any_time.surface_polish import polish_surfaces
+from synth.solver.any_time.sampled_chain import design_resolution
 from synth.solver.one_blas_thread import one_blas_thread
 
 APPROACH_M = 4.0
@@ -59,7 +53,7 @@ class CaseTuned:
 def permissions_of(config: ResolvedConfig, created: str, workers: int, tell: Tell) -> tuple[CasePermissions, ...]:
     """All cases of `config`, on `workers` threads; no figure depends on how many.
 
-    Raises `PlantError` where `drive_at_any_time` does.
+    Raises `PlantError` where `Plant.drive_at_any_time` does.
     """
     origin, passes = origin_of(config.sha256, created), validation_passes(config)
 
@@ -88,8 +82,8 @@ def case_permissions(case: CaseTuned, passes: RandomPasses, origin: Origin, tell
     """All permissions of one case."""
     label, plant = case.setup.label, case.setup.plant
     results = [
-        at_any_time(case, Permission.ANY_TIME, CUBIC_AND_SLOPE),
-        at_any_time(case, Permission.WITHOUT_GAUGE, CUBIC_ALONE),
+        at_any_time(case, Permission.ANY_TIME, has_gauge=True),
+        at_any_time(case, Permission.WITHOUT_GAUGE, has_gauge=False),
     ]
     if not case.config.regulator.estimator and case.config.criterion.requirement is None:
         estimating = replace(case.config, regulator=case.config.regulator.model_copy(update={"estimator": True}))
@@ -103,17 +97,14 @@ def case_permissions(case: CaseTuned, passes: RandomPasses, origin: Origin, tell
     return CasePermissions(label, case.target_m_s, statistics, case.tuned.table.predicted.rms_m_s, tuple(results))
 
 
-def at_any_time(case: CaseTuned, permission: Permission, degrees: tuple[int, ...]) -> PermissionResult:
-    """Surfaces polished from the lines of the table, predicted and simulated."""
-    plant, lines = case.setup.plant, case.tuned.lines
+def at_any_time(case: CaseTuned, permission: Permission, has_gauge: bool) -> PermissionResult:
+    """The table of surfaces polished from the lines of the table, predicted and simulated."""
+    setup, plant = case.setup, case.setup.plant
     steps = design_resolution(plant, case.target_m_s)
-    design, check, loop = sampled_chain(plant, steps), check_sampled_chain(plant, steps), any_time_loop(plant)
-    stages = np.asarray(plant.position.stage_pressures_kpa[: design.modes.stages])
-    start = surfaces_of_lines(lines, stages, degrees)
-    surfaces = polish_surfaces(start, SurfaceEvaluation(design), case.aim).surfaces
-    density = SurfaceEvaluation(check).density(surfaces.at(check.grid.path_m[:-1], check.modes))
-    sample = loop.run(PolynomialController(surfaces), case.setup.passes.draws)
-    return case.result(permission, sample, density.rms_m_s(case.target_m_s))
+    start = starting_surfaces(plant, case.tuned.lines, has_gauge)
+    surfaces = polished_surfaces(plant, case.aim, start, steps).surfaces
+    table, _ = with_surface_prediction(plant, rounded(setup, surfaces, case.target_m_s))
+    return case.result(permission, setup.passes.run(TableController(table)), table.predicted.rms_m_s)
 
 
 def at_rest(

@@ -15,7 +15,16 @@ from numpy.typing import NDArray
 
 from synth.kernels.any_time.driven_period import play_period
 from synth.kernels.loop.closed_loop import LEFT, LONGEST_PASS_S, MOVING, Draws, Exits, Floats, Path, advance, note
-from synth.kernels.loop.regulator import Sensor, admitted, measure
+from synth.kernels.loop.regulator import (
+    Rule,
+    Sensor,
+    admitted,
+    estimated_speed,
+    measure,
+    pressure_rises,
+    stage_by_lines,
+    table_decision,
+)
 
 
 class SampledDrive(NamedTuple):
@@ -34,37 +43,33 @@ class SampledDrive(NamedTuple):
     parts: int
 
 
-class SurfaceLaw(NamedTuple):
-    """Rule at a sample: a polynomial of path and pressure, or surfaces on nodes if there is none (size 0).
+class NodeSurfaces(NamedTuple):
+    """`lower`, `upper` (K + 1, R, B, N + 1) by stage, wait, pressure node and path node, linear in between.
 
-    `coefficients` (K + 1, 2, 3, r + 1): lower and upper line as a sum over powers 0 … 2 of (P − P_k)/100 kPa, each with
-    a polynomial in u, ascending, −1 at `start_m` and 1 at `exit_m`; `has_line` (K + 1, 2); P is taken
-    for `gauge_factor` times itself. Surfaces: `lower`, `upper` (K + 1, R, B, N + 1) by stage, wait, pressure node and
-    path node, linear in between.
+    The path nodes are `spacing_m` apart from `start_m` on; none of anything: there are no surfaces.
     """
 
-    coefficients: Floats
-    has_line: NDArray[np.bool_]
-    start_m: float
-    exit_m: float
-    gauge_factor: float
     lower: Floats
     upper: Floats
     waits_s: Floats
     nodes_kpa: Floats
+    start_m: float
     spacing_m: float
 
 
-@njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
-def polynomial_line(coefficients: Floats, u: float, x: float) -> float:
-    """One line at u and at pressure x above its stage, in 100 kPa."""
-    total = 0.0
-    for i in range(coefficients.shape[0] - 1, -1, -1):
-        value = 0.0
-        for power in range(coefficients.shape[1] - 1, -1, -1):
-            value = value * u + coefficients[i, power]
-        total = total * x + value
-    return total
+class AnyTimeLaw(NamedTuple):
+    """What is asked at every sample: surfaces on nodes if there are any, else a rule of the locked loop.
+
+    `slopes` float32 (K + 1, 2), `pressures` float32 (K + 1,), `highest_raised`: those of a table, as
+    `tuning_tables.rule.rises` takes them. The gauge shows `gauge_factor` times the true pressure; NaN: it shows none.
+    """
+
+    rule: Rule
+    slopes: NDArray[np.float32]
+    pressures: NDArray[np.float32]
+    highest_raised: int
+    gauge_factor: float
+    surfaces: NodeSurfaces
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -94,35 +99,45 @@ def surface_line(surface: Floats, nodes_kpa: Floats, spacing_m: float, pressure:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def wanted_step(
-    law: SurfaceLaw, stage_kpa: Floats, stage: int, pressure: float, wait: float, s: float, v: float
-) -> int:
-    """−1, 0 or +1 stage."""
-    if law.coefficients.shape[0] > 0:
-        u = 2.0 * (s - law.start_m) / (law.exit_m - law.start_m) - 1.0
-        x = 0.01 * (pressure * law.gauge_factor - stage_kpa[stage])
-        if law.has_line[stage, 0] and v < polynomial_line(law.coefficients[stage, 0], u, x):
-            return -1
-        if law.has_line[stage, 1] and v > polynomial_line(law.coefficients[stage, 1], u, x):
-            return 1
-        return 0
+def wanted_by_surfaces(by: NodeSurfaces, stage: int, pressure: float, wait: float, s: float, v: float) -> int:
+    """The stage that surfaces want, one beside `stage` or the same."""
     w = 0
-    for i in range(law.waits_s.shape[0]):
-        if abs(law.waits_s[i] - wait) < abs(law.waits_s[w] - wait):
+    for i in range(by.waits_s.shape[0]):
+        if abs(by.waits_s[i] - wait) < abs(by.waits_s[w] - wait):
             w = i
-    if v < surface_line(law.lower[stage, w], law.nodes_kpa, law.spacing_m, pressure, s - law.start_m):
-        return -1
-    if v > surface_line(law.upper[stage, w], law.nodes_kpa, law.spacing_m, pressure, s - law.start_m):
-        return 1
-    return 0
+    if v < surface_line(by.lower[stage, w], by.nodes_kpa, by.spacing_m, pressure, s - by.start_m):
+        return stage - 1
+    if v > surface_line(by.upper[stage, w], by.nodes_kpa, by.spacing_m, pressure, s - by.start_m):
+        return stage + 1
+    return stage
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def wanted_stage(law: AnyTimeLaw, stage: int, top: int, pressure: float, wait: float, s: float, v: float) -> int:
+    """The stage that is wanted at a sample, within 0 … `top`; `v` is the speed that the regulator knows."""
+    by = law.rule
+    if law.surfaces.lower.shape[0] > 0:
+        return wanted_by_surfaces(law.surfaces, stage, pressure, wait, s, v)
+    if by.coefficients.shape[0] > 0:
+        low, high = pressure_rises(law.slopes, law.pressures, law.highest_raised, stage, pressure * law.gauge_factor)
+        step = table_decision(by.coefficients, by.has_line, by.valid, by.entrance_stage, stage, s, v, low, high)
+        return min(max(stage + step, 0), top)
+    wanted: int = stage_by_lines(by.lower, by.upper, by.start_m, by.spacing_m, by.multi_step, stage, top, s, v)
+    return wanted
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def run_any_time_pass(
-    edges_m: Floats, free: Floats, brake: Floats, drive: SampledDrive, sensor: Sensor, law: SurfaceLaw,
-    entry_m_s: float, first_sample_s: float, noise_z: NDArray[np.float32], events: Floats,
+    edges_m: Floats, free: Floats, brake: Floats, drive: SampledDrive, sensor: Sensor, law: AnyTimeLaw,
+    entry_m_s: float, first_sample_s: float, noise_z: NDArray[np.float32], events: Floats, known: NDArray[np.float32],
 ) -> Any:  # fmt: skip
-    """One pass from where the regulator acts to the exit; returns (v, time, status, switchings, events)."""
+    """One pass from where the regulator acts to the exit; returns (v, time, status, switchings, events).
+
+    `known` (8,) is memory for the estimator.
+    """
+    parameters, work = law.rule.estimator_parameters, law.rule.estimator_work
+    lead_s, gain = law.rule.lead_s, sensor.period_s / (sensor.period_s + law.rule.filter_s)
+    known[:], passed_kpa, slope, last = 0.0, 0.0, 0.0, math.nan
     stage_kpa, touch = drive.stage_kpa, drive.valves.touch_kpa
     period, top = sensor.period_s, stage_kpa.shape[0] - 1
     over = np.empty(drive.parts)
@@ -133,13 +148,19 @@ def run_any_time_pass(
     cell, s, v, time, status = advance(edges_m, free, brake, kpa, first_sample_s, 0, edges_m[0], entry_m_s)
     while status == MOVING and time < LONGEST_PASS_S:
         measured = measure(v, noise_z[sample % noise_z.shape[0]], sensor)
-        step = wanted_step(law, stage_kpa, stage, pressure, wait, s, measured)
-        before, stage = stage, admitted(stage, min(max(stage + step, 0), top), s, drive.entrance_stage)
+        if work.shape[1] > 0:
+            measured = float(estimated_speed(parameters, work, known, s, measured, passed_kpa))
+        if not math.isnan(measured - last):  # neither at the first sample nor beside a missing reading
+            slope += gain * ((measured - last) / period - slope)
+        last = measured
+        wanted = wanted_stage(law, stage, top, pressure, wait, s, measured + lead_s * slope)
+        before, stage = stage, admitted(stage, wanted, s, drive.entrance_stage)
         if stage != before:
             switchings += 1
         pressure, wait = play_period(
             pressure, wait, stage_kpa[before], stage_kpa[stage], drive.computing_delay_s, period, drive.valves, over
         )
+        passed_kpa = over.mean()
         i, used = 0, 0.0
         while i < drive.parts and status == MOVING:
             begun, kpa = i, over[i]
@@ -160,10 +181,10 @@ def run_any_time_pass(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def run_any_time_passes(
-    path: Path, drive: SampledDrive, sensor: Sensor, law: SurfaceLaw, draws: Draws, exits: Exits, events: Floats
+    path: Path, drive: SampledDrive, sensor: Sensor, law: AnyTimeLaw, draws: Draws, exits: Exits, events: Floats
 ) -> int:
     """Simulate all passes of `draws` into `exits`; returns the number of events of the last pass."""
-    free = np.empty(path.gravity_m_s2.shape[0])
+    free, known = np.empty(path.gravity_m_s2.shape[0]), np.empty(8, np.float32)
     count = 0
     for i in range(draws.cut_factor.shape[0]):
         drag = path.drag_m_s2_per_n_kn * draws.resistance_n_kn[i]
@@ -171,7 +192,7 @@ def run_any_time_passes(
             free[j] = path.gravity_m_s2[j] - drag
         v, time, status, switchings, count = run_any_time_pass(
             path.edges_m, free, draws.brake_m_s2_per_kpa[i], drive, sensor, law,
-            draws.entry_m_s[i], draws.first_sample_s[i], draws.noise_z[i], events,
+            draws.entry_m_s[i], draws.first_sample_s[i], draws.noise_z[i], events, known,
         )  # fmt: skip
         exits.stalled[i] = status != LEFT
         exits.speed_m_s[i] = v if status == LEFT else 0.0

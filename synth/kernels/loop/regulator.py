@@ -53,6 +53,7 @@ class Rule(NamedTuple):
 
 
 table_decision = njit(cache=True, nogil=True)(rule.decide)
+pressure_rises = njit(cache=True, nogil=True)(rule.rises)
 estimated_speed = njit(cache=True, nogil=True)(estimator.observe)
 
 

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant
-from plant_models.errors import require
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.stage_regulator import resting_modes
 from plant_models.valve_drive import ValveDrive
@@ -80,21 +79,13 @@ class Found:
         return self.modes.setdefault((stage, node, wait), len(self.modes))
 
 
-def drive_at_any_time(plant: Plant) -> ValveDrive:
-    """The drive of `plant`; raises `PlantError` where it cannot be commanded at every sample."""
-    sensor, position = plant.sensor, plant.position
-    require(
-        sensor.computing_delay_s < sensor.sample_period_s,
-        f"sensor: computing_delay_s is {sensor.computing_delay_s:g}; commands at every sample are modelled for delays "
-        "shorter than sample_period_s",
-    )
-    return position.pneumatics.valves_shutting_at_once(position.force.touch_pressure_kpa)
-
-
 def drive_modes(plant: Plant, step_kpa: float, parts: int) -> DriveModes:
-    """All modes of `plant`'s drive on a pressure grid of `step_kpa`, a period cut into `parts`."""
+    """All modes of `plant`'s drive on a pressure grid of `step_kpa`, a period cut into `parts`.
+
+    Raises `PlantError` as `Plant.drive_at_any_time`.
+    """
     position, sensor, top = plant.position, plant.sensor, plant.top_stage
-    drive = drive_at_any_time(plant)
+    drive = plant.drive_at_any_time()
     grid = pressure_grid(position, top, step_kpa)
     stages = position.stage_pressures_kpa
     start = resting_modes(position, top)[0][1]

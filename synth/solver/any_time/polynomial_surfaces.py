@@ -26,8 +26,9 @@ CUBIC_ALONE = (3,)
 class PolynomialSurfaces:
     """V_lo,k and V_hi,k = Σ_i x^i · Σ_j a_ij·L_j(u), x = (P − P_k) / 100 kPa; u is −1 at `start_m` and 1 at S_exit.
 
-    L_j are Legendre polynomials. `stage_kpa` (K + 1,) pressures P_k; `degrees`: of the path, for each power i.
-    `coefficients` (K + 1, 2, T): lower, upper, power after power; `has_line` (K + 1, 2).
+    L_j are Legendre polynomials, and P is held within the pressures of the stages. `stage_kpa` (K + 1,) pressures P_k;
+    `degrees`: of the path, for each power i. `coefficients` (K + 1, 2, T): lower, upper, power after power; `has_line`
+    (K + 1, 2).
     """
 
     start_m: float
@@ -44,7 +45,8 @@ class PolynomialSurfaces:
 
     def terms(self, nodes_m: NDArray[np.float64], stage: int, pressure_kpa: NDArray[np.float64]) -> NDArray[np.float64]:
         """What the coefficients of `stage` are multiplied by at path nodes and pressures, (N, B, T)."""
-        x = (pressure_kpa - self.stage_kpa[stage]) / PRESSURE_UNIT_KPA
+        held = np.clip(pressure_kpa, self.stage_kpa[0], self.stage_kpa[-1])
+        x = (held - self.stage_kpa[stage]) / PRESSURE_UNIT_KPA
         parts = [
             basis(nodes_m, self.start_m, self.exit_m, degree)[:, None, :] * (x**power)[None, :, None]
             for power, degree in enumerate(self.degrees)
@@ -60,6 +62,22 @@ class PolynomialSurfaces:
             terms = self.terms(nodes_m, int(stage), modes.pressure_kpa[here])
             found[side][:, here] = terms @ self.coefficients[stage, side]
         return found
+
+    @property
+    def has_slopes(self) -> bool:
+        """Whether the lines depend on the pressure."""
+        return len(self.degrees) > 1
+
+    def at_stage_pressures(self) -> PolynomialLines:
+        """The lines of every stage at its own pressure."""
+        coefficients = self.coefficients[:, :, : self.degrees[0] + 1]
+        return PolynomialLines(self.start_m, self.exit_m, coefficients, np.array(self.has_line))
+
+    def slopes_m_s_per_kpa(self) -> NDArray[np.float64]:
+        """Those of the lines over the pressure, (K + 1, 2); `ValueError` where they are not the same at every path."""
+        if self.degrees[1:] != (0,):
+            raise ValueError(f"surfaces of degrees {self.degrees} have no slope that is the same at every path")
+        return self.coefficients[:, :, -1] / PRESSURE_UNIT_KPA
 
     def powers(self) -> NDArray[np.float64]:
         """Coefficients (K + 1, 2, powers of x, powers of u), ascending."""

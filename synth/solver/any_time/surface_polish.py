@@ -88,9 +88,9 @@ def polish_surfaces(
     start, with its gaps opened. Raises `PlantError` if that cost is not positive: the grid is too coarse.
     """
     modes, nodes_m = evaluation.chain.modes, evaluation.chain.grid.path_m[:-1]
-    pressures = [modes.pressure_kpa[modes.stage == k] for k in range(modes.stages)]
-    start = opened(start, pressures)
-    terms = Terms(modes.stage, start.lines, tuple(start.terms(nodes_m, k, each) for k, each in enumerate(pressures)))
+    start = opened(start)
+    of_stage = (start.terms(nodes_m, k, modes.pressure_kpa[modes.stage == k]) for k in range(modes.stages))
+    terms = Terms(modes.stage, start.lines, tuple(of_stage))
 
     def at(surfaces: PolynomialSurfaces) -> SurfaceCost:
         return evaluation.gradient(surfaces.at(nodes_m, modes), aim)
@@ -107,12 +107,12 @@ def polish_surfaces(
         return cost.cost_m2_s2, coordinates.slopes(terms.slopes(cost.slopes))
 
     found = descend(
-        lambda y: by_point(at(coordinates.surfaces(y))), by_point(first), gaps_open(coordinates, pressures),
+        lambda y: by_point(at(coordinates.surfaces(y))), by_point(first), gaps_open(coordinates),
         max_iterations, tolerance,
-        allowed=lambda y: least_gap(coordinates.surfaces(y), pressures).min() >= 0.5 * MINIMUM_GAP_M_S,
+        allowed=lambda y: least_gap(coordinates.surfaces(y)).min() >= 0.5 * MINIMUM_GAP_M_S,
     )  # fmt: skip
     best = coordinates.surfaces(found.point)
-    surfaces, cost = opened(best, pressures), found.cost_after
+    surfaces, cost = opened(best), found.cost_after
     if surfaces is not best:
         cost = at(surfaces).cost_m2_s2
     if not 0.0 < cost <= first.cost_m2_s2:
@@ -130,28 +130,28 @@ def whitening(terms: Terms, first: SurfaceCost) -> NDArray[np.float64]:
     return found
 
 
-def opened(surfaces: PolynomialSurfaces, pressures: list[NDArray[np.float64]]) -> PolynomialSurfaces:
+def opened(surfaces: PolynomialSurfaces) -> PolynomialSurfaces:
     """Every pair moved apart until its gap is at least the minimum; the same object where none need be."""
-    short = np.maximum(MINIMUM_GAP_M_S - least_gap(surfaces, pressures), 0.0)
+    short = np.maximum(MINIMUM_GAP_M_S - least_gap(surfaces), 0.0)
     return moved_apart(surfaces, short) if short.any() else surfaces
 
 
-def least_gap(surfaces: PolynomialSurfaces, pressures: list[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """Smallest V_hi − V_lo of every stage over a fine path mesh and all its pressures, (K + 1,); inf without a pair."""
+def least_gap(surfaces: PolynomialSurfaces) -> NDArray[np.float64]:
+    """Smallest V_hi − V_lo of every stage over a fine path mesh and all pressures, (K + 1,); inf without a pair.
+
+    A gap that is linear in the pressure is smallest at the lowest or at the highest.
+    """
     nodes_m = np.linspace(surfaces.start_m, surfaces.exit_m, 201)
-    found = np.full(len(pressures), np.inf)
+    found = np.full(len(surfaces.stage_kpa), np.inf)
     for k in np.flatnonzero(surfaces.has_line.all(axis=1)):
-        gap = surfaces.terms(nodes_m, int(k), ends(pressures[k])) @ np.diff(surfaces.coefficients[k], axis=0)[0]
+        gap = (
+            surfaces.terms(nodes_m, int(k), surfaces.stage_kpa[[0, -1]]) @ np.diff(surfaces.coefficients[k], axis=0)[0]
+        )
         found[k] = gap.min()
     return found
 
 
-def ends(pressures: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The lowest and the highest: where a gap that is linear in the pressure is smallest."""
-    return np.array([pressures.min(), pressures.max()])
-
-
-def gaps_open(coordinates: Coordinates, pressures: list[NDArray[np.float64]]) -> list[Any]:
+def gaps_open(coordinates: Coordinates) -> list[Any]:
     """Linear constraints V_hi − V_lo ≥ gap at points along the path and both ends of the pressure, for each pair."""
     from scipy.optimize import LinearConstraint  # start-up: scipy only where it is needed
 
@@ -160,7 +160,7 @@ def gaps_open(coordinates: Coordinates, pressures: list[NDArray[np.float64]]) ->
     nodes_m = np.linspace(start.start_m, start.exit_m, GAP_NODES)
     found = []
     for k in np.flatnonzero(start.has_line.all(axis=1)).tolist():
-        terms = start.terms(nodes_m, k, ends(pressures[k])).reshape(-1, scale.shape[2])
+        terms = start.terms(nodes_m, k, start.stage_kpa[[0, -1]]).reshape(-1, scale.shape[2])
         rows = np.zeros((len(terms), *scale.shape[:2]))
         rows[:, number[k, 0]], rows[:, number[k, 1]] = -terms @ scale[number[k, 0]], terms @ scale[number[k, 1]]
         least = MINIMUM_GAP_M_S - terms @ np.diff(start.coefficients[k], axis=0)[0]

@@ -13,9 +13,9 @@ from synth.studies.study import Findings
 
 LINES, CUBIC = "at rest, lines", "at rest, cubic"
 SURFACES, POLISHED, PLAIN = "any time, surfaces", "any time, cubic and pressure", "any time, cubic"
-ENERGY = "energy rule"
-NAMES = (LINES, CUBIC, SURFACES, POLISHED, PLAIN, ENERGY)
-SHOWN = (SURFACES, POLISHED, PLAIN, ENERGY)
+ENERGY, ENERGY_AT_ANY_TIME = "energy rule", "energy rule, any time"
+NAMES = (LINES, CUBIC, SURFACES, POLISHED, PLAIN, ENERGY, ENERGY_AT_ANY_TIME)
+SHOWN = (SURFACES, POLISHED, PLAIN, ENERGY, ENERGY_AT_ANY_TIME)
 """Controllers of the pictures of gains."""
 
 
@@ -122,8 +122,9 @@ class AnyTime(Findings):
 
         `permissions`: what they give beside tables as configured; `gauge`: what a wrong one costs.
         """
-        heads = ("valves", "case", CUBIC, POLISHED, PLAIN, ENERGY, f"{POLISHED} / {CUBIC}",
-                 f"{POLISHED} / {ENERGY}", "the same near the target")  # fmt: skip
+        rules = (ENERGY, ENERGY_AT_ANY_TIME)
+        heads = ("valves", "case", CUBIC, POLISHED, PLAIN, *rules, f"{POLISHED} / {CUBIC}",
+                 *(f"{POLISHED} / {rule}" for rule in rules), "the same near the target")  # fmt: skip
         every = ("valves", "case", *NAMES)
         names = (Permission.ANY_TIME, Permission.WITHOUT_GAUGE, Permission.ESTIMATOR)
         granted = ("case", "rms, m/s / switchings", *(each.value for each in names), "predicted / simulated, any time")
@@ -151,9 +152,10 @@ class AnyTime(Findings):
 
 def gain_cells(row: CaseRow) -> tuple[str, ...]:
     """The cells of one case."""
-    c = row.controllers
-    rms = [f"{c[name].rms_m_s:.4f} / {c[name].switchings:.1f}" for name in (CUBIC, POLISHED, PLAIN, ENERGY)]
-    ratios = [c[POLISHED].ratio.cell, row.polished_to[ENERGY].cell, c[POLISHED].near_ratio.cell]
+    c, rules = row.controllers, (ENERGY, ENERGY_AT_ANY_TIME)
+    rms = [f"{c[name].rms_m_s:.4f} / {c[name].switchings:.1f}" for name in (CUBIC, POLISHED, PLAIN, *rules)]
+    to_rules = (row.polished_to[rule].cell for rule in rules)
+    ratios = [c[POLISHED].ratio.cell, *to_rules, c[POLISHED].near_ratio.cell]
     return (f"× {row.valves:g}", row.case, *rms, *ratios)
 
 

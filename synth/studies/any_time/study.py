@@ -20,12 +20,10 @@ from synth.book.permissions.case_permissions import permissions_of
 from synth.book.permissions.permission import Permission
 from synth.configuration.config_file import load_config, parse_config
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.kernels.loop.closed_loop import Draws
 from synth.problem.aim import Aim
-from synth.simulation.any_time.laws import PolynomialController, SurfaceController
-from synth.simulation.any_time.loop import AnyTimeLoop, any_time_loop
-from synth.simulation.closed_loop import LineController
-from synth.simulation.common_passes import common_passes
+from synth.simulation.closed_loop import LineController, TableController
+from synth.simulation.common_passes import CommonPasses, common_passes
+from synth.simulation.controllers import Regulator
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses, random_passes
@@ -46,6 +44,7 @@ from synth.solver.polynomial_lines import PolynomialLines
 from synth.studies.any_time.findings import (
     CUBIC,
     ENERGY,
+    ENERGY_AT_ANY_TIME,
     LINES,
     PLAIN,
     POLISHED,
@@ -58,13 +57,15 @@ from synth.studies.any_time.findings import (
     SurfaceMap,
     Told,
 )
+from synth.studies.any_time.surface_controller import SurfaceController
 from synth.studies.any_time.surface_induction import solve_surfaces
 from synth.studies.cases import OTHER_PLANTS, Case, named_cases
 from synth.studies.entrance import from_the_entrance
 from synth.studies.near_target import near_ratio, near_target
 from synth.studies.options import option
 from synth.studies.study import Method, Tell
-from synth.studies.tuned_table import lines_of_solution
+from synth.studies.tuned_table import lines_of_solution, rounded
+from tuning_tables import Decisions
 
 FRESH, TUNING, BASELINE_PASSES = 49979687, 67867967, 1000
 
@@ -102,7 +103,6 @@ class Bench:
 
     case: Case
     config: ResolvedConfig
-    loop: AnyTimeLoop
     lines: LineController
     cubics: PolynomialLines
     evaluation: SurfaceEvaluation
@@ -123,6 +123,11 @@ class Bench:
         chain = self.check.chain
         density = self.check.density(surfaces.at(chain.grid.path_m[:-1], chain.modes))
         return density.rms_m_s(self.case.target_m_s)
+
+    def controller(self, surfaces: PolynomialSurfaces, gauge_factor: float = 1.0) -> TableController:
+        """The table of `surfaces` with a gauge that shows so many times the pressure."""
+        table = rounded(self.config, self.case.plant, surfaces, self.case.target_m_s)
+        return TableController(table, gauge_factor)
 
 
 def run(options: Options, tell: Tell) -> AnyTime:
@@ -178,9 +183,7 @@ def bench_of(case: Case, config: ResolvedConfig, options: Options) -> Bench:
     steps = design_resolution(case.plant, case.target_m_s, options.coarser)
     evaluation = SurfaceEvaluation(sampled_chain(case.plant, steps), options.threads)
     check = SurfaceEvaluation(check_sampled_chain(case.plant, steps), options.threads)
-    return Bench(
-        case, config, any_time_loop(case.plant), LineController(solution.lines), cubics, evaluation, check
-    )  # fmt: skip
+    return Bench(case, config, LineController(solution.lines), cubics, evaluation, check)
 
 
 def studied(bench: Bench, valves: float, options: Options, fresh: RandomPasses) -> tuple[CaseRow, SurfaceMap]:
@@ -190,14 +193,17 @@ def studied(bench: Bench, valves: float, options: Options, fresh: RandomPasses) 
     seconds = 0.5 * (time.perf_counter() - started)
     chain = bench.evaluation.chain
     solved = solve_surfaces(chain, bench.aim)
-    draws = bench.loop.draws(fresh)
-    samples = samples_of(bench, solved, polish.surfaces, plain.surfaces, draws)
+    passes = common_passes(bench.case.plant, fresh)
+    samples = samples_of(bench, solved, polish.surfaces, plain.surfaces, passes)
     target = bench.case.target_m_s
     told = {name: told_of(sample, samples[CUBIC], target) for name, sample in samples.items()}
-    others = {name: Ratio(*rms_ratio(samples[POLISHED], samples[name], target)) for name in (ENERGY, PLAIN)}
+    others = {
+        name: Ratio(*rms_ratio(samples[POLISHED], samples[name], target))
+        for name in (ENERGY, ENERGY_AT_ANY_TIME, PLAIN)
+    }
     predicted = bench.predicted_rms_m_s(polish.surfaces)
     polishing = Polishing(polish.evaluations, polish.converged, seconds, predicted)
-    wrong = {factor: bench.loop.run(PolynomialController(polish.surfaces, factor), draws) for factor in GAUGE_FACTORS}
+    wrong = {factor: passes.run(bench.controller(polish.surfaces, factor)) for factor in GAUGE_FACTORS}
     gauge = {f"{factor:g}": Ratio(*rms_ratio(each, samples[POLISHED], target)) for factor, each in wrong.items()}
     row = CaseRow(bench.case.name, valves, polishing, told, others, gauge)
     return row, surface_map(bench.case, solved, polish.surfaces, options.shown_stage)
@@ -208,22 +214,29 @@ def samples_of(
     solved: SwitchingSurfaces,
     polished: PolynomialSurfaces,
     plain: PolynomialSurfaces,
-    draws: Draws,
+    passes: CommonPasses,
 ) -> dict[str, ExitSample]:
-    """The passes of `draws` by every controller."""
-    case, loop, locked = bench.case, bench.loop, bench.loop.locked
+    """The `passes` by every controller."""
+    case, nodes = bench.case, bench.cubics.nodes_m(301)
     rehearsal = random_passes(bench.config.validation.seed + TUNING, 0, BASELINE_PASSES)
-    baselines = tune_baselines(common_passes(case.plant, rehearsal), case.target_m_s)
-    energy = next(baseline for baseline in baselines if baseline.name == ENERGY)
-    nodes = bench.cubics.nodes_m(301)
-    return {
-        LINES: locked.run(bench.lines, draws),
-        CUBIC: locked.run(LineController(bench.cubics.at(nodes)), draws),
-        SURFACES: loop.run(SurfaceController(solved), draws),
-        POLISHED: loop.run(PolynomialController(polished), draws),
-        PLAIN: loop.run(PolynomialController(plain), draws),
-        ENERGY: locked.run(energy.controller, draws),
+    energy = {
+        when: next(
+            baseline.controller
+            for baseline in tune_baselines(passes.of_others(rehearsal), case.target_m_s, when)
+            if baseline.name == ENERGY
+        )
+        for when in Decisions
     }
+    controllers: dict[str, Regulator] = {
+        LINES: bench.lines,
+        CUBIC: LineController(bench.cubics.at(nodes)),
+        SURFACES: SurfaceController(solved),
+        POLISHED: bench.controller(polished),
+        PLAIN: bench.controller(plain),
+        ENERGY: energy[Decisions.AT_REST],
+        ENERGY_AT_ANY_TIME: energy[Decisions.AT_ANY_TIME],
+    }
+    return {name: passes.run(controller) for name, controller in controllers.items()}
 
 
 def told_of(sample: ExitSample, reference: ExitSample, target_m_s: float) -> Told:

@@ -91,7 +91,7 @@ def simulation_calls(case: LoopCase, passes: int) -> dict[str, Call]:
 
 def part_calls(case: LoopCase) -> dict[str, Call]:
     """The parts of one chunk on one thread; one by one is how a trace and an estimator run."""
-    loop, law, n = close_loop(case.plant, case.controller.stages), case.controller.law(), CHUNK_PASSES
+    loop, law, n = close_loop(case.plant, case.controller.stages), case.controller.rule, CHUNK_PASSES
     cells = len(loop.path.gravity_m_s2)
     passes = random_passes(1, 0, n, cells)
     draws, none = loop.draws(passes), np.empty((0, kernel.EVENT_FIELDS))

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from plant_models import Plant
-from synth.simulation.any_time.laws import PolynomialController
-from synth.simulation.any_time.loop import any_time_loop
+from synth.simulation.closed_loop import close_loop
 from synth.simulation.random_passes import random_passes
 from synth.solver.any_time.polynomial_surfaces import CUBIC_AND_SLOPE, PolynomialSurfaces
+from tests.synth.any_time.tabled import tabled
 
 STEP_S = 5e-4
 SAME_M_S = 0.003
@@ -106,9 +106,9 @@ def test_slow_passes_are_those_of_the_kernel(smooth: Plant) -> None:
     has_line = np.array([[False, True], [True, True], [True, False]])
     stages = np.asarray(smooth.position.stage_pressures_kpa)
     surfaces = PolynomialSurfaces(0.0, smooth.exit_m, stages, CUBIC_AND_SLOPE, coefficients, has_line)
-    loop = any_time_loop(smooth)
+    loop = close_loop(smooth, smooth.position.top_stage + 1)
     draws = loop.draws(random_passes(31, 0, 40))
-    found = loop.run(PolynomialController(surfaces), draws)
+    found = loop.run(tabled(smooth, surfaces), draws)
     same = 0
     for i in range(40):
         cut = SlowPass(smooth, draws.cut_factor[i], draws.resistance_n_kn[i], draws.entry_m_s[i])

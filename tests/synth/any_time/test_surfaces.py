@@ -12,8 +12,7 @@ from plant_models.approach import Approach
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
-from synth.simulation.any_time.laws import PolynomialController, SurfaceController
-from synth.simulation.any_time.loop import any_time_loop
+from synth.simulation.closed_loop import close_loop
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.random_passes import random_passes
 from synth.simulation.stratified_passes import stratified_passes
@@ -25,8 +24,10 @@ from synth.solver.any_time.switching_surfaces import at_rest_only
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.policy_density import exit_density
+from synth.studies.any_time.surface_controller import SurfaceController
 from synth.studies.any_time.surface_induction import solve_surfaces
 from tests.synth.any_time.conftest import short_plant
+from tests.synth.any_time.tabled import tabled
 
 TARGET_M_S = 3.0
 AIM = Aim(TARGET_M_S, Criterion())
@@ -93,8 +94,8 @@ def test_a_prediction_is_what_passes_find(plant: Plant, ahead_m: float) -> None:
     check = check_sampled_chain(placed, design_resolution(placed, TARGET_M_S))
     surfaces = falling(placed)
     density = SurfaceEvaluation(check, 2).density(at(surfaces, check))
-    loop = any_time_loop(placed)
-    sample = loop.run(PolynomialController(surfaces), loop.draws(stratified_passes(21, 0, 20_000)))
+    loop = close_loop(placed, placed.position.top_stage + 1)
+    sample = loop.run(tabled(placed, surfaces), loop.draws(stratified_passes(21, 0, 20_000)))
     found = exit_statistics(sample, TARGET_M_S)
     low, high = found.rms_ci95_m_s
     assert 0.99 * low < density.rms_m_s(TARGET_M_S) < 1.01 * high
@@ -105,7 +106,7 @@ def test_a_prediction_is_what_passes_find(plant: Plant, ahead_m: float) -> None:
 def test_the_cost_of_solved_surfaces_is_what_simulation_finds(plant: Plant) -> None:
     known = sampled_chain(plant, KNOWN)
     solved = solve_surfaces(known, AIM)
-    loop = any_time_loop(plant)
+    loop = close_loop(plant, plant.position.top_stage + 1)
     sample = loop.run(SurfaceController(solved), loop.draws(random_passes(21, 0, 20_000), cut_factor=1.0))
     price = (sample.exit_speed_m_s - TARGET_M_S) ** 2 + AIM.criterion.switching_tolerance_m2_s2 * sample.switchings
     half = 1.96 * float(price.std(ddof=1)) / np.sqrt(len(price))
@@ -147,11 +148,10 @@ def test_without_transients_surfaces_are_the_locked_lines(plant: Plant) -> None:
 
 
 def test_a_polish_lowers_the_cost_that_passes_find(plant: Plant, polish: SurfacePolish) -> None:
-    loop = any_time_loop(plant)
+    loop = close_loop(plant, plant.position.top_stage + 1)
     draws = loop.draws(stratified_passes(22, 0, 20_000))
     before, after = (
-        exit_statistics(loop.run(PolynomialController(each), draws), TARGET_M_S)
-        for each in (falling(plant), polish.surfaces)
+        exit_statistics(loop.run(tabled(plant, each), draws), TARGET_M_S) for each in (falling(plant), polish.surfaces)
     )
     assert polish.converged
     assert polish.evaluations <= 40
@@ -181,9 +181,11 @@ def test_a_retarder_of_one_stage_has_no_pairs_and_is_polished_too() -> None:
     chain = sampled_chain(plant, design_resolution(plant, TARGET_M_S))
     found = polish_surfaces(start, SurfaceEvaluation(chain, 2), AIM)
     assert found.cost_after < 0.9 * found.cost_before
-    draws = any_time_loop(plant).draws(stratified_passes(23, 0, 20_000))
+    draws = close_loop(plant, plant.position.top_stage + 1).draws(stratified_passes(23, 0, 20_000))
     before, after = (
-        exit_statistics(any_time_loop(plant).run(PolynomialController(each), draws), TARGET_M_S).rms_m_s
+        exit_statistics(
+            close_loop(plant, plant.position.top_stage + 1).run(tabled(plant, each), draws), TARGET_M_S
+        ).rms_m_s
         for each in (start, found.surfaces)
     )
     assert after < before

@@ -1,0 +1,1 @@
+"""Tables of regulators that may give a command at every sample."""

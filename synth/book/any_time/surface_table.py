@@ -1,0 +1,46 @@
+"""Surfaces of one case for commands at any time, polished from its lines for commands at rest, and their prediction."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from plant_models import Plant
+from synth.problem.aim import Aim
+from synth.problem.resolution import Resolution
+from synth.solver.any_time.polynomial_surfaces import CUBIC_AND_SLOPE, PolynomialSurfaces, surfaces_of_lines
+from synth.solver.any_time.sampled_chain import check_sampled_chain, design_resolution, sampled_chain
+from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
+from synth.solver.any_time.surface_polish import SurfacePolish, polish_surfaces
+from synth.solver.chain.speed_measurement import SpeedMeasurement
+from synth.solver.exit_density import ExitDensity, without_negative
+from synth.solver.polynomial_lines import PolynomialLines
+from synth.solver.tabulate import prediction_of, surfaces_of
+from tuning_tables import ControllerTable
+
+
+def surface_degrees(lines: PolynomialLines, has_gauge: bool) -> tuple[int, ...]:
+    """Degrees in the path for the powers of the pressure: that of `lines`, and with a gauge one slope."""
+    return (lines.degree, *CUBIC_AND_SLOPE[1:]) if has_gauge else (lines.degree,)
+
+
+def starting_surfaces(plant: Plant, lines: PolynomialLines, has_gauge: bool) -> PolynomialSurfaces:
+    """Lines for commands at rest, taken at every pressure."""
+    stages = np.asarray(plant.position.stage_pressures_kpa[: plant.top_stage + 1])
+    return surfaces_of_lines(lines, stages, surface_degrees(lines, has_gauge))
+
+
+def polished_surfaces(
+    plant: Plant, aim: Aim, start: PolynomialSurfaces, steps: Resolution, measurement: SpeedMeasurement | None = None
+) -> SurfacePolish:
+    """The surfaces of least cost near `start`, on the grid `steps`; `measurement`: by default the plant's, smooth."""
+    return polish_surfaces(start, SurfaceEvaluation(sampled_chain(plant, steps, measurement)), aim)
+
+
+def with_surface_prediction(plant: Plant, table: ControllerTable) -> tuple[ControllerTable, ExitDensity]:
+    """`table`, for the measured speed, with the figures of its exact exit-speed density, and the density."""
+    check = check_sampled_chain(plant, design_resolution(plant, table.target_speed_m_s))
+    lines = surfaces_of(table, check.grid.path_m[:-1], check.modes)
+    density = without_negative(SurfaceEvaluation(check).density(lines))
+    return replace(table, predicted=prediction_of(density, table.target_speed_m_s)), density

@@ -1,1 +1,0 @@
-"""Simulated passes of regulators that may give a command at every sample."""
