@@ -109,6 +109,8 @@ def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
         "table_loss_ci95": found.full_lines.table_ratio_ci95,
         "regret": found.regret,
         "regret_ci95": found.friction_known.table_ratio_ci95,
+        "at_rest_ratio": None if found.at_rest is None else found.at_rest.table_ratio,
+        "at_rest_ratio_ci95": None if found.at_rest is None else found.at_rest.table_ratio_ci95,
         "best_baseline": found.best_baseline.name if found.best_baseline else None,
         "comparison": {entry.name: measured_of(entry) for entry in found.entries},
         "as_published_honesty": found.as_published.honesty,

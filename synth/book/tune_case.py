@@ -12,6 +12,7 @@ from synth.book.comparison.baselines import tune_baselines
 from synth.book.comparison.comparison import Comparison
 from synth.book.comparison.friction_bound import friction_bound
 from synth.book.comparison.measured import Measured
+from synth.book.estimation.estimated_table import controller_of
 from synth.book.policy_map import policy_map
 from synth.book.tuned_table import Store, TunedTable, ValidatedTable, tuned_table, validated_table
 from synth.problem.problem import Problem
@@ -23,6 +24,7 @@ from synth.solver.backward_induction import Solution
 from synth.solver.evaluation import Evaluation
 from synth.solver.policy_density import exit_density
 from synth.solver.tabulate import lines_of
+from tuning_tables import Decisions
 
 TRACE_FACTORS = (0.8, 1.0, 1.2)
 LINE_NODES = 301
@@ -74,6 +76,7 @@ def tune_case(order: CaseOrder) -> CaseResult:
 def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable, told: ExitSample) -> Comparison:
     """The closed loops of all controllers on the common passes; `told`: that of the reference."""
     passes, target, sample = order.setup.passes, order.solution.aim.target_speed_m_s, validated.sample
+    baselines = tune_baselines(order.tuning, target, permitted(tuned))
     predicted, published = validated.table.predicted, order.as_published
 
     def measured(name: str, controller: Controller) -> Measured:
@@ -81,6 +84,11 @@ def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable, t
 
     def without_estimator() -> Measured:
         return measured("without estimator", LineController(tuned.lines.at(tuned.lines.nodes_m(LINE_NODES))))
+
+    def at_rest() -> Measured:
+        made = tuned.estimate if tuned.estimate is not None and tuned.estimate.gains else None
+        kept, estimator = (tuned.lines, None) if made is None else (made.lines, made.estimator)
+        return measured("commands at rest", controller_of(kept, estimator))
 
     return Comparison(
         table=Measured("table", validated.statistics, predicted.rms_m_s, predicted.passes),
@@ -90,9 +98,15 @@ def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable, t
             predicted_rms_m_s=Evaluation(published.chain.quantised(), published.aim).rms_m_s(published.lines),
         ),
         friction_known=beside_table("friction known", told, sample, target),
-        baselines=tuple(measured(b.name, b.controller) for b in tune_baselines(order.tuning, target)),
+        baselines=tuple(measured(b.name, b.controller) for b in baselines),
         without_estimator=None if tuned.estimate is None else without_estimator(),
+        at_rest=None if tuned.surfaces is None else at_rest(),
     )
+
+
+def permitted(tuned: TunedTable) -> tuple[Decisions, ...]:
+    """When laws that the table is compared with may command: as it, or less often."""
+    return (Decisions.AT_REST,) if tuned.surfaces is None else (Decisions.AT_REST, Decisions.AT_ANY_TIME)
 
 
 def beside_table(name: str, sample: ExitSample, table: ExitSample, target_speed_m_s: float) -> Measured:

@@ -154,7 +154,7 @@ def differences(table: ControllerTable, plant: Plant) -> Iterator[str]:
         ("cut.mass_t", [cut.mass_t], [table.cut.mass_t]),
         ("cut.axle_offsets_m", cut.axle_offsets_m, table.cut.axle_offsets_m),
         (APPROACH, [plant.approach.length_m], [table.approach.length_m if table.approach else 0.0]),
-        ("the highest stage allowed", [plant.top_stage], [reached_stage(table)]),
+        ("the highest stage allowed", [plant.top_stage], [table.highest_raised]),
     )  # fmt: skip
     for key, ours, theirs in pairs:
         if len(ours) != len(theirs) or not all(map(alike, ours, theirs)):
@@ -163,11 +163,6 @@ def differences(table: ControllerTable, plant: Plant) -> Iterator[str]:
         yield f"cut.entrance_stage ({plant.entrance_stage}, in the table {table.approach.entrance_stage})"
     if cut.category != table.cut.category:
         yield f"cut.category ({cut.category}, in the table {table.cut.category})"
-
-
-def reached_stage(table: ControllerTable) -> int:
-    """The highest stage that the table ever asks for."""
-    return next(stage.k for stage in table.stages if stage.upper is None)
 
 
 def alike(one: float, other: float) -> bool:

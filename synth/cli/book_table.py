@@ -19,15 +19,18 @@ Ends = Sequence[float | None]
 WIDTH_OF_A_FILE = 190
 """Columns where stdout is no terminal."""
 
+LOSS, AT_REST = "table\nloss", "rms /\nat rest"
+"""The second stands in the place of the first where commands come at any time."""
+
 COLUMNS = (
     "case", "target\nm/s", "rms [95 %]\nm/s", "95 of 100\nwithin ± m/s", "99 of 100\nwithin ± m/s",
-    "out of brake\nin 10 000", "predicted /\nsimulated", "table\nloss", "regret", "best baseline\nm/s",
+    "out of brake\nin 10 000", "predicted /\nsimulated", LOSS, "regret", "best baseline\nm/s",
     "switch-\nings", "verdict",
 )  # fmt: skip
 
 FIRST_TO_GO = (
     "switch-\nings",
-    "table\nloss",
+    LOSS,
     "best baseline\nm/s",
     "regret",
     "99 of 100\nwithin ± m/s",
@@ -49,7 +52,7 @@ def print_book(summary: Figures, directory: Path) -> None:
     columns = columns_for(console.width, rows)
     table = Table(box=box.SIMPLE_HEAD, title=summary["title"], title_justify="left", pad_edge=False)
     for place in columns:
-        name = COLUMNS[place]
+        name = AT_REST if COLUMNS[place] == LOSS and any(map(at_any_time, summary["cases"])) else COLUMNS[place]
         table.add_column(name, justify="left" if name in ("case", "verdict") else "right", no_wrap=True)
     for case, cells in zip(summary["cases"], rows, strict=True):
         table.add_row(*(cells[place] for place in columns), style=None if case["feasible"] else "dim")
@@ -112,12 +115,19 @@ def row(case: Figures, first: bool) -> tuple[str, ...]:
         plus_minus(simulated["p99_m_s"], simulated["p99_ci95_m_s"], 4),
         ten_thousand(power["out_of_brake"], power["out_of_brake_ci95"]),
         plus_minus(case["honesty"], case["honesty_ci95"]),
-        plus_minus(case["table_loss"], case["table_loss_ci95"]),
+        plus_minus(case["at_rest_ratio"], case["at_rest_ratio_ci95"])
+        if at_any_time(case)
+        else plus_minus(case["table_loss"], case["table_loss_ci95"]),
         plus_minus(case["regret"], case["regret_ci95"]),
         f"{plus_minus(compared[best]['rms_m_s'], compared[best]['rms_ci95_m_s'], 4)} {best}" if best else "–",
         f"{simulated['switchings']:.1f}",
         case["verdict"],
     )
+
+
+def at_any_time(case: Figures) -> bool:
+    """Whether the table of a case commands at any time."""
+    return case.get("at_rest_ratio") is not None
 
 
 def infeasible(case: Figures) -> str:

@@ -19,6 +19,7 @@ from synth.cli.inspect_aim import aim_document, aim_words
 from synth.cli.inspect_passages import passage_document, passage_words
 from tuning_tables import DamagedTable
 from tuning_tables.approach import Approach
+from tuning_tables.decisions import Decisions
 from tuning_tables.document import to_document
 from tuning_tables.estimator import Estimator
 from tuning_tables.table import ControllerTable
@@ -112,14 +113,28 @@ def table_words(table: ControllerTable, says_none: bool) -> list[str]:
         words.insert(-1, f"    estimator  {estimator_words(table.estimator)}")
     elif says_none:
         words.insert(-1, "    estimator  none: the lines are for the measured speed")
+    if table.decisions is Decisions.AT_ANY_TIME:
+        words.insert(-1, f"    decides    {decision_words(table)}")
     if table.approach is not None:
         words.insert(-1, f"    approach   {approach_words(table.approach)}")
     path = shown_path(table)
-    words.append(f"      {'s, m':<22}" + "".join(f"{s:>9.2f}" for s in path))
+    slopes = "  + m/s per 100 kPa" if table.has_gauge else ""
+    words.append(f"      {'s, m':<22}" + "".join(f"{s:>9.2f}" for s in path) + slopes)
     for line in lines_at(table):
         name = f"stage {line['k']} ({line['pressure_kpa']:g} kPa) {line['line']}"
-        words.append(f"      {name:<22}" + "".join(f"{v:>9.3f}" for v in line["v_m_s"]))
+        slope = f"{1e2 * line['slope_m_s_per_kpa']:>+11.4f}" if table.has_gauge else ""
+        words.append(f"      {name:<22}" + "".join(f"{v:>9.3f}" for v in line["v_m_s"]) + slope)
     return words
+
+
+def decision_words(table: ControllerTable) -> str:
+    """When a table for commands at any time is asked, and what it must be told."""
+    gauge = (
+        "with the pressure of a gauge: each line rises with what it is above that of the stage"
+        if table.has_gauge
+        else "without a pressure gauge"
+    )
+    return f"at every sample, also while the pressure is on its way; {gauge}"
 
 
 def approach_words(approach: Approach) -> str:
@@ -147,12 +162,15 @@ def shown_path(table: ControllerTable) -> list[float]:
 
 def lines_at(table: ControllerTable) -> list[dict[str, Any]]:
     """Every line of the stages in use at the shown places, as evaluated in double precision."""
-    found = []
+    found: list[dict[str, Any]] = []
     for stage in table.stages:
-        for name, line in (("down below", stage.lower), ("up above", stage.upper)):
+        for name, line, slope in zip(("down below", "up above"), stage.lines, stage.slopes, strict=True):
             if line is not None:
                 speeds = [float(np.polynomial.polynomial.polyval(s, line)) for s in shown_path(table)]
-                found.append({"k": stage.k, "pressure_kpa": stage.pressure_kpa, "line": name, "v_m_s": speeds})
+                sloped = {} if slope is None else {"slope_m_s_per_kpa": slope}
+                found.append(
+                    {"k": stage.k, "pressure_kpa": stage.pressure_kpa, "line": name, "v_m_s": speeds, **sloped}
+                )
         if stage.upper is None:
             break  # the stages above are never asked for
     return found

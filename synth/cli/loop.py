@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from synth.cli import LIMITS_MISSED, OK, say
+from synth.faults.input_error import InputError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -75,10 +76,16 @@ def closing(table: AnyTable, config: ResolvedConfig, source: str) -> Callable[[]
     from synth.book.passage_class import passage_class
     from synth.book.passage_control_loop import passage_control_loop
     from synth.book.validate_table import plant_for
+    from tuning_tables.decisions import Decisions
     from tuning_tables.passages.passage_table import PassageTable
 
     if isinstance(table, PassageTable):
         return partial(passage_control_loop, table, passage_class(table, config, source))
+    if table.decisions is Decisions.AT_ANY_TIME:
+        raise InputError(
+            f"{table.id}: the table decides at any time; the loop of python-control is built for tables that decide at "
+            "rest and for point sensors: give one of those"
+        )
     return partial(control_loop, table, *plant_for(table, config, source))
 
 

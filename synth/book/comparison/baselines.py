@@ -6,7 +6,7 @@ are tuned on the rms exit error of simulated passes: a coarse grid, then a simpl
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from math import ceil
@@ -181,13 +181,15 @@ FAMILIES = (
 
 
 def tune_baselines(
-    passes: CommonPasses, target_m_s: float, decisions: Decisions = Decisions.AT_REST
+    passes: CommonPasses, target_m_s: float, decisions: Sequence[Decisions] = (Decisions.AT_REST,)
 ) -> tuple[TunedBaseline, ...]:
     """The four baselines, tuned for least rms exit error on `passes` (600 are as many as the richest law uses).
 
-    At any time they are asked at every sample, with the stage commanded last.
+    Of those that are asked at rest and at any time (at every sample, with the stage commanded last), as `decisions`
+    permits, the better of each family.
     """
-    return tuple(tune(family.deciding(decisions), passes, target_m_s) for family in FAMILIES)
+    families = ([tune(family.deciding(each), passes, target_m_s) for each in decisions] for family in FAMILIES)
+    return tuple(min(members, key=lambda member: member.rms_m_s) for members in families)
 
 
 def tune(family: Family, passes: CommonPasses, target_m_s: float) -> TunedBaseline:

@@ -13,7 +13,8 @@ class Comparison:
 
     `friction_known`: the same kind of regulator, told the friction of every cut; `full_lines`: the solver's lines, not
     yet polynomials; `as_published`: lines of the formulation as published, with its own prediction; `baselines`: tuned
-    classical laws; `without_estimator`: polished lines for the measured speed, where an estimator was asked for.
+    classical laws; `without_estimator`: polished lines for the measured speed, where an estimator was asked for;
+    `at_rest`: where commands come at any time, the lines that the same tune makes for commands at rest.
     """
 
     table: Measured
@@ -22,11 +23,12 @@ class Comparison:
     friction_known: Measured
     baselines: tuple[Measured, ...]
     without_estimator: Measured | None = None
+    at_rest: Measured | None = None
 
     @property
     def entries(self) -> tuple[Measured, ...]:
-        """All controllers: the table first, the baselines last but for the lines without estimator."""
-        last = () if self.without_estimator is None else (self.without_estimator,)
+        """All controllers: the table first, the baselines last but for lines without estimator and those at rest."""
+        last = (each for each in (self.without_estimator, self.at_rest) if each is not None)
         return (self.table, self.full_lines, self.as_published, self.friction_known, *self.baselines, *last)
 
     @property

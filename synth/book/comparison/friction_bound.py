@@ -17,7 +17,15 @@ from numpy.typing import NDArray
 
 from synth.book.class_setup import ClassSetup
 from synth.book.comparison.measured import Feasibility
-from synth.book.comparison.told_regulator import Told, best_by_others, by_lines, picked, run_told
+from synth.book.comparison.told_regulator import (
+    Told,
+    ToldLinesOf,
+    asked_at_any_time,
+    best_by_others,
+    by_lines,
+    picked,
+    run_told,
+)
 from synth.book.estimation.told_estimator import told_with_estimator
 from synth.book.tuned_table import TunedTable, ValidatedTable
 from synth.simulation.closed_loop import TableController
@@ -65,10 +73,13 @@ def bound_of(
 
 def told_regulators(setup: ClassSetup, tuned: TunedTable, target_m_s: float) -> Sequence[Told]:
     """Regulators of the table's kind that are told the friction."""
+    told: Sequence[ToldLinesOf]
     if tuned.estimate is not None and tuned.table.estimator is not None and setup.estimator is not None:
         tuning = setup.passes.of_others(setup.estimator.tuning)
-        return told_with_estimator(tuned.estimate, setup.estimator.design, tuned.curvature, tuning, target_m_s)
-    return [by_lines(told_lines(setup.design, target_m_s, tuned.lines, tuned.curvature))]
+        told = told_with_estimator(tuned.estimate, setup.estimator.design, tuned.curvature, tuning, target_m_s)
+    else:
+        told = [by_lines(told_lines(setup.design, target_m_s, tuned.lines, tuned.curvature))]
+    return [*told, *map(asked_at_any_time, told)] if setup.regulator.at_any_time else told
 
 
 def mean_square(sample: ExitSample, target_m_s: float) -> float:

@@ -39,7 +39,7 @@ def estimated_surfaces(
     """
     plant, aim = problem.plant, problem.aim
     of_any_day = replace(plant, friction=plant.friction.of_any_day)
-    steps = design_resolution(plant, aim.target_speed_m_s)
+    steps = design_resolution(plant, aim.target_speed_m_s, error_m_s=made.error_m_s)
     if plant.friction.mean_cv > 0.0:
         steps = replace(steps, friction_nodes=steps.friction_nodes + RESERVE_NODES)
     seen = SmoothMeasurement(measured_speed_std(made.error_m_s, 0.0))

@@ -8,7 +8,9 @@ the mean of ξ_cut: 1 and 1 ± √3·`mean_cv`. Where the mean is taken as known
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +19,8 @@ from plant_models import Plant
 from plant_models.friction import Friction
 from plant_models.frozen_arrays import frozen_arrays
 from synth.kernels.loop.closed_loop import Draws
-from synth.simulation.closed_loop import ClosedLoop, Controller, close_loop
+from synth.simulation.closed_loop import ClosedLoop, close_loop
+from synth.simulation.controllers import Regulator
 from synth.simulation.random_passes import PassRow, RandomPasses, random_passes
 from synth.simulation.stratified_passes import stratified_passes
 
@@ -31,18 +34,18 @@ LEAST_STD = 1e-12
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class TuningDays:
-    """`draws`: the passes of each day in `loop`, the plant of any day; `weight` (D,): how many of all days it stands
-    for."""
+    """`draws`: the passes of each day; `loop(stages)`: the plant of any day with a regulator of so many stages;
+    `weight` (D,): how many of all days each stands for."""
 
-    loop: ClosedLoop
+    loop: Callable[[int], ClosedLoop]
     draws: tuple[Draws, ...]
     weight: NDArray[np.float64]
 
-    def mean_squares(self, controller: Controller, target_speed_m_s: float) -> NDArray[np.float64]:
+    def mean_squares(self, controller: Regulator, target_speed_m_s: float) -> NDArray[np.float64]:
         """Mean squared error at the exit on each day, (D,) in m²/s²."""
         found = []
         for draws in self.draws:
-            exits = self.loop.run(controller, draws).exit_speed_m_s
+            exits = self.loop(controller.stages).run(controller, draws).exit_speed_m_s
             found.append(np.average((exits - target_speed_m_s) ** 2, weights=draws.weight))
         return np.array(found)
 
@@ -50,7 +53,8 @@ class TuningDays:
 def tuning_days(plant: Plant, passes: RandomPasses) -> TuningDays:
     """The days of `plant`; each gets its part of `passes`."""
     weights, means = SEVERAL if plant.friction.mean_cv > 0.0 else ONE
-    loop = close_loop(replace(plant, friction=plant.friction.of_any_day), plant.top_stage + 1)
+    loops = cache(partial(close_loop, replace(plant, friction=plant.friction.of_any_day)))
+    loop = loops(plant.top_stage + 1)
     share = len(passes) // len(means)
     parts = [passes.part(share * day, share * (day + 1)) for day in range(len(means))]
     # ξ_cut = 1 + mean_cv·y + CV·z, told as 1 + (CV of any day)·z'.
@@ -59,7 +63,7 @@ def tuning_days(plant: Plant, passes: RandomPasses) -> TuningDays:
     draws = (
         loop.draws(replace(part, cut_z=of_cut * part.cut_z + of_mean * y)) for part, y in zip(parts, means, strict=True)
     )
-    return TuningDays(loop, tuple(draws), np.array(weights))
+    return TuningDays(loops, tuple(draws), np.array(weights))
 
 
 def tuning_row(friction: Friction) -> PassRow:

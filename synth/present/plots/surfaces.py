@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from synth.book.case_names import cut_name, target_name
 from synth.book.case_result import CaseResult
 from synth.present.plots.house_style import BLUE, INK, VERMILLION, legend_below, new_figure, speed_window_m_s
+from synth.present.plots.stage_surfaces import sheet, stage_surfaces
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tabulate import lines_of
 
@@ -22,11 +23,13 @@ POINTS_PER_STAGE = 3
 
 def surfaces(case: CaseResult) -> Figure:
     """The exported lines of a case over path and pressure; see `surface_figure`."""
+    subject = f"{cut_name(case)}, {target_name(case)}"
+    if case.table.has_gauge:
+        return stage_surfaces(case.table, subject, speed_window_m_s(case))
     stages = case.study.table_lines.stages
     path = np.linspace(case.plant.start_m, case.plant.exit_m, PATH_POINTS)
     lines = lines_of(case.table, path)
     pressure = np.asarray(case.plant.position.stage_pressures_kpa[:stages])
-    subject = f"{cut_name(case)}, {target_name(case)}"
     return surface_figure("Switching surfaces", subject, lines, pressure, speed_window_m_s(case))
 
 
@@ -50,7 +53,7 @@ def surface_figure(
         has_line = np.isfinite(speeds).any(axis=1)
         if has_line.any():
             shown = np.clip(speeds[has_line], *window_m_s)
-            axes.add_collection3d(sheet(path, pressure_kpa[has_line], shown, colour, alpha), autolim=False)
+            axes.add_collection3d(sheet_of_lines(path, pressure_kpa[has_line], shown, colour, alpha), autolim=False)
             axes.add_collection3d(ribs(path, pressure_kpa[has_line], shown, colour), autolim=False)
     axes.set(xlim=(path[0], path[-1]), ylim=(pressure_kpa[0], pressure_kpa[-1]), zlim=window_m_s)
     axes.set_xlabel("path of the first axle, m", fontsize=9)
@@ -68,7 +71,7 @@ def surface_figure(
     return figure
 
 
-def sheet(
+def sheet_of_lines(
     path_m: NDArray[np.float64],
     pressure_kpa: NDArray[np.float64],
     speed_m_s: NDArray[np.float64],
@@ -80,11 +83,7 @@ def sheet(
     stage = np.arange(len(pressure_kpa))
     p = np.interp(steps, stage, pressure_kpa)
     v = np.array([np.interp(steps, stage, column) for column in speed_m_s.T]).T
-    corners = np.stack(np.broadcast_arrays(path_m, p[:, None], v), axis=-1)
-    quads = np.stack([corners[:-1, :-1], corners[:-1, 1:], corners[1:, 1:], corners[1:, :-1]], axis=2)
-    return Poly3DCollection(
-        quads.reshape(-1, 4, 3), facecolors=colour, edgecolors="white", linewidths=0.25, alpha=alpha, shade=False
-    )
+    return sheet(path_m, p, v, colour, alpha)
 
 
 def ribs(

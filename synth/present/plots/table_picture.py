@@ -28,6 +28,7 @@ from synth.present.plots.house_style import (
 )
 from synth.present.plots.policy_map import DOWN, HOLD, UP, finite, label_panels, parts_in_stage, stage_panels
 from synth.present.plots.sample_passes import outcome
+from synth.present.plots.stage_surfaces import stage_surfaces
 from synth.present.plots.surfaces import PATH_POINTS, surface_figure
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.passes import ExitSample, PassTrace
@@ -75,6 +76,10 @@ def table_lines(table: ControllerTable, passes: Passes | None) -> Figure:
         Line2D([], [], color=BLUE, linewidth=2.0, linestyle="--", label="lower line"),
         Patch(facecolor=INK, label="retarder zones"),
     ]
+    if table.has_gauge:
+        handles.insert(
+            5, Line2D([], [], color=INK, linewidth=1.0, linestyle=":", label="lines at lowest, highest pressure")
+        )
     if passes:
         handles.insert(5, Line2D([], [], color=INK, linewidth=0.8, label="simulated passes while in the stage"))
     box = grid.flat[stages].get_position()
@@ -94,6 +99,10 @@ def draw_stage(axes: Axes, table: ControllerTable, stage: int, passes: Passes | 
     axes.fill_between(path, np.clip(upper, low, high), high, color=UP, linewidth=0)
     axes.plot(path, finite(lower), "--", color=BLUE, linewidth=2.0, zorder=5)
     axes.plot(path, finite(upper), "-", color=VERMILLION, linewidth=2.0, zorder=5)
+    for kpa in table.pressures[[0, table.highest_raised]] if table.has_gauge else ():
+        below, above = table.slopes[stage] * (kpa - table.pressures[stage])
+        axes.plot(path, finite(lower) + below, ":", color=BLUE, linewidth=1.0, zorder=5)
+        axes.plot(path, finite(upper) + above, ":", color=VERMILLION, linewidth=1.0, zorder=5)
     if passes:
         axes.plot(*parts_in_stage(passes.traces, stage), color=INK, linewidth=0.8, zorder=6)
     mark_zones(axes, table.retarder.zones_m, table.valid.s_m[0])
@@ -104,6 +113,8 @@ def draw_stage(axes: Axes, table: ControllerTable, stage: int, passes: Passes | 
 
 def table_surfaces(table: ControllerTable, passes: Passes | None) -> Figure:
     """V_lo and V_hi over path and pressure; see `surfaces.surface_figure`."""
+    if table.has_gauge:
+        return stage_surfaces(table, subject(table), window_m_s(table, passes))
     pressure = np.array([stage.pressure_kpa for stage in table.stages[: stages_in_use(table)]])
     lines = lines_of(table, np.linspace(*table.valid.s_m, PATH_POINTS))
     title = "Switching surfaces of the exported table"
@@ -156,7 +167,7 @@ def subject(table: ControllerTable | PassageTable) -> str:
 
 def stages_in_use(table: ControllerTable) -> int:
     """Number of stages that the table ever asks for."""
-    return next(stage.k for stage in table.stages if stage.upper is None) + 1
+    return table.highest_raised + 1
 
 
 def window_m_s(table: ControllerTable, passes: Passes | None) -> tuple[float, float]:

@@ -24,6 +24,7 @@ def honesty_section(book: BookReport) -> Markup:
     return element(
         "div",
         element("p", own_prediction(cases)),
+        at_any_time(cases),
         left_out_estimators(book.cases),
         element("p", published_prediction(cases)),
     )
@@ -48,6 +49,20 @@ def own_prediction(cases: Sequence[CaseResult]) -> str:
             f"({median(gains):.2f} in the median)."
         )
     return " ".join(sentences)
+
+
+def at_any_time(cases: Sequence[CaseResult]) -> Markup:
+    """What commands at any time gain; nothing where commands wait for the last one."""
+    ratios = [case.comparison.at_rest.table_ratio for case in cases if case.comparison.at_rest is not None]
+    if not ratios:
+        return Markup("")
+    return element(
+        "p",
+        "The regulator commands at any time, also while the pressure is on its way. On the same passes its rms is "
+        f"{span(ratios)} times that of the lines that the same tune makes for commands at rest "
+        f"({median(ratios):.2f} in the median). The full lines beside it are for commands at rest; the regulators that "
+        "are told the friction have such lines too, asked at rest or at any time.",
+    )
 
 
 def ratios_of(cases: Sequence[CaseResult]) -> str:

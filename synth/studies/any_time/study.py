@@ -222,7 +222,7 @@ def samples_of(
     energy = {
         when: next(
             baseline.controller
-            for baseline in tune_baselines(passes.of_others(rehearsal), case.target_m_s, when)
+            for baseline in tune_baselines(passes.of_others(rehearsal), case.target_m_s, (when,))
             if baseline.name == ENERGY
         )
         for when in Decisions
