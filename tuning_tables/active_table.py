@@ -69,7 +69,7 @@ def active(table: ControllerTable) -> ActiveTable:
 
 
 def interpolable(slower: ControllerTable, faster: ControllerTable) -> bool:
-    """Whether lines between have a meaning: they differ in nothing but their coefficients.
+    """Whether lines between have a meaning: they differ in nothing but their coefficients and slopes.
 
     Stages, degree, lines, path range, estimator, approach and times of decision are the same, with slopes also the
     pressures.

@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from tuning_tables.c_any_time import any_time_blanks, any_time_text, reading_columns
 from tuning_tables.c_estimator import estimator_blanks, estimator_text, track_blanks, tracks_csv
 from tuning_tables.c_literals import hex_float
 from tuning_tables.c_template import filled
@@ -35,6 +36,9 @@ from tuning_tables.table_book import TableBook
 TEMPLATES = ("retarder_table.h", "retarder_table.c", "retarder_self_test.h", "retarder_self_test.c")
 VECTORS_FILE = "golden_vectors.csv"
 TRACKS_FILE = "golden_tracks.csv"
+
+VECTOR_COLUMNS = "s_bits,v_bits,s_m,v_m_s"
+VECTOR_COLUMNS_OF_GAUGE = "s_bits,v_bits,p_bits,s_m,v_m_s,pressure_kpa"
 
 
 def c_files(book: TableBook, prefix: ExportPrefix = RETARDER, self_test: SelfTestSize = FULL) -> Mapping[str, bytes]:
@@ -68,8 +72,9 @@ def c_blanks(book: TableBook, vectors: Sequence[GoldenVectors], tracks: Sequence
         "TABLES": ",\n".join(table_text(book, number, size) for number in range(len(book.tables))),
         "VECTORS": f"{sum(map(len, vectors))}",
         "CHOICES": f"{len(choices)}",
-        "GOLDEN_VECTORS": ",\n".join(line for n, each in enumerate(vectors) for line in vector_lines(n, each)),
+        "GOLDEN_VECTORS": ",\n".join(line for n, each in enumerate(vectors) for line in vector_lines(n, each, size)),
         "GOLDEN_CHOICES": ",\n".join(map(choice_line, choices)),
+        **any_time_blanks(book, size),
         **track_blanks(book, tracks),
         **estimator_blanks(),
     }
@@ -132,6 +137,7 @@ def table_text(book: TableBook, number: int, size: BlockSize) -> str:
             "        },",
             *estimator_text(block, size),
             *approach_text(block, size),
+            *any_time_text(block, size),
             f"        0x{block.crc32:08x}u /* crc32 */",
             "    }",
         ]
@@ -160,12 +166,12 @@ def stage_text(block: TableBlock, stage: int, size: BlockSize) -> str:
     return "\n".join([f"            {{ /* stage {stage} */", *rows, "            }"])
 
 
-def vector_lines(number: int, vectors: GoldenVectors) -> list[str]:
+def vector_lines(number: int, vectors: GoldenVectors, size: BlockSize) -> list[str]:
     """The golden vectors of table `number` as initialisers."""
-    s_bits, v_bits = vectors.s_m.view(np.uint32), vectors.v_m_s.view(np.uint32)
+    bits = zip(*(values.view(np.uint32) for values in reading_columns(vectors, size)), strict=True)
     return [
-        f"    {{{number}u, {k}, 0x{s:08x}u, 0x{v:08x}u, {answer}}}"
-        for k, s, v, answer in zip(vectors.stage, s_bits, v_bits, vectors.answer, strict=True)
+        f"    {{{number}u, {k}, {', '.join(f'0x{word:08x}u' for word in words)}, {answer}}}"
+        for k, words, answer in zip(vectors.stage, bits, vectors.answer, strict=True)
     ]
 
 
@@ -177,11 +183,17 @@ def choice_line(choice: GoldenChoice) -> str:
 
 
 def vectors_csv(book: TableBook, vectors: list[GoldenVectors]) -> bytes:
-    """All golden vectors, CR LF: table number and id, stage, path and speed as bits and as numbers, answer."""
-    rows = ["table,id,stage,s_bits,v_bits,s_m,v_m_s,answer"]
+    """All golden vectors, CR LF: table number and id, stage, path and speed as bits and as numbers, answer.
+
+    If a table of the book has a gauge, the pressure stands behind the speed, as bits and as a number.
+    """
+    size = block_size(book)
+    rows = [f"table,id,stage,{VECTOR_COLUMNS_OF_GAUGE if size.gauge else VECTOR_COLUMNS},answer"]
     for number, (table, each) in enumerate(zip(book.tables, vectors, strict=True)):
         name = '"' + table.id.replace('"', '""') + '"'
-        bits = zip(each.s_m.view(np.uint32), each.v_m_s.view(np.uint32), strict=True)
-        for k, (s_bits, v_bits), s, v, answer in zip(each.stage, bits, each.s_m, each.v_m_s, each.answer, strict=True):
-            rows.append(f"{number},{name},{k},{s_bits:08x},{v_bits:08x},{s:.9g},{v:.9g},{answer}")
+        columns = reading_columns(each, size)
+        bits = zip(*(values.view(np.uint32) for values in columns), strict=True)
+        for k, words, values, answer in zip(each.stage, bits, zip(*columns, strict=True), each.answer, strict=True):
+            fields = [*(f"{word:08x}" for word in words), *(f"{value:.9g}" for value in values)]
+            rows.append(f"{number},{name},{k},{','.join(fields)},{answer}")
     return ("\r\n".join(rows) + "\r\n").encode("utf-8")

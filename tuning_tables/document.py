@@ -133,7 +133,7 @@ def from_document(document: object, source: str) -> ControllerTable:
     gauge = any_time and _has_gauge(top, source)
     stages = top.sections("stages", _STAGE_KEYS + _SLOPE_KEYS * gauge)
     try:
-        return ControllerTable(
+        table = ControllerTable(
             id=top.text("id"),
             created=top.text("created"),
             generator=read_generator(top),
@@ -149,6 +149,9 @@ def from_document(document: object, source: str) -> ControllerTable:
             approach=_approach(top.section("approach", _APPROACH_KEYS)) if "approach" in top else None,
             decisions=Decisions.AT_ANY_TIME if any_time else Decisions.AT_REST,
         )
+        if table.has_gauge != gauge:
+            raise InvalidTable('pressure is "gauge", but no line has a slope: a table without slopes says "none".')
+        return table
     except InvalidTable as invalid:
         # The reason may quote a value, and a file may hold one of any length.
         raise DamagedTable(f"{source}: {excerpt(str(invalid), LONGEST_REASON)}") from invalid
@@ -156,8 +159,9 @@ def from_document(document: object, source: str) -> ControllerTable:
 
 def _stage_document(stage: Stage, gauge: bool) -> dict[str, object]:
     lines = {side: None if line is None else floats(line) for side, line in zip(SIDES, stage.lines, strict=True)}
-    slopes = dict(zip(_SLOPE_KEYS, stage.slopes, strict=True)) if gauge else {}
-    return {"k": stage.k, "pressure_kpa": float(stage.pressure_kpa), **lines, **slopes}
+    slopes = (None if slope is None else float(slope) for slope in stage.slopes)
+    sloped = dict(zip(_SLOPE_KEYS, slopes, strict=True)) if gauge else {}
+    return {"k": stage.k, "pressure_kpa": float(stage.pressure_kpa), **lines, **sloped}
 
 
 def _has_gauge(top: Section, source: str) -> bool:

@@ -65,7 +65,7 @@ def golden_vectors(table: ControllerTable) -> GoldenVectors:
         readings += _line_readings(table, _entrance_paths(table), STEPS)
     if table.has_gauge:
         readings += _line_readings(table, _paths(table), STEPS_AND_ASIDE, _pressures)
-        readings += _line_readings(table, _paths(table)[:2], STEPS_AND_ASIDE, _silent_pressures)
+        readings += _line_readings(table, _paths(table)[:3], STEPS_AND_ASIDE, _silent_pressures)
     return _answered(table, readings)
 
 
@@ -127,13 +127,14 @@ def _own_pressures(table: ControllerTable, stage: int, count: int) -> Floats:
 def _pressures(table: ControllerTable, stage: int, count: int) -> Floats:
     """`count` pressures in turn: both ends of their range, its middle, and outside."""
     low, high = table.pressures[0], table.pressures[table.highest_raised]
-    turn = (high, low, low - OUTSIDE_KPA, (low + high) / np.float32(2.0), high + OUTSIDE_KPA, np.float32(LARGEST))
+    middle = low + (high - low) / np.float32(2.0)
+    turn = (high, low, low - OUTSIDE_KPA, middle, high + OUTSIDE_KPA, np.float32(LARGEST))
     return np.resize(np.roll(np.array(turn, dtype=np.float32), stage), count)
 
 
 def _silent_pressures(table: ControllerTable, stage: int, count: int) -> Floats:
     """What is no pressure."""
-    return np.resize(np.array([np.nan, np.inf], dtype=np.float32), count)
+    return np.resize(np.array([np.nan, np.inf, -np.inf], dtype=np.float32), count)
 
 
 def _line_readings(

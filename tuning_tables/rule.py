@@ -40,7 +40,7 @@ HOLD: Final = 0
 RAISE: Final = 1
 
 LARGEST_READING: Final = 3.4028234663852886e38  # the largest float32 number
-NO_RISE: Final = np.float32(0.0)
+NO_RISES: Final = (np.float32(0.0), np.float32(0.0))
 NO_GAUGE: Final = math.nan
 """The pressure, kPa, of a controller without gauge, or whose gauge is out of order."""
 
@@ -53,14 +53,13 @@ def decide(
     stage: int,
     s_m: float,
     v_m_s: float,
-    lower_rise: Any = NO_RISE,
-    upper_rise: Any = NO_RISE,
+    rise: Any = NO_RISES,
 ) -> int:
     """LOWER, HOLD or RAISE for one reading; the arrays are those of a `ControllerTable`, and only they are trusted.
 
     coefficients float32 (K+1, 2, degree+1), has_line bool (K+1, 2), valid_range float32 (4,), entrance_stage 0..K (K
-    where there is no approach), stage 0..K, path and speed in any float width (rounded to float32 before use); the
-    rises, float32, are those of `rises`, and 0 for a table without slopes. Pure; raises nothing for any number.
+    where there is no approach), stage 0..K, path and speed in any float width (rounded to float32 before use); `rise`:
+    what `rises` gives, none for a table without slopes. Pure; raises nothing for any number.
 
     `numba.njit(decide)` compiles this text as it stands and gives the same answers: hence one function without helpers,
     and no literal in the arithmetic, which would promote it to double precision.
@@ -81,13 +80,13 @@ def decide(
         line_speed = coefficients[stage, 0, highest]
         for power in range(highest - 1, -1, -1):
             line_speed = line_speed * s + coefficients[stage, 0, power]
-        if v < line_speed + lower_rise:
+        if v < line_speed + rise[0]:
             return LOWER
     if has_line[stage, 1]:
         line_speed = coefficients[stage, 1, highest]
         for power in range(highest - 1, -1, -1):
             line_speed = line_speed * s + coefficients[stage, 1, power]
-        if v > line_speed + upper_rise and not (s < 0 and stage >= entrance_stage):
+        if v > line_speed + rise[1] and not (s < 0 and stage >= entrance_stage):
             return RAISE
     return HOLD
 
@@ -105,7 +104,7 @@ def rises(
     clamped. As `decide`, it can be compiled by numba as it stands.
     """
     if stage < 0 or stage >= pressures.shape[0] or not (-LARGEST_READING <= pressure_kpa <= LARGEST_READING):
-        return NO_RISE, NO_RISE
+        return NO_RISES
     p = np.float32(pressure_kpa)
     if p < pressures[0]:
         p = pressures[0]
@@ -124,7 +123,7 @@ def decide_for(
     pressure is reached. `pressure_kpa`, gauge, is looked at where the table has slopes.
     """
     rise = rises(table.slopes, table.pressures, table.highest_raised, stage, pressure_kpa)
-    return decide(table.coefficients, table.has_line, table.valid_range, table.entrance_stage, stage, s_m, v_m_s, *rise)
+    return decide(table.coefficients, table.has_line, table.valid_range, table.entrance_stage, stage, s_m, v_m_s, rise)
 
 
 def speed_for(

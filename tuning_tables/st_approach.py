@@ -11,7 +11,6 @@ from tuning_tables.table_block import BlockSize, TableBlock, approach_m
 
 NO_APPROACH: Final[Mapping[str, str]] = {
     **dict.fromkeys(("GATE_RULE", "INTERLOCK", "APPROACH_MEMBERS", "GATE", "SAME_APPROACH", "LOAD_APPROACH"), ""),
-    "SAME_NAMES": " and estimator",
 }
 
 APPROACH: Final[Mapping[str, str]] = {
@@ -33,8 +32,6 @@ APPROACH: Final[Mapping[str, str]] = {
     "LOAD_APPROACH": """
     Table.Approach_m := ApproachOf[TableNo];
     Table.EntranceStage := EntranceStageOf[TableNo];""",
-    "SAME_NAMES": """,
-   estimator and approach""",
 }
 
 CHECK: Final = """\

@@ -24,17 +24,17 @@ $CATEGORIES
    RETARDER_SELECT  once for a cut, when its class and exit speed are known: fills a RETARDER_TABLE
    RETARDER_BEGIN   once for a cut, before its first sample: nothing is known of it
    RETARDER_OBSERVE at every sample: the speed to decide with, estimated if the table has an estimator, else as measured
-   RETARDER_DECIDE  at every sample at which no change of stage is under way: what to do with the stage
+   RETARDER_DECIDE  $WHEN
    RETARDER_LOAD    a table by its number in the book, unchanged
    RETARDER_CATEGORIES  names for the numbers of the weight categories; it need not be called
 
    The rule
    1. A path or speed that is not finite, a negative speed, or a stage that the table has not: hold.
-   2. The path is clamped into the range of the table.
+   2. The path is clamped into the range of the table.$GAUGE_RULE
    3. If the stage has a lower line and the speed is below it: lower, to the next stage down.
    4. If the stage has an upper line and the speed is above it: raise, to the next stage up.$GATE_RULE
    5. Otherwise hold; a speed equal to a line holds.
-$INTERLOCK
+$INTERLOCK$TIMES_HEAD
    Arithmetic. Every operation on REAL stands in a statement of its own, so that its result is rounded to REAL
    (binary32) before the next. A controller that calculates in double precision and rounds when it assigns gives the
    same results: rounding + - * / of binary32 numbers to 53 bits first and to 24 afterwards never differs from rounding
@@ -54,7 +54,7 @@ TYPE
         PathMax_m : REAL;
         Touch_kpa : REAL; (* pressure above which cylinders brake, for RETARDER_OBSERVE; 0 without estimator *)
         Stages : INT; (* stages 0 to Stages - 1; 0: no table *)
-        Powers : INT; (* coefficients of a line: its degree + 1 *)$APPROACH_MEMBERS
+        Powers : INT; (* coefficients of a line: its degree + 1 *)$APPROACH_MEMBERS$TIMES_MEMBERS
         HasLower : ARRAY[0..$LAST_STAGE] OF BOOL; (* by stage *)
         HasUpper : ARRAY[0..$LAST_STAGE] OF BOOL;
         (* at (stage * 2 + line) * $POWERS + power, line 0 lower, 1 upper; m/s per m^power *)
@@ -65,11 +65,11 @@ END_TYPE
 
 DECIDE: Final = """\
 FUNCTION_BLOCK RETARDER_DECIDE
-(* To be asked at each sample at which no change of stage is under way. *)
+(* $ASKED *)
 VAR_INPUT
-    Stage : INT; (* pressure stage in force, 0: released *)
+    Stage : INT; (* $STAGE_MEANT, 0: released *)
     Path_m : REAL; (* first axle, from the entrance of the first retarder *)
-    Speed_m_s : REAL; (* that of RETARDER_OBSERVE *)
+    Speed_m_s : REAL; (* that of RETARDER_OBSERVE *)$PRESSURE_INPUT
 END_VAR
 VAR_IN_OUT
     Table : RETARDER_TABLE; (* only read; it is not copied *)
@@ -82,7 +82,7 @@ VAR
     Path : REAL;
     Line : REAL;
     First : INT;
-    Power : INT;
+    Power : INT;$PRESSURE_VARIABLES
 END_VAR
 
 Command := 0;
@@ -99,14 +99,14 @@ IF Credible THEN
     END_IF;
     IF Path > Table.PathMax_m THEN
         Path := Table.PathMax_m;
-    END_IF;
+    END_IF;$ABOVE
     IF Table.HasLower[Stage] THEN
         First := Stage * $STRIDE;
         Line := Table.Coefficient[First + Table.Powers - 1];
         FOR Power := Table.Powers - 2 TO 0 BY -1 DO
             Line := Line * Path;
             Line := Line + Table.Coefficient[First + Power];
-        END_FOR;
+        END_FOR;$LOWER_RISE
         IF Speed_m_s < Line THEN
             Command := -1;
         END_IF;
@@ -117,7 +117,7 @@ IF Credible THEN
         FOR Power := Table.Powers - 2 TO 0 BY -1 DO
             Line := Line * Path;
             Line := Line + Table.Coefficient[First + Power];
-        END_FOR;
+        END_FOR;$UPPER_RISE
         IF Speed_m_s > Line THEN
             Command := 1;
         END_IF;
@@ -207,13 +207,13 @@ IF (SlowerNo >= 0) AND (Commanded_m_s > 0.0) AND (Commanded_m_s <= 3.4028235E+38
         Status := 2;
         IF FasterNo >= 0 THEN
             Loader(TableNo := FasterNo, Table := Faster);
-            Fits := (Table.Stages = Faster.Stages) AND (Table.Powers = Faster.Powers)$SAME_APPROACH
+            Fits := (Table.Stages = Faster.Stages) AND (Table.Powers = Faster.Powers)$SAME_APPROACH$SAME_TIMES
                 AND (Table.PathMin_m = Faster.PathMin_m) AND (Table.PathMax_m = Faster.PathMax_m)$SAME_ESTIMATOR;
             FOR Index := 0 TO $LAST_STAGE DO
                 IF (Table.HasLower[Index] XOR Faster.HasLower[Index])
                     OR (Table.HasUpper[Index] XOR Faster.HasUpper[Index]) THEN
                     Fits := FALSE;
-                END_IF;
+                END_IF;$SAME_PRESSURES
             END_FOR;
             Span := FasterTarget - SlowerTarget;
             IF Fits AND (Span > 0.0) THEN
@@ -224,7 +224,7 @@ IF (SlowerNo >= 0) AND (Commanded_m_s > 0.0) AND (Commanded_m_s <= 3.4028235E+38
                     Rise := Faster.Coefficient[Index] - Low;
                     Rise := Weight * Rise;
                     Table.Coefficient[Index] := Low + Rise;
-                END_FOR;
+                END_FOR;$SLOPES_BETWEEN
                 Table.Target_m_s := Commanded_m_s;
                 Status := 1;
             END_IF;
@@ -271,7 +271,7 @@ IF Found THEN
     Table.PathMin_m := PathMinOf[TableNo];
     Table.PathMax_m := PathMaxOf[TableNo];
     Table.Stages := StagesOf[TableNo];
-    Table.Powers := PowersOf[TableNo];$LOAD_APPROACH
+    Table.Powers := PowersOf[TableNo];$LOAD_APPROACH$LOAD_TIMES
     CASE TableNo OF
 $CASES
     END_CASE;

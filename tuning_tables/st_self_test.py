@@ -19,6 +19,7 @@ from tuning_tables.distinct_estimators import distinct_estimators
 from tuning_tables.golden_choices import GoldenChoice, golden_choices
 from tuning_tables.golden_vectors import GoldenVectors
 from tuning_tables.self_test_size import SelfTestSize
+from tuning_tables.st_any_time import slopes_agree, times_check
 from tuning_tables.st_approach import approach_check
 from tuning_tables.st_literals import LONGEST_ARRAY, int_array, is_portable, real, real_array
 from tuning_tables.st_tables import coefficients_of, constants
@@ -54,13 +55,17 @@ def _table_test(book: TableBook, number: int, estimator: int, vectors: GoldenVec
     size = block_size(book)
     block = block_of(book, number, size=size)
     expected = [block.table.target_speed_m_s, *block.table.valid_range[:2], *coefficients_of(block, size)]
-    kept = np.flatnonzero(is_portable(vectors.s_m) & is_portable(vectors.v_m_s))
+    # Without slopes no pressure changes an answer, so any will do.
+    kpa = vectors.pressure_kpa if book.tables[number].has_gauge else np.zeros_like(vectors.pressure_kpa)
+    kept = np.flatnonzero(is_portable(vectors.s_m) & is_portable(vectors.v_m_s) & is_portable(kpa))
     blanks = {"NUMBER": number, "NAME": comment_text(book.tables[number].id), "LAST": len(expected) - 4}
     declarations, statements = [real_array("Expected", expected)], [Template(TABLE_CONSTANTS).substitute(blanks)]
     if size.breaks:
         statements.append(estimator_check(book, number, estimator))
     if size.approach:
         statements.append(approach_check(block))
+    for already, more in zip((declarations, statements), times_check(block, size), strict=True):
+        already += more
     first = len(expected)
     for part, chosen in _parts(kept):
         declarations += [
@@ -69,7 +74,12 @@ def _table_test(book: TableBook, number: int, estimator: int, vectors: GoldenVec
             real_array(f"Speed_{part}", vectors.v_m_s[chosen]),
             int_array(f"Answer_{part}", vectors.answer[chosen]),
         ]
-        statements.append(Template(TABLE_LOOP).substitute(PART=part, LAST=len(chosen) - 1, FIRST=first))
+        asked = ""
+        if size.gauge:
+            declarations.append(real_array(f"Pressure_{part}", kpa[chosen]))
+            asked = f"\n        Pressure_kpa := Pressure_{part}[Index],"
+        loop = Template(TABLE_LOOP)
+        statements.append(loop.substitute(PART=part, LAST=len(chosen) - 1, FIRST=first, PRESSURE_ASKED=asked))
         first += len(chosen)
     head = Template(TABLE_HEAD).substitute(blanks, CONSTANTS=len(expected), READINGS=len(kept))
     return "".join([head, constants(declarations), RESET, *statements, FOOT])
@@ -94,8 +104,10 @@ def _choice_test(book: TableBook, line_checks: int) -> str:
     between = [row for row in choices if row.status == Status.BETWEEN][::3][:line_checks]
     for number, row in enumerate(between):
         choice = _choose(book, row)
-        expected = coefficients_of(block_of(book, choice.numbers[0], choice.table, size), size)
-        declarations.append(real_array(f"Expected_{number}", expected))
+        block = block_of(book, choice.numbers[0], choice.table, size)
+        expected = coefficients_of(block, size)
+        slopes, slopes_checked = slopes_agree(number, block, size)
+        declarations += [real_array(f"Expected_{number}", expected), *slopes]
         statements.append(
             Template(CHOICE_LINES).substitute(
                 NUMBER=number,
@@ -105,6 +117,7 @@ def _choice_test(book: TableBook, line_checks: int) -> str:
                 COMMANDED=real(row.commanded_m_s),
                 LAST=len(expected) - 1,
                 FAULT=len(choices) + number,
+                SLOPES_AGREE=slopes_checked,
             )
         )
     head = Template(CHOICE_HEAD).substitute(CHOICES=len(choices), LINES=len(between))

@@ -15,6 +15,7 @@ from tuning_tables.category_names import category_names, comment_text
 from tuning_tables.errors import InvalidTable
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.self_test_size import FULL, SelfTestSize
+from tuning_tables.st_any_time import any_time_blanks
 from tuning_tables.st_approach import approach_blanks
 from tuning_tables.st_blocks import CATEGORIES, DECIDE, HEAD, TABLE_TYPE
 from tuning_tables.st_estimator import observe_blocks
@@ -68,7 +69,9 @@ def head(book: TableBook) -> str:
     """The comment at the beginning."""
     origin = "\n".join(f"   {line}" for line in origin_lines(book))
     categories = "\n".join(category_lines(book))
-    return HEAD.substitute(approach_blanks(block_size(book)), ORIGIN=origin, CATEGORIES=categories, LAYOUT=LAYOUT)
+    size = block_size(book)
+    blanks = {**approach_blanks(size), **any_time_blanks(size)}
+    return HEAD.substitute(blanks, ORIGIN=origin, CATEGORIES=categories, LAYOUT=LAYOUT)
 
 
 def table_units(book: TableBook) -> list[str]:

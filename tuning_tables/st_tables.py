@@ -9,6 +9,7 @@ from string import Template
 import numpy as np
 
 from tuning_tables.category_names import comment_text
+from tuning_tables.st_any_time import any_time_blanks, gauge_constants, times_constants
 from tuning_tables.st_approach import approach_blanks, approach_constants
 from tuning_tables.st_blocks import LOAD_BODY, LOAD_DECLARATIONS, SELECT_BODY, SELECT_DECLARATIONS
 from tuning_tables.st_estimator import estimator_blanks, estimator_constants
@@ -30,7 +31,7 @@ def blanks_of(book: TableBook) -> Mapping[str, str]:
         "LAST_COEFFICIENT": 2 * size.stages * size.powers - 1,
     }
     sizes = {name: str(number) for name, number in numbers.items()}
-    return {**sizes, **estimator_blanks(book, size), **approach_blanks(size)}
+    return {**sizes, **estimator_blanks(book, size), **approach_blanks(size), **any_time_blanks(size)}
 
 
 def load_block(book: TableBook) -> str:
@@ -45,9 +46,10 @@ def load_block(book: TableBook) -> str:
     ]
     for number, block in enumerate(blocks):
         declarations += _table_constants(book, number, block, size)
-    declarations += approach_constants(blocks, size) + estimator_constants(book, size)
+    declarations += approach_constants(blocks, size) + times_constants(blocks, size) + estimator_constants(book, size)
     blanks = blanks_of(book)
-    cases = "\n".join(Template(_CASE).substitute(blanks, NUMBER=number) for number in range(len(blocks)))
+    case = Template(_CASE).safe_substitute(blanks)
+    cases = "\n".join(Template(case).substitute(NUMBER=number) for number in range(len(blocks)))
     return "".join(
         [
             Template(LOAD_DECLARATIONS).substitute(blanks),
@@ -88,7 +90,7 @@ $NUMBER:
     END_FOR;
     FOR Index := 0 TO $LAST_COEFFICIENT DO
         Table.Coefficient[Index] := Coefficient_$NUMBER[Index];
-    END_FOR;"""
+    END_FOR;$CASE_PRESSURES"""
 
 
 def _blocks(book: TableBook) -> list[TableBlock]:
@@ -103,4 +105,5 @@ def _table_constants(book: TableBook, number: int, block: TableBlock, size: Bloc
         bool_array(f"Lower_{number}", (lines & HAS_LOWER) > 0),
         bool_array(f"Upper_{number}", (lines & HAS_UPPER) > 0),
         real_array(f"Coefficient_{number}", coefficients_of(block, size), size.powers),
+        *gauge_constants(number, block, size),
     ]

@@ -48,7 +48,8 @@ END_FOR;
 
 TABLE_LOOP: Final = """\
 FOR Index := 0 TO $LAST DO
-    Decider(Stage := Stage_$PART[Index], Path_m := Path_$PART[Index], Speed_m_s := Speed_$PART[Index], Table := Table);
+    Decider(Stage := Stage_$PART[Index], Path_m := Path_$PART[Index], Speed_m_s := Speed_$PART[Index],\
+$PRESSURE_ASKED Table := Table);
     IF Decider.Command <> Answer_$PART[Index] THEN
         IF Failed = 0 THEN
             FirstFailed := Index + $FIRST;
@@ -101,7 +102,7 @@ FOR Index := 0 TO $LAST DO
         Agrees := FALSE;
     END_IF;
 END_FOR;
-IF NOT Agrees THEN
+${SLOPES_AGREE}IF NOT Agrees THEN
     IF Failed = 0 THEN
         FirstFailed := $FAULT;
     END_IF;

@@ -13,6 +13,9 @@ from __future__ import annotations
 
 from typing import Final
 
+import numpy as np
+import numpy.typing as npt
+
 from tuning_tables.errors import InvalidTable
 from tuning_tables.line_order import (
     DOUBLE_PRECISION_ALLOWANCE,
@@ -31,10 +34,20 @@ NO_PRESSURE: Final = (0.0, 0.0)
 """Of stages without slopes: they are the same at every pressure."""
 
 
+def range_above(pressures: npt.NDArray[np.float32], highest_raised: int, stage: int) -> Range:
+    """The lowest and the highest pressure that the surfaces of `stage` are asked at, less the pressure of the stage.
+
+    pressures float32 (K+1,), kPa. The range holds 0 also at a stage above `highest_raised`, the highest stage that the
+    table raises to: the pressure of a silent gauge counts as that of the stage.
+    """
+    own, lowest, highest = (float(pressures[k]) for k in (stage, 0, highest_raised))
+    return lowest - own, max(highest - own, 0.0)
+
+
 def require_stage(stage: Stage, s_range_m: Range, above_kpa: Range, key: str) -> None:
     """Both lines or surfaces of `stage` stay float32 numbers and keep their order; raises `InvalidTable`.
 
-    `above_kpa`: from the lowest pressure less that of the stage to the highest less that of the stage.
+    `above_kpa`: what `range_above` gives, or `NO_PRESSURE`.
     """
     for side, line, slope in zip(SIDES, stage.lines, stage.slopes, strict=True):
         if line is not None:

@@ -14,6 +14,7 @@ from tuning_tables.decisions import Decisions
 from tuning_tables.errors import InvalidTable
 from tuning_tables.estimator import Estimator
 from tuning_tables.figures import Predicted, Validated, ValidRange
+from tuning_tables.line_order import LARGEST_FLOAT32
 from tuning_tables.provenance import CutId, Generator, RetarderId
 from tuning_tables.requirement import (
     UTC_INSTANT,
@@ -25,7 +26,7 @@ from tuning_tables.requirement import (
     require_tuple,
 )
 from tuning_tables.stage import SIDES, Stage
-from tuning_tables.surface_order import NO_PRESSURE, require_stage
+from tuning_tables.surface_order import NO_PRESSURE, range_above, require_stage
 
 MOST_STAGES: Final = 32
 HIGHEST_DEGREE: Final = 9
@@ -54,10 +55,11 @@ class ControllerTable:
     has_line          bool (K+1, 2)
     valid_range       float32 (4,): s_min, s_max in m, v_min, v_max in m/s
     slopes            float32 (K+1, 2), m/s per kPa; 0 where a line has none
-    pressures         float32 (K+1,), kPa
+    pressures         float32 (K+1,), kPa; the largest float32 number where one exceeds it
 
     On the valid path range lower(s) < upper(s) holds at every stage that has both, also as evaluated in float32, and
-    with slopes at every pressure from that of stage 0 to that of the highest stage that the table raises to.
+    with slopes at every pressure from that of stage 0 to that of the highest stage that the table raises to, and at the
+    stage's own.
 
     Raises `InvalidTable`.
     """
@@ -88,8 +90,9 @@ class ControllerTable:
         valid_range = np.array(self.valid.s_m + self.valid.v_m_s, dtype=np.float32)
         self._require_approach()
         self._require_slopes()
-        with np.errstate(over="ignore"):  # who has no gauge may give any pressure
-            pressures = np.array([stage.pressure_kpa for stage in self.stages], dtype=np.float32)
+        # Who has no gauge may give any pressure; it must stay finite, or no slope times it would not be 0.
+        exact = np.array([stage.pressure_kpa for stage in self.stages], dtype=np.float64)
+        pressures = np.minimum(exact, LARGEST_FLOAT32).astype(np.float32)
         self._require_lines((float(valid_range[0]), float(valid_range[1])), pressures)
         coefficients, has_line = _line_arrays(self.stages, self.degree)
         slopes = np.array([[slope or 0.0 for slope in stage.slopes] for stage in self.stages], dtype=np.float32)
@@ -174,14 +177,20 @@ class ControllerTable:
     def _require_slopes(self) -> None:
         if not self.has_gauge:
             return
-        if self.decisions is Decisions.AT_REST:
-            raise InvalidTable("a line has a slope, but a table that decides at rest meets each stage at its pressure.")
         for stage in self.stages:
+            if stage.pressure_kpa > LARGEST_FLOAT32:
+                raise InvalidTable(
+                    f"stages[{stage.k}].pressure_kpa is {stage.pressure_kpa!r}, which exceeds what float32 can hold, "
+                    "but lines with slopes need it."
+                )
             for side, line, slope in zip(SIDES, stage.lines, stage.slopes, strict=True):
-                if line is not None and slope is None:
+                key = f"stages[{stage.k}].{side}_slope_m_s_per_kpa"
+                if slope is not None and self.decisions is Decisions.AT_REST:
                     raise InvalidTable(
-                        f"stages[{stage.k}].{side} has no slope, but another line has: give all of them one, or none."
+                        f"{key} is given, but a table whose decisions are at rest meets each stage at its pressure."
                     )
+                if line is not None and slope is None:
+                    raise InvalidTable(f"{key} is missing, but another line has one: give all lines a slope, or none.")
 
     def _require_lines(self, s_range_m: tuple[float, float], pressures: npt.NDArray[np.float32]) -> None:
         for stage in self.stages:
@@ -192,16 +201,8 @@ class ControllerTable:
                         f"{key}.{side} has {len(line)} coefficients, but a line of degree {self.degree} has "
                         f"{self.degree + 1}."
                     )
-            require_stage(stage, s_range_m, self._above_kpa(stage, pressures), key)
-
-    def _above_kpa(self, stage: Stage, pressures: npt.NDArray[np.float32]) -> tuple[float, float]:
-        """The pressures that its surfaces are looked at, less that of the stage."""
-        if not self.has_gauge:
-            return NO_PRESSURE
-        if not np.isfinite(pressures).all():
-            raise InvalidTable("stages.pressure_kpa exceeds what float32 can hold, but lines with slopes need it.")
-        own = float(pressures[stage.k])
-        return float(pressures[0]) - own, float(pressures[self.highest_raised]) - own
+            above = range_above(pressures, self.highest_raised, stage.k) if self.has_gauge else NO_PRESSURE
+            require_stage(stage, s_range_m, above, key)
 
 
 def _line_arrays(stages: tuple[Stage, ...], degree: int) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.bool_]]:

@@ -5,8 +5,11 @@ lines (1 lower, 2 upper, 3 both); as binary32 mass_t, target speed in m/s, s_min
 stage, line (lower, upper) and power; if any table of the book has an estimator, its number of breaks (0: none), and as
 binary32 the variance of a measured speed, of the factor, and of the path, the touch pressure in kPa, and of all breaks
 first s, then D, then W; if any table of the book has an approach, its length in m as binary32 (0: none) and the
-entrance stage; and the CRC-32 of all words before it. All tables of a book have blocks of one size, that of its table
-with most stages, powers and breaks; what a table has not is 0, save the entrance stage, which is then its highest.
+entrance stage; if any table of the book decides at any time, 1 for at any time or 0 for at rest; if any table of the
+book has a gauge, as binary32 the pressure of the highest stage raised to and those of all stages in kPa, and the slopes
+by stage and line in m/s per kPa; and the CRC-32 of all words before it. All tables of a book have blocks of one size,
+that of its table with most stages, powers and breaks; what a table has not is 0, save the entrance stage, which is then
+its highest.
 """
 
 from __future__ import annotations
@@ -19,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.active_table import ActiveTable, active
+from tuning_tables.decisions import Decisions
 from tuning_tables.estimator import Estimator
 from tuning_tables.table_book import TableBook
 
@@ -36,17 +40,22 @@ APPROACH_WORDS = 2
 
 @dataclass(frozen=True)
 class BlockSize:
-    """Stages, coefficients of a line, and breaks of an estimator that there is room for in a block; and an approach."""
+    """Stages, coefficients of a line, and breaks of an estimator that there is room for in a block.
+
+    Also whether there is room for an approach, for the times of decision, and for pressures and slopes.
+    """
 
     stages: int
     powers: int
     breaks: int
     approach: bool
+    any_time: bool
+    gauge: bool
 
     @property
     def words(self) -> int:
         """Length of a block in words of 32 bits, checksum included."""
-        return int(self.approach_words.stop) + 1
+        return int(self.pressures.stop) + 1
 
     @property
     def coefficients(self) -> slice:
@@ -65,6 +74,18 @@ class BlockSize:
         """Where the approach is: nowhere if the book has none."""
         first = self.estimator.stop
         return slice(first, first + (APPROACH_WORDS if self.approach else 0))
+
+    @property
+    def at_any_time(self) -> slice:
+        """Where it stands whether the table decides at any time: nowhere if all of the book decide at rest."""
+        first = self.approach_words.stop
+        return slice(first, first + self.any_time)
+
+    @property
+    def pressures(self) -> slice:
+        """Where the highest pressure, those of the stages and the slopes are: nowhere if the book needs no gauge."""
+        first = self.at_any_time.stop
+        return slice(first, first + (1 + 3 * self.stages if self.gauge else 0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +111,9 @@ def block_size(book: TableBook) -> BlockSize:
     """The least size that every table of the book fits into."""
     breaks = max(0 if table.estimator is None else len(table.estimator.s_m) for table in book.tables)
     approach = any(table.approach is not None for table in book.tables)
-    return BlockSize(book.most_stages, book.highest_degree + 1, breaks, approach)
+    any_time = any(table.decisions is Decisions.AT_ANY_TIME for table in book.tables)
+    gauge = any(table.has_gauge for table in book.tables)
+    return BlockSize(book.most_stages, book.highest_degree + 1, breaks, approach, any_time, gauge)
 
 
 def block_of(
@@ -119,6 +142,8 @@ def block_of(
             coefficients.ravel().view(np.uint32),
             estimator_words(table.estimator, size),
             approach_words(table)[: APPROACH_WORDS * size.approach],
+            np.array([table.decisions is Decisions.AT_ANY_TIME], dtype=np.uint32)[: size.any_time],
+            pressure_words(table, source.has_gauge, size),
         ]
     )
     words = np.append(body, np.uint32(zlib.crc32(body.astype("<u4").tobytes())))
@@ -140,6 +165,17 @@ def approach_words(table: ActiveTable) -> npt.NDArray[np.uint32]:
     """The words of an approach in a block."""
     length_m = np.array([approach_m(table)], dtype=np.float32)
     return np.append(length_m.view(np.uint32), np.uint32(table.entrance_stage))
+
+
+def pressure_words(table: ActiveTable, has_gauge: bool, size: BlockSize) -> npt.NDArray[np.uint32]:
+    """The words of pressures and slopes in a block, zeros for a table without gauge."""
+    words = np.zeros(size.pressures.stop - size.pressures.start, dtype=np.uint32)
+    if has_gauge:
+        stages, numbers = len(table.pressures), words.view(np.float32)
+        numbers[0] = table.pressures[table.highest_raised]
+        numbers[1 : 1 + stages] = table.pressures
+        numbers[1 + size.stages :].reshape(size.stages, 2)[:stages] = table.slopes
+    return words
 
 
 def approach_m(table: ActiveTable) -> np.float32:

@@ -8,7 +8,7 @@ The choice knows what the yard knows of a cut: its weight category, its number o
 3. Equal to a target: that table.
 4. Above the highest target: the table of the highest target. The cut leaves slower than asked.
 5. Between two neighbouring targets: the lines between the two (`active_table.between`), or, where the two differ in
-   their stages, degree, lines or path range, the table of the lower target.
+   more than their coefficients and slopes (`active_table.interpolable`), the table of the lower target.
 
 So no choice aims at more than the commanded speed, and a cut that the book does not know is left to whoever commands.
 Speeds and masses are compared as float32 numbers; of equal tables the first in the book counts.
@@ -39,7 +39,7 @@ from tuning_tables.errors import InvalidTable
 from tuning_tables.line_order import UNIT_ROUNDOFF
 from tuning_tables.requirement import require_kind, require_tuple
 from tuning_tables.stage import Stage
-from tuning_tables.surface_order import NO_PRESSURE, reach_kpa, stage_gap, surface_bound
+from tuning_tables.surface_order import NO_PRESSURE, range_above, reach_kpa, stage_gap, surface_bound
 from tuning_tables.table import ControllerTable
 
 LEAST_FLOAT32: Final = float(np.finfo(np.float32).smallest_normal)
@@ -191,8 +191,7 @@ def require_order_between(slower: ControllerTable, faster: ControllerTable) -> N
     for one, other in zip(slower.stages, faster.stages, strict=True):
         if None in one.lines or None in other.lines:
             continue
-        own, low, high = (float(slower.pressures[k]) for k in (one.k, 0, slower.highest_raised))
-        above = (low - own, high - own) if slower.has_gauge else NO_PRESSURE
+        above = range_above(slower.pressures, slower.highest_raised, one.k) if slower.has_gauge else NO_PRESSURE
         gap_m_s = min(stage_gap(one, path, above), stage_gap(other, path, above))
         needed_m_s = _loss(one, other, path, above)
         if not gap_m_s > needed_m_s:

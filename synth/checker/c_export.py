@@ -85,21 +85,31 @@ def differences(blocks: Sequence[Words], tables: Sequence[Table], header: str) -
         yield "", "its header does not tell RETARDER_STAGES and RETARDER_POWERS"
         return
     size = int(stages[1]), int(powers[1]), most_breaks(tables), any(table.approach_m > 0.0 for table in tables)
+    any_time, gauge = any(table.at_any_time for table in tables), any(table.has_gauge for table in tables)
     yield from (("", sentence) for sentence in category_differences(tables, header))
-    breaks = re.search(SIZE.format("BREAKS"), header)  # not in exports from before there were estimators
-    if int(breaks[1] if breaks else 0) != size[2]:
-        yield "", f"its header has room for {breaks[1] if breaks else 'no'} breaks, but the tables have {size[2]}"
-    approach = re.search(SIZE.format("APPROACH"), header)  # likewise
-    if int(approach[1] if approach else 0) != size[3]:
-        room, has = ("no room", "a table has one") if size[3] else ("room", "no table has one")
-        yield "", f"its header has {room} for an approach, but {has}"
+    yield from (("", sentence) for sentence in room_differences(header, size[2], size[3], any_time, gauge))
     for number, (block, table) in enumerate(zip(blocks, tables, strict=True)):
         body = b"".join(WORD.pack(word) for word in block[:-1])
         if block[-1] != crc32(body):
             yield table.id, f"the crc32 of table {number} is {block[-1]:08x}, but its words give {crc32(body):08x}"
-        wanted = words_of(table, size)
+        wanted = words_of(table, size, any_time, gauge)
         if block[:-1] != wanted:
             yield table.id, word_difference(number, block[:-1], wanted)
+
+
+def room_differences(header: str, breaks: int, approach: bool, any_time: bool, gauge: bool) -> Iterator[str]:
+    """What the header has room for and no table has, or the other way round; where it names none, it has no room."""
+    told = re.search(SIZE.format("BREAKS"), header)  # not in exports from before there were estimators
+    if int(told[1] if told else 0) != breaks:
+        yield f"its header has room for {told[1] if told else 'no'} breaks, but the tables have {breaks}"
+    for macro, what, is_there, has in (
+        ("APPROACH", "an approach", approach, "has one"),
+        ("AT_ANY_TIME", "times of decision", any_time, "decides at any time"),
+        ("GAUGE", "slopes", gauge, "has slopes"),
+    ):
+        told = re.search(SIZE.format(macro), header)
+        if int(told[1] if told else 0) != is_there:
+            yield f"its header has {'no ' * is_there}room for {what}, but {'a' if is_there else 'no'} table {has}"
 
 
 def category_differences(tables: Sequence[Table], header: str) -> Iterator[str]:
@@ -125,10 +135,12 @@ def most_breaks(tables: Sequence[Table]) -> int:
     return max(len(table.estimator.s_m) if table.estimator else 0 for table in tables)
 
 
-def words_of(table: Table, size: tuple[int, int, int, bool]) -> Words:
+def words_of(table: Table, size: tuple[int, int, int, bool], any_time: bool = False, gauge: bool = False) -> Words:
     """The words that a table should have, its checksum left out; missing lines, stages, powers and breaks are 0.
 
     `size`: stages, powers, breaks, and whether there is room for an approach; its length is 0 for a table without.
+    `any_time`, `gauge`: whether there is room for the times of decision, and for pressures and slopes; these are 0 for
+    a table without slopes.
     """
     stages, powers, breaks, approach = size
     lines = [(lower is not None) + 2 * (upper is not None) for lower, upper in table.lines]
@@ -140,7 +152,18 @@ def words_of(table: Table, size: tuple[int, int, int, bool]) -> Words:
             coefficients = line or ()
             words += [bits(c) for c in coefficients] + [0] * (powers - len(coefficients))
     words += estimator_words(table.estimator, breaks) if breaks else []
-    return tuple(words + ([bits(table.approach_m), table.entrance_stage] if approach else []))
+    words += [bits(table.approach_m), table.entrance_stage] if approach else []
+    words += [int(table.at_any_time)] if any_time else []
+    return tuple(words + (gauge_words(table, stages) if gauge else []))
+
+
+def gauge_words(table: Table, stages: int) -> list[int]:
+    """The pressure of the highest stage raised to, those of the stages, the slopes by stage and line."""
+    if not table.has_gauge:
+        return [0] * (1 + 3 * stages)
+    none = [0] * (stages - len(table.lines))
+    slopes = [bits(slope or 0.0) for both in table.slopes for slope in both]
+    return [bits(table.pressures_kpa[table.top_stage]), *map(bits, table.pressures_kpa), *none, *slopes, *none, *none]
 
 
 def estimator_words(estimator: Estimator | None, breaks: int) -> list[int]:

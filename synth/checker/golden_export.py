@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 import struct
 from collections.abc import Iterator, Sequence
 from typing import Final
 
 from synth.checker.finding import DamagedError
-from synth.checker.float32 import decide, from_bits
+from synth.checker.float32 import decide, from_bits, rises
 from synth.checker.table_reading import Table
 
 HEAD: Final = ["table", "id", "stage", "s_bits", "v_bits", "s_m", "v_m_s", "answer"]
+HEAD_WITH_GAUGE: Final = [*HEAD[:5], "p_bits", *HEAD[5:7], "pressure_kpa", "answer"]
+"""Where a table has slopes."""
 
 
 def differences(content: bytes, tables: Sequence[Table]) -> Iterator[tuple[str, str]]:
@@ -21,21 +24,25 @@ def differences(content: bytes, tables: Sequence[Table]) -> Iterator[tuple[str, 
         rows = list(csv.reader(io.StringIO(content.decode("utf-8"), newline=""), strict=True))
     except (UnicodeDecodeError, csv.Error) as fault:
         raise DamagedError(f"it is no CSV: {fault}") from None
-    if not rows or rows[0] != HEAD:
-        raise DamagedError(f"its first line is not {','.join(HEAD)}")
+    has_gauge = any(table.has_gauge for table in tables)
+    head = HEAD_WITH_GAUGE if has_gauge else HEAD
+    if not rows or rows[0] != head:
+        raise DamagedError(f"its first line is not {','.join(head)}")
     seen: set[int] = set()
     wrong: set[int] = set()
     for place, row in enumerate(rows[1:], start=2):
         try:
             number, name, stage = int(row[0]), row[1], int(row[2])
-            s, v, answer = from_bits(int(row[3], 16)), from_bits(int(row[4], 16)), int(row[7])
+            s, v, answer = from_bits(int(row[3], 16)), from_bits(int(row[4], 16)), int(row[len(head) - 1])
+            kpa = from_bits(int(row[5], 16)) if has_gauge else math.nan
             table = tables[number] if number >= 0 else None
         except (ValueError, IndexError, struct.error) as fault:
             raise DamagedError(f"row {place} is no golden vector: {fault}") from None
         if table is None:
             raise DamagedError(f"row {place} is of table {number}")
         seen.add(number)
-        right = decide(table.lines, table.path_m, table.entrance_stage, stage, s, v)
+        added = rises(table.slopes, table.pressures_kpa, table.top_stage, stage, kpa)
+        right = decide(table.lines, table.path_m, table.entrance_stage, stage, s, v, added)
         if (name != table.id or right != answer) and number not in wrong:
             wrong.add(number)
             yield table.id, f"row {place} says {answer} of {name!r}, but the rule says {right} of {table.id!r}"

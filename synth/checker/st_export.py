@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from typing import Any, Final
 
 from synth.checker.finding import DamagedError, shown
@@ -16,6 +16,7 @@ LAYOUT: Final = r"\bIF Layout <> (\d{1,6}) THEN"
 OWN_ARRAYS: Final = ("Lower", "Upper", "Coefficient")
 ESTIMATOR_COLUMNS: Final = ("BreaksOf", "SpeedVarianceOf", "FactorVarianceOf", "PathVarianceOf")
 APPROACH_COLUMNS: Final = {"ApproachOf", "EntranceStageOf"}
+GAUGE_ARRAYS: Final = ("Pressure", "Slope")
 ESTIMATOR_ROWS: Final = ("BreakPath", "Drive", "Brake")
 
 Arrays = dict[str, list[list[Any]]]
@@ -67,6 +68,7 @@ def differences(arrays: Arrays, tables: Sequence[Table]) -> Iterator[tuple[str, 
         columns["EntranceStageOf"] = [table.entrance_stage for table in tables]
     elif APPROACH_COLUMNS & arrays.keys():
         yield "", "it holds approaches, but no table has one"
+    columns |= yield from time_columns(arrays, tables)
     for name, wanted in columns.items():
         yield from array_differences(name, arrays, wanted, "")
     stages, powers = max(len(t.lines) for t in tables), max(t.degree for t in tables) + 1
@@ -77,7 +79,32 @@ def differences(arrays: Arrays, tables: Sequence[Table]) -> Iterator[tuple[str, 
         padded = [*table.lines, *[(None, None)] * (stages - len(table.lines))]
         flat = [c for both in padded for each in both for c in [*(each or ()), *[0.0] * (powers - len(each or ()))]]
         yield from array_differences(f"Coefficient_{number}", arrays, flat, table.id)
+        if any(each.has_gauge for each in tables):
+            yield from gauge_differences(number, arrays, table, stages)
     yield from estimator_differences(arrays, tables)
+
+
+def time_columns(arrays: Arrays, tables: Sequence[Table]) -> Generator[tuple[str, str], None, dict[str, list[Any]]]:
+    """What times of decision and highest pressures should be there; says which are there and should not."""
+    columns: dict[str, list[Any]] = {}
+    if any(table.at_any_time for table in tables):
+        columns["AtAnyTimeOf"] = [table.at_any_time for table in tables]
+    elif "AtAnyTimeOf" in arrays:
+        yield "", "it holds times of decision, but no table decides at any time"
+    if any(table.has_gauge for table in tables):
+        highest = [table.pressures_kpa[table.top_stage] if table.has_gauge else 0.0 for table in tables]
+        columns["HighestPressureOf"] = [rounded(kpa) for kpa in highest]
+    elif "HighestPressureOf" in arrays or any(name.rpartition("_")[0] in GAUGE_ARRAYS for name in arrays):
+        yield "", "it holds pressures or slopes, but no table has slopes"
+    return columns
+
+
+def gauge_differences(number: int, arrays: Arrays, table: Table, stages: int) -> Iterator[tuple[str, str]]:
+    """What is wrong with pressures and slopes of table `number`; all are 0 in a table without slopes."""
+    pressures = [rounded(kpa) for kpa in table.pressures_kpa] if table.has_gauge else []
+    slopes = [slope or 0.0 for both in table.slopes for slope in both]
+    for name, values, length in (("Pressure", pressures, stages), ("Slope", slopes, 2 * stages)):
+        yield from array_differences(f"{name}_{number}", arrays, values + [0.0] * (length - len(values)), table.id)
 
 
 def estimator_differences(arrays: Arrays, tables: Sequence[Table]) -> Iterator[tuple[str, str]]:

@@ -12,14 +12,22 @@ from pathlib import Path
 import h5py
 import pytest
 
-from synth.checker.finding import Kind
+from synth.checker import c_export, golden_export, st_export
+from synth.checker.finding import DamagedError, Kind
+from synth.checker.table_reading import Table, read_table
 from tests.checker.planted_fault import Document, alone, found, look, rewrite
-from tests.controller_code.sample_book import FOUR_AXLES, table_of
-from tuning_tables import to_json
+from tests.controller_code.sample_book import FOUR_AXLES, surface_book, table_of
+from tests.controller_code.test_surface_code import at_rest
+from tuning_tables import ControllerTable, Decisions, to_json
 from tuning_tables.c_source import c_files
 from tuning_tables.export_prefix import ExportPrefix
-from tuning_tables.st_source import st_files, st_unit_files
+from tuning_tables.st_source import TABLE_FILE, st_files, st_unit_files
 from tuning_tables.table_book import TableBook
+
+
+def timed(table: ControllerTable) -> ControllerTable:
+    """The table without slopes that decides at any time."""
+    return replace(at_rest(table), decisions=Decisions.AT_ANY_TIME)
 
 
 def swap_coefficients(document: Document) -> None:
@@ -83,6 +91,86 @@ def test_ids_that_look_like_names_of_the_code_are_compared_as_they_are(tmp_path:
     verdict = look(tmp_path)
     assert verdict.findings == ()
     assert {"bunch_table.c", "bunch_table.st", "0004_BUNCH_2_LOAD.st", "retarder_table.c"} <= set(verdict.files)
+
+
+def surfaces(tables: int = 12) -> tuple[dict[str, str], list[Table]]:
+    """The texts of the exports of a book that decides at any time, and its tables as the checker reads them."""
+    book = TableBook(surface_book().tables[:tables])
+    content = {**c_files(book), TABLE_FILE: st_files(book)[TABLE_FILE]}
+    texts = {name: text.decode("utf-8") for name, text in content.items()}
+    return texts, [read_table(to_json(table)) for table in book.tables]
+
+
+def disagreements(texts: dict[str, str], tables: list[Table]) -> list[str]:
+    """All sentences about the exports."""
+    code, header = texts["retarder_table.c"], texts["retarder_table.h"]
+    golden, arrays = texts["golden_vectors.csv"].encode("utf-8"), st_export.read_arrays(texts[TABLE_FILE])
+    found = [
+        *c_export.differences(c_export.read_blocks(code), tables, header),
+        *golden_export.differences(golden, tables),
+        *st_export.differences(arrays, tables),
+    ]
+    return [sentence for _, sentence in found]
+
+
+@pytest.mark.parametrize(
+    ("name", "pattern", "replacement", "words"),
+    [
+        ("retarder_table.h", r"RETARDER_GAUGE 1u", "RETARDER_GAUGE 0u", "no room for slopes, but a table has slopes"),
+        ("retarder_table.h", r"RETARDER_AT_ANY_TIME 1u", "X 1u", "no room for times of decision, but a table decides"),
+        ("retarder_table.c", r"1u, /\* decides at any", "0u, /* decides at any", "the crc32 of table 0"),
+        ("retarder_table.c", r"1u, /\* decides at any", "0u, /* decides at any", "is 00000000 .* but the table says"),
+        ("retarder_table.c", r"p\+8f, /\* highest", "p+9f, /* highest", "but the table says"),
+        ("retarder_table.c", r"p\+7f, /\* of stage 1", "p+6f, /* of stage 1", "but the table says"),
+        ("retarder_table.c", r"p-10f\}, /\* slopes at", "p-11f}, /* slopes at", "but the table says"),
+        (TABLE_FILE, r"(AtAnyTimeOf : [^\[]*\[[^\[]*\[\s*)TRUE", r"\1FALSE", r"AtAnyTimeOf\[0\] is False"),
+        (TABLE_FILE, r"(HighestPressureOf : [^\[]*\[[^\[]*\[\s*)4", r"\g<1>5", r"HighestPressureOf\[0\] is 550"),
+        (TABLE_FILE, r"(Pressure_2 : (?:[^,]*, ){1})1", r"\g<1>2", r"Pressure_2\[1\] is 255"),
+        (TABLE_FILE, r"(Slope_0 : (?:[^,]*, ){2})-1", r"\g<1>-2", r"Slope_0\[2\] is -0\.002"),
+    ],
+)
+def test_one_changed_place_in_exports_of_surfaces_is_found(
+    name: str, pattern: str, replacement: str, words: str
+) -> None:
+    texts, tables = surfaces()
+    text, count = re.subn(pattern, replacement, texts[name], count=1)
+    assert count == 1
+    sentences = disagreements({**texts, name: text}, tables)
+    assert any(re.search(words, sentence) for sentence in sentences), sentences
+
+
+def test_exports_of_surfaces_are_found_as_the_tables_say() -> None:
+    assert disagreements(*surfaces()) == []
+
+
+def test_golden_vectors_at_another_pressure_are_found() -> None:
+    texts, tables = surfaces(1)
+    rows = texts["golden_vectors.csv"].splitlines()
+    changed = 0
+    for place, row in enumerate(rows[1:], start=1):
+        fields = row.split(",")
+        if fields[5] not in ("43160000", "7fc00000"):  # 150 kPa, NaN
+            rows[place] = ",".join([*fields[:5], "43160000", *fields[6:]])
+            changed += 1
+    assert changed > 100
+    sentences = disagreements({**texts, "golden_vectors.csv": "\r\n".join([*rows, ""])}, tables)
+    assert [sentence for sentence in sentences if "but the rule says" in sentence]
+
+
+def test_columns_of_a_gauge_are_expected_only_where_there_is_one() -> None:
+    texts, tables = surfaces(1)
+    rested, plain = (TableBook(tuple(each(table) for table in surface_book().tables[:1])) for each in (at_rest, timed))
+    for book in (rested, plain):
+        own = [read_table(to_json(table)) for table in book.tables]
+        with pytest.raises(DamagedError, match="its first line is not"):
+            list(golden_export.differences(texts["golden_vectors.csv"].encode("utf-8"), own))
+        with pytest.raises(DamagedError, match="its first line is not"):
+            list(golden_export.differences(c_files(book)["golden_vectors.csv"], tables))
+        mixed = {**texts, "golden_vectors.csv": c_files(book)["golden_vectors.csv"].decode("utf-8")}
+        sentences = disagreements(mixed, own)
+        assert "its header has room for slopes, but no table has slopes" in sentences
+        assert "it holds pressures or slopes, but no table has slopes" in sentences
+        assert ("it holds times of decision, but no table decides at any time" in sentences) == (book is rested)
 
 
 def test_one_changed_digit_in_csv_is_found(tuned: Path) -> None:

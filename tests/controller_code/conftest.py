@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.controller_code.sample_book import approaching_book, estimating_book, sample_book
+from tests.controller_code.sample_book import approaching_book, estimating_book, sample_book, surface_book
 from tuning_tables.table_book import TableBook
 
 Tool = Callable[[str], str]
@@ -17,6 +17,7 @@ BOOKS: dict[str, Callable[[], TableBook]] = {
     "measured": sample_book,
     "estimated": estimating_book,
     "approached": approaching_book,
+    "surfaces": surface_book,
 }
 
 
@@ -37,6 +38,6 @@ def tool() -> Tool:
 
 @pytest.fixture(scope="session", params=list(BOOKS.values()), ids=list(BOOKS))
 def book(request: pytest.FixtureRequest) -> TableBook:
-    """Tables of many shapes, without and with estimators, without and with approaches."""
+    """Tables of many shapes, without and with estimators, approaches and slopes."""
     made: TableBook = request.param()
     return made

@@ -8,6 +8,7 @@ from tuning_tables import (
     Approach,
     ControllerTable,
     CutId,
+    Decisions,
     Estimator,
     Generator,
     Predicted,
@@ -79,6 +80,45 @@ def approaching_book(estimators: bool = True) -> TableBook:
     }  # fmt: skip
     book = estimating_book() if estimators else sample_book()
     return TableBook(tuple(with_approach(table, *given.get(table.id, (0.0, 0))) for table in book.tables))
+
+
+def surface_book(of: TableBook | None = None) -> TableBook:
+    """The approaching book, or another of the same shapes, with tables that decide at any time, with gauge and without.
+
+    Of the class with three targets the first two have slopes of their own over equal pressures, the third has other
+    pressures, so that lines between them have a meaning only below the second. One table decides at any time without a
+    gauge, two decide at rest; one has slopes as small as numbers can be, beside large ones.
+    """
+    given: dict[str, tuple[float, float]] = {
+        "light-2.0": (-0.001, -0.0012), "light-3.3": (-0.0015, -0.001), "light-4.0": (-0.001, -0.0012),
+        "same-target": (-0.0007, -0.0007), "medium-4.0": (-0.0011, -0.0009), "medium-2.0": (0.0, -0.0003),
+        "many-stages": (0.0001, 0.00013), "constant": (0.0031, -0.0017), "odd": (-0.003, 1e-44),
+    }  # fmt: skip
+    tables = []
+    for table in (of or approaching_book()).tables:
+        if table.id == "light-4.0":
+            stages = (replace(each, pressure_kpa=15.0 + 140.0 * each.k) for each in table.stages)
+            table = replace(table, stages=tuple(stages))
+        if table.id in given:
+            table = with_slopes(table, *given[table.id])
+        elif table.id == "shadow-1.5":
+            table = replace(table, decisions=Decisions.AT_ANY_TIME)
+        tables.append(table)
+    return TableBook(tuple(tables))
+
+
+def with_slopes(table: ControllerTable, lower: float, upper: float) -> ControllerTable:
+    """The table that decides at any time, with these slopes wherever it has a line."""
+    low, high = round_coefficients([lower, upper])
+    stages = (
+        replace(
+            each,
+            lower_slope_m_s_per_kpa=None if each.lower is None else low,
+            upper_slope_m_s_per_kpa=None if each.upper is None else high,
+        )
+        for each in table.stages
+    )
+    return replace(table, stages=tuple(stages), decisions=Decisions.AT_ANY_TIME)
 
 
 def with_approach(table: ControllerTable, length_m: float, entrance_stage: int) -> ControllerTable:

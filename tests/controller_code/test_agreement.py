@@ -61,8 +61,8 @@ def test_the_commands_reach_every_status(questions: Questions) -> None:
 
 def test_one_reading_at_a_time_is_decided_as_many(questions: Questions) -> None:
     for place in np.random.default_rng(5).integers(0, READINGS, 5000):
-        table, stage, s, v = questions.readings[place]
-        assert decide_for(questions.book.tables[table], int(stage), s, v) == questions.decisions[place]
+        table, stage, *reading = questions.readings[place]
+        assert decide_for(questions.book.tables[table], int(stage), *reading) == questions.decisions[place]
 
 
 @pytest.mark.parametrize("flag", ["-ffast-math", "-ffinite-math-only"])

@@ -162,6 +162,8 @@ def test_the_self_test_finds_a_wrong_controller(
     for name, content in c_files(book, RETARDER, self_test).items():
         (tmp_path / name).write_bytes(content)
     source = (tmp_path / "retarder_table.c").read_text("ascii")
+    if block_size(book).gauge:
+        before, after = (each.replace("line_speed(", "surface_speed(") for each in (before, after))
     assert before in source
     (tmp_path / "retarder_table.c").write_text(source.replace(before, after, 1), "ascii")
     program = tmp_path / "controller"
@@ -187,6 +189,14 @@ def test_json_book_and_c_hold_the_same_bits(book: TableBook, tmp_path: Path, too
                 if line is not None:
                     exported = coefficients[stage.k, index, : table.degree + 1].astype(np.float64)
                     assert np.array_equal(exported.view(np.uint64), np.array(line).view(np.uint64))
+        if size.gauge:
+            highest, *kept = held[size.pressures].view(np.float32)
+            assert highest == (table.pressures[table.highest_raised] if table.has_gauge else 0.0)
+            pressures, slopes = np.array(kept[: size.stages]), np.reshape(kept[size.stages :], (size.stages, 2))
+            for number, stage in enumerate(table.stages if table.has_gauge else ()):
+                assert pressures[number] == np.float32(stage.pressure_kpa)
+                assert slopes[number].tolist() == [each or 0.0 for each in stage.slopes]
+            assert table.has_gauge or not (pressures.any() or slopes.any())
         if size.breaks:
             estimator, words = table.estimator, held[size.estimator]
             assert words[0] == (0 if estimator is None else len(estimator.s_m))
@@ -200,11 +210,13 @@ def test_json_book_and_c_hold_the_same_bits(book: TableBook, tmp_path: Path, too
 def test_golden_vectors_as_csv_are_answered_as_they_say(book: TableBook) -> None:
     rows = list(csv.DictReader(io.StringIO(c_files(book)["golden_vectors.csv"].decode("utf-8"), newline="")))
     assert len(rows) > 300 * len(book.tables)
+    columns = {"s_bits": "s_m", "v_bits": "v_m_s"} | ({"p_bits": "pressure_kpa"} if block_size(book).gauge else {})
+    assert {*rows[0]} == {"table", "id", "stage", *columns, *columns.values(), "answer"}
     for row in rows:
-        s, v = (np.array([int(row[key], 16)], np.uint32).view(np.float32)[0] for key in ("s_bits", "v_bits"))
-        assert np.array_equal(np.float32(row["s_m"]), s, equal_nan=True)
-        assert np.array_equal(np.float32(row["v_m_s"]), v, equal_nan=True)
-        assert decide_for(book.tables[int(row["table"])], int(row["stage"]), s, v) == int(row["answer"])
+        reading = [np.array([int(row[key], 16)], np.uint32).view(np.float32)[0] for key in columns]
+        shown = np.array([row[key] for key in columns.values()], dtype=np.float32)
+        assert np.array_equal(shown, reading, equal_nan=True)
+        assert decide_for(book.tables[int(row["table"])], int(row["stage"]), *reading) == int(row["answer"])
         assert book.tables[int(row["table"])].id == row["id"]
 
 

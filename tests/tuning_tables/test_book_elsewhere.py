@@ -42,6 +42,50 @@ def test_bare_h5py_reads_a_line(book: Path) -> None:
     assert ended.stdout == "['table', 'stage', 'line', 'power'] m/s per m^power Talbremse Süd 5.0\n"
 
 
+WITH_SLOPES = """
+import sys
+sys.modules["tuning_tables"] = None
+import h5py
+with h5py.File(sys.argv[1], "r") as book:
+    row = book["id"].asstr()[:].tolist().index("surface")
+    lines, kpa, slopes = (book[name][row] for name in ("coefficients", "pressure_kpa", "slopes"))
+    speed = sum(c * 4.0**i for i, c in enumerate(lines[1, 0])) + slopes[1, 0] * (kpa[2] - kpa[1])
+    axes = [dimension[0].name[1:] for dimension in book["slopes"].dims]
+    print(axes, book["slopes"].attrs["units"], book["at_any_time"][:], book["has_gauge"][:], round(float(speed), 4))
+"""
+
+
+@pytest.fixture
+def surface_book(table: ControllerTable, surface_table: ControllerTable, tmp_path: Path) -> Path:
+    """A book with a table at rest and one at any time, with slopes."""
+    path = tmp_path / "surfaces.h5"
+    write_book([table, surface_table], path)
+    return path
+
+
+def test_bare_h5py_reads_a_surface(surface_book: Path) -> None:
+    command = [sys.executable, "-c", WITH_SLOPES, str(surface_book)]
+    ended = subprocess.run(command, capture_output=True, text=True, check=True, cwd=surface_book.parent)
+    # 5.2 - 0.04 * 4 + 5e-4 * 16 - 1e-5 * 64 - 0.006 * 150
+    assert ended.stdout == "['table', 'stage', 'line'] m/s per kPa [0 1] [0 1] 4.1474\n"
+
+
+def test_a_decision_on_a_surface_with_xarray_is_that_of_the_rule(
+    surface_book: Path, surface_table: ControllerTable
+) -> None:
+    xarray = pytest.importorskip("xarray")
+    pytest.importorskip("h5netcdf")
+    with xarray.open_dataset(surface_book, engine="h5netcdf") as opened:
+        one = opened.load().set_index(table="id").sel(table="surface").isel(stage=1)
+    speeds = np.linspace(3.0, 7.0, 401)
+    line = (one.coefficients * 4.0**one.power).sum("power")
+    for kpa in (0.0, 80.0, 150.0, 220.0, 300.0):
+        lower, upper = (line + one.slopes * (kpa - one.pressure_kpa)).values
+        answers = np.where(speeds < lower, -1, np.where(speeds > upper, 1, 0))
+        assert len(set(answers.tolist())) == 3
+        assert np.array_equal(answers, decide_many(surface_table, 1, 4.0, speeds, kpa))
+
+
 @pytest.fixture
 def dataset(book: Path) -> Iterator[xarray.Dataset]:
     xarray = pytest.importorskip("xarray")

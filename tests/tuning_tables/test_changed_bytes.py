@@ -2,12 +2,14 @@
 
 import json
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 
 import pytest
 
 from tuning_tables import (
     ControllerTable,
     CutId,
+    Decisions,
     Generator,
     Predicted,
     RetarderId,
@@ -19,6 +21,8 @@ from tuning_tables import (
     to_json,
 )
 from tuning_tables.canonical import canonical_json
+
+Layout = Callable[[ControllerTable], bytes]
 
 TELLING_BYTES = b"\x00\t\n\r \"'+,-./0123456789:E[\\]_aefx{}\x7f\x80\xc3\xff"
 
@@ -48,6 +52,16 @@ def smallest_table() -> ControllerTable:
     )
 
 
+def smallest_surfaces() -> ControllerTable:
+    """The smallest table with slopes."""
+    first, second = smallest_table().stages
+    stages = (replace(first, upper_slope_m_s_per_kpa=-0.5), replace(second, lower_slope_m_s_per_kpa=-(2.0**-24)))
+    return replace(smallest_table(), stages=stages, decisions=Decisions.AT_ANY_TIME)
+
+
+SMALLEST = [(export_layout, smallest_table), (canonical_layout, smallest_table), (export_layout, smallest_surfaces)]
+
+
 def survivors(content: bytes, changed_texts: Iterable[bytes]) -> tuple[int, list[bytes]]:
     """Those of `changed_texts` that are read although they are not `content`, and how many were tried."""
     tried, read = 0, []
@@ -70,18 +84,18 @@ def replacements(content: bytes, values: Iterable[int]) -> Iterator[bytes]:
             yield before + bytes([value]) + after
 
 
-@pytest.mark.parametrize("layout", [export_layout, canonical_layout])
-def test_no_replaced_byte_gets_through_whatever_the_value(layout: Callable[[ControllerTable], bytes]) -> None:
-    content = layout(smallest_table())
-    assert from_json(content) == smallest_table()
+@pytest.mark.parametrize(("layout", "made"), SMALLEST)
+def test_no_replaced_byte_gets_through_whatever_the_value(layout: Layout, made: Callable[[], ControllerTable]) -> None:
+    content = layout(made())
+    assert from_json(content) == made()
     tried, read = survivors(content, replacements(content, range(256)))
     assert tried == 255 * len(content)
     assert read == []
 
 
-@pytest.mark.parametrize("layout", [export_layout, canonical_layout])
-def test_no_inserted_byte_gets_through(layout: Callable[[ControllerTable], bytes]) -> None:
-    content = layout(smallest_table())
+@pytest.mark.parametrize(("layout", "made"), SMALLEST)
+def test_no_inserted_byte_gets_through(layout: Layout, made: Callable[[], ControllerTable]) -> None:
+    content = layout(made())
     inserted = (
         content[:position] + bytes([value]) + content[position:]
         for position in range(len(content) + 1)
@@ -92,10 +106,13 @@ def test_no_inserted_byte_gets_through(layout: Callable[[ControllerTable], bytes
     assert read == []
 
 
-@pytest.mark.parametrize("layout", [export_layout, canonical_layout])
+@pytest.mark.parametrize(
+    ("layout", "name"), [(export_layout, "table"), (canonical_layout, "table"), (export_layout, "surface_table")]
+)
 def test_no_flipped_lost_doubled_or_transposed_byte_of_a_usual_table_gets_through(
-    layout: Callable[[ControllerTable], bytes], table: ControllerTable
+    layout: Layout, name: str, request: pytest.FixtureRequest
 ) -> None:
+    table: ControllerTable = request.getfixturevalue(name)
     content = layout(table)
     assert from_json(content) == table
     places = range(len(content))

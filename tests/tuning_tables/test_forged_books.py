@@ -2,6 +2,7 @@
 
 import random
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,13 +22,15 @@ from tuning_tables import (
     read_book,
     write_book,
 )
-from tuning_tables.book_columns import WITH_ESTIMATORS, with_approaches
+from tuning_tables.book_columns import ANY_TIME_COLUMNS, WITH_ESTIMATORS, with_approaches
 
-Refuse = Callable[[Edit], TableError]
+Refuse = Callable[..., TableError]
 Index = int | tuple[int, ...]
 
 LAYOUT = with_approaches(WITH_ESTIMATORS)
-COLUMNS, AXES = LAYOUT.columns, LAYOUT.axes
+COLUMNS, AXES = (*LAYOUT.columns, *ANY_TIME_COLUMNS), LAYOUT.axes
+ANY_TIME_NAMES = [column.name for column in ANY_TIME_COLUMNS]
+"""Their datasets are forged in a book of their own, as only such a book has them; all others in the first one."""
 NAMES = [column.name for column in COLUMNS]
 FLOATS = [column.name for column in COLUMNS if column.dtype in ("<f4", "<f8")]
 TEXTS = [column.name for column in COLUMNS if column.dtype == "S"]
@@ -37,23 +40,39 @@ SOUND = {("zones_m", 1, "shortened"), ("axle_offsets_m", 1, "shortened")}
 NAN, INF = float("nan"), float("inf")
 
 
+Originals = Callable[[str], bytes]
+
+
 @pytest.fixture(scope="module")
 def original(
-    table: ControllerTable, approached_estimate: ControllerTable, tmp_path_factory: pytest.TempPathFactory
-) -> bytes:
-    """The bytes of a book of two tables that differ in every length, one with estimator and approach."""
+    table: ControllerTable,
+    approached_estimate: ControllerTable,
+    surface_table: ControllerTable,
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Originals:
+    """The bytes of a book of two tables that differ in every length, one with estimator and approach.
+
+    For a dataset that only tables at any time have: of a book of one without and one with slopes.
+    """
     path = tmp_path_factory.mktemp("original") / "book.h5"
     write_book([table, approached_estimate], path)
-    return path.read_bytes()
+    first = path.read_bytes()
+    shorter = replace(surface_table, stages=surface_table.stages[:3])
+    write_book([table, shorter], path)
+    second = path.read_bytes()
+    return lambda name: second if name in ANY_TIME_NAMES else first
 
 
 @pytest.fixture
-def refuse(original: bytes, tmp_path: Path) -> Refuse:
-    """A function that forges the book by an edit, reads it, and gives the error, which must be a `TableError`."""
+def refuse(original: Originals, tmp_path: Path) -> Refuse:
+    """A function that forges the book by an edit, reads it, and gives the error, which must be a `TableError`.
 
-    def refused(edit: Edit) -> TableError:
+    Its second argument is the dataset that is forged.
+    """
+
+    def refused(edit: Edit, name: str = "") -> TableError:
         path = tmp_path / "book.h5"
-        path.write_bytes(original)
+        path.write_bytes(original(name))
         forge(path, edit)
         with pytest.raises(TableError) as caught:
             read_book(path)
@@ -67,12 +86,15 @@ def refuse(original: bytes, tmp_path: Path) -> Refuse:
 
 
 def test_a_book_that_is_forged_without_a_change_is_read(
-    original: bytes, table: ControllerTable, approached_estimate: ControllerTable, tmp_path: Path
+    original: Originals, table: ControllerTable, approached_estimate: ControllerTable, tmp_path: Path
 ) -> None:
     path = tmp_path / "book.h5"
-    path.write_bytes(original)
+    path.write_bytes(original("mass_t"))
     forge(path, lambda file: put(file, "mass_t", file["mass_t"][()]))
     assert read_book(path) == (table, approached_estimate)
+    path.write_bytes(original("slopes"))
+    forge(path, lambda file: put(file, "slopes", file["slopes"][()]))
+    assert [each.has_gauge for each in read_book(path)] == [False, True]
 
 
 @pytest.mark.parametrize("name", [*NAMES, *AXES])
@@ -80,7 +102,7 @@ def test_every_dataset_is_required(refuse: Refuse, name: str) -> None:
     def remove(file: h5py.File) -> None:
         del file[name]
 
-    error = refuse(remove)
+    error = refuse(remove, name)
     assert type(error) is DamagedTable
     assert name in str(error)
 
@@ -94,7 +116,7 @@ def test_every_dataset_tells_its_unit_and_meaning(refuse: Refuse, name: str, att
         if value is not None:
             file[name].attrs[attribute] = value
 
-    assert f"{name} has other units" in str(refuse(edit))
+    assert f"{name} has other units" in str(refuse(edit, name))
 
 
 @pytest.mark.parametrize(
@@ -108,6 +130,7 @@ def test_every_dataset_tells_its_unit_and_meaning(refuse: Refuse, name: str, att
         ("schema_version", 1, DamagedTable),
         ("schema_version", 2, DamagedTable),
         ("schema_version", 4, DamagedTable),
+        ("schema_version", 5, DamagedTable),
         ("schema_version", 6, NewerVersion),
         ("schema_version", 2**63 - 1, NewerVersion),
         ("schema_version", 0, OlderVersion),
@@ -151,9 +174,9 @@ def test_every_root_attribute_is_required_as_it_is(
 
 
 @pytest.mark.parametrize("sha256", [None, "", "0" * 64, 0])
-def test_the_payload_has_its_checksum(original: bytes, tmp_path: Path, sha256: str | int | None) -> None:
+def test_the_payload_has_its_checksum(original: Originals, tmp_path: Path, sha256: str | int | None) -> None:
     path = tmp_path / "book.h5"
-    path.write_bytes(original)
+    path.write_bytes(original(""))
     with h5py.File(path, "r+") as file:
         del file.attrs["payload_sha256"]
         if sha256 is not None:
@@ -179,7 +202,7 @@ def test_every_column_has_its_type(refuse: Refuse, name: str, dtype: str) -> Non
         else:
             put(file, name, np.ones(values.shape, dtype=dtype))
 
-    assert f"{name} is " in str(refuse(edit))
+    assert f"{name} is " in str(refuse(edit, name))
 
 
 @pytest.mark.parametrize(
@@ -204,22 +227,22 @@ def test_every_array_has_its_shape(refuse: Refuse, name: str, axis: int, change:
         }
         put(file, name, changes[change]())
 
-    assert type(refuse(edit)) is DamagedTable
+    assert type(refuse(edit, name)) is DamagedTable
 
 
 @pytest.mark.parametrize("name", FLOATS)
 @pytest.mark.parametrize("value", [NAN, INF, -INF, -0.0, 1e30], ids=repr)
 def test_no_number_gets_through_that_the_tables_do_not_give_back(
-    original: bytes, tmp_path: Path, name: str, value: object
+    original: Originals, tmp_path: Path, name: str, value: object
 ) -> None:
     path = tmp_path / "book.h5"
-    indices = list(np.ndindex(shape_of(original, tmp_path, name)))
+    indices = list(np.ndindex(shapes_of(original(name), tmp_path)[name]))
     for index in random.Random(name).sample(indices, min(len(indices), 12)):
 
         def edit(file: h5py.File, index: Index = index) -> None:
             file[name][index] = value
 
-        path.write_bytes(original)
+        path.write_bytes(original(name))
         forge(path, edit)
         try:
             tables = read_book(path)
@@ -269,6 +292,18 @@ def test_no_text_gets_through_that_is_none(refuse: Refuse, name: str, value: obj
         ("approach_length_m", 0, 4.0, "approach.entrance_stage"),
         ("approach_length_m", 1, NAN, "no table has anything there"),
         ("approach_length_m", 1, 3.5, "valid.s_m"),
+        ("at_any_time", 1, 0, "decisions are at rest"),
+        ("at_any_time", 1, 2, "at_any_time holds values beside"),
+        ("has_gauge", 0, 1, "decisions are at rest"),
+        ("has_gauge", 1, 0, "slopes holds values beside"),
+        ("has_gauge", 1, 2, "has_gauge holds values beside"),
+        ("slopes", (0, 0, 1), 0.5, "slopes holds values beside"),
+        ("slopes", (1, 3, 0), 0.0, "slopes holds values beside"),
+        ("slopes", (1, 0, 0), 0.5, "slopes holds values beside"),
+        ("slopes", (1, 0, 0), NAN, "slopes holds values beside"),
+        ("slopes", (1, 1, 0), NAN, "stages[1].lower_slope_m_s_per_kpa"),
+        ("slopes", (1, 1, 0), -0.0, "stages[1].lower_slope_m_s_per_kpa"),
+        ("slopes", (1, 1, 1), -0.0625, "stages[1]: upper - lower comes down to"),
         ("id", 1, b"leer-22t-4.0", "2 tables of the book have the id"),
     ],
 )
@@ -276,7 +311,7 @@ def test_nothing_stands_beside_the_tables(refuse: Refuse, name: str, index: Inde
     def edit(file: h5py.File) -> None:
         file[name][index] = value
 
-    assert reason in str(refuse(edit))
+    assert reason in str(refuse(edit, name))
 
 
 @pytest.mark.parametrize("axis", AXES)
@@ -302,8 +337,16 @@ def test_text_that_is_padded_otherwise_is_refused(refuse: Refuse) -> None:
     assert "category holds values beside" in str(error)
 
 
-def shape_of(original: bytes, tmp_path: Path, name: str) -> tuple[int, ...]:
+def test_a_book_without_a_table_at_any_time_is_of_an_older_version(refuse: Refuse) -> None:
+    def rest(file: h5py.File) -> None:
+        file["at_any_time"][:] = file["has_gauge"][:] = 0
+        file["slopes"][:] = np.where(np.isnan(file["slopes"][:]), np.nan, 0.0)
+
+    assert "at_any_time, has_gauge, slopes, but no table has anything there" in str(refuse(rest, "slopes"))
+
+
+def shapes_of(original: bytes, tmp_path: Path) -> dict[str, tuple[int, ...]]:
     path = tmp_path / "shape.h5"
     path.write_bytes(original)
     with h5py.File(path) as file:
-        return tuple(file[name].shape)
+        return {name: tuple(dataset.shape) for name, dataset in file.items()}

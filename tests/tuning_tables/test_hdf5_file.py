@@ -36,6 +36,14 @@ def book(table: ControllerTable, linear_table: ControllerTable, tmp_path: Path) 
     return path
 
 
+@pytest.fixture
+def surface_book(table: ControllerTable, surface_table: ControllerTable, tmp_path: Path) -> Path:
+    """A file with a table that decides at rest, and one with slopes."""
+    path = tmp_path / "surfaces.h5"
+    write_book([table, surface_table], path)
+    return path
+
+
 def test_tables_survive_the_book(book: Path, table: ControllerTable, linear_table: ControllerTable) -> None:
     tables = read_book(book)
     assert tables == (table, linear_table)
@@ -152,6 +160,7 @@ def change_shape(file: h5py.File) -> None:
     [
         (edit_attribute("format", "kea-image"), UnknownFormat, "format is"),
         (edit_attribute("schema_version", 6), NewerVersion, "schema_version is 6"),
+        (edit_attribute("schema_version", 5), DamagedTable, "missing or unknown"),
         (edit_attribute("schema_version", 4), DamagedTable, "missing or unknown"),
         (edit_attribute("schema_version", 3), DamagedTable, "missing or unknown"),
         (edit_attribute("schema_version", 2), DamagedTable, "missing or unknown"),
@@ -197,8 +206,9 @@ def test_values_that_make_no_table_are_refused_even_under_a_right_checksum(
         read_book(path)
 
 
-def test_no_truncated_book_gets_through(book: Path, tmp_path: Path) -> None:
-    content = book.read_bytes()
+@pytest.mark.parametrize("name", ["book", "surface_book"])
+def test_no_truncated_book_gets_through(request: pytest.FixtureRequest, name: str, tmp_path: Path) -> None:
+    content = request.getfixturevalue(name).read_bytes()
     short = tmp_path / "short.h5"
     for length in [*range(0, len(content), 211), len(content) - 1]:
         short.write_bytes(content[:length])
@@ -206,8 +216,9 @@ def test_no_truncated_book_gets_through(book: Path, tmp_path: Path) -> None:
             read_book(short)
 
 
-def test_no_flipped_bit_gets_through(book: Path, tmp_path: Path) -> None:
-    content = book.read_bytes()
+@pytest.mark.parametrize("name", ["book", "surface_book"])
+def test_no_flipped_bit_gets_through(request: pytest.FixtureRequest, name: str, tmp_path: Path) -> None:
+    content = request.getfixturevalue(name).read_bytes()
     changed_book = tmp_path / "changed.h5"
     # The flip at 4697, a length in the heap of strings, holds HDF5 2.0 in an endless loop where it is given the file.
     for position in [*range(0, len(content), 83), *range(len(content) - 130, len(content)), 4697]:

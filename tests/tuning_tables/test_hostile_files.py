@@ -240,18 +240,28 @@ HOSTILE: dict[str, Forging] = {
     "long-attribute": long_attribute,
     "surplus": surplus,
     "axis-link": replace_by("stage", external_link(None)),
+    "slopes-1-tib": replace_by("slopes", claim((2**37, 2, 2), chunks=(2**10, 2, 2), fletcher32=True)),
+    "slopes-bomb": replace_by("slopes", bomb),
+    "slopes-link": replace_by("slopes", external_link(None)),
 }
+"""Those of slopes need a book with a table at any time."""
 
 
 @pytest.fixture(scope="module")
-def hostile(table: ControllerTable, linear_table: ControllerTable, tmp_path_factory: pytest.TempPathFactory) -> Told:
+def hostile(
+    table: ControllerTable,
+    linear_table: ControllerTable,
+    surface_table: ControllerTable,
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Told:
     """What read_book says of every book of HOSTILE, each under a right seal."""
     folder = tmp_path_factory.mktemp("hostile")
     os.mkfifo(folder / "pipe")
     write_book([table, linear_table], folder / "original")
+    write_book([table, surface_table], folder / "slopes")
     paths = {name: folder / f"{name}.h5" for name in HOSTILE}
     for name, path in paths.items():
-        path.write_bytes((folder / "original").read_bytes())
+        path.write_bytes((folder / ("slopes" if name.startswith("slopes") else "original")).read_bytes())
         with h5py.File(path, "r+") as file:
             HOSTILE[name](file, folder)
         reseal(path)

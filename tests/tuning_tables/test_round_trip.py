@@ -37,7 +37,7 @@ slowly = settings(
 
 def bits(table: ControllerTable) -> tuple[bytes | str, ...]:
     """Every bit that a decision or a reader of the table depends on."""
-    arrays = (table.coefficients, table.has_line, table.valid_range)
+    arrays = (table.coefficients, table.has_line, table.valid_range, table.slopes, table.pressures)
     return (
         to_json(table),
         str(table.entrance_stage),
@@ -68,7 +68,11 @@ def test_both_layouts_of_a_table_are_read(original: ControllerTable) -> None:
     assert bits(from_json(canonical)) == bits(from_json(to_json(original))) == bits(original)
 
 
-def test_a_table_written_twice_has_the_same_bytes_in_every_format(table: ControllerTable, tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", ["table", "surface_table"])
+def test_a_table_written_twice_has_the_same_bytes_in_every_format(
+    request: pytest.FixtureRequest, name: str, tmp_path: Path
+) -> None:
+    table: ControllerTable = request.getfixturevalue(name)
     twin = read_back(table, tmp_path)
     assert twin is not table
     for write, name in ((write_json, "json"), (write_csv, "csv"), (lambda t, p: write_book([t], p), "h5")):

@@ -12,7 +12,7 @@ from synth.studies.in_the_loop.controller_process import Controller
 from synth.studies.in_the_loop.hard_readings import hard_commands, hard_readings
 from synth.studies.in_the_loop.hard_samples import hard_samples
 from synth.studies.in_the_loop.observed import observed, same_nan
-from tuning_tables import decide_many
+from tuning_tables import Decisions, decide_many
 from tuning_tables.table_block import LAYOUT, approach_m, block_of, block_size
 from tuning_tables.table_book import Status, TableBook
 
@@ -43,8 +43,8 @@ class Tracks:
 class Differences:
     """How many answers of a controller are others, words of tables that are others, and what its self-test says.
 
-    `tables` counts tables with another approach, too. `estimates`: samples after which the speed or anything in the
-    estimate has another bit; a NaN is as good as any.
+    `tables` counts tables with another approach or other times of decision, too. `estimates`: samples after which the
+    speed or anything in the estimate has another bit; a NaN is as good as any.
     """
 
     decisions: int
@@ -83,16 +83,18 @@ def differences(controller: Controller, questions: Questions, tracks: Tracks) ->
         decisions=int(np.count_nonzero(controller.decide(questions.readings) != questions.decisions)),
         choices=int(np.count_nonzero(wrong)),
         estimates=int(np.count_nonzero(astray)),
-        tables=int(np.count_nonzero(controller.dump() != words)) + wrong_approaches(controller, book),
+        tables=int(np.count_nonzero(controller.dump() != words)) + wrongly_told(controller, book),
         self_test=controller.self_test(),
     )
 
 
-def wrong_approaches(controller: Controller, book: TableBook) -> int:
-    """Of how many tables the controller tells another approach or entrance stage."""
+def wrongly_told(controller: Controller, book: TableBook) -> int:
+    """Of how many tables the controller tells another approach or entrance stage, or other times of decision."""
     blocks = [block_of(book, number) for number in range(len(book.tables))]
     right = [(float(approach_m(block.table)), block.table.entrance_stage) for block in blocks]
-    return sum(found != due for found, due in zip(controller.approaches(), right, strict=True))
+    times = [table.decisions is Decisions.AT_ANY_TIME for table in book.tables]
+    told = zip(controller.approaches(), controller.at_any_time(), strict=True)
+    return sum(found != due for found, due in zip(told, zip(right, times, strict=True), strict=True))
 
 
 def decisions_of(book: TableBook, readings: NDArray[np.void]) -> NDArray[np.int8]:
@@ -101,7 +103,7 @@ def decisions_of(book: TableBook, readings: NDArray[np.void]) -> NDArray[np.int8
     for number, table in enumerate(book.tables):
         of_table = readings["table"] == number
         now = readings[of_table]
-        found[of_table] = decide_many(table, now["stage"], now["s_m"], now["v_m_s"])
+        found[of_table] = decide_many(table, now["stage"], now["s_m"], now["v_m_s"], now["pressure_kpa"])
     return found
 
 

@@ -1,14 +1,17 @@
 /* An exported table book as a process that answers through its standard input and output; words in the machine's order.
  *
- *   decide          for {uint32 table, int32 stage, float s_m, float v_m_s}: int32 answer; all of a stream
+ *   decide          for {uint32 table, int32 stage, float s_m, float v_m_s, float pressure_kpa}: int32 answer; all of a
+ *                   stream
  *   observe         for {uint32 table, uint32 start, float s_m, float v_m_s, float overpressure_kpa, 8 words}: the
  *                   estimated speed and the 8 words of the estimate; all of a stream. start 0: the estimate goes on,
  *                   1: it begins, 2: it is the 8 words, whatever they are
- *   serve N         for {int32 what, float s_m, float v_m_s, float overpressure_kpa}, at once: what OBSERVE, or BEGIN
- *                   and observe: float estimated speed of table N; else its int32 decision, `what` being the stage
+ *   serve N         for {int32 what, float s_m, float v_m_s, float kpa}, at once: what OBSERVE, or BEGIN and observe:
+ *                   float estimated speed of table N, kpa being the overpressure; else its int32 decision, `what` being
+ *                   the stage and kpa the pressure
  *   select          for {uint32 layout, uint32 category, uint32 axles, float speed}: int32 status, the table (zeros if none)
  *   intact          for a table: int32, whether its checksum is right
  *   approach        nothing: for every table float approach in m, int32 entrance stage
+ *   times           nothing: for every table int32, whether it decides at any time
  *   dump            all tables
  *   self-test       nothing; the exit code is the fault
  */
@@ -24,13 +27,14 @@ typedef struct reading {
     int32_t stage;
     float s_m;
     float v_m_s;
+    float pressure_kpa;
 } reading;
 
 typedef struct request {
     int32_t what;
     float s_m;
     float v_m_s;
-    float overpressure_kpa;
+    float kpa;
 } request;
 
 typedef struct sample {
@@ -52,13 +56,23 @@ static void answer(int value)
     }
 }
 
+static int decision(const retarder_table *table, int stage, float s_m, float v_m_s, float pressure_kpa)
+{
+#ifdef RETARDER_GAUGE
+    return retarder_decide_at_pressure(table, stage, s_m, v_m_s, pressure_kpa);
+#else
+    (void)pressure_kpa;
+    return retarder_decide(table, stage, s_m, v_m_s);
+#endif
+}
+
 static int decide(void)
 {
     uint32_t number;
     reading now;
     while (fread(&number, sizeof number, 1, stdin) == 1 && fread(&now, sizeof now, 1, stdin) == 1) {
-        answer(retarder_decide(number < retarder_table_count ? &retarder_tables[number] : 0, now.stage, now.s_m,
-                               now.v_m_s));
+        answer(decision(number < retarder_table_count ? &retarder_tables[number] : 0, now.stage, now.s_m, now.v_m_s,
+                        now.pressure_kpa));
     }
     return 0;
 }
@@ -106,9 +120,9 @@ static int serve(unsigned number)
             retarder_begin(&estimate);
         }
         if (now.what == BEGIN || now.what == OBSERVE) {
-            answer_float(retarder_observe(table, &estimate, now.s_m, now.v_m_s, now.overpressure_kpa));
+            answer_float(retarder_observe(table, &estimate, now.s_m, now.v_m_s, now.kpa));
         } else {
-            answer(retarder_decide(table, now.what, now.s_m, now.v_m_s));
+            answer(decision(table, now.what, now.s_m, now.v_m_s, now.kpa));
         }
     }
     return 0;
@@ -152,6 +166,19 @@ static int approach(void)
     return 0;
 }
 
+static int times(void)
+{
+    uint32_t number;
+    for (number = 0u; number < retarder_table_count; ++number) {
+#ifdef RETARDER_AT_ANY_TIME
+        answer(retarder_at_any_time(&retarder_tables[number]));
+#else
+        answer(0);
+#endif
+    }
+    return 0;
+}
+
 int main(int count, char **arguments)
 {
     const char *mode = count > 1 ? arguments[1] : "";
@@ -172,6 +199,9 @@ int main(int count, char **arguments)
     }
     if (strcmp(mode, "approach") == 0) {
         return approach();
+    }
+    if (strcmp(mode, "times") == 0) {
+        return times();
     }
     if (strcmp(mode, "dump") == 0) {
         return fwrite(retarder_tables, sizeof retarder_tables[0], retarder_table_count, stdout) == retarder_table_count

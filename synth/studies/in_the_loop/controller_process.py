@@ -22,7 +22,9 @@ CONTRACT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-ffreestand
 EXPORTED = ("retarder_table.c", "retarder_self_test.c")
 TIMEOUT_S = 300.0
 
-READING = np.dtype([("table", "u4"), ("stage", "i4"), ("s_m", "f4"), ("v_m_s", "f4")])
+READING = np.dtype([("table", "u4"), ("stage", "i4"), ("s_m", "f4"), ("v_m_s", "f4"), ("pressure_kpa", "f4")])
+"""The pressure is looked at where the table has slopes."""
+
 ESTIMATE_WORDS = 8
 SAMPLE = np.dtype(
     [("table", "u4"), ("start", "u4"), ("s_m", "f4"), ("v_m_s", "f4"), ("overpressure_kpa", "f4"),
@@ -74,6 +76,11 @@ class Controller:
         dtype = [("length_m", f"{self.order}f4"), ("entrance_stage", f"{self.order}i4")]
         told = np.frombuffer(self._answer(("approach",), np.empty(0, np.uint32)), dtype)
         return [(float(length_m), int(stage)) for length_m, stage in told]
+
+    def at_any_time(self) -> list[bool]:
+        """Which tables decide at any time."""
+        told = np.frombuffer(self._answer(("times",), np.empty(0, np.uint32)), f"{self.order}i4")
+        return [bool(each) for each in told == 1]
 
     def dump(self) -> NDArray[np.uint32]:
         """The words of all tables, (tables, words)."""

@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.studies.in_the_loop.controller_process import COMMAND, READING
+from tuning_tables import ControllerTable
 from tuning_tables.golden_choices import golden_choices
 from tuning_tables.golden_vectors import golden_vectors, line_speeds
+from tuning_tables.rule import rises
 from tuning_tables.table_block import LAYOUT
 from tuning_tables.table_book import TableBook
 
@@ -28,12 +30,13 @@ def golden_readings(book: TableBook) -> NDArray[np.void]:
     parts = []
     for number, table in enumerate(book.tables):
         vectors = golden_vectors(table)
-        parts.append(readings(np.full(len(vectors), number), vectors.stage, vectors.s_m, vectors.v_m_s))
+        of = np.full(len(vectors), number)
+        parts.append(readings(of, vectors.stage, vectors.s_m, vectors.v_m_s, vectors.pressure_kpa))
     return np.concatenate(parts)
 
 
 def near_lines(book: TableBook, count: int, rng: np.random.Generator) -> NDArray[np.void]:
-    """Speeds on a line or up to two float32 steps from it."""
+    """Speeds on a line or surface, or up to two float32 steps from it."""
     parts, lines = [], [
         (number, k, i) for number, t in enumerate(book.tables) for k, i in np.argwhere(t.has_line).tolist()
     ]  # fmt: skip
@@ -42,14 +45,38 @@ def near_lines(book: TableBook, count: int, rng: np.random.Generator) -> NDArray
         table = book.tables[number]
         low, high = (float(end) for end in table.valid_range[:2])
         s = rng.uniform(low - 1.0, high + 1.0, each).astype(np.float32)
+        kpa = pressures(table, k, each, rng) if table.has_gauge else np.full(each, np.nan, np.float32)
         v = line_speeds(table.coefficients[k, i], np.clip(s, table.valid_range[0], table.valid_range[1]))
+        if table.has_gauge:
+            v = v + rises_of(table, k, kpa)[:, i]
         steps = rng.integers(-2, 3, each)
         for _ in range(2):
             towards = np.where(steps < 0, -np.inf, np.inf).astype(np.float32)
             v = np.where(steps != 0, np.nextafter(v, towards), v)
             steps -= np.sign(steps)
-        parts.append(readings(np.full(each, number), np.full(each, k), s, v))
+        parts.append(readings(np.full(each, number), np.full(each, k), s, v, kpa))
     return np.concatenate(parts)
+
+
+def pressures(table: ControllerTable, stage: int, count: int, rng: np.random.Generator) -> NDArray[np.float32]:
+    """Within the pressures of a table with slopes, and outside; some beside a bound, some that are none."""
+    bounds = table.pressures[[0, table.highest_raised, stage]]
+    found = rng.uniform(float(bounds[0]) - 60.0, float(table.pressures[-1]) + 60.0, count).astype(np.float32)
+    edges = rng.choice(bounds, count)
+    towards = rng.choice(np.array([-np.inf, np.inf], np.float32), count)
+    beside = np.where(rng.random(count) < 0.5, np.nextafter(edges, towards), edges)
+    found = np.where(rng.random(count) < 0.2, beside, found)
+    return np.where(rng.random(count) < 0.1, rng.choice(NO_PRESSURES, count), found).astype(np.float32)
+
+
+NO_PRESSURES = np.array([np.nan, np.inf, -np.inf, 3.4028235e38, -3.4028235e38, 1e-45, -0.0], dtype=np.float32)
+"""What is no pressure, and what only just is one."""
+
+
+def rises_of(table: ControllerTable, stage: int, pressure_kpa: NDArray[np.float32]) -> NDArray[np.float32]:
+    """What pressures (n,) add to both lines of a stage, (n, 2), m/s."""
+    found = [rises(table.slopes, table.pressures, table.highest_raised, stage, float(kpa)) for kpa in pressure_kpa]
+    return np.array(found, dtype=np.float32)
 
 
 def anything(book: TableBook, count: int, rng: np.random.Generator) -> NDArray[np.void]:
@@ -63,7 +90,17 @@ def anything(book: TableBook, count: int, rng: np.random.Generator) -> NDArray[n
     s = np.where(ordinary, rng.uniform(-5.0, 45.0, count).astype(np.float32), s)
     s = np.where(rng.random(count) < 0.1, rng.choice(AT_THE_ENTRANCE, count), s)
     stage = np.where(rng.random(count) < 0.1, rng.integers(-(2**31), 2**31, count), rng.integers(-2, 11, count))
-    return readings(rng.integers(0, len(book.tables), count), stage, s, v)
+    number = rng.integers(0, len(book.tables), count)
+    return readings(number, stage, s, v, any_pressures(book, count, rng))
+
+
+def any_pressures(book: TableBook, count: int, rng: np.random.Generator) -> NDArray[np.float32]:
+    """Any bits, half of them of usual pressures; NaN where no table of the book has slopes."""
+    if not any(table.has_gauge for table in book.tables):
+        return np.full(count, np.nan, np.float32)
+    wild = rng.integers(0, 2**32, count, dtype=np.uint32).view(np.float32)
+    usual = rng.uniform(-50.0, 1300.0, count).astype(np.float32)
+    return np.where(rng.random(count) < 0.5, usual, wild).astype(np.float32)
 
 
 EXPONENTS = np.array([0x00000000, 0x7F800000, 0x7F000000, 0x00800000], dtype=np.uint32)
@@ -78,13 +115,17 @@ def plausible(book: TableBook, count: int, rng: np.random.Generator) -> NDArray[
     """What a cut really gives, from before the approaches on."""
     begins = [float(table.valid_range[0]) for table in book.tables]
     s, v = rng.uniform(min(begins) - 1.0, 39.0, count), rng.uniform(0.0, 9.0, count)
-    return readings(rng.integers(0, len(book.tables), count), rng.integers(0, 5, count), s, v)
+    number, stage = rng.integers(0, len(book.tables), count), rng.integers(0, 5, count)
+    return readings(number, stage, s, v, any_pressures(book, count, rng))
 
 
-def readings(table: NDArray[Any], stage: NDArray[Any], s: NDArray[Any], v: NDArray[Any]) -> NDArray[np.void]:
+def readings(
+    table: NDArray[Any], stage: NDArray[Any], s: NDArray[Any], v: NDArray[Any], pressure_kpa: NDArray[np.float32]
+) -> NDArray[np.void]:
     """As an array of READING."""
     found = np.empty(len(table), READING)
     found["table"], found["stage"], found["s_m"], found["v_m_s"] = table, stage, s, v
+    found["pressure_kpa"] = pressure_kpa
     return found
 
 

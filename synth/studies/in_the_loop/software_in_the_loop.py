@@ -1,6 +1,7 @@
 """The closed loop with the compiled C controller as a separate process, asked through a pipe at every decision.
 
-If the table has an estimator, the process observes as well, at every sample.
+If the table has an estimator, the process observes as well, at every sample. A table that decides at any time is asked
+at every sample, with the pressure of the gauge if it has slopes.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from types import FunctionType
 from typing import Any, Final
 
@@ -19,6 +21,7 @@ import numpy as np
 from numba import njit
 
 from plant_models import Plant
+from synth.kernels.any_time import closed_loop as any_time
 from synth.kernels.loop import closed_loop as kernel
 from synth.simulation.closed_loop import ClosedLoop, TableController, close_loop
 from synth.simulation.passes import ExitSample
@@ -55,7 +58,7 @@ def closed_loop_with_process(
     inside = loop.run(TableController(table), draws)
     turned = time.perf_counter()
     with line.connected(controller, number):
-        process = run_passes(loop, TableController(table), draws, line.run_passes)
+        process = run_passes(loop, TableController(table), draws, line)
     ended = time.perf_counter()
     pairs = [(getattr(inside, name), getattr(process, name)) for name in vars(inside)]
     differs = np.zeros(len(inside), dtype=np.bool_)
@@ -64,23 +67,40 @@ def closed_loop_with_process(
     return Comparison(inside, process, int(differs.sum()), turned - started, ended - turned)
 
 
-def run_passes(loop: ClosedLoop, law: TableController, draws: kernel.Draws, run: Callable[..., int]) -> ExitSample:
-    """All passes of `draws`, by the kernel `run`."""
-    n = len(draws.cut_factor)
+def run_passes(loop: ClosedLoop, controller: TableController, draws: kernel.Draws, line: PipeLine) -> ExitSample:
+    """All passes of `draws`, by the kernel that asks through `line`."""
+    n, law = len(draws.cut_factor), controller.law()
     exits = kernel.Exits(np.empty(n), np.empty(n), np.empty(n, dtype=np.bool_), np.empty(n, dtype=np.int32))
-    run(loop.path, loop.drive, loop.sensor, law.law(), draws, exits, np.empty((0, kernel.EVENT_FIELDS)))
+    events = np.empty((0, kernel.EVENT_FIELDS))
+    if isinstance(law, any_time.AnyTimeLaw):
+        line.run_any_time_passes(loop.path, loop.sampled, loop.sensor, law, draws, exits, events)
+    else:
+        line.run_passes(loop.path, loop.drive, loop.sensor, law, draws, exits, events)
     return ExitSample(exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s, draws.weight)
 
 
 class PipeLine:
-    """The kernel of the closed loop compiled with a decision and an estimator that ask through two file descriptors.
+    """The kernels of the closed loop compiled with a decision and an estimator that ask through two file descriptors.
 
-    Compiling takes some seconds; after that any controller process can be connected, one at a time.
+    Compiling one takes some seconds, when it is first needed; after that any controller process can be connected, one
+    at a time.
     """
 
     def __init__(self) -> None:
         self._ask, self._hear = os.open(os.devnull, os.O_RDWR), os.open(os.devnull, os.O_RDWR)
-        self.run_passes = run_passes_with(*_controller_through(self._ask, self._hear))
+        self._at_rest, self._at_pressure, self._observe = _controller_through(self._ask, self._hear)
+
+    @cached_property
+    def run_passes(self) -> Callable[..., int]:
+        """`kernels.loop.closed_loop.run_passes` for tables that decide at rest."""
+        run: Callable[..., int] = run_passes_with(self._at_rest, self._observe)
+        return run
+
+    @cached_property
+    def run_any_time_passes(self) -> Callable[..., int]:
+        """`kernels.any_time.closed_loop.run_any_time_passes` for tables that decide at any time."""
+        run: Callable[..., int] = run_any_time_passes_with(self._at_pressure, self._observe)
+        return run
 
     @contextmanager
     def connected(self, controller: Controller, number: int) -> Iterator[None]:
@@ -115,8 +135,26 @@ def run_passes_with(decision: Any, estimated_speed: Any) -> Any:
     return compiled(FunctionType(kernel.run_passes.py_func.__code__, scope))
 
 
-def _controller_through(ask: int, hear: int) -> tuple[Any, Any]:
-    """A decision and an estimator that write a request to `ask` and read the answer at `hear`."""
+def run_any_time_passes_with(decision: Any, estimated_speed: Any) -> Any:
+    """`any_time.run_any_time_passes`, likewise; the decision is handed the pressure in the place of what it adds."""
+    compiled = njit(nogil=True, error_model="numpy")
+
+    @njit
+    def pressure_itself(slopes, pressures, highest_raised, stage, kpa):  # type: ignore[no-untyped-def]  # numba infers the types
+        return kpa
+
+    scope = {**vars(any_time), "table_decision": decision, "estimated_speed": estimated_speed}
+    scope["pressure_rises"] = pressure_itself
+    for name in ("wanted_stage", "run_any_time_pass"):
+        scope[name] = compiled(FunctionType(getattr(any_time, name).py_func.__code__, scope))
+    return compiled(FunctionType(any_time.run_any_time_passes.py_func.__code__, scope))
+
+
+def _controller_through(ask: int, hear: int) -> tuple[Any, Any, Any]:
+    """Decisions at rest and at any time, and an estimator, that write a request to `ask` and read its answer at `hear`.
+
+    The decision at any time is handed the pressure in the place of what it adds to the lines.
+    """
     library = ctypes.CDLL(None)
     write, read = library.write, library.read
     for call in (write, read):
@@ -139,10 +177,14 @@ def _controller_through(ask: int, hear: int) -> tuple[Any, Any]:
         return answered(stage, s, v, 0.0)[0]
 
     @njit
+    def decide_at_pressure(coefficients, has_line, valid, entrance_stage, stage, s, v, kpa):  # type: ignore[no-untyped-def]  # as above
+        return answered(stage, s, v, kpa)[0]
+
+    @njit
     def observe(parameters, work, state, s, v, kpa):  # type: ignore[no-untyped-def]  # numba infers the types
         # The process has the state; what the kernel holds only tells whether a pass begins.
         what = OBSERVE if state[0] != 0.0 else BEGIN
         state[0] = 1.0
         return answered(what, s, v, kpa).view(np.float32)[0]
 
-    return decide, observe
+    return decide, decide_at_pressure, observe

@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.controller_code.sample_book import estimator_of, with_approach
+from tests.controller_code.sample_book import estimator_of, with_approach, with_slopes
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Array, Kind, Record, Scalar, Value
+from tuning_tables import ControllerTable, Decisions
 from tuning_tables.export_prefix import RETARDER
 from tuning_tables.golden_tracks import golden_tracks
 from tuning_tables.self_test_size import FULL, SMALL
@@ -57,18 +58,48 @@ def program(default_book: TableBook) -> Program:
     return Program(st_files(default_book)[TABLE_FILE])
 
 
-def test_operations_of_a_decision(program: Program, default_book: TableBook) -> None:
+def dearest_decision(program: Program, tables: int, **pressure: Value) -> list[int]:
+    """Operations of the dearest decision, and those on REAL among them."""
     worst = (0, 0)
-    for number in range(len(default_book.tables)):
+    for number in range(tables):
         table = program.new("RETARDER_TABLE")
         executed(program, "RETARDER_LOAD", TableNo=number, Table=table)
         for stage in range(5):
             for s in (-1.0, 10.0, 40.0):
                 for v in np.array([0.0, 2.0, 3.0, 4.0, 5.0, 9.0], np.float32):
-                    worst = max(
-                        worst, executed(program, "RETARDER_DECIDE", Stage=stage, Path_m=s, Speed_m_s=v, Table=table)
-                    )
-    assert stated("`RETARDER_DECIDE`") == list(worst)
+                    asked = {"Stage": stage, "Path_m": s, "Speed_m_s": v, "Table": table, **pressure}
+                    worst = max(worst, executed(program, "RETARDER_DECIDE", **asked))
+    return list(worst)
+
+
+def test_operations_of_a_decision(program: Program, default_book: TableBook) -> None:
+    assert stated("`RETARDER_DECIDE`") == dearest_decision(program, len(default_book.tables))
+
+
+def test_costs_of_slopes(program: Program, default_book: TableBook) -> None:
+    sloped = Program(st_files(sloped_book(default_book.tables))[TABLE_FILE])
+    costs = [dearest_decision(sloped, len(default_book.tables), Pressure_kpa=np.float32(kpa)) for kpa in (-9.0, 900.0)]
+    assert stated("a decision with slopes") == max(costs)
+    names = ("RETARDER_TABLE", "RETARDER_LOAD")
+    more = [size(sloped.types["RETARDER_TABLE"]) - size(program.types["RETARDER_TABLE"])]
+    first, second = (
+        [size(Program(st_files(book)[TABLE_FILE]).types[names[1]]) for book in (TableBook(of), sloped_book(of))]
+        for of in (default_book.tables[:1], default_book.tables[:2])
+    )
+    more.append((second[1] - second[0]) - (first[1] - first[0]))
+    assert stated("times of decision and slopes: more") == more
+    timed = Program(st_files(TableBook(tuple(map(at_any_time, default_book.tables))))[TABLE_FILE])
+    assert size(timed.types[names[0]]) - size(program.types[names[0]]) == stated("times of decision alone: more")[0]
+
+
+def sloped_book(tables: tuple[ControllerTable, ...]) -> TableBook:
+    """The tables with slopes."""
+    return TableBook(tuple(with_slopes(table, -0.003, -0.003) for table in tables))
+
+
+def at_any_time(table: ControllerTable) -> ControllerTable:
+    """The table without slopes that decides at any time."""
+    return replace(table, decisions=Decisions.AT_ANY_TIME)
 
 
 @pytest.fixture(scope="module")

@@ -33,24 +33,31 @@ def loaded(program: Program, number: int) -> Frame:
 
 
 def answers(
-    program: Program, table: Frame, stage: npt.ArrayLike, s_m: npt.ArrayLike, v_m_s: npt.ArrayLike
+    program: Program,
+    table: Frame,
+    stage: npt.ArrayLike,
+    s_m: npt.ArrayLike,
+    v_m_s: npt.ArrayLike,
+    pressure_kpa: npt.ArrayLike = np.nan,
 ) -> npt.NDArray[np.int64]:
-    """What RETARDER_DECIDE answers with `table`."""
+    """What RETARDER_DECIDE answers with `table`; the pressure is handed over where there is such an input."""
     decider = program.new("RETARDER_DECIDE")
-    program.call("RETARDER_DECIDE", decider, Stage=stage, Path_m=s_m, Speed_m_s=v_m_s, Table=table)
+    more = {"Pressure_kpa": pressure_kpa} if "PRESSURE_KPA" in decider else {}
+    program.call("RETARDER_DECIDE", decider, Stage=stage, Path_m=s_m, Speed_m_s=v_m_s, Table=table, **more)
     commands: npt.NDArray[np.int64] = decider["COMMAND"].value
     return commands
 
 
 def decisions(book: TableBook, readings: npt.NDArray[np.void], real: Real) -> npt.NDArray[np.int64]:
-    """What the Structured Text of the book answers to readings with the fields table, stage, s_m, v_m_s."""
+    """What the Structured Text of the book answers to readings, dtype READING."""
     program = Program(st_files(book)[TABLE_FILE], real)
     found = np.full(len(readings), 99)
     for number in np.unique(readings["table"]).tolist():
         here = readings["table"] == number
         # An INT has 16 bits, so that a wider stage cannot reach the block.
         stage = np.clip(readings["stage"][here], -32768, 32767)
-        found[here] = answers(program, loaded(program, number), stage, readings["s_m"][here], readings["v_m_s"][here])
+        asked = (readings[name][here] for name in ("s_m", "v_m_s", "pressure_kpa"))
+        found[here] = answers(program, loaded(program, number), stage, *asked)
     return found
 
 
