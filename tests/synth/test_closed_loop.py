@@ -20,13 +20,13 @@ from synth.simulation.closed_loop import (
     ClosedLoop,
     LineController,
     TableController,
-    cell_edges_m,
     close_loop,
     simulate,
     simulate_many,
     trace,
 )
 from synth.simulation.passes import PassTrace
+from synth.simulation.path_cells import cell_edges_m
 from synth.simulation.random_passes import PATH_CELLS, RandomPasses, random_passes
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.switching_lines import SwitchingLines

@@ -36,7 +36,7 @@ def alone(loop: ClosedLoop, controller: Controller, draws: kernel.Draws) -> Exit
     n = len(draws.cut_factor)
     exits = kernel.Exits(np.empty(n), np.empty(n), np.empty(n, dtype=np.bool_), np.empty(n, dtype=np.int32))
     none = np.empty((0, kernel.EVENT_FIELDS))
-    kernel.run_passes(loop.path, loop.drive, loop.sensor, controller.law(), draws, exits, none)
+    kernel.run_passes(loop.path, loop.drive, loop.sensor, controller.rule, draws, exits, none)
     return ExitSample(exits.speed_m_s, exits.stalled, exits.switchings, exits.time_s, draws.weight)
 
 

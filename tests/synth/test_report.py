@@ -24,6 +24,7 @@ from synth.present.report import BookReport, report_page, write_report
 from synth.present.report.checks_section import checks_section
 from synth.present.report.markup import VOID, Markup, element
 from synth.present.report.verdict import verdict
+from synth.solver.polynomial_lines import PolynomialLines
 from tests.synth.case_factory import make_case, make_study
 from tuning_tables import Estimator
 
@@ -179,7 +180,7 @@ def test_the_studies_are_told_in_numbers(page: Page) -> None:
 
 def test_tables_without_the_estimator_that_was_asked_for_are_told_and_not_counted(book: BookReport) -> None:
     """One feasible table with it, three quarters of the rms of the lines without; one that it was left out of."""
-    made = cast(EstimatedTable, SimpleNamespace(rms_after_m_s=0.0352, plain_rms_m_s=0.0351))
+    made = cast(EstimatedTable[PolynomialLines], SimpleNamespace(rms_after_m_s=0.0352, plain_rms_m_s=0.0351))
     asked = tuple(with_estimate(case, made) for case in book.cases)
     with_it = replace(
         asked[0].table,
@@ -219,7 +220,7 @@ def as_honest(entry: Measured) -> Measured:
     return replace(entry, predicted_rms_m_s=entry.statistics.rms_m_s)
 
 
-def with_estimate(case: CaseResult, made: EstimatedTable) -> CaseResult:
+def with_estimate(case: CaseResult, made: EstimatedTable[PolynomialLines]) -> CaseResult:
     """`case` as if an estimator had been asked for."""
     statistics = case.comparison.table.statistics
     worse = replace(statistics, rms_m_s=statistics.rms_m_s / 0.75)

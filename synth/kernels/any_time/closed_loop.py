@@ -119,8 +119,8 @@ def wanted_stage(law: AnyTimeLaw, stage: int, top: int, pressure: float, wait: f
     if law.surfaces.lower.shape[0] > 0:
         return wanted_by_surfaces(law.surfaces, stage, pressure, wait, s, v)
     if by.coefficients.shape[0] > 0:
-        low, high = pressure_rises(law.slopes, law.pressures, law.highest_raised, stage, pressure * law.gauge_factor)
-        step = table_decision(by.coefficients, by.has_line, by.valid, by.entrance_stage, stage, s, v, low, high)
+        rise = pressure_rises(law.slopes, law.pressures, law.highest_raised, stage, pressure * law.gauge_factor)
+        step = table_decision(by.coefficients, by.has_line, by.valid, by.entrance_stage, stage, s, v, rise)
         return min(max(stage + step, 0), top)
     wanted: int = stage_by_lines(by.lower, by.upper, by.start_m, by.spacing_m, by.multi_step, stage, top, s, v)
     return wanted

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from synth.book.permissions.permission import Permission
@@ -60,7 +60,8 @@ class Polishing:
 class CaseRow:
     """One case with valves so many times as fast: all controllers, and ratios of the polished surfaces to others.
 
-    `gauge`: rms with a gauge that shows so many times the true pressure, over that with a true one.
+    `gauge`: rms with a gauge that shows so many times the true pressure, over that with a true one; `wrong`: rms over
+    that of the cubics at rest where something else is wrong, by its name, only with valves as they are.
     """
 
     case: str
@@ -69,6 +70,7 @@ class CaseRow:
     controllers: dict[str, Told]
     polished_to: dict[str, Ratio]
     gauge: dict[str, Ratio]
+    wrong: dict[str, Ratio]
 
 
 @dataclass(frozen=True)
@@ -120,7 +122,8 @@ class AnyTime(Findings):
     def tables(self) -> Mapping[str, MarkdownTable]:
         """`gains`: a row a case; `rms`: all controllers; `honesty`: what is predicted, and how a polish ended.
 
-        `permissions`: what they give beside tables as configured; `gauge`: what a wrong one costs.
+        `permissions`: what they give beside tables as configured; `gauge`: what a wrong one costs; `wrong`: what else
+        may be wrong.
         """
         rules = (ENERGY, ENERGY_AT_ANY_TIME)
         heads = ("valves", "case", CUBIC, POLISHED, PLAIN, *rules, f"{POLISHED} / {CUBIC}",
@@ -137,6 +140,7 @@ class AnyTime(Findings):
                 f"rms [within {NEAR_M_S:g} m/s of the target], mm/s / switchings", every, map(rms_cells, self.rows)
             ),
             "gauge": table("rms with a wrong gauge / with a true one [95 %]", wrong, map(gauge_cells, self.rows)),
+            "wrong": table(f"rms of {POLISHED} / {CUBIC} where something is wrong [95 %]", *wrong_rows(self.rows)),
             "permissions": table("rms of the table as configured; ratios to it [95 %]", granted, told),
             "honesty": table(f"{POLISHED}: rms of the prediction and of passes", honesty, map(honest_cells, self.rows)),
         }
@@ -157,6 +161,13 @@ def gain_cells(row: CaseRow) -> tuple[str, ...]:
     to_rules = (row.polished_to[rule].cell for rule in rules)
     ratios = [c[POLISHED].ratio.cell, *to_rules, c[POLISHED].near_ratio.cell]
     return (f"× {row.valves:g}", row.case, *rms, *ratios)
+
+
+def wrong_rows(rows: Sequence[CaseRow]) -> tuple[tuple[str, ...], Iterator[tuple[str, ...]]]:
+    """A row for each thing that is wrong, a column for each case in which it was tried."""
+    tried = [row for row in rows if row.wrong]
+    heads = ("wrong", *(row.case for row in tried))
+    return heads, ((name, *(row.wrong[name].cell for row in tried)) for name in tried[0].wrong)
 
 
 def gauge_cells(row: CaseRow) -> tuple[str, ...]:

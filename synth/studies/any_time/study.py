@@ -37,7 +37,6 @@ from synth.solver.any_time.polynomial_surfaces import (
 from synth.solver.any_time.sampled_chain import check_sampled_chain, design_resolution, sampled_chain
 from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
 from synth.solver.any_time.surface_polish import SurfacePolish, polish_surfaces
-from synth.solver.any_time.switching_surfaces import SwitchingSurfaces
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.polynomial_lines import PolynomialLines
@@ -59,6 +58,8 @@ from synth.studies.any_time.findings import (
 )
 from synth.studies.any_time.surface_controller import SurfaceController
 from synth.studies.any_time.surface_induction import solve_surfaces
+from synth.studies.any_time.switching_surfaces import SwitchingSurfaces
+from synth.studies.any_time.wrong_plants import ratios_to_rest
 from synth.studies.cases import OTHER_PLANTS, Case, named_cases
 from synth.studies.entrance import from_the_entrance
 from synth.studies.near_target import near_ratio, near_target
@@ -128,6 +129,12 @@ class Bench:
         """The table of `surfaces` with a gauge that shows so many times the pressure."""
         table = rounded(self.config, self.case.plant, surfaces, self.case.target_m_s)
         return TableController(table, gauge_factor)
+
+    def where_wrong(self, surfaces: PolynomialSurfaces, passes: RandomPasses) -> dict[str, Ratio]:
+        """What `surfaces` lose beside the cubics at rest where something is wrong."""
+        case, at_rest = self.case, LineController(self.cubics.at(self.cubics.nodes_m(301)))
+        seed = self.config.validation.seed + FRESH
+        return ratios_to_rest(case.plant, case.target_m_s, self.controller(surfaces), at_rest, passes, seed)
 
 
 def run(options: Options, tell: Tell) -> AnyTime:
@@ -203,9 +210,10 @@ def studied(bench: Bench, valves: float, options: Options, fresh: RandomPasses) 
     }
     predicted = bench.predicted_rms_m_s(polish.surfaces)
     polishing = Polishing(polish.evaluations, polish.converged, seconds, predicted)
-    wrong = {factor: passes.run(bench.controller(polish.surfaces, factor)) for factor in GAUGE_FACTORS}
-    gauge = {f"{factor:g}": Ratio(*rms_ratio(each, samples[POLISHED], target)) for factor, each in wrong.items()}
-    row = CaseRow(bench.case.name, valves, polishing, told, others, gauge)
+    shown = {factor: passes.run(bench.controller(polish.surfaces, factor)) for factor in GAUGE_FACTORS}
+    gauge = {f"{factor:g}": Ratio(*rms_ratio(each, samples[POLISHED], target)) for factor, each in shown.items()}
+    wrong = bench.where_wrong(polish.surfaces, fresh) if valves == 1.0 else {}
+    row = CaseRow(bench.case.name, valves, polishing, told, others, gauge, wrong)
     return row, surface_map(bench.case, solved, polish.surfaces, options.shown_stage)
 
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from synth.kernels.any_time.closed_loop import AnyTimeLaw, NodeSurfaces
 from synth.simulation.controllers import LineController, fixed
-from synth.solver.any_time.switching_surfaces import SwitchingSurfaces
 from synth.solver.switching_lines import SwitchingLines
+from synth.studies.any_time.switching_surfaces import SwitchingSurfaces
 
 
 @dataclass(frozen=True)

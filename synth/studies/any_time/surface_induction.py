@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from synth.problem.aim import Aim
 from synth.solver.any_time.sampled_chain import SampledChain, motion_arguments
-from synth.solver.any_time.switching_surfaces import SwitchingSurfaces, surfaces_at
 from synth.solver.backward_induction import TIE_M2_S2, true_speed_weights
 from synth.studies.any_time.kernels.induction import induce
+from synth.studies.any_time.switching_surfaces import SwitchingSurfaces, surfaces_at
 
 ROUGH = 1e-3
 """Of the cost of a stall; values that bend by more within three cells of energy are not smooth."""

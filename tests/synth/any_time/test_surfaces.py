@@ -20,12 +20,12 @@ from synth.solver.any_time.polynomial_surfaces import CUBIC_ALONE, CUBIC_AND_SLO
 from synth.solver.any_time.sampled_chain import SampledChain, check_sampled_chain, design_resolution, sampled_chain
 from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
 from synth.solver.any_time.surface_polish import SurfacePolish, polish_surfaces
-from synth.solver.any_time.switching_surfaces import at_rest_only
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.policy_density import exit_density
 from synth.studies.any_time.surface_controller import SurfaceController
 from synth.studies.any_time.surface_induction import solve_surfaces
+from synth.studies.any_time.switching_surfaces import at_rest_only
 from tests.synth.any_time.conftest import short_plant
 from tests.synth.any_time.tabled import tabled
 
