@@ -7,7 +7,7 @@ from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from typing import Any, Final
 
-from synth.checker.document_shape import ESTIMATOR_NUMBERS, ESTIMATOR_ROWS
+from synth.checker.document_shape import ESTIMATOR_NUMBERS, ESTIMATOR_ROWS, SLOPES
 from synth.checker.finding import DamagedError, shown
 
 CHECKSUM_BYTES: Final = 4
@@ -61,23 +61,27 @@ APPROACH: Final[Mapping[str, Stored]] = {
     "approach_length_m": Stored("<f8", TABLE, "m"),
     "approach_entrance_stage": Stored("<i4", TABLE, "1"),
 }
-SCHEMAS: Final[Mapping[tuple[int, bool], Mapping[str, Stored]]] = {
-    (1, False): DATASETS,
-    (2, True): WITH_ESTIMATORS,
-    (3, False): {**DATASETS, **APPROACH},
-    (3, True): {**WITH_ESTIMATORS, **APPROACH},
+AT_ANY_TIME: Final[Mapping[str, Stored]] = {
+    **dict.fromkeys(("at_any_time", "has_gauge"), Stored("|u1", TABLE, "1")),
+    "slopes": Stored("<f4", ("table", "stage", "line"), "m/s per kPa"),
 }
-"""By schema version, and by whether a table has an estimator: only version 3 leaves that open."""
+BEYOND_FIRST: Final[Mapping[int, Mapping[str, Stored]]] = {
+    1: {},
+    2: {},
+    3: APPROACH,
+    5: {**APPROACH, **AT_ANY_TIME},
+}
+"""By schema version, what a book holds beside `DATASETS`: 2 has estimators, and from 3 on they may be there or not."""
 NUMBER: Final = "category_number"
 """In books whose tables state it, of any version; 0: not stated."""
 
 
 def datasets_of(version: int, names: Set[str]) -> Mapping[str, Stored]:
     """The datasets of a book of a schema version with datasets of these `names`; `DamagedError` for another version."""
-    estimating = version == 2 or (version == 3 and "estimator_breaks" in names)
-    if (version, estimating) not in SCHEMAS:
-        raise DamagedError(f"its schema_version is {shown(version)}; this checker knows the versions 1 to 3 only")
-    datasets = SCHEMAS[version, estimating]
+    if version not in BEYOND_FIRST:
+        raise DamagedError(f"its schema_version is {shown(version)}; this checker knows only the versions 1, 2, 3, 5")
+    estimating = version == 2 or (version > 2 and "estimator_breaks" in names)
+    datasets = {**(WITH_ESTIMATORS if estimating else DATASETS), **BEYOND_FIRST[version]}
     return {**datasets, NUMBER: Stored("<i4", TABLE, "1")} if NUMBER in names else datasets
 
 
@@ -143,6 +147,7 @@ def short_arrays(document: Mapping[str, Any]) -> dict[str, Any]:
         "pressure_kpa": [stage["pressure_kpa"] for stage in stages],
         "has_line": [[int(line is not None) for line in both] for both in lines],
         "coefficients": [[line or [] for line in both] for both in lines],
+        "slopes": [[0.0 if stage.get(key) is None else stage[key] for key in SLOPES] for stage in stages],
         "approach_length_m": document.get("approach", {}).get("length_m"),
         "validated_rms_m_s": validated["rms_m_s"] if validated else None,
         "validated_rms_ci95_m_s": validated["rms_ci95_m_s"] if validated else [None, None],

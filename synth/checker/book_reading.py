@@ -18,7 +18,7 @@ from synth.checker.book_layout import (
     require_stored,
 )
 from synth.checker.canonical import canonical_form
-from synth.checker.document_shape import ESTIMATOR_NUMBERS, ESTIMATOR_ROWS, TEXT, is_a
+from synth.checker.document_shape import ESTIMATOR_NUMBERS, ESTIMATOR_ROWS, GAUGE, NO_GAUGE, SLOPES, TEXT, is_a
 from synth.checker.finding import DamagedError, shown
 from synth.checker.source_file import LARGEST_BYTES
 
@@ -95,6 +95,8 @@ def checked_columns(book: Any) -> dict[str, list[Any]]:
         raise DamagedError("it holds estimators, but none of its tables has one")
     if version == 3 and not (values["approach_entrance_stage"] >= 0).any():
         raise DamagedError("its schema_version is 3, but none of its tables has an approach")
+    if version == 5 and not values["at_any_time"].any():
+        raise DamagedError("its schema_version is 5, but none of its tables decides at any time")
     return {name: array.tolist() for name, array in values.items()}
 
 
@@ -127,11 +129,11 @@ def document_of(row: Row) -> dict[str, Any]:
         predicted["p_stall"] = row["predicted_p_stall"]
     if row.get("predicted_passes", 0):
         predicted["passes"] = row["predicted_passes"]
-    estimator, approach = estimator_section(row), approach_section(row)
+    estimator, approach, any_time = estimator_section(row), approach_section(row), any_time_members(row)
     interval = {"rms_m_s": row["validated_rms_m_s"], "rms_ci95_m_s": row["validated_rms_ci95_m_s"]}
     return {
         "format": "retarder-table",
-        "version": 3 if approach else 2 if estimator else 1,
+        "version": 5 if any_time else 3 if approach else 2 if estimator else 1,
         "id": text(row["id"]),
         "created": text(row["created"]),
         "generator": {
@@ -159,7 +161,17 @@ def document_of(row: Row) -> dict[str, Any]:
         "validated": {"passes": row["validated_passes"], **interval} if row["validated_passes"] else None,
         **({"estimator": estimator} if estimator else {}),
         **({"approach": approach} if approach else {}),
+        **any_time,
     }
+
+
+def any_time_members(row: Row) -> dict[str, Any]:
+    """What the document of a table says of when it decides, nothing for one at rest; `DamagedError` for odd cells."""
+    any_time, gauge = row.get("at_any_time", 0), row.get("has_gauge", 0)
+    if any_time not in (0, 1) or gauge not in (0, any_time):
+        cells = f"at_any_time {any_time} and has_gauge {gauge}"
+        raise DamagedError(f"{text(row['id'])!r} has {cells}, but each is 0 or 1, and a gauge is for any time only")
+    return {"decisions": "at_any_time", "pressure": GAUGE if gauge else NO_GAUGE} if any_time else {}
 
 
 def approach_section(row: Row) -> dict[str, Any] | None:
@@ -186,7 +198,11 @@ def stage_of(row: Row, k: int) -> dict[str, Any]:
     """Stage `k` of one table."""
     powers = row["degree"] + 1
     lower, upper = (row["coefficients"][k][line][:powers] if row["has_line"][k][line] == 1 else None for line in (0, 1))
-    return {"k": k, "pressure_kpa": row["pressure_kpa"][k], "lower": lower, "upper": upper}
+    stage = {"k": k, "pressure_kpa": row["pressure_kpa"][k], "lower": lower, "upper": upper}
+    if row.get("has_gauge", 0):
+        slopes = zip(SLOPES, (lower, upper), row["slopes"][k], strict=True)
+        stage |= {key: None if line is None else slope for key, line, slope in slopes}
+    return stage
 
 
 def text(value: bytes) -> str:

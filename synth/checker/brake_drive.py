@@ -1,4 +1,10 @@
-"""The pneumatic drive as a relay: compare, wait for the valve, fill or exhaust until the dead band, rest."""
+"""The pneumatic drive as a relay: compare, wait for the valve, fill or exhaust until the dead band, rest.
+
+A command may be given whatever the drive is doing. Until the regulator of the pressure hears of it, the drive goes on
+as before. Then it compares anew. Who needs the valve that is open, or about to open, keeps it, and the flow only ends
+elsewhere; the delay of a valve counts from the command that first asked for it. Who needs the other valve, or none, has
+the present one shut at once, and pays the whole delay of the other one.
+"""
 
 from __future__ import annotations
 
@@ -14,11 +20,9 @@ INSTANT_S: Final = 1e-9
 
 
 class Phase(Enum):
-    """What the drive is doing."""
+    """What the valves are doing."""
 
     RESTING = auto()
-    HEARING = auto()
-    """The command is on its way."""
     OPENING = auto()
     FLOWING = auto()
     CLOSING = auto()
@@ -36,11 +40,13 @@ class BrakeDrive:
         self._wait_s = 0.0
         self._filling = False
         self._openings = 0
+        self._heard_kpa: float | None = None  # a goal that is on its way
+        self._heard_in_s = 0.0
 
     @property
     def resting(self) -> bool:
         """Whether no command is being carried out."""
-        return self._phase is Phase.RESTING
+        return self._phase is Phase.RESTING and self._heard_kpa is None
 
     @property
     def overpressure_kpa(self) -> float:
@@ -48,18 +54,40 @@ class BrakeDrive:
         return max(0.0, self.pressure_kpa - self.drive.touch_kpa)
 
     def command(self, goal_kpa: float, after_s: float) -> None:
-        """Go to `goal_kpa`; the regulator of the pressure hears of it after `after_s`."""
-        self._phase, self._goal_kpa, self._wait_s, self._openings = Phase.HEARING, goal_kpa, after_s, 0
+        """Go to `goal_kpa`; the regulator of the pressure hears of it after `after_s`, before the next command."""
+        self._heard_kpa, self._heard_in_s = goal_kpa, after_s
 
     def overpressure(self, duration_s: float) -> float:
         """Move on by `duration_s`; mean of max(0, P − P0) over it, by trapezoids between the events."""
         left, area = duration_s, 0.0
         while left > INSTANT_S and not self.resting:
             before = self.overpressure_kpa
-            used = self._flow(left) if self._phase is Phase.FLOWING else self._wait(left)
+            used = self._move(left if self._heard_kpa is None else min(left, self._heard_in_s))
             area += 0.5 * (before + self.overpressure_kpa) * used
             left -= used
+            if self._heard_kpa is not None:
+                self._heard_in_s -= used
+                if self._heard_in_s <= INSTANT_S:
+                    self._obey(self._heard_kpa)
         return (area + self.overpressure_kpa * left) / duration_s if duration_s > 0.0 else self.overpressure_kpa
+
+    def _move(self, longest_s: float) -> float:
+        """Go on for at most `longest_s`, until the valves do something else; the time used."""
+        if self._phase is Phase.RESTING:
+            return longest_s
+        return self._flow(longest_s) if self._phase is Phase.FLOWING else self._wait(longest_s)
+
+    def _obey(self, goal_kpa: float) -> None:
+        """The regulator of the pressure hears of a new goal."""
+        self._heard_kpa, self._goal_kpa, self._openings = None, goal_kpa, 0
+        if self._phase in (Phase.OPENING, Phase.FLOWING) and self._needed() == self._filling:
+            return
+        self._compare()
+
+    def _needed(self) -> bool | None:
+        """Whether the goal asks to fill or to exhaust; None: neither."""
+        error = self._goal_kpa - self.pressure_kpa
+        return None if abs(error) <= self.drive.band_kpa * (1.0 + 1e-12) else error > 0.0
 
     def _wait(self, longest_s: float) -> float:
         """Wait for at most `longest_s`; the time used."""
@@ -102,11 +130,11 @@ class BrakeDrive:
 
     def _compare(self) -> None:
         """The regulator looks at the pressure: rest, or have a valve open."""
-        d, error = self.drive, self._goal_kpa - self.pressure_kpa
-        if abs(error) <= d.band_kpa * (1.0 + 1e-12) or self._openings == MOST_OPENINGS:
+        d, needed = self.drive, self._needed()
+        if needed is None or self._openings == MOST_OPENINGS:
             self._phase = Phase.RESTING
             return
         self._openings += 1
-        self._phase, self._filling = Phase.OPENING, error > 0.0
+        self._phase, self._filling = Phase.OPENING, needed
         touching = self.pressure_kpa <= d.touch_kpa
-        self._wait_s = d.brake_delay_s + (d.touch_delay_s if touching else 0.0) if self._filling else d.release_delay_s
+        self._wait_s = d.brake_delay_s + (d.touch_delay_s if touching else 0.0) if needed else d.release_delay_s

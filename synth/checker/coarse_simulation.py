@@ -4,8 +4,10 @@ Everything moves on in steps of a quarter of the sampling period: position and s
 of the step, pressure by the valves as they stand. The regulator of the pressure is played as the relay that it is,
 with its delays, and not from histories known in advance; friction is a random walk over short stretches of path; the
 lines are evaluated in double precision; an estimator of the table runs in float32 and hears at every sample the mean
-overpressure since the last. With an approach a pass begins there, with the speed from which the cut, not braked,
-reaches the entrance with its entry speed. All this differs from the simulator that made the claims.
+overpressure since the last. A table that decides at any time is asked at every sample, its gauge shows the true
+pressure, and the relay takes a command whatever it is doing. With an approach a pass begins there, with the speed from
+which the cut, not braked, reaches the entrance with its entry speed. All this differs from the simulator that made the
+claims.
 
 Cuts of low friction are rare and make most of a mean square. So half of the passes have the friction of cuts as it
 comes, the others low friction (`low_friction`), and each pass counts by its weight.
@@ -33,6 +35,10 @@ SLOWEST_START_M_S: Final = 0.3
 """Of cuts that a steep approach would have brought from less."""
 LONGEST_PASS_S: Final = 300.0
 """A cut that is still inside then has stalled: it creeps."""
+
+
+class NotModelledError(Exception):
+    """The passes of this table under this plant are not modelled here; the message is one sentence."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +74,17 @@ class Passes:
 
 
 def simulate(plant: Plant, table: Table, count: int, seed: int) -> Passes:
-    """`count` passes of `plant` under `table`; equal arguments give equal passes."""
+    """`count` passes of `plant` under `table`; equal arguments give equal passes.
+
+    Raises `NotModelledError` for a table that decides at any time, where a valve closes late or a command is heard only
+    after the next sample.
+    """
+    if table.at_any_time and (plant.drive.closing_delay_s > 0.0 or plant.computing_s >= plant.period_s):
+        raise NotModelledError(
+            "commands at any time are modelled only for valves that close at once and for a computing delay shorter "
+            f"than the sampling period; here valves close after {plant.drive.closing_delay_s:g} s, and the delay is "
+            f"{plant.computing_s:g} s of {plant.period_s:g} s"
+        )
     ground, random = ground_of(plant), Random(f"{seed} {table.id}")
     rest_kpa = resting_kpa(plant)
     observer = Observer(table.estimator) if table.estimator else None
@@ -168,13 +184,14 @@ def one_pass(
                 return 0.0, True, switchings
         time += dt * steps
         dt = period / steps
-        if observer is None and not drive.resting:
+        asked = table.at_any_time or drive.resting
+        if observer is None and not asked:
             continue  # nobody looks
         seen = measured(plant, v, random)
         if observer is not None:
             seen = observer.observe(s, seen, pressed / steps)
-        if drive.resting:
-            change = decision(table, stage, s, seen)
+        if asked:
+            change = decision(table, stage, s, seen, drive.pressure_kpa)
             if change:
                 stage = min(max(stage + change, 0), len(table.lines) - 1)
                 switchings += 1
@@ -198,15 +215,26 @@ def measured(plant: Plant, v: float, random: Random) -> float:
     return max(0.0, seen)
 
 
-def decision(table: Table, stage: int, s: float, v: float) -> int:
-    """The rule, in double precision."""
+def decision(table: Table, stage: int, s: float, v: float, kpa: float = math.nan) -> int:
+    """The rule, in double precision; `kpa`: what the gauge shows, NaN for none."""
     s = min(max(s, table.path_m[0]), table.path_m[1])
     lower, upper = table.lines[stage]
-    if lower is not None and v < speed_at(lower, s):
+    add_lower, add_upper = added_m_s(table, stage, kpa)
+    if lower is not None and v < speed_at(lower, s) + add_lower:
         return -1
     if s < 0.0 and stage >= table.entrance_stage:
         return 0
-    return 1 if upper is not None and v > speed_at(upper, s) else 0
+    return 1 if upper is not None and v > speed_at(upper, s) + add_upper else 0
+
+
+def added_m_s(table: Table, stage: int, kpa: float) -> tuple[float, float]:
+    """What the pressure adds to the two lines of `stage`."""
+    slopes = table.slopes[stage]
+    if slopes == (None, None) or not math.isfinite(kpa):
+        return 0.0, 0.0
+    clamped = min(max(kpa, table.pressures_kpa[0]), table.pressures_kpa[table.top_stage])
+    lower, upper = ((slope or 0.0) * (clamped - table.pressures_kpa[stage]) for slope in slopes)
+    return lower, upper
 
 
 def speed_at(line: Line, s: float) -> float:

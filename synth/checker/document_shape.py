@@ -25,6 +25,13 @@ class Pair:
 
 
 @dataclass(frozen=True)
+class OneOf:
+    """One of these texts."""
+
+    words: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Optional:
     """A member that may be missing."""
 
@@ -32,6 +39,12 @@ class Optional:
 
 
 NUMBERS: Final = [NUMBER]
+STAGE: Final[Mapping[str, Any]] = {
+    "k": COUNT,
+    "pressure_kpa": NUMBER,
+    "lower": OrNull(NUMBERS),
+    "upper": OrNull(NUMBERS),
+}
 PREDICTED: Final[Mapping[str, Any]] = {
     "rms_m_s": NUMBER,
     "bias_m_s": NUMBER,
@@ -49,7 +62,7 @@ SHAPE: Final[Mapping[str, Any]] = {
     "cut": {"category": TEXT, "category_number": Optional(COUNT), "mass_t": NUMBER, "axle_offsets_m": NUMBERS},
     "target_speed_m_s": NUMBER,
     "polynomial": {"variable": TEXT, "degree": COUNT},
-    "stages": [{"k": COUNT, "pressure_kpa": NUMBER, "lower": OrNull(NUMBERS), "upper": OrNull(NUMBERS)}],
+    "stages": [STAGE],
     "valid": {"s_m": Pair(), "v_m_s": Pair()},
     "predicted": PREDICTED,
     "validated": OrNull({"passes": COUNT, "rms_m_s": NUMBER, "rms_ci95_m_s": Pair()}),
@@ -71,23 +84,40 @@ SHAPE_WITH_ESTIMATOR: Final[Mapping[str, Any]] = {
 APPROACH: Final[Mapping[str, Any]] = {"length_m": NUMBER, "entrance_stage": COUNT, "interlock": TEXT}
 """Version 3: the regulator acts from before the entrance; with or without an estimator."""
 
-SHAPES: Final[Mapping[tuple[int, bool], Mapping[str, Any]]] = {
-    (1, False): SHAPE,
-    (2, True): SHAPE_WITH_ESTIMATOR,
-    (3, False): {**SHAPE, "approach": APPROACH},
-    (3, True): {**SHAPE_WITH_ESTIMATOR, "approach": APPROACH},
+SLOPES: Final = ("lower_slope_m_s_per_kpa", "upper_slope_m_s_per_kpa")
+"""Of the lower and of the upper line over the pressure."""
+GAUGE, NO_GAUGE = "gauge", "none"
+AT_ANY_TIME: Final[Mapping[str, Any]] = {
+    "decisions": OneOf(("at_any_time",)),
+    "pressure": OneOf((GAUGE, NO_GAUGE)),
+    "approach": Optional(APPROACH),
 }
-"""By version, and by whether there is an estimator: only version 3 leaves that open."""
-KNOWN_VERSIONS: Final = (1, 2, 3)
+"""Version 5: it decides at every sample; with or without a gauge, an estimator and an approach."""
+
+KNOWN_VERSIONS: Final = (1, 2, 3, 5)
+
+
+def shape_of(document: Mapping[str, Any], version: int) -> Mapping[str, Any]:
+    """What a document of a known version must look like: from version 3 on it may have an estimator or none."""
+    estimating = version == 2 or (version > 2 and "estimator" in document)
+    shape = SHAPE_WITH_ESTIMATOR if estimating else SHAPE
+    if version == 3:
+        return {**shape, "approach": APPROACH}
+    if version == 5:
+        sloped = document.get("pressure") == GAUGE
+        stage = {**STAGE, **dict.fromkeys(SLOPES, OrNull(NUMBER))} if sloped else STAGE
+        return {**shape, **AT_ANY_TIME, "stages": [stage]}
+    return shape
 
 
 def require_document(document: Mapping[str, Any]) -> None:
     """Raise `DamagedError` unless `document`, of a table with lines, is of a known version and looks as that must."""
     version = document.get("version")
     if isinstance(version, bool) or not isinstance(version, int) or version not in KNOWN_VERSIONS:
-        raise DamagedError(f"its version is {shown(version)}, but tables with lines are of the versions 1 to 3 only")
-    estimating = version == 2 or (version == 3 and "estimator" in document)
-    require_shape(document, SHAPES[version, estimating], "")
+        raise DamagedError(
+            f"its version is {shown(version)}, but tables with lines are of the versions 1, 2, 3 and 5 only"
+        )
+    require_shape(document, shape_of(document, version), "")
 
 
 def require_shape(value: Any, form: Any, path: str) -> None:
@@ -98,6 +128,9 @@ def require_shape(value: Any, form: Any, path: str) -> None:
         case OrNull():
             if value is not None:
                 require_shape(value, form.form, path)
+        case OneOf():
+            known = " or ".join(f'"{word}"' for word in form.words)
+            refuse_unless(isinstance(value, str) and value in form.words, value, path, known)
         case Pair():
             require_shape(value, NUMBERS, path)
             refuse_unless(len(value) == 2 and value[0] <= value[1], value, path, "two numbers, the smaller one first")
@@ -106,7 +139,8 @@ def require_shape(value: Any, form: Any, path: str) -> None:
             needed = {key for key, member in form.items() if not isinstance(member, Optional)}
             wrong = sorted((value.keys() - form.keys()) | (needed - value.keys()))
             refuse_unless(not wrong, wrong, path, "an object without missing or unknown keys such as these")
-            for key, member in value.items():
+            # Words first: they tell what the rest must look like.
+            for key, member in sorted(value.items(), key=lambda each: not isinstance(form[each[0]], OneOf)):
                 of = form[key]
                 require_shape(member, of.form if isinstance(of, Optional) else of, f"{path}.{key}".lstrip("."))
         case [inner]:

@@ -65,6 +65,31 @@ def horner(line: Sequence[float], s: float) -> float:
     return value
 
 
+def rise(slope: float, own_kpa: float, kpa: float) -> float:
+    """What the pressure `kpa` adds to a line of the stage at `own_kpa`, all binary32; two operations, both rounded."""
+    return rounded(slope * rounded(kpa - own_kpa))
+
+
+def rises(
+    slopes: Sequence[tuple[float | None, float | None]],
+    pressures_kpa: Sequence[float],
+    top_stage: int,
+    stage: int,
+    kpa: float,
+) -> tuple[float, float]:
+    """What the pressure `kpa` of the gauge adds to the lower and to the upper line of `stage`, m/s, for `decide`.
+
+    It is clamped from the pressure of stage 0 to that of `top_stage`, the highest stage that the table raises to. Where
+    the gauge tells no binary32 number, or there is no such stage, nothing is added.
+    """
+    if not (0 <= stage < len(pressures_kpa) and -LARGEST <= kpa <= LARGEST):
+        return 0.0, 0.0
+    clamped = min(max(rounded(kpa), rounded(pressures_kpa[0])), rounded(pressures_kpa[top_stage]))
+    own_kpa = rounded(pressures_kpa[stage])
+    lower, upper = (0.0 if slope is None else rise(slope, own_kpa, clamped) for slope in slopes[stage])
+    return lower, upper
+
+
 def decide(
     lines: Sequence[tuple[Sequence[float] | None, Sequence[float] | None]],
     path_m: tuple[float, float],
@@ -72,16 +97,20 @@ def decide(
     stage: int,
     s_m: float,
     v_m_s: float,
+    rise_m_s: tuple[float, float] = (0.0, 0.0),
 ) -> int:
-    """-1 lower, 0 hold, +1 raise: the rule of docs/table-format.md for (lower, upper) `lines` of stages 0, 1, …"""
+    """-1 lower, 0 hold, +1 raise: the rule of docs/table-format.md for (lower, upper) `lines` of stages 0, 1, …
+
+    `rise_m_s`: what the pressure adds to the two lines of the stage, as `rises` gives it; 0 for a table without slopes.
+    """
     s, v = rounded(s_m), rounded(v_m_s)
     if not (math.isfinite(s) and math.isfinite(v)) or v_m_s < 0.0 or not 0 <= stage < len(lines):
         return 0
     s = min(max(s, rounded(path_m[0])), rounded(path_m[1]))
     lower, upper = lines[stage]
-    if lower is not None and v < horner(lower, s):
+    if lower is not None and v < rounded(horner(lower, s) + rise_m_s[0]):
         return -1
     may_raise = s >= 0.0 or stage < entrance_stage
-    if may_raise and upper is not None and v > horner(upper, s):
+    if may_raise and upper is not None and v > rounded(horner(upper, s) + rise_m_s[1]):
         return 1
     return 0

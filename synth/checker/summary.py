@@ -10,6 +10,7 @@ from typing import Any, Final
 
 from synth.checker.canonical import canonical_form, parse_json
 from synth.checker.claims import Honesty
+from synth.checker.document_shape import GAUGE, NO_GAUGE
 from synth.checker.finding import DamagedError, shown
 from synth.checker.passages.reading import PassageTable
 from synth.checker.plant import Plant, Reader, UnusableConfigError, config_sha256, plant_of
@@ -62,6 +63,20 @@ class Summary:
             return False
         estimate = self.cases.get(table.id, {}).get("estimate")
         return not (isinstance(estimate, dict) and estimate.get("used") is False)
+
+    def command_faults(self, table: Table) -> Iterator[str]:
+        """Where the regulator of the configuration commands at other times than `table`, or has another gauge.
+
+        Without such keys it commands at rest.
+        """
+        section = self.config.get("regulator")
+        regulator = section if isinstance(section, dict) else {}
+        wanted = regulator.get("commands", "at_rest"), regulator.get("pressure", GAUGE)
+        own = "any_time" if table.at_any_time else "at_rest", GAUGE if table.has_gauge else NO_GAUGE
+        if wanted[0] != own[0]:
+            yield f"its configuration asks for commands {shown(wanted[0])}, but it is for commands {shown(own[0])}"
+        elif table.at_any_time and wanted[1] != own[1]:
+            yield f"its configuration says of the pressure {shown(wanted[1])}, but it says {shown(own[1])}"
 
     def plant(self, table: Table | PassageTable) -> Plant:
         """The plant that `table` is for; `UnusableConfigError` if the configuration has none that fits it.

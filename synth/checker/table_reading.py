@@ -8,7 +8,7 @@ from typing import Any
 
 from synth.checker.canonical import canonical_form, crc32, parse_json, without_checksum
 from synth.checker.category_number import number_of
-from synth.checker.document_shape import refuse_unless, require_document
+from synth.checker.document_shape import SLOPES, refuse_unless, require_document
 from synth.checker.estimator import Estimator, estimator_of
 from synth.checker.finding import DamagedError, shown
 
@@ -23,6 +23,10 @@ class Table:
     figures are None where the table does not state them, `predicted_passes` where the prediction was not simulated,
     `estimator` where it is for the measured speed, `category_number` where nothing tells it. `approach_m`, 0.0 without:
     the regulator acts from so far before the entrance, and commands no stage above `entrance_stage` there.
+
+    `at_any_time`: it is asked at every sample, not only when no change of stage is under way; the stage asked for is
+    the one commanded last. `slopes`: those of `lines` over the pressure, m/s per kPa, None where there is none; a line
+    holds at the pressure of its stage, and its slope counts from there.
     """
 
     id: str
@@ -53,12 +57,19 @@ class Table:
     estimator: Estimator | None
     approach_m: float
     entrance_stage: int
+    at_any_time: bool
+    slopes: tuple[tuple[float | None, float | None], ...]
     document: Mapping[str, Any]
 
     @property
     def top_stage(self) -> int:
         """The highest stage that the rule can enter from stage 0."""
         return next(k for k, (_, upper) in enumerate(self.lines) if upper is None)
+
+    @property
+    def has_gauge(self) -> bool:
+        """Whether its lines depend on the pressure, which the controller must then measure."""
+        return any(slope is not None for both in self.slopes for slope in both)
 
 
 def read_table(content: bytes) -> Table:
@@ -109,6 +120,8 @@ def table_of(document: Mapping[str, Any]) -> Table:
         estimator=estimator_of(document["estimator"]) if "estimator" in document else None,
         approach_m=approach_m,
         entrance_stage=entrance_stage,
+        at_any_time="decisions" in document,
+        slopes=tuple(slopes_of(stage) for stage in stages),
         document=document,
     )
 
@@ -154,6 +167,12 @@ def numbers(values: list[float]) -> tuple[float, ...]:
 def line_of(values: list[float] | None) -> Line | None:
     """A line, or none."""
     return None if values is None else numbers(values)
+
+
+def slopes_of(stage: Mapping[str, Any]) -> tuple[float | None, float | None]:
+    """The slopes of the lower and of the upper line of a stage, None where there is none."""
+    lower, upper = (None if stage.get(key) is None else float(stage[key]) for key in SLOPES)
+    return lower, upper
 
 
 def pair(values: list[float]) -> tuple[float, float]:

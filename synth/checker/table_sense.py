@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
 
+from synth.checker.document_shape import GAUGE
 from synth.checker.finding import Finding, Kind
-from synth.checker.float32 import is_float32, rounded
-from synth.checker.line_order import compare, range_of
+from synth.checker.float32 import LARGEST, is_float32, rounded
+from synth.checker.line_order import LEVEL, Tilt, compare, range_of
 from synth.checker.table_reading import Line, Table
 
 PLAUSIBLE_SPEED_M_S: Final = (-5.0, 30.0)
@@ -23,11 +24,12 @@ itself a command comes too late to matter, and lines are loose: this finds lines
 
 @dataclass(frozen=True)
 class NamedLine:
-    """A line with its stage and name."""
+    """A line with its stage and name, and its slope over the pressure, m/s per kPa."""
 
     stage: int
     name: str
     line: Line
+    slope: float | None
 
     def __str__(self) -> str:
         return f"the {self.name} line of stage {self.stage}"
@@ -72,21 +74,25 @@ def pressure_faults(table: Table) -> Iterator[str]:
 def line_faults(table: Table) -> Iterator[str]:
     """Faults of the lines: numbers, order, range, and what they do."""
     lines = [
-        NamedLine(k, name, line)
-        for k, both in enumerate(table.lines)
-        for name, line in zip(("lower", "upper"), both, strict=True)
+        NamedLine(k, name, line, slope)
+        for k, (both, slopes) in enumerate(zip(table.lines, table.slopes, strict=True))
+        for name, line, slope in zip(("lower", "upper"), both, slopes, strict=True)
         if line is not None
     ]
     odd = [f"{each} has the coefficient {c!r}" for each in lines for c in each.line if not is_float32(c)]
-    yield from (f"{words}, which is no float32 number" for words in odd)
+    odd += [f"{each} has the slope {each.slope!r}" for each in lines if not is_float32(each.slope or 0.0)]
+    odd = [*(f"{words}, which is no float32 number" for words in odd), *slope_faults(table)]
+    yield from odd
     path_m = (rounded(table.path_m[0]), rounded(table.path_m[1]))
     if odd or not path_m[0] < path_m[1] or max(map(abs, path_m)) > 1e6:
         return  # nothing below means anything
     for k, (lower, upper) in enumerate(table.lines):
         if lower is not None and upper is not None:
-            yield from order_faults(k, lower, upper, path_m)
+            yield from order_faults(k, lower, upper, path_m, tilt_of(table, k))
+            if k > table.top_stage and table.has_gauge:  # its own pressure is not in the range
+                yield from order_faults(k, lower, upper, path_m, LEVEL)
     for each in lines:
-        low, high = range_of(each.line, path_m)
+        low, high = range_with_pressure(each, table, path_m)
         if each.stage <= table.top_stage:
             yield from used_line_faults(each, low, high, table)
         elif each.name == "lower" and not low > table.speed_m_s[1]:
@@ -97,11 +103,45 @@ def line_faults(table: Table) -> Iterator[str]:
     yield from target_faults(table, path_m)
 
 
-def order_faults(stage: int, lower: Line, upper: Line, path_m: tuple[float, float]) -> Iterator[str]:
+def slope_faults(table: Table) -> Iterator[str]:
+    """Faults of the slopes: every line has one, or none has."""
+    if table.document.get("pressure") == GAUGE and not table.has_gauge:
+        yield "it says that its lines depend on the pressure, but none has a slope"
+    if not table.has_gauge:
+        return
+    for k, (both, slopes) in enumerate(zip(table.lines, table.slopes, strict=True)):
+        for name, line, slope in zip(("lower", "upper"), both, slopes, strict=True):
+            if line is None and slope is not None:
+                yield f"stage {k} has a slope of the {name} line, but no such line"
+            if line is not None and slope is None:
+                yield f"the {name} line of stage {k} has no slope, but other lines have one"
+    if table.pressures_kpa[-1] > LARGEST:
+        yield f"its stage pressures {table.pressures_kpa} exceed what float32 can hold"
+
+
+def tilt_of(table: Table, stage: int) -> Tilt:
+    """How the lines of `stage` rise with the pressure, over all pressures that the rule computes with."""
+    if not table.has_gauge:
+        return LEVEL
+    lower, upper = (slope or 0.0 for slope in table.slopes[stage])
+    least, own, most = (rounded(table.pressures_kpa[k]) for k in (0, stage, table.top_stage))
+    return Tilt((lower, upper), own, (least, most))
+
+
+def range_with_pressure(each: NamedLine, table: Table, path_m: tuple[float, float]) -> tuple[float, float]:
+    """Bounds of a line on the path and at all pressures; where the gauge is silent, nothing is added."""
+    low, high = range_of(each.line, path_m)
+    own = table.pressures_kpa[each.stage]
+    added = [(each.slope or 0.0) * (table.pressures_kpa[k] - own) for k in (0, table.top_stage)]
+    return low + min(0.0, *added), high + max(0.0, *added)
+
+
+def order_faults(stage: int, lower: Line, upper: Line, path_m: tuple[float, float], tilt: Tilt) -> Iterator[str]:
     """Whether lower and upper of a stage might both apply."""
-    order = compare(lower, upper, path_m)
+    order = compare(lower, upper, path_m, tilt)
     if order.touch_m is not None:
-        yield f"at stage {stage} the lower line is not below the upper one at s = {order.touch_m:.9g} m"
+        at = f"s = {order.touch_m:.9g} m" + ("" if tilt == LEVEL else f" and a pressure of {order.touch_kpa:.9g} kPa")
+        yield f"at stage {stage} the lower line is not below the upper one at {at}"
     elif not order.proved:
         yield f"at stage {stage} the lines are too close to prove their order, near s = {order.closest_m:.9g} m"
 

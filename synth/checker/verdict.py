@@ -11,7 +11,7 @@ from synth.checker.aim.sense import claim_faults
 from synth.checker.aim.sense import sense as aim_sense
 from synth.checker.canonical import require_right_crc32
 from synth.checker.claims import own_faults, simulated_faults
-from synth.checker.coarse_simulation import simulate
+from synth.checker.coarse_simulation import NotModelledError, simulate
 from synth.checker.estimator_sense import estimator_faults
 from synth.checker.exports import ExportReport, check_exports
 from synth.checker.finding import DamagedError, Finding, Kind
@@ -160,6 +160,7 @@ def judge_figures(
             plant = summary.plant(table)
             if isinstance(table, Table):
                 disagreements += estimator_faults(table.estimator, plant, summary.estimating(table))
+                disagreements += summary.command_faults(table)
                 coarse = simulate(plant, table, passes, seed)
             else:
                 coarse = simulate_passages(plant, table, passes, seed)
@@ -168,6 +169,9 @@ def judge_figures(
         except UnusableConfigError as fault:
             disagreements.append(str(fault))
             skipped = "the plant is not known"
+        except NotModelledError as fault:
+            claims.append(f"its figures cannot be confirmed: {fault}")
+            skipped = str(fault)
     findings = [Finding(Kind.DISAGREES, table.id, sentence) for sentence in disagreements]
     findings += [Finding(Kind.CLAIM, table.id, sentence) for sentence in claims]
     return FigureVerdict(tuple(findings), figures, skipped)

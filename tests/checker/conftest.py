@@ -44,6 +44,16 @@ APPROACHED = f"{CONFIG}entrance_stage = 1\n[regulator]\napproach_m = 4.0\n"
 """The class may be given stage 1 before the entrance."""
 
 
+ANY_TIME = f'{CONFIG}[regulator]\ncommands = "any_time"\n'.replace("[1.5, 2.5]", "[2.5]")
+"""At every sample; one target, for the polish of surfaces takes long."""
+
+REGULATORS_AT_ANY_TIME = {
+    "gauge": FROM_THE_ENTRANCE,
+    "none": f'pressure = "none"\n{FROM_THE_ENTRANCE}',
+    "estimated": "approach_m = 4.0\nestimator = true\n",
+}
+
+
 def tune(folder: Path, config: str) -> Path:
     """The directory of a tune with every export."""
     (folder / "config.toml").write_text(config)
@@ -73,6 +83,28 @@ def approached_once(request: pytest.FixtureRequest, tmp_path_factory: pytest.Tem
     """The directory of the same tune with an approach, version 3, without and with estimator; not to be changed."""
     folder = tmp_path_factory.mktemp("approached")
     return tune(folder, f"{APPROACHED}estimator = {str(request.param).lower()}\n")
+
+
+@pytest.fixture(scope="session")
+def gauged_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The directory of a tune of one table of version 5, with a gauge; not to be changed."""
+    folder = tmp_path_factory.mktemp("gauged")
+    return tune(folder, f"{ANY_TIME}{REGULATORS_AT_ANY_TIME['gauge']}")
+
+
+@pytest.fixture(scope="session", params=REGULATORS_AT_ANY_TIME)
+def any_time_once(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The same with a gauge, without, and with an estimator and an approach; not to be changed."""
+    if request.param == "gauge":
+        return Path(request.getfixturevalue("gauged_once"))
+    folder = tmp_path_factory.mktemp("any_time")
+    return tune(folder, f"{ANY_TIME}{REGULATORS_AT_ANY_TIME[request.param]}")
+
+
+@pytest.fixture
+def gauged(gauged_once: Path, tmp_path: Path) -> Path:
+    """A copy of it, to be changed at will."""
+    return Path(shutil.copytree(gauged_once, tmp_path / "out"))
 
 
 @pytest.fixture

@@ -118,7 +118,8 @@ def test_golden_vectors_of_a_wrong_gate_are_found(approached: Path, wrong: str) 
         ungated = decide_many(replace(table, approach=Approach(4.0, 4)), right.stage, right.s_m, right.v_m_s)
         gated = (ungated == 1) & (right.stage >= other.entrance_stage) & (path < 0.0)
         answers = ungated * ~gated
-        vectors.append(GoldenVectors(right.stage.copy(), right.s_m.copy(), right.v_m_s.copy(), answers))
+        s_m, v_m_s, kpa = (each.copy() for each in (right.s_m, right.v_m_s, right.pressure_kpa))
+        vectors.append(GoldenVectors(right.stage.copy(), s_m, v_m_s, kpa, answers))
     file.write_bytes(vectors_csv(book, vectors))
     assert found(look(approached), Kind.DISAGREES, "but the rule says")
 

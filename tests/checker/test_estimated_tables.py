@@ -115,7 +115,7 @@ def unknown_key(document: Document) -> None:
         (no_passes, "predicted.passes"),
         (times("speed_noise_m_s", 1e-9), "estimator.speed_noise_m_s is .* from 0.0001 to 10"),
         (old_version, "unknown keys"),
-        (next_version, "versions 1 to 3 only"),
+        (next_version, "versions 1, 2, 3 and 5 only"),
         (unknown_key, "delay_s"),
     ],
 )
