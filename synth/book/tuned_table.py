@@ -12,19 +12,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
-from synth.book.any_time.surface_table import polished_surfaces, starting_surfaces, with_surface_prediction
+from synth.book.any_time.surface_table import polished_surfaces, starting_surfaces, surface_density
 from synth.book.class_setup import ClassSetup, EstimatorSetup
 from synth.book.estimation.estimated_surfaces import estimated_surfaces
 from synth.book.estimation.estimated_table import EstimatedTable, estimated_table
 from synth.book.estimation.simulated_prediction import density_of, simulated_prediction
 from synth.problem.aim import Aim
+from synth.problem.any_time_resolution import design_resolution
 from synth.problem.problem import Problem
 from synth.problem.requirement_found import Finding
 from synth.simulation.closed_loop import TableController
 from synth.simulation.exit_statistics import BrakePower, ExitStatistics, brake_power, exit_statistics
 from synth.simulation.passes import ExitSample
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
-from synth.solver.any_time.sampled_chain import design_resolution
 from synth.solver.any_time.surface_polish import SurfacePolish
 from synth.solver.backward_induction import Solution, solve_all
 from synth.solver.chain.chain import Chain
@@ -37,7 +37,7 @@ from synth.solver.required_lines import required_lines
 from synth.solver.resolved_density import resolved_density
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tabulate import UNPREDICTED, lines_of, prediction_of, tabulate
-from tuning_tables import ControllerTable, Validated
+from tuning_tables import ControllerTable, Decisions, Validated
 
 NODES_KEPT = 1
 """Path nodes at which a solution keeps its values: the entrance. Nothing after the solve reads more."""
@@ -110,10 +110,8 @@ def tuned_table(setup: ClassSetup, solution: Solution) -> TunedTable:
     estimate: AnyEstimate | None = made if surfaces is None else surfaces.estimate
     if setup.estimator is not None and estimate is not None and estimate.gains:
         table, predicted = predicted_by_passes(setup, estimate, setup.estimator, problem.target_speed_m_s)
-    elif surfaces is None:
-        table, predicted = with_prediction(setup.check, rounded(setup, chosen, problem.target_speed_m_s))
     else:
-        table, predicted = with_surface_prediction(setup.plant, rounded(setup, chosen, problem.target_speed_m_s))
+        table, predicted = with_prediction(setup.check, rounded(setup, chosen, problem.target_speed_m_s))
     tuned = table, predicted, kept.lines, kept.polish, density, fit.curvature, kept.finding, made, surfaces
     return TunedTable(*tuned)
 
@@ -158,13 +156,18 @@ def predicted_by_passes(
 
 
 def with_prediction(check: Chain, table: ControllerTable) -> tuple[ControllerTable, ExitDensity]:
-    """`table`, which decides at rest, with the figures of its exit-speed density on `check`, and the density."""
+    """`table` with the figures of its exit-speed density, and the density; as `predict`."""
     density = predict(check, table)
     return replace(table, predicted=prediction_of(density, table.target_speed_m_s)), density
 
 
 def predict(check: Chain, table: ControllerTable) -> ExitDensity:
-    """Exit-speed density of an exported table that decides at rest on `check`, resolved near its target."""
+    """Exit-speed density of an exported table for the measured speed, resolved near its target.
+
+    On `check` if it decides at rest; at any time on a chain of its own of the same plant.
+    """
+    if table.decisions is Decisions.AT_ANY_TIME:
+        return surface_density(check.plant, table)
     lines = lines_of(table, check.grid.path_m)
     stages = check.actuator.stages
     used = SwitchingLines(lines.nodes_m, lines.lower_m_s[:stages], lines.upper_m_s[:stages])

@@ -25,6 +25,7 @@ def permissions_command(path: Path | None, output: Path, workers: int, as_json: 
     from synth.cli.tune import require_room, sensors_left_aside
     from synth.configuration.config_file import BUILT_IN, load_config
     from synth.kernels.cache import guarded
+    from synth.problem.any_time_resolution import design_resolution
 
     config, source = load_config(path), str(path or BUILT_IN)
     if config.criterion.requirement is not None:
@@ -34,8 +35,9 @@ def permissions_command(path: Path | None, output: Path, workers: int, as_json: 
         )
     require_room(config, path, workers)
     with tables_refused(source):
-        for _, plant in config.plants():
-            plant.drive_at_any_time()
+        for _, problem in config.problems():
+            problem.plant.drive_at_any_time()
+            design_resolution(problem.plant, problem.target_speed_m_s)
     require_date()
     started, created = time.monotonic(), creation_time()
     with output_directory(output, PERMISSIONS_LAYOUT) as directory:

@@ -39,6 +39,7 @@ from synth.configuration.settings import (
 from synth.configuration.targets import resolve_targets
 from synth.faults.input_error import InputError
 from synth.problem.aim import Aim
+from synth.problem.any_time_resolution import design_resolution
 from synth.problem.criterion import Criterion
 from synth.problem.estimator_resolution import estimator_resolution
 from synth.problem.problem import Problem
@@ -254,8 +255,9 @@ def with_grid_warnings(config: ResolvedConfig, file: str) -> ResolvedConfig:
     coarse = tuple(grid_warnings(config.resolution, config.retarder.sensor, (lowest,)))
     require_plain_criterion(config, file)
     if config.regulator.at_any_time:
-        for _, plant in config.plants():
-            plant.drive_at_any_time()  # refuses what is not modelled
+        for _, problem in config.problems():
+            problem.plant.drive_at_any_time()  # refuses what is not modelled
+            design_resolution(problem.plant, problem.target_speed_m_s)
     if config.regulator.estimator:
         estimator_resolution(config.resolution, config.retarder.sensor, lowest)
     return replace(config, warnings=config.warnings + coarse)

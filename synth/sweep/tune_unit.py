@@ -21,7 +21,7 @@ from synth.solver.one_blas_thread import one_blas_thread
 from synth.sweep.plan import TARGETS_AT_ONCE, Refinement, UnitOrder
 from synth.sweep.refinement import Bench, Gap, refined
 from synth.sweep.unit_result import Refused, Row, UnitResult
-from tuning_tables import ControllerTable, InvalidTable, from_json, to_json
+from tuning_tables import ControllerTable, InvalidTable, Stage, from_json, to_json
 from tuning_tables.active_table import between
 
 
@@ -95,9 +95,12 @@ def between_rms_m_s(check: Chain, slower: ControllerTable, faster: ControllerTab
     """Exactly predicted rms of the lines that a controller takes between two tables."""
     lines = between(slower, faster, np.float32(target_m_s))
     stages: list[Any] = []
-    for stage, pair, present in zip(slower.stages, lines.coefficients, lines.has_line, strict=True):
-        lower, upper = (tuple(map(float, line)) if here else None for line, here in zip(pair, present, strict=True))
-        stages.append(replace(stage, lower=lower, upper=upper))
+    for stage, pair, steep in zip(slower.stages, lines.coefficients, lines.slopes, strict=True):
+        lower, upper = (
+            None if line is None else tuple(map(float, taken)) for line, taken in zip(stage.lines, pair, strict=True)
+        )
+        slopes = (None if slope is None else float(taken) for slope, taken in zip(stage.slopes, steep, strict=True))
+        stages.append(Stage(stage.k, stage.pressure_kpa, lower, upper, *slopes))
     table = replace(slower, target_speed_m_s=target_m_s, stages=tuple(stages))
     return predict(check, table).rms_m_s(target_m_s)
 

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from plant_models import Plant
 from synth.problem.aim import Aim
+from synth.problem.any_time_resolution import design_resolution
 from synth.problem.resolution import Resolution
 from synth.solver.any_time.polynomial_surfaces import CUBIC_AND_SLOPE, PolynomialSurfaces, surfaces_of_lines
-from synth.solver.any_time.sampled_chain import check_sampled_chain, design_resolution, sampled_chain
+from synth.solver.any_time.sampled_chain import check_sampled_chain, sampled_chain
 from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
 from synth.solver.any_time.surface_polish import SurfacePolish, polish_surfaces
 from synth.solver.chain.speed_measurement import SpeedMeasurement
 from synth.solver.exit_density import ExitDensity, without_negative
 from synth.solver.polynomial_lines import PolynomialLines
-from synth.solver.tabulate import prediction_of, surfaces_of
+from synth.solver.tabulate import surfaces_of
 from tuning_tables import ControllerTable
 
 
@@ -38,9 +37,8 @@ def polished_surfaces(
     return polish_surfaces(start, SurfaceEvaluation(sampled_chain(plant, steps, measurement)), aim)
 
 
-def with_surface_prediction(plant: Plant, table: ControllerTable) -> tuple[ControllerTable, ExitDensity]:
-    """`table`, for the measured speed, with the figures of its exact exit-speed density, and the density."""
+def surface_density(plant: Plant, table: ControllerTable) -> ExitDensity:
+    """Exact exit-speed density of a table that decides at any time, by the measured speed."""
     check = check_sampled_chain(plant, design_resolution(plant, table.target_speed_m_s))
     lines = surfaces_of(table, check.grid.path_m[:-1], check.modes)
-    density = without_negative(SurfaceEvaluation(check).density(lines))
-    return replace(table, predicted=prediction_of(density, table.target_speed_m_s)), density
+    return without_negative(SurfaceEvaluation(check).density(lines))

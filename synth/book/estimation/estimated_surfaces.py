@@ -11,11 +11,11 @@ from dataclasses import replace
 from plant_models.speed_sensor import measured_speed_std
 from synth.book.any_time.surface_table import polished_surfaces, starting_surfaces
 from synth.book.estimation.estimated_table import RESERVE_NODES, Design, EstimatedTable, fitted_to_days
+from synth.problem.any_time_resolution import design_resolution
 from synth.problem.problem import Problem
 from synth.simulation.closed_loop import TableController
 from synth.simulation.random_passes import RandomPasses
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
-from synth.solver.any_time.sampled_chain import design_resolution
 from synth.solver.any_time.surface_polish import opened
 from synth.solver.chain.speed_measurement import SmoothMeasurement
 from synth.solver.polynomial_lines import PolynomialLines

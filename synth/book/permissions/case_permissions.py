@@ -8,18 +8,18 @@ from functools import partial
 
 from plant_models import Plant
 from plant_models.approach import Approach
-from synth.book.any_time.surface_table import polished_surfaces, starting_surfaces, with_surface_prediction
+from synth.book.any_time.surface_table import polished_surfaces, starting_surfaces
 from synth.book.class_setup import ClassSetup, Origin, class_setup, origin_of, validation_passes
 from synth.book.permissions.permission import CasePermissions, Permission, PermissionResult
-from synth.book.tuned_table import TunedTable, rounded, solutions, tuned_table
+from synth.book.tuned_table import TunedTable, rounded, solutions, tuned_table, with_prediction
 from synth.book.work_queue import run_nested
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
+from synth.problem.any_time_resolution import design_resolution
 from synth.simulation.closed_loop import TableController
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
-from synth.solver.any_time.sampled_chain import design_resolution
 from synth.solver.one_blas_thread import one_blas_thread
 
 APPROACH_M = 4.0
@@ -103,7 +103,7 @@ def at_any_time(case: CaseTuned, permission: Permission, has_gauge: bool) -> Per
     steps = design_resolution(plant, case.target_m_s)
     start = starting_surfaces(plant, case.tuned.lines, has_gauge)
     surfaces = polished_surfaces(plant, case.aim, start, steps).surfaces
-    table, _ = with_surface_prediction(plant, rounded(setup, surfaces, case.target_m_s))
+    table, _ = with_prediction(setup.check, rounded(setup, surfaces, case.target_m_s))
     return case.result(permission, setup.passes.run(TableController(table)), table.predicted.rms_m_s)
 
 

@@ -21,6 +21,7 @@ from synth.book.permissions.permission import Permission
 from synth.configuration.config_file import load_config, parse_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
+from synth.problem.any_time_resolution import design_resolution
 from synth.simulation.closed_loop import LineController, TableController
 from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.controllers import Regulator
@@ -34,7 +35,7 @@ from synth.solver.any_time.polynomial_surfaces import (
     PolynomialSurfaces,
     surfaces_of_lines,
 )
-from synth.solver.any_time.sampled_chain import check_sampled_chain, design_resolution, sampled_chain
+from synth.solver.any_time.sampled_chain import check_sampled_chain, sampled_chain
 from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
 from synth.solver.any_time.surface_polish import SurfacePolish, polish_surfaces
 from synth.solver.backward_induction import solve

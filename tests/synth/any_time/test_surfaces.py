@@ -10,6 +10,7 @@ import pytest
 from plant_models import Plant, Pneumatics
 from plant_models.approach import Approach
 from synth.problem.aim import Aim
+from synth.problem.any_time_resolution import design_resolution
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.simulation.closed_loop import close_loop
@@ -17,7 +18,7 @@ from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.random_passes import random_passes
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.any_time.polynomial_surfaces import CUBIC_ALONE, CUBIC_AND_SLOPE, PolynomialSurfaces
-from synth.solver.any_time.sampled_chain import SampledChain, check_sampled_chain, design_resolution, sampled_chain
+from synth.solver.any_time.sampled_chain import SampledChain, check_sampled_chain, sampled_chain
 from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
 from synth.solver.any_time.surface_polish import SurfacePolish, polish_surfaces
 from synth.solver.backward_induction import solve

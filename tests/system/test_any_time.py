@@ -1,0 +1,168 @@
+"""A book for commands at any time as a user makes it: tuned, told, checked, exported, simulated again; faults."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from synth.cli import main
+from synth.configuration.config_file import load_config, parse_config
+from synth.solver.chain.chain import check_chain
+from synth.sweep.tune_unit import between_rms_m_s
+from tuning_tables import ControllerTable, Decisions, read_book
+
+BOOK = """\
+[position]
+name = "rnz-2m-park"
+[targets]
+exit_speeds_m_s = [2.0, 2.5]
+[grid]
+path_step_m = 0.5
+[regulator]
+commands = "any_time"
+pressure = "{pressure}"
+[validation]
+passes = 4000
+[output]
+csv = true
+plots = false
+[[cut]]
+car = "gondola-4"
+mass_t = 22
+"""
+
+ASKED = '[regulator]\ncommands = "any_time"\n'
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Books with a gauge, tuned by one and by two threads, and one without."""
+    place = tmp_path_factory.mktemp("any-time")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+        for name, pressure, workers in (("one", "gauge", "1"), ("two", "gauge", "2"), ("none", "none", "2")):
+            config = place / f"{pressure}.toml"
+            config.write_text(BOOK.format(pressure=pressure), encoding="utf-8")
+            assert main(["tune", str(config), "-o", str(place / name), "--workers", workers]) in (0, 1)
+    return place
+
+
+@pytest.fixture(scope="module")
+def tables(folder: Path) -> tuple[ControllerTable, ...]:
+    return read_book(folder / "one" / "book.h5")
+
+
+def summary(folder: Path) -> dict[str, Any]:
+    """summary.json."""
+    read: dict[str, Any] = json.loads((folder / "summary.json").read_bytes())
+    return read
+
+
+def test_tables_decide_at_any_time_and_their_prediction_is_true(
+    folder: Path, tables: tuple[ControllerTable, ...]
+) -> None:
+    assert {(table.decisions, table.has_gauge) for table in tables} == {(Decisions.AT_ANY_TIME, True)}
+    bare = read_book(folder / "none" / "book.h5")
+    assert {(table.decisions, table.has_gauge) for table in bare} == {(Decisions.AT_ANY_TIME, False)}
+    for table in (*tables, *bare):
+        assert table.validated is not None
+        low, high = table.validated.rms_ci95_m_s
+        assert 0.95 * low < table.predicted.rms_m_s < 1.05 * high
+
+
+def test_they_are_better_than_the_lines_of_the_same_tune_at_rest(folder: Path) -> None:
+    for case in summary(folder / "one")["cases"]:
+        assert case["at_rest_ratio_ci95"][1] < 1.0
+        assert case["at_rest_ratio"] == pytest.approx(
+            case["simulated"]["rms_m_s"] / case["comparison"]["commands at rest"]["rms_m_s"]
+        )
+        best = case["comparison"][case["best_baseline"]]
+        assert best["table_ratio_ci95"][1] < 1.0
+
+
+def test_no_file_depends_on_the_number_of_threads(folder: Path) -> None:
+    one, two = ({p.name: p.read_bytes() for p in (folder / name).rglob("*.json")} for name in ("one", "two"))
+    assert one == two
+    assert (folder / "one" / "book.h5").read_bytes() == (folder / "two" / "book.h5").read_bytes()
+
+
+@pytest.mark.parametrize("name", ["one", "none"])
+def test_the_independent_checker_confirms_them(folder: Path, name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["export", str(folder / name / "book.h5"), "--format", "c", "-o", str(folder / name / "c")]) == 0
+    assert main(["verify", str(folder / name)]) == 0
+    assert "nothing found" in capsys.readouterr().out
+
+
+def test_inspect_tells_when_they_decide_and_how_lines_rise(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["inspect", str(folder / "one" / "book.h5")]) == 0
+    told = capsys.readouterr().out
+    assert "at every sample, also while the pressure is on its way; with the pressure of a gauge" in told
+    assert "m/s per 100 kPa" in told
+    assert main(["inspect", str(folder / "none" / "book.h5")]) == 0
+    assert "without a pressure gauge" in capsys.readouterr().out
+
+
+def test_they_are_drawn_and_simulated_again_from_the_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    table = next((folder / "one" / "tables").glob("*.json"))
+    assert main(["plot", str(table), "-o", str(folder / "plots")]) == 0
+    assert {path.name.rpartition("-")[2] for path in (folder / "plots").iterdir()} >= {"surfaces.png", "lines.png"}
+    asked = ["validate", str(table), "--config", str(folder / "gauge.toml"), "--passes", "4000", "--json"]
+    capsys.readouterr()
+    assert main(asked) in (0, 1)
+    (found,) = json.loads(capsys.readouterr().out)
+    document = json.loads(table.read_bytes())
+    assert found["simulated"]["rms_m_s"] == document["validated"]["rms_m_s"]
+
+
+def test_lines_between_two_tables_are_predicted_with_their_slopes(
+    folder: Path, tables: tuple[ControllerTable, ...]
+) -> None:
+    config = load_config(folder / "gauge.toml")
+    ((_, plant),) = config.plants()
+    slower, faster = tables
+    near = float(np.nextafter(np.float32(2.0), np.float32(3.0)))
+    check = check_chain(plant, config.resolution)
+    assert between_rms_m_s(check, slower, faster, near) == pytest.approx(slower.predicted.rms_m_s, rel=1e-3)
+    between = between_rms_m_s(check, slower, faster, 2.25)
+    assert between < 1.1 * max(slower.predicted.rms_m_s, faster.predicted.rms_m_s)
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ('[regulator]\ncommands = "always"\n', "regulator.commands is 'always'; it must be 'at_rest' or 'any_time'"),
+        ('[regulator]\npressure = "some"\n', "regulator.pressure is 'some'"),
+        (ASKED + "[criterion]\np_overspeed = 0.1\n", 'regulator.commands is "any_time", but'),
+        (ASKED + "[retarder.pneumatics]\nclosing_delay_s = 0.05\n", "closing_delay_s is 0.05"),
+        (ASKED + "[sensor]\ncomputing_delay_s = 0.5\n", "computing_delay_s is 0.5"),
+        (ASKED + "[sensor]\nnoise_m_s = 0.0\nresolution_m_s = 0.0\n", "noise_m_s is 0"),
+    ],
+)  # fmt: skip
+def test_what_is_not_modelled_is_refused_in_one_sentence(
+    text: str, sentence: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "bad.toml"
+    file.write_text(text, encoding="utf-8")
+    assert main(["tune", str(file), "-o", str(tmp_path / "out")]) == 2
+    told = capsys.readouterr().err
+    assert sentence in told
+    assert "Traceback" not in told
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_loop_of_python_control_is_refused(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    table = next((folder / "one" / "tables").glob("*.json"))
+    asked = ["loop", str(table), "--config", str(folder / "gauge.toml"), "-o", str(folder / "loop")]
+    assert main(asked) == 2
+    assert "the table decides at any time" in capsys.readouterr().err
+
+
+def test_configurations_at_rest_keep_their_hash() -> None:
+    plain = parse_config("", "c")
+    assert parse_config('[regulator]\ncommands = "at_rest"\npressure = "none"\n', "c").sha256 == plain.sha256
+    asked = [parse_config(f'[regulator]\ncommands = "any_time"\npressure = "{p}"\n', "c") for p in ("gauge", "none")]
+    assert len({plain.sha256, *(each.sha256 for each in asked)}) == 3
