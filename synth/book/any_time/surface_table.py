@@ -15,8 +15,11 @@ from synth.solver.any_time.surface_polish import SurfacePolish, polish_surfaces
 from synth.solver.chain.speed_measurement import SpeedMeasurement
 from synth.solver.exit_density import ExitDensity, without_negative
 from synth.solver.polynomial_lines import PolynomialLines
-from synth.solver.tabulate import surfaces_of
-from tuning_tables import ControllerTable
+from synth.solver.tabulate import UNPREDICTED, surfaces_of, tabulate
+from tuning_tables import ControllerTable, Estimator, Generator
+
+NOBODYS = Generator("none", "0", "0" * 64), "trial", "2000-01-01T00:00:00Z"
+"""Origin of tables that are only tried."""
 
 
 def surface_degrees(lines: PolynomialLines, has_gauge: bool) -> tuple[int, ...]:
@@ -42,3 +45,10 @@ def surface_density(plant: Plant, table: ControllerTable) -> ExitDensity:
     check = check_sampled_chain(plant, design_resolution(plant, table.target_speed_m_s))
     lines = surfaces_of(table, check.grid.path_m[:-1], check.modes)
     return without_negative(SurfaceEvaluation(check).density(lines))
+
+
+def trial_table(
+    plant: Plant, surfaces: PolynomialSurfaces, target_m_s: float, estimator: Estimator | None = None
+) -> ControllerTable:
+    """The rounded table of surfaces that are only tried: of no origin, and not predicted."""
+    return tabulate(plant, surfaces, target_m_s, UNPREDICTED, *NOBODYS, estimator)

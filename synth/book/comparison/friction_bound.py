@@ -15,12 +15,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models import Plant
+from synth.book.any_time.surface_table import trial_table
 from synth.book.class_setup import ClassSetup
 from synth.book.comparison.measured import Feasibility
 from synth.book.comparison.told_regulator import (
     Told,
-    ToldLinesOf,
-    asked_at_any_time,
     best_by_others,
     by_lines,
     picked,
@@ -28,12 +28,16 @@ from synth.book.comparison.told_regulator import (
 )
 from synth.book.estimation.told_estimator import told_with_estimator
 from synth.book.tuned_table import TunedTable, ValidatedTable
+from synth.problem.any_time_resolution import design_resolution
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import CommonPasses
 from synth.simulation.controllers import fixed
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.passes import ExitSample
 from synth.simulation.replicates import Interval, rms_of
+from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
+from synth.solver.any_time.sampled_chain import sampled_chain
+from synth.solver.any_time.told_surfaces import told_surfaces
 from synth.solver.told_lines import told_lines
 from tuning_tables import ControllerTable
 
@@ -72,14 +76,23 @@ def bound_of(
 
 
 def told_regulators(setup: ClassSetup, tuned: TunedTable, target_m_s: float) -> Sequence[Told]:
-    """Regulators of the table's kind that are told the friction."""
-    told: Sequence[ToldLinesOf]
+    """Regulators of the table's kind that are told the friction; where that commands at any time, and one at rest."""
+    told: list[Told]
     if tuned.estimate is not None and tuned.table.estimator is not None and setup.estimator is not None:
         tuning = setup.passes.of_others(setup.estimator.tuning)
-        told = told_with_estimator(tuned.estimate, setup.estimator.design, tuned.curvature, tuning, target_m_s)
+        told = [*told_with_estimator(tuned.estimate, setup.estimator.design, tuned.curvature, tuning, target_m_s)]
     else:
         told = [by_lines(told_lines(setup.design, target_m_s, tuned.lines, tuned.curvature))]
-    return [*told, *map(asked_at_any_time, told)] if setup.regulator.at_any_time else told
+    if tuned.surfaces is None:
+        return told
+    return [by_surfaces(setup.plant, target_m_s, tuned.surfaces.polish.surfaces), *told]
+
+
+def by_surfaces(plant: Plant, target_m_s: float, common: PolynomialSurfaces) -> Told:
+    """The regulator that compares the measured speed with surfaces for the friction, from those for all frictions."""
+    design = sampled_chain(plant, design_resolution(plant, target_m_s))
+    surfaces = told_surfaces(design, target_m_s, common)
+    return lambda factor: TableController(trial_table(plant, surfaces.at(factor), target_m_s))
 
 
 def mean_square(sample: ExitSample, target_m_s: float) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import fields, replace
+from dataclasses import fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,13 +14,9 @@ from synth.simulation.controllers import fixed
 from synth.simulation.passes import ExitSample
 from synth.simulation.replicates import REPLICATE_PASSES
 from synth.solver.told_lines import ToldLines
-from tuning_tables.decisions import Decisions
 
 Told = Callable[[float], Controller]
 """The controller for cuts of a friction factor ξ_cut."""
-
-ToldLinesOf = Callable[[float], LineController]
-"""One that compares with lines."""
 
 GROUPS = 24
 """Cuts are told their friction in groups: neighbours in ξ_cut get the controller for their mean. With 104 groups the
@@ -30,15 +26,10 @@ rms of the default book is the same within 0.7 %."""
 LINE_NODES = 301
 
 
-def by_lines(lines: ToldLines) -> ToldLinesOf:
+def by_lines(lines: ToldLines) -> Told:
     """The regulator that compares the measured speed with the lines for the friction."""
     nodes_m = lines.lines[0].nodes_m(LINE_NODES)
     return lambda factor: LineController(lines.at(factor).at(nodes_m))
-
-
-def asked_at_any_time(told: ToldLinesOf) -> ToldLinesOf:
-    """The same lines, asked at every sample."""
-    return lambda factor: replace(told(factor), decisions=Decisions.AT_ANY_TIME)
 
 
 def run_told(loop_of: Callable[[int], ClosedLoop], draws: Draws, told: Told, groups: int = GROUPS) -> ExitSample:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from plant_models.speed_sensor import measured_speed_std
-from synth.book.any_time.surface_table import polished_surfaces, starting_surfaces
+from synth.book.any_time.surface_table import polished_surfaces, starting_surfaces, trial_table
 from synth.book.estimation.estimated_table import RESERVE_NODES, Design, EstimatedTable, fitted_to_days
 from synth.problem.any_time_resolution import design_resolution
 from synth.problem.problem import Problem
@@ -19,12 +19,7 @@ from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
 from synth.solver.any_time.surface_polish import opened
 from synth.solver.chain.speed_measurement import SmoothMeasurement
 from synth.solver.polynomial_lines import PolynomialLines
-from synth.solver.tabulate import UNPREDICTED, tabulate
 from tuning_tables.estimator import Estimator
-from tuning_tables.provenance import Generator
-
-NOBODYS = Generator("none", "0", "0" * 64), "trial", "2000-01-01T00:00:00Z"
-"""Origin of tables that are only tried."""
 
 
 def estimated_surfaces(
@@ -47,8 +42,7 @@ def estimated_surfaces(
     designed = polished_surfaces(of_any_day, aim, start, steps, seen).surfaces
 
     def controller(surfaces: PolynomialSurfaces, estimator: Estimator | None) -> TableController:
-        table = tabulate(plant, surfaces, aim.target_speed_m_s, UNPREDICTED, *NOBODYS, estimator)
-        return TableController(table)
+        return TableController(trial_table(plant, surfaces, aim.target_speed_m_s, estimator))
 
     design = Design(designed, measured, made.estimator, made.error_m_s, 1, controller, opened)
     return fitted_to_days(problem, design, tuning)

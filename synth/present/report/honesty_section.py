@@ -60,8 +60,7 @@ def at_any_time(cases: Sequence[CaseResult]) -> Markup:
         "p",
         "The regulator commands at any time, also while the pressure is on its way. On the same passes its rms is "
         f"{span(ratios)} times that of the lines that the same tune makes for commands at rest "
-        f"({median(ratios):.2f} in the median). The full lines beside it are for commands at rest; the regulators that "
-        "are told the friction have such lines too, asked at rest or at any time.",
+        f"({median(ratios):.2f} in the median). The full lines beside it are for commands at rest.",
     )
 
 
