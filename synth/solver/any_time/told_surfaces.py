@@ -25,8 +25,9 @@ FRICTIONS = 9
 
 LEAST_WEIGHT = 1e-3
 
-ITERATIONS = (12, 4)
-"""Of the polish at the mean friction, and at each of the others."""
+ITERATIONS = (4, 2)
+"""Of the polish at the mean friction, and at each of the others. More of them find what only the grid knows: with 12 and 4
+the rms of 52 t to 3 m/s is 7 % larger in the closed loop."""
 
 
 @frozen_arrays

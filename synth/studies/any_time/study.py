@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant
-from synth.book.comparison.baselines import tune_baselines
+from synth.book.comparison.baselines import FAMILIES, tune
 from synth.book.permissions.case_permissions import permissions_of
 from synth.book.permissions.permission import Permission
 from synth.configuration.config_file import load_config, parse_config
@@ -228,13 +228,9 @@ def samples_of(
     """The `passes` by every controller."""
     case, nodes = bench.case, bench.cubics.nodes_m(301)
     rehearsal = random_passes(bench.config.validation.seed + TUNING, 0, BASELINE_PASSES)
+    (rule,) = (family for family in FAMILIES if family.name == ENERGY)
     energy = {
-        when: next(
-            baseline.controller
-            for baseline in tune_baselines(passes.of_others(rehearsal), case.target_m_s, (when,))
-            if baseline.name == ENERGY
-        )
-        for when in Decisions
+        when: tune(rule.deciding(when), passes.of_others(rehearsal), case.target_m_s).controller for when in Decisions
     }
     controllers: dict[str, Regulator] = {
         LINES: bench.lines,
