@@ -26,8 +26,8 @@ FRICTIONS = 9
 LEAST_WEIGHT = 1e-3
 
 ITERATIONS = (4, 2)
-"""Of the polish at the mean friction, and at each of the others. More of them find what only the grid knows: with 12 and 4
-the rms of 52 t to 3 m/s is 7 % larger in the closed loop."""
+"""Of the polish at the mean friction, and at each of the others. More of them find what only the grid knows: with 12
+and 4 the rms of 52 t to 3 m/s is 7 % larger in the closed loop."""
 
 
 @frozen_arrays
