@@ -237,6 +237,14 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "synth.studies.sweep_speed.picture",
     ),
     Study(
+        "switching-price",
+        "What do fewer switchings cost in accuracy, with commands at rest and at any time?",
+        130.0,
+        "any-time.md",
+        "synth.studies.switching_price.study",
+        "synth.studies.switching_price.picture",
+    ),
+    Study(
         "times",
         "How long does a user wait: start-up, a tune with and without compiled kernels, the closed loop?",
         278.0,
