@@ -275,4 +275,4 @@ def surface_map(case: Case, solved: SwitchingSurfaces, polished: PolynomialSurfa
     )  # fmt: skip
 
 
-METHOD = Method(Options, Options(None, ("52:3",), (1.0,), 200, 1.5, 2, 1), AnyTime, run)
+METHOD = Method(Options, Options(None, ("22:3",), (1.0,), 200, 1.0, 2, 1, "22:3", 1), AnyTime, run)
