@@ -14,7 +14,7 @@ from synth.book.comparison.friction_bound import friction_bound
 from synth.book.comparison.measured import Measured
 from synth.book.estimation.estimated_table import controller_of
 from synth.book.policy_map import policy_map
-from synth.book.tuned_table import Store, TunedTable, ValidatedTable, tuned_table, validated_table
+from synth.book.tuned_table import Store, TunedTable, ValidatedTable, rounded, tuned_table, validated_table
 from synth.problem.problem import Problem
 from synth.simulation.closed_loop import Controller, LineController, TableController
 from synth.simulation.common_passes import CommonPasses
@@ -83,7 +83,11 @@ def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable, t
         return beside_table(name, passes.run(controller), sample, target)
 
     def without_estimator() -> Measured:
-        return measured("without estimator", LineController(tuned.lines.at(tuned.lines.nodes_m(LINE_NODES))))
+        lines = LineController(tuned.lines.at(tuned.lines.nodes_m(LINE_NODES)))
+        if tuned.surfaces is None:
+            return measured("without estimator", lines)
+        surfaces = rounded(order.setup, tuned.surfaces.polish.surfaces, target)
+        return measured("without estimator", TableController(surfaces))
 
     def at_rest() -> Measured:
         made = tuned.estimate if tuned.estimate is not None and tuned.estimate.gains else None

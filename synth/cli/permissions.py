@@ -33,6 +33,11 @@ def permissions_command(path: Path | None, output: Path, workers: int, as_json: 
             f"{source}: criterion has p_overspeed or worst_friction_*; commands at any time are designed for the mean "
             "square error alone: leave these keys out"
         )
+    if config.regulator.at_any_time:
+        raise InputError(
+            f'{source}: regulator.commands is "any_time", but permissions tells what to ask the hardware for beyond '
+            'commands at rest: set it to "at_rest"'
+        )
     require_room(config, path, workers)
     with tables_refused(source):
         for _, problem in config.problems():

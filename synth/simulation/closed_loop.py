@@ -96,11 +96,11 @@ class ClosedLoop:
 
     @cached_property
     def sampled(self) -> SampledDrive:
-        """The drive for commands at every sample; raises `PlantError` for valves that close late."""
+        """The drive for commands at every sample; raises `PlantError` as `Plant.drive_at_any_time`."""
         position, top = self.plant.position, self.stages - 1
         first = self.drive.initial_stage
         return SampledDrive(
-            position.pneumatics.valves_shutting_at_once(position.force.touch_pressure_kpa),
+            self.plant.drive_at_any_time(),
             fixed(np.asarray(position.stage_pressures_kpa[: top + 1]), np.float64),
             first,
             next(kpa for stage, kpa in resting_modes(position, top) if stage == first),

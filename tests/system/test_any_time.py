@@ -154,6 +154,15 @@ def test_what_is_not_modelled_is_refused_in_one_sentence(
     assert not (tmp_path / "out").exists()
 
 
+def test_a_plant_on_which_it_cannot_be_simulated_is_refused(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    slow = folder / "slow.toml"
+    cut = '[[cut]]\ncar = "gondola-4"\nmass_t = 22\n'
+    slow.write_text(f"{BOOK.split('[regulator]')[0]}[sensor]\ncomputing_delay_s = 0.5\n{cut}", encoding="utf-8")
+    table = next((folder / "one" / "tables").glob("*.json"))
+    assert main(["validate", str(table), "--config", str(slow), "--passes", "2000"]) == 2
+    assert "computing_delay_s is 0.5" in capsys.readouterr().err
+
+
 def test_a_loop_of_python_control_is_refused(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     table = next((folder / "one" / "tables").glob("*.json"))
     asked = ["loop", str(table), "--config", str(folder / "gauge.toml"), "-o", str(folder / "loop")]

@@ -95,6 +95,7 @@ def test_json_is_the_file(ran: Path, capsys: pytest.CaptureFixture[str], monkeyp
     [
         ("[criterion]\np_overspeed = 0.01\n", "commands at any time are designed for the mean square error alone"),
         ("[sensor]\ncomputing_delay_s = 0.3\n", "computing_delay_s is 0.3"),
+        ('[regulator]\ncommands = "any_time"\n', "what to ask the hardware for beyond commands at rest"),
     ],
 )
 def test_what_cannot_be_worked_out_is_refused(

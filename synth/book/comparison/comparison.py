@@ -13,8 +13,8 @@ class Comparison:
 
     `friction_known`: the same kind of regulator, told the friction of every cut; `full_lines`: the solver's lines, not
     yet polynomials; `as_published`: lines of the formulation as published, with its own prediction; `baselines`: tuned
-    classical laws; `without_estimator`: polished lines for the measured speed, where an estimator was asked for;
-    `at_rest`: where commands come at any time, the lines that the same tune makes for commands at rest.
+    classical laws; `without_estimator`: polished lines or surfaces for the measured speed, where an estimator was asked
+    for; `at_rest`: where commands come at any time, the lines that the same tune makes for commands at rest.
     """
 
     table: Measured

@@ -19,13 +19,7 @@ from plant_models import Plant
 from synth.book.any_time.surface_table import trial_table
 from synth.book.class_setup import ClassSetup
 from synth.book.comparison.measured import Feasibility
-from synth.book.comparison.told_regulator import (
-    Told,
-    best_by_others,
-    by_lines,
-    picked,
-    run_told,
-)
+from synth.book.comparison.told_regulator import Told, best_by_others, by_lines, picked, run_told
 from synth.book.estimation.told_estimator import told_with_estimator
 from synth.book.tuned_table import TunedTable, ValidatedTable
 from synth.problem.any_time_resolution import design_resolution

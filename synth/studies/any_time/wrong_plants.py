@@ -32,11 +32,10 @@ def ratios_to_rest(
     plant: Plant, target_m_s: float, table: TableController, at_rest: Controller, passes: RandomPasses, seed: int
 ) -> dict[str, Ratio]:
     """rms of `table` over that of `at_rest` on the same `passes`, for each thing that is wrong."""
-    transit_s = simulate(plant, at_rest, passes).transit_time_s
-    found = {}
+    rest, found = simulate(plant, at_rest, passes), {}
     for wrong in otherwise(plant, seed):
-        ours, theirs = (simulated(wrong, each, passes, transit_s) for each in (table, at_rest))
+        ours, theirs = (simulated(wrong, each, passes, rest.transit_time_s) for each in (table, at_rest))
         found[wrong.name] = Ratio(*rms_ratio(ours, theirs, target_m_s))
     silent = simulate(plant, replace(table, gauge_factor=math.nan), passes)
-    found[SILENT] = Ratio(*rms_ratio(silent, simulate(plant, at_rest, passes), target_m_s))
+    found[SILENT] = Ratio(*rms_ratio(silent, rest, target_m_s))
     return found
