@@ -67,18 +67,22 @@ def drive_on(
         asymptote, constant, until = drive.supply_kpa, drive.fill_s, stage_kpa - drive.band_kpa
     else:
         asymptote, constant, until = drive.exhaust_kpa, drive.exhaust_s, stage_kpa + drive.band_kpa
-    to_band = constant * math.log((asymptote - pressure_kpa) / (asymptote - until))
-    flowing = min(duration_s - wait_s, to_band)
-    a, b = asymptote - drive.touch_kpa, pressure_kpa - drive.touch_kpa
-    first, last = 0.0, flowing  # of the flow, the part above the touch pressure
-    if a > 0.0 and b < 0.0:
-        first = min(constant * math.log((a - b) / a), flowing)
-    elif a < 0.0 and b > 0.0:
-        last = min(constant * math.log((a - b) / a), flowing)
-    elif a <= 0.0 and b <= 0.0:
-        last = 0.0
-    over = max(0.0, b) * wait_s + a * (last - first)
-    over += (b - a) * constant * (math.exp(-first / constant) - math.exp(-last / constant))
-    if to_band > duration_s - wait_s:
-        return asymptote + (pressure_kpa - asymptote) * math.exp(-flowing / constant), 0.0, over
-    return until, 0.0, over + max(0.0, until - drive.touch_kpa) * (duration_s - wait_s - to_band)
+    flowing = duration_s - wait_s
+    end = asymptote + (pressure_kpa - asymptote) * math.exp(-flowing / constant)
+    rests = end >= until if error > 0.0 else end <= until
+    if rests:
+        flowing = min(constant * math.log((asymptote - pressure_kpa) / (asymptote - until)), flowing)
+        end = until
+    # Of dp/dt = (asymptote − p)/constant the integral over the time in which p is above the touch pressure.
+    a, b, e = asymptote - drive.touch_kpa, pressure_kpa - drive.touch_kpa, end - drive.touch_kpa
+    above = flowing
+    if b <= 0.0 and e <= 0.0:
+        above = 0.0
+    elif b < 0.0:
+        above -= constant * math.log((a - b) / a)
+    elif e < 0.0:
+        above = constant * math.log((a - b) / a)
+    over = max(0.0, b) * wait_s + a * above + constant * (max(0.0, b) - max(0.0, e))
+    if rests:
+        over += max(0.0, e) * (duration_s - wait_s - flowing)
+    return end, 0.0, over
