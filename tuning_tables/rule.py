@@ -126,6 +126,20 @@ def decide_for(
     return decide(table.coefficients, table.has_line, table.valid_range, table.entrance_stage, stage, s_m, v_m_s, rise)
 
 
+def stage_for(
+    table: ControllerTable | ActiveTable, stage: int, s_m: float, v_m_s: float, pressure_kpa: float = NO_GAUGE
+) -> int:
+    """The stage to command if one command may go several stages (a jump), from `stage`; arguments as of `decide_for`.
+
+    The same question is asked again at the stage that the answer leads to, until the answer is HOLD or another one.
+    """
+    step = decide_for(table, stage, s_m, v_m_s, pressure_kpa)
+    reached = stage + step
+    while step != HOLD and decide_for(table, reached, s_m, v_m_s, pressure_kpa) == step:
+        reached += step
+    return reached
+
+
 def speed_for(
     table: ControllerTable | ActiveTable,
     state: npt.NDArray[np.float32],

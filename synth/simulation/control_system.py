@@ -142,9 +142,14 @@ def regulator_system(plant: Plant, controller: Controller) -> NonlinearIOSystem:
 
 
 def stage_by_table(law: regulator.Rule, top: int, stage: int, s_m: float, v_m_s: float) -> int:
-    """Digital controller of a radar: the stage wanted at (s, v) while `stage` is in force, one away at most."""
-    step = regulator.table_decision(law.coefficients, law.has_line, law.valid, law.entrance_stage, stage, s_m, v_m_s)
-    return min(max(stage + int(step), 0), top)
+    """Digital controller of a radar: the stage wanted at (s, v) while `stage` is in force."""
+    lines = law.coefficients, law.has_line, law.valid, law.entrance_stage
+    step = int(regulator.table_decision(*lines, stage, s_m, v_m_s))
+    wanted = min(max(stage + step, 0), top)
+    jumps = law.multi_step and step != 0
+    while jumps and 0 < wanted < top and regulator.table_decision(*lines, wanted, s_m, v_m_s) == step:
+        wanted += step
+    return wanted
 
 
 def regulator_start(plant: Plant, controller: Controller) -> NDArray[np.float64]:

@@ -38,11 +38,13 @@ class TableController:
     """A regulator that runs an exported table, or lines chosen from a book, with the tables' own rule.
 
     If the table has an estimator, the rule is asked with the estimated speed. The gauge of a table with slopes shows
-    `gauge_factor` times the true pressure; NaN: it shows none.
+    `gauge_factor` times the true pressure; NaN: it shows none. `multi_step`: one command may go several stages, as
+    `tuning_tables.rule.stage_for`.
     """
 
     table: ControllerTable | ActiveTable
     gauge_factor: float = 1.0
+    multi_step: bool = False
 
     @property
     def stages(self) -> int:
@@ -69,7 +71,8 @@ class TableController:
             fixed(table.valid_range, np.float32),
         )
         by_table = *arrays, table.entrance_stage
-        return regulator.Rule(*by_table, none, none, 0.0, 1.0, False, 0.0, 0.0, *estimator_arrays(table.estimator))
+        estimator = estimator_arrays(table.estimator)
+        return regulator.Rule(*by_table, none, none, 0.0, 1.0, self.multi_step, 0.0, 0.0, *estimator)
 
 
 @dataclass(frozen=True)

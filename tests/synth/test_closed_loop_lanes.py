@@ -95,6 +95,8 @@ def test_tables(plant_52t: Plant, passes: RandomPasses, target_m_s: float) -> No
     controller = TableController(wavy_table(plant_52t, target_m_s))
     sample = assert_same(loop, controller, loop.draws(passes))
     assert sample.switchings.mean() > 5.0
+    jumping = assert_same(loop, replace(controller, multi_step=True), loop.draws(passes))
+    assert jumping.switchings.mean() < sample.switchings.mean() - 1.0
 
 
 @pytest.mark.parametrize("count", [1, LANES - 1, LANES, LANES + 1])

@@ -62,6 +62,8 @@ def controller_for(plant: Plant, law: str) -> Controller:
     loop = close_loop(plant, plant.top_stage + 1)
     if law == "table":
         return TableController(table_for(plant))
+    if law == "table, several stages a command":
+        return TableController(table_for(plant), multi_step=True)
     if law == "energy rule":
         return energy_rule(loop, 3.0, plant.top_stage, 0.9, 0.1, 0.2, 0.1)
     return threshold_with_lead(loop, 3.0, 2, 0.1, 0.3)
@@ -72,7 +74,7 @@ def commands_of(events: PassTrace) -> list[tuple[float, int]]:
     return [(float(events.time_s[i]), int(events.stage[i])) for i in changed]
 
 
-@pytest.mark.parametrize("law", ["table", "energy rule", "threshold with lead"])
+@pytest.mark.parametrize("law", ["table", "table, several stages a command", "energy rule", "threshold with lead"])
 def test_passes_are_the_simulators(quiet: Plant, law: str) -> None:
     controller = controller_for(quiet, law)
     passes = random_passes(7, 0, 3)

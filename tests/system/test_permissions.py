@@ -25,7 +25,14 @@ car = "gondola-4"
 mass_t = 36
 """
 
-ASKED = {"commands at any time", "commands at any time, no pressure gauge", "estimator", "without the approach"}
+ASKED = {
+    "several stages a command",
+    "commands at any time",
+    "commands at any time, no pressure gauge",
+    "estimator",
+    "commands at any time, estimator",
+    "without the approach",
+}
 
 
 def asked(folder: Path, name: str, *words: str, text: str = SMALL) -> int:
@@ -65,6 +72,15 @@ def test_commands_at_any_time_gain_and_no_approach_loses(ran: Path) -> None:
     permissions = summary(ran / "one")["cases"][0]["permissions"]
     assert permissions["commands at any time"]["ratio_ci95"][1] < 1.0
     assert permissions["without the approach"]["ratio_ci95"][0] > 1.0
+
+
+def test_jumps_save_commands_and_an_estimator_gains_at_any_time_too(ran: Path) -> None:
+    case = summary(ran / "one")["cases"][0]
+    permissions, jumps = case["permissions"], case["permissions"]["several stages a command"]
+    assert jumps["switchings"] < case["as_configured"]["switchings"] - 0.5
+    assert jumps["ratio_ci95"][0] < 1.0
+    both = permissions["commands at any time, estimator"]
+    assert both["ratio_ci95"][1] < permissions["commands at any time"]["ratio"]
 
 
 def test_all_files_are_named_with_their_hashes(ran: Path) -> None:

@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from tests.tuning_tables.random_tables import tables
 from tuning_tables import HOLD, LOWER, RAISE, ControllerTable, Stage, ValidRange, decide, decide_for, decide_many
 from tuning_tables.golden_vectors import golden_vectors
-from tuning_tables.rule import rises
+from tuning_tables.rule import rises, stage_for
 from tuning_tables.stage import Line
 
 NAN, INF = float("nan"), float("inf")
@@ -223,6 +223,25 @@ def test_an_incredible_reading_moves_no_valve(
     assert decide_for(linear_table, 0, 4.0, 9.0) == RAISE
     assert decide_for(linear_table, stage, s_m, v_m_s) == HOLD
     assert decide_many(linear_table, stage, s_m, v_m_s) == HOLD
+
+
+@pytest.mark.parametrize("name", ["table", "approached_table", "surface_table"])
+def test_a_jump_ends_where_one_stage_after_the_other_would(name: str, request: pytest.FixtureRequest) -> None:
+    """A controller that could send a command for each stage, at once and with one reading, would end there."""
+    table: ControllerTable = request.getfixturevalue(name)
+    far = 0
+    for stage, s, v, kpa in zip(*adversarial_readings(table, np.random.default_rng(8), 4000), strict=True):
+        wanted = stage_for(table, int(stage), float(s), float(v), float(kpa))
+        answers = [decide_for(table, k, float(s), float(v), float(kpa)) for k in range(len(table.stages))]
+        if not 0 <= stage < len(answers) or answers[stage] == HOLD:
+            assert wanted == stage
+            continue
+        step = answers[stage]
+        assert step * (wanted - stage) > 0
+        assert all(answers[k] == step for k in range(stage, wanted, step))
+        assert answers[wanted] != step
+        far += abs(wanted - stage) > 1
+    assert far > 100
 
 
 def test_subnormal_coefficients_are_not_flushed_to_zero(linear_table: ControllerTable) -> None:

@@ -10,6 +10,7 @@ from plant_models import Plant
 from plant_models.approach import Approach
 from synth.book.any_time.surface_table import polished_surfaces, starting_surfaces
 from synth.book.class_setup import ClassSetup, Origin, class_setup, origin_of, validation_passes
+from synth.book.estimation.simulated_prediction import prediction_passes, simulated_prediction
 from synth.book.permissions.permission import CasePermissions, Permission, PermissionResult
 from synth.book.tuned_table import TunedTable, rounded, solutions, tuned_table, with_prediction
 from synth.book.work_queue import run_nested
@@ -82,17 +83,23 @@ def case_permissions(case: CaseTuned, passes: RandomPasses, origin: Origin, tell
     """All permissions of one case."""
     label, plant = case.setup.label, case.setup.plant
     results = [
+        several_stages(case),
         at_any_time(case, Permission.ANY_TIME, has_gauge=True),
         at_any_time(case, Permission.WITHOUT_GAUGE, has_gauge=False),
     ]
     if not case.config.regulator.estimator and case.config.criterion.requirement is None:
-        estimating = replace(case.config, regulator=case.config.regulator.model_copy(update={"estimator": True}))
-        results.append(at_rest(case, Permission.ESTIMATOR, estimating, plant, passes, origin))
+        results += [
+            with_regulator(case, permission, update, passes, origin)
+            for permission, update in (
+                (Permission.ESTIMATOR, {"estimator": True}),
+                (Permission.ANY_TIME_ESTIMATOR, {"estimator": True, "commands": "any_time"}),
+            )
+        ]
     ahead = case.setup.plant.approach.length_m > 0.0
     kind = Permission.NO_APPROACH if ahead else Permission.APPROACH
     approach = Approach() if ahead else Approach(APPROACH_M, plant.approach.entrance_stage)
-    results.append(at_rest(case, kind, case.config, replace(plant, approach=approach), passes, origin))
-    tell(f"{label} to {case.target_m_s:g} m/s: rms with commands at any time × {results[0].ratio:.2f}")
+    results.append(tuned_anew(case, kind, case.config, replace(plant, approach=approach), passes, origin))
+    tell(f"{label} to {case.target_m_s:g} m/s: rms with commands at any time × {results[1].ratio:.2f}")
     statistics = exit_statistics(case.sample, case.target_m_s)
     return CasePermissions(label, case.target_m_s, statistics, case.tuned.table.predicted.rms_m_s, tuple(results))
 
@@ -107,7 +114,23 @@ def at_any_time(case: CaseTuned, permission: Permission, has_gauge: bool) -> Per
     return case.result(permission, setup.passes.run(TableController(table)), table.predicted.rms_m_s)
 
 
-def at_rest(
+def several_stages(case: CaseTuned) -> PermissionResult:
+    """The table as it is, asked again at the stage that its answer leads to."""
+    setup, controller = case.setup, TableController(case.tuned.table, multi_step=True)
+    others = setup.passes.of_others(prediction_passes(case.config.validation.seed + 2, setup.label))
+    predicted = simulated_prediction(others.run(controller), case.target_m_s)
+    return case.result(Permission.JUMPS, setup.passes.run(controller), predicted.rms_m_s)
+
+
+def with_regulator(
+    case: CaseTuned, permission: Permission, update: dict[str, object], passes: RandomPasses, origin: Origin
+) -> PermissionResult:
+    """The table for a regulator that is configured otherwise."""
+    config = replace(case.config, regulator=case.config.regulator.model_copy(update=update))
+    return tuned_anew(case, permission, config, case.setup.plant, passes, origin)
+
+
+def tuned_anew(
     case: CaseTuned, permission: Permission, config: ResolvedConfig, plant: Plant, passes: RandomPasses, origin: Origin
 ) -> PermissionResult:
     """The table that a tune of another configuration or plant makes, on the same passes."""

@@ -119,9 +119,16 @@ def wanted_stage(law: AnyTimeLaw, stage: int, top: int, pressure: float, wait: f
     if law.surfaces.lower.shape[0] > 0:
         return wanted_by_surfaces(law.surfaces, stage, pressure, wait, s, v)
     if by.coefficients.shape[0] > 0:
-        rise = pressure_rises(law.slopes, law.pressures, law.highest_raised, stage, pressure * law.gauge_factor)
-        step = table_decision(by.coefficients, by.has_line, by.valid, by.entrance_stage, stage, s, v, rise)
-        return min(max(stage + step, 0), top)
+        reached, step, shown = stage, 0, pressure * law.gauge_factor
+        while True:  # with `multi_step` asked again at the stage reached
+            rise = pressure_rises(law.slopes, law.pressures, law.highest_raised, reached, shown)
+            answer = table_decision(by.coefficients, by.has_line, by.valid, by.entrance_stage, reached, s, v, rise)
+            if answer == 0 or answer == -step:
+                return reached
+            step = answer
+            reached = min(max(reached + step, 0), top)
+            if not by.multi_step or reached == 0 or reached == top:
+                return reached
     wanted: int = stage_by_lines(by.lower, by.upper, by.start_m, by.spacing_m, by.multi_step, stage, top, s, v)
     return wanted
 

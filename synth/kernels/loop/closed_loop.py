@@ -183,6 +183,11 @@ def run_pass(
             if tabled:
                 step = table_decision(coefficients, has_line, valid, gate, stage, s, measured)
                 wanted = min(max(stage + step, 0), top)
+                if multi_step and step != 0:
+                    while 0 < wanted < top:
+                        if table_decision(coefficients, has_line, valid, gate, wanted, s, measured) != step:
+                            break
+                        wanted += step
             else:
                 ahead = measured + lead_s * slope
                 wanted = stage_by_lines(lower, upper, start_m, spacing_m, multi_step, stage, top, s, ahead)

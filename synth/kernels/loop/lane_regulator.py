@@ -115,8 +115,12 @@ def regulate(x: Floats, n: Ints, lane: int, speed_m_s: float, pieces: Pieces, la
     """What the regulator does where it has a command (as in `closed_loop.run_pass`)."""
     s, stage, top = x[S + lane], n[STAGE + lane], pieces.command.shape[1] - 1
     if law.coefficients.shape[0] > 0:
-        decision = table_decision(law.coefficients, law.has_line, law.valid, law.entrance_stage, stage, s, speed_m_s)
+        lines = (law.coefficients, law.has_line, law.valid, law.entrance_stage)
+        decision = table_decision(*lines, stage, s, speed_m_s)
         wanted = min(max(stage + decision, 0), top)
+        if law.multi_step and decision != 0:
+            while 0 < wanted < top and table_decision(*lines, wanted, s, speed_m_s) == decision:
+                wanted += decision
     else:
         wanted = stage_by_lines(
             law.lower, law.upper, law.start_m, law.spacing_m, law.multi_step, stage, top, s, speed_m_s

@@ -53,7 +53,7 @@ def test_a_faster_start_is_a_faster_arrival_and_a_farther_stop(seed: int, cars: 
     assert np.all(np.diff(rolled.stop_m[np.isfinite(rolled.stop_m)]) > 0.0)
     assert np.all(np.diff(rolled.time_s[np.isfinite(rolled.time_s[:, 0]), 0]) < 0.0)
     back = np.array([made.roll_back(np.full(n, 600.0), v, start)[0] for v in np.linspace(0.2, 3.0, 15)])
-    assert np.all(np.diff(back) >= -1e-3)  # where a hump of the track decides, only the error of the steps is left
+    assert np.all(np.diff(back) >= -2e-3)  # where a hump of the track decides, only the error of the steps is left
 
 
 def test_a_hump_of_the_track_decides() -> None:

@@ -71,21 +71,30 @@ class SlowPass:
         self.v += a * dt
 
 
-def slow_exit(plant: Plant, surfaces: PolynomialSurfaces, cut: SlowPass, first_s: float, z: np.ndarray) -> list[float]:
-    """Exit speed and number of commands of a pass."""
+def slow_exit(
+    plant: Plant, surfaces: PolynomialSurfaces, cut: SlowPass, first_s: float, z: np.ndarray, farthest: int
+) -> list[float]:
+    """Exit speed and number of commands of a pass; one command goes `farthest` stages at most."""
     sensor, stage, commands = plant.sensor, 0, 0
     cut.go_on(first_s)
     for sample in range(400):
         if cut.s >= plant.exit_m or cut.v <= 0.0:
             break
         measured = max(0.0, cut.v + sensor.noise_m_s * float(z[sample]))
-        u = 2.0 * cut.s / plant.exit_m - 1.0
-        x = (cut.kpa - plant.position.stage_pressures_kpa[stage]) / 100.0
-        pair = surfaces.coefficients[stage]
-        lower, upper = (float(np.polynomial.legendre.legval(u, each[:4]) + x * each[4]) for each in pair)
-        down = surfaces.has_line[stage, 0] and measured < lower
-        up = surfaces.has_line[stage, 1] and measured > upper
-        stage, commands = stage + int(up and not down) - int(down), commands + int(down or up)
+        u, asked = 2.0 * cut.s / plant.exit_m - 1.0, [stage]
+        for _ in range(farthest):
+            k = asked[-1]
+            x = (cut.kpa - plant.position.stage_pressures_kpa[k]) / 100.0
+            lower, upper = (
+                float(np.polynomial.legendre.legval(u, c[:4]) + x * c[4]) for c in surfaces.coefficients[k]
+            )
+            step = int(surfaces.has_line[k, 1] and measured > upper) - int(surfaces.has_line[k, 0] and measured < lower)
+            if step == 0 or step == asked[0] - k:
+                break
+            if len(asked) > 1 and step != asked[1] - asked[0]:
+                break
+            asked.append(k + step)
+        stage, commands = asked[-1], commands + int(len(asked) > 1)
         cut.go_on(sensor.computing_delay_s)
         cut.command(plant.position.stage_pressures_kpa[stage])
         cut.go_on(sensor.sample_period_s - sensor.computing_delay_s)
@@ -99,7 +108,8 @@ def smooth(plant: Plant) -> Plant:
     return replace(plant, friction=replace(plant.friction, path_std=0.0), sensor=sensor)
 
 
-def test_slow_passes_are_those_of_the_kernel(smooth: Plant) -> None:
+@pytest.mark.parametrize("farthest", [1, 2])
+def test_slow_passes_are_those_of_the_kernel(smooth: Plant, farthest: int) -> None:
     coefficients = np.zeros((3, 2, 5))
     coefficients[:, :, 0] = 3.0 + np.array([0.15, 0.3])
     coefficients[:, :, 1], coefficients[:, :, 2], coefficients[:, :, 4] = -0.25, 0.05, 0.06
@@ -108,13 +118,16 @@ def test_slow_passes_are_those_of_the_kernel(smooth: Plant) -> None:
     surfaces = PolynomialSurfaces(0.0, smooth.exit_m, stages, CUBIC_AND_SLOPE, coefficients, has_line)
     loop = close_loop(smooth, smooth.position.top_stage + 1)
     draws = loop.draws(random_passes(31, 0, 40))
-    found = loop.run(tabled(smooth, surfaces), draws)
+    controller = replace(tabled(smooth, surfaces), multi_step=farthest > 1)
+    found = loop.run(controller, draws)
     same = 0
     for i in range(40):
         cut = SlowPass(smooth, draws.cut_factor[i], draws.resistance_n_kn[i], draws.entry_m_s[i])
-        speed, commands = slow_exit(smooth, surfaces, cut, float(draws.first_sample_s[i]), draws.noise_z[i])
+        speed, commands = slow_exit(smooth, surfaces, cut, float(draws.first_sample_s[i]), draws.noise_z[i], farthest)
         if commands == found.switchings[i]:
             same += 1
             assert speed == pytest.approx(found.exit_speed_m_s[i], abs=SAME_M_S)
     assert same >= 38  # a speed within a millimetre of a line may fall on either side
-    assert found.switchings.mean() > 3.0
+    assert found.switchings.mean() > 2.0
+    other = loop.run(replace(controller, multi_step=farthest == 1), draws)
+    assert (found.switchings != other.switchings).any()  # a jump is taken
