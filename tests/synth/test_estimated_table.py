@@ -14,7 +14,7 @@ from synth.book.estimation.estimated_table import (
     designed_lines,
     estimated_table,
     estimator_design,
-    shifted,
+    moved,
     trimmed,
 )
 from synth.book.estimation.estimator_design import estimator_of, speed_error_m_s
@@ -28,7 +28,7 @@ from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.chain.speed_measurement import SmoothMeasurement
-from synth.solver.polynomial_lines import PolynomialLines
+from synth.solver.polynomial_lines import PolynomialLines, opened
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tuned_lines import tuned_lines
 
@@ -161,10 +161,10 @@ def test_a_trim_cannot_make_lines_meet(plant_of: Callable[[float], Plant]) -> No
     constant = np.zeros((2, 2, 2))
     constant[:, 0, 0], constant[:, 1, 0] = 3.0, 3.1
     lines = PolynomialLines(0.0, 37.0, constant, np.array([[False, True], [True, True]]))
-    at = shifted(lines, 0.09, -0.05).at(np.linspace(0.0, 37.0, 5))
+    at = opened(moved(lines, 0.09, -0.05)).at(np.linspace(0.0, 37.0, 5))
     assert (at.upper_m_s - at.lower_m_s)[1] == pytest.approx(0.04)
     assert (0.5 * (at.upper_m_s + at.lower_m_s))[1] == pytest.approx(3.07)
-    near = shifted(lines, 0.01, -0.02)
+    near = opened(moved(lines, 0.01, -0.02))
     assert near.coefficients[1, :, 0] == pytest.approx([3.01, 3.08])
 
 

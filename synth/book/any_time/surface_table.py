@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from plant_models import Plant
 from synth.problem.aim import Aim
 from synth.problem.any_time_resolution import design_resolution
 from synth.problem.resolution import Resolution
+from synth.solver.any_time.estimate_error import EstimateError
 from synth.solver.any_time.polynomial_surfaces import CUBIC_AND_SLOPE, PolynomialSurfaces, surfaces_of_lines
 from synth.solver.any_time.sampled_chain import check_sampled_chain, sampled_chain
 from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
 from synth.solver.any_time.surface_polish import SurfacePolish, polish_surfaces
-from synth.solver.chain.speed_measurement import SpeedMeasurement
 from synth.solver.exit_density import ExitDensity, without_negative
 from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.tabulate import UNPREDICTED, surfaces_of, tabulate
@@ -34,10 +36,11 @@ def starting_surfaces(plant: Plant, lines: PolynomialLines, has_gauge: bool) -> 
 
 
 def polished_surfaces(
-    plant: Plant, aim: Aim, start: PolynomialSurfaces, steps: Resolution, measurement: SpeedMeasurement | None = None
+    plant: Plant, aim: Aim, start: PolynomialSurfaces, steps: Resolution, estimate: EstimateError | None = None
 ) -> SurfacePolish:
-    """The surfaces of least cost near `start`, on the grid `steps`; `measurement`: by default the plant's, smooth."""
-    return polish_surfaces(start, SurfaceEvaluation(sampled_chain(plant, steps, measurement)), aim)
+    """The surfaces of least cost near `start`, on the grid `steps`, for the measured or an estimated speed."""
+    chain = replace(sampled_chain(plant, steps), estimate=estimate)
+    return polish_surfaces(start, SurfaceEvaluation(chain), aim)
 
 
 def surface_density(plant: Plant, table: ControllerTable) -> ExitDensity:

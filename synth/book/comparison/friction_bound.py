@@ -20,7 +20,7 @@ from synth.book.any_time.surface_table import trial_table
 from synth.book.class_setup import ClassSetup
 from synth.book.comparison.measured import Feasibility
 from synth.book.comparison.told_regulator import Told, best_by_others, by_lines, picked, run_told
-from synth.book.estimation.told_estimator import told_with_estimator
+from synth.book.estimation.told_estimator import told_with_estimator, told_with_estimator_at_any_time
 from synth.book.tuned_table import TunedTable, ValidatedTable
 from synth.problem.any_time_resolution import design_resolution
 from synth.simulation.closed_loop import TableController
@@ -79,6 +79,9 @@ def told_regulators(setup: ClassSetup, tuned: TunedTable, target_m_s: float) -> 
         told = [by_lines(told_lines(setup.design, target_m_s, tuned.lines, tuned.curvature))]
     if tuned.surfaces is None:
         return told
+    if tuned.surfaces.estimate is not None and tuned.table.estimator is not None and setup.estimator is not None:
+        tuning = setup.passes.of_others(setup.estimator.tuning)
+        return [*told_with_estimator_at_any_time(setup.plant, tuned.surfaces.estimate, tuning, target_m_s), *told]
     return [by_surfaces(setup.plant, target_m_s, tuned.surfaces.polish.surfaces), *told]
 
 

@@ -185,11 +185,6 @@ def controller_of(lines: PolynomialLines, estimator: Estimator | None) -> LineCo
     return LineController(lines.at(lines.nodes_m(301)), estimator=estimator)
 
 
-def shifted(lines: PolynomialLines, lower_m_s: float, upper_m_s: float) -> PolynomialLines:
-    """All lower and all upper lines moved, and no pair nearer than the polish allows."""
-    return opened(moved(lines, lower_m_s, upper_m_s))
-
-
 def moved(lines: Lines, lower_m_s: float, upper_m_s: float) -> Lines:
     """All lower and all upper lines moved."""
     coefficients: NDArray[np.float64] = lines.coefficients.copy()

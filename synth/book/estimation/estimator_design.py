@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from plant_models import Plant, path_breaks_m, path_coefficients
 from synth.kernels.loop.closed_loop import Draws
 from synth.simulation.closed_loop import ClosedLoop
 from synth.simulation.controllers import Controller
+from synth.simulation.passes import PassTrace
 from synth.simulation.random_passes import RandomPasses
+from synth.solver.any_time.estimate_error import EstimateError, error_along_path
 from tuning_tables.estimator import MOST_BREAKS, Estimator
+
+SECTIONS = 10
+"""Of the path, each with figures of its own for the error of an estimate."""
 
 
 def estimator_of(plant: Plant) -> Estimator:
@@ -45,13 +52,33 @@ def estimator_of(plant: Plant) -> Estimator:
 
 def speed_error_m_s(loop: ClosedLoop, controller: Controller, passes: RandomPasses) -> float:
     """Root mean square error of the speed that `controller` compares with its lines, where it decides."""
-    draws = loop.draws(passes)
     squares, count = 0.0, 0.0
-    for index in range(len(passes)):
-        one: Any = (each[index : index + 1] for each in draws)
-        trace = loop.follow(controller, Draws(*one))
-        decided = ~np.isnan(trace.measured_m_s)
+    for index, trace, decided in decisions(loop, controller, loop.draws(passes)):
         weight = float(passes.weight[index])
         squares += weight * float(((trace.measured_m_s - trace.speed_m_s)[decided] ** 2).sum())
         count += weight * int(decided.sum())
     return math.sqrt(squares / max(count, 1.0))
+
+
+def error_of_estimate(loop: ClosedLoop, controller: Controller, draws: Draws, least_std_m_s: float) -> EstimateError:
+    """The error of the speed that `controller` compares with its lines, along the path and by what is hidden."""
+    plant = loop.plant
+    per_n_kn = -plant.cut.reduced_gravity_m_s2 * 1e-3
+    rows = []
+    for i, trace, decided in decisions(loop, controller, draws):
+        error = (trace.measured_m_s - trace.speed_m_s)[decided]
+        hidden = draws.cut_factor[i] - 1.0, per_n_kn * (draws.resistance_n_kn[i] - plant.resistance.mean_n_per_kn)
+        columns = trace.path_m[decided], error, *(np.full(error.shape, x) for x in (*hidden, draws.weight[i]))
+        rows.append(np.column_stack(columns))
+    edges = np.linspace(plant.start_m, plant.exit_m, SECTIONS + 1)
+    return error_along_path(np.concatenate(rows), edges, least_std_m_s)
+
+
+def decisions(
+    loop: ClosedLoop, controller: Controller, draws: Draws
+) -> Iterator[tuple[int, PassTrace, NDArray[np.bool_]]]:
+    """Every pass with the number of its draw, and which of its events are decisions."""
+    for index in range(len(draws.cut_factor)):
+        one: Any = (each[index : index + 1] for each in draws)
+        trace = loop.follow(controller, Draws(*one))
+        yield index, trace, ~np.isnan(trace.measured_m_s)

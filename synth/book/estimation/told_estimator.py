@@ -4,15 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Generic
 
 import numpy as np
 from numpy.typing import NDArray
 
+from plant_models import Plant
 from plant_models.speed_sensor import measured_speed_std
+from synth.book.any_time.surface_table import trial_table
 from synth.book.comparison.told_regulator import run_told
-from synth.book.estimation.estimated_table import EstimatedTable, controller_of, shifted
-from synth.simulation.closed_loop import LineController
+from synth.book.estimation.estimated_surfaces import ERROR_PASSES, LEAST_NOISE, estimate_resolution
+from synth.book.estimation.estimated_table import EstimatedTable, Lines, controller_of, moved
+from synth.book.estimation.estimator_design import error_of_estimate
+from synth.simulation.closed_loop import Controller, TableController
 from synth.simulation.common_passes import CommonPasses
+from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
+from synth.solver.any_time.sampled_chain import sampled_chain
+from synth.solver.any_time.told_surfaces import told_surfaces
 from synth.solver.chain.chain import Chain
 from synth.solver.chain.speed_measurement import SmoothMeasurement
 from synth.solver.polynomial_lines import PolynomialLines
@@ -48,16 +56,20 @@ class Bias:
 
 
 @dataclass(frozen=True)
-class ToldWithEstimator:
-    """Lines and an estimator for each friction; all lines are moved by the mean error at the exit."""
+class ToldWithEstimator(Generic[Lines]):
+    """Lines and an estimator for each friction; all lines are moved by the mean error at the exit.
 
-    lines: Callable[[float], PolynomialLines]
+    `controller`: the regulator that compares the speed of an estimator with lines.
+    """
+
+    lines: Callable[[float], Lines]
     estimator: Estimator
+    controller: Callable[[Lines, Estimator], Controller]
     bias: Bias
 
-    def __call__(self, factor: float) -> LineController:
-        moved = -self.bias.at(factor)
-        return controller_of(shifted(self.lines(factor), moved, moved), knowing(self.estimator, factor))
+    def __call__(self, factor: float) -> Controller:
+        shift = -self.bias.at(factor)
+        return self.controller(moved(self.lines(factor), shift, shift), knowing(self.estimator, factor))
 
 
 def told_with_estimator(
@@ -66,14 +78,37 @@ def told_with_estimator(
     curvature: NDArray[np.float64],
     tuning: CommonPasses,
     target_m_s: float,
-) -> Sequence[ToldWithEstimator]:
+) -> Sequence[ToldWithEstimator[PolynomialLines]]:
     """Two regulators with the table's estimator, told the friction: with lines polished for it, and with the table's.
 
     `design`: the grid for estimated speeds; `tuning`: passes on which the lines are levelled.
     """
     seen = replace(design, measurement=SmoothMeasurement(measured_speed_std(made.error_m_s, 0.0)))
     polished = told_lines(seen, target_m_s, made.lines, curvature)
-    return [levelled(lines, made.estimator, tuning, target_m_s) for lines in (polished.at, lambda _: made.lines)]
+    return [
+        levelled(ToldWithEstimator(lines, made.estimator, controller_of, no_bias(tuning)), tuning, target_m_s)
+        for lines in (polished.at, lambda _: made.lines)
+    ]
+
+
+def told_with_estimator_at_any_time(
+    plant: Plant, made: EstimatedTable[PolynomialSurfaces], tuning: CommonPasses, target_m_s: float
+) -> Sequence[ToldWithEstimator[PolynomialSurfaces]]:
+    """The same two with surfaces, polished for the error that the estimator has where it knows the friction."""
+
+    def controller(surfaces: PolynomialSurfaces, estimator: Estimator) -> TableController:
+        return TableController(trial_table(plant, surfaces, target_m_s, estimator))
+
+    first = controller(made.lines, knowing(made.estimator, 1.0))
+    loop, passes = tuning.loop(first.stages), tuning.passes
+    draws = loop.draws(passes.part(0, min(ERROR_PASSES, len(passes))), cut_factor=1.0)
+    error = error_of_estimate(loop, first, draws, LEAST_NOISE * made.error_m_s)
+    design = sampled_chain(plant, estimate_resolution(plant, target_m_s, made.error_m_s))
+    polished = told_surfaces(replace(design, estimate=error), target_m_s, made.lines)
+    return [
+        levelled(ToldWithEstimator(lines, made.estimator, controller, no_bias(tuning)), tuning, target_m_s)
+        for lines in (polished.at, lambda _: made.lines)
+    ]
 
 
 def knowing(estimator: Estimator, factor: float) -> Estimator:
@@ -85,13 +120,15 @@ def knowing(estimator: Estimator, factor: float) -> Estimator:
     return replace(estimator, friction_cv=0.0, brake_m2_s2_per_kpa=work)
 
 
-def levelled(
-    lines: Callable[[float], PolynomialLines], estimator: Estimator, tuning: CommonPasses, target_m_s: float
-) -> ToldWithEstimator:
+def no_bias(tuning: CommonPasses) -> Bias:
+    """None yet, between quantiles of the friction of these passes."""
+    low, high = np.quantile(tuning.draws.cut_factor, BIAS_RANGE).tolist()
+    return Bias(low, high)
+
+
+def levelled(told: ToldWithEstimator[Lines], tuning: CommonPasses, target_m_s: float) -> ToldWithEstimator[Lines]:
     """The regulator with its mean error at each friction taken out on the passes `tuning`."""
     factor = tuning.draws.cut_factor
-    low, high = np.quantile(factor, BIAS_RANGE).tolist()
-    told = ToldWithEstimator(lines, estimator, Bias(low, high))
     for _ in range(LEVELLINGS):
         error = run_told(tuning.loop, tuning.draws, told).exit_speed_m_s - target_m_s
         near = np.abs(error) < BIAS_WITHIN_M_S

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -123,7 +123,7 @@ def several_stages(case: CaseTuned) -> PermissionResult:
 
 
 def with_regulator(
-    case: CaseTuned, permission: Permission, update: dict[str, object], passes: RandomPasses, origin: Origin
+    case: CaseTuned, permission: Permission, update: Mapping[str, object], passes: RandomPasses, origin: Origin
 ) -> PermissionResult:
     """The table for a regulator that is configured otherwise."""
     config = replace(case.config, regulator=case.config.regulator.model_copy(update=update))

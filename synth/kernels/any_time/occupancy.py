@@ -30,8 +30,8 @@ def occupy(
     """One forward pass.
 
     `lines` (2, N, M): below and above them the command is down and up, in readings; `reading` (E,) of the true speeds,
-    with errors of std `noise`. `periods` (M, 3): period that follows a command in a mode, −1 where it is none; of each
-    period `kpa` (D,) mean overpressure and `way` (D,); of each way `target`, `share` (W, 4) modes and shares. `entry`
+    with errors of std `noise` (N,). `periods` (M, 3): period that follows a command in a mode, −1 where it is none; of
+    each period `kpa` (D,) mean overpressure and `way` (D,); of each way `target`, `share` (W, 4) modes and shares. `entry`
     (A, E): probability of entering with energy j and having the first sample at node r, `entry_way` and the pressure
     `entry_kpa` until then. `stationary` (L,), `mixing` (E, L, L) of the path noise after a period; `factor` (L,) of the
     friction by level; `extra` acceleration; `motion`, `path` as in `pull_period`.
@@ -66,7 +66,7 @@ def occupy(
             band[n, m, 0], band[n, m, 1] = first, last
             if density.shape[0] > 0:
                 density[n, m, :, first:last] = moved[:, first:last]
-            scale = 1.0 / noise
+            scale = 1.0 / noise[n]
             chances(lines[0, n, m], lines[1, n, m], reading, scale, periods[m], first, last, chance)
             for command in range(3):
                 d = periods[m, command]

@@ -29,7 +29,7 @@ def value(
     """
     nodes, modes, levels = lines.shape[1], lines.shape[2], factor.shape[0]
     points, ways, ring = reading.shape[0], target.shape[0], max(motion[4].shape[0] + 1, entry.shape[0] + 1)
-    row, scale = points + ROOM, 1.0 / noise
+    row = points + ROOM
     rows, values = np.zeros((ways, levels, ring, row)), np.zeros((modes, levels, row))
     commanded, chance, scratch = np.zeros((3, row)), np.zeros((3, row)), np.zeros(row)
     of_node = np.zeros(motion[4].shape[0], np.int64)
@@ -37,6 +37,7 @@ def value(
     rows[:, :, nodes % ring, 0] = stalled
     slopes[:], bends[:] = 0.0, 0.0
     for n in range(nodes - 1, -1, -1):
+        scale = 1.0 / noise[n]
         for r in range(of_node.shape[0]):
             of_node[r] = min(n + r, nodes) % ring
         for m in range(modes):

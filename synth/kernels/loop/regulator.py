@@ -33,8 +33,9 @@ class Rule(NamedTuple):
     Table: `coefficients` float32 (K + 1, 2, r + 1), NaN where there is no line, `has_line` (K + 1, 2), `valid`
     float32 (4,), `entrance_stage` the highest stage that may be commanded at s < 0. Lines: `lower`, `upper`
     (K + 1, N + 1) over nodes `spacing_m` apart from `start_m` on. With `multi_step` either is asked again at the stage
-    reached, as long as it answers the same. The speed compared with lines is measured + `lead_s`·slope, the slope filtered over `filter_s`. With
-    `estimator_work` (3, B), B > 0, the speed compared is that of `tuning_tables.estimator`.
+    reached, as long as it answers the same. The speed compared with lines is measured + `lead_s`·slope, the slope
+    filtered over `filter_s`. With `estimator_work` (3, B), B > 0, the speed compared is that of
+    `tuning_tables.estimator`.
     """
 
     coefficients: NDArray[np.float32]

@@ -13,6 +13,7 @@ from plant_models.frozen_arrays import frozen_arrays
 from synth.kernels.any_time.period import NEAREST, ROOM
 from synth.problem.resolution import Resolution, finer_for_check
 from synth.solver.any_time.drive_modes import DriveModes, drive_modes
+from synth.solver.any_time.estimate_error import EstimateError
 from synth.solver.chain.entry import entry_distribution
 from synth.solver.chain.grid import Grid, make_grid
 from synth.solver.chain.path_noise import PathNoise, correlated_noise
@@ -52,7 +53,8 @@ class SampledChain:
     brakes and of what one kPa takes away. `noise`: of the path over a period at the reference speed; `mixing` (E, L, L)
     its transition over the path of a period at each speed. `entry` (A, E): probability of entry energy j with the first
     sample at node r; `entry_mode` the mode until then. `first_energy` (R + 2,): first speed whose period ends nearest
-    to each number of quanta.
+    to each number of quanta. `estimate`: the error of the speed that the regulator knows, where it is an estimated one;
+    else that of `measurement` counts.
     """
 
     plant: Plant
@@ -69,6 +71,7 @@ class SampledChain:
     entry: NDArray[np.float64]
     entry_mode: int
     first_energy: NDArray[np.int64]
+    estimate: EstimateError | None = None
 
     @property
     def approach_nodes(self) -> int:

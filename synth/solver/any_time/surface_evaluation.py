@@ -63,7 +63,7 @@ class SurfaceEvaluation:
     def density(self, lines_m_s: NDArray[np.float64]) -> ExitDensity:
         """Exit-speed density, all scenarios weighted."""
         c, policy = self.chain, self._policy(lines_m_s)
-        found = self._each(lambda i, memory: self._followed(policy, i, memory), nodes=0)
+        found = self._each(lambda i, memory: self._followed(self._in_scenario(policy, i), i, memory), nodes=0)
         exits = sum(w * each.exits for w, each in zip(c.scenarios.weight, found, strict=True))
         totals = sum(w * each.totals for w, each in zip(c.scenarios.weight, found, strict=True))
         stalled, escaped, down, up = (float(each) for each in np.asarray(totals))
@@ -73,7 +73,9 @@ class SurfaceEvaluation:
         """Expected cost and its derivatives, all scenarios weighted."""
         c, policy = self.chain, self._policy(lines_m_s)
         cost, slopes, bends = 0.0, np.zeros(policy[0].shape), np.zeros(policy[0].shape)
-        found = self._each(lambda i, memory: self._valued(policy, i, aim, memory), nodes=len(c.drive_m2_s2) - 1)
+        found = self._each(
+            lambda i, memory: self._valued(self._in_scenario(policy, i), i, aim, memory), nodes=len(c.drive_m2_s2) - 1
+        )
         for weight, (one, slope, bend) in zip(c.scenarios.weight, found, strict=True):
             cost += weight * one
             slopes += weight * slope
@@ -95,13 +97,27 @@ class SurfaceEvaluation:
         return [parts[i % self.threads][i // self.threads] for i in range(count)]
 
     def _policy(self, lines_m_s: NDArray[np.float64]) -> tuple[Any, ...]:
-        """Lines in readings, what is read of true speeds, and the error."""
+        """Lines in readings, what is read of true speeds, and the error at every node (N,)."""
         c = self.chain
-        lines, noise = c.measurement.thresholds(lines_m_s)
+        if c.estimate is None:
+            lines, std = c.measurement.thresholds(lines_m_s)
+            noise = np.full(lines.shape[1], max(std, 1e-6))
+            read = c.measurement.readings(c.grid.speed_m_s)
+        else:
+            lines, noise, read = lines_m_s, c.estimate.noise_m_s(c.grid.path_m[:-1]), c.grid.speed_m_s
         lines = np.array(lines)
         held = c.modes.stage >= c.plant.entrance_stage
         lines[UP, : c.approach_nodes, held] = np.inf  # before the entrance, no further
-        return lines, c.measurement.readings(c.grid.speed_m_s), max(noise, 1e-6)
+        return lines, read, noise
+
+    def _in_scenario(self, policy: tuple[Any, ...], i: int) -> tuple[Any, ...]:
+        """The policy as true speeds meet it in scenario `i`: what is estimated is shifted there."""
+        c = self.chain
+        if c.estimate is None:
+            return policy
+        lines, *others = policy
+        shift = c.estimate.shift_m_s(c.grid.path_m[:-1], c.scenarios, i)
+        return (lines - shift[None, :, None], *others)
 
     def _followed(self, policy: tuple[Any, ...], i: int, density: NDArray[np.float64]) -> Followed:
         c = self.chain

@@ -85,9 +85,7 @@ def slow_exit(
         for _ in range(farthest):
             k = asked[-1]
             x = (cut.kpa - plant.position.stage_pressures_kpa[k]) / 100.0
-            lower, upper = (
-                float(np.polynomial.legendre.legval(u, c[:4]) + x * c[4]) for c in surfaces.coefficients[k]
-            )
+            lower, upper = (float(np.polynomial.legendre.legval(u, c[:4]) + x * c[4]) for c in surfaces.coefficients[k])
             step = int(surfaces.has_line[k, 1] and measured > upper) - int(surfaces.has_line[k, 0] and measured < lower)
             if step == 0 or step == asked[0] - k:
                 break
