@@ -11,8 +11,9 @@ import pytest
 from plant_models import EntrySpeed, Friction, Plant
 from synth.book.comparison.friction_bound import ENTRY_PASSES, ENTRY_POINTS, bound_of, feasibility_of, served
 from synth.book.comparison.told_regulator import Told, best_by_others, by_lines, run_told
+from synth.book.estimation.estimated_table import controller_of
 from synth.book.estimation.estimator_design import estimator_of
-from synth.book.estimation.told_estimator import Bias, knowing, levelled
+from synth.book.estimation.told_estimator import Bias, ToldWithEstimator, knowing, levelled, no_bias
 from synth.simulation.closed_loop import Controller, LineController, TableController, close_loop, trace
 from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
@@ -201,7 +202,8 @@ def test_levelled_lines_leave_no_mean_error(passes: CommonPasses) -> None:
     plant = passes.plant
     tuning = passes.of_others(random_passes(9, 0, 1500))
     lines = constant_lines(plant, 3.7)
-    found = levelled(lambda _: lines, estimator_of(plant), tuning, TARGET_M_S)
+    told = ToldWithEstimator(lambda _: lines, estimator_of(plant), controller_of, no_bias(tuning))
+    found = levelled(told, tuning, TARGET_M_S)
     plain = exit_statistics(run_told(tuning.loop, tuning.draws, replace(found, bias=Bias(0.5, 1.5))), TARGET_M_S)
     level = exit_statistics(run_told(tuning.loop, tuning.draws, found), TARGET_M_S)
     assert abs(plain.bias_m_s) > 0.05

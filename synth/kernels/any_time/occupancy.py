@@ -31,10 +31,10 @@ def occupy(
 
     `lines` (2, N, M): below and above them the command is down and up, in readings; `reading` (E,) of the true speeds,
     with errors of std `noise` (N,). `periods` (M, 3): period that follows a command in a mode, −1 where it is none; of
-    each period `kpa` (D,) mean overpressure and `way` (D,); of each way `target`, `share` (W, 4) modes and shares. `entry`
-    (A, E): probability of entering with energy j and having the first sample at node r, `entry_way` and the pressure
-    `entry_kpa` until then. `stationary` (L,), `mixing` (E, L, L) of the path noise after a period; `factor` (L,) of the
-    friction by level; `extra` acceleration; `motion`, `path` as in `pull_period`.
+    each period `kpa` (D,) mean overpressure and `way` (D,); of each way `target`, `share` (W, 4) modes and shares.
+    `entry` (A, E): probability of entering with energy j and having the first sample at node r, `entry_way` and the
+    pressure `entry_kpa` until then. `stationary` (L,), `mixing` (E, L, L) of the path noise after a period; `factor`
+    (L,) of the friction by level; `extra` acceleration; `motion`, `path` as in `pull_period`.
     Outputs: `density` (N, M, L, E), or of length 0; `band` (N, M, 2), `way_band` (N, W, 2): ranges of energies met;
     `exits` (E,) by energy; `totals` (4,): stalled, escaped, changes down, changes up.
     """
