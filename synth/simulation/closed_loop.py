@@ -15,12 +15,13 @@ from plant_models import Plant
 from plant_models.pads import overpressure_kpa
 from plant_models.stage_regulator import resting_modes, stage_locked_actuator
 from synth.kernels.any_time.closed_loop import AnyTimeLaw, SampledDrive, run_any_time_passes
+from synth.kernels.any_time.closed_loop_lanes import Observed, run_any_time_lanes
 from synth.kernels.loop import closed_loop as kernel
 from synth.kernels.loop import closed_loop_lanes as lanes
 from synth.kernels.loop import lane_places as places
 from synth.kernels.loop import regulator
 from synth.simulation.controllers import Controller, Law, LineController, Regulator, TableController, fixed
-from synth.simulation.drive_pieces import drive_pieces
+from synth.simulation.drive_pieces import drive_pieces, empty_periods
 from synth.simulation.passes import ExitSample, PassTrace
 from synth.simulation.path_cells import path_cells
 from synth.simulation.random_passes import PassRow, RandomPasses
@@ -113,7 +114,7 @@ class ClosedLoop:
         """All passes of `draws` under `controller`; `PlantError` where it commands what valves cannot follow."""
         law = self._law(controller)
         if isinstance(law, AnyTimeLaw):
-            return self._at_any_time(law, draws, np.empty((0, kernel.EVENT_FIELDS)))[0]
+            return self._at_any_time_in_lanes(law, draws)
         if law.estimator_work.shape[1] > 0:
             return self._alone(law, draws, np.empty((0, kernel.EVENT_FIELDS)))[0]
         exits = empty_exits(len(draws.cut_factor))
@@ -151,6 +152,17 @@ class ClosedLoop:
         exits = empty_exits(len(draws.cut_factor))
         count = run_any_time_passes(self.path, self.sampled, self.sensor, law, draws, exits, events)
         return sample_of(exits, draws), events[:count]
+
+    def _at_any_time_in_lanes(self, law: AnyTimeLaw, draws: kernel.Draws) -> ExitSample:
+        """As `_at_any_time`, without events."""
+        rule, n = law.rule, len(draws.cut_factor)
+        exits, estimates = empty_exits(n), rule.estimator_work.shape[1] > 0
+        if estimates and rule.lead_s != 0.0:
+            return self._at_any_time(law, draws, np.empty((0, kernel.EVENT_FIELDS)))[0]
+        observed = Observed(np.zeros((n * estimates, 8), dtype=np.float32), np.zeros(n * estimates))
+        memory = lane_memory(), empty_periods(self.sampled), observed
+        run_any_time_lanes(self.path, self.sampled, self.sensor, law, draws, exits, *memory)
+        return sample_of(exits, draws)
 
 
 def pad_slopes(path: kernel.Path, factor: NDArray[np.float64], path_z: NDArray[np.float32]) -> NDArray[np.float64]:

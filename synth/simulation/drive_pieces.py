@@ -4,9 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from synth.kernels.any_time.closed_loop import SampledDrive
+from synth.kernels.any_time.played_periods import PlayedPeriods
 from synth.kernels.loop.closed_loop import Drive
-from synth.kernels.loop.lane_places import Pieces
+from synth.kernels.loop.lane_places import LANES, Pieces
 from synth.simulation.controllers import fixed
+
+STATES = 4096
+"""States of a drive that are remembered: 20 000 passes of a table meet some hundreds."""
 
 
 def drive_pieces(drive: Drive, period_s: float) -> Pieces:
@@ -46,4 +51,31 @@ def drive_pieces(drive: Drive, period_s: float) -> Pieces:
         sampled=int(np.sum(place % substeps == 0)),
         initial_stage=drive.initial_stage,
         entrance_stage=drive.entrance_stage,
+    )
+
+
+def empty_periods(drive: SampledDrive, states: int = STATES) -> PlayedPeriods:
+    """Memory for so many states of `drive` and the periods that begin in them, with nothing played yet."""
+    lanes, stages = states + LANES, len(drive.stage_kpa)
+    pieces = states * (1 + stages) + LANES * (drive.parts + 1)
+    return PlayedPeriods(
+        Pieces(
+            kpa=np.zeros(pieces),
+            duration_s=np.zeros(pieces),
+            start_s=np.zeros(pieces),
+            after=np.zeros(pieces, dtype=np.int64),
+            command=np.zeros((states, stages), dtype=np.int64),
+            resting=lanes,
+            sampled=lanes,
+            initial_stage=drive.initial_stage,
+            entrance_stage=drive.entrance_stage,
+        ),
+        pressure_kpa=np.zeros(lanes),
+        wait_s=np.zeros(lanes),
+        stage=np.zeros(lanes, dtype=np.int64),
+        rises=np.zeros((lanes, 2), dtype=np.float32),
+        mean_kpa=np.zeros(pieces),
+        slots=np.zeros(1 << (2 * states).bit_length(), dtype=np.int64),
+        count=np.zeros(2, dtype=np.int64),
+        over=np.zeros(drive.parts),
     )

@@ -25,6 +25,7 @@ from synth.kernels.loop.regulator import (
     stage_by_lines,
     table_decision,
 )
+from synth.kernels.vector.borrowing import borrowing_inline
 
 
 class SampledDrive(NamedTuple):
@@ -126,6 +127,15 @@ def wanted_stage(law: AnyTimeLaw, stage: int, top: int, pressure: float, wait: f
     return wanted
 
 
+@borrowing_inline
+def joined_until(over: Floats, begun: int) -> int:
+    """The part behind those that are played as one step with part `begun`: dead times and rests are one step."""
+    i = begun
+    while i < over.shape[0] and abs(over[i] - over[begun]) < 1e-9:
+        i += 1
+    return i
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def run_any_time_pass(
     edges_m: Floats, free: Floats, brake: Floats, drive: SampledDrive, sensor: Sensor, law: AnyTimeLaw,
@@ -139,14 +149,14 @@ def run_any_time_pass(
     lead_s, gain = law.rule.lead_s, sensor.period_s / (sensor.period_s + law.rule.filter_s)
     known[:], passed_kpa, slope, last = 0.0, 0.0, 0.0, math.nan
     stage_kpa, touch = drive.stage_kpa, drive.valves.touch_kpa
-    period, top = sensor.period_s, stage_kpa.shape[0] - 1
+    period, top, longest = sensor.period_s, stage_kpa.shape[0] - 1, int(LONGEST_PASS_S / sensor.period_s)
     over = np.empty(drive.parts)
     part = period / drive.parts
     pressure, wait, stage, sample, switchings = drive.initial_kpa, 0.0, drive.initial_stage, 0, 0
     kpa = max(0.0, pressure - touch)
     count = note(events, 0, 0.0, edges_m[0], entry_m_s, kpa, stage, math.nan)
     cell, s, v, time, status = advance(edges_m, free, brake, kpa, first_sample_s, 0, edges_m[0], entry_m_s)
-    while status == MOVING and time < LONGEST_PASS_S:
+    while status == MOVING and sample < longest:
         measured = measure(v, noise_z[sample % noise_z.shape[0]], sensor)
         if work.shape[1] > 0:
             measured = float(estimated_speed(parameters, work, known, s, measured, passed_kpa))
@@ -163,9 +173,7 @@ def run_any_time_pass(
         passed_kpa = over.mean()
         i, used = 0, 0.0
         while i < drive.parts and status == MOVING:
-            begun, kpa = i, over[i]
-            while i < drive.parts and abs(over[i] - kpa) < 1e-9:
-                i += 1  # dead times and rests are one step
+            begun, kpa, i = i, over[i], joined_until(over, i)
             time = first_sample_s + sample * period + begun * part
             count = note(events, count, time, s, v, kpa, stage, measured)
             measured = math.nan

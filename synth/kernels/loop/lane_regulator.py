@@ -40,10 +40,9 @@ def listen(work: Work, count: int, pieces: Pieces, sensor: Sensor, law: Rule, no
         s, stage = packs.gather(x, lane + S), packs.gather(n, lane + STAGE)
         speed = measured(x, n, lane, sensor, noise_z)
         if law.coefficients.shape[0] > 0:
-            speaks = speaks_by_table(law, stage, s, speed)
+            speaks = speaks_by_table(law, stage, s, speed, 0.0, 0.0)
         else:
-            if law.lead_s != 0.0:
-                speed = speed + law.lead_s * slope(x, lane, speed, sensor.period_s, law.filter_s)
+            speed = foretold(x, lane, speed, sensor, law)
             speaks = speaks_by_lines(law, stage, s, speed)
             if law.lead_s != 0.0:  # looks at the sensor within a chain, too, but has no command there
                 speaks = speaks & (packs.gather(n, lane + PIECE) < pieces.resting)
@@ -67,6 +66,14 @@ def measured(x, n, lane, sensor, noise_z):
 
 
 @borrowing_inline
+def foretold(x, lane, speed, sensor, law):
+    """The speed that lines are compared with: the measured one and, with a lead, its slope times that."""
+    if law.lead_s != 0.0:
+        speed = speed + law.lead_s * slope(x, lane, speed, sensor.period_s, law.filter_s)
+    return speed
+
+
+@borrowing_inline
 def slope(x, lane, speed, period_s, filter_s):
     """Filtered slope of the measured speed (as in `closed_loop.run_pass`), noted for the next sample."""
     change = speed - packs.gather(x, lane + BEFORE)
@@ -80,9 +87,10 @@ def slope(x, lane, speed, period_s, filter_s):
 
 
 @borrowing_inline
-def speaks_by_table(law, stage, s_m, v_m_s):
+def speaks_by_table(law, stage, s_m, v_m_s, lower_rise, upper_rise):
     """Whether the table has a command, by the arithmetic of `rule.decide`; a line that is not there is NaN.
 
+    `lower_rise`, `upper_rise` float32: what the pressure adds to the lines; numbers for all lanes, or packs of them.
     For readings within the numbers of float32, which is all that the loop has; NaN: no command.
     """
     s, v = packs.narrow(s_m), packs.narrow(v_m_s)
@@ -94,7 +102,7 @@ def speaks_by_table(law, stage, s_m, v_m_s):
     for power in range(terms - 2, -1, -1):
         lower = lower * s + packs.gather(law.coefficients, below + power)
         upper = upper * s + packs.gather(law.coefficients, above + power)
-    return (v < lower) | (v > upper)
+    return (v < lower + lower_rise) | (v > upper + upper_rise)
 
 
 @borrowing_inline
