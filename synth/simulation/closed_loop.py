@@ -15,11 +15,12 @@ from plant_models import Plant
 from plant_models.pads import overpressure_kpa
 from plant_models.stage_regulator import resting_modes, stage_locked_actuator
 from synth.kernels.any_time.closed_loop import AnyTimeLaw, SampledDrive, run_any_time_passes
-from synth.kernels.any_time.closed_loop_lanes import Observed, run_any_time_lanes
+from synth.kernels.any_time.closed_loop_lanes import run_any_time_lanes
 from synth.kernels.loop import closed_loop as kernel
 from synth.kernels.loop import closed_loop_lanes as lanes
 from synth.kernels.loop import lane_places as places
 from synth.kernels.loop import regulator
+from synth.kernels.loop.lane_estimator import FIELDS, Observed
 from synth.simulation.controllers import Controller, Law, LineController, Regulator, TableController, fixed
 from synth.simulation.drive_pieces import drive_pieces, empty_periods
 from synth.simulation.passes import ExitSample, PassTrace
@@ -115,10 +116,9 @@ class ClosedLoop:
         law = self._law(controller)
         if isinstance(law, AnyTimeLaw):
             return self._at_any_time_in_lanes(law, draws)
-        if law.estimator_work.shape[1] > 0:
-            return self._alone(law, draws, np.empty((0, kernel.EVENT_FIELDS)))[0]
-        exits = empty_exits(len(draws.cut_factor))
-        lanes.run_lanes(self.path, self.pieces, self.sensor, law, draws, exits, lane_memory())
+        passes = len(draws.cut_factor)
+        exits, memory = empty_exits(passes), (lane_memory(), empty_observed(law, passes))
+        lanes.run_lanes(self.path, self.pieces, self.sensor, law, draws, exits, *memory)
         return sample_of(exits, draws)
 
     def follow(self, controller: Regulator, draws: kernel.Draws) -> PassTrace:
@@ -155,12 +155,9 @@ class ClosedLoop:
 
     def _at_any_time_in_lanes(self, law: AnyTimeLaw, draws: kernel.Draws) -> ExitSample:
         """As `_at_any_time`, without events."""
-        rule, n = law.rule, len(draws.cut_factor)
-        exits, estimates = empty_exits(n), rule.estimator_work.shape[1] > 0
-        if estimates and rule.lead_s != 0.0:
-            return self._at_any_time(law, draws, np.empty((0, kernel.EVENT_FIELDS)))[0]
-        observed = Observed(np.zeros((n * estimates, 8), dtype=np.float32), np.zeros(n * estimates))
-        memory = lane_memory(), empty_periods(self.sampled), observed
+        passes = len(draws.cut_factor)
+        exits = empty_exits(passes)
+        memory = lane_memory(), empty_periods(self.sampled), empty_observed(law.rule, passes)
         run_any_time_lanes(self.path, self.sampled, self.sensor, law, draws, exits, *memory)
         return sample_of(exits, draws)
 
@@ -180,6 +177,17 @@ def empty_exits(passes: int) -> kernel.Exits:
     """Memory for the results of `passes` passes."""
     return kernel.Exits(
         np.empty(passes), np.empty(passes), np.empty(passes, dtype=np.bool_), np.empty(passes, dtype=np.int32)
+    )
+
+
+def empty_observed(law: regulator.Rule, passes: int) -> Observed:
+    """Memory of the estimator of `law` for `passes` passes that have not begun; none if it has no estimator."""
+    passes = passes if law.estimator_work.shape[1] > 0 else 0
+    return Observed(
+        np.zeros((passes, FIELDS), dtype=np.float32),
+        np.zeros((passes, 2), dtype=np.float32),
+        np.zeros(passes, dtype=np.int64),
+        np.zeros(passes),
     )
 
 

@@ -118,7 +118,8 @@ def wanted_stage(law: AnyTimeLaw, stage: int, top: int, pressure: float, wait: f
     """The stage that is wanted at a sample, within 0 … `top`; `v` is the speed that the regulator knows."""
     by = law.rule
     if law.surfaces.lower.shape[0] > 0:
-        return wanted_by_surfaces(law.surfaces, stage, pressure, wait, s, v)
+        by_surfaces: int = wanted_by_surfaces(law.surfaces, stage, pressure, wait, s, v)
+        return by_surfaces
     if by.coefficients.shape[0] > 0:
         rise = pressure_rises(law.slopes, law.pressures, law.highest_raised, stage, pressure * law.gauge_factor)
         step = table_decision(by.coefficients, by.has_line, by.valid, by.entrance_stage, stage, s, v, rise)

@@ -1,12 +1,10 @@
-"""Kernel of the closed loop with commands at any time for many passes: bit for bit what `any_time.closed_loop` computes.
+"""Kernel of the closed loop with commands at any time for many passes, to the bit what `any_time.closed_loop` computes.
 
 The lanes and how they move are those of the locked loop (`loop.closed_loop_lanes`). What the drive plays to them comes
 from memory (`played_periods`), and every lane is asked at every sample.
 """
 
 from __future__ import annotations
-
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,47 +13,44 @@ from synth.kernels.any_time.closed_loop import AnyTimeLaw, SampledDrive, wanted_
 from synth.kernels.any_time.played_periods import PlayedPeriods, begin_playing, first_piece
 from synth.kernels.loop.closed_loop import LONGEST_PASS_S, Draws, Exits, Path
 from synth.kernels.loop.closed_loop_lanes import begin_all, move, relieve
-from synth.kernels.loop.lane_places import LANES, LEFT_S, PASS, PIECE, STAGE, SWITCHINGS, Floats, S, Work
+from synth.kernels.loop.lane_estimator import Observed, estimated
+from synth.kernels.loop.lane_places import LANES, LEFT_S, PASS, PIECE, STAGE, SWITCHINGS, S, Work
 from synth.kernels.loop.lane_regulator import foretold, measured, speaks_by_lines, speaks_by_table
-from synth.kernels.loop.regulator import Sensor, admitted, estimated_speed
+from synth.kernels.loop.regulator import Sensor, admitted
 from synth.kernels.vector import packs
 from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 
 
-class Observed(NamedTuple):
-    """Memory of the estimator, for each pass: its `state` float32 (n, 8), `passed_kpa` (n,) of the last period.
-
-    Without an estimator n may be 0. Both are 0 where a pass begins.
-    """
-
-    state: NDArray[np.float32]
-    passed_kpa: Floats
-
-
 @borrowing_inline
 def listen(
-    work: Work, count: int, played: PlayedPeriods, sensor: Sensor, law: AnyTimeLaw, noise_z: NDArray[np.float32]
-) -> int:
+    work: Work, count: int, played: PlayedPeriods, sensor: Sensor, law: AnyTimeLaw, noise_z: NDArray[np.float32],
+    observed: Observed,
+) -> int:  # fmt: skip
     """As `lane_regulator.listen`; those in `told` have a command, or their next period has not been played yet.
 
-    Where surfaces or an estimator are asked, every lane is among them.
+    Where surfaces are asked, every lane is among them.
     """
     x, n, rule = work.floats, work.ints, law.rule
     told = 0
     for k in range(0, count, packs.EIGHT):
         lane = packs.load8(work.waiting, k)
-        s, stage = packs.gather(x, lane + S), packs.gather(n, lane + STAGE)
+        s, stage, state = packs.gather(x, lane + S), packs.gather(n, lane + STAGE), packs.gather(n, lane + PIECE)
         speed = measured(x, n, lane, sensor, noise_z)
-        speaks = lane < LANES
-        if law.surfaces.lower.shape[0] == 0 and rule.estimator_work.shape[1] == 0:
-            speaks = speaks & (packs.gather(x, lane + LEFT_S) == 0.0)
+        there = lane < LANES
+        if rule.estimator_work.shape[1] > 0:
+            i = packs.gather(n, lane + PASS)
+            speed = estimated(observed, rule.estimator_parameters, rule.estimator_work, there, i, s, speed)
+            packs.scatter(observed.passed_kpa, i, there, packs.gather(played.pieces.mean_kpa, state))
+        speaks = there
+        if law.surfaces.lower.shape[0] == 0:
+            unplayed = packs.gather(x, lane + LEFT_S) == 0.0
             if rule.coefficients.shape[0] > 0:
-                at = packs.gather(n, lane + PIECE) * 2
-                lower_rise, upper_rise = packs.gather(played.rises, at), packs.gather(played.rises, at + 1)
-                speaks = speaks | speaks_by_table(rule, stage, s, speed, lower_rise, upper_rise)
+                at = state * 2
+                rises = packs.gather(played.rises, at), packs.gather(played.rises, at + 1)
+                speaks = there & (unplayed | speaks_by_table(rule, stage, s, speed, *rises))
             else:
-                speed = foretold(x, lane, speed, sensor, rule)
-                speaks = speaks | speaks_by_lines(rule, stage, s, speed)
+                speed = foretold(x, lane, speed, speed, sensor, rule)
+                speaks = there & (unplayed | speaks_by_lines(rule, stage, s, speed))
         packs.keep(work.heard, told, speaks, speed)
         told += packs.keep(work.told, told, speaks, lane)
     return told
@@ -67,23 +62,16 @@ def regulate(
     law: AnyTimeLaw, observed: Observed,
 ) -> None:  # fmt: skip
     """What the regulator and the drive do at a sample (as in `any_time.closed_loop.run_any_time_pass`)."""
-    x, n, rule = work.floats, work.ints, law.rule
-    s, state, stage, i = x[S + lane], n[PIECE + lane], n[STAGE + lane], n[PASS + lane]
-    estimates, top = rule.estimator_work.shape[1] > 0, played.pieces.command.shape[1] - 1
-    if estimates:
-        parameters, work_of_bars = rule.estimator_parameters, rule.estimator_work
-        passed_kpa = observed.passed_kpa[i]
-        speed_m_s = float(
-            estimated_speed(parameters, work_of_bars, observed.state[i], s, speed_m_s, passed_kpa)
-        )
+    x, n = work.floats, work.ints
+    s, state, stage, top = x[S + lane], n[PIECE + lane], n[STAGE + lane], drive.stage_kpa.shape[0] - 1
     wanted = wanted_stage(law, stage, top, played.pressure_kpa[state], played.wait_s[state], s, speed_m_s)
     wanted = admitted(stage, wanted, s, drive.entrance_stage)
     if wanted != stage:
         n[SWITCHINGS + lane] += 1
     first = first_piece(played, drive, law, sensor.period_s, lane, state, wanted)
     n[STAGE + lane], n[PIECE + lane], x[LEFT_S + lane] = wanted, first, played.pieces.duration_s[first]
-    if estimates:
-        observed.passed_kpa[i] = played.mean_kpa[first]
+    if law.rule.estimator_work.shape[1] > 0:
+        observed.passed_kpa[n[PASS + lane]] = played.pieces.mean_kpa[first]
 
 
 @borrowing
@@ -91,7 +79,7 @@ def run_any_time_lanes(
     path: Path, drive: SampledDrive, sensor: Sensor, law: AnyTimeLaw, draws: Draws, exits: Exits, work: Work,
     played: PlayedPeriods, observed: Observed,
 ) -> None:  # fmt: skip
-    """Simulate all passes of `draws` into `exits`; an estimator must be without lead (`lead_s` 0)."""
+    """Simulate all passes of `draws` into `exits`; `observed` for as many, none of which has begun."""
     pieces, brakes = played.pieces, draws.brake_m_s2_per_kpa.reshape(-1)
     longest, active = int(LONGEST_PASS_S / sensor.period_s), min(LANES, draws.cut_factor.shape[0])
     begin_playing(played, drive, law)
@@ -99,7 +87,7 @@ def run_any_time_lanes(
     following = active
     while active > 0:
         waiting, ended = move(work, active, path, brakes, pieces, pieces.sampled, longest)
-        told = listen(work, waiting, played, sensor, law, draws.noise_z)
+        told = listen(work, waiting, played, sensor, law, draws.noise_z, observed)
         for k in range(told):
             regulate(work, work.told[k], work.heard[k], played, drive, sensor, law, observed)
         active, following = relieve(work, ended, active, following, longest, path, pieces, sensor, draws, exits)

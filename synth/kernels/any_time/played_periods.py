@@ -7,7 +7,7 @@ states. So each period is played once, by `play_period`, and kept as pieces that
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ from synth.kernels.loop.regulator import pressure_rises
 from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 
 STATES, PIECES = 0, 1
-"""Places in `PlayedPeriods.count`."""
+"""Places in `PlayedPeriods.taken`."""
 
 
 class PlayedPeriods(NamedTuple):
@@ -31,9 +31,9 @@ class PlayedPeriods(NamedTuple):
     played. The last `LANES` states, and the last `LANES` rows of pieces, belong to one lane each: where the memory is
     full, it plays there, and remembers nothing.
 
-    `pressure_kpa`, `wait_s`, `stage` (N,); `rises` (N, 2): what the pressure adds to both lines of the stage;
-    `mean_kpa` (P,): mean overpressure of the period with this first piece; `slots`, a power of two of them: the states
-    by their numbers, 0 for none; `count` (2,): how many states and pieces there are; `over`: room for one period.
+    `pressure_kpa`, `wait_s`, `stage` (N,); `rises` (N, 2): what the pressure adds to both lines of the stage; `slots`,
+    a power of two of them: the states by their numbers, 0 for none; `taken` (2,): how many states and pieces there are;
+    `over`: room for one period.
     """
 
     pieces: Pieces
@@ -41,14 +41,13 @@ class PlayedPeriods(NamedTuple):
     wait_s: Floats
     stage: Ints
     rises: NDArray[np.float32]
-    mean_kpa: Floats
     slots: Ints
-    count: Ints
+    taken: Ints
     over: Floats
 
 
 @borrowing_inline
-def slot_of(played: PlayedPeriods, pressure: float, wait: float, stage: int) -> int:
+def slot_of(played: PlayedPeriods, pressure: float, wait: float, stage: int) -> Any:
     """Where in `slots` this state stands, or the free place where it belongs."""
     p, w = np.float64(pressure).view(np.int64), np.float64(wait).view(np.int64)
     last = played.slots.shape[0] - 1
@@ -63,16 +62,16 @@ def slot_of(played: PlayedPeriods, pressure: float, wait: float, stage: int) -> 
 
 
 @borrowing
-def state_at(played: PlayedPeriods, law: AnyTimeLaw, lane: int, pressure: float, wait: float, stage: int) -> int:
+def state_at(played: PlayedPeriods, law: AnyTimeLaw, lane: int, pressure: float, wait: float, stage: int) -> Any:
     """Number of this state, noted if it is new; that of the lane where there is no room for it."""
     pieces = played.pieces
     slot = slot_of(played, pressure, wait, stage)
     if played.slots[slot] > 0:
         return played.slots[slot]
-    state = played.count[STATES]
+    state = played.taken[STATES]
     if state < pieces.command.shape[0]:
         played.slots[slot] = state
-        played.count[STATES] += 1
+        played.taken[STATES] += 1
         pieces.command[state, :] = 0
     else:
         state = pieces.command.shape[0] + lane
@@ -86,7 +85,7 @@ def state_at(played: PlayedPeriods, law: AnyTimeLaw, lane: int, pressure: float,
 @borrowing
 def play(
     played: PlayedPeriods, drive: SampledDrive, law: AnyTimeLaw, period_s: float, lane: int, state: int, stage: int
-) -> int:
+) -> Any:
     """Play the period that begins in `state` with `stage` commanded; returns the number of its first piece."""
     pieces, over, old, parts = played.pieces, played.over, played.stage[state], played.over.shape[0]
     pressure, wait = play_period(
@@ -97,11 +96,11 @@ def play(
     shared, own = pieces.command.shape[0], pieces.kpa.shape[0] - (LANES - lane) * parts
     first, place = own, own + 1
     # What others may follow must not end in a state that is this lane's own.
-    kept = state < shared and after < shared and played.count[PIECES] + parts <= pieces.kpa.shape[0] - LANES * parts
+    kept = state < shared and after < shared and played.taken[PIECES] + parts <= pieces.kpa.shape[0] - LANES * parts
     if kept and stage == old:
-        first, place = state, played.count[PIECES]
+        first, place = state, played.taken[PIECES]
     elif kept:
-        first, place = played.count[PIECES], played.count[PIECES] + 1
+        first, place = played.taken[PIECES], played.taken[PIECES] + 1
     i, last = 0, first
     while i < parts:
         begun, at = i, first if i == 0 else place
@@ -111,16 +110,16 @@ def play(
         pieces.after[last], last = at, at
         place += begun > 0
     pieces.after[last] = after
-    played.mean_kpa[first] = over.mean()
+    pieces.mean_kpa[first] = over.mean()
     if kept:
-        pieces.command[state, stage], played.count[PIECES] = first, place
+        pieces.command[state, stage], played.taken[PIECES] = first, place
     return first
 
 
 @borrowing_inline
 def first_piece(
     played: PlayedPeriods, drive: SampledDrive, law: AnyTimeLaw, period_s: float, lane: int, state: int, stage: int
-) -> int:
+) -> Any:
     """First piece of the period that begins in `state` with `stage` commanded, played now if it never was."""
     command = played.pieces.command
     if state < command.shape[0] and command[state, stage] > 0:
@@ -133,7 +132,7 @@ def begin_playing(played: PlayedPeriods, drive: SampledDrive, law: AnyTimeLaw) -
     """Nothing is remembered but the state that every pass begins in."""
     pieces = played.pieces
     played.slots[:] = 0
-    played.count[STATES], played.count[PIECES] = 1, pieces.sampled
+    played.taken[STATES], played.taken[PIECES] = 1, pieces.sampled
     pieces.kpa[0] = max(0.0, drive.initial_kpa - drive.valves.touch_kpa)
     pieces.duration_s[0], pieces.start_s[0] = 0.0, 0.0
     pieces.after[0] = state_at(played, law, 0, drive.initial_kpa, 0.0, drive.initial_stage)

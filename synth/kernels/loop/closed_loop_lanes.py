@@ -12,6 +12,7 @@ import math
 from typing import Any
 
 from synth.kernels.loop.closed_loop import LONGEST_PASS_S, Draws, Exits, Path
+from synth.kernels.loop.lane_estimator import Observed
 from synth.kernels.loop.lane_places import (
     BEFORE,
     CELL,
@@ -187,17 +188,20 @@ def relieve(
 
 
 @borrowing
-def run_lanes(path: Path, pieces: Pieces, sensor: Sensor, law: Rule, draws: Draws, exits: Exits, work: Work) -> None:
-    """Simulate all passes of `draws` into `exits`; the law must be without estimator."""
+def run_lanes(
+    path: Path, pieces: Pieces, sensor: Sensor, law: Rule, draws: Draws, exits: Exits, work: Work, observed: Observed
+) -> None:
+    """Simulate all passes of `draws` into `exits`; `observed` for as many, none of which has begun."""
     x, n = work.floats, work.ints
     brakes, longest = draws.brake_m_s2_per_kpa.reshape(-1), int(LONGEST_PASS_S / sensor.period_s)
     active = min(LANES, draws.cut_factor.shape[0])
-    looked_at = pieces.sampled if law.lead_s != 0.0 else pieces.resting
+    filters = law.lead_s != 0.0 or law.estimator_work.shape[1] > 0
+    looked_at = pieces.sampled if filters else pieces.resting
     begin_all(work, active, path, pieces, draws)
     following = active
     while active > 0:
         waiting, ended = move(work, active, path, brakes, pieces, looked_at, longest)
-        told = listen(work, waiting, pieces, sensor, law, draws.noise_z)
+        told = listen(work, waiting, pieces, sensor, law, draws.noise_z, observed)
         for k in range(told):
-            regulate(x, n, work.told[k], work.heard[k], pieces, law)
+            regulate(x, n, work.told[k], work.heard[k], pieces, law, observed)
         active, following = relieve(work, ended, active, following, longest, path, pieces, sensor, draws, exits)

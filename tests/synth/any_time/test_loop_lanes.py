@@ -15,16 +15,17 @@ from plant_models import Plant, RollingResistance, TrackProfile
 from synth.book.comparison.baselines import energy_rule, threshold_with_lead
 from synth.configuration.config_file import load_config
 from synth.kernels.any_time.closed_loop import AnyTimeLaw, run_any_time_passes
-from synth.kernels.any_time.closed_loop_lanes import Observed, run_any_time_lanes
+from synth.kernels.any_time.closed_loop_lanes import run_any_time_lanes
 from synth.kernels.any_time.played_periods import PlayedPeriods
 from synth.kernels.loop import closed_loop as kernel
-from synth.kernels.loop.lane_places import LANES, Pieces
+from synth.kernels.loop.lane_places import LANES
 from synth.simulation.closed_loop import (
     ClosedLoop,
     LineController,
     TableController,
     close_loop,
     empty_exits,
+    empty_observed,
     lane_memory,
     sample_of,
 )
@@ -38,8 +39,8 @@ from synth.studies.any_time.surface_controller import SurfaceController
 from synth.studies.any_time.switching_surfaces import at_rest_only
 from tests.synth.any_time.test_loop import falling_lines
 from tests.synth.simulation.passage_cases import with_approach
-from tests.synth.test_closed_loop_lanes import wavy_table
-from tuning_tables import Approach, Decisions, Estimator
+from tests.synth.test_closed_loop_lanes import rough_estimator, wavy_table, with_gaps
+from tuning_tables import Approach, ControllerTable, Decisions
 
 PASSES = 3 * LANES + 7
 
@@ -130,6 +131,7 @@ def test_any_number_of_passes(plant_52t: Plant, passes: RandomPasses, count: int
 def test_an_approach(plant_52t: Plant, passes: RandomPasses, entrance_stage: int, initial_stage: int) -> None:
     plant = with_approach(plant_52t, 6.0, entrance_stage, initial_stage)
     loop, table = close_loop(plant, 5), sloping(plant, 3.0)
+    assert isinstance(table.table, ControllerTable)
     approach, valid = Approach(6.0, entrance_stage), replace(table.table.valid, s_m=(-6.0, plant.exit_m - 2.0))
     gated = replace(table, table=replace(table.table, approach=approach, valid=valid))
     for controller in (table, gated, unlocked(threshold_with_lead(loop, 3.0, 3, 0.1, 0.2))):
@@ -176,9 +178,7 @@ def test_stalls_and_passes_longer_than_their_noise(plant_22t: Plant, passes: Ran
 @pytest.mark.parametrize("period_s", [0.1, 0.07])
 def test_a_creeping_cut_is_given_up(plant_22t: Plant, passes: RandomPasses, period_s: float) -> None:
     sensor = replace(plant_22t.sensor, sample_period_s=period_s)
-    crawl = replace(
-        plant_22t, profile=TrackProfile.uniform(1.4), resistance=RollingResistance(1.4, 0.0), sensor=sensor
-    )
+    crawl = replace(plant_22t, profile=TrackProfile.uniform(1.4), resistance=RollingResistance(1.4, 0.0), sensor=sensor)
     loop = close_loop(crawl, 3)
     draws = loop.draws(passes)
     draws = draws._replace(entry_m_s=fixed(np.full(len(passes), 0.1), np.float64))
@@ -198,13 +198,13 @@ def test_surfaces_on_nodes(plant: Plant) -> None:
 def observing(plant: Plant, target_m_s: float) -> TableController:
     """The same table with an estimator that knows the plant roughly."""
     controller = sloping(plant, target_m_s)
-    estimator = Estimator(0.05, 0.15, 0.1, 2.0, 60.0, (0.0, plant.exit_m), (0.0, 2.0), (0.0, 0.05))
-    return replace(controller, table=replace(controller.table, estimator=estimator))
+    return replace(controller, table=replace(controller.table, estimator=rough_estimator(plant)))
 
 
-def test_an_estimator(plant_52t: Plant, passes: RandomPasses) -> None:
+@pytest.mark.parametrize("gaps", [False, True])
+def test_an_estimator(plant_52t: Plant, passes: RandomPasses, gaps: bool) -> None:
     loop, controller = close_loop(plant_52t, 5), observing(plant_52t, 3.0)
-    draws = loop.draws(passes)
+    draws = loop.draws(with_gaps(passes) if gaps else passes)
     sample = assert_same(loop, controller, draws)
     assert np.mean(sample.exit_speed_m_s != loop.run(sloping(plant_52t, 3.0), draws).exit_speed_m_s) > 0.5
     by_lines = unlocked(energy_rule(loop, 3.0, 4, 0.8, 0.15, 0.0, 0.15))
@@ -216,8 +216,7 @@ def in_lanes(loop: ClosedLoop, controller: Regulator, draws: kernel.Draws, playe
     """The passes of `draws` with this memory for the drive are those one after the other."""
     law, n = controller.law(), len(draws.cut_factor)
     assert isinstance(law, AnyTimeLaw)
-    exits, observed = empty_exits(n), Observed(np.zeros((n, 8), dtype=np.float32), np.zeros(n))
-    memory = lane_memory(), played, observed
+    exits, memory = empty_exits(n), (lane_memory(), played, empty_observed(law.rule, n))
     run_any_time_lanes(loop.path, loop.sampled, loop.sensor, law, draws, exits, *memory)
     assert_equal(sample_of(exits, draws), alone(loop, law, draws))
 
@@ -228,7 +227,7 @@ def test_a_full_memory_changes_nothing(plant_52t: Plant, passes: RandomPasses, s
     for controller in (sloping(plant_52t, 3.0), observing(plant_52t, 3.0)):
         played = empty_periods(loop.sampled, states)
         in_lanes(loop, controller, loop.draws(passes), played)
-        assert played.count[0] == states  # all of them are taken
+        assert played.taken[0] == states  # all of them are taken
 
 
 def test_room_for_states_but_not_for_pieces_changes_nothing(plant_52t: Plant, passes: RandomPasses) -> None:
@@ -236,10 +235,9 @@ def test_room_for_states_but_not_for_pieces_changes_nothing(plant_52t: Plant, pa
     played = empty_periods(loop.sampled)
     for few in (0, 1, 40, 400):
         pieces, kept = played.pieces, played.pieces.sampled + few + LANES * loop.sampled.parts
-        arrays = (array[:kept] for array in (pieces.kpa, pieces.duration_s, pieces.start_s, pieces.after))
-        short = Pieces(*arrays, *pieces[4:])
+        short = pieces._replace(kpa=pieces.kpa[:kept])
         in_lanes(loop, sloping(plant_52t, 3.0), loop.draws(passes), played._replace(pieces=short))
-        assert short.sampled + few - loop.sampled.parts < played.count[1] <= short.sampled + few
+        assert short.sampled + few - loop.sampled.parts < played.taken[1] <= short.sampled + few
 
 
 def test_a_memory_serves_again_and_is_large_enough(plant_52t: Plant) -> None:
@@ -247,8 +245,8 @@ def test_a_memory_serves_again_and_is_large_enough(plant_52t: Plant) -> None:
     draws, played = loop.draws(random_passes(12, 0, 2000)), empty_periods(loop.sampled)
     for gauge_factor in (1.0, 0.85):
         in_lanes(loop, replace(sloping(plant_52t, 3.0), gauge_factor=gauge_factor), draws, played)
-        assert played.count[0] < STATES
-        assert played.count[1] < len(played.pieces.kpa) - (LANES + 1) * loop.sampled.parts
+        assert played.taken[0] < STATES
+        assert played.taken[1] < len(played.pieces.kpa) - (LANES + 1) * loop.sampled.parts
 
 
 def exits_of_a_few_passes() -> str:
@@ -260,7 +258,7 @@ def exits_of_a_few_passes() -> str:
     cut_z = rng.standard_normal(n)
     draws = loop.draws(RandomPasses(cut_z, entry_u, phase_u, resistance_u, path_z, noise_z, np.ones(n)))
     rules = threshold_with_lead(loop, 3.0, 3, 0.1, 0.0), energy_rule(loop, 3.0, 4, 0.8, 0.15, 0.3, 0.15)
-    laws = sloping(plant, 3.0), observing(plant, 3.0), *map(unlocked, rules)
+    laws: tuple[Regulator, ...] = sloping(plant, 3.0), observing(plant, 3.0), *map(unlocked, rules)
     return "".join(array.tobytes().hex() for law in laws for array in vars(loop.run(law, draws)).values())
 
 
