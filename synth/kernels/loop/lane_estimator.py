@@ -11,8 +11,8 @@ from synth.kernels.loop.lane_places import Floats, Ints
 from synth.kernels.vector import packs
 from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 
-FIELDS, UNSEEN = 8, 7
-"""Numbers of a state of the estimator; the last counts samples without a credible speed."""
+FIELDS = 8
+"""Numbers of a state of the estimator; the last counts samples without a credible speed, and is not followed here."""
 
 
 class Observed(NamedTuple):
@@ -55,8 +55,6 @@ def estimated(observed, parameters, work, there, i, s_m, v_m_s):
     nought, one, two, least_speed = parameters[7], parameters[8], parameters[9], parameters[5]
     state, at = observed.state, i * FIELDS
     credible = (v_m_s >= 0.0) & (v_m_s <= float(parameters[10]))
-    unseen = packs.gather(state, at + UNSEEN)
-    packs.scatter(state, at + UNSEEN, there, packs.choose(credible, nought, unseen + one))
     v = packs.choose(credible, packs.narrow(v_m_s), nought)
     kpa = packs.gather(observed.passed_kpa, i)
     p = packs.choose((kpa >= 0.0) & (kpa <= float(parameters[11])), packs.narrow(kpa), nought)

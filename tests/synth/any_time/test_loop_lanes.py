@@ -201,9 +201,10 @@ def observing(plant: Plant, target_m_s: float) -> TableController:
     return replace(controller, table=replace(controller.table, estimator=rough_estimator(plant)))
 
 
-@pytest.mark.parametrize("gaps", [False, True])
-def test_an_estimator(plant_52t: Plant, passes: RandomPasses, gaps: bool) -> None:
-    loop, controller = close_loop(plant_52t, 5), observing(plant_52t, 3.0)
+@pytest.mark.parametrize(("gaps", "period_s"), [(False, 0.1), (True, 0.1), (False, 0.4)])
+def test_an_estimator(plant_52t: Plant, passes: RandomPasses, gaps: bool, period_s: float) -> None:
+    sensor = replace(plant_52t.sensor, sample_period_s=period_s)
+    loop, controller = close_loop(replace(plant_52t, sensor=sensor), 5), observing(plant_52t, 3.0)
     draws = loop.draws(with_gaps(passes) if gaps else passes)
     sample = assert_same(loop, controller, draws)
     assert np.mean(sample.exit_speed_m_s != loop.run(sloping(plant_52t, 3.0), draws).exit_speed_m_s) > 0.5
