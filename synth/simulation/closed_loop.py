@@ -15,12 +15,14 @@ from plant_models import Plant
 from plant_models.pads import overpressure_kpa
 from plant_models.stage_regulator import resting_modes, stage_locked_actuator
 from synth.kernels.any_time.closed_loop import AnyTimeLaw, SampledDrive, run_any_time_passes
+from synth.kernels.any_time.closed_loop_lanes import run_any_time_lanes
 from synth.kernels.loop import closed_loop as kernel
 from synth.kernels.loop import closed_loop_lanes as lanes
 from synth.kernels.loop import lane_places as places
 from synth.kernels.loop import regulator
+from synth.kernels.loop.lane_estimator import FIELDS, Observed
 from synth.simulation.controllers import Controller, Law, LineController, Regulator, TableController, fixed
-from synth.simulation.drive_pieces import drive_pieces
+from synth.simulation.drive_pieces import drive_pieces, empty_periods
 from synth.simulation.passes import ExitSample, PassTrace
 from synth.simulation.path_cells import path_cells
 from synth.simulation.random_passes import PassRow, RandomPasses
@@ -113,11 +115,10 @@ class ClosedLoop:
         """All passes of `draws` under `controller`; `PlantError` where it commands what valves cannot follow."""
         law = self._law(controller)
         if isinstance(law, AnyTimeLaw):
-            return self._at_any_time(law, draws, np.empty((0, kernel.EVENT_FIELDS)))[0]
-        if law.estimator_work.shape[1] > 0:
-            return self._alone(law, draws, np.empty((0, kernel.EVENT_FIELDS)))[0]
-        exits = empty_exits(len(draws.cut_factor))
-        lanes.run_lanes(self.path, self.pieces, self.sensor, law, draws, exits, lane_memory())
+            return self._at_any_time_in_lanes(law, draws)
+        passes = len(draws.cut_factor)
+        exits, memory = empty_exits(passes), (lane_memory(), empty_observed(law, passes))
+        lanes.run_lanes(self.path, self.pieces, self.sensor, law, draws, exits, *memory)
         return sample_of(exits, draws)
 
     def follow(self, controller: Regulator, draws: kernel.Draws) -> PassTrace:
@@ -152,6 +153,14 @@ class ClosedLoop:
         count = run_any_time_passes(self.path, self.sampled, self.sensor, law, draws, exits, events)
         return sample_of(exits, draws), events[:count]
 
+    def _at_any_time_in_lanes(self, law: AnyTimeLaw, draws: kernel.Draws) -> ExitSample:
+        """As `_at_any_time`, without events."""
+        passes = len(draws.cut_factor)
+        exits = empty_exits(passes)
+        memory = lane_memory(), empty_periods(self.sampled), empty_observed(law.rule, passes)
+        run_any_time_lanes(self.path, self.sampled, self.sensor, law, draws, exits, *memory)
+        return sample_of(exits, draws)
+
 
 def pad_slopes(path: kernel.Path, factor: NDArray[np.float64], path_z: NDArray[np.float32]) -> NDArray[np.float64]:
     """Slope of the pads in every cell of n passes, (n, C): deceleration by one kPa of overpressure, m/s² per kPa.
@@ -168,6 +177,17 @@ def empty_exits(passes: int) -> kernel.Exits:
     """Memory for the results of `passes` passes."""
     return kernel.Exits(
         np.empty(passes), np.empty(passes), np.empty(passes, dtype=np.bool_), np.empty(passes, dtype=np.int32)
+    )
+
+
+def empty_observed(law: regulator.Rule, passes: int) -> Observed:
+    """Memory of the estimator of `law` for `passes` passes that have not begun; none if it has no estimator."""
+    passes = passes if law.estimator_work.shape[1] > 0 else 0
+    return Observed(
+        np.zeros((passes, FIELDS), dtype=np.float32),
+        np.zeros((passes, 2), dtype=np.float32),
+        np.zeros(passes, dtype=np.int64),
+        np.zeros(passes),
     )
 
 

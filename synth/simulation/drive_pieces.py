@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
+from synth.kernels.any_time.closed_loop import SampledDrive
+from synth.kernels.any_time.played_periods import PlayedPeriods
 from synth.kernels.loop.closed_loop import Drive
-from synth.kernels.loop.lane_places import Pieces
+from synth.kernels.loop.lane_places import LANES, Pieces
 from synth.simulation.controllers import fixed
+
+STATES = 4096
+"""States of a drive that are remembered: 20 000 passes of a table meet some hundreds."""
 
 
 def drive_pieces(drive: Drive, period_s: float) -> Pieces:
@@ -19,6 +25,7 @@ def drive_pieces(drive: Drive, period_s: float) -> Pieces:
         [drive.mode_overpressure_kpa[begins_at : begins_at + 1], drive.mode_overpressure_kpa],
         [np.zeros(resting)],
     )
+    means = [np.append(kpa[0], drive.mode_overpressure_kpa)]
     places, after = [np.zeros(resting, dtype=np.int64)], [np.append(1 + begins_at, np.arange(1, resting))]
     first, count = [], resting
     for chain, mode in enumerate(drive.chain_mode):
@@ -27,6 +34,7 @@ def drive_pieces(drive: Drive, period_s: float) -> Pieces:
         first.append(count)
         count += begins.size
         kpa.append(played[begins])
+        means.append(period_means(played, substeps)[begins // substeps])
         parts.append(np.diff(np.append(begins, played.size)))
         places.append(begins)
         after.append(np.append(np.arange(first[-1] + 1, count), 1 + mode))
@@ -39,6 +47,7 @@ def drive_pieces(drive: Drive, period_s: float) -> Pieces:
     return Pieces(
         kpa=fixed(np.concatenate(kpa)[order], np.float64),
         duration_s=fixed(duration[order], np.float64),
+        mean_kpa=fixed(np.concatenate(means)[order], np.float64),
         start_s=fixed((place % substeps * part)[order], np.float64),
         after=fixed(number[np.concatenate(after)[order]], np.int64),
         command=fixed(np.where(none, 0, number[np.asarray(first)[drive.command]]), np.int64),
@@ -46,4 +55,37 @@ def drive_pieces(drive: Drive, period_s: float) -> Pieces:
         sampled=int(np.sum(place % substeps == 0)),
         initial_stage=drive.initial_stage,
         entrance_stage=drive.entrance_stage,
+    )
+
+
+def period_means(played_kpa: NDArray[np.float64], substeps: int) -> NDArray[np.float64]:
+    """Mean overpressure of every period, summed up from its first part to its last, as the kernel does it."""
+    parts = played_kpa.reshape(-1, substeps)
+    return np.asarray(np.cumsum(parts, axis=1)[:, -1] / substeps)
+
+
+def empty_periods(drive: SampledDrive, states: int = STATES) -> PlayedPeriods:
+    """Memory for so many states of `drive` and the periods that begin in them, with nothing played yet."""
+    lanes, stages = states + LANES, len(drive.stage_kpa)
+    pieces = states * (1 + stages) + LANES * (drive.parts + 1)
+    return PlayedPeriods(
+        Pieces(
+            kpa=np.zeros(pieces),
+            duration_s=np.zeros(pieces),
+            start_s=np.zeros(pieces),
+            mean_kpa=np.zeros(pieces),
+            after=np.zeros(pieces, dtype=np.int64),
+            command=np.zeros((states, stages), dtype=np.int64),
+            resting=lanes,
+            sampled=lanes,
+            initial_stage=drive.initial_stage,
+            entrance_stage=drive.entrance_stage,
+        ),
+        pressure_kpa=np.zeros(lanes),
+        wait_s=np.zeros(lanes),
+        stage=np.zeros(lanes, dtype=np.int64),
+        rises=np.zeros((lanes, 2), dtype=np.float32),
+        slots=np.zeros(1 << (2 * states).bit_length(), dtype=np.int64),
+        taken=np.zeros(2, dtype=np.int64),
+        over=np.zeros(drive.parts),
     )

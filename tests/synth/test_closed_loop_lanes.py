@@ -20,6 +20,7 @@ from synth.simulation.closed_loop import ClosedLoop, Controller, LineController,
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.solver.switching_lines import SwitchingLines
+from tuning_tables.estimator import Estimator
 from tuning_tables.figures import Predicted, ValidRange
 from tuning_tables.provenance import CutId, Generator, RetarderId
 from tuning_tables.stage import Stage, round_coefficients
@@ -143,8 +144,39 @@ def test_a_creeping_cut_is_given_up(plant_22t: Plant, passes: RandomPasses, lead
     assert np.all((sample.transit_time_s >= longest) & (sample.transit_time_s < longest + 0.11))
 
 
+def rough_estimator(plant: Plant) -> Estimator:
+    """An estimator that knows the plant roughly, and not all of the path."""
+    s = np.linspace(2.0, plant.exit_m - 3.0, 9)
+    work = (0.1 * s + 0.01 * np.sin(s), 0.0016 * s)
+    breaks, drive, brake = (tuple(float(each) for each in row) for row in (s, *work))
+    return Estimator(0.05, 0.15, 0.1, 2.0, 60.0, breaks, drive, brake)
+
+
+def with_gaps(passes: RandomPasses) -> RandomPasses:
+    """`passes` with missing readings: now and then, for a while, and some passes from their first sample on."""
+    missing = np.random.default_rng(3).random(passes.noise_z.shape) < 0.1
+    missing[:, 30:45], missing[::3, :7] = True, True
+    return replace(passes, noise_z=np.where(missing, np.float32(np.nan), passes.noise_z))
+
+
+# With 0.4 s the pressure changes within the period of the command, and its mean is over more parts.
+@pytest.mark.parametrize(("gaps", "period_s"), [(False, 0.1), (True, 0.1), (False, 0.4)])
+def test_estimators(plant_52t: Plant, passes: RandomPasses, gaps: bool, period_s: float) -> None:
+    sensor = replace(plant_52t.sensor, sample_period_s=period_s)
+    loop, estimator = close_loop(replace(plant_52t, sensor=sensor), 5), rough_estimator(plant_52t)
+    draws = loop.draws(with_gaps(passes) if gaps else passes)
+    table = TableController(replace(wavy_table(plant_52t, 3.0), estimator=estimator))
+    sample = assert_same(loop, table, draws)
+    assert sample.switchings.mean() > 3.0
+    without = loop.run(TableController(wavy_table(plant_52t, 3.0)), draws)
+    assert np.mean(sample.exit_speed_m_s != without.exit_speed_m_s) > 0.5
+    for lead_s, multi_step in ((0.0, True), (0.2, False)):
+        lines = energy_rule(loop, 3.0, 4, 0.8, 0.15, lead_s, 0.15)
+        assert_same(loop, replace(lines, multi_step=multi_step, estimator=estimator), draws)
+
+
 def exits_of_a_few_passes() -> str:
-    """Bytes of what twelve passes of the default book do under three laws."""
+    """Bytes of what twelve passes of the default book do under four laws."""
     _, plant = load_config(None).plants()[-1]  # all five stages
     loop, rng, n = close_loop(plant, plant.top_stage + 1), np.random.default_rng(5), 12
     entry_u, phase_u, resistance_u = (rng.random(n) for _ in range(3))
@@ -152,7 +184,9 @@ def exits_of_a_few_passes() -> str:
     cut_z = rng.standard_normal(n)
     draws = loop.draws(RandomPasses(cut_z, entry_u, phase_u, resistance_u, path_z, noise_z, np.ones(n)))
     table = TableController(wavy_table(plant, 3.0))
-    laws = (table, threshold_with_lead(loop, 3.0, 3, 0.1, 0.0), energy_rule(loop, 3.0, 4, 0.8, 0.15, 0.3, 0.15))
+    observing = TableController(replace(table.table, estimator=rough_estimator(plant)))
+    lines = threshold_with_lead(loop, 3.0, 3, 0.1, 0.0), energy_rule(loop, 3.0, 4, 0.8, 0.15, 0.3, 0.15)
+    laws: tuple[Controller, ...] = table, observing, *lines
     return "".join(array.tobytes().hex() for law in laws for array in vars(loop.run(law, draws)).values())
 
 

@@ -25,6 +25,7 @@ from synth.kernels.loop.regulator import (
     stage_by_lines,
     table_decision,
 )
+from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 
 
 class SampledDrive(NamedTuple):
@@ -72,7 +73,7 @@ class AnyTimeLaw(NamedTuple):
     surfaces: NodeSurfaces
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@borrowing
 def surface_line(surface: Floats, nodes_kpa: Floats, spacing_m: float, pressure: float, s: float) -> float:
     """Line of `surface` (B, N + 1) at a pressure and a path `s` from its first node.
 
@@ -98,7 +99,7 @@ def surface_line(surface: Floats, nodes_kpa: Floats, spacing_m: float, pressure:
     return total
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@borrowing
 def wanted_by_surfaces(by: NodeSurfaces, stage: int, pressure: float, wait: float, s: float, v: float) -> int:
     """The stage that surfaces want, one beside `stage` or the same."""
     w = 0
@@ -112,12 +113,13 @@ def wanted_by_surfaces(by: NodeSurfaces, stage: int, pressure: float, wait: floa
     return stage
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@borrowing
 def wanted_stage(law: AnyTimeLaw, stage: int, top: int, pressure: float, wait: float, s: float, v: float) -> int:
     """The stage that is wanted at a sample, within 0 … `top`; `v` is the speed that the regulator knows."""
     by = law.rule
     if law.surfaces.lower.shape[0] > 0:
-        return wanted_by_surfaces(law.surfaces, stage, pressure, wait, s, v)
+        by_surfaces: int = wanted_by_surfaces(law.surfaces, stage, pressure, wait, s, v)
+        return by_surfaces
     if by.coefficients.shape[0] > 0:
         reached, step, shown = stage, 0, pressure * law.gauge_factor
         while True:  # with `multi_step` asked again at the stage reached
@@ -133,29 +135,39 @@ def wanted_stage(law: AnyTimeLaw, stage: int, top: int, pressure: float, wait: f
     return wanted
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@borrowing_inline
+def joined_until(over: Floats, begun: int) -> int:
+    """The part behind those that are played as one step with part `begun`: dead times and rests are one step."""
+    i = begun
+    while i < over.shape[0] and abs(over[i] - over[begun]) < 1e-9:
+        i += 1
+    return i
+
+
+@borrowing
 def run_any_time_pass(
     edges_m: Floats, free: Floats, brake: Floats, drive: SampledDrive, sensor: Sensor, law: AnyTimeLaw,
     entry_m_s: float, first_sample_s: float, noise_z: NDArray[np.float32], events: Floats, known: NDArray[np.float32],
+    over: Floats,
 ) -> Any:  # fmt: skip
     """One pass from where the regulator acts to the exit; returns (v, time, status, switchings, events).
 
-    `known` (8,) is memory for the estimator.
+    `known` (8,) is memory for the estimator, `over` (parts,) for the overpressures of a period.
     """
     parameters, work = law.rule.estimator_parameters, law.rule.estimator_work
+    estimating = work.shape[1] > 0
     lead_s, gain = law.rule.lead_s, sensor.period_s / (sensor.period_s + law.rule.filter_s)
     known[:], passed_kpa, slope, last = 0.0, 0.0, 0.0, math.nan
     stage_kpa, touch = drive.stage_kpa, drive.valves.touch_kpa
-    period, top = sensor.period_s, stage_kpa.shape[0] - 1
-    over = np.empty(drive.parts)
+    period, top, longest = sensor.period_s, stage_kpa.shape[0] - 1, int(LONGEST_PASS_S / sensor.period_s)
     part = period / drive.parts
     pressure, wait, stage, sample, switchings = drive.initial_kpa, 0.0, drive.initial_stage, 0, 0
     kpa = max(0.0, pressure - touch)
     count = note(events, 0, 0.0, edges_m[0], entry_m_s, kpa, stage, math.nan)
     cell, s, v, time, status = advance(edges_m, free, brake, kpa, first_sample_s, 0, edges_m[0], entry_m_s)
-    while status == MOVING and time < LONGEST_PASS_S:
+    while status == MOVING and sample < longest:
         measured = measure(v, noise_z[sample % noise_z.shape[0]], sensor)
-        if work.shape[1] > 0:
+        if estimating:
             measured = float(estimated_speed(parameters, work, known, s, measured, passed_kpa))
         if not math.isnan(measured - last):  # neither at the first sample nor beside a missing reading
             slope += gain * ((measured - last) / period - slope)
@@ -167,12 +179,10 @@ def run_any_time_pass(
         pressure, wait = play_period(
             pressure, wait, stage_kpa[before], stage_kpa[stage], drive.computing_delay_s, period, drive.valves, over
         )
-        passed_kpa = over.mean()
+        passed_kpa = over.mean() if estimating else 0.0
         i, used = 0, 0.0
         while i < drive.parts and status == MOVING:
-            begun, kpa = i, over[i]
-            while i < drive.parts and abs(over[i] - kpa) < 1e-9:
-                i += 1  # dead times and rests are one step
+            begun, kpa, i = i, over[i], joined_until(over, i)
             time = first_sample_s + sample * period + begun * part
             count = note(events, count, time, s, v, kpa, stage, measured)
             measured = math.nan
@@ -191,7 +201,7 @@ def run_any_time_passes(
     path: Path, drive: SampledDrive, sensor: Sensor, law: AnyTimeLaw, draws: Draws, exits: Exits, events: Floats
 ) -> int:
     """Simulate all passes of `draws` into `exits`; returns the number of events of the last pass."""
-    free, known = np.empty(path.gravity_m_s2.shape[0]), np.empty(8, np.float32)
+    free, known, over = np.empty(path.gravity_m_s2.shape[0]), np.empty(8, np.float32), np.empty(drive.parts)
     count = 0
     for i in range(draws.cut_factor.shape[0]):
         drag = path.drag_m_s2_per_n_kn * draws.resistance_n_kn[i]
@@ -199,7 +209,7 @@ def run_any_time_passes(
             free[j] = path.gravity_m_s2[j] - drag
         v, time, status, switchings, count = run_any_time_pass(
             path.edges_m, free, draws.brake_m_s2_per_kpa[i], drive, sensor, law,
-            draws.entry_m_s[i], draws.first_sample_s[i], draws.noise_z[i], events, known,
+            draws.entry_m_s[i], draws.first_sample_s[i], draws.noise_z[i], events, known, over,
         )  # fmt: skip
         exits.stalled[i] = status != LEFT
         exits.speed_m_s[i] = v if status == LEFT else 0.0

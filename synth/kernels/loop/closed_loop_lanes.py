@@ -12,6 +12,7 @@ import math
 from typing import Any
 
 from synth.kernels.loop.closed_loop import LONGEST_PASS_S, Draws, Exits, Path
+from synth.kernels.loop.lane_estimator import Observed
 from synth.kernels.loop.lane_places import (
     BEFORE,
     CELL,
@@ -155,30 +156,52 @@ def leave(x: Floats, n: Ints, lane: int, last: int) -> None:
     x[V + last], n[CELL + last] = math.nan, 0
 
 
-@borrowing
-def run_lanes(path: Path, pieces: Pieces, sensor: Sensor, law: Rule, draws: Draws, exits: Exits, work: Work) -> None:
-    """Simulate all passes of `draws` into `exits`; the law must be without estimator."""
-    x, n = work.floats, work.ints
-    brakes, passes = draws.brake_m_s2_per_kpa.reshape(-1), draws.cut_factor.shape[0]
-    active, longest = min(LANES, passes), int(LONGEST_PASS_S / sensor.period_s)
-    looked_at = pieces.sampled if law.lead_s != 0.0 else pieces.resting
+@borrowing_inline
+def begin_all(work: Work, active: int, path: Path, pieces: Pieces, draws: Draws) -> None:
+    """The first passes begin, one on each lane."""
     clear(work)
     for lane in range(active):
-        begin(x, n, lane, lane, path, pieces, draws)
+        begin(work.floats, work.ints, lane, lane, path, pieces, draws)
+
+
+@borrowing_inline
+def relieve(
+    work: Work, ended: int, active: int, following: int, longest: int, path: Path, pieces: Pieces, sensor: Sensor,
+    draws: Draws, exits: Exits,
+) -> Any:  # fmt: skip
+    """Have the lanes whose pass has ended, the first `ended` of that list, take the next passes; returns both counts.
+
+    `active`: how many lanes have a pass; `following`: the pass that begins next.
+    """
+    # From the last lane down: it may be moved into one that falls idle.
+    for k in range(ended - 1, -1, -1):
+        lane = work.ended[k]
+        record(work, lane, longest, path, pieces, sensor, draws, exits)
+        if following < draws.cut_factor.shape[0]:
+            begin(work.floats, work.ints, lane, following, path, pieces, draws)
+            fetch_ahead(following + 2, path, draws)
+            following += 1
+        else:
+            active -= 1
+            leave(work.floats, work.ints, lane, active)
+    return active, following
+
+
+@borrowing
+def run_lanes(
+    path: Path, pieces: Pieces, sensor: Sensor, law: Rule, draws: Draws, exits: Exits, work: Work, observed: Observed
+) -> None:
+    """Simulate all passes of `draws` into `exits`; `observed` for as many, none of which has begun."""
+    x, n = work.floats, work.ints
+    brakes, longest = draws.brake_m_s2_per_kpa.reshape(-1), int(LONGEST_PASS_S / sensor.period_s)
+    active = min(LANES, draws.cut_factor.shape[0])
+    filters = law.lead_s != 0.0 or law.estimator_work.shape[1] > 0
+    looked_at = pieces.sampled if filters else pieces.resting
+    begin_all(work, active, path, pieces, draws)
     following = active
     while active > 0:
         waiting, ended = move(work, active, path, brakes, pieces, looked_at, longest)
-        told = listen(work, waiting, pieces, sensor, law, draws.noise_z)
+        told = listen(work, waiting, pieces, sensor, law, draws.noise_z, observed)
         for k in range(told):
-            regulate(x, n, work.told[k], work.heard[k], pieces, law)
-        # From the last lane down: it may be moved into one that falls idle.
-        for k in range(ended - 1, -1, -1):
-            lane = work.ended[k]
-            record(work, lane, longest, path, pieces, sensor, draws, exits)
-            if following < passes:
-                begin(x, n, lane, following, path, pieces, draws)
-                fetch_ahead(following + 2, path, draws)
-                following += 1
-            else:
-                active -= 1
-                leave(x, n, lane, active)
+            regulate(x, n, work.told[k], work.heard[k], pieces, law, observed)
+        active, following = relieve(work, ended, active, following, longest, path, pieces, sensor, draws, exits)

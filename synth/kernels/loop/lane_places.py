@@ -28,13 +28,15 @@ class Pieces(NamedTuple):
     Piece 0 is before the first sample; a resting mode is one piece of a sampling period that is followed by itself, a
     chain several that end in a resting mode. Pieces below `resting` are at rest (1 + mode), those below `sampled` begin
     a sample, at rest or within a chain. `kpa`, `duration_s`, `after` (P,): overpressure, duration (that of piece 0 is
-    each pass's own, noted as 0) and the piece that follows; `start_s` (P,) since the sample that it begins in.
+    each pass's own, noted as 0) and the piece that follows; `start_s` (P,) since the sample that it begins in;
+    `mean_kpa` (P,): mean overpressure of the sampling period, noted with the first piece of each.
     `command` (modes, K + 1): first piece of the chain to a stage. `initial_stage`, `entrance_stage` as in `Drive`.
     """
 
     kpa: Floats
     duration_s: Floats
     start_s: Floats
+    mean_kpa: Floats
     after: Ints
     command: Ints
     resting: int

@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.kernels.loop.lane_estimator import Observed, estimated
 from synth.kernels.loop.lane_places import (
     BEFORE,
     LANES,
@@ -31,22 +32,29 @@ from synth.kernels.vector.borrowing import borrowing_inline
 
 
 @borrowing_inline
-def listen(work: Work, count: int, pieces: Pieces, sensor: Sensor, law: Rule, noise_z: NDArray[np.float32]) -> int:
+def listen(
+    work: Work, count: int, pieces: Pieces, sensor: Sensor, law: Rule, noise_z: NDArray[np.float32], observed: Observed
+) -> int:
     """Measured speed of the first `count` lanes of `waiting`; returns how many have a command, those in `told`."""
     x, n, waiting = work.floats, work.ints, work.waiting
     told = 0
     for k in range(0, count, packs.EIGHT):
         lane = packs.load8(waiting, k)
         s, stage = packs.gather(x, lane + S), packs.gather(n, lane + STAGE)
-        speed = measured(x, n, lane, sensor, noise_z)
+        read = measured(x, n, lane, sensor, noise_z)
+        speed, there = read, lane < LANES
+        if law.estimator_work.shape[1] > 0:
+            i, passes = packs.gather(n, lane + PASS), packs.gather(pieces.mean_kpa, packs.gather(n, lane + PIECE))
+            speed = estimated(observed, law.estimator_parameters, law.estimator_work, there, i, s, read)
+            packs.scatter(observed.passed_kpa, i, there, passes)  # if there is no command
         if law.coefficients.shape[0] > 0:
-            speaks = speaks_by_table(law, stage, s, speed)
+            speaks = speaks_by_table(law, stage, s, speed, 0.0, 0.0)
         else:
-            if law.lead_s != 0.0:
-                speed = speed + law.lead_s * slope(x, lane, speed, sensor.period_s, law.filter_s)
+            speed = foretold(x, lane, speed, read, sensor, law)
             speaks = speaks_by_lines(law, stage, s, speed)
-            if law.lead_s != 0.0:  # looks at the sensor within a chain, too, but has no command there
-                speaks = speaks & (packs.gather(n, lane + PIECE) < pieces.resting)
+        if law.lead_s != 0.0 or law.estimator_work.shape[1] > 0:
+            # These look at the sensor within a chain, too, but there is no command there.
+            speaks = there & speaks & (packs.gather(n, lane + PIECE) < pieces.resting)
         packs.keep(work.heard, told, speaks, speed)
         told += packs.keep(work.told, told, speaks, lane)
     return told
@@ -67,6 +75,14 @@ def measured(x, n, lane, sensor, noise_z):
 
 
 @borrowing_inline
+def foretold(x, lane, speed, sloping, sensor, law):
+    """The speed that lines are compared with: `speed` and, with a lead, that times the slope of the speed `sloping`."""
+    if law.lead_s != 0.0:
+        speed = speed + law.lead_s * slope(x, lane, sloping, sensor.period_s, law.filter_s)
+    return speed
+
+
+@borrowing_inline
 def slope(x, lane, speed, period_s, filter_s):
     """Filtered slope of the measured speed (as in `closed_loop.run_pass`), noted for the next sample."""
     change = speed - packs.gather(x, lane + BEFORE)
@@ -80,9 +96,10 @@ def slope(x, lane, speed, period_s, filter_s):
 
 
 @borrowing_inline
-def speaks_by_table(law, stage, s_m, v_m_s):
+def speaks_by_table(law, stage, s_m, v_m_s, lower_rise, upper_rise):
     """Whether the table has a command, by the arithmetic of `rule.decide`; a line that is not there is NaN.
 
+    `lower_rise`, `upper_rise` float32: what the pressure adds to the lines; numbers for all lanes, or packs of them.
     For readings within the numbers of float32, which is all that the loop has; NaN: no command.
     """
     s, v = packs.narrow(s_m), packs.narrow(v_m_s)
@@ -94,7 +111,7 @@ def speaks_by_table(law, stage, s_m, v_m_s):
     for power in range(terms - 2, -1, -1):
         lower = lower * s + packs.gather(law.coefficients, below + power)
         upper = upper * s + packs.gather(law.coefficients, above + power)
-    return (v < lower) | (v > upper)
+    return (v < lower + lower_rise) | (v > upper + upper_rise)
 
 
 @borrowing_inline
@@ -111,7 +128,7 @@ def speaks_by_lines(law, stage, s, v):
 
 
 @borrowing_inline
-def regulate(x: Floats, n: Ints, lane: int, speed_m_s: float, pieces: Pieces, law: Rule) -> None:
+def regulate(x: Floats, n: Ints, lane: int, speed_m_s: float, pieces: Pieces, law: Rule, observed: Observed) -> None:
     """What the regulator does where it has a command (as in `closed_loop.run_pass`)."""
     s, stage, top = x[S + lane], n[STAGE + lane], pieces.command.shape[1] - 1
     if law.coefficients.shape[0] > 0:
@@ -131,3 +148,5 @@ def regulate(x: Floats, n: Ints, lane: int, speed_m_s: float, pieces: Pieces, la
         n[STAGE + lane], n[PIECE + lane] = wanted, first
         n[SWITCHINGS + lane] += 1
         x[LEFT_S + lane] = pieces.duration_s[first]
+        if law.estimator_work.shape[1] > 0:
+            observed.passed_kpa[n[PASS + lane]] = pieces.mean_kpa[first]

@@ -1,0 +1,93 @@
+"""Kernel of the closed loop with commands at any time for many passes, to the bit what `any_time.closed_loop` computes.
+
+The lanes and how they move are those of the locked loop (`loop.closed_loop_lanes`). What the drive plays to them comes
+from memory (`played_periods`), and every lane is asked at every sample.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from synth.kernels.any_time.closed_loop import AnyTimeLaw, SampledDrive, wanted_stage
+from synth.kernels.any_time.played_periods import PlayedPeriods, begin_playing, first_piece
+from synth.kernels.loop.closed_loop import LONGEST_PASS_S, Draws, Exits, Path
+from synth.kernels.loop.closed_loop_lanes import begin_all, move, relieve
+from synth.kernels.loop.lane_estimator import Observed, estimated
+from synth.kernels.loop.lane_places import LANES, LEFT_S, PASS, PIECE, STAGE, SWITCHINGS, S, Work
+from synth.kernels.loop.lane_regulator import foretold, measured, speaks_by_lines, speaks_by_table
+from synth.kernels.loop.regulator import Sensor, admitted
+from synth.kernels.vector import packs
+from synth.kernels.vector.borrowing import borrowing, borrowing_inline
+
+
+@borrowing_inline
+def listen(
+    work: Work, count: int, played: PlayedPeriods, sensor: Sensor, law: AnyTimeLaw, noise_z: NDArray[np.float32],
+    observed: Observed,
+) -> int:  # fmt: skip
+    """As `lane_regulator.listen`; those in `told` have a command, or their next period has not been played yet.
+
+    Where surfaces are asked, every lane is among them.
+    """
+    x, n, rule = work.floats, work.ints, law.rule
+    told = 0
+    for k in range(0, count, packs.EIGHT):
+        lane = packs.load8(work.waiting, k)
+        s, stage, state = packs.gather(x, lane + S), packs.gather(n, lane + STAGE), packs.gather(n, lane + PIECE)
+        speed = measured(x, n, lane, sensor, noise_z)
+        there = lane < LANES
+        if rule.estimator_work.shape[1] > 0:
+            i = packs.gather(n, lane + PASS)
+            speed = estimated(observed, rule.estimator_parameters, rule.estimator_work, there, i, s, speed)
+            packs.scatter(observed.passed_kpa, i, there, packs.gather(played.pieces.mean_kpa, state))
+        speaks = there
+        if law.surfaces.lower.shape[0] == 0:
+            unplayed = packs.gather(x, lane + LEFT_S) == 0.0
+            if rule.coefficients.shape[0] > 0:
+                at = state * 2
+                rises = packs.gather(played.rises, at), packs.gather(played.rises, at + 1)
+                speaks = there & (unplayed | speaks_by_table(rule, stage, s, speed, *rises))
+            else:
+                speed = foretold(x, lane, speed, speed, sensor, rule)
+                speaks = there & (unplayed | speaks_by_lines(rule, stage, s, speed))
+        packs.keep(work.heard, told, speaks, speed)
+        told += packs.keep(work.told, told, speaks, lane)
+    return told
+
+
+@borrowing_inline
+def regulate(
+    work: Work, lane: int, speed_m_s: float, played: PlayedPeriods, drive: SampledDrive, sensor: Sensor,
+    law: AnyTimeLaw, observed: Observed,
+) -> None:  # fmt: skip
+    """What the regulator and the drive do at a sample (as in `any_time.closed_loop.run_any_time_pass`)."""
+    x, n = work.floats, work.ints
+    s, state, stage, top = x[S + lane], n[PIECE + lane], n[STAGE + lane], drive.stage_kpa.shape[0] - 1
+    wanted = wanted_stage(law, stage, top, played.pressure_kpa[state], played.wait_s[state], s, speed_m_s)
+    wanted = admitted(stage, wanted, s, drive.entrance_stage)
+    if wanted != stage:
+        n[SWITCHINGS + lane] += 1
+    first = first_piece(played, drive, law, sensor.period_s, lane, state, wanted)
+    n[STAGE + lane], n[PIECE + lane], x[LEFT_S + lane] = wanted, first, played.pieces.duration_s[first]
+    if law.rule.estimator_work.shape[1] > 0:
+        observed.passed_kpa[n[PASS + lane]] = played.pieces.mean_kpa[first]
+
+
+@borrowing
+def run_any_time_lanes(
+    path: Path, drive: SampledDrive, sensor: Sensor, law: AnyTimeLaw, draws: Draws, exits: Exits, work: Work,
+    played: PlayedPeriods, observed: Observed,
+) -> None:  # fmt: skip
+    """Simulate all passes of `draws` into `exits`; `observed` for as many, none of which has begun."""
+    pieces, brakes = played.pieces, draws.brake_m_s2_per_kpa.reshape(-1)
+    longest, active = int(LONGEST_PASS_S / sensor.period_s), min(LANES, draws.cut_factor.shape[0])
+    begin_playing(played, drive, law)
+    begin_all(work, active, path, pieces, draws)
+    following = active
+    while active > 0:
+        waiting, ended = move(work, active, path, brakes, pieces, pieces.sampled, longest)
+        told = listen(work, waiting, played, sensor, law, draws.noise_z, observed)
+        for k in range(told):
+            regulate(work, work.told[k], work.heard[k], played, drive, sensor, law, observed)
+        active, following = relieve(work, ended, active, following, longest, path, pieces, sensor, draws, exits)
