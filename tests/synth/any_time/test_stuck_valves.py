@@ -16,12 +16,14 @@ from synth.simulation.common_passes import common_passes
 from synth.simulation.passes import PassTrace
 from synth.simulation.random_passes import random_passes
 from synth.solver.any_time.polynomial_surfaces import CUBIC_AND_SLOPE, PolynomialSurfaces
+from synth.solver.tabulate import UNPREDICTED, tabulate
 from synth.studies.any_time.findings import Ways
 from synth.studies.any_time.stuck_valves import NOTHING, STUCK, StuckLoop, StuckValves, where_stuck
 from synth.studies.any_time.wrong_plants import waiting_table, with_a_silent_gauge
-from tests.synth.any_time.tabled import tabled
+from tests.synth.any_time.tabled import ORIGIN, tabled
 from tests.synth.any_time.test_loop import falling_lines
 from tests.synth.any_time.test_slow_passes import SAME_M_S, SlowPass
+from tuning_tables import ControllerTable
 
 FOR_EVER = {each.name: replace(each, duration_s=math.inf) for each in STUCK}
 BOTH = FOR_EVER["both valves, 1 s"]
@@ -49,9 +51,13 @@ def surfaces(plant: Plant, slope_m_s: float) -> PolynomialSurfaces:
     )
 
 
+def surface_table(plant: Plant, slope_m_s: float) -> ControllerTable:
+    return tabulate(plant, surfaces(plant, slope_m_s), 3.0, UNPREDICTED, *ORIGIN)
+
+
 @pytest.fixture(scope="module")
 def table(plant: Plant) -> TableController:
-    return tabled(plant, surfaces(plant, 0.06))
+    return TableController(surface_table(plant, 0.06))
 
 
 def every_way(loop: ClosedLoop, lines: LineController, table: TableController) -> Iterator[StuckLoop]:
@@ -134,7 +140,7 @@ def test_one_stuck_valve_lets_the_other_work(
         for found in traces(loop, each, stuck, start_s):
             change = np.diff(found.overpressure_kpa[found.time_s >= start_s + 0.1])
             assert (sign * change < 1e-9).all()
-            worked += (sign * change < -1.0).any()
+            worked += int((sign * change < -1.0).any())
         assert worked > 0
 
 
@@ -195,46 +201,64 @@ class SlowStuckPass(SlowPass):
             super().step(dt)
 
 
-def slow_exit(cut: SlowStuckPass, lines: PolynomialSurfaces, first_s: float, z: np.ndarray) -> tuple[float, int]:
-    """Exit speed and number of commands of a pass at any time."""
-    plant, stage, commands = cut.plant, 0, 0
-    stages = plant.position.stage_pressures_kpa
+def sound_samples(plant: Plant, believed_kpa: float, wanted_kpa: float) -> int:
+    """Sampling periods that sound valves need from a pressure at rest to a stage."""
+    history = plant.position.pneumatics.respond(believed_kpa, wanted_kpa, plant.position.force.touch_pressure_kpa)
+    return max(1, math.ceil((plant.sensor.computing_delay_s + history.duration_s) / 0.1 - 1e-9))
+
+
+def slow_exit(
+    cut: SlowStuckPass, lines: PolynomialSurfaces, way: Ways, first_s: float, z: np.ndarray
+) -> tuple[float, int]:
+    """Exit speed and number of commands of a pass."""
+    plant, stage, commands, rests_at, believed_kpa = cut.plant, 0, 0, 0, 15.0
+    stages, band = plant.position.stage_pressures_kpa, plant.position.pneumatics.dead_band_kpa
     cut.go_on(first_s)
     for sample in range(400):
         if cut.s >= plant.exit_m or cut.v <= 0.0:
             break
         cut.at_sample(first_s + 0.1 * sample)
-        measured = max(0.0, cut.v + plant.sensor.noise_m_s * float(z[sample]))
-        u, x = 2.0 * cut.s / plant.exit_m - 1.0, (cut.kpa - stages[stage]) / 100.0
-        lower, upper = (float(np.polynomial.legendre.legval(u, a[:4]) + x * a[4]) for a in lines.coefficients[stage])
-        down = lines.has_line[stage, 0] and measured < lower
-        up = lines.has_line[stage, 1] and measured > upper
-        stage, commands = stage + int(up and not down) - int(down), commands + int(down or up)
+        waits = abs(cut.kpa - stages[stage]) > band + 1e-9 if way is Ways.GAUGE else sample < rests_at
+        if not waits or way is Ways.ANY_TIME:
+            measured = max(0.0, cut.v + plant.sensor.noise_m_s * float(z[sample]))
+            u, x = 2.0 * cut.s / plant.exit_m - 1.0, (cut.kpa - stages[stage]) / 100.0
+            lower, upper = (
+                float(np.polynomial.legendre.legval(u, a[:4]) + x * a[4]) for a in lines.coefficients[stage]
+            )
+            step = int(lines.has_line[stage, 1] and measured > upper) - int(
+                lines.has_line[stage, 0] and measured < lower
+            )
+            stage, commands = stage + step, commands + abs(step)
+            if step:
+                rests_at = sample + sound_samples(plant, believed_kpa, stages[stage])
+                believed_kpa = stages[stage] - step * band
         cut.go_on(plant.sensor.computing_delay_s)
         cut.command(stages[stage])
         cut.go_on(plant.sensor.sample_period_s - plant.sensor.computing_delay_s)
     return max(cut.v, 0.0), commands
 
 
+@pytest.mark.parametrize("way", Ways)
 @pytest.mark.parametrize("stuck", STUCK, ids=lambda stuck: stuck.name)
-def test_slow_passes_are_those_of_the_kernel(plant: Plant, stuck: StuckValves) -> None:
+def test_slow_passes_are_those_of_the_kernel(plant: Plant, stuck: StuckValves, way: Ways) -> None:
     smooth = replace(
         plant,
         friction=replace(plant.friction, path_std=0.0),
         sensor=replace(plant.sensor, resolution_m_s=0.0),
     )
     loop, lines = close_loop(smooth, 3), surfaces(smooth, 0.06)
-    draws = loop.draws(random_passes(31, 0, 15))
-    starts_s = np.linspace(0.2, 3.0, 15)
-    found = StuckLoop(loop, tabled(smooth, lines), Ways.ANY_TIME).run(draws, stuck, starts_s)
+    draws = loop.draws(random_passes(31, 0, 10))
+    starts_s = np.linspace(0.2, 3.0, 10)
+    found = StuckLoop(loop, tabled(smooth, lines), way).run(draws, stuck, starts_s)
     same = 0
-    for i in range(15):
+    for i in range(10):
         cut = SlowStuckPass(smooth, draws, i, stuck, starts_s[i])
-        speed, commands = slow_exit(cut, lines, float(draws.first_sample_s[i]), draws.noise_z[i])
+        speed, commands = slow_exit(cut, lines, way, float(draws.first_sample_s[i]), draws.noise_z[i])
         if commands == found.switchings[i]:
             same += 1
-            assert speed == pytest.approx(found.exit_speed_m_s[i], abs=SAME_M_S)
-    assert same >= 13
+            # Energies, as a cut that has almost stopped makes any error of them a large one of its speed.
+            assert speed**2 == pytest.approx(found.exit_speed_m_s[i] ** 2, abs=2.0 * 3.0 * SAME_M_S)
+    assert same >= 9  # a speed within a millimetre of a line may fall on either side
 
 
 # ------------------------------------------------------------------------------------ figures and the silent gauge
@@ -257,14 +281,13 @@ def test_figures_are_those_of_the_passes(plant: Plant, table: TableController, l
 def test_an_estimator_or_a_table_at_rest_is_refused(plant: Plant, loop: ClosedLoop, lines: LineController) -> None:
     with pytest.raises(ValueError, match="stuck valves"):
         StuckLoop(loop, replace(lines, lead_s=0.5), Ways.ANY_TIME).law()
-    surface_table = tabled(plant, surfaces(plant, 0.06)).table
     with pytest.raises(ValueError, match="stuck valves"):
-        StuckLoop(loop, TableController(waiting_table(surface_table)), Ways.TIMES).law()
+        StuckLoop(loop, TableController(waiting_table(surface_table(plant, 0.06))), Ways.TIMES).law()
 
 
 def test_a_silent_gauge_asks_the_lines_at_the_stages_pressure(plant: Plant, lines: LineController) -> None:
     passes = common_passes(plant, random_passes(15, 0, 400))
-    with_slope, without = (tabled(plant, surfaces(plant, slope)).table for slope in (0.06, 0.0))
+    with_slope, without = (surface_table(plant, slope) for slope in (0.06, 0.0))
     found = with_a_silent_gauge(3.0, with_slope, lines, passes)
     flat = with_a_silent_gauge(3.0, without, lines, passes)
     assert found == flat
