@@ -1,4 +1,4 @@
-"""Valves that do not open: the simulators of sound valves without a fault, by hand, and a second, slow formulation."""
+"""Valves that do not open: without a fault the simulators of sound valves; what stands still; by hand; figures."""
 
 from __future__ import annotations
 
@@ -17,12 +17,21 @@ from synth.simulation.passes import PassTrace
 from synth.simulation.random_passes import random_passes
 from synth.solver.any_time.polynomial_surfaces import CUBIC_AND_SLOPE, PolynomialSurfaces
 from synth.solver.tabulate import UNPREDICTED, tabulate
-from synth.studies.any_time.findings import Ways
+from synth.studies.any_time.findings import (
+    CaseRow,
+    Polishing,
+    Ratio,
+    StuckFigures,
+    Way,
+    Ways,
+    silent_rows,
+    stuck_heads,
+    stuck_rows,
+)
 from synth.studies.any_time.stuck_valves import NOTHING, STUCK, StuckLoop, StuckValves, where_stuck
 from synth.studies.any_time.wrong_plants import waiting_table, with_a_silent_gauge
 from tests.synth.any_time.tabled import ORIGIN, tabled
 from tests.synth.any_time.test_loop import falling_lines
-from tests.synth.any_time.test_slow_passes import SAME_M_S, SlowPass
 from tuning_tables import ControllerTable
 
 FOR_EVER = {each.name: replace(each, duration_s=math.inf) for each in STUCK}
@@ -172,95 +181,6 @@ def test_a_valve_that_is_free_again_pays_its_whole_delay(plant: Plant, loop: Clo
     assert trace.time_s[np.argmax(trace.overpressure_kpa > 234.9)] == pytest.approx(filled_s, abs=0.021)
 
 
-class SlowStuckPass(SlowPass):
-    """The slow pass with valves that do not open between two times of its own clock."""
-
-    def __init__(self, plant: Plant, draws: Draws, i: int, stuck: StuckValves, start_s: float) -> None:
-        super().__init__(plant, draws.cut_factor[i], draws.resistance_n_kn[i], draws.entry_m_s[i])
-        self.stuck, self.start_s, self.begun = stuck, start_s, False
-
-    def at_sample(self, time_s: float) -> None:
-        """Valves get stuck, or free, at samples alone."""
-        begun = self.start_s <= time_s < self.start_s + self.stuck.duration_s
-        if self.begun and not begun and self.shut():
-            self.flow = 0
-            self.command(self.wanted_kpa)  # from rest: the whole delay
-        self.begun = begun
-
-    def shut(self) -> bool:
-        """Whether the valve that is wanted does not open."""
-        return (self.flow > 0 and self.stuck.filling) or (self.flow < 0 and self.stuck.release)
-
-    def step(self, dt: float) -> None:
-        """As for sound valves, unless the valve wanted is stuck: the motion goes on alone."""
-        if self.begun and self.shut():
-            flow, wait_s, self.flow = self.flow, self.wait_s, 0
-            super().step(dt)
-            self.flow, self.wait_s = flow, wait_s
-        else:
-            super().step(dt)
-
-
-def sound_samples(plant: Plant, believed_kpa: float, wanted_kpa: float) -> int:
-    """Sampling periods that sound valves need from a pressure at rest to a stage."""
-    history = plant.position.pneumatics.respond(believed_kpa, wanted_kpa, plant.position.force.touch_pressure_kpa)
-    return max(1, math.ceil((plant.sensor.computing_delay_s + history.duration_s) / 0.1 - 1e-9))
-
-
-def slow_exit(
-    cut: SlowStuckPass, lines: PolynomialSurfaces, way: Ways, first_s: float, z: np.ndarray
-) -> tuple[float, int]:
-    """Exit speed and number of commands of a pass."""
-    plant, stage, commands, rests_at, believed_kpa = cut.plant, 0, 0, 0, 15.0
-    stages, band = plant.position.stage_pressures_kpa, plant.position.pneumatics.dead_band_kpa
-    cut.go_on(first_s)
-    for sample in range(400):
-        if cut.s >= plant.exit_m or cut.v <= 0.0:
-            break
-        cut.at_sample(first_s + 0.1 * sample)
-        waits = abs(cut.kpa - stages[stage]) > band + 1e-9 if way is Ways.GAUGE else sample < rests_at
-        if not waits or way is Ways.ANY_TIME:
-            measured = max(0.0, cut.v + plant.sensor.noise_m_s * float(z[sample]))
-            u, x = 2.0 * cut.s / plant.exit_m - 1.0, (cut.kpa - stages[stage]) / 100.0
-            lower, upper = (
-                float(np.polynomial.legendre.legval(u, a[:4]) + x * a[4]) for a in lines.coefficients[stage]
-            )
-            step = int(lines.has_line[stage, 1] and measured > upper) - int(
-                lines.has_line[stage, 0] and measured < lower
-            )
-            stage, commands = stage + step, commands + abs(step)
-            if step:
-                rests_at = sample + sound_samples(plant, believed_kpa, stages[stage])
-                believed_kpa = stages[stage] - step * band
-        cut.go_on(plant.sensor.computing_delay_s)
-        cut.command(stages[stage])
-        cut.go_on(plant.sensor.sample_period_s - plant.sensor.computing_delay_s)
-    return max(cut.v, 0.0), commands
-
-
-@pytest.mark.parametrize("way", Ways)
-@pytest.mark.parametrize("stuck", STUCK, ids=lambda stuck: stuck.name)
-def test_slow_passes_are_those_of_the_kernel(plant: Plant, stuck: StuckValves, way: Ways) -> None:
-    smooth = replace(
-        plant,
-        friction=replace(plant.friction, path_std=0.0),
-        sensor=replace(plant.sensor, resolution_m_s=0.0),
-    )
-    loop, lines = close_loop(smooth, 3), surfaces(smooth, 0.06)
-    draws = loop.draws(random_passes(31, 0, 10))
-    starts_s = np.linspace(0.2, 3.0, 10)
-    found = StuckLoop(loop, tabled(smooth, lines), way).run(draws, stuck, starts_s)
-    same = 0
-    for i in range(10):
-        cut = SlowStuckPass(smooth, draws, i, stuck, starts_s[i])
-        speed, commands = slow_exit(cut, lines, way, float(draws.first_sample_s[i]), draws.noise_z[i])
-        if commands == found.switchings[i]:
-            same += 1
-            # Energies, as a cut that has almost stopped makes any error of them a large one of its speed.
-            assert speed**2 == pytest.approx(found.exit_speed_m_s[i] ** 2, abs=2.0 * 3.0 * SAME_M_S)
-    assert same >= 9  # a speed within a millimetre of a line may fall on either side
-
-
 # ------------------------------------------------------------------------------------ figures and the silent gauge
 
 
@@ -275,6 +195,9 @@ def test_figures_are_those_of_the_passes(plant: Plant, table: TableController, l
     assert ours.outside == pytest.approx((abs(error) > 0.3).mean())
     assert nothing.to_times.value == pytest.approx(ours.rms_m_s / nothing.ways[Ways.TIMES.value].rms_m_s)
     assert nothing.to_times.value == pytest.approx(nothing.to_gauge.value, abs=1e-9)
+    surfaces_rms, gauge_rms = (for_good.ways[way.value].rms_m_s for way in (Ways.ANY_TIME, Ways.GAUGE))
+    assert for_good.to_gauge.value == pytest.approx(surfaces_rms / gauge_rms)
+    assert for_good.to_gauge.value != pytest.approx(for_good.to_times.value)
     assert min(way.rms_m_s for way in for_good.ways.values()) > 2.0 * ours.rms_m_s
 
 
@@ -293,3 +216,22 @@ def test_a_silent_gauge_asks_the_lines_at_the_stages_pressure(plant: Plant, line
     assert found == flat
     assert found.gain.value == pytest.approx(found.waiting.value / found.going_on.value)
     assert found.gain.value != 1.0
+
+
+def test_the_table_has_a_row_for_each_fault_and_case() -> None:
+    ways = {way.value: Way(0.1 * (i + 1), 0.01 * (i + 1), 0.001 * (i + 1)) for i, way in enumerate(Ways)}
+    figures = StuckFigures(ways, Ratio(3.0, (2.0, 4.0)), Ratio(1.5, (1.0, 2.0)))
+    told = {name: replace(figures, to_gauge=Ratio(i + 1.0, (0.0, 9.0))) for i, name in enumerate(("one", "two"))}
+    polish = Polishing(1, True, 1.0, 0.1)
+    rows = [CaseRow(case, 1.0, polish, {}, {}, {}, {}, None, told) for case in ("a", "b")]
+    rows.append(CaseRow("untried", 2.0, polish, {}, {}, {}, {}, None, {}))
+    found = list(stuck_rows(rows))
+    assert [cells[:2] for cells in found] == [("one", "a"), ("one", "b"), ("two", "a"), ("two", "b")]
+    assert found[2][2:] == (
+        "0.1000 / 0.2000 / 0.3000", "2.00 [0.00, 9.00]", "1.50 [1.00, 2.00]", "1.0 / 2.0 / 3.0", "0.10 / 0.20 / 0.30",
+    )  # fmt: skip
+    assert stuck_heads()[2:5] == (
+        "rms: at rest, by gauge / at rest, by times / any time", "any time / at rest, by gauge",
+        "any time / at rest, by times",
+    )  # fmt: skip
+    assert list(stuck_rows([])) == list(silent_rows(rows)) == []
