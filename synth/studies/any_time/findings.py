@@ -65,9 +65,10 @@ class StuckFigures:
 
 @dataclass(frozen=True)
 class SilentGauge:
-    """Ratios of the rms where the gauge shows nothing: its lines go on being asked, or wait, or lines made for rest.
+    """Ratios of the rms where the gauge shows nothing.
 
-    `going_on`, `waiting`: over lines at rest; `gain`: waiting over going on.
+    `going_on`: lines for any time, asked at every sample, over lines for rest; `waiting`: the same, asked at rest;
+    `gain`: waiting over going on.
     """
 
     going_on: Ratio
