@@ -233,7 +233,7 @@ def stuck_heads() -> tuple[str, ...]:
     """Heads of the table of valves that do not open."""
     ways = " / ".join(way.value for way in Ways)
     ratios = (f"{Ways.ANY_TIME.value} / {way.value}" for way in (Ways.GAUGE, Ways.TIMES))
-    return ("stuck", "case", f"rms: {ways}", *ratios, f"outside {NEAR_M_S:g} m/s, %", "stalled, %")
+    return ("stuck", "case", f"rms, m/s: {ways}", *ratios, f"outside {NEAR_M_S:g} m/s, %", "stalled, %")
 
 
 def stuck_rows(rows: Sequence[CaseRow]) -> Iterator[tuple[str, ...]]:

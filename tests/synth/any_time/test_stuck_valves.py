@@ -231,7 +231,7 @@ def test_the_table_has_a_row_for_each_fault_and_case() -> None:
         "0.1000 / 0.2000 / 0.3000", "2.00 [0.00, 9.00]", "1.50 [1.00, 2.00]", "1.0 / 2.0 / 3.0", "0.10 / 0.20 / 0.30",
     )  # fmt: skip
     assert stuck_heads()[2:5] == (
-        "rms: at rest, by gauge / at rest, by times / any time", "any time / at rest, by gauge",
+        "rms, m/s: at rest, by gauge / at rest, by times / any time", "any time / at rest, by gauge",
         "any time / at rest, by times",
     )  # fmt: skip
     assert list(stuck_rows([])) == list(silent_rows(rows)) == []
