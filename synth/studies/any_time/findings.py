@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from enum import Enum
 
 from synth.book.permissions.permission import Permission
 from synth.simulation.replicates import Interval
@@ -30,6 +31,49 @@ class Ratio:
     def cell(self) -> str:
         """'0.87 [0.83, 0.90]'."""
         return around(self.value, self.ci95, 2)
+
+
+class Ways(Enum):
+    """When a regulator asks its lines; the values are those of the findings.
+
+    `GAUGE`: at rest, where the gauge shows that the pressure commanded is reached; `TIMES`: at rest, where sound valves
+    would have reached it; `ANY_TIME`: at every sample.
+    """
+
+    GAUGE = "at rest, by gauge"
+    TIMES = "at rest, by times"
+    ANY_TIME = "any time"
+
+
+@dataclass(frozen=True)
+class Way:
+    """One regulator beside a stuck valve: rms, share of cuts outside `NEAR_M_S`, share of cuts that stall."""
+
+    rms_m_s: float
+    outside: float
+    stalled: float
+
+
+@dataclass(frozen=True)
+class StuckFigures:
+    """One fault of the valves: regulators by the value of `Ways`, and the rms at any time over those at rest."""
+
+    ways: dict[str, Way]
+    to_gauge: Ratio
+    to_times: Ratio
+
+
+@dataclass(frozen=True)
+class SilentGauge:
+    """Ratios of the rms where the gauge shows nothing.
+
+    `going_on`: lines for any time, asked at every sample, over lines for rest; `waiting`: the same, asked at rest;
+    `gain`: waiting over going on.
+    """
+
+    going_on: Ratio
+    waiting: Ratio
+    gain: Ratio
 
 
 @dataclass(frozen=True)
@@ -61,7 +105,8 @@ class CaseRow:
     """One case with valves so many times as fast: all controllers, and ratios of the polished surfaces to others.
 
     `gauge`: rms with a gauge that shows so many times the true pressure, over that with a true one; `wrong`: rms over
-    that of the cubics at rest where something else is wrong, by its name, only with valves as they are.
+    that of the cubics at rest where something else is wrong, by its name; `silent`: where the gauge shows nothing;
+    `stuck`: where valves do not open, by their name. These three only with valves as they are.
     """
 
     case: str
@@ -71,6 +116,8 @@ class CaseRow:
     polished_to: dict[str, Ratio]
     gauge: dict[str, Ratio]
     wrong: dict[str, Ratio]
+    silent: SilentGauge | None
+    stuck: dict[str, StuckFigures]
 
 
 @dataclass(frozen=True)
@@ -123,7 +170,7 @@ class AnyTime(Findings):
         """`gains`: a row a case; `rms`: all controllers; `honesty`: what is predicted, and how a polish ended.
 
         `permissions`: what they give beside tables as configured; `gauge`: what a wrong one costs; `wrong`: what else
-        may be wrong.
+        may be wrong; `silent`, `stuck`: a gauge that shows nothing, valves that do not open.
         """
         rules = (ENERGY, ENERGY_AT_ANY_TIME)
         heads = ("valves", "case", CUBIC, POLISHED, PLAIN, *rules, f"{POLISHED} / {CUBIC}",
@@ -141,6 +188,8 @@ class AnyTime(Findings):
             ),
             "gauge": table("rms with a wrong gauge / with a true one [95 %]", wrong, map(gauge_cells, self.rows)),
             "wrong": table(f"rms of {POLISHED} / {CUBIC} where something is wrong [95 %]", *wrong_rows(self.rows)),
+            "silent": table("rms where the gauge shows nothing [95 %]", SILENT_HEADS, silent_rows(self.rows)),
+            "stuck": table("rms, m/s; ratios [95 %]; % of cuts", stuck_heads(), stuck_rows(self.rows)),
             "permissions": table("rms of the table as configured; ratios to it [95 %]", granted, told),
             "honesty": table(f"{POLISHED}: rms of the prediction and of passes", honesty, map(honest_cells, self.rows)),
         }
@@ -167,7 +216,39 @@ def wrong_rows(rows: Sequence[CaseRow]) -> tuple[tuple[str, ...], Iterator[tuple
     """A row for each thing that is wrong, a column for each case in which it was tried."""
     tried = [row for row in rows if row.wrong]
     heads = ("wrong", *(row.case for row in tried))
-    return heads, ((name, *(row.wrong[name].cell for row in tried)) for name in tried[0].wrong)
+    return heads, ((name, *(row.wrong[name].cell for row in tried)) for name in (tried[0].wrong if tried else ()))
+
+
+SILENT_HEADS = ("case", f"{POLISHED}, going on / {CUBIC}", f"the same, waiting / {CUBIC}", "waiting / going on")
+
+
+def silent_rows(rows: Sequence[CaseRow]) -> Iterator[tuple[str, ...]]:
+    """A row for each case in which the gauge was silent."""
+    for row in rows:
+        if row.silent is not None:
+            yield row.case, row.silent.going_on.cell, row.silent.waiting.cell, row.silent.gain.cell
+
+
+def stuck_heads() -> tuple[str, ...]:
+    """Heads of the table of valves that do not open."""
+    ways = " / ".join(way.value for way in Ways)
+    ratios = (f"{Ways.ANY_TIME.value} / {way.value}" for way in (Ways.GAUGE, Ways.TIMES))
+    return ("stuck", "case", f"rms, m/s: {ways}", *ratios, f"outside {NEAR_M_S:g} m/s, %", "stalled, %")
+
+
+def stuck_rows(rows: Sequence[CaseRow]) -> Iterator[tuple[str, ...]]:
+    """A row for each fault in each case in which valves were stuck; the regulators in the order of `Ways`."""
+    tried = [row for row in rows if row.stuck]
+    for name in tried[0].stuck if tried else ():
+        for row in tried:
+            found = row.stuck[name]
+            ways = [found.ways[way.value] for way in Ways]
+            yield (
+                name, row.case, " / ".join(f"{way.rms_m_s:.4f}" for way in ways),
+                found.to_gauge.cell, found.to_times.cell,
+                " / ".join(f"{100 * way.outside:.1f}" for way in ways),
+                " / ".join(f"{100 * way.stalled:.2f}" for way in ways),
+            )  # fmt: skip
 
 
 def gauge_cells(row: CaseRow) -> tuple[str, ...]:

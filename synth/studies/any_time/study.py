@@ -54,13 +54,16 @@ from synth.studies.any_time.findings import (
     PermissionRow,
     Polishing,
     Ratio,
+    SilentGauge,
+    StuckFigures,
     SurfaceMap,
     Told,
 )
+from synth.studies.any_time.stuck_valves import where_stuck
 from synth.studies.any_time.surface_controller import SurfaceController
 from synth.studies.any_time.surface_induction import solve_surfaces
 from synth.studies.any_time.switching_surfaces import SwitchingSurfaces
-from synth.studies.any_time.wrong_plants import ratios_to_rest
+from synth.studies.any_time.wrong_plants import ratios_to_rest, with_a_silent_gauge
 from synth.studies.cases import OTHER_PLANTS, Case, named_cases
 from synth.studies.entrance import from_the_entrance
 from synth.studies.near_target import near_ratio, near_target
@@ -131,11 +134,18 @@ class Bench:
         table = rounded(self.config, self.case.plant, surfaces, self.case.target_m_s)
         return TableController(table, gauge_factor)
 
-    def where_wrong(self, surfaces: PolynomialSurfaces, passes: RandomPasses) -> dict[str, Ratio]:
-        """What `surfaces` lose beside the cubics at rest where something is wrong."""
+    def where_wrong(
+        self, surfaces: PolynomialSurfaces, passes: CommonPasses
+    ) -> tuple[dict[str, Ratio], SilentGauge, dict[str, StuckFigures]]:
+        """What `surfaces` lose beside the cubics at rest where something is wrong, the gauge silent, a valve stuck."""
         case, at_rest = self.case, LineController(self.cubics.at(self.cubics.nodes_m(301)))
-        seed = self.config.validation.seed + FRESH
-        return ratios_to_rest(case.plant, case.target_m_s, self.controller(surfaces), at_rest, passes, seed)
+        seed, target = self.config.validation.seed + FRESH, case.target_m_s
+        table = rounded(self.config, case.plant, surfaces, target)
+        return (
+            ratios_to_rest(case.plant, target, TableController(table), at_rest, passes.passes, seed),
+            with_a_silent_gauge(target, table, at_rest, passes),
+            where_stuck(target, TableController(table), at_rest, passes, seed),
+        )
 
 
 def run(options: Options, tell: Tell) -> AnyTime:
@@ -213,8 +223,8 @@ def studied(bench: Bench, valves: float, options: Options, fresh: RandomPasses) 
     polishing = Polishing(polish.evaluations, polish.converged, seconds, predicted)
     shown = {factor: passes.run(bench.controller(polish.surfaces, factor)) for factor in GAUGE_FACTORS}
     gauge = {f"{factor:g}": Ratio(*rms_ratio(each, samples[POLISHED], target)) for factor, each in shown.items()}
-    wrong = bench.where_wrong(polish.surfaces, fresh) if valves == 1.0 else {}
-    row = CaseRow(bench.case.name, valves, polishing, told, others, gauge, wrong)
+    wrong = bench.where_wrong(polish.surfaces, passes) if valves == 1.0 else ({}, None, {})
+    row = CaseRow(bench.case.name, valves, polishing, told, others, gauge, *wrong)
     return row, surface_map(bench.case, solved, polish.surfaces, options.shown_stage)
 
 

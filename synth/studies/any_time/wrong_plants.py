@@ -8,14 +8,14 @@ from dataclasses import replace
 
 from plant_models import Plant
 from synth.simulation.closed_loop import Controller, TableController, simulate
+from synth.simulation.common_passes import CommonPasses
 from synth.simulation.exit_statistics import rms_ratio
 from synth.simulation.random_passes import RandomPasses
-from synth.studies.any_time.findings import Ratio
+from synth.studies.any_time.findings import Ratio, SilentGauge
 from synth.studies.estimator.wrong import Wrong, braking_otherwise, simulated
 from synth.studies.robustness.condition import aged_valves
 from synth.studies.robustness.sensor_fault import DropOut, LostReadings, at_random
-
-SILENT = "gauge silent"
+from tuning_tables import ControllerTable, Decisions
 
 
 def otherwise(plant: Plant, seed: int) -> Iterator[Wrong]:
@@ -36,6 +36,20 @@ def ratios_to_rest(
     for wrong in otherwise(plant, seed):
         ours, theirs = (simulated(wrong, each, passes, rest.transit_time_s) for each in (table, at_rest))
         found[wrong.name] = Ratio(*rms_ratio(ours, theirs, target_m_s))
-    silent = simulate(plant, replace(table, gauge_factor=math.nan), passes)
-    found[SILENT] = Ratio(*rms_ratio(silent, rest, target_m_s))
     return found
+
+
+def with_a_silent_gauge(
+    target_m_s: float, table: ControllerTable, at_rest: Controller, passes: CommonPasses
+) -> SilentGauge:
+    """`table` beside a gauge that shows nothing: asked at every sample all the same, or only at rest."""
+    rest, waiting = passes.run(at_rest), passes.run(TableController(waiting_table(table)))
+    going_on = passes.run(TableController(table, math.nan))
+    pairs = (going_on, rest), (waiting, rest), (waiting, going_on)
+    return SilentGauge(*(Ratio(*rms_ratio(*pair, target_m_s)) for pair in pairs))
+
+
+def waiting_table(table: ControllerTable) -> ControllerTable:
+    """The lines of `table` as they stand at the pressure of their stage, for commands at rest."""
+    stages = (replace(each, lower_slope_m_s_per_kpa=None, upper_slope_m_s_per_kpa=None) for each in table.stages)
+    return replace(table, decisions=Decisions.AT_REST, stages=tuple(stages))
