@@ -150,10 +150,12 @@ def polish_of(polish: Polish | SurfacePolish) -> Document:
 
 
 def estimate_of(made: AnyEstimate) -> Document:
-    """How lines for the estimated speed were designed."""
+    """How lines for the estimated speed were designed; shifts that change along the path only where there are some."""
+    shift, *along_path = made.trim_m_s
     return {
         "error_m_s": made.error_m_s,
-        "trim_m_s": made.trim_m_s,
+        "trim_m_s": shift,
+        **({"trim_along_path_m_s": along_path} if along_path else {}),
         "rounds": made.rounds,
         "designed": made.designed,
         "used": made.gains,

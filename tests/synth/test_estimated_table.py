@@ -10,6 +10,8 @@ import pytest
 
 from plant_models import Friction, Plant, PressingForce
 from synth.book.estimation.estimated_table import (
+    SHIFTS,
+    Trim,
     controller_of,
     designed_lines,
     estimated_table,
@@ -88,6 +90,13 @@ def test_a_missing_reading_is_bridged_by_the_estimator_alone(
     assert np.abs(bridged.measured_m_s - bridged.speed_m_s)[sampled].max() < 0.2
 
 
+def test_a_trim_may_change_along_the_path() -> None:
+    wanted = np.array([[0.03, -0.01], [0.02, 0.0], [-0.01, 0.015]])
+    found, before, after = trimmed(lambda by: float(((np.array(by) - wanted) ** 2).sum()), Trim(3, 400))
+    assert after < 0.01 * before
+    assert np.array(found) == pytest.approx(wanted, abs=2e-3)
+
+
 @pytest.mark.slow
 def test_it_is_designed_for_its_own_error_and_better_than_no_estimator(
     plant_of: Callable[[float], Plant], passes: RandomPasses
@@ -151,8 +160,8 @@ def test_where_the_mean_is_known_lines_are_designed_as_for_the_friction_of_a_cut
 
 
 def test_a_trim_never_makes_worse() -> None:
-    assert trimmed(lambda a, b: 1.0 + a * a + b * b) == ((0.0, 0.0), 1.0, 1.0)
-    (a, b), before, after = trimmed(lambda a, b: 1.0 + (a - 0.03) ** 2 + 4.0 * (b + 0.01) ** 2)
+    assert trimmed(lambda by: 1.0 + by[0][0] ** 2 + by[0][1] ** 2, SHIFTS) == (((0.0, 0.0),), 1.0, 1.0)
+    ((a, b),), before, after = trimmed(lambda by: 1.0 + (by[0][0] - 0.03) ** 2 + 4.0 * (by[0][1] + 0.01) ** 2, SHIFTS)
     assert (a, b) == pytest.approx((0.03, -0.01), abs=0.005)
     assert after < before
 
@@ -161,10 +170,10 @@ def test_a_trim_cannot_make_lines_meet(plant_of: Callable[[float], Plant]) -> No
     constant = np.zeros((2, 2, 2))
     constant[:, 0, 0], constant[:, 1, 0] = 3.0, 3.1
     lines = PolynomialLines(0.0, 37.0, constant, np.array([[False, True], [True, True]]))
-    at = opened(moved(lines, 0.09, -0.05)).at(np.linspace(0.0, 37.0, 5))
+    at = opened(moved(lines, ((0.09, -0.05),))).at(np.linspace(0.0, 37.0, 5))
     assert (at.upper_m_s - at.lower_m_s)[1] == pytest.approx(0.04)
     assert (0.5 * (at.upper_m_s + at.lower_m_s))[1] == pytest.approx(3.07)
-    near = opened(moved(lines, 0.01, -0.02))
+    near = opened(moved(lines, ((0.01, -0.02),)))
     assert near.coefficients[1, :, 0] == pytest.approx([3.01, 3.08])
 
 

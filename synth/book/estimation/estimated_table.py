@@ -39,7 +39,6 @@ SETTLED = 0.05
 """Designs are repeated until the error found in the closed loop differs by less than this share, at most so often."""
 
 ERROR_PASSES = 100
-TRIM_EVALUATIONS = 25
 FIRST_TRIM_M_S = 0.02
 LEAST_SQUARE_M2_S2 = 1e-12
 
@@ -55,6 +54,21 @@ NO_WORSE = 1.03
 
 
 Lines = TypeVar("Lines", PolynomialLines, PolynomialSurfaces)
+
+Pairs = tuple[tuple[float, float], ...]
+"""What is added to lower and to upper lines, m/s: times Legendre polynomials of the path, from the constant up."""
+
+
+@dataclass(frozen=True)
+class Trim:
+    """How lines are trimmed: how many Legendre polynomials of the path move, in so many evaluations."""
+
+    terms: int
+    evaluations: int
+
+
+SHIFTS = Trim(1, 25)
+"""All lower and all upper lines are shifted."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +88,7 @@ class EstimatedTable(Generic[Lines]):
     lines: Lines
     estimator: Estimator
     error_m_s: float
-    trim_m_s: tuple[float, float]
+    trim_m_s: Pairs
     rms_before_m_s: float
     rms_after_m_s: float
     rounds: int
@@ -119,7 +133,7 @@ def estimated_table(
         found = speed_error_m_s(loop, controller, tuning.part(0, min(ERROR_PASSES, len(tuning))))
         settled = abs(found - error) <= SETTLED * error
         error = found
-    design_of_both = Design(lines, measured, estimator, error, rounds, controller_of, opened)
+    design_of_both = Design(lines, measured, estimator, error, rounds, controller_of, opened, SHIFTS)
     return fitted_to_days(problem, design_of_both, tuning)
 
 
@@ -138,10 +152,11 @@ class Design(Generic[Lines]):
     rounds: int
     controller: Callable[[Lines, Estimator | None], Controller]
     opened: Callable[[Lines], Lines]
+    trim: Trim
 
-    def shifted(self, lines: Lines, lower_m_s: float, upper_m_s: float) -> Lines:
+    def moved(self, lines: Lines, by_m_s: Pairs) -> Lines:
         """All lower and all upper lines moved, and no pair nearer than the polish allows."""
-        return self.opened(moved(lines, lower_m_s, upper_m_s))
+        return self.opened(moved(lines, by_m_s))
 
 
 def fitted_to_days(problem: Problem, design: Design[Lines], tuning: RandomPasses) -> EstimatedTable[Lines]:
@@ -157,8 +172,8 @@ def fitted_to_days(problem: Problem, design: Design[Lines], tuning: RandomPasses
     def rms(lines: Lines) -> float:
         return float(np.sqrt(share @ squares(lines, design.estimator)))
 
-    def trim(lines: Lines) -> tuple[tuple[float, float], float, float]:
-        return trimmed(lambda a, b: rms(design.shifted(lines, a, b)))
+    def trim(lines: Lines) -> tuple[Pairs, float, float]:
+        return trimmed(lambda pairs: rms(design.moved(lines, pairs)), design.trim)
 
     lines = design.designed
     shifts, before, after = trim(lines)
@@ -166,7 +181,7 @@ def fitted_to_days(problem: Problem, design: Design[Lines], tuning: RandomPasses
     if not designed:
         lines = design.measured
         shifts, before, after = trim(lines)
-    kept = design.shifted(lines, *shifts)
+    kept = design.moved(lines, shifts)
     worst_day = float(np.sqrt((squares(kept, design.estimator) / plain).max()))
     rms_plain = float(np.sqrt(share @ plain))
     how = design.estimator, design.error_m_s, shifts, before, after, design.rounds, designed
@@ -185,30 +200,35 @@ def controller_of(lines: PolynomialLines, estimator: Estimator | None) -> LineCo
     return LineController(lines.at(lines.nodes_m(301)), estimator=estimator)
 
 
-def moved(lines: Lines, lower_m_s: float, upper_m_s: float) -> Lines:
+def moved(lines: Lines, by_m_s: Pairs) -> Lines:
     """All lower and all upper lines moved."""
     coefficients: NDArray[np.float64] = lines.coefficients.copy()
-    # The constant Legendre polynomial is 1.
-    coefficients[:, 0, 0] += lower_m_s
-    coefficients[:, 1, 0] += upper_m_s
+    for term, (lower, upper) in enumerate(by_m_s):
+        coefficients[:, 0, term] += lower
+        coefficients[:, 1, term] += upper
     return replace(lines, coefficients=coefficients)
 
 
-def trimmed(rms: Callable[[float, float], float]) -> tuple[tuple[float, float], float, float]:
-    """The two shifts with the least `rms` that a short simplex search finds, with `rms` before and after.
+def trimmed(rms: Callable[[Pairs], float], how: Trim) -> tuple[Pairs, float, float]:
+    """The shifts with the least `rms` that a short simplex search finds, with `rms` before and after.
 
     Never worse than no shift: that is where the search begins.
     """
     from scipy.optimize import minimize  # start-up: scipy only where it is needed
 
-    before = rms(0.0, 0.0)
-    simplex = [[0.0, 0.0], [FIRST_TRIM_M_S, 0.0], [0.0, FIRST_TRIM_M_S]]
-    options: Any = {"initial_simplex": simplex, "maxfev": TRIM_EVALUATIONS, "xatol": 1e-3, "fatol": 1e-5}
+    numbers = 2 * how.terms
+
+    def pairs(x: Any) -> Pairs:
+        return tuple((float(lower), float(upper)) for lower, upper in np.reshape(x, (-1, 2)))
+
+    before = rms(pairs(np.zeros(numbers)))
+    simplex = np.vstack([np.zeros(numbers), FIRST_TRIM_M_S * np.eye(numbers)])
+    options: Any = {"initial_simplex": simplex, "maxfev": how.evaluations, "xatol": 1e-3, "fatol": 1e-5}
 
     def objective(x: Any) -> Any:
-        return rms(float(x[0]), float(x[1]))
+        return rms(pairs(x))
 
-    found = minimize(objective, np.zeros(2), method="Nelder-Mead", options=options)
+    found = minimize(objective, np.zeros(numbers), method="Nelder-Mead", options=options)
     if found.fun >= before:
-        return (0.0, 0.0), before, before
-    return (float(found.x[0]), float(found.x[1])), before, float(found.fun)
+        return pairs(np.zeros(numbers)), before, before
+    return pairs(found.x), before, float(found.fun)

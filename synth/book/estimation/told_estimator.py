@@ -69,7 +69,7 @@ class ToldWithEstimator(Generic[Lines]):
 
     def __call__(self, factor: float) -> Controller:
         shift = -self.bias.at(factor)
-        return self.controller(moved(self.lines(factor), shift, shift), knowing(self.estimator, factor))
+        return self.controller(moved(self.lines(factor), ((shift, shift),)), knowing(self.estimator, factor))
 
 
 def told_with_estimator(
