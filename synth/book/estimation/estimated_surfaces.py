@@ -30,7 +30,7 @@ LEAST_NOISE = 0.7
 """Of the error's white part, in its whole: less would ask for a finer grid. With 0.5, and a grid for it, the rms of 22,
 36 and 52 t to 3 m/s is the same within 2 %."""
 
-ALONG_PATH = Trim(3, 100)
+TRIM_TERMS, TRIM_EVALUATIONS = 3, 100
 """Surfaces are asked far oftener than lines, so what is not white in the error moves them more, and not everywhere
 alike: with two shifts 22 t to 2 m/s has 0.89 of the rms of the default table, with parabolas of the path about 0.7."""
 
@@ -61,7 +61,8 @@ def estimated_surfaces(
     error = error_of_estimate(loop, first, draws, LEAST_NOISE * made.error_m_s)
     steps = estimate_resolution(plant, aim.target_speed_m_s, made.error_m_s)
     designed = polished_surfaces(of_any_day, aim, start, steps, error).surfaces
-    design = Design(designed, measured, made.estimator, made.error_m_s, 1, controller, opened, ALONG_PATH)
+    trim = Trim(TRIM_TERMS, TRIM_EVALUATIONS, aim.criterion.switching_tolerance_m2_s2)
+    design = Design(designed, measured, made.estimator, made.error_m_s, 1, controller, opened, trim)
     return fitted_to_days(problem, design, tuning)
 
 

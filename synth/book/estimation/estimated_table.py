@@ -61,14 +61,18 @@ Pairs = tuple[tuple[float, float], ...]
 
 @dataclass(frozen=True)
 class Trim:
-    """How lines are trimmed: how many Legendre polynomials of the path move, in so many evaluations."""
+    """How lines are trimmed: how many Legendre polynomials of the path move, in so many evaluations.
+
+    `change_m2_s2`: what a command costs beside the squared error.
+    """
 
     terms: int
     evaluations: int
+    change_m2_s2: float = 0.0
 
 
 SHIFTS = Trim(1, 25)
-"""All lower and all upper lines are shifted."""
+"""All lower and all upper lines are shifted. Commands at rest are few, and cost nothing here."""
 
 
 @dataclass(frozen=True)
@@ -163,25 +167,26 @@ def fitted_to_days(problem: Problem, design: Design[Lines], tuning: RandomPasses
     """The better of both trimmed on `tuning`, each with the estimator; beside it those measured without."""
     days, target_m_s = tuning_days(problem.plant, tuning), problem.target_speed_m_s
 
-    def squares(lines: Lines, estimator: Estimator | None) -> NDArray[np.float64]:
-        return days.mean_squares(design.controller(lines, estimator), target_m_s)
+    def squares(lines: Lines, estimator: Estimator | None, change_m2_s2: float = 0.0) -> NDArray[np.float64]:
+        return days.mean_squares(design.controller(lines, estimator), target_m_s, change_m2_s2)
 
     plain = np.maximum(squares(design.measured, None), LEAST_SQUARE_M2_S2)
     share = days.weight * plain[len(plain) // 2] / plain
 
-    def rms(lines: Lines) -> float:
-        return float(np.sqrt(share @ squares(lines, design.estimator)))
+    def rms(lines: Lines, change_m2_s2: float = 0.0) -> float:
+        return float(np.sqrt(share @ squares(lines, design.estimator, change_m2_s2)))
 
-    def trim(lines: Lines) -> tuple[Pairs, float, float]:
-        return trimmed(lambda pairs: rms(design.moved(lines, pairs)), design.trim)
+    def trim(lines: Lines) -> Pairs:
+        return trimmed(lambda pairs: rms(design.moved(lines, pairs), design.trim.change_m2_s2), design.trim)[0]
 
     lines = design.designed
-    shifts, before, after = trim(lines)
-    designed = after <= rms(design.measured)
+    shifts = trim(lines)
+    designed = rms(design.moved(lines, shifts)) <= rms(design.measured)
     if not designed:
         lines = design.measured
-        shifts, before, after = trim(lines)
+        shifts = trim(lines)
     kept = design.moved(lines, shifts)
+    before, after = rms(lines), rms(kept)
     worst_day = float(np.sqrt((squares(kept, design.estimator) / plain).max()))
     rms_plain = float(np.sqrt(share @ plain))
     how = design.estimator, design.error_m_s, shifts, before, after, design.rounds, designed

@@ -41,12 +41,17 @@ class TuningDays:
     draws: tuple[Draws, ...]
     weight: NDArray[np.float64]
 
-    def mean_squares(self, controller: Regulator, target_speed_m_s: float) -> NDArray[np.float64]:
-        """Mean squared error at the exit on each day, (D,) in m²/s²."""
+    def mean_squares(
+        self, controller: Regulator, target_speed_m_s: float, change_m2_s2: float = 0.0
+    ) -> NDArray[np.float64]:
+        """Mean squared error at the exit on each day, (D,) in m²/s²; every command counts as `change_m2_s2` more."""
         found = []
         for draws in self.draws:
-            exits = self.loop(controller.stages).run(controller, draws).exit_speed_m_s
-            found.append(np.average((exits - target_speed_m_s) ** 2, weights=draws.weight))
+            passed = self.loop(controller.stages).run(controller, draws)
+            squares = (passed.exit_speed_m_s - target_speed_m_s) ** 2
+            if change_m2_s2 > 0.0:
+                squares = squares + change_m2_s2 * passed.switchings
+            found.append(np.average(squares, weights=draws.weight))
         return np.array(found)
 
 

@@ -14,10 +14,14 @@ from synth.studies.study import Findings
 
 LINES, CUBIC = "at rest, lines", "at rest, cubic"
 SURFACES, POLISHED, PLAIN = "any time, surfaces", "any time, cubic and pressure", "any time, cubic"
+CUBIC_JUMPING, JUMPING = "at rest, cubic, jumping", "any time, cubic and pressure, jumping"
 ENERGY, ENERGY_AT_ANY_TIME = "energy rule", "energy rule, any time"
-NAMES = (LINES, CUBIC, SURFACES, POLISHED, PLAIN, ENERGY, ENERGY_AT_ANY_TIME)
+NAMES = (LINES, CUBIC, CUBIC_JUMPING, SURFACES, POLISHED, JUMPING, PLAIN, ENERGY, ENERGY_AT_ANY_TIME)
 SHOWN = (SURFACES, POLISHED, PLAIN, ENERGY, ENERGY_AT_ANY_TIME)
 """Controllers of the pictures of gains."""
+
+GAINING = (CUBIC, CUBIC_JUMPING, POLISHED, JUMPING, PLAIN)
+"""Tables of the table of gains."""
 
 
 @dataclass(frozen=True)
@@ -125,7 +129,7 @@ class PermissionRow:
     """One case as configured, with an approach if its position has one, and what permissions of the hardware give.
 
     `ratios`: rms over that of the table as configured, by name of the permission; `honesty`: predicted / simulated rms
-    of commands at any time.
+    of commands at any time; `switchings_of`: by name of the permission.
     """
 
     case: str
@@ -133,7 +137,7 @@ class PermissionRow:
     switchings: float
     ratios: dict[str, Ratio]
     honesty: float
-    switchings_any_time: float
+    switchings_of: dict[str, float]
 
 
 @dataclass(frozen=True)
@@ -173,10 +177,11 @@ class AnyTime(Findings):
         may be wrong; `silent`, `stuck`: a gauge that shows nothing, valves that do not open.
         """
         rules = (ENERGY, ENERGY_AT_ANY_TIME)
-        heads = ("valves", "case", CUBIC, POLISHED, PLAIN, *rules, f"{POLISHED} / {CUBIC}",
-                 *(f"{POLISHED} / {rule}" for rule in rules), "the same near the target")  # fmt: skip
+        heads = ("valves", "case", *GAINING, *rules, f"{POLISHED} / {CUBIC}",
+                 *(f"{JUMPING} / {rule}" for rule in rules), "the same near the target")  # fmt: skip
         every = ("valves", "case", *NAMES)
-        names = (Permission.ANY_TIME, Permission.WITHOUT_GAUGE, Permission.ESTIMATOR)
+        names = (Permission.JUMPS, Permission.ANY_TIME, Permission.WITHOUT_GAUGE, Permission.ESTIMATOR,
+                 Permission.ANY_TIME_ESTIMATOR)  # fmt: skip
         granted = ("case", "rms, m/s / switchings", *(each.value for each in names), "predicted / simulated, any time")
         told = (permission_cells(row, [each.value for each in names]) for row in self.permissions)
         wrong = ("valves", "case", *(f"shows × {factor}" for factor in self.rows[0].gauge))
@@ -206,7 +211,7 @@ class AnyTime(Findings):
 def gain_cells(row: CaseRow) -> tuple[str, ...]:
     """The cells of one case."""
     c, rules = row.controllers, (ENERGY, ENERGY_AT_ANY_TIME)
-    rms = [f"{c[name].rms_m_s:.4f} / {c[name].switchings:.1f}" for name in (CUBIC, POLISHED, PLAIN, *rules)]
+    rms = [f"{c[name].rms_m_s:.4f} / {c[name].switchings:.1f}" for name in (*GAINING, *rules)]
     to_rules = (row.polished_to[rule].cell for rule in rules)
     ratios = [c[POLISHED].ratio.cell, *to_rules, c[POLISHED].near_ratio.cell]
     return (f"× {row.valves:g}", row.case, *rms, *ratios)
@@ -259,8 +264,8 @@ def gauge_cells(row: CaseRow) -> tuple[str, ...]:
 def permission_cells(row: PermissionRow, names: Sequence[str]) -> tuple[str, ...]:
     """The cells of one case as configured."""
     figures = f"{row.rms_m_s:.4f} / {row.switchings:.1f}"
-    first, *others = (row.ratios[name].cell for name in names)
-    return (row.case, figures, f"{first} / {row.switchings_any_time:.1f}", *others, f"{row.honesty:.2f}")
+    given = (f"{row.ratios[name].cell} / {row.switchings_of[name]:.1f}" for name in names)
+    return (row.case, figures, *given, f"{row.honesty:.2f}")
 
 
 def rms_cells(row: CaseRow) -> tuple[str, ...]:
