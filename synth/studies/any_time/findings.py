@@ -186,7 +186,9 @@ class AnyTime(Findings):
         told = (permission_cells(row, [each.value for each in names]) for row in self.permissions)
         wrong = ("valves", "case", *(f"shows × {factor}" for factor in self.rows[0].gauge))
         honesty = ("valves", "case", "predicted / simulated", "evaluations", "ended well")
+        asked = {"permissions": table("rms of the table as configured; ratios to it [95 %]", granted, told)}
         return {
+            **(asked if self.permissions else {}),
             "gains": table("rms, m/s / switchings a pass; ratios of the rms [95 %]", heads, map(gain_cells, self.rows)),
             "rms": table(
                 f"rms [within {NEAR_M_S:g} m/s of the target], mm/s / switchings", every, map(rms_cells, self.rows)
@@ -195,7 +197,6 @@ class AnyTime(Findings):
             "wrong": table(f"rms of {POLISHED} / {CUBIC} where something is wrong [95 %]", *wrong_rows(self.rows)),
             "silent": table("rms where the gauge shows nothing [95 %]", SILENT_HEADS, silent_rows(self.rows)),
             "stuck": table("rms, m/s; ratios [95 %]; % of cuts", stuck_heads(), stuck_rows(self.rows)),
-            "permissions": table("rms of the table as configured; ratios to it [95 %]", granted, told),
             "honesty": table(f"{POLISHED}: rms of the prediction and of passes", honesty, map(honest_cells, self.rows)),
         }
 

@@ -99,7 +99,7 @@ class Options:
     coarser: float = option(1.0, "times the steps of the grid of the surfaces", (0.5, 8.0))
     threads: int = option(2, "scenarios followed side by side; no figure depends on it", (1, 64))
     books: int = option(len(OTHER_PLANTS) + 1, "plants whose permissions are told, the one given as the last to join",
-                        (1, len(OTHER_PLANTS) + 1))  # fmt: skip
+                        (0, len(OTHER_PLANTS) + 1))  # fmt: skip
     shown: str = option("52:3", "case whose surfaces are kept, with the first valves")
     shown_stage: int = option(2, "stage whose surfaces are kept", (0, 7))
 
@@ -166,8 +166,8 @@ def run(options: Options, tell: Tell) -> AnyTime:
                 surface = found
             tell(f"{row.case}, valves × {valves:g}: {row.polish.seconds:.1f} s of polish")
             rows.append(row)
-    books = [load_config(options.config), *(parse_config(text, name) for name, text in OTHER_PLANTS)][-options.books :]
-    permissions = [row for book in books for row in permission_rows(book, options, tell)]
+    books = [load_config(options.config), *(parse_config(text, name) for name, text in OTHER_PLANTS)]
+    permissions = [row for book in books[len(books) - options.books :] for row in permission_rows(book, options, tell)]
     return AnyTime(config.sha256, seed, options.passes, tuple(rows), tuple(permissions), surface)
 
 
@@ -288,4 +288,4 @@ def surface_map(case: Case, solved: SwitchingSurfaces, polished: PolynomialSurfa
     )  # fmt: skip
 
 
-METHOD = Method(Options, Options(None, ("22:3",), (1.0,), 200, 1.0, 2, 1, "22:3", 1), AnyTime, run)
+METHOD = Method(Options, Options(None, ("22:3",), (1.0,), 200, 1.0, 2, 0, "22:3", 1), AnyTime, run)
