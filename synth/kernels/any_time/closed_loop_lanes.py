@@ -1,7 +1,7 @@
 """Kernel of the closed loop with commands at any time for many passes, to the bit what `any_time.closed_loop` computes.
 
-The lanes and how they move are those of the locked loop (`loop.closed_loop_lanes`). What the drive plays to them comes
-from memory (`played_periods`), and every lane is asked at every sample.
+The lanes and how they move are those of the locked loop (`loop.closed_loop_lanes`). What the drive plays to them is
+remembered (`played_periods`), and every lane is asked at every sample.
 """
 
 from __future__ import annotations
