@@ -1,10 +1,10 @@
 """What the same plant reaches when the friction of every cut is known: the reference of regret, and feasibility.
 
 The reference has what the table has: the same readings of the speed, made into an estimate where the table has an
-estimator, one stage a command, no command before a transient has ended, the same path. It is told ξ_cut besides. It
-is a regulator that could be built, and it passes the cuts that the table passes; so no figure of it rests on a grid.
-Its lines begin at the table's and are polished for each friction. Where the table does better all the same, the
-reference is the table: who is told the friction need not use it.
+estimator, one stage a command, no command before a transient has ended unless the table may give one, the same path. It
+is told ξ_cut besides. It is a regulator that could be built, and it passes the cuts that the table passes; so no figure
+of it rests on a grid. Its lines begin at the table's and are polished for each friction. Where the table does better
+all the same, the reference is the table: who is told the friction need not use it.
 """
 
 from __future__ import annotations

@@ -82,9 +82,10 @@ def tuned_cases(
 def case_permissions(case: CaseTuned, passes: RandomPasses, origin: Origin, tell: Tell) -> CasePermissions:
     """All permissions of one case."""
     label, plant = case.setup.label, case.setup.plant
+    any_time = at_any_time(case, Permission.ANY_TIME, has_gauge=True)
     results = [
         several_stages(case),
-        at_any_time(case, Permission.ANY_TIME, has_gauge=True),
+        any_time,
         at_any_time(case, Permission.WITHOUT_GAUGE, has_gauge=False),
     ]
     if not case.config.regulator.estimator and case.config.criterion.requirement is None:
@@ -99,7 +100,7 @@ def case_permissions(case: CaseTuned, passes: RandomPasses, origin: Origin, tell
     kind = Permission.NO_APPROACH if ahead else Permission.APPROACH
     approach = Approach() if ahead else Approach(APPROACH_M, plant.approach.entrance_stage)
     results.append(tuned_anew(case, kind, case.config, replace(plant, approach=approach), passes, origin))
-    tell(f"{label} to {case.target_m_s:g} m/s: rms with commands at any time × {results[1].ratio:.2f}")
+    tell(f"{label} to {case.target_m_s:g} m/s: rms with commands at any time × {any_time.ratio:.2f}")
     statistics = exit_statistics(case.sample, case.target_m_s)
     return CasePermissions(label, case.target_m_s, statistics, case.tuned.table.predicted.rms_m_s, tuple(results))
 

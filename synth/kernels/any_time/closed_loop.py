@@ -144,6 +144,25 @@ def joined_until(over: Floats, begun: int) -> int:
     return i
 
 
+@borrowing_inline
+def roll_period(
+    edges_m: Floats, free: Floats, brake: Floats, over: Floats, part_s: float, begins_s: float, stage: int,
+    measured: float, cell: int, s: float, v: float, events: Floats, count: int,
+) -> Any:  # fmt: skip
+    """Roll on for a period under `over` (parts,), and note it.
+
+    Returns (cell, s, v, overpressure and time of the last step, what of that was used, status, events).
+    """
+    i, kpa, used, status, time = 0, 0.0, 0.0, MOVING, begins_s
+    while i < over.shape[0] and status == MOVING:
+        begun, kpa, i = i, over[i], joined_until(over, i)
+        time = begins_s + begun * part_s
+        count = note(events, count, time, s, v, kpa, stage, measured)
+        measured = math.nan
+        cell, s, v, used, status = advance(edges_m, free, brake, kpa, (i - begun) * part_s, cell, s, v)
+    return cell, s, v, kpa, time, used, status, count
+
+
 @borrowing
 def run_any_time_pass(
     edges_m: Floats, free: Floats, brake: Floats, drive: SampledDrive, sensor: Sensor, law: AnyTimeLaw,
@@ -180,13 +199,10 @@ def run_any_time_pass(
             pressure, wait, stage_kpa[before], stage_kpa[stage], drive.computing_delay_s, period, drive.valves, over
         )
         passed_kpa = over.mean() if estimating else 0.0
-        i, used = 0, 0.0
-        while i < drive.parts and status == MOVING:
-            begun, kpa, i = i, over[i], joined_until(over, i)
-            time = first_sample_s + sample * period + begun * part
-            count = note(events, count, time, s, v, kpa, stage, measured)
-            measured = math.nan
-            cell, s, v, used, status = advance(edges_m, free, brake, kpa, (i - begun) * part, cell, s, v)
+        cell, s, v, kpa, time, used, status, count = roll_period(
+            edges_m, free, brake, over, part, first_sample_s + sample * period, stage, measured, cell, s, v, events,
+            count,
+        )  # fmt: skip
         sample += 1
         if status == MOVING:
             time = first_sample_s + sample * period  # not by summing up: the clock must not drift

@@ -44,9 +44,9 @@ def listen(
         read = measured(x, n, lane, sensor, noise_z)
         speed, there = read, lane < LANES
         if law.estimator_work.shape[1] > 0:
-            i, passes = packs.gather(n, lane + PASS), packs.gather(pieces.mean_kpa, packs.gather(n, lane + PIECE))
+            i, kpa = packs.gather(n, lane + PASS), packs.gather(pieces.mean_kpa, packs.gather(n, lane + PIECE))
             speed = estimated(observed, law.estimator_parameters, law.estimator_work, there, i, s, read)
-            packs.scatter(observed.passed_kpa, i, there, passes)  # if there is no command
+            packs.scatter(observed.passed_kpa, i, there, kpa)  # if there is no command
         if law.coefficients.shape[0] > 0:
             speaks = speaks_by_table(law, stage, s, speed, 0.0, 0.0)
         else:

@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from synth.kernels.any_time.closed_loop import AnyTimeLaw, SampledDrive, wanted_stage
+from synth.kernels.any_time.closed_loop import AnyTimeLaw, SampledDrive, roll_period, wanted_stage
 from synth.kernels.any_time.driven_period import play_period, wait_after_command
 from synth.kernels.loop.closed_loop import LEFT, LONGEST_PASS_S, MOVING, Draws, Exits, Floats, Ints, Path, advance, note
 from synth.kernels.loop.regulator import Sensor, admitted, measure
@@ -76,7 +76,7 @@ def run_stuck_pass(
     The law has neither an estimator nor a lead.
     """
     stage_kpa, touch = drive.stage_kpa, drive.valves.touch_kpa
-    period, top = sensor.period_s, stage_kpa.shape[0] - 1
+    period, top, longest = sensor.period_s, stage_kpa.shape[0] - 1, int(LONGEST_PASS_S / sensor.period_s)
     over = np.empty(drive.parts)
     part = period / drive.parts
     pressure, wait, stage, sample, switchings = drive.initial_kpa, 0.0, drive.initial_stage, 0, 0
@@ -84,7 +84,7 @@ def run_stuck_pass(
     kpa = max(0.0, pressure - touch)
     count = note(events, 0, 0.0, edges_m[0], entry_m_s, kpa, stage, math.nan)
     cell, s, v, time, status = advance(edges_m, free, brake, kpa, first_sample_s, 0, edges_m[0], entry_m_s)
-    while status == MOVING and time < LONGEST_PASS_S:
+    while status == MOVING and sample < longest:
         if (begin_s <= time < end_s) != held:
             held = not held
             valves = stuck if held else drive.valves
@@ -103,15 +103,10 @@ def run_stuck_pass(
         pressure, wait = play_period(
             pressure, wait, stage_kpa[before], stage_kpa[stage], drive.computing_delay_s, period, valves, over
         )
-        i, used = 0, 0.0
-        while i < drive.parts and status == MOVING:
-            begun, kpa = i, over[i]
-            while i < drive.parts and abs(over[i] - kpa) < 1e-9:
-                i += 1  # dead times and rests are one step
-            time = first_sample_s + sample * period + begun * part
-            count = note(events, count, time, s, v, kpa, stage, measured)
-            measured = math.nan
-            cell, s, v, used, status = advance(edges_m, free, brake, kpa, (i - begun) * part, cell, s, v)
+        cell, s, v, kpa, time, used, status, count = roll_period(
+            edges_m, free, brake, over, part, first_sample_s + sample * period, stage, measured, cell, s, v, events,
+            count,
+        )  # fmt: skip
         sample += 1
         if status == MOVING:
             time = first_sample_s + sample * period  # not by summing up: the clock must not drift
