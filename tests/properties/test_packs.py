@@ -13,9 +13,11 @@ import numpy as np
 import pytest
 from numba import njit
 from numpy.typing import NDArray
+from scipy.special import ndtr
 
 from plant_models import Plant
 from synth.kernels.vector import packs
+from synth.kernels.vector.normal_packs import normal_cdf8, normal_density8
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
@@ -149,3 +151,24 @@ def test_the_kernels_mean_the_same_without_the_compiler(plant_with: Callable[...
     )  # fmt: skip
     assert plain.returncode == 0, plain.stderr
     np.testing.assert_allclose(json.loads(plain.stdout), figures(plant_with()), rtol=1e-11)
+
+
+@njit
+def normal_law(z: np.ndarray, below: np.ndarray, density: np.ndarray) -> None:
+    """Φ and φ, pack by pack."""
+    for j in range(0, z.shape[0], packs.EIGHT):
+        packs.store(below, j, normal_cdf8(packs.load8(z, j)))
+        packs.store(density, j, normal_density8(packs.load8(z, j)))
+
+
+def test_the_normal_law_in_packs() -> None:
+    """Against scipy: to rounding, in the lower tail relative to Φ itself; exactly 0 and 1 beyond six deviations."""
+    z = np.concatenate([np.linspace(-6.0, 6.0, 160_000), [-np.inf, -6.1, -6.0 - 1e-15, 6.0 + 1e-15, 6.1, np.inf, 0, 0]])
+    below, density = np.empty_like(z), np.empty_like(z)
+    normal_law(z, below, density)
+    inside, tail = np.abs(z) <= 6.0, (z < 0.0) & (z >= -6.0)
+    np.testing.assert_allclose(below[inside], ndtr(z[inside]), rtol=0.0, atol=4e-16)
+    np.testing.assert_allclose(below[tail], ndtr(z[tail]), rtol=2e-11)
+    np.testing.assert_allclose(density[inside], np.exp(-0.5 * z[inside] ** 2) / np.sqrt(2 * np.pi), rtol=2e-13)
+    assert set(below[~inside]) == {0.0, 1.0}
+    assert not density[~inside].any()

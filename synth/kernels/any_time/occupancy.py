@@ -9,81 +9,81 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from synth.kernels.any_time.period import ROOM, ahead_m2_s2, push_period, push_row
-from synth.kernels.sweep.commands import CERTAIN, first_above, normal_cdf
+from synth.kernels.any_time.period import ROOM, look_ahead, push_period, push_row
 from synth.kernels.sweep.flow import add_row, clear, extent, widen
 from synth.kernels.vector.borrowing import borrowing
-from synth.kernels.vector.packs import EIGHT
+from synth.kernels.vector.normal_packs import normal_cdf8
+from synth.kernels.vector.packs import EIGHT, eight, load8, store
 
 DOWN, HOLD, UP = 0, 1, 2
 """Commands at a sample, by their place among the periods of a mode."""
-
-NEGLIGIBLE_MASS = 1e-12
-"""Energies of a state beyond which no mass is larger are left out."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def occupy(
     lines, reading, noise, periods, kpa, way, target, share, entry, entry_way, entry_kpa, stationary,
-    mixing, factor, extra, motion, path, density, band, way_band, exits, totals,
+    mixing, factor, extra, motion, path, heading, here, negligible, keep, records, band, where, way_band, exits, totals,
 ):  # fmt: skip
-    """One forward pass.
+    """One forward pass; returns the records of the states that were met if `keep`: `records`, or a longer array.
 
-    `lines` (2, N, M): below and above them the command is down and up, in readings; `reading` (E,) of the true speeds,
+    `lines` (2, N, M): below and above them the command is down and up, in readings; `reading` (E',) of the true speeds,
     with errors of std `noise` (N,). `periods` (M, 3): period that follows a command in a mode, −1 where it is none; of
     each period `kpa` (D,) mean overpressure and `way` (D,); of each way `target`, `share` (W, 4) modes and shares.
     `entry` (A, E): probability of entering with energy j and having the first sample at node r, `entry_way` and the
-    pressure `entry_kpa` until then. `stationary` (L,), `mixing` (E, L, L) of the path noise after a period; `factor`
-    (L,) of the friction by level; `extra` acceleration; `motion`, `path` as in `pull_period`.
-    Outputs: `density` (N, M, L, E), or of length 0; `band` (N, M, 2), `way_band` (N, W, 2): ranges of energies met;
-    `exits` (E,) by energy; `totals` (4,): stalled, escaped, changes down, changes up.
+    pressure `entry_kpa` until then. `stationary` (L,), `mixing` (L, L, E') of the path noise after a period; `factor`
+    (L,) of the friction by level; `extra` acceleration; `motion`, `path` as of `look_ahead`. `heading`
+    (W, L, ring, E') and `here` (M, L, E') are zeros, and are left so. Energies of a state beyond which no mass is
+    larger than `negligible` are left out.
+    Outputs: `band` (N, M, 2), `way_band` (N, W, 2): ranges of energies met; `where` (N, M): begin of a mode's record,
+    which is whole packs from the first energy on: the density of every level, the chances of down and up; `exits` (E,)
+    by energy; `totals` (4,): stalled, escaped, changes down, changes up.
     """
     nodes, modes, levels = lines.shape[1], lines.shape[2], factor.shape[0]
-    points, ways, ring = reading.shape[0], target.shape[0], max(motion[4].shape[0] + 1, entry.shape[0] + 1)
-    row = points + ROOM
-    heading, spans = np.zeros((ways, levels, ring, row)), np.zeros((ways, levels, ring, 2), np.int64)
+    points, (ways, _, ring, row) = exits.shape[0], heading.shape
+    spans = np.zeros((ways, levels, ring, 2), np.int64)
     spans[:, :, :, 0] = points
-    here, moved, scratch = np.zeros((modes, levels, row)), np.zeros((levels, row)), np.zeros(row)
+    moved, scratch = np.zeros((levels, row)), np.zeros((3, row + 2 * ROOM))
     span, chance = np.zeros((modes, 2), np.int64), np.zeros((3, row))
-    of_node = np.zeros(motion[4].shape[0], np.int64)
+    reach = max(motion[4].shape[0], entry.shape[0])
+    of_node, free, braking = np.zeros(reach, np.int64), np.zeros(reach), np.zeros(reach)
+    used = 0
     totals[:], exits[:] = 0.0, 0.0
+    look_ahead(0, extra, motion, path, ring, of_node, free, braking)
     for r in range(entry.shape[0]):
         for q in range(levels):
-            for j in range(points):
-                scratch[j] = entry[r, j] * stationary[q]
-            shift = ahead_m2_s2(0, r, entry_kpa, factor[q], extra, motion, path) / motion[3]
-            push_row(scratch, shift, points, 1, points, heading[entry_way, q, r], spans[entry_way, q, r])
+            scratch[0, :points] = entry[r] * stationary[q]
+            shift = free[r] - entry_kpa * factor[q] * braking[r]
+            push_row(scratch[0, 1:points], 1, shift, points, heading[entry_way, q, r], spans[entry_way, q, r])
     for n in range(nodes):
-        for r in range(of_node.shape[0]):
-            of_node[r] = min(n + r, nodes) % ring
+        look_ahead(n, extra, motion, path, ring, of_node, free, braking)
         gather_arrivals(n % ring, points, heading, spans, target, share, here, span, way_band[n], totals)
         for m in range(modes):
             band[n, m] = 0
             if span[m, 0] >= span[m, 1]:
                 continue
-            first, last = change_levels(here[m], span[m, 0], span[m, 1], points, mixing, moved)
+            first, last = change_levels(here[m], span[m, 0], span[m, 1], points, mixing, negligible, moved)
             span[m] = 0
             band[n, m, 0], band[n, m, 1] = first, last
-            if density.shape[0] > 0:
-                density[n, m, :, first:last] = moved[:, first:last]
-            scale = 1.0 / noise[n]
-            chances(lines[0, n, m], lines[1, n, m], reading, scale, periods[m], first, last, chance)
+            chances(lines[0, n, m], lines[1, n, m], reading, 1.0 / noise[n], periods[m], first, last, chance)
+            if keep:
+                where[n, m], size = used, whole_packs(last - first) * (levels + 2)
+                if used + size > records.shape[0]:
+                    records = longer(records, used, size)
+                keep_record(moved, chance, first, last, records, used)
+                used += size
             for command in range(3):
                 d = periods[m, command]
                 begin, end = extent(chance[command], first, last, 1e-300)
                 if d < 0 or begin >= end:
                     continue
                 for q in range(levels):
-                    for j in range(begin, end):
-                        here[m, q, j] = moved[q, j] * chance[command, j]
-                        if command != HOLD:
-                            totals[2 + command // 2] += here[m, q, j]
                     push_period(
-                        n, kpa[d], factor[q], extra, motion, path, of_node, here[m, q], begin, end,
+                        (of_node, free, braking), kpa[d] * factor[q], motion, moved[q], chance[command], begin, end,
                         heading[way[d], q], spans[way[d], q], scratch,
                     )  # fmt: skip
+                    if command != HOLD:
+                        totals[2 + command // 2] += product(moved[q], chance[command], begin, end)
             for q in range(levels):
-                clear(here[m, q], first, last)
                 totals[1] += abs(moved[q, points - 1]) if last == points else 0.0
     for w in range(ways):
         for q in range(levels):
@@ -91,6 +91,8 @@ def occupy(
             totals[0] += last_row[0]
             for j in range(1, points):
                 exits[j] += last_row[j]
+            last_row[:] = 0.0
+    return records
 
 
 @borrowing
@@ -116,19 +118,21 @@ def gather_arrivals(slot, points, heading, spans, target, share, here, span, way
 
 
 @borrowing
-def change_levels(arrived, begin, end, points, mixing, out):
+def change_levels(arrived, begin, end, points, mixing, negligible, out):
     """`out` (L, E'): the mass `arrived` after the level's change at the end of a period, which is emptied.
 
     Returns the range of energies that matter.
     """
-    levels = arrived.shape[0]
+    levels, row = arrived.shape
+    begin = max(begin, 1)
     first, last = points, 0
     for q in range(levels):
-        clear(out[q], begin, end + EIGHT)
-        for j in range(max(begin, 1), end):
-            for k in range(levels):
-                out[q, j] += arrived[k, j] * mixing[j, k, q]
-        a, b = extent(out[q], max(begin, 1), end, NEGLIGIBLE_MASS)
+        for j in range(begin, end, EIGHT):
+            found = load8(arrived, j) * load8(mixing, q * row + j)
+            for k in range(1, levels):
+                found = found + load8(arrived, k * row + j) * load8(mixing, (k * levels + q) * row + j)
+            store(out, q * row + j, found)
+        a, b = extent(out[q], begin, end, negligible)
         if a < b:
             first, last = min(first, a), max(last, b)
     for q in range(levels):
@@ -139,9 +143,48 @@ def change_levels(arrived, begin, end, points, mixing, out):
 @borrowing
 def chances(lower, upper, reading, scale, periods, first, last, out):
     """`out` (3, E'): probability of every command for first ≤ j < last; of a command that there is not, 0."""
-    down_end = first_above(reading, lower, scale, CERTAIN, True) if periods[DOWN] >= 0 else 0
-    up_begin = first_above(reading, upper, scale, -CERTAIN, False) if periods[UP] >= 0 else reading.shape[0]
-    for j in range(first, last):
-        down = normal_cdf((lower - reading[j]) * scale) if j < down_end else 0.0
-        up = normal_cdf((reading[j] - upper) * scale) if j >= up_begin else 0.0
-        out[DOWN, j], out[HOLD, j], out[UP, j] = down, 1.0 - down - up, up
+    row = out.shape[1]
+    for j in range(first, last, EIGHT):
+        read = load8(reading, j)
+        down = normal_cdf8((read * -1.0 + lower) * scale) if periods[DOWN] >= 0 else eight(0.0)
+        up = normal_cdf8((read - upper) * scale) if periods[UP] >= 0 else eight(0.0)
+        store(out, DOWN * row + j, down)
+        store(out, HOLD * row + j, down * -1.0 + 1.0 - up)
+        store(out, UP * row + j, up)
+
+
+@borrowing
+def product(mass, chance, begin, end):
+    """Σ mass·chance over begin ≤ j < end."""
+    total = 0.0
+    for j in range(begin, end):
+        total += mass[j] * chance[j]
+    return total
+
+
+@borrowing
+def whole_packs(count):
+    """So many numbers, filled up to whole packs."""
+    return (count + EIGHT - 1) // EIGHT * EIGHT
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def longer(records, used, size):
+    """The same with room for `size` numbers more."""
+    found = np.empty(max(2 * records.shape[0], used + size))
+    found[:used] = records[:used]
+    return found
+
+
+@borrowing
+def keep_record(moved, chance, first, last, records, at):
+    """Write density and chances from flat index `at` on; the density behind `last` is 0."""
+    levels, width = moved.shape[0], whole_packs(last - first)
+    for j in range(0, width, EIGHT):
+        for q in range(levels):
+            store(records, at + q * width + j, load8(moved[q], first + j))
+        store(records, at + levels * width + j, load8(chance[DOWN], first + j))
+        store(records, at + (levels + 1) * width + j, load8(chance[UP], first + j))
+    for q in range(levels):
+        for j in range(last - first, width):
+            records[at + q * width + j] = 0.0

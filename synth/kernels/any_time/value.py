@@ -9,110 +9,177 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from synth.kernels.any_time.occupancy import DOWN, HOLD, UP, chances
-from synth.kernels.any_time.period import ROOM, ahead_m2_s2, pull_period, pull_row
-from synth.kernels.sweep.commands import CERTAIN, first_above, normal_density
-from synth.kernels.sweep.flow import add_row, clear
-from synth.kernels.vector.borrowing import borrowing
-from synth.kernels.vector.packs import EIGHT
+from synth.kernels.any_time.occupancy import DOWN, HOLD, UP, whole_packs
+from synth.kernels.any_time.period import look_ahead, pull_period, pull_row
+from synth.kernels.sweep.flow import clear, extent
+from synth.kernels.vector.borrowing import borrowing, borrowing_inline
+from synth.kernels.vector.normal_packs import normal_density8
+from synth.kernels.vector.packs import EIGHT, eight, load8, store
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def value(
     lines, reading, noise, periods, kpa, way, target, share, entry, entry_way, entry_kpa, stationary,
-    mixing, factor, extra, motion, path, terminal, stalled, change_cost, density, band, way_band, slopes, bends,
+    mixing, factor, extra, motion, path, rows, values, terminal, stalled, change_cost, records, band, where, way_band,
+    slopes, bends,
 ):  # fmt: skip
-    """The expected cost of a pass; arguments up to `path` and `density`, `band`, `way_band` as of `occupy`.
+    """The expected cost of a pass; arguments up to `path`, and `records` to `way_band`, as of `occupy`.
 
+    `rows` (W, L, ring, E') and `values` (M, L, E') are zeros, and are left so.
     `terminal` (E,) cost by exit energy, `stalled` of a stall, `change_cost` of a command. Outputs (2, N, M):
     `slopes`, derivatives of the cost by the lines, and `bends`, its second derivatives by each line alone.
     """
     nodes, modes, levels = lines.shape[1], lines.shape[2], factor.shape[0]
-    points, ways, ring = reading.shape[0], target.shape[0], max(motion[4].shape[0] + 1, entry.shape[0] + 1)
-    row = points + ROOM
-    rows, values = np.zeros((ways, levels, ring, row)), np.zeros((modes, levels, row))
-    commanded, chance, scratch = np.zeros((3, row)), np.zeros((3, row)), np.zeros(row)
-    of_node = np.zeros(motion[4].shape[0], np.int64)
+    points, (_, _, ring, row) = terminal.shape[0], rows.shape
+    chance, commanded = np.zeros((3, row)), np.zeros((3, row))
+    saved, scratch = np.zeros((2, row)), np.zeros((3, row))
+    reach, ends = max(motion[4].shape[0], entry.shape[0]), np.zeros((3, 2), np.int64)
+    of_node, free, braking = np.zeros(reach, np.int64), np.zeros(reach), np.zeros(reach)
     rows[:, :, nodes % ring, :points] = terminal
     rows[:, :, nodes % ring, 0] = stalled
     slopes[:], bends[:] = 0.0, 0.0
     for n in range(nodes - 1, -1, -1):
-        scale = 1.0 / noise[n]
-        for r in range(of_node.shape[0]):
-            of_node[r] = min(n + r, nodes) % ring
+        look_ahead(n, extra, motion, path, ring, of_node, free, braking)
         for m in range(modes):
             first, last = band[n, m]
             for q in range(levels if n + 1 < nodes else 0):
                 clear(values[m, q], band[n + 1, m, 0], band[n + 1, m, 1])
             if first >= last:
                 continue
-            chances(lines[0, n, m], lines[1, n, m], reading, scale, periods[m], first, last, chance)
-            down_end = first_above(reading, lines[0, n, m], scale, CERTAIN, True) if periods[m, DOWN] >= 0 else 0
-            up_begin = first_above(reading, lines[1, n, m], scale, -CERTAIN, False) if periods[m, UP] >= 0 else last
-            begins, ends = (first, first, max(first, up_begin)), (min(last, down_end), last, last)
+            take_chances(records, where[n, m], levels, first, last, chance, ends)
             for q in range(levels):
                 for command in range(3):
                     d = periods[m, command]
-                    if d >= 0:
+                    if d >= 0 and ends[command, 0] < ends[command, 1]:
                         pull_period(
-                            n, kpa[d], factor[q], extra, motion, path, of_node, rows[way[d], q],
-                            begins[command], ends[command], commanded[command], scratch,
+                            (of_node, free, braking), kpa[d] * factor[q], motion, rows[way[d], q],
+                            ends[command, 0], ends[command, 1], commanded[command], scratch,
                         )  # fmt: skip
-                for j in range(first, last):
-                    values[m, q, j] = commanded[HOLD, j]
-                for command in (DOWN, UP):
-                    side = command // 2
-                    for j in range(begins[command], ends[command]):
-                        saved = commanded[command, j] + change_cost - commanded[HOLD, j]
-                        values[m, q, j] += chance[command, j] * saved
-                        add_slopes(
-                            density[n, m, q, j] * saved, (lines[side, n, m] - reading[j]) * scale, scale,
-                            side, n, m, slopes, bends,
-                        )  # fmt: skip
+                density = where[n, m] + q * whole_packs(last - first) - first
+                decide(commanded, chance, ends, change_cost, records, density, values[m, q], saved, q == 0)
+            for side in range(2):
+                by_line(
+                    saved[side], lines[side, n, m], reading, 1.0 / noise[n], ends[2 * side], scratch[0],
+                    side, n, m, slopes, bends,
+                )  # fmt: skip
             change_levels_back(values[m], first, last, mixing, scratch)
         at_ways(n % ring, way_band[n], values, target, share, stalled, rows)
     cost = 0.0
     for r in range(entry.shape[0]):
         for q in range(levels):
-            shift = ahead_m2_s2(0, r, entry_kpa, factor[q], extra, motion, path) / motion[3]
-            pull_row(rows[entry_way, q, r], shift, points, 1, points, scratch)
+            shift = free[r] - entry_kpa * factor[q] * braking[r]
+            pull_row(rows[entry_way, q, r], shift, points, 1, points, scratch[0])
             for j in range(1, points):
-                cost += entry[r, j] * stationary[q] * scratch[j]
+                cost += entry[r, j] * stationary[q] * scratch[0, j]
+    leave_zeros(band[0], way_band, rows, values)
     return cost
 
 
 @borrowing
-def add_slopes(weight, z, scale, side, n, m, slopes, bends):
-    """Of a line `z` standard deviations above what is read; `weight`: density times what the command costs more."""
-    slope = normal_density(z) * scale * (1.0 if side == 0 else -1.0)
-    slopes[side, n, m] += weight * slope
-    bends[side, n, m] -= weight * slope * z * scale
+def take_chances(records, at, levels, first, last, chance, ends):
+    """The chances of down and up (3, E') of a mode's record, and the energies `ends` (3, 2) at which a command counts.
+
+    What holding is worth counts everywhere, as what a command saves is counted from it.
+    """
+    width = whole_packs(last - first)
+    ends[HOLD, 0], ends[HOLD, 1] = first, last
+    for command in (DOWN, UP):
+        kept = at + (levels + command // 2) * width
+        for j in range(0, width, EIGHT):
+            store(chance[command], first + j, load8(records, kept + j))
+        begin, end = extent(chance[command], first, last, 1e-300)
+        ends[command] = end
+        if begin < end:
+            ends[command, 0] = begin - (begin - first) % EIGHT  # a record ends with a whole pack
+
+
+@borrowing
+def decide(commanded, chance, ends, change_cost, records, density, out, saved, fresh):
+    """Value `out` (E',) at a sample of a level under the chances of the commands; behind its energies it is 0.
+
+    To `saved` (2, E'), what commands down and up cost less than holding, the level's share is added, by its density,
+    which stands in `records` from flat index `density` on; `fresh`: it is put there.
+    """
+    first, last = ends[HOLD]
+    for j in range(first, last, EIGHT):
+        store(out, j, load8(commanded[HOLD], j))
+    for command in (DOWN, UP):
+        side = command // 2
+        for j in range(ends[command, 0], ends[command, 1], EIGHT):
+            less = load8(commanded[command], j) - load8(commanded[HOLD], j) + change_cost
+            store(out, j, load8(out, j) + load8(chance[command], j) * less)
+            weighted = load8(records, density + j) * less
+            store(saved[side], j, weighted if fresh else load8(saved[side], j) + weighted)
+    store(out, last, eight(0.0))
+
+
+@borrowing
+def by_line(saved, line, reading, scale, ends, scratch, side, n, m, slopes, bends):
+    """Slope and bend of the cost by one line, of which commands cost `saved` (E',) less, times density, at `ends`."""
+    slope, bend = eight(0.0), eight(0.0)
+    for j in range(ends[0], ends[1], EIGHT):
+        z = (load8(reading, j) * -1.0 + line) * scale
+        weighted = normal_density8(z) * load8(saved, j)
+        slope, bend = slope + weighted, bend + weighted * z
+    sign = scale if side == 0 else -scale
+    if ends[0] < ends[1]:
+        slopes[side, n, m] = sign * lanes_together(slope, scratch)
+        bends[side, n, m] = -sign * scale * lanes_together(bend, scratch)
+
+
+@borrowing_inline
+def lanes_together(pack, scratch):
+    """Sum of the lanes."""
+    store(scratch, 0, pack)
+    total = 0.0
+    for j in range(EIGHT):
+        total += scratch[j]
+    return total
 
 
 @borrowing
 def change_levels_back(values, first, last, mixing, scratch):
     """Values (L, E') before the level's change at the end of a period, of those after it, in place."""
-    levels = values.shape[0]
-    for j in range(first, last):
+    levels, row = values.shape
+    for j in range(first, last, EIGHT):
         for q in range(levels):
-            scratch[q] = 0.0
-            for k in range(levels):
-                scratch[q] += mixing[j, q, k] * values[k, j]
+            found = load8(values, j) * load8(mixing, q * levels * row + j)
+            for k in range(1, levels):
+                found = found + load8(values, k * row + j) * load8(mixing, (q * levels + k) * row + j)
+            store(scratch, q * EIGHT, found)
         for q in range(levels):
-            values[q, j] = scratch[q]
+            store(values, q * row + j, load8(scratch, q * EIGHT))
 
 
 @borrowing
 def at_ways(slot, way_band, values, target, share, stalled, rows):
     """Values of modes as values of the ways that lead to them, where mass arrives."""
+    levels, row = values.shape[1:]
     for w in range(target.shape[0]):
         begin, end = way_band[w]
         if begin >= end:
             continue
-        for q in range(values.shape[1]):
-            row = rows[w, q, slot]
-            clear(row, begin, end + EIGHT)
-            for b in range(4):
-                if share[w, b] != 0.0:
-                    add_row(values[target[w, b], q], share[w, b], begin, end, row, 0)
-            row[0] = stalled
+        for q in range(levels):
+            to = rows[w, q, slot]
+            a, b, c, d = target[w, 0], target[w, 1], target[w, 2], target[w, 3]
+            a, b, c, d = (a * levels + q) * row, (b * levels + q) * row, (c * levels + q) * row, (d * levels + q) * row
+            for j in range(begin, end, EIGHT):
+                found = load8(values, a + j) * share[w, 0] + load8(values, b + j) * share[w, 1]
+                store(to, j, found + load8(values, c + j) * share[w, 2] + load8(values, d + j) * share[w, 3])
+            to[0] = stalled
+
+
+@borrowing
+def leave_zeros(band, way_band, rows, values):
+    """Zeros again wherever a pass has written; `band` (M, 2) of the first node."""
+    nodes, (ways, levels, ring, _) = way_band.shape[0], rows.shape
+    rows[:, :, nodes % ring] = 0.0
+    for n in range(nodes):
+        for w in range(ways):
+            if way_band[n, w, 0] < way_band[n, w, 1]:
+                for q in range(levels):
+                    rows[w, q, n % ring, 0] = 0.0
+                    clear(rows[w, q, n % ring], way_band[n, w, 0], way_band[n, w, 1] + EIGHT)
+    for m in range(values.shape[0]):
+        for q in range(levels):
+            clear(values[m, q], band[m, 0], band[m, 1])

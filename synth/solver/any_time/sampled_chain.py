@@ -50,11 +50,11 @@ class SampledChain:
     """One plant on one grid: all but policy and aim.
 
     `drive_m2_s2`, `brake_m2_s2_per_kpa` (N + 1,): integrals over the path, up to each node, of the acceleration without
-    brakes and of what one kPa takes away. `noise`: of the path over a period at the reference speed; `mixing` (E, L, L)
-    its transition over the path of a period at each speed. `entry` (A, E): probability of entry energy j with the first
-    sample at node r; `entry_mode` the mode until then. `first_energy` (R + 2,): first speed whose period ends nearest
-    to each number of quanta. `estimate`: the error of the speed that the regulator knows, where it is an estimated one;
-    else that of `measurement` counts.
+    brakes and of what one kPa takes away. `noise`: of the path over a period at the reference speed; `mixing`
+    (L, L, E') its transition over the path of a period at each speed. `entry` (A, E): probability of entry energy j
+    with the first sample at node r; `entry_mode` the mode until then. `first_energy` (R + 2,): first speed whose period
+    ends nearest to each number of quanta. `estimate`: the error of the speed that the regulator knows, where it is an
+    estimated one; else that of `measurement` counts.
     """
 
     plant: Plant
@@ -105,6 +105,7 @@ def sampled_chain(
     period_m = grid.speed_m_s * plant.sensor.sample_period_s
     usual_m = resolution.reference_speed_m_s * plant.sensor.sample_period_s
     levels = resolution.path_levels
+    moved_m = np.pad(np.maximum(period_m, period_m[1]), (0, ROOM), mode="edge")
     middle = np.maximum(np.floor(period_m / grid.path_step_m + 0.5).astype(np.int64), NEAREST)
     entry_mode = at_rest_from_below(modes, plant.approach.initial_stage)
     return SampledChain(
@@ -116,9 +117,7 @@ def sampled_chain(
         measurement=smooth_measurement(plant.sensor) if measurement is None else measurement,
         scenarios=persistent_scenarios(plant, resolution.friction_nodes, resolution.resistance_nodes),
         noise=correlated_noise(plant.friction, usual_m, levels),
-        mixing=np.array(
-            [correlated_noise(plant.friction, each, levels).transition for each in np.maximum(period_m, period_m[1])]
-        ),
+        mixing=np.stack([correlated_noise(plant.friction, each, levels).transition for each in moved_m], axis=2),
         drive_m2_s2=summed(coefficients.free_m_s2(plant.resistance.mean_n_per_kn) * np.diff(grid.path_m)),
         brake_m2_s2_per_kpa=summed(coefficients.brake_m_s2_per_kpa * np.diff(grid.path_m)),
         entry=entry_distribution(plant, grid),

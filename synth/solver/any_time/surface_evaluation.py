@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 import numpy as np
@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
 from synth.kernels.any_time.occupancy import occupy
+from synth.kernels.any_time.period import ROOM
 from synth.kernels.any_time.value import value
 from synth.problem.aim import Aim
 from synth.solver.any_time.sampled_chain import SampledChain, motion_arguments
+from synth.solver.any_time.working_memory import WorkingMemory
 from synth.solver.exit_density import ExitDensity
 
 Result = TypeVar("Result")
@@ -42,11 +44,12 @@ class SurfaceCost:
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Followed:
-    """The forward pass of one scenario: its exits (E,), totals (4,), and the ranges that the backward pass takes."""
+    """The forward pass of one scenario: its exits (E,), totals (4,), and where the states are that it met."""
 
     exits: NDArray[np.float64]
     totals: NDArray[np.float64]
     band: NDArray[np.int64]
+    where: NDArray[np.int64]
     way_band: NDArray[np.int64]
 
 
@@ -54,16 +57,20 @@ class Followed:
 class SurfaceEvaluation:
     """Exact figures of policies on one chain; `lines_m_s` (2, N, M) by side, path node and mode; ±inf: no command.
 
-    Scenarios are followed side by side in `threads`; no figure depends on how many.
+    Scenarios are followed side by side in `threads`; no figure depends on how many. Energies of a state beyond which no
+    probability is larger than `negligible_mass` are left out. `free`: memory that no thread works in at the moment;
+    evaluations on the same grid can share it.
     """
 
     chain: SampledChain
     threads: int = 1
+    negligible_mass: float = 1e-12
+    free: list[WorkingMemory] = field(default_factory=list, repr=False)
 
     def density(self, lines_m_s: NDArray[np.float64]) -> ExitDensity:
         """Exit-speed density, all scenarios weighted."""
         c, policy = self.chain, self._policy(lines_m_s)
-        found = self._each(lambda i, memory: self._followed(self._in_scenario(policy, i), i, memory), nodes=0)
+        found = self._each(lambda i, memory: self._followed(self._in_scenario(policy, i), i, memory, False))
         exits = sum(w * each.exits for w, each in zip(c.scenarios.weight, found, strict=True))
         totals = sum(w * each.totals for w, each in zip(c.scenarios.weight, found, strict=True))
         stalled, escaped, down, up = (float(each) for each in np.asarray(totals))
@@ -73,9 +80,7 @@ class SurfaceEvaluation:
         """Expected cost and its derivatives, all scenarios weighted."""
         c, policy = self.chain, self._policy(lines_m_s)
         cost, slopes, bends = 0.0, np.zeros(policy[0].shape), np.zeros(policy[0].shape)
-        found = self._each(
-            lambda i, memory: self._valued(self._in_scenario(policy, i), i, aim, memory), nodes=len(c.drive_m2_s2) - 1
-        )
+        found = self._each(lambda i, memory: self._valued(self._in_scenario(policy, i), i, aim, memory))
         for weight, (one, slope, bend) in zip(c.scenarios.weight, found, strict=True):
             cost += weight * one
             slopes += weight * slope
@@ -83,18 +88,20 @@ class SurfaceEvaluation:
         rate = c.measurement.slopes(lines_m_s)
         return SurfaceCost(cost, slopes * rate, bends * rate**2)
 
-    def _each(self, work: Callable[[int, NDArray[np.float64]], Result], nodes: int) -> list[Result]:
-        """What `work` gives for every scenario, in their order; each thread has a memory for densities at `nodes`."""
-        c, count = self.chain, len(self.chain.scenarios.weight)
-        shape = (nodes, len(c.modes.stage), len(c.noise.levels), len(c.grid.speed_m_s))
+    def _each(self, work: Callable[[int, WorkingMemory], Result]) -> list[Result]:
+        """What `work` gives for every scenario, in their order."""
 
-        def in_turn(first: int) -> list[Result]:
-            memory = np.empty(shape)  # what is not written is never touched
-            return [work(i, memory) for i in range(first, count, self.threads)]
+        def one(i: int) -> Result:
+            try:
+                memory = self.free.pop()
+            except IndexError:
+                memory = WorkingMemory(self.chain)
+            found = work(i, memory)
+            self.free.append(memory)
+            return found
 
         with ThreadPoolExecutor(max_workers=self.threads) as pool:
-            parts = list(pool.map(in_turn, range(self.threads)))
-        return [parts[i % self.threads][i // self.threads] for i in range(count)]
+            return list(pool.map(one, range(len(self.chain.scenarios.weight))))
 
     def _policy(self, lines_m_s: NDArray[np.float64]) -> tuple[Any, ...]:
         """Lines in readings, what is read of true speeds, and the error at every node (N,)."""
@@ -108,7 +115,7 @@ class SurfaceEvaluation:
         lines = np.array(lines)
         held = c.modes.stage >= c.plant.entrance_stage
         lines[UP, : c.approach_nodes, held] = np.inf  # before the entrance, no further
-        return lines, read, noise
+        return lines, np.pad(read, (0, ROOM), mode="edge"), noise
 
     def _in_scenario(self, policy: tuple[Any, ...], i: int) -> tuple[Any, ...]:
         """The policy as true speeds meet it in scenario `i`: what is estimated is shifted there."""
@@ -119,22 +126,26 @@ class SurfaceEvaluation:
         shift = c.estimate.shift_m_s(c.grid.path_m[:-1], c.scenarios, i)
         return (lines - shift[None, :, None], *others)
 
-    def _followed(self, policy: tuple[Any, ...], i: int, density: NDArray[np.float64]) -> Followed:
+    def _followed(self, policy: tuple[Any, ...], i: int, memory: WorkingMemory, keep: bool) -> Followed:
         c = self.chain
         nodes, modes, points = len(c.drive_m2_s2) - 1, len(c.modes.stage), len(c.grid.speed_m_s)
-        band = np.empty((nodes, modes, 2), dtype=np.int64)
+        band, where = np.empty((nodes, modes, 2), dtype=np.int64), np.empty((nodes, modes), dtype=np.int64)
         way_band = np.empty((nodes, len(c.periods.target), 2), dtype=np.int64)
         exits, totals = np.empty(points), np.empty(4)
-        arguments: tuple[Any, ...] = (*policy, *self._shared(i), density, band, way_band, exits, totals)
-        occupy(*arguments)
-        return Followed(exits, totals, band, way_band)
+        arguments: tuple[Any, ...] = (
+            *policy, *self._shared(i), memory.heading, memory.here, self.negligible_mass, keep, memory.records,
+            band, where, way_band, exits, totals,
+        )  # fmt: skip
+        memory.records = occupy(*arguments)
+        return Followed(exits, totals, band, where, way_band)
 
-    def _valued(self, policy: tuple[Any, ...], i: int, aim: Aim, density: NDArray[np.float64]) -> Valued:
-        f = self._followed(policy, i, density)
+    def _valued(self, policy: tuple[Any, ...], i: int, aim: Aim, memory: WorkingMemory) -> Valued:
+        f = self._followed(policy, i, memory, keep=True)
         slopes, bends = np.empty(policy[0].shape), np.empty(policy[0].shape)
         arguments: tuple[Any, ...] = (
-            *policy, *self._shared(i), *aim.criterion.exit_costs(self.chain.grid.speed_m_s, aim.target_speed_m_s),
-            aim.criterion.switching_tolerance_m2_s2, density, f.band, f.way_band, slopes, bends,
+            *policy, *self._shared(i), memory.heading, memory.here,
+            *aim.criterion.exit_costs(self.chain.grid.speed_m_s, aim.target_speed_m_s),
+            aim.criterion.switching_tolerance_m2_s2, memory.records, f.band, f.where, f.way_band, slopes, bends,
         )  # fmt: skip
         return value(*arguments), slopes, bends
 

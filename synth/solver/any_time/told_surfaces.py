@@ -16,7 +16,7 @@ from synth.problem.aim import Aim
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
 from synth.solver.any_time.sampled_chain import SampledChain
 from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
-from synth.solver.any_time.surface_polish import polish_surfaces
+from synth.solver.any_time.surface_polish import NEGLIGIBLE_MASS, polish_surfaces
 from synth.solver.finer_speed import known_factors
 from synth.solver.told_lines import SQUARED_ERROR_ALONE, from_the_middle, told_factors
 
@@ -56,13 +56,14 @@ def told_surfaces(design: SampledChain, target_m_s: float, common: PolynomialSur
     factor, weight = told_factors(design.plant, FRICTIONS)
     aim = Aim(target_m_s, SQUARED_ERROR_ALONE)
     found: dict[int, PolynomialSurfaces] = {}
+    evaluation = SurfaceEvaluation(design, negligible_mass=NEGLIGIBLE_MASS)
     for i in from_the_middle(len(factor)):
         start = next((found[j] for j in (i - 1, i + 1) if j in found), common)
         iterations = ITERATIONS[1 if found else 0]
         found[i] = start
         if weight[i] >= LEAST_WEIGHT:
             scenarios = known_factors(design.plant, factor[i : i + 1], design.resolution.resistance_nodes)
-            found[i] = improved(SurfaceEvaluation(replace(design, scenarios=scenarios)), aim, start, iterations)
+            found[i] = improved(replace(evaluation, chain=replace(design, scenarios=scenarios)), aim, start, iterations)
     return ToldSurfaces(factor, tuple(found[i] for i in range(len(factor))))
 
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from synth.kernels.any_time.period import ROOM
 from synth.problem.aim import Aim
 from synth.solver.any_time.sampled_chain import SampledChain, motion_arguments
 from synth.solver.backward_induction import TIE_M2_S2, true_speed_weights
@@ -28,7 +29,8 @@ def solve_surfaces(chain: SampledChain, aim: Aim, rough: float = ROUGH) -> Switc
     readings, noise = c.measurement.readings(c.grid.speed_m_s), max(c.measurement.std, 1e-6)
     terminal, stalled = aim.criterion.exit_costs(c.grid.speed_m_s, aim.target_speed_m_s)
     arguments: tuple[Any, ...] = (
-        readings, noise, *true_speed_weights(c.grid.speed_m_s, readings, noise), TIE_M2_S2,
+        np.pad(readings, (0, ROOM), mode="edge"), noise,
+        *true_speed_weights(c.grid.speed_m_s, readings, noise), TIE_M2_S2,
         p.of_mode, p.overpressure_kpa, p.way, p.target, p.share,
         np.multiply.outer(c.scenarios.weight, c.noise.stationary), c.mixing,
         np.multiply.outer(c.scenarios.factor, 1.0 + c.noise.levels), c.scenarios.extra_m_s2, *motion_arguments(c),

@@ -73,7 +73,7 @@ class BruteForce:
         pairs = [(int(t), float(w)) for t, w in zip(modes.target[m, a], modes.weight[m, a], strict=True) if w != 0.0]
         row = [self.stalled]
         for j in range(1, self.points):
-            mixing = self.c.mixing[j, q]
+            mixing = self.c.mixing[q, :, j]
             each = [sum(float(p) * self.value[i, node, t, k][j] for k, p in enumerate(mixing)) for t, _ in pairs]
             total = sum(w * value for (_, w), value in zip(pairs, each, strict=True))
             row.append(min(max(total, min(each)), max(each)) if self.limited else total)
@@ -139,7 +139,7 @@ class BruteForce:
         for r, row in enumerate(c.entry):
             for i, weight in enumerate(c.scenarios.weight):
                 for q, share in enumerate(c.noise.stationary):
-                    mixed = [sum(float(p) * self.value[i, r, 0, k][j] for k, p in enumerate(c.mixing[j, q]))
+                    mixed = [sum(float(p) * self.value[i, r, 0, k][j] for k, p in enumerate(c.mixing[q, :, j]))
                              for j in range(self.points)]  # fmt: skip
                     for j in np.flatnonzero(row):
                         x = float(j) + self.gained(i, 1.0, 0.0, 0, r) / c.grid.energy_step_m2_s2

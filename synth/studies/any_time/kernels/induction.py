@@ -11,11 +11,11 @@ import numpy as np
 from numba import njit
 
 from synth.kernels.any_time.occupancy import DOWN, HOLD, UP, chances
-from synth.kernels.any_time.period import NEAREST, ROOM, ahead_m2_s2, parabola_at, pull_period
+from synth.kernels.any_time.period import NEAREST, ROOM, longer_quanta, look_ahead, pull_period
 from synth.kernels.any_time.value import change_levels_back
 from synth.kernels.sweep.flow import interpolation
 from synth.kernels.sweep.thresholds import lower_threshold, upper_threshold
-from synth.kernels.vector.borrowing import borrowing
+from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -31,40 +31,36 @@ def induce(
     (2, N, M): whether a mode may be left downward and upward. The rest as of `occupancy.occupy` and `value.value`.
     """
     nodes, modes, (count, levels) = lines.shape[1], lines.shape[2], factor.shape
-    points, ways, ring = reading.shape[0], target.shape[0], motion[4].shape[0] + 1
+    points, ways, ring = terminal.shape[0], target.shape[0], motion[4].shape[0] + 1
     row, scale = points + ROOM, 1.0 / noise
     rows = np.zeros((count, ways, levels, ring, row))
     values, led = np.zeros((count, modes, levels, row)), np.zeros((count, levels, kpa.shape[0], row))
-    gain, chance, scratch = np.zeros(points), np.zeros((3, row)), np.zeros(row)
+    gain, chance, scratch = np.zeros(points), np.zeros((3, row)), np.zeros((3, row))
     of_node, rough = np.zeros(motion[4].shape[0], np.int64), np.zeros((count, ways, levels, ring), np.int64)
+    free, braking = np.zeros(of_node.shape[0]), np.zeros(of_node.shape[0])
     rows[:, :, :, nodes % ring, :points] = terminal
     rows[:, :, :, nodes % ring, 0] = stalled
     rough[:, :, :, nodes % ring] = rough_until(rows[0, 0, 0, nodes % ring], points, rough_m2_s2)
     for n in range(nodes - 1, -1, -1):
-        for r in range(of_node.shape[0]):
-            of_node[r] = min(n + r, nodes) % ring
         for i in range(count):
+            look_ahead(n, extra[i], motion, path, ring, of_node, free, braking)
+            ahead = of_node, free, braking
             for d in range(kpa.shape[0]):
                 for q in range(levels):
-                    pull_period(
-                        n, kpa[d], factor[i, q], extra[i], motion, path, of_node, rows[i, way[d], q], 1, points,
-                        led[i, q, d], scratch,
-                    )  # fmt: skip
-                    smooth_from = np.max(rough[i, way[d], q]) + deepest_cells(n, kpa[d], factor[i, q], motion, path)
-                    pull_kept_between(
-                        n, kpa[d], factor[i, q], extra[i], motion, path, of_node, rows[i, way[d], q],
-                        1, min(smooth_from, points), led[i, q, d],
-                    )  # fmt: skip
+                    taken, of_way = kpa[d] * factor[i, q], rows[i, way[d], q]
+                    pull_period(ahead, taken, motion, of_way, 1, points, led[i, q, d], scratch)
+                    smooth_from = np.max(rough[i, way[d], q]) + int(taken * braking[-1]) + 4
+                    pull_kept_between(ahead, taken, motion, of_way, 1, min(smooth_from, points), led[i, q, d])
         for m in range(modes):
             for side in range(2):
                 lines[side, n, m] = np.inf if side == 1 else -np.inf
                 if allowed[side, n, m]:
                     average_gain(led, periods[m, HOLD], periods[m, 2 * side], prior, change_cost, gain)
-                    behind_measured(gain, smear_start, smear, scratch)
+                    behind_measured(gain, smear_start, smear, scratch[0])
                     if side == 0:
-                        lines[0, n, m] = lower_threshold(gain, reading, tolerance)
+                        lines[0, n, m] = lower_threshold(gain, reading[:points], tolerance)
                     else:
-                        lines[1, n, m] = upper_threshold(gain, reading, tolerance)
+                        lines[1, n, m] = upper_threshold(gain, reading[:points], tolerance)
             lines[1, n, m] = max(lines[1, n, m], lines[0, n, m])
             chances(lines[0, n, m], lines[1, n, m], reading, scale, periods[m], 0, points, chance)
             for i in range(count):
@@ -104,31 +100,31 @@ def rough_until(row, points, least):
 
 
 @borrowing
-def deepest_cells(n, kpa, factor, motion, path):
-    """At most so many cells of the energy grid a period from node `n` brakes."""
-    to = min(n + motion[4].shape[0] - 1, path[0].shape[0] - 1)
-    return int(factor * kpa * (path[1][to] - path[1][n]) / motion[3]) + 4
-
-
-@borrowing
-def pull_kept_between(n, kpa, factor, extra, motion, path, of_node, rows, begin, end, out):
+def pull_kept_between(ahead, kpa, motion, rows, begin, end, out):
     """As `pull_period`, every interpolated value kept between those that it is interpolated from.
 
     Beside a stall the cost jumps by thousands of times what is to be gained elsewhere. A polynomial across the jump
     would promise costs below zero, and the policy would brake towards them.
     """
+    of_node, free, braking = ahead
     bands, points = motion[4], motion[0].shape[0] - ROOM
     for middle in range(NEAREST, bands.shape[0] - 1):
-        mean = ahead_m2_s2(n, middle, kpa, factor, extra, motion, path) / (middle * motion[2])
+        bend = longer_quanta(free[middle] - kpa * braking[middle], middle, motion)
         for j in range(max(begin, bands[middle]), min(end, bands[middle + 1])):
             total, low, high = 0.0, np.inf, -np.inf
             for side in range(3):
                 to = middle + side - 1
-                shift = ahead_m2_s2(n, to, kpa, factor, extra, motion, path) / motion[3]
-                found = kept_between(rows[of_node[to]], j + shift, points)
-                total += found * parabola_at(motion[0][j] + mean * motion[1], middle, side)
+                found = kept_between(rows[of_node[to]], j + free[to] - kpa * braking[to], points)
+                total += found * parabola_at(motion[0][j] + bend, middle, side)
                 low, high = min(low, found), max(high, found)
             out[j] = min(max(total, low), high)
+
+
+@borrowing_inline
+def parabola_at(quanta, middle, side):
+    """Weight of node `middle` + `side` − 1 at the end of a period that is so many quanta long."""
+    x = max(quanta, 1.0) - middle
+    return 1.0 - x * x if side == 1 else 0.5 * x * (x + (side - 1.0))
 
 
 @borrowing
