@@ -31,7 +31,7 @@ def tune_command(path: Path | None, output: Path, workers: int | None, permissio
     with output_directory(output) as directory:
         for warning in (*config.warnings, *sensors_left_aside(config)):
             say(f"warning: {warning}")
-        return tune_into(directory, config, path, Wanted(workers, permissions, as_json))
+        return tune_into(directory, config, path, Asked(workers, permissions, as_json))
 
 
 def sensors_left_aside(config: ResolvedConfig) -> tuple[str, ...]:
@@ -42,7 +42,7 @@ def sensors_left_aside(config: ResolvedConfig) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True)
-class Wanted:
+class Asked:
     """What was asked for on the command line, beside a configuration and a directory."""
 
     workers: int
@@ -50,7 +50,7 @@ class Wanted:
     as_json: bool
 
 
-def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, asked: Wanted) -> int:
+def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, asked: Asked) -> int:
     """The work itself, and what is said about it."""
     from synth.cli.interrupt import interruptible
     from synth.cli.progress import Progress
