@@ -82,7 +82,7 @@ def tune(
         ),
     ] = None,
     permissions: Annotated[
-        bool, typer.Option("--permissions", help="Also tell what permissions of the hardware would give: slow.")
+        bool, typer.Option("--permissions", help="Also tell what permissions of the hardware would give; takes long.")
     ] = False,
     as_json: Json = False,
 ) -> int:

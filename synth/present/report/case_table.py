@@ -7,7 +7,7 @@ from synth.book.case_result import CaseResult
 from synth.book.printed_numbers import ABSENT, in_ten_thousand, interval, percent, quotient, quotient_interval, speed
 from synth.present.report.book_report import BookReport
 from synth.present.report.markup import Cell, Markup, head_row, table
-from synth.present.report.permissions_section import column_cell, column_head
+from synth.present.report.permissions_section import GROUP, column_cell, column_head
 from synth.simulation.exit_statistics import BrakePower
 
 HONEST = (0.9, 1.1)
@@ -32,7 +32,7 @@ def case_table(book: BookReport) -> Markup:
             for case in book.cases]  # fmt: skip
     groups, columns, permissions = list(GROUPS), list(COLUMNS), book.permissions
     if permissions is not None:
-        groups.append(("Hardware", 1))
+        groups.append((GROUP, 1))
         columns.append(column_head(permissions))
         for (cells, _), case in zip(rows, permissions.cases, strict=True):
             cells.append(column_cell(case, permissions))

@@ -20,6 +20,11 @@ SHORT: Final[Mapping[Permission, str]] = {
 }
 """What permissions are called above the column."""
 
+GROUP: Final = "rms × if permitted"
+"""What stands above the head of the column."""
+
+NO_BREAK: Final = "\u00a0"
+
 LEAD: Final = (
     "Each permission is designed, predicted and simulated as a table of its own: with several stages a command the "
     "lines stay, with all others they are tuned anew. The ratio is paired, on the same passes as the exported table; "
@@ -28,8 +33,8 @@ LEAD: Final = (
 
 
 def column_head(overview: Overview) -> str:
-    """The head of the column."""
-    return f"rms × if permitted: {', '.join(SHORT[each] for each in overview.in_column)}"
+    """The head of the column, below the name of its group: names in the order of the figures."""
+    return ", ".join(SHORT[each].replace(" ", NO_BREAK) for each in overview.in_column)
 
 
 def column_cell(case: CasePermissions, overview: Overview) -> Cell:
