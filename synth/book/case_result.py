@@ -12,6 +12,7 @@ from plant_models import Plant
 from plant_models.frozen_arrays import frozen_arrays
 from synth.book.comparison.comparison import Comparison
 from synth.book.comparison.measured import Feasibility
+from synth.book.permissions.permission import CasePermissions
 from synth.problem.criterion import Criterion
 from synth.problem.problem import Problem
 from synth.problem.requirement_found import Finding
@@ -101,7 +102,8 @@ class CaseResult:
     `predicted`: exact density of the exported table, or a simulated one if the table has an estimator; `polish`: how
     the lines of least cost were found; `finding`: what the criterion's requirement took; `estimate`: where an estimator
     is asked for, how its lines were designed. `exit_speeds_m_s` simulated, stalls as 0, and `exit_weight`: how many
-    cuts each pass stands for; `brake_power`: what of their error is for want of it.
+    cuts each pass stands for; `brake_power`: what of their error is for want of it; `permissions`: where they are asked
+    for, what those of the hardware would give.
     """
 
     label: str
@@ -117,6 +119,7 @@ class CaseResult:
     comparison: Comparison
     feasibility: Feasibility
     study: CaseStudy
+    permissions: CasePermissions | None
 
     @property
     def plant(self) -> Plant:

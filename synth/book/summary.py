@@ -20,6 +20,7 @@ from synth.book.case_result import CaseResult, DegreeStudy
 from synth.book.comparison.limit_cycle import hunting_report
 from synth.book.comparison.measured import Measured
 from synth.book.comparison.pressure_cycle import pressure_hunting
+from synth.book.permissions.case_document import results_document
 from synth.book.tune import Book
 from synth.book.tuned_table import AnyEstimate
 from synth.configuration.resolved_config import ResolvedConfig
@@ -117,6 +118,7 @@ def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
         "requirement": None if case.finding is None else requirement_of(case.finding),
         "indifference": asdict(case.study.indifference),
         "estimate": None if case.estimate is None else {**estimate_of(case.estimate), "left_out": case.left_out},
+        "permissions": None if case.permissions is None else results_document(case.permissions),
         "warnings": case.warnings,
         "polish": polish_of(case.polish),
         "ties": case.study.policy_map.ties,

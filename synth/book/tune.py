@@ -13,6 +13,9 @@ from synth.book.case_result import CaseResult, DegreeStudy
 from synth.book.class_setup import TUNING_PASSES, Origin, class_setup, origin_of, validation_passes
 from synth.book.creation_time import creation_time
 from synth.book.degree_study import degree_study, tables_by_degree
+from synth.book.permissions.case_permissions import asking
+from synth.book.permissions.overview import HINT, Overview, overview_of
+from synth.book.permissions.refusal import tellable
 from synth.book.tune_case import CaseOrder, tune_case
 from synth.book.tuned_table import Store, solutions
 from synth.book.work_queue import run_nested
@@ -44,13 +47,27 @@ class Book:
     cases: tuple[CaseResult, ...]
     degree_studies: tuple[DegreeStudy, ...]
 
+    @property
+    def permissions(self) -> Overview | None:
+        """What permissions of the hardware would give, where that was asked for."""
+        return overview_of(case.permissions for case in self.cases)
+
+    @property
+    def permissions_line(self) -> str:
+        """The same in one line; how to ask for it, where it was not; nothing where it would be refused."""
+        found = self.permissions
+        if found is not None:
+            return found.line
+        return HINT if tellable(self.config) else ""
+
 
 @dataclass(frozen=True)
 class TuneRun:
     """What all classes of a tune share.
 
     `passes`: that every table is validated on; `tuning`: that baselines are tuned on. `progress` is told a sentence
-    whenever a case is done, `case_done` given its result.
+    whenever a case is done, `case_done` given its result. With `permissions` each case also tells what those of the
+    hardware would give.
     """
 
     config: ResolvedConfig
@@ -60,6 +77,7 @@ class TuneRun:
     store: Store
     progress: Progress
     case_done: CaseDone
+    permissions: bool
 
 
 Task = Callable[[], CaseResult | DegreeStudy]
@@ -67,12 +85,18 @@ Task = Callable[[], CaseResult | DegreeStudy]
 
 @one_blas_thread()
 def tune(
-    config: ResolvedConfig, tables: Path, progress: Progress, workers: int = 2, case_done: CaseDone = no_notice
+    config: ResolvedConfig,
+    tables: Path,
+    progress: Progress,
+    workers: int = 2,
+    case_done: CaseDone = no_notice,
+    permissions: bool = False,
 ) -> Book:
     """Tune every cut class and target of `config`; the tables are written into the directory `tables`.
 
     Work runs on `workers` threads (the kernels release the interpreter); the result does not depend on how
-    many. `progress` is told a sentence whenever a case is done, `case_done` given its result.
+    many. `progress` is told a sentence whenever a case is done, `case_done` given its result. `permissions`: each case
+    also tells what those of the hardware would give; for configurations that `require_tellable` lets pass.
     """
     plants = config.plants()
     for label, plant in plants:
@@ -85,6 +109,7 @@ def tune(
         store=partial(write_and_read_back, directory=tables),
         progress=progress,
         case_done=case_done,
+        permissions=permissions,
     )
     heaviest_first = sorted(range(len(plants)), key=lambda i: -plants[i][1].top_stage * plants[i][1].cut.mass_t)
     starts = [partial(class_tasks, run, *plants[i], studied=i == heaviest_first[-1]) for i in heaviest_first]
@@ -110,9 +135,10 @@ def class_tasks(run: TuneRun, label: str, plant: Plant, studied: bool) -> list[T
     both = solutions(setup.design, [*aims, *free])
     published = solutions(as_published(setup.design, PUBLISHED_LEVELS), aims)
     rehearsal = setup.passes.of_others(run.tuning)
+    asks = [asking(config, setup, aim, run.passes, run.origin) if run.permissions else None for aim in aims]
     orders = [
-        CaseOrder(setup, solution, plain, as_was, config.acceptance.rms_m_s, rehearsal, run.store)
-        for solution, plain, as_was in zip(both[: len(aims)], both[len(aims) :], published, strict=True)
+        CaseOrder(setup, solution, plain, as_was, config.acceptance.rms_m_s, rehearsal, run.store, ask)
+        for solution, plain, as_was, ask in zip(both[: len(aims)], both[len(aims) :], published, asks, strict=True)
     ]
 
     def study() -> DegreeStudy:
@@ -135,8 +161,8 @@ def case_task(run: TuneRun, order: CaseOrder) -> CaseResult:
     figures = result.comparison.table.statistics
     low, high = figures.rms_ci95_m_s
     rms = f"rms {figures.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s in {figures.passes} passes"
-    told = f"{label} to {target:g} m/s: {rms}"
-    run.progress(f"{told}; {result.left_out}" if result.left_out else told)
+    told = [f"{label} to {target:g} m/s: {rms}", result.left_out, result.permissions.told if result.permissions else ""]
+    run.progress("; ".join(filter(None, told)))
     for warning in result.warnings:
         run.progress(f"warning: {label} to {target:g} m/s: {warning}")
     if result.finding is not None:

@@ -13,6 +13,7 @@ from synth.book.comparison.comparison import Comparison
 from synth.book.comparison.friction_bound import friction_bound
 from synth.book.comparison.measured import Measured
 from synth.book.estimation.estimated_table import controller_of
+from synth.book.permissions.case_permissions import Ask
 from synth.book.policy_map import policy_map
 from synth.book.tuned_table import Store, TunedTable, ValidatedTable, rounded, tuned_table, validated_table
 from synth.problem.problem import Problem
@@ -38,7 +39,7 @@ class CaseOrder:
 
     `solution` on the design chain, `without_tolerance` the same without the switching tolerance, `as_published` in the
     formulation as published; `limit_m_s`: the rms that makes a case feasible; `tuning`: passes that baselines are tuned
-    on.
+    on; `ask`: where it is wanted, what tells what permissions of the hardware would give.
     """
 
     setup: ClassSetup
@@ -48,6 +49,7 @@ class CaseOrder:
     limit_m_s: float
     tuning: CommonPasses
     store: Store
+    ask: Ask | None
 
 
 def tune_case(order: CaseOrder) -> CaseResult:
@@ -70,6 +72,7 @@ def tune_case(order: CaseOrder) -> CaseResult:
         comparison=comparison(order, tuned, validated, bound.sample),
         feasibility=bound.feasibility,
         study=case_study(order, tuned, validated),
+        permissions=None if order.ask is None else order.ask(tuned, validated.sample),
     )
 
 

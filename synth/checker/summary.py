@@ -15,6 +15,7 @@ from synth.checker.finding import DamagedError, shown
 from synth.checker.passages.reading import PassageTable
 from synth.checker.plant import Plant, Reader, UnusableConfigError, config_sha256, plant_of
 from synth.checker.source_file import content_of
+from synth.checker.stated_permissions import permission_faults
 from synth.checker.table_reading import Table
 
 DEFAULT_HONESTY: Final = Honesty(0.9, 1.1)
@@ -96,7 +97,7 @@ class Summary:
         raise UnusableConfigError("the configuration beside it has no cut of its category, mass and axles")
 
     def case_faults(self, table: Table | PassageTable) -> Iterator[str]:
-        """Where the summary states other figures than the table."""
+        """Where the summary states other figures than the table, or of permissions what cannot be."""
         case = self.cases.get(table.id)
         if case is None:
             yield "summary.json does not tell of it"
@@ -112,6 +113,7 @@ class Summary:
         for name in validated:
             if of.get(name) != validated[name]:
                 yield f"its validated {name} is {shown(validated[name])}, but summary.json says {shown(of.get(name))}"
+        yield from permission_faults(case)
 
     def file_faults(self) -> Iterator[tuple[str, str]]:
         """(file, sentence) for each file with tables that is not what the summary lists."""

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich import box
-from rich.console import Console
+from rich.console import Console, JustifyMethod
 from rich.table import Table
 from rich.text import Text
+
+from synth.cli.permissions_column import cell, head
+
+if TYPE_CHECKING:
+    from synth.book.permissions.overview import Overview
 
 Figures = dict[str, Any]
 
@@ -22,20 +27,22 @@ WIDTH_OF_A_FILE = 190
 LOSS, AT_REST = "table\nloss", "rms /\nat rest"
 """The second stands in the place of the first where commands come at any time."""
 
+WITHIN = "95 of 100\nwithin ± m/s"
+
+PERMITTED = "permissions"
+"""A column before the last, where they were asked for."""
+
 COLUMNS = (
-    "case", "target\nm/s", "rms [95 %]\nm/s", "95 of 100\nwithin ± m/s", "99 of 100\nwithin ± m/s",
+    "case", "target\nm/s", "rms [95 %]\nm/s", WITHIN, "99 of 100\nwithin ± m/s",
     "out of brake\nin 10 000", "predicted /\nsimulated", LOSS, "regret", "best baseline\nm/s",
     "switch-\nings", "verdict",
 )  # fmt: skip
 
-FIRST_TO_GO = (
-    "switch-\nings",
-    LOSS,
-    "best baseline\nm/s",
-    "regret",
-    "99 of 100\nwithin ± m/s",
-)
+FIRST_TO_GO = ("switch-\nings", LOSS, "best baseline\nm/s", "regret", "99 of 100\nwithin ± m/s")
 """Columns that a narrow terminal does without, in this order."""
+
+LAST_TO_GO = (WITHIN, PERMITTED)
+"""Those that go then, where permissions were asked for: who asks wants to see them."""
 
 LEGEND = (
     "95 of 100 within ±: so many cuts leave within so many m/s of the target. Out of brake: leaves more than 0.3 m/s "
@@ -45,22 +52,25 @@ LEGEND = (
 GAP = 3
 
 
-def print_book(summary: Figures, directory: Path) -> None:
+def print_book(summary: Figures, directory: Path, permissions: Overview | None, permissions_line: str) -> None:
     """Print the table of cases, what is infeasible, the verdict, and where everything is."""
-    console = stdout_console()
-    rows = rows_of(summary["cases"])
-    columns = columns_for(console.width, rows)
+    names = (*COLUMNS[:-1], PERMITTED, COLUMNS[-1]) if permissions else COLUMNS
+    heads, rows = heads_of(names, summary["cases"], permissions), rows_of(summary["cases"], permissions)
+    console = stdout_console(WIDTH_OF_A_FILE + (widest_line(heads[-2:-1]) + GAP if permissions else 0))
+    columns = columns_for(console.width, names, heads, rows)
     table = Table(box=box.SIMPLE_HEAD, title=summary["title"], title_justify="left", pad_edge=False)
     for place in columns:
-        name = AT_REST if COLUMNS[place] == LOSS and any(map(at_any_time, summary["cases"])) else COLUMNS[place]
-        table.add_column(name, justify="left" if name in ("case", "verdict") else "right", no_wrap=True)
+        justify: JustifyMethod = "left" if names[place] in ("case", "verdict") else "right"
+        table.add_column(heads[place], justify=justify, no_wrap=True)
     for case, cells in zip(summary["cases"], rows, strict=True):
         table.add_row(*(cells[place] for place in columns), style=None if case["feasible"] else "dim")
     console.print(table)
     if summary["cases"]:
         passes = summary["cases"][0]["simulated"]["passes"]
         console.print(f"{passes} stratified passes a case. {LEGEND}", soft_wrap=True)
-    if len(columns) < len(COLUMNS):
+    if permissions_line:
+        console.print(permissions_line, soft_wrap=True)
+    if len(columns) < len(names):
         console.print("The terminal is too narrow for all columns; every figure is in summary.json and the report.")
     for case in summary["cases"]:
         if not case["feasible"]:
@@ -81,26 +91,43 @@ def print_book(summary: Figures, directory: Path) -> None:
     console.print(" · ".join(places), soft_wrap=True, highlight=False)
 
 
-def stdout_console() -> Console:
+def stdout_console(file_width: int = WIDTH_OF_A_FILE) -> Console:
     """A console on stdout, as wide as a terminal, or wide enough for our tables."""
     console = Console(highlight=False)
-    return console if console.is_terminal else Console(highlight=False, width=WIDTH_OF_A_FILE)
+    return console if console.is_terminal else Console(highlight=False, width=file_width)
 
 
-def rows_of(cases: list[Figures]) -> list[tuple[str, ...]]:
+def heads_of(names: tuple[str, ...], cases: list[Figures], permissions: Overview | None) -> tuple[str, ...]:
+    """What stands above the columns of those names."""
+    heads = {LOSS: AT_REST} if any(map(at_any_time, cases)) else {}
+    if permissions is not None:
+        heads[PERMITTED] = head(permissions)
+    return tuple(heads.get(name, name) for name in names)
+
+
+def rows_of(cases: list[Figures], permissions: Overview | None) -> list[tuple[str, ...]]:
     """The cells of all cases; a class is named in its first row."""
     labels = [None, *(case["label"] for case in cases)]
-    return [row(case, case["label"] != before) for case, before in zip(cases, labels, strict=False)]
+    rows = [row(case, case["label"] != before) for case, before in zip(cases, labels, strict=False)]
+    if permissions is None:
+        return rows
+    told = (cell(each, permissions) for each in permissions.cases)
+    return [(*cells[:-1], figures, cells[-1]) for cells, figures in zip(rows, told, strict=True)]
 
 
-def columns_for(width: int, rows: list[tuple[str, ...]]) -> list[int]:
+def columns_for(width: int, names: tuple[str, ...], heads: tuple[str, ...], rows: list[tuple[str, ...]]) -> list[int]:
     """Places of the columns that fit into `width`."""
-    lines = [[line for cell in column for line in cell.split("\n")] for column in zip(COLUMNS, *rows, strict=True)]
-    kept = list(range(len(COLUMNS)))
-    for name in FIRST_TO_GO:
-        if sum(max(map(len, lines[place])) + GAP for place in kept) > width:
-            kept.remove(COLUMNS.index(name))
+    widths = [widest_line(column) for column in zip(heads, *rows, strict=True)]
+    kept = list(range(len(names)))
+    for name in (*FIRST_TO_GO, *(LAST_TO_GO if PERMITTED in names else ())):
+        if sum(widths[place] + GAP for place in kept) > width:
+            kept.remove(names.index(name))
     return kept
+
+
+def widest_line(cells: Sequence[str]) -> int:
+    """Characters of the longest line of some cells."""
+    return max(len(line) for each in cells for line in each.split("\n"))
 
 
 def row(case: Figures, first: bool) -> tuple[str, ...]:

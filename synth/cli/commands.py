@@ -81,6 +81,9 @@ def tune(
             parser=whole_number(1, 256), metavar="N", help="Cut classes solved at once; by default one a processor."
         ),
     ] = None,
+    permissions: Annotated[
+        bool, typer.Option("--permissions", help="Also tell what permissions of the hardware would give; takes long.")
+    ] = False,
     as_json: Json = False,
 ) -> int:
     """Make a book of tables, its pictures and report.
@@ -89,7 +92,7 @@ def tune(
     """
     from synth.cli.tune import tune_command
 
-    return tune_command(config, output, workers, as_json)
+    return tune_command(config, output, workers, permissions, as_json)
 
 
 add_yard_commands(app)

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 from synth.cli import OK, say
 from synth.cli.tables_refused import tables_refused
-from synth.faults.input_error import InputError
 
 if TYPE_CHECKING:
     from synth.book.permissions.permission import CasePermissions
@@ -20,29 +19,16 @@ def permissions_command(path: Path | None, output: Path, workers: int, as_json: 
     """Tell what permissions of the hardware would give in every case of `path`; the exit code."""
     from synth.book.creation_time import creation_time, require_date
     from synth.book.output_directory import PERMISSIONS_LAYOUT, SUMMARY, output_directory
+    from synth.book.permissions.refusal import require_tellable
     from synth.cli.interrupt import interruptible
     from synth.cli.progress import Progress
     from synth.cli.tune import require_room, sensors_left_aside
     from synth.configuration.config_file import BUILT_IN, load_config
     from synth.kernels.cache import guarded
-    from synth.problem.any_time_resolution import design_resolution
 
     config, source = load_config(path), str(path or BUILT_IN)
-    if config.criterion.requirement is not None:
-        raise InputError(
-            f"{source}: criterion has p_overspeed or worst_friction_*; commands at any time are designed for the mean "
-            "square error alone: leave these keys out"
-        )
-    if config.regulator.at_any_time:
-        raise InputError(
-            f'{source}: regulator.commands is "any_time", but permissions tells what to ask the hardware for beyond '
-            'commands at rest: set it to "at_rest"'
-        )
+    require_tellable(config, source, "permissions")
     require_room(config, path, workers)
-    with tables_refused(source):
-        for _, problem in config.problems():
-            problem.plant.drive_at_any_time()
-            design_resolution(problem.plant, problem.target_speed_m_s)
     require_date()
     started, created = time.monotonic(), creation_time()
     with output_directory(output, PERMISSIONS_LAYOUT) as directory:
@@ -65,15 +51,13 @@ def permissions_command(path: Path | None, output: Path, workers: int, as_json: 
 
 def print_permissions(cases: Sequence[CasePermissions], directory: Path) -> None:
     """A table with a row for each case and a column for each permission."""
-    from statistics import median
-
     from rich import box
     from rich.table import Table
 
-    from synth.book.permissions.permission import Permission
+    from synth.book.permissions.overview import asked_of, medians
     from synth.cli.book_table import plus_minus, stdout_console
 
-    asked = [each for each in Permission if any(case.of(each) for case in cases)]
+    asked = asked_of(cases)
     shown = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for name in ("case", "target\nm/s", "rms as configured\nm/s", *(each.value.replace(", ", ",\n") for each in asked)):
         shown.add_column(name, justify="left" if name == "case" else "right", no_wrap=True)
@@ -84,12 +68,9 @@ def print_permissions(cases: Sequence[CasePermissions], directory: Path) -> None
         shown.add_row(case.label, f"{case.target_speed_m_s:g}", rms, *ratios)
     console = stdout_console()
     console.print(shown, markup=False)
-    medians = ", ".join(
-        f"{each.value} {median(result.ratio for case in cases if (result := case.of(each))):.2f}" for each in asked
-    )
     console.print(
         f"{cases[0].table.passes} stratified passes a case. Columns of permissions: rms over that of the table as "
-        f"configured, on the same passes, ± 95 %. Medians: {medians}.",
+        f"configured, on the same passes, ± 95 %. Medians: {medians(cases)}.",
         soft_wrap=True,
     )
     console.print(f"{directory}: plots/, summary.json", soft_wrap=True)

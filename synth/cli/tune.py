@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from contextlib import ExitStack
+from dataclasses import dataclass
 from pathlib import Path
 
 from synth.cli import LIMITS_MISSED, OK, say
@@ -13,20 +14,24 @@ from synth.configuration.resolved_config import ResolvedConfig
 from synth.faults.input_error import InputError
 
 
-def tune_command(path: Path | None, output: Path, workers: int | None, as_json: bool) -> int:
-    """Tune the configuration in `path` into the directory `output`; the exit code."""
+def tune_command(path: Path | None, output: Path, workers: int | None, permissions: bool, as_json: bool) -> int:
+    """Tune the configuration in `path` into the directory `output`, and tell of permissions; the exit code."""
     from synth.book.creation_time import require_date
     from synth.book.output_directory import output_directory
-    from synth.configuration.config_file import load_config
+    from synth.configuration.config_file import BUILT_IN, load_config
 
     config = load_config(path)
+    if permissions:
+        from synth.book.permissions.refusal import require_tellable
+
+        require_tellable(config, str(path or BUILT_IN), "--permissions")
     workers = workers or min(len(config.cuts), available())
     require_room(config, path, workers)
     require_date()
     with output_directory(output) as directory:
         for warning in (*config.warnings, *sensors_left_aside(config)):
             say(f"warning: {warning}")
-        return tune_into(directory, config, path, workers, as_json)
+        return tune_into(directory, config, path, Asked(workers, permissions, as_json))
 
 
 def sensors_left_aside(config: ResolvedConfig) -> tuple[str, ...]:
@@ -36,7 +41,16 @@ def sensors_left_aside(config: ResolvedConfig) -> tuple[str, ...]:
     return ("tables are made for the radar of [sensor]; 'retarder-synth sensors tune' makes those for [sensors]",)
 
 
-def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, workers: int, as_json: bool) -> int:
+@dataclass(frozen=True)
+class Asked:
+    """What was asked for on the command line, beside a configuration and a directory."""
+
+    workers: int
+    permissions: bool
+    as_json: bool
+
+
+def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, asked: Asked) -> int:
     """The work itself, and what is said about it."""
     from synth.cli.interrupt import interruptible
     from synth.cli.progress import Progress
@@ -51,7 +65,7 @@ def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, worker
         from synth.present.draw_pictures import Studio
 
         wanted = config.output.plots or config.output.report
-        studio = stack.enter_context(Studio(workers if wanted else 1))
+        studio = stack.enter_context(Studio(asked.workers if wanted else 1))
         from synth.book.acceptance import judge
         from synth.book.case_error import CaseError
         from synth.book.printed_numbers import counted
@@ -61,7 +75,8 @@ def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, worker
 
         case_done = studio.case_done if wanted else no_notice
         try:
-            book = guarded(tune, config, directory / "tables", progress.done, workers, case_done)
+            tables = directory / "tables"
+            book = guarded(tune, config, tables, progress.done, asked.workers, case_done, asked.permissions)
             progress.note(f"{counted(len(book.cases), 'case')} computed in {time.monotonic() - started:.1f} s")
             verdict = judge(book.cases, config.acceptance)
             summary = write_outputs(book, verdict, directory, studio, progress.note)
@@ -76,12 +91,12 @@ def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, worker
                 "make grid.path_step_m or grid.speed_step_m_s smaller, or lower fit.degree"
             ) from None
         progress.note(f"all files written after {time.monotonic() - started:.1f} s")
-    if as_json:
+    if asked.as_json:
         sys.stdout.write((directory / "summary.json").read_text(encoding="utf-8"))
     else:
         from synth.cli.book_table import print_book
 
-        print_book(summary, directory)
+        print_book(summary, directory, book.permissions, book.permissions_line)
     return OK if verdict.accepted else LIMITS_MISSED
 
 

@@ -72,6 +72,7 @@ def report_of(book: Book, verdict: Verdict, hashes: dict[str, str], pictures: tu
         accepted=verdict.accepted,
         verdict=f"{verdict.sentence}.",
         acceptance_rms_m_s=config.acceptance.rms_m_s,
+        permissions_line=book.permissions_line,
         file_hashes=hashes,
         pictures=pictures,
     )

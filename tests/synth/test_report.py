@@ -18,6 +18,7 @@ from synth.book.case_result import CaseResult
 from synth.book.comparison.limit_cycle import hunting_report
 from synth.book.comparison.measured import Measured
 from synth.book.estimation.estimated_table import EstimatedTable
+from synth.book.permissions.permission import Permission
 from synth.book.printed_numbers import counted, percent, quotient, span
 from synth.present.plots.picture import Drawing, Picture
 from synth.present.report import BookReport, report_page, write_report
@@ -25,7 +26,7 @@ from synth.present.report.checks_section import checks_section
 from synth.present.report.markup import VOID, Markup, element
 from synth.present.report.verdict import verdict
 from synth.solver.polynomial_lines import PolynomialLines
-from tests.synth.case_factory import make_case, make_study
+from tests.synth.case_factory import make_case, make_permissions, make_study
 from tuning_tables import Estimator
 
 ROOT = Path(__file__).parents[2]
@@ -96,6 +97,7 @@ def book() -> BookReport:
         accepted=False,
         verdict="1 of 2 feasible cases exceeds its limit",
         acceptance_rms_m_s=0.1,
+        permissions_line="",
         file_hashes={"tables/a&b.json": "ef" * 32},
         pictures=(
             Picture("one", "Accuracy", "Title one", 'Caption "one" <b>', Drawing(b"png", SVG)),
@@ -257,6 +259,19 @@ def test_a_book_without_feasible_case_and_one_without_infeasible(book: BookRepor
 def test_the_report_is_written_without_matplotlib() -> None:
     command = "import synth.present.report, sys; raise SystemExit('matplotlib' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", command], cwd=ROOT, timeout=60, check=False).returncode == 0
+
+
+def test_permissions_are_told_in_a_column_and_a_section(book: BookReport) -> None:
+    cases = tuple(
+        replace(case, permissions=make_permissions(case, Permission.JUMPS, Permission.ANY_TIME)) for case in book.cases
+    )
+    page = Page(report_page(replace(book, cases=cases, permissions_line="The line.")))
+    assert page.open == []
+    assert "rms × if permitted" in page.text
+    assert "any\u00a0time, jumps" in page.text
+    assert "The line." in page.text
+    assert {"#permissions"} <= set(page.targets)
+    assert "permissions" not in Page(report_page(book)).identifiers
 
 
 def test_markup() -> None:

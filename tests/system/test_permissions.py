@@ -1,15 +1,26 @@
-"""`retarder-synth permissions` as a user runs it: figures, files, faults, the same bytes."""
+"""`retarder-synth permissions` and `tune --permissions` as a user runs them: figures, files, faults, the same bytes."""
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
+import html
+import io
 import json
+import re
+import shutil
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from synth.book.permissions.overview import HINT
+from synth.book.permissions.refusal import tellable
+from synth.checker.finding import Kind
+from synth.checker.stated_permissions import permission_faults
+from synth.checker.verdict import verify
 from synth.cli import main
+from synth.configuration.config_file import parse_config
 
 SMALL = """\
 [position]
@@ -25,6 +36,32 @@ car = "gondola-4"
 mass_t = 36
 """
 
+COARSE = """\
+[position]
+name = "rnz-2m-park"
+[entry]
+high_m_s = 4.0
+[targets]
+exit_speeds_m_s = [2.5]
+[grid]
+path_step_m = 1.0
+speed_step_m_s = 0.05
+friction_scenarios = 3
+[fit]
+degree = 2
+[validation]
+passes = 1000
+[regulator]
+approach_m = 0.0
+estimator = true
+[output]
+plots = false
+[[cut]]
+car = "gondola-4"
+mass_t = 22
+"""
+"""From the entrance and with an estimator, so that few permissions are left to ask for."""
+
 ASKED = {
     "several stages a command",
     "commands at any time",
@@ -35,10 +72,10 @@ ASKED = {
 }
 
 
-def asked(folder: Path, name: str, *words: str, text: str = SMALL) -> int:
+def asked(folder: Path, name: str, *words: str, text: str = SMALL, command: str = "permissions") -> int:
     """The exit code of a run into a directory of that name."""
     (folder / "c.toml").write_text(text, encoding="utf-8")
-    return main(["permissions", str(folder / "c.toml"), "-o", str(folder / name), *words])
+    return main([command, str(folder / "c.toml"), "-o", str(folder / name), *words])
 
 
 @pytest.fixture(scope="module")
@@ -48,6 +85,20 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SOURCE_DATE_EPOCH", "1700000000")
         assert asked(folder, "one", "--workers", "1") == 0
+    return folder
+
+
+@pytest.fixture(scope="module")
+def tuned(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What tunes with permissions leave on one worker and on two, and what they print."""
+    folder = tmp_path_factory.mktemp("tuned")
+    for workers in ("1", "2"):
+        told = io.StringIO()
+        with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stdout(told):
+            patch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+            words = ("--permissions", "--workers", workers)
+            assert asked(folder, workers, *words, text=COARSE, command="tune") in (0, 1)
+        (folder / f"{workers}.txt").write_text(told.getvalue(), encoding="utf-8")
     return folder
 
 
@@ -91,21 +142,98 @@ def test_all_files_are_named_with_their_hashes(ran: Path) -> None:
 
 
 def test_the_same_bytes_with_two_workers_and_as_json(
-    ran: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    tuned: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-    from_the_entrance = SMALL.replace("2000", "1000") + "[regulator]\napproach_m = 0.0\nestimator = true\n"
     written = []
     for workers in ("1", "2"):
-        assert asked(ran, workers, "--json", "--workers", workers, text=from_the_entrance) == 0
-        written.append((ran / workers / "summary.json").read_text(encoding="utf-8"))
+        assert asked(tmp_path, workers, "--json", "--workers", workers, text=COARSE) == 0
+        written.append((tmp_path / workers / "summary.json").read_text(encoding="utf-8"))
         assert capsys.readouterr().out == written[-1]
     assert written[0] == written[1]
-    (case,) = json.loads(written[0])["cases"]
+    (case,), (of_tune,) = json.loads(written[0])["cases"], summary(tuned / "1")["cases"]
     left_out = {"estimator", "commands at any time, estimator", "without the approach"}
     assert set(case["permissions"]) == {*ASKED, "approach of 4 m"} - left_out
+    assert of_tune["permissions"] == case["permissions"]
+    assert of_tune["simulated"].items() >= case["as_configured"].items()
 
 
+def test_a_tune_with_permissions_leaves_the_same_bytes_with_two_workers(tuned: Path) -> None:
+    one, two = (
+        {path.relative_to(tuned / name): path.read_bytes() for path in (tuned / name).rglob("*") if path.is_file()}
+        for name in ("1", "2")
+    )
+    assert one == two
+
+
+def test_a_tune_tells_permissions_in_one_column_and_one_line(tuned: Path) -> None:
+    printed = (tuned / "1.txt").read_text(encoding="utf-8")
+    (case,) = summary(tuned / "1")["cases"]
+    ratios = {name: f"{each['ratio']:.2f}" for name, each in case["permissions"].items()}
+    (row,) = (line for line in printed.splitlines() if line.lstrip().startswith("gondola-4-22t"))
+    column = [ratios[name] for name in ("commands at any time", "several stages a command", "approach of 4 m")]
+    assert " ".join(row.split()).endswith(f"{' '.join(column)} {case['verdict']}")
+    halves = [max(high - e["ratio"], e["ratio"] - low) for e in case["permissions"].values()
+              for low, high in [e["ratio_ci95"]]]  # fmt: skip
+    (line,) = (line for line in printed.splitlines() if line.startswith("rms × if permitted:"))
+    assert float(line.split("±")[1].split()[0]) == pytest.approx(max(halves) + 0.005, abs=0.0051)
+    assert f"on the same {case['simulated']['passes']} passes" in line
+    for name, ratio in ratios.items():  # of one case: the medians
+        assert re.search(rf"(: |, ){name} {ratio}[,.]", line)
+    page = html.unescape((tuned / "1" / "report.html").read_text(encoding="utf-8"))
+    assert line in page
+    assert f">{' '.join(column)}</td>" in page
+    assert "tune --permissions" not in printed + page
+
+
+def test_without_the_flag_a_tune_tells_how_to_ask_and_leaves_the_same_tables(
+    tuned: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    assert asked(tmp_path, "plain", text=COARSE, command="tune") in (0, 1)
+    (plain,), (told,) = summary(tmp_path / "plain")["cases"], summary(tuned / "1")["cases"]
+    assert plain["permissions"] is None
+    assert plain == {**told, "permissions": None}
+    page = (tmp_path / "plain" / "report.html").read_text(encoding="utf-8")
+    printed = capsys.readouterr().out
+    assert [text.count(HINT) for text in (printed, page)] == [1, 1]
+    assert "if permitted" not in printed + page
+    for name in ("book.h5", told["table"], "c/retarder_table.c"):
+        assert (tmp_path / "plain" / name).read_bytes() == (tuned / "1" / name).read_bytes()
+
+
+def test_the_checker_finds_a_ratio_that_is_not_one_of_the_figures_beside_it(tuned: Path, tmp_path: Path) -> None:
+    out = Path(shutil.copytree(tuned / "1", tmp_path / "out"))
+    assert not [finding for finding in verify(out, 100, 1).findings if finding.kind is Kind.DISAGREES]
+    told = summary(out)
+    told["cases"][0]["permissions"]["commands at any time"]["ratio"] *= 0.99
+    (out / "summary.json").write_text(json.dumps(told), encoding="utf-8")
+    (finding,) = (finding for finding in verify(out, 100, 1).findings if finding.kind is Kind.DISAGREES)
+    assert "says of its permission 'commands at any time' a ratio of" in finding.sentence
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({}, None),
+        ({"ratio": 0.81}, "a ratio of 0.81, but its rms is 0.04 and that of the table 0.05"),
+        ({"ratio_ci95": [0.81, 0.9]}, "outside its interval"),
+        ({"passes": 10}, "10 passes, but 2000 of the table"),
+        ({"ratio_ci95": [0.7, None]}, "no rms and no ratio with an interval"),
+        ({"rms_m_s": True}, "no rms and no ratio with an interval"),
+    ],
+)
+def test_the_checker_tells_what_is_wrong_with_a_permission(change: dict[str, object], says: str | None) -> None:
+    figures = {"rms_m_s": 0.04, "ratio": 0.8, "ratio_ci95": [0.75, 0.85], "passes": 2000, **change}
+    case = {"simulated": {"rms_m_s": 0.05, "passes": 2000}, "permissions": {"estimator": figures}}
+    found = list(permission_faults(case))
+    assert len(found) == (says is not None)
+    assert all(str(says) in fault for fault in found)
+    assert list(permission_faults({**case, "permissions": None})) == []
+    assert len(list(permission_faults({**case, "permissions": {}}))) == 1
+
+
+@pytest.mark.parametrize(("command", "name"), [("permissions", "permissions"), ("tune", "--permissions")])
 @pytest.mark.parametrize(
     ("lines", "says"),
     [
@@ -115,10 +243,13 @@ def test_the_same_bytes_with_two_workers_and_as_json(
     ],
 )
 def test_what_cannot_be_worked_out_is_refused(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], lines: str, says: str
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], lines: str, says: str, command: str, name: str
 ) -> None:
-    assert asked(tmp_path, "out", text=SMALL + lines) == 2
+    words = ("--permissions",) if command == "tune" else ()
+    assert asked(tmp_path, "out", *words, text=SMALL + lines, command=command) == 2
     told = capsys.readouterr().err
     assert says in told
+    assert f" {name} " in told
     assert str(tmp_path / "c.toml") in told
-    assert not (tmp_path / "out" / "summary.json").exists()
+    assert not (tmp_path / "out").exists()
+    assert not tellable(parse_config(SMALL + lines, "c.toml"))

@@ -28,6 +28,9 @@ APPROACH_M = 4.0
 
 Tell = Callable[[str], None]
 
+Ask = Callable[[TunedTable, ExitSample], CasePermissions]
+"""What permissions give beside the table of a case, and its passes."""
+
 
 @dataclass(frozen=True)
 class CaseTuned:
@@ -61,7 +64,7 @@ def permissions_of(config: ResolvedConfig, created: str, workers: int, tell: Tel
     def start(label: str, plant: Plant) -> list[Callable[[], CasePermissions]]:
         aims = [Aim(target, config.criterion) for target in config.targets_of(label)]
         cases = tuned_cases(config, label, plant, aims, passes, origin)
-        return [partial(case_permissions, case, passes, origin, tell) for case in cases]
+        return [partial(told_permissions, case, passes, origin, tell) for case in cases]
 
     found = run_nested([partial(start, *each) for each in config.plants()], workers)
     return tuple(case for cases in found for case in cases)
@@ -79,13 +82,28 @@ def tuned_cases(
     return found
 
 
-def case_permissions(case: CaseTuned, passes: RandomPasses, origin: Origin, tell: Tell) -> CasePermissions:
+def told_permissions(case: CaseTuned, passes: RandomPasses, origin: Origin, tell: Tell) -> CasePermissions:
+    """All permissions of one case, told of."""
+    found = case_permissions(case, passes, origin)
+    tell(f"{found.label} to {found.target_speed_m_s:g} m/s: {found.told}")
+    return found
+
+
+def asking(config: ResolvedConfig, setup: ClassSetup, aim: Aim, passes: RandomPasses, origin: Origin) -> Ask:
+    """The function that a tune asks once it has the table of a case: nothing is tuned twice."""
+
+    def ask(tuned: TunedTable, sample: ExitSample) -> CasePermissions:
+        return case_permissions(CaseTuned(config, setup, aim, tuned, sample), passes, origin)
+
+    return ask
+
+
+def case_permissions(case: CaseTuned, passes: RandomPasses, origin: Origin) -> CasePermissions:
     """All permissions of one case."""
     label, plant = case.setup.label, case.setup.plant
-    any_time = at_any_time(case, Permission.ANY_TIME, has_gauge=True)
     results = [
         several_stages(case),
-        any_time,
+        at_any_time(case, Permission.ANY_TIME, has_gauge=True),
         at_any_time(case, Permission.WITHOUT_GAUGE, has_gauge=False),
     ]
     if not case.config.regulator.estimator and case.config.criterion.requirement is None:
@@ -100,7 +118,6 @@ def case_permissions(case: CaseTuned, passes: RandomPasses, origin: Origin, tell
     kind = Permission.NO_APPROACH if ahead else Permission.APPROACH
     approach = Approach() if ahead else Approach(APPROACH_M, plant.approach.entrance_stage)
     results.append(tuned_anew(case, kind, case.config, replace(plant, approach=approach), passes, origin))
-    tell(f"{label} to {case.target_m_s:g} m/s: rms with commands at any time × {any_time.ratio:.2f}")
     statistics = exit_statistics(case.sample, case.target_m_s)
     return CasePermissions(label, case.target_m_s, statistics, case.tuned.table.predicted.rms_m_s, tuple(results))
 

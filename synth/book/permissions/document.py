@@ -7,6 +7,7 @@ from dataclasses import asdict
 from importlib.metadata import version
 
 from synth.book.output_directory import PERMISSIONS_LAYOUT
+from synth.book.permissions.case_document import results_document
 from synth.book.permissions.permission import CasePermissions
 from synth.book.summary import Document, plain
 from synth.configuration.resolved_config import ResolvedConfig
@@ -42,13 +43,5 @@ def case_document(case: CasePermissions) -> Document:
         "label": case.label,
         "target_speed_m_s": case.target_speed_m_s,
         "as_configured": {**asdict(case.table), "predicted_rms_m_s": case.predicted_rms_m_s},
-        "permissions": {
-            each.permission.value: {
-                **asdict(each.statistics),
-                "predicted_rms_m_s": each.predicted_rms_m_s,
-                "ratio": each.ratio,
-                "ratio_ci95": each.ratio_ci95,
-            }
-            for each in case.results
-        },
+        "permissions": results_document(case),
     }

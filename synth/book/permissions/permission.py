@@ -48,3 +48,9 @@ class CasePermissions:
     def of(self, permission: Permission) -> PermissionResult | None:
         """The result of a permission, None where it was not asked for."""
         return next((each for each in self.results if each.permission is permission), None)
+
+    @property
+    def told(self) -> str:
+        """The case in a few words, for who waits for it: what commands at any time give, which are always asked for."""
+        found = self.of(Permission.ANY_TIME)
+        return "" if found is None else f"rms with commands at any time × {found.ratio:.2f}"

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from plant_models.library import SourcedValue
 from synth.book.case_result import CaseResult, DegreeStudy
+from synth.book.permissions.overview import Overview, overview_of
 from synth.present.plots.picture import Picture
 
 
@@ -16,6 +17,7 @@ class BookReport:
 
     `created`: UTC instant, given by the caller; `verdict`: one sentence, `accepted`: the same as a bit;
     `acceptance_rms_m_s`: the limit that the tables had to keep; `parameters`: every number the results depend on;
+    `permissions_line`: what those of the hardware would give, or how to ask for it, empty for neither;
     `file_hashes`: SHA-256 by file name; `pictures` in the order of the page.
     """
 
@@ -29,6 +31,7 @@ class BookReport:
     accepted: bool
     verdict: str
     acceptance_rms_m_s: float
+    permissions_line: str
     file_hashes: Mapping[str, str]
     pictures: tuple[Picture, ...]
 
@@ -41,3 +44,8 @@ class BookReport:
     def infeasible(self) -> tuple[CaseResult, ...]:
         """The other cases."""
         return tuple(case for case in self.cases if not case.feasibility.feasible)
+
+    @property
+    def permissions(self) -> Overview | None:
+        """What permissions of the hardware would give, where that was asked for."""
+        return overview_of(case.permissions for case in self.cases)

@@ -7,6 +7,7 @@ from synth.book.case_result import CaseResult
 from synth.book.printed_numbers import ABSENT, in_ten_thousand, interval, percent, quotient, quotient_interval, speed
 from synth.present.report.book_report import BookReport
 from synth.present.report.markup import Cell, Markup, head_row, table
+from synth.present.report.permissions_section import GROUP, column_cell, column_head
 from synth.simulation.exit_statistics import BrakePower
 
 HONEST = (0.9, 1.1)
@@ -29,7 +30,13 @@ def case_table(book: BookReport) -> Markup:
     """All cases; infeasible ones are marked, not left out."""
     rows = [(case_row(case, book.acceptance_rms_m_s), "" if case.feasibility.feasible else "infeasible")
             for case in book.cases]  # fmt: skip
-    return table("Results by case", (head_row(*GROUPS), head_row(*COLUMNS)), rows, kind="cases")
+    groups, columns, permissions = list(GROUPS), list(COLUMNS), book.permissions
+    if permissions is not None:
+        groups.append((GROUP, 1))
+        columns.append(column_head(permissions))
+        for (cells, _), case in zip(rows, permissions.cases, strict=True):
+            cells.append(column_cell(case, permissions))
+    return table("Results by case", (head_row(*groups), head_row(*columns)), rows, kind="cases")
 
 
 def case_row(case: CaseResult, limit_m_s: float) -> list[str | Cell]:

@@ -14,6 +14,7 @@ from synth.present.report.honesty_section import honesty_section
 from synth.present.report.limits_of_use import limits_of_use
 from synth.present.report.markup import Markup, element, joined
 from synth.present.report.parameter_table import parameter_section
+from synth.present.report.permissions_section import permissions_section
 from synth.present.report.studies_section import studies_section
 from synth.present.report.verdict import verdict
 from tuning_tables.atomic_file import write_atomically
@@ -43,7 +44,10 @@ def report_page(book: BookReport) -> str:
 
 def page_sections(book: BookReport) -> Iterator[tuple[str, str, Markup]]:
     """(anchor, heading, content) in the order of the page."""
-    yield "results", "Results", joined((case_table(book), element("p", HOW_TO_READ, class_="meta")))
+    told = (element("p", book.permissions_line),) if book.permissions_line else ()
+    yield "results", "Results", joined((case_table(book), element("p", HOW_TO_READ, class_="meta"), *told))
+    if book.permissions is not None:
+        yield "permissions", "Permissions of the hardware", permissions_section(book.permissions)
     yield "criterion", "Criterion", criterion_section(book)
     yield "honesty", "Predicted against simulated", honesty_section(book)
     yield "studies", "Degree of the lines and switchings", studies_section(book)

@@ -1,0 +1,85 @@
+"""What permissions give over all cases, in one column and one line: the least that tells what to ask for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from statistics import median
+from typing import Final
+
+from synth.book.permissions.permission import CasePermissions, Permission, PermissionResult
+
+IN_THE_COLUMN: Final = (
+    Permission.ANY_TIME,
+    Permission.ESTIMATOR,
+    Permission.ANY_TIME_ESTIMATOR,
+    Permission.JUMPS,
+    Permission.APPROACH,
+    Permission.NO_APPROACH,
+)
+"""Permissions in the order of the column. Without a gauge commands at any time are rarely asked for: only the line and
+the report tell of them."""
+
+IN_SHORT: Final = {
+    Permission.ANY_TIME_ESTIMATOR: "both: any time and estimator",
+    Permission.JUMPS: "jumps: several stages a command",
+}
+"""What the short names of a column do not say."""
+
+HINT: Final = (
+    "What commands at any time, an estimator and other permissions of the hardware would give: tune --permissions."
+)
+"""Where nobody has asked."""
+
+
+@dataclass(frozen=True)
+class Overview:
+    """All cases of a book, at least one."""
+
+    cases: tuple[CasePermissions, ...]
+
+    @property
+    def in_column(self) -> tuple[Permission, ...]:
+        """What the column tells, in its order."""
+        return tuple(each for each in IN_THE_COLUMN if any(case.of(each) for case in self.cases))
+
+    @property
+    def line(self) -> str:
+        """The medians in a sentence, with what bounds the intervals of all figures."""
+        words = "; ".join(word for each, word in IN_SHORT.items() if each in self.in_column)
+        return (
+            f"rms × if permitted: rms over that of the table as configured, on the same {self.cases[0].table.passes} "
+            f"passes, no 95 % interval wider than ±{self.widest:.2f} ({words}). Medians: {medians(self.cases)}."
+        )
+
+    @property
+    def widest(self) -> float:
+        """The wider half of the widest 95 % interval of a ratio, rounded up to two digits."""
+        halves = [half_width(each) for case in self.cases for each in case.results]
+        return math.ceil(100.0 * max(halves)) / 100.0
+
+
+def overview_of(found: Iterable[CasePermissions | None]) -> Overview | None:
+    """The overview of the cases that tell of permissions, if any does."""
+    told = tuple(each for each in found if each is not None)
+    return Overview(told) if told else None
+
+
+def asked_of(cases: Sequence[CasePermissions]) -> list[Permission]:
+    """The permissions that were asked for in some case."""
+    return [each for each in Permission if any(case.of(each) for case in cases)]
+
+
+def medians(cases: Sequence[CasePermissions]) -> str:
+    """The median of each permission's ratio over all cases, as a list in words."""
+    return ", ".join(
+        f"{each.value} {median(result.ratio for case in cases if (result := case.of(each))):.2f}"
+        for each in asked_of(cases)
+    )
+
+
+def half_width(result: PermissionResult) -> float:
+    """The wider half of a ratio's 95 % interval."""
+    low, high = result.ratio_ci95
+    return max(result.ratio - low, high - result.ratio)

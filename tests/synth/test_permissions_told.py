@@ -1,0 +1,97 @@
+"""One column and one line tell what permissions would give: figures below their names, and what bounds them."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from statistics import median
+
+import pytest
+
+from synth.book.case_result import CaseResult
+from synth.book.permissions.overview import HINT, Overview, overview_of
+from synth.book.permissions.permission import Permission
+from synth.book.tune import Book
+from synth.cli.book_table import COLUMNS, LAST_TO_GO, PERMITTED, columns_for
+from synth.cli.permissions_column import HEADS, cell, head
+from synth.configuration.config_file import parse_config
+from synth.present.report.permissions_section import SHORT, column_cell, column_head, permissions_section
+from tests.synth.case_factory import make_case, make_permissions
+
+LIGHT = (Permission.JUMPS, Permission.ANY_TIME, Permission.WITHOUT_GAUGE, Permission.APPROACH)
+HEAVY = (Permission.JUMPS, Permission.ANY_TIME, Permission.ESTIMATOR, Permission.ANY_TIME_ESTIMATOR,
+         Permission.NO_APPROACH)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def cases() -> tuple[CaseResult, ...]:
+    """Two cases that other permissions are asked for: only one of them has an approach."""
+    light, heavy = make_case("gondola-22t", 2.0), make_case("gondola-85t", 4.0)
+    return (
+        replace(light, permissions=make_permissions(light, *LIGHT)),
+        replace(heavy, permissions=make_permissions(heavy, *HEAVY)),
+    )
+
+
+@pytest.fixture(scope="module")
+def overview(cases: tuple[CaseResult, ...]) -> Overview:
+    found = overview_of(case.permissions for case in cases)
+    assert found is not None
+    return found
+
+
+def test_every_figure_stands_below_its_name(overview: Overview) -> None:
+    assert set(overview.in_column) == set(HEADS) == set(SHORT) == {*LIGHT, *HEAVY} - {Permission.WITHOUT_GAUGE}
+    title, _, names = head(overview).split("\n")
+    assert title == "rms × if permitted"
+    assert names.split() == ["time", "mator", "both", "jumps", "proach", "proach"]
+    for case in overview.cases:
+        figures = cell(case, overview)
+        found = [figures[: word.end()].split()[-1] for word in re.finditer(r"\S+", names)]
+        ratios = [case.of(each) for each in overview.in_column]
+        assert found == ["–" if each is None else f"{each.ratio:.2f}" for each in ratios]
+        assert len(figures) == len(names)
+        assert column_cell(case, overview).text == " ".join(found)
+    assert column_head(overview).count(",") == len(overview.in_column) - 1
+
+
+def test_the_line_tells_medians_and_bounds_every_interval(overview: Overview) -> None:
+    results = [each for case in overview.cases for each in case.results]
+    halves = [abs(end - each.ratio) for each in results for end in each.ratio_ci95]
+    assert overview.widest - 0.01 < max(halves) <= overview.widest
+    assert f"no 95 % interval wider than ±{overview.widest:.2f}" in overview.line
+    assert f"on the same {overview.cases[0].table.passes} passes" in overview.line
+    jumps = [each.ratio for each in results if each.permission is Permission.JUMPS]
+    assert f"Medians: several stages a command {median(jumps):.2f}, commands at any time" in overview.line
+    few = Overview((replace(overview.cases[0], results=overview.cases[0].results[:1]),))
+    assert "(jumps: several stages a command)" in few.line
+
+
+def test_who_asks_sees_the_column_before_others(overview: Overview) -> None:
+    names = (*COLUMNS[:-1], PERMITTED, COLUMNS[-1])
+    heads = (*COLUMNS[:-1], head(overview), COLUMNS[-1])
+    rows = [tuple("x" * 12 for _ in heads)]
+    kept = {width: [names[place] for place in columns_for(width, names, heads, rows)] for width in range(60, 300)}
+    assert kept[299] == list(names)
+    assert not set(LAST_TO_GO) & set(kept[60])
+    assert all(PERMITTED in each for each in kept.values() if LAST_TO_GO[0] in each)
+    assert any(PERMITTED in each and LAST_TO_GO[0] not in each for each in kept.values())
+    plain = [COLUMNS[place] for place in columns_for(60, COLUMNS, COLUMNS, [row[1:] for row in rows])]
+    assert LAST_TO_GO[0] in plain
+
+
+def test_the_report_tells_every_interval(overview: Overview) -> None:
+    page = permissions_section(overview)
+    for each in (result for case in overview.cases for result in case.results):
+        low, high = each.ratio_ci95
+        assert f">{each.ratio:.2f} [{low:.2f}, {high:.2f}]</td>" in page
+        assert f">{each.permission.value}</th>" in page
+
+
+def test_a_book_tells_how_to_ask_where_nobody_did_and_it_would_not_be_refused(cases: tuple[CaseResult, ...]) -> None:
+    plain, at_any_time = parse_config("", "c"), parse_config('[regulator]\ncommands = "any_time"\n', "c")
+    assert Book(plain, "", (make_case(),), ()).permissions_line == HINT
+    assert Book(at_any_time, "", (make_case(),), ()).permissions_line == ""
+    told = Book(plain, "", cases, ())
+    assert told.permissions is not None
+    assert told.permissions_line == told.permissions.line
