@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -12,7 +12,7 @@ from synth.book.any_time.surface_table import polished_surfaces, starting_surfac
 from synth.book.class_setup import ClassSetup, Origin, class_setup, origin_of, validation_passes
 from synth.book.estimation.simulated_prediction import prediction_passes, simulated_prediction
 from synth.book.permissions.permission import CasePermissions, Permission, PermissionResult
-from synth.book.tuned_table import TunedTable, rounded, solutions, tuned_table, with_prediction
+from synth.book.tuned_table import TunedTable, predicted_by_passes, rounded, solutions, tuned_table, with_prediction
 from synth.book.work_queue import run_nested
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
@@ -21,6 +21,7 @@ from synth.simulation.closed_loop import TableController
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
+from synth.solver.any_time.surface_polish import SurfacePolish
 from synth.solver.one_blas_thread import one_blas_thread
 
 APPROACH_M = 4.0
@@ -100,36 +101,60 @@ def asking(config: ResolvedConfig, setup: ClassSetup, aim: Aim, passes: RandomPa
 
 def case_permissions(case: CaseTuned, passes: RandomPasses, origin: Origin) -> CasePermissions:
     """All permissions of one case."""
-    label, plant = case.setup.label, case.setup.plant
-    results = [
-        several_stages(case),
-        at_any_time(case, Permission.ANY_TIME, has_gauge=True),
-        at_any_time(case, Permission.WITHOUT_GAUGE, has_gauge=False),
-    ]
+    plant, polish = case.setup.plant, None
+    results = [several_stages(case)]
     if not case.config.regulator.estimator and case.config.criterion.requirement is None:
-        results += [
-            with_regulator(case, permission, update, passes, origin)
-            for permission, update in (
-                (Permission.ESTIMATOR, {"estimator": True}),
-                (Permission.ANY_TIME_ESTIMATOR, {"estimator": True, "commands": "any_time"}),
-            )
-        ]
-    ahead = case.setup.plant.approach.length_m > 0.0
+        with_estimator, polish = estimators(case, passes, origin)
+        results += with_estimator
+    results += [
+        at_any_time(case, Permission.ANY_TIME, polish or polished(case, has_gauge=True)),
+        at_any_time(case, Permission.WITHOUT_GAUGE, polished(case, has_gauge=False)),
+    ]
+    ahead = plant.approach.length_m > 0.0
     kind = Permission.NO_APPROACH if ahead else Permission.APPROACH
     approach = Approach() if ahead else Approach(APPROACH_M, plant.approach.entrance_stage)
-    results.append(tuned_anew(case, kind, case.config, replace(plant, approach=approach), passes, origin))
-    statistics = exit_statistics(case.sample, case.target_m_s)
-    return CasePermissions(label, case.target_m_s, statistics, case.tuned.table.predicted.rms_m_s, tuple(results))
+    (other,) = tuned_cases(case.config, case.setup.label, replace(plant, approach=approach), [case.aim], passes, origin)
+    results.append(case.result(kind, other.sample, other.tuned.table.predicted.rms_m_s))
+    in_order = {each.permission: each for each in results}
+    return CasePermissions(
+        case.setup.label,
+        case.target_m_s,
+        exit_statistics(case.sample, case.target_m_s),
+        case.tuned.table.predicted.rms_m_s,
+        tuple(in_order[each] for each in Permission if each in in_order),
+    )
 
 
-def at_any_time(case: CaseTuned, permission: Permission, has_gauge: bool) -> PermissionResult:
-    """The table of surfaces polished from the lines of the table, predicted and simulated."""
-    setup, plant = case.setup, case.setup.plant
-    steps = design_resolution(plant, case.target_m_s)
+def estimators(
+    case: CaseTuned, passes: RandomPasses, origin: Origin
+) -> tuple[list[PermissionResult], SurfacePolish | None]:
+    """Estimator alone, and with commands at any time: one tune designs both, and surfaces for the measured speed."""
+    regulator = case.config.regulator.model_copy(update={"estimator": True, "commands": "any_time"})
+    config = replace(case.config, regulator=regulator)
+    (both,) = tuned_cases(config, case.setup.label, case.setup.plant, [case.aim], passes, origin)
+    made, setup = both.tuned.estimate, both.setup
+    alone, sample = case.tuned.table, case.sample
+    if made is not None and made.gains and setup.estimator is not None:
+        alone, _ = predicted_by_passes(setup, made, setup.estimator, case.target_m_s)
+        sample = setup.passes.run(TableController(alone))
+    found = [
+        case.result(Permission.ESTIMATOR, sample, alone.predicted.rms_m_s),
+        case.result(Permission.ANY_TIME_ESTIMATOR, both.sample, both.tuned.table.predicted.rms_m_s),
+    ]
+    return found, None if both.tuned.surfaces is None else both.tuned.surfaces.polish
+
+
+def polished(case: CaseTuned, has_gauge: bool) -> SurfacePolish:
+    """Surfaces polished from the lines of the table."""
+    plant = case.setup.plant
     start = starting_surfaces(plant, case.tuned.lines, has_gauge)
-    surfaces = polished_surfaces(plant, case.aim, start, steps).surfaces
-    table, _ = with_prediction(setup.check, rounded(setup, surfaces, case.target_m_s))
-    return case.result(permission, setup.passes.run(TableController(table)), table.predicted.rms_m_s)
+    return polished_surfaces(plant, case.aim, start, design_resolution(plant, case.target_m_s))
+
+
+def at_any_time(case: CaseTuned, permission: Permission, polish: SurfacePolish) -> PermissionResult:
+    """The table of polished surfaces for the measured speed, predicted and simulated."""
+    table, _ = with_prediction(case.setup.check, rounded(case.setup, polish.surfaces, case.target_m_s))
+    return case.result(permission, case.setup.passes.run(TableController(table)), table.predicted.rms_m_s)
 
 
 def several_stages(case: CaseTuned) -> PermissionResult:
@@ -138,19 +163,3 @@ def several_stages(case: CaseTuned) -> PermissionResult:
     others = setup.passes.of_others(prediction_passes(case.config.validation.seed + 2, setup.label))
     predicted = simulated_prediction(others.run(controller), case.target_m_s)
     return case.result(Permission.JUMPS, setup.passes.run(controller), predicted.rms_m_s)
-
-
-def with_regulator(
-    case: CaseTuned, permission: Permission, update: Mapping[str, object], passes: RandomPasses, origin: Origin
-) -> PermissionResult:
-    """The table for a regulator that is configured otherwise."""
-    config = replace(case.config, regulator=case.config.regulator.model_copy(update=update))
-    return tuned_anew(case, permission, config, case.setup.plant, passes, origin)
-
-
-def tuned_anew(
-    case: CaseTuned, permission: Permission, config: ResolvedConfig, plant: Plant, passes: RandomPasses, origin: Origin
-) -> PermissionResult:
-    """The table that a tune of another configuration or plant makes, on the same passes."""
-    (other,) = tuned_cases(config, case.setup.label, plant, [case.aim], passes, origin)
-    return case.result(permission, other.sample, other.tuned.table.predicted.rms_m_s)
