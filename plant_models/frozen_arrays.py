@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from functools import wraps
+from functools import cache, wraps
 from typing import Any, TypeVar
 
 import numpy as np
@@ -49,8 +49,17 @@ def brief(value: Any) -> str:
 
 def freeze(value: Any) -> None:
     """Make the arrays among the fields of the dataclass instance `value` read-only, also those in a tuple."""
-    for field in fields(value):
-        held = getattr(value, field.name)
-        for array in held if isinstance(held, tuple) else (held,):
-            if isinstance(array, np.ndarray):
-                array.setflags(write=False)
+    for name in _field_names(value.__class__):
+        held = getattr(value, name)
+        if isinstance(held, np.ndarray):
+            held.setflags(write=False)
+        elif isinstance(held, tuple):
+            for array in held:
+                if isinstance(array, np.ndarray):
+                    array.setflags(write=False)
+
+
+@cache
+def _field_names(cls: Any) -> tuple[str, ...]:
+    # `fields` goes through all of them at every call, and a train makes a hundred thousand such values.
+    return tuple(field.name for field in fields(cls))

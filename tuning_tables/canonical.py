@@ -21,6 +21,9 @@ from typing import Final
 CHECKSUM_KEY: Final = "crc32"
 LARGEST_EXACT_INTEGER: Final = 2**53
 
+_quoted: Final = json.JSONEncoder(ensure_ascii=False).encode
+"""A string as JSON. One encoder for all, as `json.dumps` makes a new one at every call."""
+
 
 def canonical_json(document: object) -> bytes:
     """The canonical form of `document`, built from dict, list, tuple, str, int, float, bool and None.
@@ -42,24 +45,31 @@ def document_checksum(document: Mapping[str, object]) -> str:
 
 
 def _text(value: object) -> str:
-    if value is None or isinstance(value, bool):
-        return json.dumps(value)
     if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False)
+        return _quoted(value)
+    if isinstance(value, float):
+        return _number_text(float(value))
+    if value is None:
+        return "null"
+    if isinstance(value, bool):
+        return "true" if value else "false"
     if isinstance(value, int):
         if abs(value) > LARGEST_EXACT_INTEGER:
             raise ValueError("an integer beyond 2^53 has no exact canonical form; write it as a string.")
         return str(int(value))
-    if isinstance(value, float):
-        return _number_text(float(value))
     if isinstance(value, list | tuple):
         return "[" + ",".join(map(_text, value)) + "]"
     if isinstance(value, dict):
-        if not all(isinstance(key, str) for key in value):
-            raise ValueError("a key is no string; JSON objects have string keys only.")
-        members = sorted(value.items(), key=lambda member: member[0].encode("utf-16-be"))
-        return "{" + ",".join(f"{_text(key)}:{_text(member)}" for key, member in members) + "}"
+        return "{" + ",".join([f"{_quoted(key)}:{_text(value[key])}" for key in _sorted_keys(value)]) + "}"
     raise ValueError(f"{type(value).__name__} has no JSON form; convert it to a plain number, string, list or dict.")
+
+
+def _sorted_keys(members: dict[object, object]) -> list[str]:
+    """The keys by their UTF-16 code units, which is Python's own order where all are ASCII."""
+    keys = [key for key in members if isinstance(key, str)]
+    if len(keys) < len(members):
+        raise ValueError("a key is no string; JSON objects have string keys only.")
+    return sorted(keys) if "".join(keys).isascii() else sorted(keys, key=lambda key: key.encode("utf-16-be"))
 
 
 def _number_text(value: float) -> str:
@@ -68,17 +78,14 @@ def _number_text(value: float) -> str:
         raise ValueError(f"{value!r} has no JSON form; numbers must be finite.")
     if value == 0.0:
         return "0"  # also for -0.0
+    if "e" not in (plain := repr(value)):
+        return plain.removesuffix(".0")  # as ECMAScript, but for the point of a whole number
     sign = "-" if value < 0.0 else ""
-    mantissa, _, exponent = repr(abs(value)).partition("e")
-    whole, _, fraction = mantissa.partition(".")
-    digits = (whole + fraction).lstrip("0")
-    # value = 0.d1 d2 d3 ... * 10^point
-    point = len(whole) + int(exponent or "0") - (len(whole + fraction) - len(digits))
-    digits = digits.rstrip("0")
+    mantissa, _, exponent = plain.removeprefix("-").partition("e")
+    digits = mantissa.replace(".", "")
+    point = int(exponent) + 1  # value = 0.d1 d2 d3 ... * 10^point
     if len(digits) <= point <= 21:
         return sign + digits.ljust(point, "0")
-    if 0 < point <= 21:
-        return f"{sign}{digits[:point]}.{digits[point:]}"
     if -6 < point <= 0:
         return f"{sign}0.{'0' * -point}{digits}"
     tail = f".{digits[1:]}" if len(digits) > 1 else ""

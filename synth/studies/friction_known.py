@@ -13,6 +13,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from statistics import median
 
+import numpy as np
+
 from synth.book.class_setup import ClassSetup, class_setup, origin_of
 from synth.book.comparison.friction_bound import ENTRY_PASSES, bound_of, feasibility_of
 from synth.book.comparison.told_regulator import best_by_others, by_lines, run_told
@@ -152,7 +154,9 @@ def compared(setup: ClassSetup, aim: Aim, name: str, config: ResolvedConfig, opt
     more = by_lines(told_lines(setup.design, target, tuned.lines, tuned.curvature, finer))
     effort = replace(THOROUGH, degree=options.degree, iterations=(options.iterations, options.iterations))
     fine = replace(persistent_chain(setup.plant, setup.check.resolution), scenarios=setup.design.scenarios)
-    curvature = tuned.curvature.repeat(2, axis=2)  # half the path step
+    quanta, coarse = len(fine.grid.path_m) - 1, tuned.curvature.shape[2]
+    # Half the path step, but not always twice the quanta: both grids round their number.
+    curvature = tuned.curvature[:, :, np.arange(quanta) * coarse // quanta]
     best = by_lines(told_lines(fine, target, tuned.lines, curvature, effort))
     in_tune, by_more, by_effort = (run_told(common.loop, common.draws, each) for each in (told, more, best))
     in_groups = run_told(common.loop, common.draws, told, options.groups)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import fields, replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -10,12 +12,34 @@ from synth.studies.registry import STUDIES
 from synth.studies.result import read_result, run_study
 from synth.studies.study import Study
 
+COARSE = """\
+[targets]
+exit_speeds_m_s = [2.0, 3.0]
+[grid]
+path_step_m = 1.0
+speed_step_m_s = 0.06
+transient_step_s = 0.1
+friction_scenarios = 2
+[validation]
+passes = 1000
+"""
+"""Of the built-in configuration two targets on a coarse grid: a study goes through all its steps on any grid."""
+
+
+def smallest(study: Study, folder: Path) -> Any:
+    """The smallest options of `study`, with the coarse configuration where it takes one."""
+    options = study.method.smallest
+    if "config" not in {field.name for field in fields(options)}:
+        return options
+    (folder / "coarse.toml").write_text(COARSE, encoding="utf-8")
+    return replace(options, config=folder / "coarse.toml")
+
 
 @pytest.mark.slow
 @pytest.mark.parametrize("study", STUDIES, ids=lambda study: study.name)
 def test_a_study_runs_and_its_result_reads_back(study: Study, tmp_path: Path) -> None:
     told: list[str] = []
-    result = run_study(study, study.method.smallest, told.append)
+    result = run_study(study, smallest(study, tmp_path), told.append)
     assert told, "nobody sees how far it is"
     tables = result.findings.tables()
     assert tables

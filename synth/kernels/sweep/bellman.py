@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 
 from synth.kernels.sweep.commands import normal_cdf
-from synth.kernels.sweep.flow import mix_values, pull, shifts
+from synth.kernels.sweep.flow import in_every_state, mix_values, pull, shifts
 from synth.kernels.sweep.landing_plan import find_runs, landing_scratch, landing_tables
 from synth.kernels.sweep.next_sample import quanta_to_next_sample
 from synth.kernels.sweep.thresholds import find_lines
@@ -59,9 +59,9 @@ def sweep(
     met, slope = landing_tables(
         factor, extra, factors, probability, mean, std, levels, pressure, drive, brake, path_step
     )
-    recent[:, nodes % ring] = terminal
-    mixed[:, nodes % ring] = terminal
-    ahead[:, 1:] = terminal
+    in_every_state(terminal, row, recent[:, nodes % ring])
+    in_every_state(terminal, row, mixed[:, nodes % ring])
+    in_every_state(terminal, row, ahead.reshape(count * reach, modes, size, row))
     copy_out(recent[:, nodes % ring], values, nodes, points)
     for n in range(nodes - 1, -1, -1):
         decision = decision_at[n]

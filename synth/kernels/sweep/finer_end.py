@@ -58,7 +58,8 @@ def forward_to_finer_end(
         fine_heading[:], fine_spans[:], fine_landed[:] = 0.0, 0, 0
         for r in range(reach):
             for q in range(size):
-                heading[r, entry_mode, q, :points] = entry[r] * stationary[q]
+                for j in range(points):
+                    heading[r, entry_mode, q, j] = entry[r, j] * stationary[q]
                 spans[r, entry_mode, q, 1] = points
         for start, stop in ((0, node), (node, nodes)):
             follow(
@@ -83,7 +84,8 @@ def forward_to_finer_end(
         )  # fmt: skip
         collect(fine_arriving[(nodes - node) % ring], fine_mixing[(nodes - node) % ring], fine_heading, late)
         exits[i] = 0.0
-        exits[i, : late.shape[0]] = late
+        for j in range(late.shape[0]):
+            exits[i, j] = late[j]
         refine(rest, 0, points, np.ones(points), basis, exits[i])
 
 

@@ -21,6 +21,19 @@ NO_MASS = 1e-25
 
 
 @borrowing
+def in_every_state(row, points, out):
+    """The first `points` of `out` (·, H, L, ·) = those of `row`, in every mode and level.
+
+    A loop, for `out[...] = row` makes numba compile the message for shapes that differ: seconds in every kernel.
+    """
+    for i in range(out.shape[0]):
+        for h in range(out.shape[1]):
+            for q in range(out.shape[2]):
+                for j in range(points):
+                    out[i, h, q, j] = row[j]
+
+
+@borrowing
 def pull(values, points, transition, shift, stalled, first, last, out, mixed):
     """`out`[h, q, j] = Σ_m transition[q, m]·values[h, m](j + shift[h, q]) for first ≤ j < last.
 

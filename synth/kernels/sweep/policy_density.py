@@ -71,7 +71,8 @@ def forward(
         heading[:], spans[:], landed[:] = 0.0, 0, 0
         for r in range(reach):
             for q in range(size):
-                heading[r, entry_mode, q, :points] = entry[r] * stationary[q]
+                for j in range(points):
+                    heading[r, entry_mode, q, j] = entry[r, j] * stationary[q]
                 spans[r, entry_mode, q, 1] = points
         totals[i] = 0.0
         follow(

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from synth.kernels.sweep.flow import mix_values, pull, shifts
+from synth.kernels.sweep.flow import in_every_state, mix_values, pull, shifts
 from synth.kernels.sweep.landing_plan import landing_scratch, landing_tables
 from synth.kernels.sweep.next_sample import quanta_to_next_sample
 from synth.kernels.sweep.policy_density import NEGLIGIBLE_MASS
@@ -37,9 +37,9 @@ def backward(
     ahead = np.empty((reach, modes, size, row))
     values = np.full((ring, modes, size, row), stalled)
     mixed = np.full((ring, modes, size, row), stalled)
-    ahead[:, :, :, :points] = terminal
-    values[last % ring, :, :, :points] = terminal
-    mixed[last % ring, :, :, :points] = terminal
+    in_every_state(terminal, points, ahead)
+    for rows in (values, mixed):
+        in_every_state(terminal, points, rows[last % ring : last % ring + 1])
     met, slope = landing_tables(
         np.array([factor]), np.array([extra]), factors, probability, mean, std, levels, pressure, drive, brake,
         path_step,

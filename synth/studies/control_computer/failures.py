@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from synth.configuration.humping.trial_file import parse_trial_file
 from synth.studies.control_computer.failed_hump import (
     ByHand,
     FailedPosition,
@@ -27,7 +28,7 @@ from synth.studies.markdown_table import ABSENT, MarkdownTable, table
 from synth.yard.control_computer.reliability.failure_losses import ASSUMED_RISKS
 from synth.yard.humping.made_trial import brake_of, made_trial
 from synth.yard.humping.outcomes import TrainOutcomes
-from synth.yard.humping.resolved_trial import load_trial
+from synth.yard.humping.resolved_trial import resolve_trial
 from synth.yard.humping.train_figures import ratio
 from synth.yard.humping.trial import HumpTrial
 
@@ -183,9 +184,9 @@ def plain_interval(found: Interval) -> Interval:
     return float(value), float(low), float(high)
 
 
-def failure_trials() -> FailureTrials:
-    """All failures on the default hump trial."""
-    config = load_trial(None)
+def failure_trials(cuts: int) -> FailureTrials:
+    """All failures on the default hump trial, with trains of so many `cuts`."""
+    config = resolve_trial(parse_trial_file(f"[trains]\ncuts = {cuts}\n", "the default trial"))
     trial, brakes = made_trial(config, 1), [brake_of(each, config) for each in config.positions]
     numbers = range(1, len(brakes) + 1)
     cases: dict[tuple[str, str], list[FailedPosition]] = {(SOUND, ALL): []}

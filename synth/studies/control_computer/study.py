@@ -26,7 +26,7 @@ class Options:
     failure_trains: int = option(300, "trains with every failure", (2, 10**6))
     trains: int = option(300, "trains of every control of the hump", (2, 10**6))
     table_trains: int = option(200, "trains where positions run tables; 0: no tables are tuned", (0, 10**6))
-    cuts: int = option(40, "cuts of a train where controls are compared", (2, 999))
+    cuts: int = option(40, "cuts of a train", (2, 999))
     design_cuts: int = option(2000, "cuts that exit speeds of the last position are chosen on", (200, 200_000))
     replicates: int = option(2000, "bootstrap samples of the trains", (100, 10**6))
     workers: int = option(2, "processes; they change no result", (1, 1000))
@@ -38,7 +38,7 @@ def run(options: Options, tell: Tell) -> ControlComputer:
     of_queues = queues(options.requests, options.coverage_runs, options.workers, options.seed, tell)
     of_source = published(tell)
     of_lives = reliability(options.lives, options.seed, tell)
-    failed = failure_trials()
+    failed = failure_trials(options.cuts)
     table_trains = min(options.table_trains, options.trains)
     variants = benefit_groups(options.seed, options.cuts, options.design_cuts, table_trains > 0, tell)
     tell("trials made")
@@ -61,8 +61,8 @@ def run(options: Options, tell: Tell) -> ControlComputer:
 METHOD = Method(
     Options,
     Options(
-        requests=3000, coverage_runs=2, lives=1000, failure_trains=3, trains=3, table_trains=0, cuts=6, design_cuts=200,
-        replicates=100,
+        requests=3000, coverage_runs=2, lives=1000, failure_trains=2, trains=2, table_trains=0, cuts=6, design_cuts=200,
+        replicates=100, workers=1,
     ),
     ControlComputer,
     run,

@@ -95,7 +95,7 @@ def regulated_day(loops: ClosedLoops, frontier: Frontier) -> RegulatedDay:
 
 METHOD = Method(
     Options,
-    Options(trains=3, no_tables=True, cuts=6, stds_m_s=(0.35,), least_s=(0.5, -0.5), design_cuts=200),
+    Options(trains=2, no_tables=True, cuts=6, stds_m_s=(0.35,), least_s=(0.5, -0.5), design_cuts=200),
     HumpDay,
     run,
 )

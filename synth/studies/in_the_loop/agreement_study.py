@@ -14,19 +14,22 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from synth.studies.in_the_loop.agreement import Differences, Questions, Tracks, ask, differences, follow
-from synth.studies.in_the_loop.books import book_or_default, with_estimators
+from synth.studies.in_the_loop.books import tuned_book, with_estimators
 from synth.studies.in_the_loop.builds import BUILDS, Build
 from synth.studies.markdown_table import ABSENT, MarkdownTable, table
 from synth.studies.options import option
 from synth.studies.study import Findings, Method, Tell
+from tuning_tables import read_book
+from tuning_tables.table_book import TableBook
 
 
 @dataclass(frozen=True)
 class Options:
     """What is asked, of which book."""
 
-    book: Path | None = option(None, "book.h5; the default book with estimators, tuned here, without it")
-    masses_t: tuple[float, ...] = option((), "of the default book only cuts of these masses, t")
+    book: Path | None = option(None, "book.h5; one with estimators, tuned here, without it")
+    config: Path | None = option(None, "configuration of the book tuned here; the built-in one without it")
+    masses_t: tuple[float, ...] = option((), "of the book tuned here only cuts of these masses, t")
     readings: int = option(1_000_000, "readings, golden ones among them", (100_000, 10**9))
     commands: int = option(20_000, "commands of a speed", (10, 10**8))
     samples: int = option(1_000_000, "samples for the estimator", (100, 10**9))
@@ -90,7 +93,10 @@ def cells(row: Row) -> tuple[str, ...]:
 
 def run(options: Options, tell: Tell) -> Agreement:
     """Ask Python first, then every controller."""
-    book = book_or_default(options.book, True, options.masses_t, tell)
+    if options.book is None:
+        book = tuned_book(options.config, True, options.masses_t, tell).book
+    else:
+        book = TableBook(read_book(options.book))
     questions = ask(book, options.readings, options.commands, options.seed)
     tracks = follow(book, options.samples, options.seed + 2)
     rows = []

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from plant_models import Plant
 from synth.book.tune import tune
-from synth.configuration.config_file import parse_config
+from synth.configuration.config_file import load_config
 from synth.studies.cases import of_masses
 from synth.studies.study import Tell
-from tuning_tables import read_book
 from tuning_tables.table_book import TableBook
 
 
@@ -24,18 +23,14 @@ class Tuned:
     config_sha256: str
 
 
-def default_book(estimator: bool, masses_t: tuple[float, ...], tell: Tell) -> Tuned:
-    """The default book, of all its cuts or of those of these masses."""
-    text = f"[regulator]\nestimator = {str(estimator).lower()}\n"
-    config = of_masses(parse_config(text, "study"), masses_t)
+def tuned_book(config: Path | None, estimator: bool, masses_t: tuple[float, ...], tell: Tell) -> Tuned:
+    """The book of a configuration (the built-in one for None), of all its cuts or of those of these masses."""
+    loaded = of_masses(load_config(config), masses_t)
+    regulated = replace(loaded, regulator=loaded.regulator.model_copy(update={"estimator": estimator}))
     with tempfile.TemporaryDirectory() as tables:
-        cases = tune(config, Path(tables), tell).cases
-    return Tuned(TableBook(tuple(case.table for case in cases)), tuple(case.plant for case in cases), config.sha256)
-
-
-def book_or_default(path: Path | None, estimator: bool, masses_t: tuple[float, ...], tell: Tell) -> TableBook:
-    """The book in a file, or the default one."""
-    return default_book(estimator, masses_t, tell).book if path is None else TableBook(read_book(path))
+        cases = tune(regulated, Path(tables), tell).cases
+    book = TableBook(tuple(case.table for case in cases))
+    return Tuned(book, tuple(case.plant for case in cases), regulated.sha256)
 
 
 def with_estimators(book: TableBook) -> int:

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from synth.faults.input_error import InputError
-from synth.studies.in_the_loop.books import default_book
+from synth.studies.in_the_loop.books import tuned_book
 from synth.studies.in_the_loop.code_cost import CodeSize, dearest_call, missing, object_size
 from synth.studies.in_the_loop.controller_process import COMMAND, READING, SAMPLE, build_controller, compile_with
 from synth.studies.in_the_loop.hard_readings import golden_readings, hard_commands
@@ -47,6 +47,7 @@ TARGETS = {
 class Options:
     """Which levels of optimisation, of which book."""
 
+    config: Path | None = option(None, "configuration; the built-in default book without it")
     masses_t: tuple[float, ...] = option((), "only cuts of these masses, t")
     levels: tuple[str, ...] = option(LEVELS, "levels of optimisation")
 
@@ -115,7 +116,7 @@ def run(options: Options, tell: Tell) -> Cost:
     """Tune both books, compile, count. Raises `InputError` where there is no gcc."""
     if missing("gcc", "size"):
         raise InputError("study controller-cost: gcc is not installed; scripts/setup_toolchain installs what it needs")
-    books = [default_book(estimator, options.masses_t, tell) for estimator in (False, True)]
+    books = [tuned_book(options.config, estimator, options.masses_t, tell) for estimator in (False, True)]
     plain, estimated = (each.book for each in books)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)

@@ -14,7 +14,7 @@ from pathlib import Path
 from synth.faults.input_error import InputError
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.random_passes import random_passes
-from synth.studies.in_the_loop.books import Tuned, default_book
+from synth.studies.in_the_loop.books import Tuned, tuned_book
 from synth.studies.in_the_loop.controller_process import BuildError, build_controller
 from synth.studies.in_the_loop.software_in_the_loop import PipeLine, closed_loop_with_process
 from synth.studies.markdown_table import MarkdownTable, table
@@ -26,6 +26,7 @@ from synth.studies.study import Findings, Method, Tell
 class Options:
     """How many passes, and how it is compiled."""
 
+    config: Path | None = option(None, "configuration; the built-in default book without it")
     masses_t: tuple[float, ...] = option((), "only cuts of these masses, t")
     passes: int = option(500, "passes of each table", (1, 10**6))
     seed: int = option(1, "of the passes", (0, 2**31))
@@ -81,7 +82,7 @@ class InTheLoop(Findings):
 
 def run(options: Options, tell: Tell) -> InTheLoop:
     """Tune both books, compile, run."""
-    books = [default_book(estimator, options.masses_t, tell) for estimator in (False, True)]
+    books = [tuned_book(options.config, estimator, options.masses_t, tell) for estimator in (False, True)]
     line = PipeLine()
     rows = [row for tuned in books for row in rows_of(tuned, options, line)]
     tell(f"{len(rows)} tables run")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any, Final
 
 import numpy as np
@@ -41,26 +42,34 @@ def same_nan(words: NDArray[np.uint32]) -> NDArray[np.uint32]:
     return np.where(np.isnan(words.view(np.float32)), ONE_NAN, words)
 
 
+@cache
 def _following() -> Any:
-    """A function that lets the estimator follow one track; compiled anew, so that no stale cache is asked."""
+    """A function that lets the estimator follow one track; compiled anew in a process, so that no stale cache is asked.
+
+    Words are copied one by one: numba takes seconds to compile the message for arrays that do not fit.
+    """
     estimated_speed = njit(error_model="numpy")(observe)
 
     @njit(error_model="numpy")
     def follow(parameters, work, start, s_m, v_m_s, kpa, given, answers):  # type: ignore[no-untyped-def]  # numba infers the types
         state = np.zeros(ESTIMATE_WORDS, np.float32)
+        words = state.view(np.uint32)
         speed = np.zeros(1, np.float32)
         for i in range(start.shape[0]):
             if start[i] == BEGIN:
                 state[:] = 0.0
             elif start[i] == GIVEN:
-                state.view(np.uint32)[:] = given[i]
+                for k in range(ESTIMATE_WORDS):
+                    words[k] = given[i, k]
             speed[0] = estimated_speed(parameters, work, state, s_m[i], v_m_s[i], kpa[i])
             answers[i, 0] = speed.view(np.uint32)[0]
-            answers[i, 1:] = state.view(np.uint32)
+            for k in range(ESTIMATE_WORDS):
+                answers[i, 1 + k] = words[k]
 
     return follow
 
 
+@cache
 def _passing_on() -> Any:
     """A function that follows one track of a table without estimator: only the count of unseen samples changes."""
     counted = njit(error_model="numpy")(hand_on)
@@ -68,12 +77,15 @@ def _passing_on() -> Any:
     @njit(error_model="numpy")
     def pass_on(start, v_m_s, given, answers):  # type: ignore[no-untyped-def]  # numba infers the types
         state = np.zeros(ESTIMATE_WORDS, np.float32)
+        words = state.view(np.uint32)
         for i in range(start.shape[0]):
             if start[i] == BEGIN:
                 state[:] = 0.0
             elif start[i] == GIVEN:
-                state.view(np.uint32)[:] = given[i]
+                for k in range(ESTIMATE_WORDS):
+                    words[k] = given[i, k]
             counted(state, v_m_s[i])
-            answers[i, 1:] = state.view(np.uint32)
+            for k in range(ESTIMATE_WORDS):
+                answers[i, 1 + k] = words[k]
 
     return pass_on

@@ -142,4 +142,4 @@ def points(setup: ClassSetup, config: ResolvedConfig, target_m_s: float, options
     return tuple(found)
 
 
-METHOD = Method(Options, Options(None, ("52:3",), (1e-5, 1e-3), 200), SwitchingPrice, run)
+METHOD = Method(Options, Options(None, ("52:3",), (1e-3,), 200), SwitchingPrice, run)

@@ -57,15 +57,16 @@ class Kind:
 
 @dataclass(frozen=True)
 class BookSize:
-    """Classes by mass, and tables of a class."""
+    """Classes by mass, and tables of a class; whether they are tuned on a coarse grid."""
 
     classes: int
     tables: int
+    coarse: bool = False
 
     def book(self, cuts: Cuts) -> ParkBook:
         """The book for such cuts: the lowest exit speeds and the highest."""
         targets = TARGETS_M_S[cuts.category.latin]
-        return park_book(cuts, (*targets[: self.tables - 1], targets[-1]), self.classes)
+        return park_book(cuts, (*targets[: self.tables - 1], targets[-1]), self.classes, self.coarse)
 
 
 def positions_of(cuts: Cuts, books: BookSize) -> dict[str, PositionModel]:

@@ -32,16 +32,19 @@ CLASS_SHARES = (0.25, 0.75)
 
 ENERGY_RULE = next(family for family in FAMILIES if family.name == "energy rule")
 
+COARSE = "[grid]\npath_step_m = 1.0\nspeed_step_m_s = 0.06\nfriction_scenarios = 2\n"
+
 
 @dataclass(frozen=True)
 class ParkBook:
     """What one number of cars of one category needs: classes of gondolas at `masses_t` (of the cut), tuned for each of
-    `targets_m_s` and entry speeds between `entry_m_s`."""
+    `targets_m_s` and entry speeds between `entry_m_s`, on the grid of a tune or on a `coarse` one."""
 
     cars: int
     entry_m_s: tuple[float, float]
     masses_t: tuple[float, ...]
     targets_m_s: tuple[float, ...]
+    coarse: bool = False
 
     def config(self, estimator: bool) -> ResolvedConfig:
         """The configuration that a user would write."""
@@ -57,7 +60,7 @@ high_m_s = {high}
 exit_speeds_m_s = [{", ".join(str(t) for t in self.targets_m_s)}]
 [regulator]
 estimator = {str(estimator).lower()}
-""" + "".join(
+{COARSE if self.coarse else ""}""" + "".join(
             f'[[cut]]\nlabel = "class-{i}"\ncar = "gondola-4"\ncars = {self.cars}\nmass_t = {mass}\n'
             for i, mass in enumerate(self.masses_t)
         )
@@ -81,7 +84,7 @@ estimator = {str(estimator).lower()}
         return [class_setup(config, label, plant, passes, origin) for label, plant in config.plants()]
 
 
-def park_book(cuts: Cuts, targets_m_s: tuple[float, ...], classes: int = len(CLASS_SHARES)) -> ParkBook:
+def park_book(cuts: Cuts, targets_m_s: tuple[float, ...], classes: int, coarse: bool) -> ParkBook:
     """The book for such cuts."""
     few = cuts.scene.draw(cuts.category, cuts.cars, 0, 0, 2000)
     entry = np.quantile(entry_speeds_m_s(few), (ENTRY_TAILS, 1.0 - ENTRY_TAILS))
@@ -89,7 +92,7 @@ def park_book(cuts: Cuts, targets_m_s: tuple[float, ...], classes: int = len(CLA
     masses = np.maximum(np.quantile(few.rolling.cuts.cut_mass_t, CLASS_SHARES[:classes]), cuts.cars * lightest)
     return ParkBook(
         cuts.cars, (round(float(entry[0]), 2), round(float(entry[1]), 2)),
-        tuple(round(float(mass), 1) for mass in masses), targets_m_s,
+        tuple(round(float(mass), 1) for mass in masses), targets_m_s, coarse,
     )  # fmt: skip
 
 

@@ -54,13 +54,14 @@ class Options:
     design: int = option(3000, "cuts of a replicate that commands are chosen on", (200, 10**6))
     report: int = option(3000, "cuts of a replicate that commands are judged on", (200, 10**6))
     seed: int = option(15, "of all draws", (0, 10**9))
+    coarse: bool = option(False, "tables on a coarse grid, to see that it runs")
 
 
 def run(options: Options, tell: Tell) -> YardChain:
     """All parts."""
     hump = large_hump()
     draws = Draws(options.replicates, options.design, options.report, options.seed)
-    books = BookSize(options.classes, options.tables)
+    books = BookSize(options.classes, options.tables, options.coarse)
     found: dict[Kind, Samples] = {}
     careful: dict[Kind, Samples] = {}
     detailed: PositionModel | None = None
@@ -132,7 +133,7 @@ def chain_of(kind: Kind, samples: Samples) -> Chain:
 METHOD = Method(
     Options,
     Options(metres=(100.0,), cars=(1,), records=50, records_compared=(30,), lengths_m=(50.0,), stds_m_s=(0.03,),
-            classes=1, tables=2, detail_m=100.0, replicates=2, design=400, report=300),
+            classes=1, tables=2, detail_m=100.0, replicates=2, design=400, report=300, coarse=True),
     YardChain,
     run,
 )  # fmt: skip

@@ -37,7 +37,9 @@ def sweep_plainly(row_place, cell_place, chance, value, policy):
     rows, cells = value.shape
     before = value.copy()
     for stage in range(policy.shape[0] - 1, -1, -1):
-        before[:] = value
+        for i in range(rows):
+            for j in range(cells):  # `before[:] = value` takes numba seconds to compile
+                before[i, j] = value[i, j]
         for i in range(rows):
             for j in range(cells):
                 best, chosen = math.inf, 0
