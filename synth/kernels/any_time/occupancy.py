@@ -51,7 +51,8 @@ def occupy(
     look_ahead(0, extra, motion, path, ring, of_node, free, braking)
     for r in range(entry.shape[0]):
         for q in range(levels):
-            scratch[0, :points] = entry[r] * stationary[q]
+            for j in range(points):
+                scratch[0, j] = entry[r, j] * stationary[q]
             shift = free[r] - entry_kpa * factor[q] * braking[r]
             push_row(scratch[0, 1:points], 1, shift, points, heading[entry_way, q, r], spans[entry_way, q, r])
     for n in range(nodes):
@@ -172,7 +173,8 @@ def whole_packs(count):
 def longer(records, used, size):
     """The same with room for `size` numbers more."""
     found = np.empty(max(2 * records.shape[0], used + size))
-    found[:used] = records[:used]
+    for j in range(used):
+        found[j] = records[j]
     return found
 
 

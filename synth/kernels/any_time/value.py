@@ -11,7 +11,7 @@ from numba import njit
 
 from synth.kernels.any_time.occupancy import DOWN, HOLD, UP, whole_packs
 from synth.kernels.any_time.period import look_ahead, pull_period, pull_row
-from synth.kernels.sweep.flow import clear, extent
+from synth.kernels.sweep.flow import clear, extent, in_every_state
 from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 from synth.kernels.vector.normal_packs import normal_density8
 from synth.kernels.vector.packs import EIGHT, eight, load8, store
@@ -35,7 +35,7 @@ def value(
     saved, scratch = np.zeros((2, row)), np.zeros((3, row))
     reach, ends = max(motion[4].shape[0], entry.shape[0]), np.zeros((3, 2), np.int64)
     of_node, free, braking = np.zeros(reach, np.int64), np.zeros(reach), np.zeros(reach)
-    rows[:, :, nodes % ring, :points] = terminal
+    in_every_state(terminal, points, rows[:, :, nodes % ring : nodes % ring + 1])
     rows[:, :, nodes % ring, 0] = stalled
     slopes[:], bends[:] = 0.0, 0.0
     for n in range(nodes - 1, -1, -1):
