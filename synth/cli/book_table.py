@@ -27,22 +27,22 @@ WIDTH_OF_A_FILE = 190
 LOSS, AT_REST = "table\nloss", "rms /\nat rest"
 """The second stands in the place of the first where commands come at any time."""
 
-WITHIN = "95 of 100\nwithin ± m/s"
+WITHIN, OUT_OF_BRAKE = "95 of 100\nwithin ± m/s", "out of brake\nin 10 000"
 
 PERMITTED = "permissions"
 """A column before the last, where they were asked for."""
 
 COLUMNS = (
     "case", "target\nm/s", "rms [95 %]\nm/s", WITHIN, "99 of 100\nwithin ± m/s",
-    "out of brake\nin 10 000", "predicted /\nsimulated", LOSS, "regret", "best baseline\nm/s",
+    OUT_OF_BRAKE, "predicted /\nsimulated", LOSS, "regret", "best baseline\nm/s",
     "switch-\nings", "verdict",
 )  # fmt: skip
 
-FIRST_TO_GO = ("switch-\nings", LOSS, "best baseline\nm/s", "regret", "99 of 100\nwithin ± m/s")
-"""Columns that a narrow terminal does without, in this order."""
-
-LAST_TO_GO = (WITHIN, PERMITTED)
-"""Those that go then, where permissions were asked for: who asks wants to see them."""
+FIRST_TO_GO = (
+    "switch-\nings", LOSS, "best baseline\nm/s", "regret", "99 of 100\nwithin ± m/s",
+    WITHIN, PERMITTED, OUT_OF_BRAKE,
+)  # fmt: skip
+"""Columns that a narrow terminal does without, in this order; what is left fits into 80 characters."""
 
 LEGEND = (
     "95 of 100 within ±: so many cuts leave within so many m/s of the target. Out of brake: leaves more than 0.3 m/s "
@@ -119,7 +119,7 @@ def columns_for(width: int, names: tuple[str, ...], heads: tuple[str, ...], rows
     """Places of the columns that fit into `width`."""
     widths = [widest_line(column) for column in zip(heads, *rows, strict=True)]
     kept = list(range(len(names)))
-    for name in (*FIRST_TO_GO, *(LAST_TO_GO if PERMITTED in names else ())):
+    for name in (each for each in FIRST_TO_GO if each in names):
         if sum(widths[place] + GAP for place in kept) > width:
             kept.remove(names.index(name))
     return kept

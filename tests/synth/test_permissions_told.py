@@ -12,7 +12,7 @@ from synth.book.case_result import CaseResult
 from synth.book.permissions.overview import HINT, Overview, overview_of
 from synth.book.permissions.permission import Permission
 from synth.book.tune import Book
-from synth.cli.book_table import COLUMNS, LAST_TO_GO, PERMITTED, columns_for
+from synth.cli.book_table import COLUMNS, FIRST_TO_GO, PERMITTED, WITHIN, columns_for
 from synth.cli.permissions_column import HEADS, cell, head
 from synth.configuration.config_file import parse_config
 from synth.present.report.permissions_section import SHORT, column_cell, column_head, permissions_section
@@ -73,11 +73,9 @@ def test_who_asks_sees_the_column_before_others(overview: Overview) -> None:
     rows = [tuple("x" * 12 for _ in heads)]
     kept = {width: [names[place] for place in columns_for(width, names, heads, rows)] for width in range(60, 300)}
     assert kept[299] == list(names)
-    assert not set(LAST_TO_GO) & set(kept[60])
-    assert all(PERMITTED in each for each in kept.values() if LAST_TO_GO[0] in each)
-    assert any(PERMITTED in each and LAST_TO_GO[0] not in each for each in kept.values())
-    plain = [COLUMNS[place] for place in columns_for(60, COLUMNS, COLUMNS, [row[1:] for row in rows])]
-    assert LAST_TO_GO[0] in plain
+    assert not set(FIRST_TO_GO) & set(kept[60])
+    assert all(PERMITTED in each for each in kept.values() if WITHIN in each)
+    assert any(PERMITTED in each and WITHIN not in each for each in kept.values())
 
 
 def test_the_report_tells_every_interval(overview: Overview) -> None:
