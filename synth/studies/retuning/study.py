@@ -56,8 +56,6 @@ cars = 1
 mass_t = 52.0
 """
 
-COARSE = "[grid]\npath_step_m = 1.0\nspeed_step_m_s = 0.06\nfriction_scenarios = 2\n"
-
 
 @dataclass(frozen=True)
 class Options:
@@ -68,7 +66,6 @@ class Options:
     logged: tuple[int, ...] = option((50, 200), "measured passes of each class", (20, 10_000))
     logs: int = option(3, "logs of each size", (1, 200))
     passes: int = option(20_000, "passes that all tables are run on", (200, 10**7))
-    coarse: bool = option(False, "a coarse grid, to see that it runs")
 
 
 @dataclass(frozen=True)
@@ -166,7 +163,7 @@ class Yards:
 
 def run(options: Options, tell: Tell) -> Retunings:
     """Logs of all sizes, of the changed plant and of the assumed one."""
-    source = source_of_text(COARSE + TEXT if options.coarse else TEXT, "retuning")
+    source = source_of_text(TEXT, "retuning")
     config = source.resolved()
     known = {value.key: value.value for value in config.parameters}
     slope, exhaust = known[SLOPE], known[EXHAUST]
@@ -205,4 +202,4 @@ def retuned(yards: Yards, logged: int, seed: int) -> list[Row]:
     return rows
 
 
-METHOD = Method(Options, Options(logged=(30,), logs=1, passes=400, coarse=True), Retunings, run)
+METHOD = Method(Options, Options(logged=(30,), logs=1, passes=400), Retunings, run)
