@@ -32,7 +32,7 @@ LEAST_NOISE = 0.7
 
 TRIM_TERMS, TRIM_EVALUATIONS = 3, 100
 """Surfaces are asked far oftener than lines, so what is not white in the error moves them more, and not everywhere
-alike: with two shifts 22 t to 2 m/s has 0.89 of the rms of the default table, with parabolas of the path 0.75."""
+alike: with two shifts 22 t to 2 m/s has 0.89 of the rms of the default table, with parabolas of the path 0.77."""
 
 RESISTANCES = 2
 """Values of the running resistance, at least: an estimator does not learn it."""
