@@ -18,6 +18,9 @@ from synth.kernels.vector.packs import EIGHT, eight, load8, store
 DOWN, HOLD, UP = 0, 1, 2
 """Commands at a sample, by their place among the periods of a mode."""
 
+LEAST_CHANCE = 1e-300
+"""Of a command that counts: any but 0."""
+
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def occupy(
@@ -74,7 +77,7 @@ def occupy(
                 used += size
             for command in range(3):
                 d = periods[m, command]
-                begin, end = extent(chance[command], first, last, 1e-300)
+                begin, end = extent(chance[command], first, last, LEAST_CHANCE)
                 if d < 0 or begin >= end:
                     continue
                 for q in range(levels):

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from synth.kernels.any_time.occupancy import DOWN, HOLD, UP, whole_packs
+from synth.kernels.any_time.occupancy import DOWN, HOLD, LEAST_CHANCE, UP, whole_packs
 from synth.kernels.any_time.period import look_ahead, pull_period, pull_row
 from synth.kernels.sweep.flow import clear, extent, in_every_state
 from synth.kernels.vector.borrowing import borrowing, borrowing_inline
@@ -87,7 +87,7 @@ def take_chances(records, at, levels, first, last, chance, ends):
         kept = at + (levels + command // 2) * width
         for j in range(0, width, EIGHT):
             store(chance[command], first + j, load8(records, kept + j))
-        begin, end = extent(chance[command], first, last, 1e-300)
+        begin, end = extent(chance[command], first, last, LEAST_CHANCE)
         ends[command] = end
         if begin < end:
             ends[command, 0] = begin - (begin - first) % EIGHT  # a record ends with a whole pack
