@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
 
 from plant_models import Plant
 from synth.book.case_error import naming
@@ -25,7 +24,6 @@ from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.solver.chain.chain import as_published
 from synth.solver.chain.grid import require_memory
 from synth.solver.one_blas_thread import one_blas_thread
-from tuning_tables import ControllerTable, read_json, write_json
 
 DEGREES = (1, 2, 3, 4, 5, 6)
 PUBLISHED_LEVELS = 3
@@ -86,13 +84,13 @@ Task = Callable[[], CaseResult | DegreeStudy]
 @one_blas_thread()
 def tune(
     config: ResolvedConfig,
-    tables: Path,
+    store: Store,
     progress: Progress,
     workers: int = 2,
     case_done: CaseDone = no_notice,
     permissions: bool = False,
 ) -> Book:
-    """Tune every cut class and target of `config`; the tables are written into the directory `tables`.
+    """Tune every cut class and target of `config`; each table is handed to `store` as soon as it is made.
 
     Work runs on `workers` threads (the kernels release the interpreter); the result does not depend on how
     many. `progress` is told a sentence whenever a case is done, `case_done` given its result. `permissions`: each case
@@ -106,7 +104,7 @@ def tune(
         origin=origin_of(config.sha256, creation_time()),
         passes=validation_passes(config),
         tuning=random_passes(config.validation.seed + 1, 0, TUNING_PASSES),
-        store=partial(write_and_read_back, directory=tables),
+        store=store,
         progress=progress,
         case_done=case_done,
         permissions=permissions,
@@ -168,10 +166,3 @@ def case_task(run: TuneRun, order: CaseOrder) -> CaseResult:
     if result.finding is not None:
         run.progress(f"{label} to {target:g} m/s: {result.finding.sentence}")
     return result
-
-
-def write_and_read_back(table: ControllerTable, directory: Path) -> ControllerTable:
-    """The table as a controller will load it."""
-    path = directory / f"{table.id}.json"
-    write_json(table, path)
-    return read_json(path)

@@ -37,7 +37,7 @@ from synth.solver.required_lines import required_lines
 from synth.solver.resolved_density import resolved_density
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tabulate import UNPREDICTED, lines_of, prediction_of, tabulate
-from tuning_tables import ControllerTable, Decisions, Validated
+from tuning_tables import ControllerTable, Decisions, Validated, from_json, to_json
 
 NODES_KEPT = 1
 """Path nodes at which a solution keeps its values: the entrance. Nothing after the solve reads more."""
@@ -126,6 +126,11 @@ def surface_design(
     if made is None or setup.estimator is None:
         return SurfaceDesign(polish, None)
     return SurfaceDesign(polish, estimated_surfaces(Problem(plant, aim), made, polish.surfaces, setup.estimator.tuning))
+
+
+def read_back(table: ControllerTable) -> ControllerTable:
+    """A store that keeps nothing: the table as a controller would read it from its file."""
+    return from_json(to_json(table))
 
 
 def validated_table(setup: ClassSetup, table: ControllerTable, store: Store) -> ValidatedTable:

@@ -10,14 +10,15 @@ from typing import TYPE_CHECKING
 from synth.cli import LIMITS_MISSED, OK, say
 
 if TYPE_CHECKING:
+    from synth.frame.results_directory import ResultsDirectory
     from synth.yard.aim.resolved_aim import ResolvedAim
 
 
 def aim_command(path: Path | None, output: Path, passes: int | None, seed: int | None, as_json: bool) -> int:
     """Make the aim tables of the configuration in `path` in the directory `output`; the exit code."""
     from synth.book.creation_time import require_date
-    from synth.book.output_directory import AIM_LAYOUT, output_directory
     from synth.configuration.aim.aim_file import read_aim_file
+    from synth.frame.results_directory import results_directory
 
     file = read_aim_file(path).with_simulation(passes, seed)
     require_date()
@@ -26,13 +27,13 @@ def aim_command(path: Path | None, output: Path, passes: int | None, seed: int |
 
     config = resolve_aim(file)
     position_of(config)  # refuses a book that does not fit
-    with output_directory(output, AIM_LAYOUT) as directory:
+    with results_directory(output, "aim", filter(None, [path])) as directory:
         for warning in config.warnings:
             say(f"warning: {warning}")
         return aim_into(directory, config, as_json)
 
 
-def aim_into(directory: Path, config: ResolvedAim, as_json: bool) -> int:
+def aim_into(directory: ResultsDirectory, config: ResolvedAim, as_json: bool) -> int:
     """The work itself, and what is said about it."""
     from synth.book.creation_time import creation_time
     from synth.cli.interrupt import interruptible
@@ -53,9 +54,9 @@ def aim_into(directory: Path, config: ResolvedAim, as_json: bool) -> int:
         write_aim(book, verdict, directory, progress.note)
         progress.note(f"all files written after {time.monotonic() - started:.1f} s")
     if as_json:
-        sys.stdout.write((directory / "summary.json").read_text(encoding="utf-8"))
+        sys.stdout.write((directory.path / "summary.json").read_text(encoding="utf-8"))
     else:
         from synth.cli.aim_summary_table import print_aims
 
-        print_aims(book, verdict, directory)
+        print_aims(book, verdict, directory.path)
     return OK if verdict.accepted else LIMITS_MISSED

@@ -241,7 +241,7 @@ def export(
     form: Annotated[str, typer.Option("--format", metavar="json|c|st|csv", help="Form of the tables.")],
     output: Annotated[
         Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where they go.")
-    ] = Path(),
+    ] = Path("out/export"),
     prefix: Annotated[
         str | None, typer.Option(metavar="NAME", help="First word of all names in code, instead of RETARDER.")
     ] = None,

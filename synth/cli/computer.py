@@ -12,10 +12,10 @@ from synth.cli import LIMITS_MISSED, OK, say
 def computer_command(source: Path | None, output: Path, draws: int | None, seed: int | None, as_json: bool) -> int:
     """Size, judge and price the control computer of `source` into the directory `output`; the exit code."""
     from synth.book.creation_time import creation_time, require_date
-    from synth.book.output_directory import COMPUTER_LAYOUT, output_directory
     from synth.cli.interrupt import interruptible
     from synth.cli.progress import Progress
     from synth.configuration.computer.computer_file import read_computer_file
+    from synth.frame.results_directory import results_directory
 
     file = read_computer_file(source).with_uncertainty(draws, seed)
     require_date()
@@ -27,7 +27,7 @@ def computer_command(source: Path | None, output: Path, draws: int | None, seed:
 
     config = resolve_computer(file)
     started = time.monotonic()
-    with output_directory(output, COMPUTER_LAYOUT) as directory:
+    with results_directory(output, "computer", filter(None, [source])) as directory:
         for warning in config.warnings:
             say(f"warning: {warning}")
         with interruptible(directory, "summary"), Progress(PARTS, "computing", "parts") as progress:

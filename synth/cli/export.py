@@ -34,10 +34,10 @@ def export_command(source: Path, form: str, output: Path, asked: AskedCode, as_j
     from synth.book.forms.aim_file import read_aims
     from synth.book.forms.code_options import code_options
     from synth.book.forms.passage_file import read_passages
-    from synth.book.forms.table_file import read_tables
+    from synth.book.forms.table_file import files_at, read_tables
     from synth.book.forms.table_forms import FORMS
-    from synth.book.output_directory import make_directory
-    from tuning_tables import InvalidTable, write_atomically
+    from synth.frame.results_directory import results_directory
+    from tuning_tables import InvalidTable
 
     if form not in FORMS:
         raise InputError(f"--format {form}: there is no such form; give {', '.join(FORMS)}")
@@ -51,10 +51,8 @@ def export_command(source: Path, form: str, output: Path, asked: AskedCode, as_j
         raise InputError(f"{source}: {fault}") from None
     if form in ("c", "st"):
         warn_of_shadows(source, passages, tables)
-    make_directory(output)
-    for name, content in files.items():
-        write_atomically(output / name, content)
-    names = [str(output / name) for name in files]
+    with results_directory(output, "export", files_at(source)) as directory:
+        names = [str(file) for file in directory.write_all(files)]
     print(json.dumps({"files": names}, indent=1, ensure_ascii=False) if as_json else "\n".join(names))
     return 0
 

@@ -97,19 +97,19 @@ def route_words(route: Route) -> str:
 
 def draw_command(source: Path, output: Path, track: int | None, as_json: bool) -> int:
     """Draw the hump in `source` into the directory `output`; the profile is that of `track`."""
-    from synth.book.output_directory import make_directory
     from synth.configuration.hump import read_hump
+    from synth.frame.results_directory import results_directory
 
     hump = read_hump(source).entry
     route = drawn_route(hump.graph, track)
-    make_directory(output)
     from synth.kernels.cache import guarded
-    from synth.present.plots.figure_file import save_figure
+    from synth.present.plots.figure_file import figure_files
     from synth.present.plots.hump.hump_picture import hump_picture
     from synth.yard.design_runners import roll_runners
 
-    rolls = guarded(roll_runners, route)
-    files = save_figure(hump_picture(hump, route, rolls), output, f"{hump.name}-hump")
+    with results_directory(output, "hump draw", [source]) as directory:
+        rolls = guarded(roll_runners, route)
+        files = directory.write_all(figure_files(hump_picture(hump, route, rolls), f"{hump.name}-hump"))
     if as_json:
         print(json.dumps({"track": route.track, "files": [str(file) for file in files]}, indent=1))
     else:
@@ -122,12 +122,14 @@ def export_command(source: Path, output: Path) -> int:
     from synth.configuration.hump import RAILML_SUFFIXES, read_hump
     from synth.configuration.railml.write import to_railml
     from synth.faults.input_error import InputError
+    from synth.frame.new_file import require_new
     from tuning_tables.atomic_file import write_atomically
 
     if output.suffix not in RAILML_SUFFIXES:
         raise InputError(
             f"--output is {output}; the name of a railML file must end with {' or '.join(RAILML_SUFFIXES)}"
         )
+    require_new(output)
     write_atomically(output, to_railml(read_hump(source).entry))
     print(output)
     return OK

@@ -15,10 +15,15 @@ from synth.faults.input_error import InputError
 
 if TYPE_CHECKING:
     from synth.configuration.humping.trial_file import TrialFile
+    from synth.frame.results_directory import ResultsDirectory
     from synth.present.humping_outputs import TrialResult
     from synth.sweep.trains.batch import BatchOrder
     from synth.sweep.work import Engine
     from synth.yard.humping.resolved_trial import ResolvedTrial
+
+
+TRAINS_COMMAND = "hump simulate"
+"""The owner of a directory that `hump report` writes into, too."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +47,8 @@ def simulate_command(
 ) -> int:
     """Hump the trains of `source` into the directory `output`; the exit code."""
     from synth.book.creation_time import require_date
-    from synth.book.output_directory import TRAINS_LAYOUT, output_directory
+    from synth.frame.results_directory import results_directory
+    from synth.sweep.trains.trial_inputs import FOLDER, files_read, write_inputs
 
     if workers is not None and scheduler is not None:
         raise InputError("hump simulate: --workers and --scheduler are both given; leave one out")
@@ -51,15 +57,16 @@ def simulate_command(
     from synth.yard.humping.resolved_trial import resolve_trial
 
     config = resolve_trial(file)
-    with output_directory(output, TRAINS_LAYOUT) as directory:
+    with results_directory(output, TRAINS_COMMAND, files_read(file, config), inputs=FOLDER) as directory:
         for warning in config.warnings:
             say(f"warning: {warning}")
-        result = simulated(file, config, directory, workers, scheduler)
+        write_inputs(file, config, directory)
+        result = simulated(config, directory, workers, scheduler)
     return told(result, output, as_json) if result is not None else LIMITS_MISSED
 
 
 def simulated(
-    file: TrialFile, config: ResolvedTrial, directory: Path, workers: int | None, scheduler: str | None
+    config: ResolvedTrial, directory: ResultsDirectory, workers: int | None, scheduler: str | None
 ) -> TrialResult | None:
     """The work itself; None where a batch could not be humped, which is told."""
     from synth.book.creation_time import creation_time
@@ -68,7 +75,6 @@ def simulated(
     from synth.present.humping_outputs import judged, write_trains
     from synth.sweep.trains.batch import orders_of
     from synth.sweep.trains.train_run import BatchFailed, BatchFiles, missing_of, run_trains
-    from synth.sweep.trains.trial_inputs import write_inputs
     from synth.yard.humping.made_trial import made_trial
 
     started, number = time.monotonic(), config.settings.trains.number
@@ -82,14 +88,14 @@ def simulated(
         try:
             found = run_trains(orders, missing, files, engine, progress)
         except BatchFailed as fault:
-            say(f"{fault}; what was humped before is kept in {directory}")
+            say(f"{fault}; what was humped before is kept in {directory.path}")
             return None
         except KeyboardInterrupt:
-            say(f"batches of trains that were humped are kept in {directory}; the same command goes on")
+            say(f"batches of trains that were humped are kept in {directory.path}; the same command goes on")
             raise
         progress.note(f"{number} trains humped after {time.monotonic() - started:.1f} s")
         result = judged(config, trial, found, creation_time())
-        write_trains(result, write_inputs(file, config, directory), directory, progress.note)
+        write_trains(result, directory, progress.note)
         progress.note(f"all files written after {time.monotonic() - started:.1f} s")
     return result
 
@@ -127,9 +133,10 @@ def told(result: TrialResult, output: Path, as_json: bool) -> int:
 def report_command(path: Path, as_json: bool) -> int:
     """Make figures, pictures and pages anew from the trains in the directory `path`; the exit code."""
     from synth.book.creation_time import creation_time, require_date
-    from synth.book.output_directory import TRAINS_LAYOUT, output_directory
+    from synth.frame.results_directory import results_directory
     from synth.present.humping_outputs import TRAINS, judged, write_trains
-    from synth.sweep.trains.trial_inputs import input_files
+    from synth.sweep.trains.train_run import FOLDER as BATCHES
+    from synth.sweep.trains.trial_inputs import FOLDER
     from synth.yard.humping.made_trial import made_trial
     from synth.yard.humping.outcome_file import from_npz
     from synth.yard.humping.resolved_trial import load_trial
@@ -141,29 +148,31 @@ def report_command(path: Path, as_json: bool) -> int:
             raise InputError(f"{path}: there is no {file.relative_to(path)} in it; give what 'hump simulate' left")
     config = load_trial(source)
     found = from_npz(trains.read_bytes(), str(trains), config.trains_sha256)
-    with output_directory(path, TRAINS_LAYOUT) as directory:
+    with results_directory(path, TRAINS_COMMAND) as directory:
+        directory.retain(*(name for folder in (FOLDER, BATCHES) for name in directory.names_below(folder)))
         result = judged(config, made_trial(config), found, creation_time())
-        write_trains(result, input_files(directory), directory, say)
+        write_trains(result, directory, say)
     return told(result, path, as_json)
 
 
 def speed_command(source: Path | None, asked: AskedTrains, train: int, output: Path, as_json: bool) -> int:
     """Write the program of hump speeds of one train into the directory `output`."""
-    from synth.book.output_directory import make_directory
+    from synth.frame.results_directory import results_directory
     from synth.kernels.cache import guarded
     from synth.yard.humping.made_trial import made_trial
     from synth.yard.humping.resolved_trial import resolve_trial
     from synth.yard.humping.speed_program import speed_program
 
-    config = resolve_trial(asked_file(source, asked))
-    make_directory(output)
-    for warning in config.warnings:
-        say(f"warning: {warning}")
+    file = asked_file(source, asked)
+    config = resolve_trial(file)
     from synth.present.speed_program_outputs import program_document, write_program
+    from synth.sweep.trains.trial_inputs import files_read
 
-    trial = guarded(made_trial, config)
-    program = guarded(speed_program, trial, train - 1)
-    files = write_program(program, output)
+    with results_directory(output, "hump speed", files_read(file, config)) as directory:
+        for warning in config.warnings:
+            say(f"warning: {warning}")
+        program = guarded(speed_program, guarded(made_trial, config), train - 1)
+        files = write_program(program, directory)
     if as_json:
         print(json.dumps(program_document(program, files), indent=1, ensure_ascii=False))
         return OK

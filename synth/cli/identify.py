@@ -16,8 +16,8 @@ def identify_command(
 ) -> int:
     """Identify the numbers behind `logs`; 1 where a test says that the model does not hold."""
     from synth.book.creation_time import creation_time, require_date
-    from synth.book.output_directory import IDENTIFY_LAYOUT, output_directory
     from synth.cli.interrupt import interruptible
+    from synth.frame.results_directory import results_directory
     from synth.kernels.cache import guarded
     from synth.yard.measured_passes.config_source import config_source
     from synth.yard.measured_passes.loaded_passes import loaded_passes
@@ -31,7 +31,8 @@ def identify_command(
     from synth.yard.measured_passes.identify_summary import identify_sentences
 
     started = time.monotonic()
-    with output_directory(output, IDENTIFY_LAYOUT) as directory, interruptible(directory):
+    reads = [*logs, *filter(None, (mapping, config_path)), *(Path(each.place) for each in source.library.own)]
+    with results_directory(output, "identify", reads) as directory, interruptible(directory):
         found = guarded(identify, passes, config, available())
         say(f"{len(passes)} passes told after {time.monotonic() - started:.1f} s")
         write_identified(found, source, creation_time(), directory)

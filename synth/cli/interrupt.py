@@ -7,14 +7,17 @@ import signal
 import sys
 import threading
 from collections.abc import Iterator
-from pathlib import Path
 from types import FrameType
+from typing import TYPE_CHECKING
 
 from synth.cli import INTERRUPTED, leave, say
 
+if TYPE_CHECKING:
+    from synth.frame.results_directory import ResultsDirectory
+
 
 @contextlib.contextmanager
-def interruptible(directory: Path | None = None, result: str = "book") -> Iterator[None]:
+def interruptible(directory: ResultsDirectory | None = None, result: str = "book") -> Iterator[None]:
     """Within, Ctrl-C ends the process with code 130, after removing unfinished files from `directory`.
 
     Not by an exception: it would wait for threads that compute for seconds and cannot be told to stop.
@@ -26,11 +29,9 @@ def interruptible(directory: Path | None = None, result: str = "book") -> Iterat
     def end(number: int, frame: FrameType | None) -> None:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         if directory is not None:
-            from synth.book.output_directory import remove_leftovers
-
             with contextlib.suppress(OSError):
-                remove_leftovers(directory)
-        say("interrupted" if directory is None else f"interrupted; {directory} holds no complete {result}")
+                directory.remove_leftovers()
+        say("interrupted" if directory is None else f"interrupted; {directory.path} holds no complete {result}")
         with contextlib.suppress(OSError, ValueError):
             sys.stdout.flush()
         leave(INTERRUPTED)

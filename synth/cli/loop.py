@@ -26,31 +26,30 @@ DOCUMENT = "loops.json"
 
 def loop_command(source: Path, output: Path, config_path: Path | None, as_json: bool) -> int:
     """Draw and tell the loops of the tables in `source`; 1 if python-control and the simulator do not agree on one."""
-    from synth.book.forms.table_file import file_stem
-    from synth.book.output_directory import make_directory
+    from synth.book.forms.table_file import file_stem, files_at
     from synth.cli.interrupt import interruptible
     from synth.configuration.config_file import BUILT_IN, load_config
+    from synth.frame.results_directory import results_directory
     from synth.kernels.cache import guarded
 
     config = load_config(config_path)
     closings = [closing(table, config, str(config_path or BUILT_IN)) for table in any_tables(source)]
-    make_directory(output)
     from synth.book.summary import plain
-    from synth.present.plots.figure_file import save_figure
-    from tuning_tables.atomic_file import write_atomically
+    from synth.present.plots.figure_file import figure_files
 
     loops: list[AnyLoop] = []
     files: list[str] = []
-    with interruptible(output):
+    reads = [*files_at(source), *filter(None, [config_path])]
+    with results_directory(output, "loop", reads) as directory, interruptible(directory, DOCUMENT):
         for close in closings:
             loop = guarded(close)
             for name, figure in pictures(loop).items():
-                files += map(str, save_figure(figure, output, f"{file_stem(loop.table)}-{name}"))
+                files += map(str, directory.write_all(figure_files(figure, f"{file_stem(loop.table)}-{name}")))
             loops.append(loop)
             say(f"{loop.table.id}: {sentence(loop)}")
         document = plain({"loops": [document_of(loop) for loop in loops], "files": files})
         text = json.dumps(document, indent=1, ensure_ascii=False)
-        write_atomically(output / DOCUMENT, f"{text}\n".encode())
+        directory.write(DOCUMENT, f"{text}\n".encode())
     if as_json:
         print(text)
     else:

@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 def permissions_command(path: Path | None, output: Path, workers: int, as_json: bool) -> int:
     """Tell what permissions of the hardware would give in every case of `path`; the exit code."""
     from synth.book.creation_time import creation_time, require_date
-    from synth.book.output_directory import PERMISSIONS_LAYOUT, SUMMARY, output_directory
     from synth.book.permissions.refusal import require_tellable
     from synth.cli.interrupt import interruptible
     from synth.cli.progress import Progress
     from synth.cli.tune import require_room, sensors_left_aside
     from synth.configuration.config_file import BUILT_IN, load_config
+    from synth.frame.results_directory import SUMMARY, results_directory
     from synth.kernels.cache import guarded
 
     config, source = load_config(path), str(path or BUILT_IN)
@@ -31,7 +31,7 @@ def permissions_command(path: Path | None, output: Path, workers: int, as_json: 
     require_room(config, path, workers)
     require_date()
     started, created = time.monotonic(), creation_time()
-    with output_directory(output, PERMISSIONS_LAYOUT) as directory:
+    with results_directory(output, "permissions", filter(None, [path])) as directory:
         for warning in (*config.warnings, *sensors_left_aside(config)):
             say(f"warning: {warning}")
         with interruptible(directory, "summary"), Progress(len(config.problems()), "comparing") as progress:

@@ -23,24 +23,24 @@ Drawn = TypeVar("Drawn")
 
 def plot_command(source: Path, output: Path, config_path: Path | None, as_json: bool) -> int:
     """Draw the tables in `source` into `output`; passes only for tables that a class of the configuration fits."""
-    from synth.book.forms.table_file import file_stem
-    from synth.book.output_directory import make_directory
+    from synth.book.forms.table_file import file_stem, files_at
     from synth.cli.interrupt import interruptible
     from synth.cli.loop import any_tables
     from synth.cli.tables_configuration import configuration_for
+    from synth.frame.results_directory import results_directory
     from tuning_tables.passages.passage_table import PassageTable
 
     tables = any_tables(source)
     config, place = configuration_for(config_path, [table for table in tables if isinstance(table, PassageTable)])
     around = Surroundings(config, place, config_path is not None)
-    make_directory(output)
-    from synth.present.plots.figure_file import save_figure
+    from synth.present.plots.figure_file import figure_files
 
     written: list[str] = []
-    with interruptible(output):
+    reads = [*files_at(source), *filter(None, [config_path])]
+    with results_directory(output, "plot", reads) as directory, interruptible(directory, "pictures"):
         for table in tables:
             for name, figure in figures_of(table, around).items():
-                written += map(str, save_figure(figure, output, f"{file_stem(table)}-{name}"))
+                written += map(str, directory.write_all(figure_files(figure, f"{file_stem(table)}-{name}")))
     print(json.dumps({"files": written}, indent=1, ensure_ascii=False) if as_json else "\n".join(written))
     return 0
 

@@ -17,9 +17,9 @@ def replay_command(
     """Run the passes in `logs` again under `tables`; 1 where the configuration does not describe the log."""
     from synth.book.creation_time import creation_time, require_date
     from synth.book.forms.table_file import read_tables
-    from synth.book.output_directory import REPLAY_LAYOUT, output_directory
     from synth.cli.interrupt import interruptible
     from synth.configuration.config_file import BUILT_IN, load_config
+    from synth.frame.results_directory import results_directory
     from synth.kernels.cache import guarded
     from synth.yard.measured_passes.loaded_passes import loaded_passes
 
@@ -35,7 +35,8 @@ def replay_command(
 
     tables_by_case(other.tables, config, source)  # refused where one fits no class
     created = creation_time()
-    with output_directory(output, REPLAY_LAYOUT) as directory, interruptible(directory, "summary"):
+    reads = [*logs, tables, *filter(None, (own, mapping, config_path))]
+    with results_directory(output, "replay", reads) as directory, interruptible(directory, "summary"):
         if drove is None:
             setups = class_setups(config, created)
             drove = tuple(guarded(tuned_tables, config, setups, available(), lambda _: None).values())

@@ -17,9 +17,9 @@ def retune_command(
     """Tune tables for what `logs` say; 1 where none of them is better beyond doubt than the old ones."""
     from synth.book.creation_time import creation_time, require_date
     from synth.book.forms.table_file import read_tables
-    from synth.book.output_directory import RETUNE_LAYOUT, output_directory
     from synth.cli.interrupt import interruptible
     from synth.cli.progress import Progress
+    from synth.frame.results_directory import results_directory
     from synth.kernels.cache import guarded
     from synth.yard.measured_passes.config_source import config_source
     from synth.yard.measured_passes.loaded_passes import loaded_passes
@@ -35,8 +35,9 @@ def retune_command(
     from synth.yard.measured_passes.retune.tuned_books import tables_by_case
 
     old = None if given is None else tables_by_case(given, config, source.place)
+    reads = [*logs, *filter(None, (tables, mapping, config_path))]
     with (
-        output_directory(output, RETUNE_LAYOUT) as directory,
+        results_directory(output, "retune", reads) as directory,
         interruptible(directory),
         Progress(len(config.problems())) as progress,
     ):

@@ -24,12 +24,13 @@ def sensitivity_command(
 ) -> int:
     """Share out the variance of the exits of tables on the plants of `path`; `numbers`: points, passes and seed."""
     from synth.book.creation_time import creation_time, require_date
-    from synth.book.output_directory import SENSITIVITY_LAYOUT, output_directory
+    from synth.book.forms.table_file import files_at
     from synth.book.sensitivity.fixed_tables import tables_in
     from synth.book.sensitivity.sensitivity import Trial
     from synth.cli.interrupt import interruptible
     from synth.cli.progress import Progress
     from synth.configuration.config_file import BUILT_IN, load_config
+    from synth.frame.results_directory import results_directory
     from synth.kernels.cache import guarded
 
     config, source = load_config(path), str(path or BUILT_IN)
@@ -38,7 +39,8 @@ def sensitivity_command(
     points, passes, seed = numbers
     trial = Trial(points, passes, config.validation.seed if seed is None else seed)
     started, created = time.monotonic(), creation_time()
-    with output_directory(output, SENSITIVITY_LAYOUT) as directory:
+    reads = [*filter(None, [path]), *([] if table is None else files_at(table))]
+    with results_directory(output, "sensitivity", reads) as directory:
         for warning in config.warnings:
             say(f"warning: {warning}")
         steps = len(given) if given else 2 * len(config.cuts)

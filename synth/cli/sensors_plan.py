@@ -17,8 +17,8 @@ def sensors_plan_command(
 ) -> int:
     """Plan the point sensors of `source` into the directory `output`; the exit code."""
     from synth.book.creation_time import creation_time, require_date
-    from synth.book.output_directory import SENSOR_PLAN_LAYOUT, output_directory
     from synth.configuration.config_file import load_config
+    from synth.frame.results_directory import results_directory
 
     config = load_config(source)
     numbers = numbers_of(sensors)
@@ -29,7 +29,7 @@ def sensors_plan_command(
 
     problem, labels = layout_problem(config)
     started = time.monotonic()
-    with output_directory(output, SENSOR_PLAN_LAYOUT) as directory:
+    with results_directory(output, "sensors plan", filter(None, [source])) as directory:
         for warning in config.warnings:
             say(f"warning: {warning}")
         results = layout_results(problem, labels, numbers, rms_m_s, workers, say)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,18 +14,19 @@ from synth.cli.processors import available
 if TYPE_CHECKING:
     from synth.configuration.point_sensors.resolved_sensors import ResolvedSensors
     from synth.configuration.resolved_config import ResolvedConfig
+    from synth.frame.results_directory import ResultsDirectory
 
 
 def sensors_tune_command(path: Path | None, output: Path, workers: int | None, as_json: bool) -> int:
     """Tune the configuration in `path` for its point sensors into the directory `output`; the exit code."""
     from synth.book.creation_time import require_date
-    from synth.book.output_directory import SENSORS_LAYOUT, output_directory
+    from synth.frame.results_directory import results_directory
 
     place, config, sensors = read_configuration(path)
     workers = workers or min(len(config.cuts), available())
     require_room(config, sensors, place, workers)
     require_date()
-    with output_directory(output, SENSORS_LAYOUT) as directory:
+    with results_directory(output, "sensors tune", filter(None, [path])) as directory:
         for warning in config.warnings:
             say(f"warning: {warning}")
         return tune_into(directory, config, sensors, place, workers, as_json)
@@ -54,7 +56,12 @@ def read_configuration(path: Path | None) -> tuple[str, ResolvedConfig, Resolved
 
 
 def tune_into(
-    directory: Path, config: ResolvedConfig, sensors: ResolvedSensors, place: str, workers: int, as_json: bool
+    directory: ResultsDirectory,
+    config: ResolvedConfig,
+    sensors: ResolvedSensors,
+    place: str,
+    workers: int,
+    as_json: bool,
 ) -> int:
     """The work itself, and what is said about it."""
     from synth.cli.interrupt import interruptible
@@ -70,11 +77,12 @@ def tune_into(
         from synth.book.sensors.sensor_acceptance import judge_sensors
         from synth.book.sensors.sensor_tune import tune_sensors
         from synth.faults.input_error import InputError
-        from synth.present.sensor_outputs import write_sensors
+        from synth.present.sensor_outputs import store_passages, write_sensors
         from tuning_tables import InvalidTable
 
+        store = partial(store_passages, directory=directory)
         try:
-            book = guarded(tune_sensors, config, sensors, directory / "tables", progress.done, workers)
+            book = guarded(tune_sensors, config, sensors, store, progress.done, workers)
             progress.note(f"{counted(len(book.cases), 'case')} computed in {time.monotonic() - started:.1f} s")
             verdict = judge_sensors(book)
             summary = write_sensors(book, verdict, directory, progress.note)
@@ -87,11 +95,11 @@ def tune_into(
             raise InputError(f"{place}: what was found makes no tables: {fault}") from None
         progress.note(f"all files written after {time.monotonic() - started:.1f} s")
     if as_json:
-        sys.stdout.write((directory / "summary.json").read_text(encoding="utf-8"))
+        sys.stdout.write((directory.path / "summary.json").read_text(encoding="utf-8"))
     else:
         from synth.cli.sensors_table import print_sensors
 
-        print_sensors(summary, directory)
+        print_sensors(summary, directory.path)
     return OK if verdict.accepted else LIMITS_MISSED
 
 

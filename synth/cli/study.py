@@ -76,6 +76,7 @@ def help_of(study: Study) -> str:
 
 def run_command(study: Study, words: list[str], wanted: Wanted) -> int:
     """Run one study, write what it leaves, and tell it."""
+    from synth.frame.results_directory import results_directory
     from synth.kernels.cache import guarded
     from synth.studies.documents import documents, kept, written
     from synth.studies.options import options_from
@@ -89,8 +90,9 @@ def run_command(study: Study, words: list[str], wanted: Wanted) -> int:
     options = method.smallest if wanted.small else options_from(words, method.options, study.name)
     if wanted.small and words:
         raise InputError("study: --small has options of its own; leave the others out")
-    result = guarded(run_study, study, options, lambda sentence: print(sentence, file=sys.stderr, flush=True))
-    files = write(result, wanted.output)
+    with results_directory(wanted.output, "study") as directory:
+        result = guarded(run_study, study, options, lambda sentence: print(sentence, file=sys.stderr, flush=True))
+        files = directory.write_all(result_files(result))
     print(result.json() if wanted.as_json else result.markdown(), end="")
     if wanted.document:
         kept(Path(), study.name).write_text(result.json(), encoding="utf-8")
@@ -99,17 +101,14 @@ def run_command(study: Study, words: list[str], wanted: Wanted) -> int:
     return LIMITS_MISSED if result.findings.faults() else OK
 
 
-def write(result: Result, directory: Path) -> list[Path]:
-    """NAME.json, NAME.md and the pictures; raises `OSError`."""
-    from synth.present.plots.figure_file import save_figure
+def result_files(result: Result) -> dict[str, bytes]:
+    """NAME.json, NAME.md and the pictures, by name."""
+    from synth.present.plots.figure_file import figure_files
 
-    directory.mkdir(parents=True, exist_ok=True)
-    files = []
-    for suffix, text in (("json", result.json()), ("md", result.markdown())):
-        files.append(directory / f"{result.study.name}.{suffix}")
-        files[-1].write_text(text, encoding="utf-8")
+    texts = {f"{result.study.name}.json": result.json(), f"{result.study.name}.md": result.markdown()}
+    files = {name: text.encode("utf-8") for name, text in texts.items()}
     for name, figure in result.figures().items():
-        files += save_figure(figure, directory, name)
+        files |= figure_files(figure, name)
     return files
 
 

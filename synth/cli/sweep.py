@@ -44,12 +44,13 @@ def run_command(path: Path, output: Path, workers: int | None, scheduler: str | 
     """Run or resume the sweep in the file `path` into the directory `output`."""
     from synth.book.creation_time import require_date
     from synth.sweep.run import run_sweep, task_of
-    from synth.sweep.sweep_directory import held
+    from synth.sweep.sweep_directory import held_sweep
     from synth.sweep.sweep_file import load_sweep
 
     file = load_sweep(path)
     require_date()
-    with held(output) as directory:
+    reads = [path, *(Path(each.place) for condition in file.conditions for each in condition.library.own)]
+    with held_sweep(output, reads) as directory:
         task = task_of(file, directory)
         for condition in file.conditions:
             for warning in (*condition.config.warnings, *sensors_left_aside(condition.config)):

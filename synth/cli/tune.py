@@ -6,19 +6,24 @@ import sys
 import time
 from contextlib import ExitStack
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from synth.cli import LIMITS_MISSED, OK, say
 from synth.cli.processors import available
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.faults.input_error import InputError
 
+if TYPE_CHECKING:
+    from synth.frame.results_directory import ResultsDirectory
+
 
 def tune_command(path: Path | None, output: Path, workers: int | None, permissions: bool, as_json: bool) -> int:
     """Tune the configuration in `path` into the directory `output`, and tell of permissions; the exit code."""
     from synth.book.creation_time import require_date
-    from synth.book.output_directory import output_directory
     from synth.configuration.config_file import BUILT_IN, load_config
+    from synth.frame.results_directory import results_directory
 
     config = load_config(path)
     if permissions:
@@ -28,7 +33,7 @@ def tune_command(path: Path | None, output: Path, workers: int | None, permissio
     workers = workers or min(len(config.cuts), available())
     require_room(config, path, workers)
     require_date()
-    with output_directory(output) as directory:
+    with results_directory(output, "tune", filter(None, [path])) as directory:
         for warning in (*config.warnings, *sensors_left_aside(config)):
             say(f"warning: {warning}")
         return tune_into(directory, config, path, Asked(workers, permissions, as_json))
@@ -50,7 +55,7 @@ class Asked:
     as_json: bool
 
 
-def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, asked: Asked) -> int:
+def tune_into(directory: ResultsDirectory, config: ResolvedConfig, path: Path | None, asked: Asked) -> int:
     """The work itself, and what is said about it."""
     from synth.cli.interrupt import interruptible
     from synth.cli.progress import Progress
@@ -70,13 +75,13 @@ def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, asked:
         from synth.book.case_error import CaseError
         from synth.book.printed_numbers import counted
         from synth.book.tune import no_notice, tune
-        from synth.present.outputs import write_outputs
+        from synth.present.outputs import store_table, write_outputs
         from tuning_tables import InvalidTable
 
         case_done = studio.case_done if wanted else no_notice
         try:
-            tables = directory / "tables"
-            book = guarded(tune, config, tables, progress.done, asked.workers, case_done, asked.permissions)
+            store = partial(store_table, directory=directory)
+            book = guarded(tune, config, store, progress.done, asked.workers, case_done, asked.permissions)
             progress.note(f"{counted(len(book.cases), 'case')} computed in {time.monotonic() - started:.1f} s")
             verdict = judge(book.cases, config.acceptance)
             summary = write_outputs(book, verdict, directory, studio, progress.note)
@@ -92,11 +97,11 @@ def tune_into(directory: Path, config: ResolvedConfig, path: Path | None, asked:
             ) from None
         progress.note(f"all files written after {time.monotonic() - started:.1f} s")
     if asked.as_json:
-        sys.stdout.write((directory / "summary.json").read_text(encoding="utf-8"))
+        sys.stdout.write((directory.path / "summary.json").read_text(encoding="utf-8"))
     else:
         from synth.cli.book_table import print_book
 
-        print_book(summary, directory, book.permissions, book.permissions_line)
+        print_book(summary, directory.path, book.permissions, book.permissions_line)
     return OK if verdict.accepted else LIMITS_MISSED
 
 

@@ -35,6 +35,7 @@ class AskedLog:
 def asked_log(path: Path | None, passes: int | None, gauge_std_kpa: float | None) -> AskedLog | None:
     """What the options ask for; None for no log. `InputError` for options of a log without one, or a wrong ending."""
     from synth.faults.input_error import InputError
+    from synth.frame.new_file import require_new
     from tuning_tables.pass_log.log_files import require_writable_name
 
     if path is None:
@@ -42,6 +43,7 @@ def asked_log(path: Path | None, passes: int | None, gauge_std_kpa: float | None
             raise InputError("--log-passes and --gauge-std are about a log; say by --log FILE.csv where it is to go")
         return None
     require_writable_name(path)
+    require_new(path)
     return AskedLog(path, passes or LOG_PASSES, GAUGE_STD_KPA if gauge_std_kpa is None else gauge_std_kpa)
 
 
@@ -106,10 +108,13 @@ def write_rehearsed_log(tables: Sequence[ControllerTable], rehearsal: Rehearsal,
     """Simulate passes of `tables` once more, as cuts come, and write what a controller logs of them."""
     from plant_models.pressure_gauge import PressureGauge
     from synth.book.rehearsed_log import rehearsed_log
+    from synth.frame.new_file import require_new
     from tuning_tables.pass_log.log_files import write_log
 
     gauge = None if math.isnan(asked.gauge_std_kpa) else PressureGauge(asked.gauge_std_kpa)
-    write_log(rehearsed_log(tables, rehearsal, asked.passes, gauge), asked.path)
+    log = rehearsed_log(tables, rehearsal, asked.passes, gauge)
+    require_new(asked.path)  # again: it may have come while passes were simulated
+    write_log(log, asked.path)
 
 
 def document(each: Revalidation) -> dict[str, Any]:

@@ -23,14 +23,19 @@ class AskedWatch:
     mapping: Path | None
     output: Path
 
+    @property
+    def reads(self) -> tuple[Path, ...]:
+        """The files that are read."""
+        return (*self.logs, *self.reference, *filter(None, (self.config, self.mapping)))
+
 
 def watch_command(asked: AskedWatch, as_json: bool) -> int:
     """Watch the passes in the logs; 1 if something has drifted."""
     from synth.book.creation_time import creation_time, require_date
-    from synth.book.output_directory import WATCH_LAYOUT, output_directory
     from synth.cli.interrupt import interruptible
     from synth.cli.processors import available
     from synth.configuration.config_file import BUILT_IN, load_config
+    from synth.frame.results_directory import results_directory
     from synth.kernels.cache import guarded
 
     config = load_config(asked.config)
@@ -47,7 +52,10 @@ def watch_command(asked: AskedWatch, as_json: bool) -> int:
     from synth.yard.measured_passes.drift.baseline import configured, of_reference
     from synth.yard.measured_passes.drift.watch import watch
 
-    with output_directory(asked.output, WATCH_LAYOUT) as directory, interruptible(directory, "watch.json"):
+    with (
+        results_directory(asked.output, "watch", asked.reads, "watch.json") as directory,
+        interruptible(directory, "watch.json"),
+    ):
         values, slope_key = guarded(configured, passes, config.parameters)
         if reference is not None:
             values = guarded(of_reference, reference, config.parameters, values, available())

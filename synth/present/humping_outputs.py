@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
-from synth.book.output_directory import SUMMARY, TRAIN_PICTURES, remove_stale
 from synth.book.summary import Document
+from synth.frame.results_directory import ResultsDirectory
 from synth.present.hump_page.hump_page import hump_page
-from synth.present.outputs import file_hashes
-from synth.present.plots.picture import Picture, save_picture
+from synth.present.plots.picture import Picture, picture_files
 from synth.present.report.humping_report import HumpingReport, humping_page
 from synth.yard.hump.event_log import to_log_csv
 from synth.yard.humping.outcome_file import to_npz
@@ -23,7 +21,6 @@ from synth.yard.humping.train_trace import TrainTrace
 from synth.yard.humping.trial import HumpTrial
 from synth.yard.humping.trial_acceptance import TrialVerdict, judge_trains
 from synth.yard.humping.trial_summary import figures_csv, trial_summary
-from tuning_tables import write_atomically
 from tuning_tables.canonical import canonical_json
 
 TRAINS, FIGURES, PROGRAM, SHEET = "trains.npz", "figures.csv", "locomotive.csv", "uncoupler.csv"
@@ -53,48 +50,38 @@ def judged(config: ResolvedTrial, trial: HumpTrial, found: TrainOutcomes, create
     return TrialResult(config, trial, found, figures, judge_trains(figures, config.settings.acceptance), created)
 
 
-def write_trains(result: TrialResult, inputs: list[Path], directory: Path, say: Say) -> Document:
-    """Write everything; the summary as written, which lists `inputs` too. Raises `OSError`."""
+def write_trains(result: TrialResult, directory: ResultsDirectory, say: Say) -> Document:
+    """Write everything but batches and inputs; the summary as written. Raises `OSError`."""
     config, output = result.config, result.config.settings.output
     shown = one_train(result.trial, SHOWN_TRAIN)
     control = shown.controlled()
-    files = [*inputs, *write_data(result, directory), directory / LOG]
-    write_atomically(files[-1], to_log_csv(control.events).encode())
+    directory.write_all(data_files(result) | {LOG: to_log_csv(control.events).encode()})
     pictures: tuple[Picture, ...] = ()
     if output.plots or output.report:
         trace = shown.traced()
         pictures = drawn(result, trace)
         say(f"{len(pictures)} pictures drawn")
         if output.plots:
-            files += (file for picture in pictures for file in save_picture(picture, directory / "plots"))
+            directory.write_all(picture_files(pictures, "plots"))
         if output.report:
-            files.append(directory / PLAYER)
-            write_atomically(files[-1], hump_page(config.hump, trace, category_names(config)).encode())
-    hashes = file_hashes(directory, files)
+            directory.write(PLAYER, hump_page(config.hump, trace, category_names(config)).encode())
     if output.report:
-        page = directory / REPORT
-        write_atomically(page, humping_page(report_of(result, pictures, len(control.disagreements), hashes)).encode())
-        hashes |= file_hashes(directory, [page])
-    remove_stale(directory, set(hashes), pictures=TRAIN_PICTURES)
-    if PLAYER not in hashes:
-        (directory / PLAYER).unlink(missing_ok=True)
-    summary = trial_summary(config, result.found, result.figures, result.verdict, result.created, hashes)
-    write_atomically(directory / SUMMARY, canonical_json(summary) + b"\n")
+        report = report_of(result, pictures, len(control.disagreements), directory.written)
+        directory.write(REPORT, humping_page(report).encode())
+    summary = trial_summary(config, result.found, result.figures, result.verdict, result.created, directory.written)
+    directory.finish(canonical_json(summary) + b"\n")
     return summary
 
 
-def write_data(result: TrialResult, directory: Path) -> list[Path]:
-    """Write the outcomes by train, the figures, and the program of the shown train; the files."""
+def data_files(result: TrialResult) -> dict[str, bytes]:
+    """The outcomes by train, the figures, and the program of the shown train."""
     config, program = result.config, speed_program(result.trial, SHOWN_TRAIN)
-    contents = {
+    return {
         TRAINS: to_npz(result.found, config.routes.numbers, config.trains_sha256),
         FIGURES: figures_csv(result.figures),
         PROGRAM: locomotive_csv(program),
         SHEET: uncoupler_csv(program),
     }
-    for name, content in contents.items():
-        write_atomically(directory / name, content)
-    return [directory / name for name in contents]
 
 
 def category_names(config: ResolvedTrial) -> tuple[str, ...]:

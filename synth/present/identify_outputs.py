@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Final
 
-from synth.book.output_directory import SUMMARY, make_directory
 from synth.book.summary import Document
-from synth.present.measured_outputs import written
+from synth.frame.results_directory import ResultsDirectory
+from synth.present.measured_outputs import Shape, write_page
 from synth.present.report.measured_report import Figures
 from synth.yard.measured_passes.config_source import ConfigSource
 from synth.yard.measured_passes.identified_config import config_files, identified
 from synth.yard.measured_passes.identify import Identified
 from synth.yard.measured_passes.identify_summary import CONFIG, identify_sentences, identify_summary
-from tuning_tables import write_atomically
 from tuning_tables.canonical import canonical_json
 
 LIMITS: Final = (
@@ -23,23 +21,19 @@ LIMITS: Final = (
 )
 
 
-def write_identified(found: Identified, source: ConfigSource, created: str, directory: Path) -> Document:
+def write_identified(found: Identified, source: ConfigSource, created: str, directory: ResultsDirectory) -> Document:
     """Write everything; the summary as written. Raises `OSError`."""
     from synth.present.plots.measured.identify_pictures import identify_pictures  # matplotlib
 
     new = identified(source, found.estimate, found.origin)
-    files = []
-    for name, content in config_files(new, CONFIG).items():
-        make_directory((directory / name).parent)
-        write_atomically(directory / name, content)
-        files.append(directory / name)
-    shape = (
+    directory.write_all(config_files(new, CONFIG))
+    shape: Shape = (
         f"identify: {found.config.title}", not found.wrong, identify_sentences(found), figures_of(found),
         (*found.reasons, *LIMITS),
     )  # fmt: skip
-    hashes = written(shape, new.resolved().sha256, created, tuple(identify_pictures(found)), directory, files)
-    summary = identify_summary(found, created, hashes)
-    write_atomically(directory / SUMMARY, canonical_json(summary) + b"\n")
+    write_page(shape, new.resolved().sha256, created, tuple(identify_pictures(found)), directory)
+    summary = identify_summary(found, created, directory.written)
+    directory.finish(canonical_json(summary) + b"\n")
     return summary
 
 

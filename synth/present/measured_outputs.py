@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from pathlib import Path
-
-from synth.book.output_directory import MEASURED_PICTURES, SUMMARY, remove_stale
 from synth.book.summary import Document
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.present.outputs import file_hashes
-from synth.present.plots.picture import Picture, save_picture
+from synth.frame.results_directory import ResultsDirectory
+from synth.present.plots.picture import Picture, picture_files
 from synth.present.report.measured_report import Figures, MeasuredReport, measured_page
 from synth.yard.measured_passes.replay.replay import Replay
 from synth.yard.measured_passes.replay.replay_summary import is_described, replay_sentences, replay_summary
 from synth.yard.measured_passes.retune.retune import Retuned
 from synth.yard.measured_passes.retune.retune_summary import retune_sentences, retune_summary
-from tuning_tables import write_atomically, write_book, write_json
+from tuning_tables import to_json, write_book
 from tuning_tables.canonical import canonical_json
 
 OF_BOTH = (
@@ -37,38 +33,33 @@ Shape = tuple[str, bool, tuple[str, ...], tuple[Figures, ...], tuple[str, ...]]
 """Title, whether all is well, sentences, tables and limits of a report."""
 
 
-def write_replay(found: Replay, config: ResolvedConfig, created: str, directory: Path) -> Document:
+def write_replay(found: Replay, config: ResolvedConfig, created: str, directory: ResultsDirectory) -> Document:
     """Write everything; the summary as written. Raises `OSError`."""
     from synth.present.plots.measured.replay_pictures import replay_pictures  # matplotlib
 
     rows = [[cut_id, why] for cut_id, why in found.left_out]
     figures = (Figures("Passes left out", ("cut", "why"), rows),) if rows else ()
     shape = (f"replay: {config.title}", is_described(found), replay_sentences(found), figures, OF_REPLAY + OF_BOTH)
-    hashes = written(shape, config.sha256, created, tuple(replay_pictures(found)), directory, ())
-    summary = replay_summary(found, config, created, hashes)
-    write_atomically(directory / SUMMARY, canonical_json(summary) + b"\n")
+    write_page(shape, config.sha256, created, tuple(replay_pictures(found)), directory)
+    summary = replay_summary(found, config, created, directory.written)
+    directory.finish(canonical_json(summary) + b"\n")
     return summary
 
 
-def write_retune(found: Retuned, directory: Path) -> Document:
+def write_retune(found: Retuned, directory: ResultsDirectory) -> Document:
     """Write everything; the summary as written. No book where no case is better. Raises `OSError`."""
     from synth.present.plots.measured.retune_pictures import retune_pictures  # matplotlib
 
-    files = []
     if found.tables:
-        for table in found.tables:
-            files.append(directory / "tables" / f"{table.id}.json")
-            write_json(table, files[-1])
-        files.append(directory / "book.h5")
-        write_book(found.tables, files[-1])
-    else:
-        (directory / "book.h5").unlink(missing_ok=True)
+        directory.write_all({f"tables/{table.id}.json": to_json(table) for table in found.tables})
+        with directory.writing("book.h5") as part:
+            write_book(found.tables, part)
     title = f"retune: {found.config.title}"
     shape = (title, bool(found.changed), retune_sentences(found), figures_of(found), OF_RETUNE + OF_BOTH)
     pictures = tuple(retune_pictures(found)) if found.gains else ()
-    hashes = written(shape, found.identified.sha256, found.created, pictures, directory, files)
-    summary = retune_summary(found, hashes)
-    write_atomically(directory / SUMMARY, canonical_json(summary) + b"\n")
+    write_page(shape, found.identified.sha256, found.created, pictures, directory)
+    summary = retune_summary(found, directory.written)
+    directory.finish(canonical_json(summary) + b"\n")
     return summary
 
 
@@ -91,16 +82,11 @@ def figures_of(found: Retuned) -> tuple[Figures, ...]:
     )
 
 
-def written(
-    shape: Shape, sha256: str, created: str, pictures: tuple[Picture, ...], directory: Path, files: Sequence[Path]
-) -> dict[str, str]:
-    """Pictures and report; hashes of all files, those of `files` among them."""
+def write_page(
+    shape: Shape, sha256: str, created: str, pictures: tuple[Picture, ...], directory: ResultsDirectory
+) -> None:
+    """Write pictures and report."""
     title, good, sentences, figures, limits = shape
-    saved = [path for picture in pictures for path in save_picture(picture, directory / "plots")]
-    hashes = file_hashes(directory, [*files, *saved])
-    page = directory / "report.html"
-    report = MeasuredReport(title, created, sha256, good, sentences, figures, pictures, limits, hashes)
-    write_atomically(page, measured_page(report).encode())
-    hashes |= file_hashes(directory, [page])
-    remove_stale(directory, set(hashes), pictures=MEASURED_PICTURES)
-    return hashes
+    directory.write_all(picture_files(pictures, "plots"))
+    report = MeasuredReport(title, created, sha256, good, sentences, figures, pictures, limits, directory.written)
+    directory.write("report.html", measured_page(report).encode())

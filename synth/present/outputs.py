@@ -2,59 +2,50 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable
 from importlib.metadata import version
-from pathlib import Path
 
 from synth.book.acceptance import Verdict
 from synth.book.forms.table_forms import c_form
-from synth.book.output_directory import SUMMARY, remove_stale
 from synth.book.summary import Document, summary_of
 from synth.book.tune import Book
+from synth.frame.results_directory import ResultsDirectory
 from synth.present.draw_pictures import Studio
-from synth.present.plots.picture import Picture, save_picture
-from synth.present.report import BookReport, write_report
-from tuning_tables import write_atomically, write_book, write_csv
+from synth.present.plots.picture import Picture, picture_files
+from synth.present.report import BookReport, report_page
+from tuning_tables import ControllerTable, read_json, to_csv, to_json, write_book
 from tuning_tables.canonical import canonical_json
 
 Say = Callable[[str], None]
 
 
-def write_outputs(book: Book, verdict: Verdict, directory: Path, studio: Studio, say: Say) -> Document:
-    """Write everything but the JSON tables, which are in `directory`/tables already; the summary as written.
+def store_table(table: ControllerTable, directory: ResultsDirectory) -> ControllerTable:
+    """Write `table` as JSON; the table as a controller will load it."""
+    return read_json(directory.write(f"tables/{table.id}.json", to_json(table)))
 
-    Files of an earlier tune that are not written anew are removed when all new ones are whole, and before the summary
-    is written: so a summary lists files that belong together. Raises `OSError`, and `InvalidTable` where the
-    tables make no C code.
+
+def write_outputs(book: Book, verdict: Verdict, directory: ResultsDirectory, studio: Studio, say: Say) -> Document:
+    """Write everything but the JSON tables, which are in `directory` already; the summary as written.
+
+    Raises `OSError`, and `InvalidTable` where the tables make no C code.
     """
     config, tables = book.config, [case.table for case in book.cases]
-    files = [directory / "tables" / f"{table.id}.json" for table in tables]
-    write_book(tables, directory / "book.h5")
-    files.append(directory / "book.h5")
+    with directory.writing("book.h5") as part:
+        write_book(tables, part)
     if config.output.csv:
-        for table in tables:
-            files.append(directory / "tables" / f"{table.id}.csv")
-            write_csv(table, files[-1])
-    for name, content in c_form(tables).items():
-        files.append(directory / "c" / name)
-        write_atomically(files[-1], content)
+        directory.write_all({f"tables/{table.id}.csv": to_csv(table) for table in tables})
+    directory.write_all({f"c/{name}": content for name, content in c_form(tables).items()})
     pictures: tuple[Picture, ...] = ()
     if config.output.plots or config.output.report:
         pictures = studio.book(book.cases, book.degree_studies, config.acceptance.rms_m_s)
         say(f"{len(pictures)} pictures drawn")
     if config.output.plots:
-        for picture in pictures:
-            files += save_picture(picture, directory / "plots")
-    hashes = file_hashes(directory, files)
+        directory.write_all(picture_files(pictures, "plots"))
     if config.output.report:
-        report = directory / "report.html"
-        write_report(report, report_of(book, verdict, hashes, pictures))
-        hashes |= file_hashes(directory, [report])
-    for name in remove_stale(directory, set(hashes)):
-        say(f"{name} was there before; it is no readable table of this tool and was left alone")
-    summary = summary_of(book, verdict, hashes)
-    write_atomically(directory / SUMMARY, canonical_json(summary) + b"\n")
+        page = report_page(report_of(book, verdict, directory.written, pictures))
+        directory.write("report.html", page.encode())
+    summary = summary_of(book, verdict, directory.written)
+    directory.finish(canonical_json(summary) + b"\n")
     return summary
 
 
@@ -76,8 +67,3 @@ def report_of(book: Book, verdict: Verdict, hashes: dict[str, str], pictures: tu
         file_hashes=hashes,
         pictures=pictures,
     )
-
-
-def file_hashes(directory: Path, files: list[Path]) -> dict[str, str]:
-    """SHA-256 by name relative to `directory`, with slashes."""
-    return {f.relative_to(directory).as_posix(): hashlib.sha256(f.read_bytes()).hexdigest() for f in files}

@@ -3,30 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
-from synth.book.output_directory import PERMISSIONS_PICTURES, SUMMARY, remove_stale
 from synth.book.permissions.document import permissions_document
 from synth.book.permissions.permission import CasePermissions
 from synth.book.summary import Document
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.present.outputs import file_hashes
-from tuning_tables import write_atomically
+from synth.frame.results_directory import ResultsDirectory
 from tuning_tables.canonical import canonical_json
 
 
 def write_permissions(
-    config: ResolvedConfig, cases: Sequence[CasePermissions], created: str, directory: Path
+    config: ResolvedConfig, cases: Sequence[CasePermissions], created: str, directory: ResultsDirectory
 ) -> Document:
     """Write everything; the summary as written. Raises `OSError`."""
-    files: list[Path] = []
     if config.output.plots:
         from synth.present.plots.permissions import permissions_picture  # matplotlib
-        from synth.present.plots.picture import save_picture
+        from synth.present.plots.picture import picture_files
 
-        files += save_picture(permissions_picture(config.title, cases), directory / "plots")
-    hashes = file_hashes(directory, files)
-    remove_stale(directory, set(hashes), pictures=PERMISSIONS_PICTURES)
-    summary = permissions_document(config, cases, created, hashes)
-    write_atomically(directory / SUMMARY, canonical_json(summary) + b"\n")
+        directory.write_all(picture_files([permissions_picture(config.title, cases)], "plots"))
+    summary = permissions_document(config, cases, created, directory.written)
+    directory.finish(canonical_json(summary) + b"\n")
     return summary

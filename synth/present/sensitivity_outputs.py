@@ -3,49 +3,41 @@
 from __future__ import annotations
 
 from importlib.metadata import version
-from pathlib import Path
 from typing import Final
 
-from synth.book.output_directory import SENSITIVITY_LAYOUT, SENSITIVITY_PICTURES, SUMMARY, remove_stale
 from synth.book.sensitivity.document import VERSION, sensitivity_csv, sensitivity_document
 from synth.book.sensitivity.sensitivity import Sensitivity
 from synth.book.summary import Document
-from synth.present.outputs import file_hashes
-from synth.present.plots.picture import Picture, save_picture
+from synth.frame.results_directory import ResultsDirectory
+from synth.present.plots.picture import Picture, picture_files
 from synth.present.report.sensitivity_report import SensitivityReport, sensitivity_page
-from tuning_tables import write_atomically
 from tuning_tables.canonical import canonical_json
 
 DOCUMENT: Final = "sensitivity.json"
 TABLE: Final = "sensitivity.csv"
 
 
-def write_sensitivity(found: Sensitivity, created: str, directory: Path) -> Document:
+def write_sensitivity(found: Sensitivity, created: str, directory: ResultsDirectory) -> Document:
     """Write everything; the document as written. Raises `OSError`."""
-    output = found.config.output
+    output, pictures = found.config.output, drawn(found)
     document = sensitivity_document(found, created)
-    write_atomically(directory / DOCUMENT, canonical_json(document) + b"\n")
-    write_atomically(directory / TABLE, sensitivity_csv(found).encode())
-    files, pictures = [directory / DOCUMENT, directory / TABLE], drawn(found)
+    directory.write(DOCUMENT, canonical_json(document) + b"\n")
+    directory.write(TABLE, sensitivity_csv(found).encode())
     if output.plots:
-        for picture in pictures:
-            files += save_picture(picture, directory / "plots")
-    hashes = file_hashes(directory, files)
+        directory.write_all(picture_files(pictures, "plots"))
     if output.report:
-        page = directory / "report.html"
-        write_atomically(page, sensitivity_page(SensitivityReport(found, created, hashes, pictures)).encode())
-        hashes |= file_hashes(directory, [page])
-    remove_stale(directory, set(hashes), pictures=SENSITIVITY_PICTURES)
+        page = sensitivity_page(SensitivityReport(found, created, directory.written, pictures))
+        directory.write("report.html", page.encode())
     summary = {
-        "format": SENSITIVITY_LAYOUT.form,
+        "format": "sensitivity-summary",
         "version": VERSION,
         "created": created,
         "generator": {"name": "retarder-synth", "version": version("retarder-synth"),
                       "config_sha256": found.config.sha256},
         "measure_first": document["measure_first"],
-        "files": hashes,
+        "files": directory.written,
     }  # fmt: skip
-    write_atomically(directory / SUMMARY, canonical_json(summary) + b"\n")
+    directory.finish(canonical_json(summary) + b"\n")
     return document
 
 

@@ -9,26 +9,24 @@ from pathlib import Path
 import numpy as np
 
 from synth.book.summary import Document, plain
-from synth.present.plots.picture import save_drawing
+from synth.frame.results_directory import ResultsDirectory
+from synth.present.plots.picture import drawing_files
 from synth.yard.humping.speed_program import SpeedProgram, locomotive_csv, uncoupler_csv
-from tuning_tables import write_atomically
 
 
-def write_program(program: SpeedProgram, directory: Path) -> list[Path]:
+def write_program(program: SpeedProgram, directory: ResultsDirectory) -> list[Path]:
     """Write the files of `program`; raises `OSError`."""
     from synth.present.plots.humping.hump_speed_program import PushedTrain
     from synth.present.plots.humping.humping_pictures import program_picture
 
     stem = f"train-{program.number + 1}"
     contents = {f"{stem}-locomotive.csv": locomotive_csv(program), f"{stem}-uncoupler.csv": uncoupler_csv(program)}
-    for name, content in contents.items():
-        write_atomically(directory / name, content)
     time, speed, length = (
         np.array([getattr(row, key) for row in program.rows]) for key in ("time_s", "hump_speed_m_s", "length_m")
     )
     picture = program_picture(PushedTrain(program.number, time, speed, length))
-    drawn = save_drawing(picture.drawing, directory, f"{stem}-hump-speed")
-    return [*(directory / name for name in contents), *drawn]
+    contents |= drawing_files(picture.drawing, f"{stem}-hump-speed")
+    return directory.write_all(contents)
 
 
 def program_document(program: SpeedProgram, files: Sequence[Path]) -> Document:

@@ -7,20 +7,18 @@ import io
 import json
 from dataclasses import asdict, dataclass
 from importlib.metadata import version
-from pathlib import Path
 from typing import Any
 
-from synth.book.output_directory import WATCH_LAYOUT
 from synth.book.summary import plain
 from synth.configuration.resolved_config import ResolvedConfig
+from synth.frame.results_directory import ResultsDirectory
 from synth.present.plots.control_charts import control_charts
 from synth.present.plots.figure_file import draw
-from synth.present.plots.picture import Picture, save_picture
+from synth.present.plots.picture import Picture, picture_files
 from synth.present.report.document import Stamp, document, picture_sections
 from synth.present.report.markup import Markup, element, head_row, joined, table
 from synth.yard.measured_passes.drift.charts import RUN_LENGTH
 from synth.yard.measured_passes.drift.watch import Drift, Watch
-from tuning_tables.atomic_file import write_atomically
 
 VERSION = 1
 """Of `watch.json`."""
@@ -40,7 +38,7 @@ class WrittenWatch:
     verdict: str
 
 
-def write_watch(found: Watch, config: ResolvedConfig, created: str, directory: Path) -> WrittenWatch:
+def write_watch(found: Watch, config: ResolvedConfig, created: str, directory: ResultsDirectory) -> WrittenWatch:
     """Write all files into `directory`; raises `OSError`."""
     sentences = verdict(found)
     text = json.dumps(plain(watch_document(found, config.sha256, sentences)), indent=1, ensure_ascii=False) + "\n"
@@ -51,10 +49,10 @@ def write_watch(found: Watch, config: ResolvedConfig, created: str, directory: P
     sections = [("charts", "Charts", picture_sections([picture]))]
     if found.drift is not None:
         sections.append(("causes", "Causes", causes_table(found.drift)))
-    write_atomically(directory / "charts.csv", charts_csv(found).encode())
-    save_picture(picture, directory)
-    write_atomically(directory / "report.html", document(stamp, box, sections).encode())
-    write_atomically(directory / WATCH_LAYOUT.summary, text.encode())
+    directory.write("charts.csv", charts_csv(found).encode())
+    directory.write_all(picture_files([picture]))
+    directory.write("report.html", document(stamp, box, sections).encode())
+    directory.finish(text.encode())
     return WrittenWatch(text, "\n".join(sentences))
 
 
@@ -135,7 +133,7 @@ def watch_document(found: Watch, config_sha256: str, sentences: tuple[str, ...])
         ],
     }  # fmt: skip
     return {
-        "format": WATCH_LAYOUT.form, "version": VERSION, "passes": len(found.passes), "config": config_sha256,
+        "format": "watch-summary", "version": VERSION, "passes": len(found.passes), "config": config_sha256,
         "limit": found.charts.limit, "run_length": RUN_LENGTH, "verdict": list(sentences), "drift": told,
         "charts": charts,
     }  # fmt: skip

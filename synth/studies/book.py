@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +11,7 @@ from synth.book.acceptance import judge
 from synth.book.printed_numbers import few
 from synth.book.summary import summary_of
 from synth.book.tune import tune
+from synth.book.tuned_table import read_back
 from synth.configuration.config_file import load_config
 from synth.simulation.replicates import Interval
 from synth.studies.cases import of_masses
@@ -110,8 +110,7 @@ def cells(row: Row) -> tuple[str, ...]:
 def run(options: Options, tell: Tell) -> Results:
     """Tune the book."""
     config = of_masses(load_config(options.config), options.masses_t)
-    with tempfile.TemporaryDirectory() as tables:
-        book = tune(config, Path(tables), tell)
+    book = tune(config, read_back, tell)
     summary = summary_of(book, judge(book.cases, config.acceptance), {})
     rows = tuple(map(row_of, summary["cases"]))
     return Results(config.sha256, config.validation.seed, config.validation.passes, rows)

@@ -10,13 +10,12 @@ from __future__ import annotations
 
 import json
 import math
-import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from plant_models import Plant
 from synth.book.tune import tune
+from synth.book.tuned_table import read_back
 from synth.checker.coarse_simulation import Passes
 from synth.checker.coarse_simulation import simulate as simulate_coarsely
 from synth.checker.plant import plant_of
@@ -32,6 +31,7 @@ from synth.studies.markdown_table import ABSENT, Interval, MarkdownTable, table
 from synth.studies.options import option
 from synth.studies.side_by_side import THREADS
 from synth.studies.study import Findings, Method, Tell, silent
+from tuning_tables import to_json
 
 CASES = (
     "knp-5-bunch:66:3", "knp-5-bunch:22:2", "knp-5-bunch:52:3", "knp-5-bunch:52:2", "knp-5-bunch:22:4",
@@ -129,9 +129,8 @@ def configuration(case: str) -> str:
 def rows_of(case: str, options: Options) -> Iterator[Row]:
     """Tune one case and count."""
     config = parse_config(configuration(case), f"study coverage, case {case}")
-    with tempfile.TemporaryDirectory() as folder:
-        (found,) = tune(config, Path(folder), silent).cases
-        read = read_table((Path(folder) / f"{found.table.id}.json").read_bytes())
+    (found,) = tune(config, read_back, silent).cases
+    read = read_table(to_json(found.table))
     plant, target = found.plant, found.target_speed_m_s
     most = max(options.passes)
     samples = simulated(

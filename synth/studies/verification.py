@@ -19,6 +19,7 @@ from random import Random
 from synth.book.acceptance import judge
 from synth.book.summary import plain, summary_of
 from synth.book.tune import tune
+from synth.book.tuned_table import read_back
 from synth.checker.claims import Honesty, own_faults, simulated_faults
 from synth.checker.coarse_simulation import Passes, simulate
 from synth.checker.low_friction import GROUP
@@ -31,6 +32,7 @@ from synth.studies.markdown_table import Interval, MarkdownTable, around, table
 from synth.studies.options import option
 from synth.studies.side_by_side import THREADS
 from synth.studies.study import Findings, Method, Tell
+from tuning_tables import write_json
 
 FACTORS = (1.0, 0.5, 0.8, 1.25)
 SEED = 11
@@ -92,7 +94,9 @@ def run(options: Options, tell: Tell) -> Verification:
     with tempfile.TemporaryDirectory() as folder:
         directory = Path(folder)
         (directory / "tables").mkdir()
-        book = tune(config, directory / "tables", tell)
+        book = tune(config, read_back, tell)
+        for case in book.cases:
+            write_json(case.table, directory / "tables" / f"{case.table.id}.json")
         summary = plain(summary_of(book, judge(book.cases, config.acceptance), {}))
         (directory / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
         names = sorted(path.name for path in (directory / "tables").glob("*.json"))

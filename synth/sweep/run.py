@@ -9,13 +9,12 @@ from importlib.metadata import version
 from typing import Protocol
 
 from synth.book.creation_time import creation_time
-from synth.book.output_directory import SWEPT_CONFIG
 from synth.faults.input_error import InputError
 from synth.solver.chain.grid import available_memory_bytes
 from synth.sweep.bind import Failure, Outcome, bind
 from synth.sweep.ledger import DONE, ENDED, FAILED, FOUND_DAMAGED, PLAN, STARTED, Ledger, LedgerWriter
 from synth.sweep.plan import Plan, Unit, UnitOrder, plan_of
-from synth.sweep.sweep_directory import SweepDirectory, require_no_tune
+from synth.sweep.sweep_directory import LEDGER, HeldSweep
 from synth.sweep.sweep_file import SweepFile
 from synth.sweep.work import Engine
 from tuning_tables import DamagedTable
@@ -50,7 +49,7 @@ class Task:
     damaged: tuple[str, ...]
 
 
-def task_of(file: SweepFile, directory: SweepDirectory) -> Task:
+def task_of(file: SweepFile, directory: HeldSweep) -> Task:
     """What is to be done in `directory`; `InputError` where it holds books that would become stale."""
     ledger = directory.ledger()
     require_same_layout(file, ledger, directory)
@@ -68,8 +67,9 @@ def task_of(file: SweepFile, directory: SweepDirectory) -> Task:
     return Task(file, plan, created, tuple(heaviest_first), tuple(damaged))
 
 
-def require_same_layout(file: SweepFile, ledger: Ledger, directory: SweepDirectory) -> None:
-    """`InputError` if an earlier run has bound books for conditions that `file` does not list, or a tune lies there."""
+def require_same_layout(file: SweepFile, ledger: Ledger, directory: HeldSweep) -> None:
+    """`InputError` if an earlier run has bound books for conditions that `file` does not list, or a
+    stranger's file lies in the folder of a condition."""
     earlier = {str(name) for event in ledger.of(PLAN) for name in event["conditions"]}
     lost = sorted(earlier - {condition.name for condition in file.conditions})
     if lost:
@@ -79,9 +79,8 @@ def require_same_layout(file: SweepFile, ledger: Ledger, directory: SweepDirecto
             "by -o, or delete this one"
         )
     for condition in file.conditions:
-        folder = directory.book_folder(condition.name)
-        if condition.name not in earlier and not (folder / SWEPT_CONFIG).exists():  # a ledger can be torn
-            require_no_tune(folder)
+        if condition.name:
+            directory.results.require_own_below(condition.name)
 
 
 def fitting_workers(task: Task, asked: int) -> int:
@@ -111,26 +110,24 @@ def require_address_space(largest: Unit) -> None:
         )
 
 
-def run_sweep(task: Task, directory: SweepDirectory, engine: Engine, watcher: Watcher) -> Outcome:
+def run_sweep(task: Task, directory: HeldSweep, engine: Engine, watcher: Watcher) -> Outcome:
     """Compute what is missing and bind everything that is there; a unit that fails does not stop the others.
 
     Raises `OSError` where the directory cannot be written. What was stored before stays.
     """
-    with LedgerWriter(directory.ledger_file) as ledger:
+    with LedgerWriter(directory.results.growing(LEDGER)) as ledger:
         ledger.write(PLAN, plan_event(task))
         for key in task.damaged:
             ledger.write(FOUND_DAMAGED, {"unit": key})
             watcher.note(f"the result in {directory.unit_file(key)} is damaged and is computed again")
         failures = computed(task, directory, engine, watcher, ledger)
-        outcome = bind(task.file, task.plan, task.created, directory, failures, watcher.note)
+        outcome = bind(task.file, task.plan, task.created, directory, failures)
         failed = sum(failure.target_m_s is None for failure in outcome.failures)
         ledger.write(ENDED, {"units": len(task.plan.units), "failed": failed})
     return outcome
 
 
-def computed(
-    task: Task, directory: SweepDirectory, engine: Engine, watcher: Watcher, ledger: LedgerWriter
-) -> list[Failure]:
+def computed(task: Task, directory: HeldSweep, engine: Engine, watcher: Watcher, ledger: LedgerWriter) -> list[Failure]:
     """Have the missing units computed and store each as it comes; those that failed."""
     units = {unit.order.key: unit for unit in task.missing}
     failures = []

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from synth.faults.input_error import InputError
+from synth.frame.results_directory import is_held
 from synth.sweep.ledger import DONE, FAILED, STARTED, Event, Ledger
-from synth.sweep.sweep_directory import SweepDirectory, is_held
+from synth.sweep.sweep_directory import SweepDirectory
 
 
 @dataclass(frozen=True)

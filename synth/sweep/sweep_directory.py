@@ -9,25 +9,17 @@ DIR/book.h5 …               book, summary, picture, configuration; in DIR/COND
 from __future__ import annotations
 
 import contextlib
-import fcntl
-import os
-import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from synth.book.output_directory import LEFTOVER, SUMMARY, SWEEP_LEDGER, make_directory
-from synth.faults.input_error import InputError
+from synth.frame.results_directory import ResultsDirectory, make_directory, results_directory
 from synth.sweep.ledger import Ledger, read_ledger
 from synth.sweep.unit_result import UnitResult, from_bytes, to_bytes
-from tuning_tables import DamagedTable, write_atomically
+from tuning_tables import DamagedTable
 from tuning_tables.seal import unsealed
 
-TUNED = ("book.h5", SUMMARY, "report.html", "c/retarder_table.c")
-"""What a tune leaves, in the directory that a book of the sweep goes to."""
-
-TRIES, PAUSE_S = 10, 0.05
-"""The lock is asked for so often: `sweep status` takes it for a moment to see whether it is free."""
+LEDGER, UNITS, SWEEP_SUMMARY = "sweep/ledger.jsonl", "sweep/units", "sweep/summary.json"
 
 
 @dataclass(frozen=True)
@@ -39,17 +31,17 @@ class SweepDirectory:
     @property
     def ledger_file(self) -> Path:
         """The ledger."""
-        return self.path / SWEEP_LEDGER
+        return self.path / LEDGER
 
     @property
     def units(self) -> Path:
         """The folder of results."""
-        return self.path / "sweep" / "units"
+        return self.path / UNITS
 
     @property
     def summary(self) -> Path:
         """The figures of the whole sweep; written last."""
-        return self.path / "sweep" / "summary.json"
+        return self.path / SWEEP_SUMMARY
 
     def book_folder(self, condition: str) -> Path:
         """Where book and summary of a condition go."""
@@ -62,10 +54,6 @@ class SweepDirectory:
     def ledger(self) -> Ledger:
         """What the ledger says; empty where there is none."""
         return read_ledger(self.ledger_file)
-
-    def store(self, result: UnitResult) -> None:
-        """Write a result, complete or not at all; raises `OSError`."""
-        write_atomically(self.unit_file(result.key), to_bytes(result))
 
     def has(self, key: str) -> bool:
         """Whether the result of a unit is there, its seal unbroken; `DamagedTable` where it is broken."""
@@ -85,64 +73,24 @@ class SweepDirectory:
         return result
 
 
+@dataclass(frozen=True)
+class HeldSweep(SweepDirectory):
+    """The directory of a sweep that is running, which alone writes its `results`."""
+
+    results: ResultsDirectory
+
+    def store(self, result: UnitResult) -> None:
+        """Write a result, complete or not at all; raises `OSError`."""
+        self.results.store(f"{UNITS}/{result.key}.json", to_bytes(result))
+
+
 @contextlib.contextmanager
-def held(path: Path) -> Iterator[SweepDirectory]:
-    """Make and hold `path` for one sweep; `InputError` if it cannot be written or another run holds it.
+def held_sweep(path: Path, reads: Iterable[Path] = ()) -> Iterator[HeldSweep]:
+    """Make and hold `path` for one sweep, which reads the files `reads`; `InputError` as `results_directory`.
 
-    Within: no summary of the sweep, which would not belong to what comes, and no leftovers of a killed run.
+    Within: no summary of the sweep, which would not belong to what comes. What was computed before stays.
     """
-    directory = SweepDirectory(path)
-    make_directory(path)
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        if not locked(descriptor):
-            raise InputError(f"{path}: another sweep or tune is writing there; wait for it, or give another one by -o")
-        if not directory.ledger_file.exists():
-            require_no_tune(path)
-        for folder in (path / "sweep", directory.units):
-            make_directory(folder)
-            for file in folder.glob(".*.part"):
-                if LEFTOVER.fullmatch(file.name):
-                    file.unlink(missing_ok=True)
-        directory.summary.unlink(missing_ok=True)
-        yield directory
-    finally:
-        os.close(descriptor)
-
-
-def require_no_tune(path: Path) -> None:
-    """`InputError` if `path` holds what a tune leaves."""
-    if any((path / name).exists() for name in TUNED):
-        raise InputError(f"{path}: it holds the results of something else; give another directory by -o")
-
-
-def locked(descriptor: int) -> bool:
-    """Lock the open directory for this process.
-
-    The lock is the kernel's and ends with the process, however it ends: there is no stale one. True also on file
-    systems without locks.
-    """
-    for _ in range(TRIES):
-        try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            time.sleep(PAUSE_S)
-        except OSError:
-            return True
-        else:
-            return True
-    return False
-
-
-def is_held(path: Path) -> bool:
-    """Whether a run holds the directory `path` now."""
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return True
-    except OSError:
-        return False
-    finally:
-        os.close(descriptor)
-    return False
+    with results_directory(path, "sweep", reads, summary=SWEEP_SUMMARY) as results:
+        make_directory(path / UNITS)
+        results.retain(*results.names_below("sweep"))
+        yield HeldSweep(path, results)

@@ -17,7 +17,7 @@ import pytest
 from synth.cli import main
 from synth.sweep.bind import Outcome
 from synth.sweep.run import run_sweep, task_of
-from synth.sweep.sweep_directory import held
+from synth.sweep.sweep_directory import held_sweep
 from synth.sweep.sweep_file import load_sweep
 from synth.sweep.work import Engine, InThisProcess
 from synth.yard.humping.trial import BATCH
@@ -79,7 +79,7 @@ class Silence:
 
 def run(config: Path, directory: Path, engine: Engine, watcher: Silence | None = None) -> Outcome:
     """A run of the sweep in `config` by `engine`."""
-    with held(directory) as found:
+    with held_sweep(directory) as found:
         return run_sweep(task_of(load_sweep(config), found), found, engine, watcher or Silence())
 
 

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from synth.frame.results_directory import is_held
 from synth.sweep.ledger import DONE, PLAN, LedgerWriter, read_ledger
-from synth.sweep.sweep_directory import SweepDirectory, held, is_held
+from synth.sweep.sweep_directory import SweepDirectory, held_sweep
 from synth.sweep.unit_result import from_bytes, to_bytes
 from synth.sweep.work import InThisProcess
 from tests.sweep.conftest import Ran, Silence, contents, events, run
@@ -85,11 +86,11 @@ def test_the_date_is_that_of_the_first_run(
 
 def test_two_runs_at_once_are_refused(command: Callable[..., Ran], config: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
-    with held(out):
+    with held_sweep(out):
         assert is_held(out)
         code, said, told = command("sweep", config, "-o", out)
         assert (code, said) == (2, "")
-        assert "another sweep or tune is writing there" in told
+        assert "another sweep is writing there" in told
     assert not is_held(out)
     assert events(out, PLAN) == []
 
@@ -100,7 +101,7 @@ def test_the_results_of_something_else_are_left_alone(
     (tmp_path / "book.h5").write_bytes(b"mine")
     code, _, said = command("sweep", config, "-o", tmp_path)
     assert code == 2
-    assert "the results of something else" in said
+    assert "it holds book.h5, which 'sweep' did not write" in said
     assert (tmp_path / "book.h5").read_bytes() == b"mine"
     out = Path(shutil.copytree(serial, tmp_path / "out"))
     other = tmp_path / "other.toml"

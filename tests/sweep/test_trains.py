@@ -6,29 +6,39 @@ import json
 import os
 import shutil
 import signal
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from synth.frame.results_directory import results_directory
 from synth.sweep.local_workers import LocalWorkers
 from synth.sweep.trains.batch import BatchOrder, answer_batch, orders_of
 from synth.sweep.trains.train_run import BatchFailed, BatchFiles, missing_of, run_trains
 from synth.sweep.work import Answer, InThisProcess
 from synth.yard.humping.made_trial import made_trial
-from synth.yard.humping.outcome_file import to_npz
+from synth.yard.humping.outcome_file import from_npz, to_npz
 from synth.yard.humping.outcomes import joined
 from synth.yard.humping.resolved_trial import load_trial
 from synth.yard.humping.trial import BATCH
 from tests.sweep import poison
 from tests.sweep.conftest import Ran, begin, contents, kill_and_reap, wait_until
+from tuning_tables.seal import unsealed
 
 
-def files_of(out: Path, trial: Path) -> BatchFiles:
-    """The stored batches in `out`."""
+def batch_file(out: Path, key: str) -> Path:
+    """The file of a batch in `out`."""
+    return out / "batches" / f"{key}.npz"
+
+
+@contextmanager
+def files_in(out: Path, trial: Path) -> Iterator[BatchFiles]:
+    """The batches in `out`, which is held."""
     config = load_trial(trial)
-    return BatchFiles(out, config.routes.numbers, config.trains_sha256)
+    with results_directory(out, "hump simulate") as directory:
+        yield BatchFiles(directory, config.routes.numbers, config.trains_sha256)
 
 
 def test_workers_change_no_byte(command: Callable[..., Ran], trial: Path, humped: Path, tmp_path: Path) -> None:
@@ -43,8 +53,8 @@ def test_batches_of_any_size_are_the_same_trains(trial: Path, humped: Path) -> N
     config = load_trial(trial)
     made = made_trial(config)
     numbers, sha = config.routes.numbers, config.trains_sha256
-    written = files_of(humped, trial)
-    first = written.stored(next(iter(orders_of(made, sha, BATCH))).key)
+    written = batch_file(humped, next(iter(orders_of(made, sha, BATCH))).key)
+    first = from_npz(unsealed(written.read_bytes(), str(written)), str(written), sha)
     some = joined([made.batch(0, 1), made.batch(1, 6), made.batch(7, BATCH - 7)])
     assert to_npz(some, numbers, sha) == to_npz(first, numbers, sha)
 
@@ -57,7 +67,7 @@ def test_a_killed_run_goes_on_to_the_same_bytes(trial: Path, humped: Path, tmp_p
     kept = {path.name: path.stat().st_mtime_ns for path in (out / "batches").glob("*.npz")}
     assert not (out / "summary.json").exists()
     assert kept
-    (out / "batches" / f".x.npz.{'0' * 16}.part").touch()
+    (out / "batches" / f".{next(iter(kept))}.{'0' * 16}.part").touch()
     again = begin("hump", "simulate", trial, "-o", out, "--workers", "2")
     _, said = again.communicate(timeout=300)
     assert again.returncode == 0
@@ -72,29 +82,27 @@ def test_a_worker_that_is_killed_loses_nothing(
 ) -> None:
     monkeypatch.setenv("DIED_ONCE", str(tmp_path / "mark"))
     config = load_trial(trial)
-    (tmp_path / "batches").mkdir()
-    files = files_of(tmp_path, trial)
     orders = list(orders_of(made_trial(config), config.trains_sha256, config.settings.trains.number))
     watcher = Told()
-    run_trains(orders, orders, files, LocalWorkers(2, poison.batch_dying_once), watcher)
+    with files_in(tmp_path / "out", trial) as files:
+        run_trains(orders, orders, files, LocalWorkers(2, poison.batch_dying_once), watcher)
     assert (tmp_path / "mark").exists()
     for order in orders:
-        assert files.file(order.key).read_bytes() == files_of(humped, trial).file(order.key).read_bytes()
+        assert batch_file(tmp_path / "out", order.key).read_bytes() == batch_file(humped, order.key).read_bytes()
     assert len(watcher.ended) == 3
 
 
 def test_a_batch_that_cannot_be_humped_is_told_and_the_others_stay(trial: Path, tmp_path: Path) -> None:
     config = load_trial(trial)
-    (tmp_path / "batches").mkdir()
-    files = files_of(tmp_path, trial)
     orders = list(orders_of(made_trial(config), config.trains_sha256, config.settings.trains.number))
 
     def refusing(order: BatchOrder) -> Answer:
         return answer_batch(order) if order.first == 0 else Answer(order.key, None, "no cars")
 
-    with pytest.raises(BatchFailed, match=f"trains {BATCH + 1} to {2 * BATCH}: no cars"):
-        run_trains(orders, orders, files, InThisProcess(refusing), Told())
-    assert [order.first for order in missing_of(orders, files, Told())] == [BATCH, 2 * BATCH]
+    with files_in(tmp_path, trial) as files:
+        with pytest.raises(BatchFailed, match=f"trains {BATCH + 1} to {2 * BATCH}: no cars"):
+            run_trains(orders, orders, files, InThisProcess(refusing), Told())
+        assert [order.first for order in missing_of(orders, files, Told())] == [BATCH, 2 * BATCH]
 
 
 def test_a_worker_of_another_version_is_refused(trial: Path) -> None:

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from synth.book.forms.table_file import file_stem, is_infeasible
-from synth.book.output_directory import output_directory, remove_stale
 from synth.book.summary import plain
-from synth.faults.input_error import InputError
 from synth.present.draw_pictures import Studio, draw_job
 from tests.synth.case_factory import make_case, make_study
-from tuning_tables import write_csv, write_json
 
 
 def test_pictures_do_not_depend_on_the_number_of_processes() -> None:
@@ -35,35 +31,6 @@ def test_few_pictures_are_drawn_here_in_the_order_of_the_book() -> None:
     assert names[:4] == ["rms-by-controller", "feasibility", "switchings", "degree-study"]
     assert names[-1] == "policy-map-gondola-36t-target-3-m-s"
     assert len(names) == 8
-
-
-def test_only_files_of_this_tool_are_removed(tmp_path: Path) -> None:
-    with output_directory(tmp_path):
-        table = make_case().table
-        for stem in ("old", "new"):
-            write_json(table, tmp_path / "tables" / f"{stem}.json")
-            write_csv(table, tmp_path / "tables" / f"{stem}.csv")
-        (tmp_path / "tables" / "mine.csv").write_text("record,of,mine\n")
-        (tmp_path / "tables" / "mine.json").write_text("{}")
-        for name in ("policy-map-old.png", "rms-by-controller.svg", "mine.png", "policy-map.txt"):
-            (tmp_path / "plots" / name).write_text("")
-        (tmp_path / "report.html").write_text("my own")
-        assert remove_stale(tmp_path, {"tables/new.json", "tables/new.csv"}) == ("tables/mine.json",)
-    left = {path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*") if path.is_file()}
-    assert left == {
-        "tables/new.json", "tables/new.csv", "tables/mine.csv", "tables/mine.json", "plots/mine.png",
-        "plots/policy-map.txt", "report.html",
-    }  # fmt: skip
-
-
-def test_a_directory_is_held_by_one_tune(tmp_path: Path) -> None:
-    (tmp_path / "summary.json").write_text("{}")
-    with output_directory(tmp_path) as held:
-        assert not (held / "summary.json").exists()
-        with pytest.raises(InputError, match="another tune is writing there"), output_directory(tmp_path):
-            pass
-    with output_directory(tmp_path):
-        pass
 
 
 def test_values_of_the_summary_are_plain() -> None:

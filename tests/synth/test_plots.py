@@ -20,9 +20,9 @@ from synth.book.case_result import CaseResult
 from synth.present.plots.degree_study import degree_study
 from synth.present.plots.exit_density import bin_edges_m_s, exit_density, predicted_density
 from synth.present.plots.feasibility import feasibility
-from synth.present.plots.figure_file import draw, save_figure
+from synth.present.plots.figure_file import draw, figure_files
 from synth.present.plots.house_style import logarithmic_y
-from synth.present.plots.picture import save_picture
+from synth.present.plots.picture import picture_files
 from synth.present.plots.picture_book import all_pictures
 from synth.present.plots.policy_map import command_image, parts_in_stage, policy_map
 from synth.present.plots.rms_by_controller import rms_by_controller
@@ -100,10 +100,10 @@ def test_hard_cases_are_drawn_too(cases: list[CaseResult]) -> None:
     assert {name: len(list(all_pictures([case], [], 0.1))) for name, case in hard.items()} == dict.fromkeys(hard, 7)
 
 
-def test_a_figure_is_saved_in_both_forms(tmp_path: Path, cases: list[CaseResult]) -> None:
-    paths = save_figure(switchings(cases), tmp_path, "switchings")
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["switchings.png", "switchings.svg"]
-    assert all(path.stat().st_size > 1000 for path in paths)
+def test_a_figure_has_files_in_both_forms(cases: list[CaseResult]) -> None:
+    files = figure_files(switchings(cases), "switchings", "plots")
+    assert sorted(files) == ["plots/switchings.png", "plots/switchings.svg"]
+    assert all(len(content) > 1000 for content in files.values())
 
 
 def test_outer_panels_say_what_is_drawn(cases: list[CaseResult]) -> None:
@@ -113,12 +113,12 @@ def test_outer_panels_say_what_is_drawn(cases: list[CaseResult]) -> None:
     assert sum(axes.get_xlabel().startswith("path") for axes in panels[:stages]) == (stages + 2) // 2
 
 
-def test_the_picture_book_names_every_picture_once_and_every_case(tmp_path: Path, cases: list[CaseResult]) -> None:
+def test_the_picture_book_names_every_picture_once_and_every_case(cases: list[CaseResult]) -> None:
     pictures = list(all_pictures(cases, [make_study()], 0.1))
     names = [picture.name for picture in pictures]
     assert len(set(names)) == len(names) == 4 + 2 * 3 + 4
     assert all(any(case.label in picture.title for picture in pictures) for case in cases)
-    assert save_picture(pictures[0], tmp_path)[1].read_bytes() == pictures[0].drawing.svg
+    assert picture_files(pictures)[f"{names[0]}.svg"] == pictures[0].drawing.svg
 
 
 def test_the_map_shows_command_and_indifference_where_they_are(cases: list[CaseResult]) -> None:

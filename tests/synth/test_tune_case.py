@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from synth.book.case_result import CaseResult
 from synth.book.tune import Book, tune
 from synth.configuration.config_file import parse_config
 from synth.solver.tabulate import lines_of
-from tuning_tables import read_json
+from tuning_tables import ControllerTable, read_json, write_json
 
 SMALL = """
 [[cut]]
@@ -29,6 +30,12 @@ passes = 4000
 """
 
 
+def stored(table: ControllerTable, directory: Path) -> ControllerTable:
+    """The table as it is read back from a file in `directory`."""
+    write_json(table, directory / f"{table.id}.json")
+    return read_json(directory / f"{table.id}.json")
+
+
 @pytest.fixture(scope="module")
 def directory(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("tables")
@@ -37,7 +44,7 @@ def directory(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def book(directory: Path) -> Book:
     said: list[str] = []
-    result = tune(parse_config(SMALL, "small.toml"), directory, said.append, workers=2)
+    result = tune(parse_config(SMALL, "small.toml"), partial(stored, directory=directory), said.append, workers=2)
     assert any("to 4 m/s" in sentence for sentence in said)
     return result
 

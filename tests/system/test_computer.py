@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from synth.book.output_directory import SUMMARY
+from synth.frame.results_directory import SUMMARY
 
 COMMAND = (sys.executable, "-c", "import sys; from synth.cli import main; raise SystemExit(main(sys.argv[1:]))")
 

@@ -15,7 +15,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from synth.book.output_directory import LEFTOVER, PICTURES
+from synth.frame.own_files import MARKER
+from synth.frame.results_directory import LEFTOVER
 from tuning_tables import read_book, read_json
 
 TUNE = [sys.executable, "-c", "import sys; from synth.cli import main; raise SystemExit(main(sys.argv[1:]))", "tune"]
@@ -38,7 +39,7 @@ def wait_for(tune: subprocess.Popen[str], words: str) -> None:
 def check(out: Path) -> None:
     """Every file in `out` is whole, and a summary describes exactly the files that are there."""
     for path in out.rglob("*"):
-        if path.is_file() and not LEFTOVER.fullmatch(path.name):
+        if path.is_file() and path.name != MARKER and not LEFTOVER.fullmatch(path.name):
             check_file(path)
     if (out / "summary.json").exists():
         files = json.loads((out / "summary.json").read_bytes())["files"]
@@ -59,11 +60,9 @@ def check_file(path: Path) -> None:
         case "c", ".csv":
             assert content.endswith(b"\r\n")
         case "plots", ".png":
-            assert PICTURES.fullmatch(path.name)
             assert content.startswith(b"\x89PNG")
             assert content.endswith(b"IEND\xaeB`\x82")
         case "plots", ".svg":
-            assert PICTURES.fullmatch(path.name)
             ElementTree.fromstring(content)
         case _, ".h5":
             assert read_book(path)
@@ -94,7 +93,7 @@ def test_killed_tunes_leave_nothing_half_done(tuned: Path, one_class: Path) -> N
     assert last.returncode == 0
     check(tuned)
     files = {path.relative_to(tuned).as_posix() for path in tuned.rglob("*") if path.is_file()}
-    assert files - {"summary.json"} == set(json.loads((tuned / "summary.json").read_bytes())["files"])
+    assert files - {"summary.json", MARKER} == set(json.loads((tuned / "summary.json").read_bytes())["files"])
 
 
 def test_ctrl_c_ends_at_once_with_one_line(one_class: Path, tmp_path: Path) -> None:

@@ -58,6 +58,13 @@ def table_files(directory: Path) -> list[Path]:
     return with_lines or ([] if others else sorted(directory.glob("*.h5")))
 
 
+def files_at(path: Path) -> tuple[Path, ...]:
+    """The files that may be read where `path`, a file or what a tune left, is asked for its tables."""
+    if not path.is_dir():
+        return (path,)
+    return tuple(sorted(file for each in ("*.json", "*.h5", "tables/*.json") for file in path.glob(each)))
+
+
 def holds_tables(path: Path) -> bool:
     """Whether a directory has anything to be read as tables."""
     return path.is_dir() and bool(table_files(path))

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from importlib.metadata import version
 
-from synth.book.output_directory import PERMISSIONS_LAYOUT
 from synth.book.permissions.case_document import results_document
 from synth.book.permissions.permission import CasePermissions
 from synth.book.summary import Document, plain
@@ -21,7 +20,7 @@ def permissions_document(
     """The document; `hashes`: SHA-256 by name of the other files."""
     document: Document = plain(
         {
-            "format": PERMISSIONS_LAYOUT.form,
+            "format": "permissions-summary",
             "version": VERSION,
             "created": created,
             "generator": {

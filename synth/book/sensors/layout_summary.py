@@ -7,7 +7,6 @@ from importlib.metadata import version
 from typing import Any, Final
 
 from plant_models import every_axle
-from synth.book.output_directory import SENSOR_PLAN_LAYOUT
 from synth.book.sensors.layout import with_layout
 from synth.book.sensors.layout_plan import JudgedLayout, PlannedLayout
 from synth.book.sensors.layout_results import LayoutResults
@@ -27,7 +26,7 @@ def layout_summary(results: LayoutResults, config_sha256: str, created: str, fil
     """All figures; rms in m/s, root of the mean square over all cut classes and targets unless told by case."""
     sensors = results.problem.sensors
     return {
-        "format": SENSOR_PLAN_LAYOUT.form,
+        "format": "sensor-plan-summary",
         "version": VERSION,
         "created": created,
         "generator": {"name": "retarder-synth", "version": version("retarder-synth"), "config_sha256": config_sha256},

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 
@@ -29,7 +28,6 @@ from synth.simulation.random_passes import RandomPasses
 from synth.simulation.replicates import Interval, rms_of, share_of
 from synth.solver.one_blas_thread import one_blas_thread
 from tuning_tables import Validated
-from tuning_tables.passages.json_file import read_passage_json, write_passage_json
 from tuning_tables.passages.passage_table import PassageTable
 
 TRACE_FACTORS = (0.8, 1.0, 1.2)
@@ -63,9 +61,9 @@ class SensorRun:
 
 @one_blas_thread()
 def tune_sensors(
-    config: ResolvedConfig, sensors: ResolvedSensors, tables: Path, progress: Progress, workers: int = 2
+    config: ResolvedConfig, sensors: ResolvedSensors, store: Store, progress: Progress, workers: int = 2
 ) -> SensorBook:
-    """Tune every cut class and target of `config` for `sensors`; tables are written into the directory `tables`.
+    """Tune every cut class and target of `config` for `sensors`; each table is handed to `store` when it is made.
 
     Work runs on `workers` threads; the result does not depend on how many. Raises `CaseError` for a case that cannot
     be computed, `InvalidTable` for switching speeds that make no table.
@@ -75,7 +73,7 @@ def tune_sensors(
         sensors=sensors,
         origin=origin_of(config.sha256, creation_time()),
         passes=validation_passes(config),
-        store=partial(write_and_read_back, directory=tables),
+        store=store,
         progress=progress,
     )
     starts = [partial(class_tasks, run, label, plant) for label, plant in config.plants()]
@@ -147,10 +145,3 @@ def heard_shares(sample: PassageSample) -> HeardShares:
         lost = np.isin(outcome, (NOT_BELIEVED, NO_DECISION))
         mistaken.append(share_of(lost, weight) if weight.any() else nothing)
     return HeardShares(tuple(unfinished_shares(sample)), tuple(mistaken))
-
-
-def write_and_read_back(table: PassageTable, directory: Path) -> PassageTable:
-    """The table as a controller will load it."""
-    path = directory / f"{table.id}.json"
-    write_passage_json(table, path)
-    return read_passage_json(path)

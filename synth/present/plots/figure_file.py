@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import io
 import threading
-from pathlib import Path
 
 import matplotlib
 from matplotlib.figure import Figure
 
 from synth.present.plots.house_style import DOTS_PER_INCH
-from synth.present.plots.picture import Drawing, save_drawing
+from synth.present.plots.picture import Drawing, drawing_files
 
 IDENTIFIER_SALT = "retarder-synth"
 """Makes the identifiers inside an SVG a hash of what they name instead of random."""
@@ -28,6 +27,6 @@ def draw(figure: Figure) -> Drawing:
     return Drawing(png.getvalue(), svg.getvalue())
 
 
-def save_figure(figure: Figure, directory: Path, name: str) -> tuple[Path, Path]:
-    """Draw `figure` and write it as `directory/name.png` and `.svg`; raises `OSError`."""
-    return save_drawing(draw(figure), directory, name)
+def figure_files(figure: Figure, name: str, folder: str = "") -> dict[str, bytes]:
+    """`figure`, drawn as `folder/name.png` and `.svg`: what is to be written under each name."""
+    return drawing_files(draw(figure), name, folder)

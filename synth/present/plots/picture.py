@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from pathlib import Path
-
-from tuning_tables.atomic_file import write_atomically
 
 
 @dataclass(frozen=True)
@@ -27,14 +25,14 @@ class Picture:
     drawing: Drawing
 
 
-def save_picture(picture: Picture, directory: Path) -> tuple[Path, Path]:
-    """Write the picture's PNG and SVG into `directory`; raises `OSError`."""
-    return save_drawing(picture.drawing, directory, picture.name)
+def picture_files(pictures: Iterable[Picture], folder: str = "") -> dict[str, bytes]:
+    """The files of `pictures` by name, in `folder`."""
+    return {
+        name: content for each in pictures for name, content in drawing_files(each.drawing, each.name, folder).items()
+    }
 
 
-def save_drawing(drawing: Drawing, directory: Path, name: str) -> tuple[Path, Path]:
-    """Write `directory/name.png` and `.svg`, each complete or not at all; raises `OSError`."""
-    paths = directory / f"{name}.png", directory / f"{name}.svg"
-    for path, content in zip(paths, (drawing.png, drawing.svg), strict=True):
-        write_atomically(path, content)
-    return paths
+def drawing_files(drawing: Drawing, name: str, folder: str = "") -> dict[str, bytes]:
+    """`folder/name.png` and `.svg`."""
+    stem = f"{folder}/{name}" if folder else name
+    return {f"{stem}.png": drawing.png, f"{stem}.svg": drawing.svg}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 
 from synth.present.report.book_report import BookReport
@@ -17,7 +16,6 @@ from synth.present.report.parameter_table import parameter_section
 from synth.present.report.permissions_section import permissions_section
 from synth.present.report.studies_section import studies_section
 from synth.present.report.verdict import verdict
-from tuning_tables.atomic_file import write_atomically
 
 HOW_TO_READ = (
     "rms: root mean square of exit speed − target; a cut that stops in the position counts with exit speed 0. "
@@ -29,11 +27,6 @@ HOW_TO_READ = (
     "chance of these passes is all that they cover. All controllers see the same passes. Those of the best baseline "
     "may jump stages in one command, which the tables' rule may not; all may act from the same place."
 )
-
-
-def write_report(path: str | os.PathLike[str], book: BookReport) -> None:
-    """Write the page to `path`, complete or not at all; raises `OSError`. The same book gives the same bytes."""
-    write_atomically(path, report_page(book).encode())
 
 
 def report_page(book: BookReport) -> str:

@@ -23,7 +23,7 @@ from synth.sweep.ledger import DONE, Event
 from synth.sweep.local_workers import LocalWorkers
 from synth.sweep.plan import Unit
 from synth.sweep.run import fitting_workers, run_sweep, task_of
-from synth.sweep.sweep_directory import held
+from synth.sweep.sweep_directory import held_sweep
 from synth.sweep.sweep_file import parse_sweep
 from synth.sweep.work import InThisProcess
 
@@ -62,10 +62,10 @@ def run(options: Options, tell: Tell) -> SweepSpeed:
     machine = this_machine()
     with tempfile.TemporaryDirectory() as folder:
         warm, directory = Path(folder) / "warm", Path(folder) / "out"
-        with held(warm) as found:
+        with held_sweep(warm) as found:
             task = task_of(parse_sweep(text_of(1, 1), "study sweep-speed"), found)
             run_sweep(task, found, InThisProcess(), Told(silent))
-        with held(directory) as found:
+        with held_sweep(directory) as found:
             task = task_of(parse_sweep(text_of(options.classes, options.targets), "study sweep-speed"), found)
             workers, begun, watcher = fitting_workers(task, options.workers), time.time(), Told(tell)
             outcome = run_sweep(task, found, LocalWorkers(workers), watcher)

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
+from synth.frame.results_directory import ResultsDirectory
 from synth.sweep.trains.batch import BatchOrder
 from synth.sweep.work import Engine
 from synth.yard.humping.outcome_file import from_npz, to_npz
 from synth.yard.humping.outcomes import TrainOutcomes, joined
-from tuning_tables import DamagedTable, write_atomically
+from tuning_tables import DamagedTable
 from tuning_tables.seal import seal_of, unsealed
 
 FOLDER = "batches"
@@ -34,20 +35,24 @@ class BatchFailed(Exception):
 
 @dataclass(frozen=True)
 class BatchFiles:
-    """The stored batches of a trial below `directory`, each under a seal; `numbers` of the elements by column."""
+    """The stored batches of a trial in `directory`, each under a seal; `numbers` of the elements by column."""
 
-    directory: Path
+    directory: ResultsDirectory
     numbers: tuple[int, ...]
     trains_sha256: str
 
+    def name(self, key: str) -> str:
+        """The name of the file of one batch."""
+        return f"{FOLDER}/{key}.npz"
+
     def file(self, key: str) -> Path:
         """The file of one batch."""
-        return self.directory / FOLDER / f"{key}.npz"
+        return self.directory.path / self.name(key)
 
     def store(self, key: str, found: TrainOutcomes) -> None:
         """Write a batch, complete or not at all; raises `OSError`."""
         body = to_npz(found, self.numbers, self.trains_sha256)
-        write_atomically(self.file(key), body + seal_of(body))
+        self.directory.store(self.name(key), body + seal_of(body))
 
     def stored(self, key: str) -> TrainOutcomes:
         """A batch; `FileNotFoundError`, or `DamagedTable` where a byte has changed."""
@@ -62,13 +67,6 @@ class BatchFiles:
         except FileNotFoundError:
             return False
         return True
-
-    def keep_only(self, keys: Sequence[str]) -> None:
-        """Remove the batches of other trials."""
-        kept = {self.file(key) for key in keys}
-        for file in (self.directory / FOLDER).glob("*-*-*.npz"):
-            if file not in kept:
-                file.unlink(missing_ok=True)
 
 
 def missing_of(orders: Sequence[BatchOrder], files: BatchFiles, watcher: BatchWatcher) -> list[BatchOrder]:
@@ -102,7 +100,7 @@ def run_trains(
                 raise BatchFailed(f"{names[answer.key]}: {answer.reason}")
             files.store(answer.key, answer.result)
             watcher.done(f"{names[answer.key]}: {words(answer.result)}")
-    files.keep_only([order.key for order in orders])
+    files.directory.retain(*(files.name(order.key) for order in orders))
     return joined([files.stored(order.key) for order in orders])
 
 

@@ -10,29 +10,40 @@ inputs/types/                    the user's own types
 
 from __future__ import annotations
 
-import shutil
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Final
 
 from plant_models.library import Library, TypeFile
 from synth.book.forms.table_file import file_stem
-from synth.book.output_directory import make_directory
 from synth.configuration.hump import RAILML_SUFFIXES, hump_text
 from synth.configuration.humping.trial_file import TrialFile
 from synth.configuration.own_types import with_own_types
 from synth.configuration.toml_file import read_text, toml_tree
 from synth.configuration.toml_text import toml_text
+from synth.frame.results_directory import ResultsDirectory
 from synth.yard.humping.position_choice import PositionChoice
 from synth.yard.humping.resolved_trial import ResolvedTrial
-from tuning_tables import write_atomically
 
 FOLDER: Final = "inputs"
 CONFIG, LIST, TABLES, AIMS, TYPES = "config.toml", "train.csv", "tables", "aim", "types"
 
 
-def write_inputs(file: TrialFile, config: ResolvedTrial, directory: Path) -> list[Path]:
-    """Write the inputs of `config`, which was resolved from `file`, into the folder of `directory`; the files."""
-    folder = directory / FOLDER
+def files_read(file: TrialFile, config: ResolvedTrial) -> Iterator[Path]:
+    """Every file that `config`, which was resolved from `file`, was read from."""
+    yield Path(file.place)
+    yield file.hump_source
+    yield from (Path(each.place) for each in file.library.own)
+    if file.settings.trains.list is not None:
+        yield file.folder / file.settings.trains.list
+    for choice in config.positions:
+        yield from filter(None, (choice.book, choice.tuned_with))
+    for aim in config.aims:
+        yield from aim.files
+
+
+def write_inputs(file: TrialFile, config: ResolvedTrial, directory: ResultsDirectory) -> None:
+    """Write the inputs of `config`, which was resolved from `file`, into the folder of `directory`."""
     tree: dict[str, Any] = config.settings.model_dump(mode="json", exclude_none=True, exclude_unset=True)
     own: dict[str, TypeFile] = {str(each): each for each in file.library.own}
     contents: dict[str, bytes] = {}
@@ -52,17 +63,7 @@ def write_inputs(file: TrialFile, config: ResolvedTrial, directory: Path) -> lis
     for type_file in own.values():
         contents[f"{TYPES}/{type_file.kind.folder}/{type_file.name}.toml"] = type_file.text.encode("utf-8")
     contents[CONFIG] = toml_text(tree).encode("utf-8")
-    if folder.exists():  # the inputs may have been read from there
-        shutil.rmtree(folder)
-    for name, content in contents.items():
-        make_directory((folder / name).parent)
-        write_atomically(folder / name, content)
-    return input_files(directory)
-
-
-def input_files(directory: Path) -> list[Path]:
-    """The files that `write_inputs` has left below `directory`."""
-    return sorted(path for path in (directory / FOLDER).rglob("*") if path.is_file())
+    directory.write_all({f"{FOLDER}/{name}": content for name, content in contents.items()})
 
 
 def position_tree(choice: PositionChoice, contents: dict[str, bytes], own: dict[str, TypeFile]) -> dict[str, Any]:

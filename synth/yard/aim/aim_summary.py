@@ -6,7 +6,6 @@ import json
 from collections.abc import Mapping
 from importlib.metadata import version
 
-from synth.book.output_directory import AIM_LAYOUT
 from synth.book.summary import Document, plain
 from synth.yard.aim.aim_acceptance import AimBookVerdict, AimVerdict
 from synth.yard.aim.aim_book import AimBook, MadeAim
@@ -18,7 +17,7 @@ def aim_summary(book: AimBook, verdict: AimBookVerdict, file_hashes: Mapping[str
     """The document of `book`; `file_hashes`: SHA-256 by file name, all files but summary.json itself."""
     config = book.config
     document = {
-        "format": AIM_LAYOUT.form,
+        "format": "aim-summary",
         "version": VERSION,
         "created": book.created,
         "generator": {"name": "retarder-synth", "version": version("retarder-synth"), "config_sha256": config.sha256},

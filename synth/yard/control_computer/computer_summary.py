@@ -9,7 +9,6 @@ from dataclasses import asdict
 from importlib.metadata import version
 from typing import Any
 
-from synth.book.output_directory import COMPUTER_LAYOUT
 from synth.book.summary import Document, plain
 from synth.yard.control_computer.computer_acceptance import ComputerVerdict
 from synth.yard.control_computer.computer_results import ComputerResults, UncertainMoney
@@ -29,7 +28,7 @@ def computer_summary(
     """The document; `file_hashes`: SHA-256 by file name, all files but summary.json itself. None: never, or none."""
     config = results.config
     document = {
-        "format": COMPUTER_LAYOUT.form,
+        "format": "control-computer-summary",
         "version": VERSION,
         "created": created,
         "generator": {"name": "retarder-synth", "version": version("retarder-synth"), "config_sha256": config.sha256},

@@ -8,7 +8,6 @@ from importlib.metadata import version
 
 import numpy as np
 
-from synth.book.output_directory import TRAINS_LAYOUT
 from synth.book.summary import Document, plain
 from synth.yard.humping.aim_choice import AimChoice
 from synth.yard.humping.hump_routes import HumpRoutes
@@ -29,7 +28,7 @@ def trial_summary(
 ) -> Document:  # fmt: skip
     """The document; `file_hashes`: SHA-256 by file name, all files but summary.json itself."""
     document = {
-        "format": TRAINS_LAYOUT.form,
+        "format": "hump-trial-summary",
         "version": VERSION,
         "created": created,
         "generator": {"name": "retarder-synth", "version": version("retarder-synth"), "config_sha256": config.sha256},

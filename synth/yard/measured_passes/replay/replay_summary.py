@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from synth.book.output_directory import REPLAY_LAYOUT
 from synth.book.summary import Document, plain
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.yard.measured_passes.replay.replay import Replay
@@ -71,7 +70,7 @@ def agreement_words(agreement: RuleAgreement) -> str:
 def replay_summary(found: Replay, config: ResolvedConfig, created: str, file_hashes: Mapping[str, str]) -> Document:
     """The document; None stands for what is not known."""
     document = {
-        "format": REPLAY_LAYOUT.form,
+        "format": "replay-summary",
         "version": VERSION,
         "created": created,
         "generator": {"name": "retarder-synth", "version": version("retarder-synth"), "config_sha256": config.sha256},

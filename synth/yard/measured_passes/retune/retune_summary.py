@@ -6,7 +6,6 @@ import json
 from collections.abc import Mapping
 from importlib.metadata import version
 
-from synth.book.output_directory import RETUNE_LAYOUT
 from synth.book.summary import Document, plain
 from synth.yard.measured_passes.retune.retune import Retuned
 
@@ -36,7 +35,7 @@ def retune_summary(found: Retuned, file_hashes: Mapping[str, str]) -> Document:
     """The document; `files` names no book where nothing is better."""
     estimate = found.estimate
     document = {
-        "format": RETUNE_LAYOUT.form,
+        "format": "retune-summary",
         "version": VERSION,
         "created": found.created,
         "generator": {

@@ -11,6 +11,7 @@ import pytest
 from synth.configuration.hump import hump_text
 from synth.configuration.humping.trial_file import parse_trial_file
 from synth.faults.input_error import InputError
+from synth.frame.results_directory import results_directory
 from synth.sweep.trains.trial_inputs import write_inputs
 from synth.yard.humping.hump_position import Arrivals
 from synth.yard.humping.hump_speed import PairByPair
@@ -132,7 +133,8 @@ def test_a_position_with_a_book_runs_its_tables(tmp_path: Path) -> None:
     found = trial.batch(0, 4)
     assert (found.strokes[:, :2] == 0).all()
     assert (found.strokes[:, 2] > 0).all()
-    write_inputs(file, config, tmp_path / "out")
+    with results_directory(tmp_path / "out", "hump simulate") as out:
+        write_inputs(file, config, out)
     for name in ("park.h5", "park.toml"):
         (tmp_path / name).unlink()
     again = load_trial(tmp_path / "out" / "inputs" / "config.toml")

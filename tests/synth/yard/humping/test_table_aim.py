@@ -14,6 +14,7 @@ from synth.configuration.aim.aim_file import parse_aim_file
 from synth.configuration.hump import hump_text
 from synth.configuration.humping.trial_file import parse_trial_file
 from synth.faults.input_error import InputError
+from synth.frame.results_directory import results_directory
 from synth.sweep.trains.trial_inputs import write_inputs
 from synth.yard.aim.aim_book import aim_book
 from synth.yard.aim.resolved_aim import resolve_aim
@@ -98,17 +99,17 @@ def test_groups_of_tracks_have_tables_of_their_own_and_the_rest_is_designed(tmp_
     assert speeds[[4, 7]].tolist() == [answers[1]] * 2
     designed = made_trial(resolved(tmp_path, "")).aim.command_m_s(rows, of_all, of_all + 1, np.full(16, 150.0))
     assert speeds[8:].tolist() == designed[8:].tolist()
-    write_inputs(file, config, tmp_path / "out")
+    with results_directory(tmp_path / "out", "hump simulate") as out:
+        write_inputs(file, config, out)
     for folder in ("near", "far"):
         shutil.rmtree(tmp_path / folder)
     again = load_trial(tmp_path / "out" / "inputs" / "config.toml")
     assert (again.sha256, again.trains_sha256) == (config.sha256, config.trains_sha256)
     np.testing.assert_array_equal(made_trial(again).batch(0, 3).speed_bins, found.batch(0, 3).speed_bins)
-    write_inputs(
-        parse_trial_file((tmp_path / "out/inputs/config.toml").read_text(), str(tmp_path / "out/inputs/config.toml")),
-        again,
-        tmp_path / "out",
-    )
+    source = tmp_path / "out" / "inputs" / "config.toml"
+    again_file = parse_trial_file(source.read_text(), str(source))
+    with results_directory(tmp_path / "out", "hump simulate", [source], inputs="inputs") as out:
+        write_inputs(again_file, again, out)
     assert load_trial(tmp_path / "out" / "inputs" / "config.toml").sha256 == config.sha256
 
 

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from synth.book.output_directory import output_directory
 from synth.cli import main
 from synth.configuration.config_file import load_config
 from synth.configuration.resolved_config import ResolvedConfig
+from synth.frame.results_directory import results_directory
 from synth.studies.tuned_table import tuned_table
 from synth.studies.watch.pools import CHANGES, GAUGE, IN_ORDER, Change, simulated
 from synth.yard.measured_passes import unknowns as asked
@@ -190,12 +190,9 @@ def test_its_directory_is_held_and_no_other_command_writes_there(
 ) -> None:
     log, out = tmp_path / "day.csv", tmp_path / "out"
     write_log(day(config, table, IN_ORDER, 2).taken(np.arange(5)), log)
-    with output_directory(out):
+    with results_directory(out, "watch"):
         assert main(["watch", str(log), "-o", str(out)]) == 2
     assert "another watch is writing there" in capsys.readouterr().err
     assert main(["watch", str(log), "-o", str(out)]) == 0
     assert main(["retune", str(log), "-o", str(out)]) == 2
     assert "it holds the results of 'watch'" in capsys.readouterr().err
-    (out / "summary.json").write_text('{"format": "retune-summary"}', encoding="utf-8")
-    assert main(["watch", str(log), "-o", str(out)]) == 2
-    assert "it holds the results of 'retune'" in capsys.readouterr().err

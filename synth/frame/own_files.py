@@ -1,0 +1,124 @@
+"""The marker of a directory of results: which command writes there, and which files it wrote.
+
+A line of JSON each: first the command; then a name when its file is begun, and the name with the SHA-256 of the content
+before the file takes that name. So whatever a killed command has left is known. A line that was torn is passed over:
+its file has not got its name.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, Final
+
+from tuning_tables.atomic_file import faults_naming, write_atomically
+
+MARKER: Final = ".retarder-synth"
+FORMAT: Final = "retarder-synth-results"
+CHANGING: Final = "changes"
+"""In place of a SHA-256: a file that knows by itself whether it is whole, or that grows."""
+
+
+def sha256_of(path: Path) -> str:
+    """SHA-256 of the file at `path`; `OSError` where it cannot be read."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def command_of(directory: Path) -> str | None:
+    """The command whose results `directory` holds; None where no marker says so."""
+    lines = lines_of(directory)
+    first = next(lines, None)
+    if isinstance(first, dict) and first.get("format") == FORMAT and isinstance(first.get("command"), str):
+        return str(first["command"])
+    return None
+
+
+def lines_of(directory: Path) -> Iterator[Any]:
+    """The lines of a marker that can be read; nothing where there is none."""
+    try:
+        content = (directory / MARKER).read_bytes()
+    except (OSError, ValueError):
+        return
+    for line in content.split(b"\n"):
+        try:
+            yield json.loads(line)
+        except (ValueError, RecursionError):
+            continue
+
+
+class OwnFiles:
+    """The files that a command wrote into `directory`, in this run or earlier; only its holder may make one.
+
+    Names are relative to the directory, with slashes. Raises `OSError` where the marker cannot be written.
+    """
+
+    def __init__(self, directory: Path, command: str) -> None:
+        self._directory, self._command = directory, command
+        self._contents: dict[str, set[str]] = {}
+        self._lock = threading.Lock()
+        for line in lines_of(directory):
+            match line:
+                case [str(name), *contents]:
+                    self._contents.setdefault(name, set()).update(map(str, contents))
+
+    def __iter__(self) -> Iterator[str]:
+        """Names of the files, of which some may be gone or only begun."""
+        return iter(tuple(self._contents))
+
+    def content_of(self, name: str) -> str | None:
+        """SHA-256 of the file `name` as the command wrote it, or `CHANGING`; None for one that it did not write, that
+        was changed since, or that is gone."""
+        contents, file = self._contents.get(name, set()), self._directory / name
+        if not contents or not file.is_file():
+            return None
+        if CHANGING in contents:
+            return CHANGING
+        found = sha256_of(file)
+        return found if found in contents else None
+
+    def is_changed(self, name: str) -> bool:
+        """Whether something else is now where the command wrote the file `name`."""
+        was_written = bool(self._contents.get(name))
+        return was_written and os.path.lexists(self._directory / name) and self.content_of(name) is None
+
+    def begin(self, name: str) -> None:
+        """Note that the file `name` is being written, beside the name that it will get."""
+        with self._lock:
+            if name not in self._contents:
+                self._contents[name] = set()
+                self._append([name])
+
+    def add(self, name: str, content: str) -> None:
+        """Note, on the disk when this returns, that the file `name` gets the `content` with this SHA-256."""
+        with self._lock:
+            if content not in self._contents.setdefault(name, set()):
+                self._contents[name].add(content)
+                self._append([name, content], to_disk=True)
+
+    def _append(self, line: list[str], to_disk: bool = False) -> None:
+        marker = self._directory / MARKER
+        with faults_naming(marker), marker.open("ab") as file:
+            file.write(b"\n" + line_of(line))  # the newline ends a line that was torn
+            file.flush()
+            if to_disk:
+                os.fsync(file.fileno())
+
+    def tidy(self) -> None:
+        """Write the marker anew, without files that are gone and contents that a file no longer has."""
+        with self._lock:
+            kept = {name: self.content_of(name) for name in sorted(self._contents)}
+            lost = {name: self._contents[name] for name, content in kept.items() if self.is_changed(name)}
+            self._contents = {name: {content} for name, content in kept.items() if content is not None} | lost
+            lines = [line_of({"format": FORMAT, "command": self._command})]
+            lines += [line_of([name, each]) for name, contents in self._contents.items() for each in sorted(contents)]
+            write_atomically(self._directory / MARKER, b"\n".join(lines) + b"\n")
+
+
+def line_of(value: object) -> bytes:
+    """A line of the marker."""
+    return json.dumps(value, ensure_ascii=True, separators=(",", ":")).encode("ascii")
