@@ -8,19 +8,18 @@ computed. One command at a time holds a directory.
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import hashlib
 import os
 import re
 import tempfile
 import threading
-import time
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Final
 
 from synth.faults.input_error import InputError
 from synth.faults.machine_fault import MACHINE_FAULTS
+from synth.frame.held_directory import held
 from synth.frame.own_files import CHANGING, MARKER, OwnFiles, command_of, sha256_of
 from tuning_tables.atomic_file import faults_naming, replacing
 
@@ -29,9 +28,6 @@ LEFTOVER: Final = re.compile(r"\.(.+)\.[0-9a-f]{16}\.part")
 """Name of an unfinished file, and in it the name that it would have got."""
 
 ELSEWHERE: Final = "give another directory by -o"
-
-TRIES, PAUSE_S = 10, 0.05
-"""The lock is asked for so often: `is_held` takes it for a moment to see whether it is free."""
 
 
 class ResultsDirectory:
@@ -169,7 +165,11 @@ def results_directory(
     `InputError` where the directory is not the command's, cannot be written, or is held by another run.
     """
     make_directory(path)
-    with held(path, command) as descriptor:
+    with held(path) as descriptor:
+        if descriptor is None:
+            raise InputError(
+                f"{path}: another {command_of(path) or command} is writing there; wait for it, or {ELSEWHERE}"
+            )
         require_own(path, command)
         own, reading = OwnFiles(path, command), frozenset(each.resolve() for each in reads)
         require_as_written(path, own)
@@ -182,52 +182,6 @@ def results_directory(
             os.fsync(descriptor)
         yield results
         own.tidy()
-
-
-@contextlib.contextmanager
-def held(path: Path, command: str) -> Iterator[int]:
-    """Hold the directory `path`, open under the descriptor handed out; `InputError` if another run does.
-
-    The lock is on the directory itself and the kernel's: no lock file is left, and it ends with the process, however
-    that ends. A file system without locks holds nobody back.
-    """
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        if not locked(descriptor):
-            raise InputError(
-                f"{path}: another {command_of(path) or command} is writing there; wait for it, or {ELSEWHERE}"
-            )
-        yield descriptor
-    finally:
-        os.close(descriptor)
-
-
-def locked(descriptor: int) -> bool:
-    """Lock the open directory for this process; True also on a file system without locks."""
-    for _ in range(TRIES):
-        try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            time.sleep(PAUSE_S)
-        except OSError:
-            return True
-        else:
-            return True
-    return False
-
-
-def is_held(path: Path) -> bool:
-    """Whether a run holds the directory `path` now."""
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return True
-    except OSError:
-        return False
-    finally:
-        os.close(descriptor)
-    return False
 
 
 def require_own(path: Path, command: str) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from synth.faults.input_error import InputError
-from synth.frame.results_directory import is_held
+from synth.frame.held_directory import is_held
 from synth.sweep.ledger import DONE, FAILED, STARTED, Event, Ledger
 from synth.sweep.sweep_directory import SweepDirectory
 

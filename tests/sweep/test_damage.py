@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from synth.frame.results_directory import is_held
+from synth.frame.held_directory import is_held
 from synth.sweep.ledger import DONE, PLAN, LedgerWriter, read_ledger
 from synth.sweep.sweep_directory import SweepDirectory, held_sweep
 from synth.sweep.unit_result import from_bytes, to_bytes

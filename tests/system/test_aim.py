@@ -19,6 +19,7 @@ import pytest
 from synth.cli import main
 from synth.frame.own_files import MARKER
 from synth.frame.results_directory import LEFTOVER
+from tests.frame.results import results_in
 from tests.system.conftest import EPOCH, Command
 from tuning_tables.aim import aim_exit_speed
 from tuning_tables.aim.json_file import read_aim_json
@@ -61,7 +62,7 @@ def aimed(aimed_once: tuple[Path, int], tmp_path: Path) -> Path:
 
 def files_in(directory: Path) -> dict[str, bytes]:
     """The content of every file by its relative name."""
-    return {p.relative_to(directory).as_posix(): p.read_bytes() for p in directory.rglob("*") if p.is_file()}
+    return results_in(directory)
 
 
 def check(out: Path) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from tests.controller_code.sample_book import FOUR_AXLES, table_of
+from tests.frame.results import results_in
 from tests.system.conftest import Command
 from tests.system.test_start_up import HEAVY, modules_after
 from tests.tuning_tables.aim.made_tables import category_table, measured_table, reported_of
@@ -93,7 +94,7 @@ def test_export_of_a_directory(
 ) -> None:
     ran = command("export", aims, *options, "-o", tmp_path / "new", "--json")
     assert ran.code == 0
-    files = {path.name: path.read_bytes() for path in (tmp_path / "new").iterdir()}
+    files = results_in(tmp_path / "new")
     assert files == expected()
     assert {Path(name).name for name in json.loads(ran.out)["files"]} == set(files)
 
@@ -158,7 +159,7 @@ def test_tables_of_both_kinds_in_one_directory(command: Command, aims: Path, tmp
     ran = command("inspect", aims, "--json")
     assert [file["kind"] for file in json.loads(ran.out)["files"]] == ["table", "aim table", "aim table", "aim table"]
     assert command("export", aims, "--format", "csv", "-o", tmp_path / "csv").code == 0
-    assert len(list((tmp_path / "csv").iterdir())) == 3
+    assert len(results_in(tmp_path / "csv")) == 3
     assert command("verify", aims).out.splitlines()[-1] == "4 tables, 4 files: nothing found"
 
 
@@ -167,6 +168,4 @@ def test_equal_tables_make_equal_files(command: Command, aims: Path, tmp_path: P
     assert [to_aim_json(table) for table in made] == [to_aim_json(table) for table in TABLES[:2]]
     for place in ("a", "b"):
         assert command("export", aims, "--format", "st", "-o", tmp_path / place).code == 0
-    assert {f.name: f.read_bytes() for f in (tmp_path / "a").iterdir()} == {
-        f.name: f.read_bytes() for f in (tmp_path / "b").iterdir()
-    }
+    assert results_in(tmp_path / "a") == results_in(tmp_path / "b")

@@ -116,7 +116,7 @@ def test_a_file_in_the_place_of_a_folder(command: Command, one_class: Path, tmp_
     (tmp_path / "tables").write_text("mine")
     ran = command("tune", one_class, "-o", tmp_path)
     assert ran.code == 2
-    assert "tables: this is a file" in ran.sentence
+    assert f"{tmp_path}: it holds tables, which 'tune' did not write" in ran.sentence
 
 
 @pytest.mark.parametrize("epoch", ["yesterday", "1e9", "-9" * 20])

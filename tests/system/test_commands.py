@@ -14,6 +14,7 @@ import pytest
 
 from synth.configuration.config_file import parse_config
 from synth.frame.results_directory import results_directory
+from tests.frame.results import results_in
 from tests.system.conftest import CLASS, Command, changed
 from tuning_tables import from_json, read_book, read_json, to_csv, to_json, write_book
 from tuning_tables.canonical import canonical_json, document_checksum
@@ -34,7 +35,7 @@ def summary_of(directory: Path) -> dict[str, Any]:
 def test_tune_leaves_what_the_contract_says(tuned_once: tuple[Path, int]) -> None:
     directory, code = tuned_once
     assert code == 0
-    files = {path.relative_to(directory).as_posix() for path in directory.rglob("*") if path.is_file()}
+    files = set(results_in(directory))
     assert {"book.h5", "report.html", "summary.json", f"tables/{ID}.json", f"tables/{ID}.csv"} <= files
     assert {"plots/rms-by-controller.png", "plots/rms-by-controller.svg", "plots/feasibility.svg"} <= files
     assert {path.name for path in (directory / "c").iterdir()} == C_FILES
@@ -235,7 +236,7 @@ def test_export_of_controller_code_is_what_tune_leaves(command: Command, tuned: 
         assert (tmp_path / "c" / name).read_bytes() == (tuned / "c" / name).read_bytes()
     ran = command("export", tuned / "tables" / f"{ID}.json", "--format", "st", "-o", tmp_path / "st")
     assert ran.code == 0
-    assert {path.name for path in (tmp_path / "st").iterdir()} == {"retarder_table.st", "retarder_self_test.st"}
+    assert set(results_in(tmp_path / "st")) == {"retarder_table.st", "retarder_self_test.st"}
 
 
 def test_export_gives_the_correction_beside_unchanged_tables(command: Command, tuned: Path, tmp_path: Path) -> None:
@@ -251,7 +252,7 @@ def test_export_gives_the_correction_beside_unchanged_tables(command: Command, t
         asked = ("export", tuned / "book.h5", "--format", form, *options)
         assert command(*asked, "-o", folders[0]).code == 0
         assert command(*asked, "--correction", "0.1", "-o", folders[1]).code == 0
-        plain, corrected = ({file.name: file.read_bytes() for file in folder.iterdir()} for folder in folders)
+        plain, corrected = (results_in(folder) for folder in folders)
         assert corrected.keys() - plain.keys() == new
         assert {name: corrected[name] for name in plain} == plain
     header = (tmp_path / "c0corrected" / "retarder_correction.h").read_text("ascii")
@@ -276,11 +277,11 @@ def test_a_correction_that_cannot_be_is_refused(
 
 def test_export_takes_a_prefix_a_small_self_test_and_splits(command: Command, tuned: Path, tmp_path: Path) -> None:
     book = tuned / "book.h5"
-    ran = command("export", book, "--format", "c", "--prefix", "Bunch", "--self-test", "small", "-o", tuned / "c")
+    ran = command("export", book, "--format", "c", "--prefix", "Bunch", "--self-test", "small", "-o", tuned / "st")
     assert ran.code == 0
     names = {name.replace("retarder", "bunch").replace("golden", "bunch_golden") for name in C_FILES}
     assert {Path(line).name for line in ran.out.splitlines()} == names
-    small, full = ((tuned / "c" / f"{prefix}_self_test.c").stat().st_size for prefix in ("bunch", "retarder"))
+    small, full = ((tuned / name).stat().st_size for name in ("st/bunch_self_test.c", "c/retarder_self_test.c"))
     assert small < 0.5 * full
     for folder, prefix in (("st", "PARK"), ("st", "BUNCH")):
         ran = command("export", book, "--format", "st", "--prefix", prefix, "--split", "-o", tuned / folder)
@@ -288,12 +289,14 @@ def test_export_takes_a_prefix_a_small_self_test_and_splits(command: Command, tu
         assert Path(ran.out.splitlines()[0]).name == f"0001_{prefix}_TABLE.st"
     # The checker reads them all, whatever their names.
     ran = command("verify", tuned, "--json")
-    assert {"c/bunch_table.c", "c/bunch_golden_vectors.csv", "c/retarder_table.c"} <= set(json.loads(ran.out)["files"])
+    assert {"st/bunch_table.c", "st/bunch_golden_vectors.csv", "c/retarder_table.c"} <= set(
+        json.loads(ran.out)["files"]
+    )
     assert {"st/0004_PARK_LOAD.st", "st/0004_BUNCH_LOAD.st"} <= set(json.loads(ran.out)["files"])
     assert json.loads(ran.out)["findings"] == []
     for name, old, new in (
         ("st/0005_PARK_SELECT.st", "OF INT := [1", "OF INT := [2"),
-        ("c/bunch_table.h", "CATEGORY_LS 2u", "CATEGORY_LS 1u"),
+        ("st/bunch_table.h", "CATEGORY_LS 2u", "CATEGORY_LS 1u"),
     ):
         content = (tuned / name).read_text("ascii")
         (tuned / name).write_text(content.replace(old, new, 1), "ascii")
@@ -301,7 +304,7 @@ def test_export_takes_a_prefix_a_small_self_test_and_splits(command: Command, tu
     ran = command("verify", tuned)
     assert ran.code == 3
     assert "st/0004_PARK_LOAD.st: disagrees: CategoryOf[0] is 2, but the table says 1" in ran.out
-    assert "c/bunch_table.c: disagrees: its header defines the categories" in ran.out
+    assert "st/bunch_table.c: disagrees: its header defines the categories" in ran.out
 
 
 @pytest.mark.parametrize(
@@ -327,7 +330,7 @@ def test_export_says_which_tables_a_controller_never_chooses(command: Command, t
     first, _ = read_book(tuned / "book.h5")
     lighter = replace(first, id="lighter", cut=replace(first.cut, mass_t=first.cut.mass_t - 1.0))
     write_book([first, lighter], tmp_path / "both.h5")
-    ran = command("export", tmp_path / "both.h5", "--format", "c", "-o", tmp_path)
+    ran = command("export", tmp_path / "both.h5", "--format", "c", "-o", tmp_path / "c")
     assert ran.code == 0
     assert ran.sentence.startswith(f"warning: {tmp_path}/both.h5: lighter is never chosen")
     other = replace(first, id="other", retarder=replace(first.retarder, name="another"))
@@ -344,11 +347,11 @@ def test_plot_draws_without_solving(command: Command, tuned: Path, two_classes: 
     names = {Path(name).name for name in json.loads(ran.out)["files"]}
     kinds = ("lines", "surfaces", "passes")
     assert names == {f"{i}-{kind}.{form}" for i in (ID, HEAVIER) for kind in kinds for form in ("png", "svg")}
-    assert names == {path.name for path in (tmp_path / "plots").iterdir()}
+    assert names == set(results_in(tmp_path / "plots"))
     without = command("plot", tuned / "tables" / f"{ID}.json", "-o", tmp_path / "bare")
     assert without.code == 0
     assert "no passes are drawn" in without.sentence
-    assert len(list((tmp_path / "bare").iterdir())) == 4
+    assert len(results_in(tmp_path / "bare")) == 4
 
 
 def test_init_prints_what_tune_reads(command: Command) -> None:

@@ -10,6 +10,7 @@ import pytest
 import synth
 from plant_models.library.hump_schema import hump_schema
 from synth.faults.input_error import InputError
+from tests.frame.results import results_in
 from tests.plant_models.hump.test_hump_file import SMALL
 from tests.system.conftest import Command
 
@@ -66,7 +67,7 @@ def test_draw(command: Command, file: Path, tmp_path: Path) -> None:
     run = command("hump", "draw", file, "-o", tmp_path / "out", "--track", "2", "--json")
     assert run.code == 0
     assert json.loads(run.out)["track"] == 2
-    assert {path.name for path in (tmp_path / "out").iterdir()} == {"small-hump.png", "small-hump.svg"}
+    assert set(results_in(tmp_path / "out")) == {"small-hump.png", "small-hump.svg"}
     refused = command("hump", "draw", file, "-o", tmp_path / "none", "--track", "3")
     assert refused.code == 2
     assert refused.sentence == "--track is 3; the hump has the tracks 1 to 2"

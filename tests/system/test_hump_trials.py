@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 from synth.cli import main
+from tests.frame.results import results_in
 from tests.system.conftest import EPOCH, Command, changed
 
 SMALL = """\
@@ -65,7 +66,7 @@ def arrays_of(directory: Path) -> Mapping[str, Any]:
 
 def test_every_file_is_whole_and_listed(humped: Path) -> None:
     summary = summary_of(humped)
-    files = {p.relative_to(humped).as_posix() for p in humped.rglob("*") if p.is_file()}
+    files = set(results_in(humped))
     batches = {name for name in files if name.startswith("batches/")}
     assert len(batches) == 1
     assert files - batches - {"summary.json"} == set(summary["files"])
@@ -117,9 +118,9 @@ def test_one_hump_speed_is_what_is_told(command: Command, small: Path, tmp_path:
     assert command("hump", "simulate", config, "-o", tmp_path / "out").code == 0
     figure = summary_of(tmp_path / "out")["figures"]["hump_speed"]
     np.testing.assert_allclose([figure["value"], *figure["ci95"]], 1.5, rtol=1e-12)
-    names = {path.name for path in (tmp_path / "out").iterdir()}
+    names = {name.partition("/")[0] for name in results_in(tmp_path / "out")}
     assert names.isdisjoint({"report.html", "hump.html"})
-    assert not list((tmp_path / "out" / "plots").iterdir())
+    assert not (tmp_path / "out" / "plots").exists()
 
 
 def test_stale_pages_and_pictures_go(command: Command, humped: Path, tmp_path: Path) -> None:
@@ -200,7 +201,7 @@ def test_the_template_of_init_is_read_by_simulate(command: Command, tmp_path: Pa
     assert printed.code == 0
     config = tmp_path / "mine.toml"
     config.write_text(changed(printed.out, ("cuts = 40", "cuts = 3")), encoding="utf-8")
-    assert command("hump", "speed", config, "-o", tmp_path).code == 0
+    assert command("hump", "speed", config, "-o", tmp_path / "out").code == 0
     assert command("init", "--hump", "dumper").out.startswith("# Yard of a car dumper")
     assert "the library has no such hump; did you mean large?" in command("init", "--hump", "larg").sentence
     assert command("init", "--hump", "--aim").sentence == "init prints one file at a time; give one of its options"
@@ -229,8 +230,4 @@ def test_bad_input_is_one_sentence(
 
 
 def test_what_another_command_has_left_is_not_written_over(command: Command, humped: Path, tmp_path: Path) -> None:
-    (tmp_path / "summary.json").write_text('{"format": "aim-summary"}', encoding="utf-8")
-    ran = command("hump", "simulate", "-o", tmp_path)
-    assert ran.code == 2
-    assert "it holds the results of 'aim'" in ran.sentence
     assert "it holds the results of 'hump simulate'" in command("aim", "-o", humped).sentence

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from synth.configuration.config_file import load_config
+from tests.frame.results import results_in
 from tests.synth.conftest import GONDOLA_OFFSETS_M
 from tests.system.conftest import Command
 from tuning_tables import Approach, CutId, Generator, Predicted, RetarderId
@@ -35,7 +36,7 @@ def test_a_directory_gives_pictures_figures_and_a_table(
     assert ran.code == 0
     document = json.loads((out / "loops.json").read_bytes())
     assert [each["id"] for each in document["loops"]] == [TABLE, "gondola-4-30t-to-1.5-m-s"]
-    names = {path.name for path in out.iterdir()} - {"loops.json"}
+    names = set(results_in(out)) - {"loops.json"}
     assert {str(out / name) for name in names} == set(document["files"])
     assert {f"{TABLE}-response.png", f"{TABLE}-portrait.svg", f"{TABLE}-structure.svg"} <= names
     assert all((out / name).read_bytes()[:4] == b"\x89PNG" for name in names if name.endswith(".png"))
@@ -62,7 +63,7 @@ def test_a_table_for_point_sensors_is_shown_too(command: Command, two_classes: P
     heard = [each["sensor"] for each in found["simulator"]["readings"]]  # every axle is heard
     assert list(dict.fromkeys(heard)) == [0, 1, 2, 3]
     assert len(heard) > 4
-    names = {path.name for path in (tmp_path / "out").iterdir()}
+    names = set(results_in(tmp_path / "out"))
     assert names == {
         "loops.json",
         *(f"points-{name}.{form}" for name in ("response", "structure") for form in ("png", "svg")),

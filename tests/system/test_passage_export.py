@@ -11,6 +11,7 @@ import pytest
 
 from tests.controller_code.passage_tables import passage_book, passage_table
 from tests.controller_code.sample_book import sample_book
+from tests.frame.results import results_in
 from tests.system.conftest import Command
 from tests.system.test_start_up import HEAVY, modules_after
 from tuning_tables import RetarderId, write_book, write_json
@@ -56,7 +57,7 @@ def test_export_of_a_directory_and_of_a_book(
     for source in (folder, tmp_path / "book.h5"):
         ran = command("export", source, *options, "-o", tmp_path / f"from-{source.name}", "--json")
         assert ran.code == 0
-        files = {path.name: path.read_bytes() for path in (tmp_path / f"from-{source.name}").iterdir()}
+        files = results_in(tmp_path / f"from-{source.name}")
         assert files == expected()
         assert {Path(name).name for name in json.loads(ran.out)["files"]} == set(files)
         assert ("shadow is never chosen" in ran.err) == (options[1] in ("c", "st"))

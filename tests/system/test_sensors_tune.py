@@ -15,6 +15,7 @@ from synth.checker.finding import Kind
 from synth.checker.verdict import verify
 from synth.cli import main
 from tests.checker.planted_fault import rewrite
+from tests.frame.results import results_in
 from tests.system.conftest import EPOCH, Command, changed
 from tuning_tables.passages.json_file import read_passage_json
 
@@ -67,7 +68,7 @@ def tuned_points(config: Path, tmp_path_factory: pytest.TempPathFactory) -> Path
 
 def test_it_leaves_tables_code_pictures_report_and_a_summary_of_them_all(tuned_points: Path) -> None:
     summary = json.loads((tuned_points / "summary.json").read_bytes())
-    here = {str(path.relative_to(tuned_points)) for path in tuned_points.rglob("*") if path.is_file()}
+    here = set(results_in(tuned_points))
     assert here == {*summary["files"], "summary.json"}
     assert all(
         hashlib.sha256((tuned_points / name).read_bytes()).hexdigest() == digest
@@ -173,7 +174,7 @@ def test_plot_draws_switching_speeds_and_passes_where_the_plant_is_known(
     unknown = command("plot", tuned_points / "tables" / f"{TABLE}.json", "-o", tmp_path / "one")
     assert unknown.code == 0
     assert "no passes are drawn" in unknown.sentence
-    assert {path.name for path in (tmp_path / "one").iterdir()} == {
+    assert set(results_in(tmp_path / "one")) == {
         f"{TABLE}-switching-speeds.png", f"{TABLE}-switching-speeds.svg",
     }  # fmt: skip
 

@@ -10,6 +10,7 @@ import pytest
 from synth.cli import main
 from synth.studies.registry import STUDIES
 from synth.studies.result import read_result
+from tests.frame.results import results_in
 
 
 def test_the_list_names_question_and_time_of_every_study(capsys: pytest.CaptureFixture[str]) -> None:
@@ -57,4 +58,4 @@ def test_a_run_leaves_its_files(tmp_path: Path, capsys: pytest.CaptureFixture[st
     result = read_result(study, tmp_path / "interpolation.json")
     assert capsys.readouterr().out == result.json()
     assert (tmp_path / "interpolation.md").read_text(encoding="utf-8") == result.markdown()
-    assert {path.suffix for path in tmp_path.iterdir()} == {".json", ".md", ".png", ".svg"}
+    assert {Path(name).suffix for name in results_in(tmp_path)} == {".json", ".md", ".png", ".svg"}

@@ -15,6 +15,7 @@ import pytest
 
 from synth.cli import TRACEBACK
 from synth.cli import init as init_module
+from tests.frame.results import results_in
 from tests.system.conftest import CLASS, Command
 
 PROGRAM = "from synth.cli import script; script()"
@@ -90,7 +91,7 @@ def test_a_full_disk_names_the_file_and_is_no_fault_of_the_input(tuned: Path, tm
     assert ran.stderr.startswith(f"retarder-synth: {tmp_path}/c/")
     assert "File too large; raise the limit of a file's size" in ran.stderr
     assert ran.stderr.count("\n") == 1
-    assert list((tmp_path / "c").glob("*")) == []
+    assert results_in(tmp_path / "c") == {}
 
 
 @pytest.mark.usefixtures("tuned_once")  # compiles the kernels, whose files are larger than the limit
@@ -131,7 +132,7 @@ def test_a_directory_or_ledger_that_cannot_be_forced_out_is_named(
         raise OSError(errno.EIO, os.strerror(errno.EIO))
 
     monkeypatch.setattr(os, "fsync", fail)
-    for name, named in (("tune", tmp_path / "tune"), ("sweep", tmp_path / "sweep/sweep/ledger.jsonl")):
+    for name, named in (("tune", tmp_path / "tune/.retarder-synth"), ("sweep", tmp_path / "sweep/.retarder-synth")):
         ran = command(name, plain, "-o", tmp_path / name)
         assert (ran.code, ran.out) == (74, "")
         assert (
