@@ -28,7 +28,7 @@ def identify_command(
     passes = loaded_passes(logs, mapping, config, source.place, lambda sentence: say(f"warning: {sentence}"))
     from synth.present.identify_outputs import write_identified
     from synth.yard.measured_passes.identify import identify
-    from synth.yard.measured_passes.identify_summary import identify_sentences
+    from synth.yard.measured_passes.identify_summary import identify_sentences, other_tests
 
     started = time.monotonic()
     reads = [*logs, *filter(None, (mapping, config_path)), *(Path(each.place) for each in source.library.own)]
@@ -39,5 +39,6 @@ def identify_command(
     if as_json:
         sys.stdout.write((output / "summary.json").read_text(encoding="utf-8"))
     else:
-        print("\n".join((*identify_sentences(found), f"{output}: config.toml, plots/, report.html, summary.json")))
+        left = f"{output}: config.toml, plots/, report.html, summary.json"
+        print("\n".join((*identify_sentences(found), *other_tests(found), left)))
     return LIMITS_MISSED if found.wrong else OK

@@ -11,8 +11,10 @@ from synth.present.report.measured_report import Figures
 from synth.yard.measured_passes.config_source import ConfigSource
 from synth.yard.measured_passes.identified_config import config_files, identified
 from synth.yard.measured_passes.identify import Identified
-from synth.yard.measured_passes.identify_summary import CONFIG, identify_sentences, identify_summary
+from synth.yard.measured_passes.identify_summary import CONFIG, identify_sentences, identify_summary, verdict
 from tuning_tables.canonical import canonical_json
+
+TEST_HEADS: Final = ("the test looks for", "effect", "95 % interval", "matters from", "unit", "z", "p", "verdict")
 
 LIMITS: Final = (
     "The numbers are those of the model of this program. Where a test says that the model does not hold, they are what "
@@ -44,9 +46,13 @@ def figures_of(found: Identified) -> tuple[Figures, ...]:
          "yes" if f.identified else "no: stays as it was", ", ".join(key for key, _ in f.with_others))
         for f in found.findings
     ]  # fmt: skip
-    tests = [(t.looks_for, f"{t.z:+.1f}", f"{t.p:.2g}", "no" if t in found.wrong else "yes") for t in found.tests]
+    tests = [
+        (t.effect.looks_for, f"{t.size:+.2g}", "{:+.2g} to {:+.2g}".format(*t.interval), f"{t.effect.matters_from:g}",
+         t.effect.unit, f"{t.z:+.1f}", f"{t.p:.2g}", verdict(t, t in found.wrong))
+        for t in found.tests
+    ]  # fmt: skip
     heads = ("key", "before", "identified", "95 % interval", "unit", "told", "told together with")
     return (
         Figures("Numbers", heads, numbers),
-        Figures("Does the model hold?", ("the test looks for", "z", "p", "holds"), tests),
+        Figures("Does the model hold?", TEST_HEADS, tests),
     )

@@ -6,6 +6,7 @@ the path as states of their own, in float64.
 
     state    e = v²/2,  ξ of the cut,  w of the cut,  η along the path
     predict  e' = e + ΔG − w·ΔR − ξ (1 + η)·ΔW,   η' = ρ η + noise,   the noises of e' and η' belong together
+             where a law beyond the model is tried, ΔW and ΔR times 1 + b (v − 4 m/s), with the v that is expected
     correct  by the measured speed: v_m = √(2e) + bias + noise
 """
 
@@ -25,6 +26,9 @@ SLOWEST_M_S = 0.4
 """A slower reading tells nothing: the law of the noise is another near standstill."""
 
 LEAST_ENERGY = 0.5 * 0.3**2
+
+USUAL_M_S = 4.0
+"""Where a law beyond the model is that of the model."""
 
 
 class Spread(NamedTuple):
@@ -54,6 +58,18 @@ class Rows(NamedTuple):
     braked_m2_s2: Floats
 
 
+class BySpeed(NamedTuple):
+    """Laws that the model has not: relative change by each m/s above `USUAL_M_S`; the model is at 0.
+
+    The speed is the one that the filter expects, from the readings so far. Path by time must not stand here: it knows
+    of friction that no reading has told yet. A cut that brakes better than expected is slower than expected, so
+    friction would seem to fall with speed where it does not.
+    """
+
+    friction: float
+    resistance: float
+
+
 class Cuts(NamedTuple):
     """What is known of the cuts at the end of their passes, (m,): ξ and w with their variances."""
 
@@ -65,7 +81,15 @@ class Cuts(NamedTuple):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def filter_passes(
-    rows: Rows, spread: Spread, first_row: Ints, first: int, last: int, surprise: Floats, variance: Floats, cuts: Cuts
+    rows: Rows,
+    spread: Spread,
+    by_speed: BySpeed,
+    first_row: Ints,
+    first: int,
+    last: int,
+    surprise: Floats,
+    variance: Floats,
+    cuts: Cuts,
 ) -> None:
     """Filter the passes `first` … `last` − 1. `surprise`, `variance` (n,): reading less prediction and the variance of
     that, NaN at rows without a usable reading and at the first one of a pass, from which the filter starts."""
@@ -91,7 +115,7 @@ def filter_passes(
                     x[0] = max(0.5 * (v * v - reading_var), LEAST_ENERGY)
                     p[0, 0] = v * v * reading_var
             if begun and row < end - 1:
-                predict(x, p, f, q, rows, row, spread)
+                predict(x, p, f, q, rows, row, spread, by_speed)
         cuts.friction[number], cuts.friction_variance[number] = x[1], p[1, 1]
         cuts.resistance_n_per_kn[number], cuts.resistance_variance[number] = x[2], p[2, 2]
 
@@ -115,10 +139,14 @@ def correct(x, p, v, reading_var, row, surprise, variance):
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def predict(x, p, f, q, rows, row, spread):
+def predict(x, p, f, q, rows, row, spread, by_speed):
     """Over one step of path, with η as an Ornstein–Uhlenbeck process whose mean over the step does the work."""
     step = max(rows.step_m[row], 1e-9)
-    work, length = rows.braked_m2_s2[row], spread.correlation_length_m
+    middle = 0.5 * (rows.gained_m2_s2[row] - x[2] * rows.drag_m2_s2[row] - x[1] * rows.braked_m2_s2[row])
+    speed = math.sqrt(2.0 * max(x[0] + middle, LEAST_ENERGY))
+    work = rows.braked_m2_s2[row] * (1.0 + by_speed.friction * (speed - USUAL_M_S))
+    drag = rows.drag_m2_s2[row] * (1.0 + by_speed.resistance * (speed - USUAL_M_S))
+    length = spread.correlation_length_m
     ratio = step / length
     memory = math.exp(-ratio)
     # The mean of η over the step is `held` times its first value, plus noise.
@@ -128,9 +156,10 @@ def predict(x, p, f, q, rows, row, spread):
     end_var = -sigma2 * math.expm1(-2.0 * ratio)
     both_var = sigma2 * math.expm1(-ratio) ** 2 / ratio
     force = x[1] * work
-    f[0] = 1.0
+    by_energy = by_speed.friction * x[1] * rows.braked_m2_s2[row] + by_speed.resistance * x[2] * rows.drag_m2_s2[row]
+    f[0] = 1.0 - by_energy / speed
     f[1] = -(1.0 + held * x[3]) * work
-    f[2] = -rows.drag_m2_s2[row]
+    f[2] = -drag
     f[3] = -force * held
     # ξ and η are told by the same readings, so their errors go against each other: the mean of ξη is not ξ̂·η̂.
     x[0] += rows.gained_m2_s2[row] + f[2] * x[2] + f[1] * x[1] - held * work * p[1, 3]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from typing import Any, Final
 
@@ -39,15 +38,35 @@ def _sentences(found: Identified) -> Iterator[str]:
     if not found.wrong:
         yield "No test says that the model does not hold."
     for test in found.wrong:
-        yield f"The model does not hold: {test.looks_for}{size_of(test)} (p = {test.p:.1g})."
+        yield f"The model does not hold: {test_sentence(test)} (p = {test.p:.1g})."
+    open_ones = [test for test in found.tests if test.may_matter and test not in found.wrong]
+    if open_ones:
+        yield (
+            f"Of {len(open_ones)} {'effect' if len(open_ones) == 1 else 'effects'} these passes do not say whether it "
+            "matters; more passes would."
+        )
 
 
-def size_of(test: ResidualTest) -> str:
-    """The size of an effect with its interval, where a test tells it."""
-    if not math.isfinite(test.size):
-        return ""
-    low, high = test.size - 1.96 * test.size_std, test.size + 1.96 * test.size_std
-    return f", by {test.size:+.3f} [{low:+.3f}, {high:+.3f}] {test.unit.removeprefix('1 ')}"
+def test_sentence(test: ResidualTest) -> str:
+    """The effect, its size with the interval, and from where on it matters."""
+    low, high = test.interval
+    effect = test.effect
+    return (
+        f"{effect.looks_for}, by {test.size:+.2g} [{low:+.2g}, {high:+.2g}] {effect.unit}; it matters from "
+        f"{effect.matters_from:g}"
+    )
+
+
+def other_tests(found: Identified) -> tuple[str, ...]:
+    """A line for each test that does not say that the model is wrong."""
+    return tuple(f"{verdict(test, False)}: {test_sentence(test)}" for test in found.tests if test not in found.wrong)
+
+
+def verdict(test: ResidualTest, fails: bool) -> str:
+    """What a test comes to."""
+    if fails:
+        return "the model does not hold"
+    return "not decided" if test.may_matter else "holds"
 
 
 def identify_summary(found: Identified, created: str, hashes: dict[str, str]) -> dict[str, Any]:
@@ -84,5 +103,14 @@ def number(finding: Finding) -> dict[str, Any]:
 
 def tested(test: ResidualTest, fails: bool) -> dict[str, Any]:
     """One test."""
-    size = {"size": test.size, "size_std": test.size_std, "unit": test.unit} if math.isfinite(test.size) else {}
-    return {"looks_for": test.looks_for, "z": test.z, "p": test.p, "model_wrong": fails, **size}
+    return {
+        "looks_for": test.effect.looks_for,
+        "unit": test.effect.unit,
+        "size": test.size,
+        "ci95": list(test.interval),
+        "matters_from": test.effect.matters_from,
+        "z": test.z,
+        "p": test.p,
+        "verdict": verdict(test, fails),
+        "model_wrong": fails,
+    }

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +15,7 @@ from numpy.typing import NDArray
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.speed_sensor import measured_speed_std
 from synth.kernels.measured.drive_rows import Commands, drive_rows
-from synth.kernels.measured.pass_filter import Cuts, Rows, Spread, filter_passes
+from synth.kernels.measured.pass_filter import BySpeed, Cuts, Rows, Spread, filter_passes
 from synth.yard.measured_passes import unknowns as asked
 from synth.yard.measured_passes.fitting_passes import FittingPasses
 from synth.yard.measured_passes.pass_rows import PassRows, pass_rows
@@ -24,8 +23,8 @@ from synth.yard.measured_passes.pass_rows import PassRows, pass_rows
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-USUAL_M_S, USUAL_KPA = 4.0, 300.0
-"""Where a law beyond the model is that of the model."""
+USUAL_KPA = 300.0
+"""Where a force that is not straight in the pressure is that of the model."""
 
 
 @frozen_arrays
@@ -81,35 +80,21 @@ class Likelihood:
         over, kpa = self.pressures(values) if pressures is None else pressures
         log, rows = self.passes.log, self.rows
         force = self.passes.plant.position.force
-        by_speed, pressing, drag = self.beyond(values, over)
+        bend = values.get(asked.FORCE_BY_PRESSURE, 0.0)
+        pressing = over if bend == 0.0 else over * (1.0 + bend * (over / USUAL_KPA - 1.0))
+        by_speed = BySpeed(values.get(asked.FRICTION_BY_SPEED, 0.0), values.get(asked.RESISTANCE_BY_SPEED, 0.0))
         brake = rows.brake_m2_s2_per_kpa + values[asked.SLOPE_BY_AXLES] * rows.by_axles_m2_s2_per_kpa
         configured = getattr(force, self.slope_field)
-        braked = values[self.slope_key] / configured * by_speed * np.einsum("ij,ij->i", brake, pressing)
+        braked = values[self.slope_key] / configured * np.einsum("ij,ij->i", brake, pressing)
         spread = self.spread(values)
         n, m = len(log.time_s), len(log)
         surprise, variance = np.empty(n), np.empty(n)
         cuts = Cuts(*(np.empty(m) for _ in Cuts._fields))
         filter_passes(
-            Rows(log.speed_m_s, rows.step_m, rows.gained_m2_s2, rows.drag_m2_s2_per_n_kn * drag, braked), spread,
-            log.first_row, 0, m, surprise, variance, cuts,
+            Rows(log.speed_m_s, rows.step_m, rows.gained_m2_s2, rows.drag_m2_s2_per_n_kn, braked), spread,
+            by_speed, log.first_row, 0, m, surprise, variance, cuts,
         )  # fmt: skip
         return self.observed(values, surprise, variance, cuts, kpa)
-
-    def beyond(self, values: Mapping[str, float], over: Floats) -> tuple[Floats, Floats, Floats]:
-        """What the model has not, at 0 unless `values` have it: factor of friction (n,), pressure that presses (n, p),
-        factor of resistance (n,). By a metre a second above `USUAL_M_S`, and by the pressure over `USUAL_KPA`."""
-        speed = self.speed_above_m_s
-        friction = 1.0 + values.get(asked.FRICTION_BY_SPEED, 0.0) * speed
-        bend = values.get(asked.FORCE_BY_PRESSURE, 0.0)
-        pressing = over if bend == 0.0 else over * (1.0 + bend * (over / USUAL_KPA - 1.0))
-        return friction, pressing, 1.0 + values.get(asked.RESISTANCE_BY_SPEED, 0.0) * speed
-
-    @cached_property
-    def speed_above_m_s(self) -> Floats:
-        """Path by time from each row to the next, less `USUAL_M_S`, (n,)."""
-        log = self.passes.log
-        step_s = np.diff(log.time_s, append=np.inf)
-        return np.asarray(np.where(self.rows.step_m > 0.0, self.rows.step_m / step_s - USUAL_M_S, 0.0))
 
     @property
     def slope_field(self) -> str:

@@ -13,7 +13,7 @@ from synth.faults.input_error import InputError
 from synth.studies.identification.truths import text_of_classes
 from synth.yard.measured_passes.estimate import Estimate
 from synth.yard.measured_passes.fitting_passes import FittingPasses
-from synth.yard.measured_passes.residual_tests import ResidualTest, residual_tests, wrong
+from synth.yard.measured_passes.residual_tests import MOTION, ResidualTest, residual_tests, wrong
 from tuning_tables.pass_log.log_files import write_log
 
 
@@ -21,13 +21,12 @@ def test_the_model_holds_for_its_own_passes(passes: FittingPasses, found: Estima
     tests = residual_tests(passes, found, 2)
     assert len(tests) == 5
     assert wrong(tests) == ()
-    sized = [test for test in tests if np.isfinite(test.size)]
-    assert all(abs(test.size) < 4.0 * test.size_std for test in sized)
+    assert all(abs(test.z) < 4.0 for test in tests)
 
 
 def test_holm_stops_at_the_first_that_may_be_chance() -> None:
     ps = (0.0001, 0.004, 0.02, 0.5)
-    tests = tuple(ResidualTest(str(p), 0.0, p) for p in reversed(ps))
+    tests = tuple(ResidualTest(MOTION, 0.0, (0.0, 0.0), 0.0, p) for p in reversed(ps))
     assert [test.p for test in wrong(tests)] == [0.0001]
     assert [test.p for test in wrong(tests[1:])] == [0.0001, 0.004]
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import dblquad
 
-from synth.kernels.measured.pass_filter import Cuts, Rows, Spread, filter_passes, mean_variance
+from synth.kernels.measured.pass_filter import BySpeed, Cuts, Rows, Spread, filter_passes, mean_variance
 
 NOISE, CV, MEAN_W, STD_W = 0.05, 0.15, 1.4, 0.4
 
@@ -31,7 +31,7 @@ def filtered(rows: Rows, path_std: float) -> tuple[np.ndarray, np.ndarray, Cuts]
     surprise, variance = np.empty(n), np.empty(n)
     cuts = Cuts(*(np.empty(1) for _ in Cuts._fields))
     spread = Spread(np.array([CV]), np.array([MEAN_W]), np.array([STD_W]), path_std, 2.0, NOISE, 0.0)
-    filter_passes(rows, spread, np.array([0, n]), 0, 1, surprise, variance, cuts)
+    filter_passes(rows, spread, BySpeed(0.0, 0.0), np.array([0, n]), 0, 1, surprise, variance, cuts)
     return surprise, variance, cuts
 
 
@@ -79,3 +79,55 @@ def test_readings_that_are_missing_are_left_out() -> None:
     surprise, variance, _ = filtered(rows, 0.1)
     assert np.flatnonzero(np.isnan(surprise)).tolist() == [0, 1, 5]
     assert variance[6] > variance[4]
+
+
+PASSES, ROWS, ROW_S, PARTS = 4000, 25, 0.1, 8
+DECELERATION_M_S2, PATH_STD, LENGTH_M = 1.2, 0.15, 2.0
+
+
+def braked_passes(seed: int) -> Rows:
+    """Passes whose friction is alike at every speed, but not along the path, from 5.5 to 7 m/s at the beginning."""
+    rng = np.random.default_rng(seed)
+    speed = np.empty((PASSES, ROWS))
+    step, v, eta = np.zeros((PASSES, ROWS)), rng.uniform(5.5, 7.0, PASSES), PATH_STD * rng.standard_normal(PASSES)
+    friction = 1.0 + CV * rng.standard_normal(PASSES)
+    for row in range(ROWS):
+        speed[:, row] = v
+        for _ in range(PARTS if row < ROWS - 1 else 0):
+            lost = friction * (1.0 + eta) * DECELERATION_M_S2 * ROW_S / PARTS
+            part, v = (v - 0.5 * lost) * ROW_S / PARTS, v - lost
+            step[:, row] += part
+            memory = np.exp(-part / LENGTH_M)
+            eta = memory * eta + PATH_STD * np.sqrt(1.0 - memory**2) * rng.standard_normal(PASSES)
+    read = speed + NOISE * rng.standard_normal(speed.shape)
+    nothing = np.zeros(PASSES * ROWS)
+    return Rows(read.ravel(), step.ravel(), nothing, nothing, DECELERATION_M_S2 * step.ravel())
+
+
+def scores(ends: list[tuple[Rows, BySpeed]], size: float) -> np.ndarray:
+    """Slope of the log-likelihood of each pass between two ends, `size` from one to the other."""
+    spread = Spread(np.full(PASSES, CV), np.zeros(PASSES), np.full(PASSES, 1e-6), PATH_STD, LENGTH_M, NOISE, 0.0)
+    told = []
+    for rows, by_speed in ends:
+        surprise, variance = np.empty(PASSES * ROWS), np.empty(PASSES * ROWS)
+        cuts = Cuts(*(np.empty(PASSES) for _ in Cuts._fields))
+        first_row = np.arange(PASSES + 1) * ROWS
+        filter_passes(rows, spread, by_speed, first_row, 0, PASSES, surprise, variance, cuts)
+        terms = np.nan_to_num(np.log(variance) + surprise**2 / variance)
+        told.append(-0.5 * terms.reshape(PASSES, ROWS).sum(axis=1))
+    return np.asarray((told[1] - told[0]) / size)
+
+
+def test_friction_that_is_alike_at_every_speed_is_not_said_to_change() -> None:
+    """The speed in a law must be one that the readings told. Path by time knows more: a cut that brakes better than any
+    reading has told yet is slower by its path, so friction would seem to fall with speed."""
+    rows, size = braked_passes(7), 2e-3
+    told = scores([(rows, BySpeed(b, 0.0)) for b in (-0.5 * size, 0.5 * size)], size)
+    by_path = rows.step_m / ROW_S - 4.0
+    wrongly = scores(
+        [(rows._replace(braked_m2_s2=rows.braked_m2_s2 * (1.0 + b * by_path)), BySpeed(0.0, 0.0))
+         for b in (-0.5 * size, 0.5 * size)], size,
+    )  # fmt: skip
+    z, z_wrongly = (each.mean() / each.std() * math.sqrt(PASSES) for each in (told, wrongly))
+    assert abs(z) < 3.0
+    assert z_wrongly < -5.0
