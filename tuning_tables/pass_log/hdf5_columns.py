@@ -71,6 +71,9 @@ def _columns(file: h5py.File) -> StoredColumns:
     length = sum(each.size * each.dtype.itemsize for each in kept.values())
     if length > LARGEST_COLUMNS_BYTES:
         raise InvalidLog(f"its columns have {length} bytes; at most {LARGEST_COLUMNS_BYTES} may be; write it in parts.")
+    for name, each in kept.items():
+        if not _is_whole(each):
+            raise InvalidLog(f"column {name}: some of its values are not there; write all of them, NaN for no reading.")
     return StoredColumns(word, {name: each[()] for name, each in kept.items()})
 
 
@@ -84,3 +87,19 @@ def _dataset(file: h5py.File, name: str) -> h5py.Dataset:
     if kept.size > MOST_ROWS:
         raise InvalidLog(f"column {name} has {kept.size} entries; at most {MOST_ROWS} may be; write the log in parts.")
     return kept
+
+
+def _is_whole(kept: h5py.Dataset) -> bool:
+    """Whether all values are stored. HDF5 reads those that it does not find in its index as 0, without a word."""
+    if kept.chunks is None:
+        return bool(kept.id.get_storage_size() >= kept.size * kept.dtype.itemsize)
+    whole_bytes = kept.chunks[0] * kept.dtype.itemsize
+    for first in range(0, kept.size, kept.chunks[0]):
+        try:
+            skipped_filters, chunk = kept.id.read_direct_chunk((first,))
+        except (OSError, RuntimeError):
+            return False
+        # A compression is skipped only where it makes nothing shorter.
+        if skipped_filters and len(chunk) < whole_bytes:
+            return False
+    return True

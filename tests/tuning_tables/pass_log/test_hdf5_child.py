@@ -116,3 +116,22 @@ def test_the_limit_of_memory_is_told(sealed: bytes, monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(hdf5_child, "MEMORY_BYTES", 0)
     with pytest.raises(InvalidLog, match=r"HDF5 (takes more memory for it|breaks down over it)|not readable"):
         columns_by_child(sealed[:-SEAL_BYTES])
+
+
+@pytest.mark.parametrize("chunks", [(4,), None])
+def test_values_that_were_never_stored_are_not_taken_for_zeros(tmp_path: Path, chunks: tuple[int, ...] | None) -> None:
+    """HDF5 reads them as 0; so it does where the index of a column is damaged."""
+    path = tmp_path / "log.h5"
+    write_log(sample_log(passes=2, rows=8), path)
+    with h5py.File(path, "r+") as file:
+        values = file["speed_m_s"][()]
+        del file["speed_m_s"]
+        kept = file.create_dataset("speed_m_s", shape=(16,), chunks=chunks, dtype="f8")
+        if chunks:
+            kept[:12] = values[:12]
+    with pytest.raises(InvalidLog, match="column speed_m_s: some of its values are not there"):
+        read_logs([path], None, None)
+    if chunks:
+        with h5py.File(path, "r+") as file:
+            file["speed_m_s"][12:] = values[12:]
+        assert len(read_logs([path], None, None).log) == 2
