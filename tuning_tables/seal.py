@@ -22,17 +22,26 @@ def seal_of(body: bytes | memoryview) -> bytes:
     return SEAL_PREFIX + hashlib.sha256(body).hexdigest().encode("ascii") + b"\n"
 
 
+def is_sealed(content: bytes) -> bool:
+    """Whether a seal stands at the end of `content`; it need not fit."""
+    return content[-SEAL_BYTES:].startswith(SEAL_PREFIX)
+
+
+def seal_fits(content: bytes) -> bool:
+    """Whether the seal at the end of the sealed `content` is that of all before it."""
+    return content[-SEAL_BYTES:] == seal_of(memoryview(content)[:-SEAL_BYTES])
+
+
 def unsealed(content: bytes, source: str) -> memoryview:
     """The body of the sealed `content`, not copied; `source` names the file it was read from in messages.
 
     Raises `DamagedTable` where the seal is missing or does not fit.
     """
-    body, seal = memoryview(content)[:-SEAL_BYTES], content[-SEAL_BYTES:]
-    if not seal.startswith(SEAL_PREFIX):
+    if not is_sealed(content):
         raise DamagedTable(
             f"{source}: there is no seal at its end, so it was cut off, edited or made by another program; "
             "export it again."
         )
-    if seal != seal_of(body):
+    if not seal_fits(content):
         raise DamagedTable(f"{source}: the seal at its end does not fit what is before it; export it again.")
-    return body
+    return memoryview(content)[:-SEAL_BYTES]

@@ -9,7 +9,7 @@ import numpy as np
 from tuning_tables.errors import InvalidLog
 from tuning_tables.excerpt import excerpt
 from tuning_tables.pass_log.file_checks import file_fault
-from tuning_tables.pass_log.log_columns import LogColumns, PassFault
+from tuning_tables.pass_log.log_columns import BrokenRow, LogColumns, PassFault
 from tuning_tables.pass_log.pass_checks import CHECKS, Segments, segments_of
 from tuning_tables.pass_log.pass_log import PassLog
 
@@ -23,7 +23,7 @@ def checked_log(columns: LogColumns, top_stage: int | None) -> tuple[PassLog | N
     with np.errstate(invalid="ignore", over="ignore"):
         faults = pass_faults(segments)
     sound = np.setdiff1d(np.arange(len(segments.first_row) - 1), np.array(sorted(faults), dtype=np.int64))
-    told = tuple(faults[number] for number in sorted(faults))
+    told = tuple(faults[number] for number in sorted(faults)) + cut_of_its_own(columns)
     if not len(sound):
         return None, told
     log = _log_of(segments, sound)
@@ -57,7 +57,25 @@ def pass_faults(segments: Segments) -> dict[int, PassFault]:
             what = "stands in an earlier pass of the file already; give each cut its own"
             faults[number] = _fault(segments, number, row, "cut_id", what)
         seen.add(cut_id)
+    broken, last = segments.columns.broken_row, len(segments.first_row) - 2
+    if broken is not None and last not in faults and broken.may_be_of(segments.columns.cut_id.value[last]):
+        faults[last] = broken_off(segments.columns, broken, segments.columns.cut_id.value[last])
     return faults
+
+
+def cut_of_its_own(columns: LogColumns) -> tuple[PassFault, ...]:
+    """The fault of a broken row that is all there is of its cut."""
+    broken = columns.broken_row
+    if broken is None or broken.may_be_of(columns.cut_id.value[-1]):
+        return ()
+    return (broken_off(columns, broken, broken.cut_id),)
+
+
+def broken_off(columns: LogColumns, broken: BrokenRow, cut_id: str) -> PassFault:
+    """Of the cut whose row the file ends in the middle of."""
+    where = f"{columns.source}: row {broken.row}, column {broken.column}, cut {excerpt(cut_id)}"
+    sentence = f"{where}: the file ends in the middle of this row, so this pass is left out."
+    return PassFault(columns.source, broken.row, broken.column, cut_id, sentence)
 
 
 def _out_of_order(segments: Segments, faults: dict[int, PassFault]) -> list[tuple[int, int]]:

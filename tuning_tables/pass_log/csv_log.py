@@ -6,6 +6,7 @@ A decimal comma is read as a point in the whole file, texts too.
 
 from __future__ import annotations
 
+import codecs
 import csv
 import os
 import re
@@ -27,6 +28,7 @@ from tuning_tables.pass_log.log_columns import (
     NUMBERS,
     OPTIONAL,
     TEXTS,
+    BrokenRow,
     Floats,
     LogColumns,
     TextRuns,
@@ -43,14 +45,22 @@ NUMBER: Final = re.compile(r"\s*([+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?(nan
 def read_csv_log(path: Path, mapping: LogMapping) -> LogColumns:
     """The rows of the CSV file at `path`; `InvalidLog` names file, row and column of what is wrong; `OSError`."""
     source = os.fspath(path)
-    lines = _text_of(path, mapping).split("\n")
-    while lines and not lines[-1].strip():
-        lines.pop()
+    text, is_cut_off = _text_of(path, mapping)
+    *lines, end = text.split("\n")
     independent, header = _first_lines(source, lines)
-    if len(lines) < header + 2:
-        raise InvalidLog(f"{source}: no rows under a header line; give a log with columns {', '.join(COLUMNS)}.")
+    if len(lines) <= header:
+        raise _no_rows(source)
     places = _places(source, lines[header], header + 1, mapping)
+    broken = None
+    if is_cut_off or (end.strip() and not _is_whole(end, places, mapping)):
+        broken = _broken_row(end, len(lines) + 1, places, mapping)
+    elif end.strip():  # only the last line feed is missing
+        lines.append(end)
+    while broken is None and not lines[-1].strip():
+        lines.pop()
     body = lines[header + 1 :]
+    if not body:
+        raise _no_rows(source)
     numbers, texts = _parsed(source, body, header + 2, places, mapping)
     for name, factor in mapping.factors.items():
         if name in places:
@@ -62,7 +72,7 @@ def read_csv_log(path: Path, mapping: LogMapping) -> LogColumns:
     category = texts.get("category", TextRuns((0,), (str(mapping.constant.get("category")),)))
     if mapping.path_is_independent is not None:
         independent = mapping.path_is_independent
-    return LogColumns(source, header + 2, numbers, texts["cut_id"], category, independent)
+    return LogColumns(source, header + 2, numbers, texts["cut_id"], category, independent, broken)
 
 
 def write_csv_log(log: PassLog, path: Path) -> None:
@@ -98,17 +108,39 @@ def _written(values: Any) -> list[Any]:
     return ["" if value != value else value for value in values.tolist()]  # only NaN is not itself
 
 
-def _text_of(path: Path, mapping: LogMapping) -> str:
+def _no_rows(source: str) -> InvalidLog:
+    return InvalidLog(f"{source}: no rows under a header line; give a log with columns {', '.join(COLUMNS)}.")
+
+
+def _text_of(path: Path, mapping: LogMapping) -> tuple[str, bool]:
+    """The text, and whether it ends within a character or in zero bytes: both are left where the power was lost."""
     try:
-        text = read_regular_file(path, LARGEST_FILE_BYTES).decode("utf-8-sig")
-    except UnicodeDecodeError as fault:
-        raise InvalidLog(f"{path}: byte {fault.start} is no UTF-8; save the log as UTF-8.") from fault
+        content = read_regular_file(path, LARGEST_FILE_BYTES)
     except DamagedTable as fault:
         raise InvalidLog(str(fault)) from fault
+    written = content.rstrip(b"\0")
+    decoder = codecs.getincrementaldecoder("utf-8-sig")()
+    try:
+        text = decoder.decode(written)
+    except UnicodeDecodeError as fault:
+        raise InvalidLog(f"{path}: byte {fault.start} is no UTF-8; save the log as UTF-8.") from fault
+    is_cut_off = len(written) < len(content) or bool(decoder.getstate()[0])
     if "\0" in text:
         raise InvalidLog(f"{path}: character {text.index(chr(0))} is a zero byte; this is no CSV file.")
-    text = text.replace("\r\n", "\n")
-    return text.replace(",", ".") if mapping.decimal == "," else text
+    text = text.replace("\r\n", "\n").removesuffix("\r")
+    return text.replace(",", ".") if mapping.decimal == "," else text, is_cut_off
+
+
+def _is_whole(line: str, places: dict[str, int], mapping: LogMapping) -> bool:
+    return line.count('"') % 2 == 0 and _row_fault(_cells(line, mapping), places, mapping) is None
+
+
+def _broken_row(line: str, row: int, places: dict[str, int], mapping: LogMapping) -> BrokenRow:
+    """The row that the file ends in, as far as it was written."""
+    cells, place = _cells(line, mapping), places["cut_id"]
+    found = _row_fault(cells, places, mapping)
+    column = max(places, key=places.__getitem__) if found is None else found[0]
+    return BrokenRow(row, column, cells[place] if place < len(cells) else "", has_whole_id=place < len(cells) - 1)
 
 
 def _first_lines(source: str, lines: list[str]) -> tuple[bool, int]:
@@ -228,16 +260,22 @@ def _name_fault(
         cells = _cells(line, mapping)
         if not line.strip():
             raise InvalidLog(f"{source}: row {row}: the line is empty; take it out.")
-        for name, place in places.items():
-            if place >= len(cells):
-                raise InvalidLog(
-                    f"{source}: row {row}, column {name}: the row has only {len(cells)} cells; write the whole row."
-                )
-            if name not in TEXTS and NUMBER.fullmatch(cells[place]) is None:
-                raise InvalidLog(
-                    f"{source}: row {row}, column {name}: {excerpt(cells[place])!r} is no number; write one, with "
-                    f'"{mapping.decimal}" before its decimals.'
-                )
+        if (found := _row_fault(cells, places, mapping)) is not None:
+            column, what = found
+            raise InvalidLog(f"{source}: row {row}, column {column}: {what}.")
+
+
+def _row_fault(cells: list[str], places: dict[str, int], mapping: LogMapping) -> tuple[str, str] | None:
+    """The first column that is at fault in a row, and what is wrong there; None where nothing is."""
+    for name, place in places.items():
+        if place >= len(cells):
+            return name, f"the row has only {len(cells)} cells; write the whole row"
+        if name in TEXTS and not cells[place].strip():
+            return name, "the cell is empty; fill it"
+        if name not in TEXTS and NUMBER.fullmatch(cells[place]) is None:
+            what = f'{excerpt(cells[place])!r} is no number; write one, with "{mapping.decimal}" before its decimals'
+            return name, what
+    return None
 
 
 def _numbered(body: list[str], begin: int, first_number: int) -> Iterator[tuple[int, str]]:

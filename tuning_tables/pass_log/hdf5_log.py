@@ -1,32 +1,27 @@
 """Measured passes as HDF5: the columns of the rows and those of the passes, each a dataset. Needs h5py, when called.
 
 Root attributes `format`, `version`, `path`. Rows: datasets of `PassLog.ROWS`; passes: `first_row` and those of
-`PassLog.PASSES`; all under their names, compressed, with checksums.
+`PassLog.PASSES`; all under their names, compressed, with checksums. Behind the end of HDF5 stands a seal.
 """
 
 from __future__ import annotations
 
-import io
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.atomic_file import write_atomically
 from tuning_tables.errors import DamagedTable, InvalidLog
-from tuning_tables.excerpt import excerpt
+from tuning_tables.pass_log.hdf5_child import columns_by_child
+from tuning_tables.pass_log.hdf5_columns import FORMAT, STORED, VERSION, StoredColumns, stored_columns
 from tuning_tables.pass_log.log_columns import LARGEST_FILE_BYTES, NUMBERS, TEXTS, LogColumns, TextRuns
 from tuning_tables.pass_log.log_mapping import PATHS, LogMapping
 from tuning_tables.pass_log.pass_log import PASSES, ROWS, PassLog
 from tuning_tables.regular_file import read_regular_file
-
-if TYPE_CHECKING:
-    import h5py
-
-FORMAT: Final = "retarder-pass-log"
-VERSION: Final = 1
+from tuning_tables.seal import is_sealed, seal_fits, seal_of
 
 
 def write_hdf5_log(log: PassLog, path: Path) -> None:
@@ -37,7 +32,7 @@ def write_hdf5_log(log: PassLog, path: Path) -> None:
     with h5py.File("log", "w", libver=("v108", "v108"), driver="core", backing_store=False) as file:
         file.attrs["format"], file.attrs["version"] = FORMAT, VERSION
         file.attrs["path"] = next(word for word, independent in PATHS.items() if independent == log.path_is_independent)
-        for name in (*ROWS, "first_row", *PASSES):
+        for name in STORED:
             values = getattr(log, name)
             if isinstance(values, tuple):
                 values = np.array([text.encode() for text in values], dtype=np.bytes_)
@@ -46,65 +41,42 @@ def write_hdf5_log(log: PassLog, path: Path) -> None:
             )  # fmt: skip
         file.flush()
         image: bytes = file.id.get_file_image()
-    write_atomically(path, image)
+    write_atomically(path, image + seal_of(image))
 
 
 def read_hdf5_log(path: Path, mapping: LogMapping) -> LogColumns:
     """The rows of the HDF5 file at `path`; only `path` of a mapping is used: such files have their own units.
 
+    A file without a seal, as other programs write it, is read by a process of its own (`hdf5_child`).
     `InvalidLog` for anything that is no whole log; `OSError`; `ImportError` without h5py.
     """
-    import h5py
-
     source = os.fspath(path)
     try:
         content = read_regular_file(path, LARGEST_FILE_BYTES)
     except DamagedTable as fault:
         raise InvalidLog(str(fault)) from fault
+    sealed = is_sealed(content)
+    if sealed and not seal_fits(content):
+        raise InvalidLog(f"{source}: the seal at its end does not fit what is before it; copy it again.")
     try:
-        with h5py.File(io.BytesIO(content), "r") as file:
-            return _columns(file, source, mapping)
-    except (InvalidLog, MemoryError):
-        raise
-    # What is wrong with a file surfaces in h5py as one of a dozen types.
-    except Exception as fault:
-        reason = excerpt(" ".join(str(fault).split()), 200)
-        raise InvalidLog(f"{source}: not readable as an HDF5 pass log ({reason}); write it anew.") from fault
+        stored = stored_columns(content) if sealed else columns_by_child(content)
+    except InvalidLog as fault:
+        raise InvalidLog(f"{source}: {fault}") from fault
+    return _columns(stored, source, mapping)
 
 
-def _columns(file: h5py.File, source: str, mapping: LogMapping) -> LogColumns:
-    found, version, word = (file.attrs.get(name) for name in ("format", "version", "path"))
-    if not isinstance(found, str) or found != FORMAT or version != VERSION:
-        raise InvalidLog(
-            f'{source}: format is {excerpt(repr(found))}, version {excerpt(repr(version))}; it must be "{FORMAT}", '
-            f"version {VERSION}."
-        )
-    if word not in PATHS:
-        raise InvalidLog(f"{source}: path is {excerpt(repr(word))}; it must be one of {', '.join(PATHS)}.")
-    rows = {name: _stored(file, name, source) for name in ROWS}
-    passes = {name: _stored(file, name, source) for name in PASSES}
-    ends = _stored(file, "first_row", source)
+def _columns(stored: StoredColumns, source: str, mapping: LogMapping) -> LogColumns:
+    rows = {name: stored.arrays[name] for name in ROWS}
+    passes = {name: stored.arrays[name] for name in PASSES}
+    ends = stored.arrays["first_row"]
     _require_lengths(source, rows, passes, ends)
     counts = np.diff(ends).astype(np.int64)
     numbers = {name: value.astype(np.float64) for name, value in rows.items()}
     numbers |= {name: np.repeat(passes[name].astype(np.float64), counts) for name in PASSES if name not in TEXTS}
     first = tuple(ends[:-1].astype(int).tolist())
     cut_id, category = (TextRuns(first, _decoded(source, name, passes[name])) for name in TEXTS)
-    independent = PATHS[word] if mapping.path_is_independent is None else mapping.path_is_independent
+    independent = PATHS[stored.path_word] if mapping.path_is_independent is None else mapping.path_is_independent
     return LogColumns(source, 1, {name: numbers[name] for name in NUMBERS}, cut_id, category, independent)
-
-
-def _stored(file: h5py.File, name: str, source: str) -> npt.NDArray[Any]:
-    import h5py
-
-    kept = file.get(name)
-    kinds = "S" if name in TEXTS else "fiub"
-    if not isinstance(kept, h5py.Dataset) or kept.ndim != 1 or kept.dtype.kind not in kinds:
-        raise InvalidLog(f"{source}: column {name} is missing or no column of {'text' if kinds == 'S' else 'numbers'}.")
-    if kept.size * kept.dtype.itemsize > LARGEST_FILE_BYTES:
-        raise InvalidLog(f"{source}: column {name} has {kept.size} entries; that is more than is read at a time.")
-    values: npt.NDArray[Any] = kept[()]
-    return values
 
 
 def _require_lengths(

@@ -36,11 +36,29 @@ class TextRuns:
     value: tuple[str, ...]
 
 
+@dataclass(frozen=True)
+class BrokenRow:
+    """The row that a file ends in the middle of: `row` as in a spreadsheet, `column` of ours that it ends in.
+
+    `cut_id` as far as it was written; `has_whole_id`: all of it was.
+    """
+
+    row: int
+    column: str
+    cut_id: str
+    has_whole_id: bool
+
+    def may_be_of(self, cut_id: str) -> bool:
+        """Whether the row can belong to the cut."""
+        return self.cut_id == cut_id if self.has_whole_id else cut_id.startswith(self.cut_id)
+
+
 @dataclass(frozen=True, eq=False)
 class LogColumns:
     """The rows of one file, in SI: `numbers` (n,) by column, read-only, and the runs of the two columns of text.
 
     `first_number`: what a spreadsheet calls the first row. `path_is_independent`: as in `PassLog`.
+    `broken_row` follows the last row; it is None where the file is whole.
     """
 
     source: str
@@ -49,6 +67,7 @@ class LogColumns:
     cut_id: TextRuns
     category: TextRuns
     path_is_independent: bool
+    broken_row: BrokenRow | None = None
 
     def __post_init__(self) -> None:
         for values in self.numbers.values():

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from tuning_tables.pass_log.csv_log import FIRST_LINE, read_csv_log
-from tuning_tables.pass_log.hdf5_log import FORMAT
+from tuning_tables.pass_log.hdf5_columns import FORMAT
 from tuning_tables.pass_log.log_columns import COLUMNS
 from tuning_tables.pass_log.log_mapping import PATHS, UNITS, LogMapping, read_mapping
 

@@ -35,7 +35,7 @@ KNOWN_SPREAD = 1e-6
 class KnownCuts:
     """(m,) each. Of the resistance w: `resistance_n_per_kn`, `resistance_variance`; of the friction ξ, given w:
     `friction` at w = `at_n_per_kn`, `by_resistance` dξ/dw, `friction_std`. `force`: brake on the cut over that on one
-    of its class. `speed_m_s` and `path_m` at the first reading, `speed_std_m_s`"""
+    of its class. `speed_m_s` and `path_m` at the first reading of the regulator, `speed_std_m_s`"""
 
     resistance_n_per_kn: Floats
     resistance_variance: Floats
@@ -71,7 +71,9 @@ def known_cuts(like: Likelihood, found: Surprises, values: Mapping[str, float]) 
         mine = passes.class_of == number
         force[mine] = scales(plant, passes, cuts)[1][mine]
     bias = values.get(asked.BIAS, 0.0)
-    usable = np.flatnonzero(log.speed_m_s - bias > SLOWEST_M_S)
+    # A log may begin before the regulator does.
+    start_m = np.array([plant.start_m for _, plant in passes.plants])[passes.class_of][log.pass_of_row]
+    usable = np.flatnonzero((log.speed_m_s - bias > SLOWEST_M_S) & (log.path_m >= start_m))
     rows = usable[np.minimum(np.searchsorted(usable, log.first_row[:-1]), len(usable) - 1)]
     return KnownCuts(
         found.cuts.resistance_n_per_kn, found.cuts.resistance_variance,

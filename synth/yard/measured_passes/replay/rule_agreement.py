@@ -25,9 +25,9 @@ NOT_ASKED = -1
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class RuleAgreement:
-    """`wanted` (n,): the stage that the table of the pass commands at each row, `NOT_ASKED` where it may not or has no
-    table; `commanded` (n,) as logged; `stage_before` (n,); `first_differing` (m,): the row where each pass first
-    differs, −1 where it nowhere does. After that row the logged pass is no longer the one that the table would make."""
+    """`wanted` (n,): the stage that the table of the pass commands at each row, `NOT_ASKED` where it is not asked or
+    there is no table; `commanded` (n,) as logged; `stage_before` (n,); `first_differing` (m,): the row where each pass
+    first differs, −1 where it nowhere does. After that row the logged pass is no longer that of the table."""
 
     wanted: Ints
     commanded: Ints
@@ -53,28 +53,34 @@ class RuleAgreement:
 
 
 def rule_agreement(passes: FittingPasses, tables: LoggedTables) -> RuleAgreement:
-    """Ask the table of each pass at every row where the drive rests by the model."""
+    """Ask the table of each pass at every row where its regulator does: from the beginning of its approach on, wherever
+    the drive rests by the model. A log may begin before."""
     log, states = passes.log, drive_states(passes)
     wanted = np.full(len(log.time_s), NOT_ASKED, dtype=np.int64)
     of_row = np.repeat(tables.of_pass, np.diff(log.first_row))
-    entrance = np.array([plant.entrance_stage for _, plant in passes.plants])[passes.class_of][log.pass_of_row]
     for number, table in enumerate(tables.tables):
-        rows = np.flatnonzero(of_row == number)
-        speed = log.speed_m_s[rows] if table.estimator is None else estimated(log, table, states, number, tables)
+        rows = np.flatnonzero((of_row == number) & (log.path_m >= begin_m(table)))
+        speed = log.speed_m_s[rows] if table.estimator is None else estimated(log, table, states, rows)
         at, before = log.path_m[rows], states.stage_before[rows]
         stage = np.clip(before + decide_many(table, before, at, speed), 0, max(len(table.coefficients) - 1, 0))
-        gated = np.where(at < 0.0, np.minimum(stage, np.maximum(before, entrance[rows])), stage)
-        wanted[rows] = np.where(states.resting[rows], gated, NOT_ASKED)
+        wanted[rows] = np.where(states.resting[rows], stage, NOT_ASKED)
     return RuleAgreement(wanted, log.stage, states.stage_before, first_differing(log, wanted))
 
 
-def estimated(log: PassLog, table: ActiveTable, states: DriveStates, number: int, tables: LoggedTables) -> Floats:
-    """The estimated speed at all rows of the passes that `table`, the one called `number`, regulates."""
+def begin_m(table: ActiveTable) -> float:
+    """Path from which on the regulator asks `table`, metres; 0 or negative."""
+    return 0.0 if table.approach is None else -table.approach.length_m
+
+
+def estimated(log: PassLog, table: ActiveTable, states: DriveStates, rows: Ints) -> Floats:
+    """The estimated speed at `rows`, those of some passes at which their regulator looks at `table`, in their order."""
     found: list[float] = []
-    for one in np.flatnonzero(tables.of_pass == number).tolist():
-        state, rows = begin(), log.rows(one)
-        columns = (log.path_m[rows], log.speed_m_s[rows], states.overpressure_kpa[rows])
-        found += [speed_for(table, state, *map(float, row)) for row in zip(*columns, strict=True)]
+    columns = (log.pass_of_row, log.path_m, log.speed_m_s, states.overpressure_kpa)
+    number = -1
+    for one, *readings in zip(*(column[rows].tolist() for column in columns), strict=True):
+        if one != number:
+            number, state = one, begin()
+        found.append(speed_for(table, state, *readings))
     return np.array(found)
 
 

@@ -1,0 +1,127 @@
+"""HDF5 logs without a seal, read by a process of their own, which has a limit of time and of memory.
+
+A single changed byte can hold HDF5 in an endless loop (`seal`), and no thread can stop that. Logs of other programs
+have no seal, so a child reads them: it gets the content of the file, and hands back arrays or a sentence. Nothing that
+comes back is a pickle.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import subprocess
+import sys
+from collections.abc import Mapping
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from tuning_tables.errors import InvalidLog
+from tuning_tables.pass_log.hdf5_columns import LARGEST_COLUMNS_BYTES, STORED, StoredColumns, stored_columns
+
+LEAST_TIME_S: Final = 10.0
+TIME_S_PER_BYTE: Final = 1e-6
+"""A million rows of 40 bytes last 0.5 s."""
+
+WAITED: Final = 3.0
+"""The clock on the wall may show so many times the processor time that is allowed: other programs run, too."""
+
+MEMORY_BYTES: Final = LARGEST_COLUMNS_BYTES + 2**29
+"""Beside the content itself: the columns, and what Python, numpy and HDF5 take."""
+
+REFUSED, NO_MEMORY = 10, 11
+"""Exit codes of the child: a sentence is on stdout; the limit of memory was met."""
+
+
+def columns_by_child(content: bytes, least_time_s: float = LEAST_TIME_S) -> StoredColumns:
+    """`stored_columns` by a process of its own, in at most `least_time_s` and 1 s more a megabyte of processor time.
+
+    `InvalidLog`, which names no file, also where HDF5 does not come to an end, or breaks down. `OSError` where no
+    process can be started.
+    """
+    limit_s = least_time_s + TIME_S_PER_BYTE * len(content)
+    command = [sys.executable, "-P", "-m", __name__, str(limit_s), str(len(content) + MEMORY_BYTES)]
+    try:
+        ended = subprocess.run(
+            command, input=content, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=_environment(),
+            timeout=WAITED * limit_s, check=False,
+        )  # fmt: skip
+    except subprocess.TimeoutExpired as fault:
+        raise _endless(limit_s) from fault
+    if ended.returncode == REFUSED:
+        raise InvalidLog(ended.stdout.decode())
+    if ended.returncode == NO_MEMORY:
+        raise InvalidLog("HDF5 takes more memory for it than a log of its size may; copy it again, or write it anew.")
+    if ended.returncode == _OUT_OF_TIME:
+        raise _endless(limit_s)
+    if ended.returncode != 0:
+        raise InvalidLog(f"HDF5 breaks down over it (code {ended.returncode}); copy it again, or write it anew.")
+    return _unpacked(ended.stdout)
+
+
+def _endless(limit_s: float) -> InvalidLog:
+    return InvalidLog(f"HDF5 does not come to an end with it in {limit_s:.0f} s; copy it again, or write it anew.")
+
+
+def _environment() -> Mapping[str, str]:
+    """That of this process; modules are found where this process finds them."""
+    places = os.pathsep.join(place or os.getcwd() for place in sys.path)
+    return {**os.environ, "PYTHONPATH": places, "OPENBLAS_NUM_THREADS": "1"}
+
+
+def _unpacked(stream: bytes) -> StoredColumns:
+    """The columns in the .npy files that `_packed` has put one behind the other."""
+    file = io.BytesIO(stream)
+    arrays: list[npt.NDArray[Any]] = [np.lib.format.read_array(file, allow_pickle=False) for _ in ("path", *STORED)]
+    return StoredColumns(arrays[0].tobytes().decode(), dict(zip(STORED, arrays[1:], strict=True)))
+
+
+def _pack(columns: StoredColumns) -> None:
+    """Write `columns` to stdout."""
+    word = np.frombuffer(columns.path_word.encode(), dtype=np.uint8)
+    for array in (word, *(columns.arrays[name] for name in STORED)):
+        np.lib.format.write_array(sys.stdout.buffer, array, allow_pickle=False)
+    sys.stdout.buffer.flush()
+
+
+if sys.platform == "win32":
+    # Windows has no such limits: the parent's clock ends the child, and the checks of `stored_columns` bound memory.
+    _OUT_OF_TIME: Final = None
+
+    def _limit(time_s: float, memory_bytes: int) -> None: ...
+
+else:
+    import resource
+    import signal
+
+    _OUT_OF_TIME: Final = -signal.SIGXCPU
+
+    def _limit(time_s: float, memory_bytes: int) -> None:
+        """Let this process have `time_s` more of processor time, and `memory_bytes` in all."""
+        used = resource.getrusage(resource.RUSAGE_SELF)
+        whole_s = int(used.ru_utime + used.ru_stime + time_s) + 1
+        for limited, most in ((resource.RLIMIT_CPU, whole_s), (resource.RLIMIT_AS, memory_bytes)):
+            soft, hard = resource.getrlimit(limited)
+            known = [each for each in (soft, hard, most) if each != resource.RLIM_INFINITY]
+            resource.setrlimit(limited, (min(known), hard))
+
+
+def main() -> int:
+    """The child: the content comes by stdin, time and memory allowed are its arguments; returns the exit code."""
+    import h5py  # noqa: F401  # what its start costs is no part of the time allowed
+
+    content = sys.stdin.buffer.read()
+    _limit(float(sys.argv[1]), int(sys.argv[2]))
+    try:
+        _pack(stored_columns(content))
+    except InvalidLog as fault:
+        sys.stdout.buffer.write(str(fault).encode())
+        return REFUSED
+    except MemoryError:
+        return NO_MEMORY
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
