@@ -13,6 +13,7 @@ from synth.present.outputs import file_hashes
 from synth.present.plots.picture import Picture, save_picture
 from synth.present.report.humping_report import HumpingReport, humping_page
 from synth.yard.hump.event_log import to_log_csv
+from synth.yard.humping.controlled_train import ControlledTrain
 from synth.yard.humping.outcome_file import to_npz
 from synth.yard.humping.outcomes import TrainOutcomes
 from synth.yard.humping.resolved_trial import ResolvedTrial
@@ -54,12 +55,19 @@ def judged(config: ResolvedTrial, trial: HumpTrial, found: TrainOutcomes, create
 
 
 def write_trains(result: TrialResult, inputs: list[Path], directory: Path, say: Say) -> Document:
-    """Write everything; the summary as written, which lists `inputs` too. Raises `OSError`."""
+    """Write everything; the summary as written, which lists `inputs` too. Raises `OSError`.
+
+    What all trains came to is on the disk before anything is made of the one that is shown: it cannot cost the figures.
+    """
     config, output = result.config, result.config.settings.output
+    files = [*inputs, *write_data(result, directory)]
     shown = one_train(result.trial, SHOWN_TRAIN)
-    control = shown.controlled()
-    files = [*inputs, *write_data(result, directory), directory / LOG]
-    write_atomically(files[-1], to_log_csv(control.events).encode())
+    control, standing = shown.controlled(), shown.standing()
+    if standing:
+        first, fall_m = result.trial.routes.first_element
+        say(f"warning: {standing} of the {len(shown.trains)} cuts of train {SHOWN_TRAIN + 1} stand before element "
+            f"{first}; the track falls by {fall_m:.2f} m up to there")  # fmt: skip
+    files += write_shown(result, control, directory)
     pictures: tuple[Picture, ...] = ()
     if output.plots or output.report:
         trace = shown.traced()
@@ -84,14 +92,28 @@ def write_trains(result: TrialResult, inputs: list[Path], directory: Path, say: 
 
 
 def write_data(result: TrialResult, directory: Path) -> list[Path]:
-    """Write the outcomes by train, the figures, and the program of the shown train; the files."""
-    config, program = result.config, speed_program(result.trial, SHOWN_TRAIN)
+    """Write the outcomes by train, and the figures; the files."""
+    config = result.config
     contents = {
         TRAINS: to_npz(result.found, config.routes.numbers, config.trains_sha256),
         FIGURES: figures_csv(result.figures),
+    }
+    return written(contents, directory)
+
+
+def write_shown(result: TrialResult, control: ControlledTrain, directory: Path) -> list[Path]:
+    """Write the program of the shown train, and what the hump control recorded of it; the files."""
+    program = speed_program(result.trial, SHOWN_TRAIN)
+    contents = {
         PROGRAM: locomotive_csv(program),
         SHEET: uncoupler_csv(program),
+        LOG: to_log_csv(control.events).encode(),
     }
+    return written(contents, directory)
+
+
+def written(contents: Mapping[str, bytes], directory: Path) -> list[Path]:
+    """The files with `contents` by name, each whole."""
     for name, content in contents.items():
         write_atomically(directory / name, content)
     return [directory / name for name in contents]
