@@ -14,7 +14,7 @@ from synth.present.plots.picture import Picture, save_picture
 from synth.present.report.humping_report import HumpingReport, humping_page
 from synth.yard.hump.event_log import to_log_csv
 from synth.yard.humping.controlled_train import ControlledTrain
-from synth.yard.humping.outcome_file import to_npz
+from synth.yard.humping.outcome_file import TRAINS, TrialTrains, to_npz
 from synth.yard.humping.outcomes import TrainOutcomes
 from synth.yard.humping.resolved_trial import ResolvedTrial
 from synth.yard.humping.speed_program import locomotive_csv, speed_program, uncoupler_csv
@@ -27,7 +27,7 @@ from synth.yard.humping.trial_summary import figures_csv, trial_summary
 from tuning_tables import write_atomically
 from tuning_tables.canonical import canonical_json
 
-TRAINS, FIGURES, PROGRAM, SHEET = "trains.npz", "figures.csv", "locomotive.csv", "uncoupler.csv"
+FIGURES, PROGRAM, SHEET = "figures.csv", "locomotive.csv", "uncoupler.csv"
 LOG = "events.csv"
 PLAYER, REPORT = "hump.html", "report.html"
 SHOWN_TRAIN = 0
@@ -95,7 +95,7 @@ def write_data(result: TrialResult, directory: Path) -> list[Path]:
     """Write the outcomes by train, and the figures; the files."""
     config = result.config
     contents = {
-        TRAINS: to_npz(result.found, config.routes.numbers, config.trains_sha256),
+        TRAINS: to_npz(result.found, TrialTrains(config.routes, config.trains_sha256)),
         FIGURES: figures_csv(result.figures),
     }
     return written(contents, directory)

@@ -10,10 +10,10 @@ from typing import Protocol
 
 from synth.sweep.trains.batch import BatchOrder
 from synth.sweep.work import Engine
-from synth.yard.humping.outcome_file import from_npz, to_npz
+from synth.yard.humping.outcome_file import TrialTrains, from_npz, to_npz
 from synth.yard.humping.outcomes import TrainOutcomes, joined
 from tuning_tables import DamagedTable, write_atomically
-from tuning_tables.seal import seal_of, unsealed
+from tuning_tables.seal import unsealed
 
 FOLDER = "batches"
 
@@ -34,11 +34,10 @@ class BatchFailed(Exception):
 
 @dataclass(frozen=True)
 class BatchFiles:
-    """The stored batches of a trial below `directory`, each under a seal; `numbers` of the elements by column."""
+    """The stored batches of `trial` below `directory`."""
 
     directory: Path
-    numbers: tuple[int, ...]
-    trains_sha256: str
+    trial: TrialTrains
 
     def file(self, key: str) -> Path:
         """The file of one batch."""
@@ -46,13 +45,12 @@ class BatchFiles:
 
     def store(self, key: str, found: TrainOutcomes) -> None:
         """Write a batch, complete or not at all; raises `OSError`."""
-        body = to_npz(found, self.numbers, self.trains_sha256)
-        write_atomically(self.file(key), body + seal_of(body))
+        write_atomically(self.file(key), to_npz(found, self.trial))
 
-    def stored(self, key: str) -> TrainOutcomes:
-        """A batch; `FileNotFoundError`, or `DamagedTable` where a byte has changed."""
+    def stored(self, key: str, count: int) -> TrainOutcomes:
+        """A batch of `count` trains; `FileNotFoundError`, or `DamagedTable` where a byte has changed."""
         path = self.file(key)
-        return from_npz(unsealed(path.read_bytes(), str(path)), str(path), self.trains_sha256)
+        return from_npz(path.read_bytes(), str(path), self.trial, count)
 
     def has(self, key: str) -> bool:
         """Whether a batch is there; `DamagedTable` where a byte has changed."""
@@ -103,7 +101,7 @@ def run_trains(
             files.store(answer.key, answer.result)
             watcher.done(f"{names[answer.key]}: {words(answer.result)}")
     files.keep_only([order.key for order in orders])
-    return joined([files.stored(order.key) for order in orders])
+    return joined([files.stored(order.key, order.count) for order in orders])
 
 
 def words(found: TrainOutcomes) -> str:
