@@ -76,11 +76,12 @@ def simulated(
     from synth.sweep.trains.batch import orders_of
     from synth.sweep.trains.train_run import BatchFailed, BatchFiles, missing_of, run_trains
     from synth.yard.humping.made_trial import made_trial
+    from synth.yard.humping.outcome_file import TrialTrains
 
     started, number = time.monotonic(), config.settings.trains.number
     trial = guarded(made_trial, config)
     orders = list(orders_of(trial, config.trains_sha256, number))
-    files = BatchFiles(directory, config.routes.numbers, config.trains_sha256)
+    files = BatchFiles(directory, TrialTrains(config.routes, config.trains_sha256))
     with Progress(len(orders), "humping", "batches") as progress:
         missing = missing_of(orders, files, progress)
         progress.begin(len(orders) - len(missing))
@@ -134,23 +135,17 @@ def report_command(path: Path, as_json: bool) -> int:
     """Make figures, pictures and pages anew from the trains in the directory `path`; the exit code."""
     from synth.book.creation_time import creation_time, require_date
     from synth.frame.results_directory import results_directory
-    from synth.present.humping_outputs import TRAINS, judged, write_trains
+    from synth.present.humping_outputs import judged, write_trains
     from synth.sweep.trains.train_run import FOLDER as BATCHES
     from synth.sweep.trains.trial_inputs import FOLDER
     from synth.yard.humping.made_trial import made_trial
-    from synth.yard.humping.outcome_file import from_npz
-    from synth.yard.humping.resolved_trial import load_trial
+    from synth.yard.humping.stored_trains import stored_trains
 
     require_date()
-    source, trains = path / "inputs" / "config.toml", path / TRAINS
-    for file in (source, trains):
-        if not file.is_file():
-            raise InputError(f"{path}: there is no {file.relative_to(path)} in it; give what 'hump simulate' left")
-    config = load_trial(source)
-    found = from_npz(trains.read_bytes(), str(trains), config.trains_sha256)
+    stored = stored_trains(path, str(path))
     with results_directory(path, TRAINS_COMMAND) as directory:
         directory.retain(*(name for folder in (FOLDER, BATCHES) for name in directory.names_below(folder)))
-        result = judged(config, made_trial(config), found, creation_time())
+        result = judged(stored.config, made_trial(stored.config), stored.found, creation_time())
         write_trains(result, directory, say)
     return told(result, path, as_json)
 

@@ -5,6 +5,9 @@ another file does. The cache directory is therefore named by a fingerprint of ev
 of the versions that compile them, and of the machine: after any change the kernels are compiled anew, in a new
 directory. `synth.kernels` sets it up when it is imported, so before any kernel is.
 
+numba's files hold pickles and machine code: whoever can write them runs code as the user. So a directory is used only
+where it is the user's, or the system's, and nobody else may write to it.
+
 This module imports no numba, so that the command line starts at once.
 """
 
@@ -15,11 +18,13 @@ import os
 import platform
 import re
 import shutil
+import stat
 import sys
 import tempfile
 import time
 from collections.abc import Callable
 from importlib.metadata import version
+from itertools import takewhile
 from pathlib import Path
 from types import TracebackType
 from typing import ParamSpec, TypeVar
@@ -50,18 +55,18 @@ def use_kernel_cache() -> Path:
 
     The directory is BASE/retarder-synth/FINGERPRINT, where BASE is the first absolute and writable path of
     $RETARDER_SYNTH_CACHE, $XDG_CACHE_HOME and ~/.cache; where none is, a private temporary directory that is removed
-    when the process ends. A NUMBA_CACHE_DIR set by the user is replaced: it could hold stale kernels.
+    when the process ends. What is made is the user's alone. A directory that others made, or may write to, is passed
+    over with a warning on stderr. A NUMBA_CACHE_DIR set by the user is replaced: it could hold stale kernels.
 
     A kernel keeps the directory that it found when it was imported: hence `synth.kernels` calls this first. Calling it
     again changes nothing. Directories of other fingerprints that were not used for 30 days are removed.
     """
     fingerprint = kernel_fingerprint()
     current = cache_in_use()
-    if current is not None and current.name == fingerprint and _is_writable(current):
+    if current is not None and current.name == fingerprint and _is_writable(current) and _open_to(current) is None:
         directory = current
     else:
-        directory = _base_directory() / _OWNER / fingerprint
-        directory.mkdir(parents=True, exist_ok=True)
+        directory = _first_usable(fingerprint)
         _remove_unused(directory)
     os.utime(directory)
     os.environ["NUMBA_CACHE_DIR"] = str(directory)
@@ -121,19 +126,55 @@ def empty_kernel_cache(directory: Path) -> None:
         path.unlink(missing_ok=True)
 
 
-def _base_directory() -> Path:
+def _first_usable(fingerprint: str) -> Path:
     named = (os.environ.get("RETARDER_SYNTH_CACHE"), os.environ.get("XDG_CACHE_HOME"), "~/.cache")
+    passed_over = []
     for base in [os.path.expanduser(name) for name in named if name]:
-        if os.path.isabs(base) and _is_writable(Path(base, _OWNER)):
-            return Path(base)
-    private = tempfile.mkdtemp(prefix=f"{_OWNER}-")
-    atexit.register(shutil.rmtree, private, ignore_errors=True)
-    return Path(private)
+        directory = Path(base, _OWNER, fingerprint)
+        if os.path.isabs(base) and _is_writable(directory):
+            fault = _open_to(directory)
+            if fault is None:
+                break
+            passed_over.append(fault)
+    else:
+        private = tempfile.mkdtemp(prefix=f"{_OWNER}-")
+        atexit.register(shutil.rmtree, private, ignore_errors=True)
+        directory = Path(private, _OWNER, fingerprint)
+        _make(directory)
+    if passed_over:
+        told = f"kernel cache: {'; '.join(passed_over)}; remove it; until then kernels are kept in {directory.parent}"
+        sys.stderr.write(f"retarder-synth: warning: {told}\n")
+    return directory
+
+
+def _open_to(directory: Path) -> str | None:
+    """Why the user alone cannot be sure of a cache `directory` and its parent of ours; None where he can.
+
+    Where the system has no user ids (Windows), a profile's own folders are the user's.
+    """
+    own_id = getattr(os, "getuid", None)
+    if own_id is None:
+        return None
+    for each in (directory.parent, directory):
+        found = each.stat()
+        if found.st_uid not in (own_id(), 0):
+            return f"{each} was made by another user"
+        if found.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
+            return f"other users may write to {each}"
+    return None
+
+
+def _make(directory: Path) -> None:
+    """Make `directory` and what is missing above it for the user alone, whatever the umask."""
+    missing = list(takewhile(lambda each: not each.exists(), (directory, *directory.parents)))
+    for each in reversed(missing):
+        with contextlib.suppress(FileExistsError):  # another process may be making the same one
+            each.mkdir(0o700)
 
 
 def _is_writable(directory: Path) -> bool:
     try:
-        directory.mkdir(parents=True, exist_ok=True)
+        _make(directory)
         tempfile.TemporaryFile(dir=directory).close()
     except OSError:
         return False

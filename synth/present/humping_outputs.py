@@ -11,7 +11,8 @@ from synth.present.hump_page.hump_page import hump_page
 from synth.present.plots.picture import Picture, picture_files
 from synth.present.report.humping_report import HumpingReport, humping_page
 from synth.yard.hump.event_log import to_log_csv
-from synth.yard.humping.outcome_file import to_npz
+from synth.yard.humping.controlled_train import ControlledTrain
+from synth.yard.humping.outcome_file import TRAINS, TrialTrains, to_npz
 from synth.yard.humping.outcomes import TrainOutcomes
 from synth.yard.humping.resolved_trial import ResolvedTrial
 from synth.yard.humping.speed_program import locomotive_csv, speed_program, uncoupler_csv
@@ -23,7 +24,7 @@ from synth.yard.humping.trial_acceptance import TrialVerdict, judge_trains
 from synth.yard.humping.trial_summary import figures_csv, trial_summary
 from tuning_tables.canonical import canonical_json
 
-TRAINS, FIGURES, PROGRAM, SHEET = "trains.npz", "figures.csv", "locomotive.csv", "uncoupler.csv"
+FIGURES, PROGRAM, SHEET = "figures.csv", "locomotive.csv", "uncoupler.csv"
 LOG = "events.csv"
 PLAYER, REPORT = "hump.html", "report.html"
 SHOWN_TRAIN = 0
@@ -51,11 +52,19 @@ def judged(config: ResolvedTrial, trial: HumpTrial, found: TrainOutcomes, create
 
 
 def write_trains(result: TrialResult, directory: ResultsDirectory, say: Say) -> Document:
-    """Write everything but batches and inputs; the summary as written. Raises `OSError`."""
+    """Write everything but batches and inputs; the summary as written. Raises `OSError`.
+
+    What all trains came to is on the disk before anything is made of the one that is shown: it cannot cost the figures.
+    """
     config, output = result.config, result.config.settings.output
+    directory.write_all(data_files(result))
     shown = one_train(result.trial, SHOWN_TRAIN)
-    control = shown.controlled()
-    directory.write_all(data_files(result) | {LOG: to_log_csv(control.events).encode()})
+    control, standing = shown.controlled(), shown.standing()
+    if standing:
+        first, fall_m = result.trial.routes.first_element
+        say(f"warning: {standing} of the {len(shown.trains)} cuts of train {SHOWN_TRAIN + 1} stand before element "
+            f"{first}; the track falls by {fall_m:.2f} m up to there")  # fmt: skip
+    directory.write_all(shown_files(result, control))
     pictures: tuple[Picture, ...] = ()
     if output.plots or output.report:
         trace = shown.traced()
@@ -74,13 +83,21 @@ def write_trains(result: TrialResult, directory: ResultsDirectory, say: Say) -> 
 
 
 def data_files(result: TrialResult) -> dict[str, bytes]:
-    """The outcomes by train, the figures, and the program of the shown train."""
-    config, program = result.config, speed_program(result.trial, SHOWN_TRAIN)
+    """The outcomes by train, and the figures."""
+    config = result.config
     return {
-        TRAINS: to_npz(result.found, config.routes.numbers, config.trains_sha256),
+        TRAINS: to_npz(result.found, TrialTrains(config.routes, config.trains_sha256)),
         FIGURES: figures_csv(result.figures),
+    }
+
+
+def shown_files(result: TrialResult, control: ControlledTrain) -> dict[str, bytes]:
+    """The program of the shown train, and what the hump control recorded of it."""
+    program = speed_program(result.trial, SHOWN_TRAIN)
+    return {
         PROGRAM: locomotive_csv(program),
         SHEET: uncoupler_csv(program),
+        LOG: to_log_csv(control.events).encode(),
     }
 
 

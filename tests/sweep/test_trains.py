@@ -19,13 +19,12 @@ from synth.sweep.trains.batch import BatchOrder, answer_batch, orders_of
 from synth.sweep.trains.train_run import BatchFailed, BatchFiles, missing_of, run_trains
 from synth.sweep.work import Answer, InThisProcess
 from synth.yard.humping.made_trial import made_trial
-from synth.yard.humping.outcome_file import from_npz, to_npz
+from synth.yard.humping.outcome_file import TrialTrains, from_npz, to_npz
 from synth.yard.humping.outcomes import joined
 from synth.yard.humping.resolved_trial import load_trial
 from synth.yard.humping.trial import BATCH
 from tests.sweep import poison
 from tests.sweep.conftest import Ran, begin, contents, kill_and_reap, wait_until
-from tuning_tables.seal import unsealed
 
 
 def batch_file(out: Path, key: str) -> Path:
@@ -38,7 +37,7 @@ def files_in(out: Path, trial: Path) -> Iterator[BatchFiles]:
     """The batches in `out`, which is held."""
     config = load_trial(trial)
     with results_directory(out, "hump simulate") as directory:
-        yield BatchFiles(directory, config.routes.numbers, config.trains_sha256)
+        yield BatchFiles(directory, TrialTrains(config.routes, config.trains_sha256))
 
 
 def test_workers_change_no_byte(command: Callable[..., Ran], trial: Path, humped: Path, tmp_path: Path) -> None:
@@ -52,11 +51,11 @@ def test_batches_of_any_size_are_the_same_trains(trial: Path, humped: Path) -> N
     """As one batch, one by one, and in uneven parts: the arrays of the file that the command wrote."""
     config = load_trial(trial)
     made = made_trial(config)
-    numbers, sha = config.routes.numbers, config.trains_sha256
-    written = batch_file(humped, next(iter(orders_of(made, sha, BATCH))).key)
-    first = from_npz(unsealed(written.read_bytes(), str(written)), str(written), sha)
+    of_trial = TrialTrains(config.routes, config.trains_sha256)
+    written = batch_file(humped, next(iter(orders_of(made, config.trains_sha256, BATCH))).key)
+    first = from_npz(written.read_bytes(), str(written), of_trial, BATCH)
     some = joined([made.batch(0, 1), made.batch(1, 6), made.batch(7, BATCH - 7)])
-    assert to_npz(some, numbers, sha) == to_npz(first, numbers, sha)
+    assert to_npz(some, of_trial) == to_npz(first, of_trial)
 
 
 def test_a_killed_run_goes_on_to_the_same_bytes(trial: Path, humped: Path, tmp_path: Path) -> None:
@@ -151,7 +150,7 @@ def test_report_makes_the_same_files_again(command: Callable[..., Ran], humped: 
     config.write_text(config.read_text(encoding="utf-8").replace("cuts = 3", "cuts = 4"), encoding="utf-8")
     code, _, said = command("hump", "report", out)
     assert code == 3
-    assert "they are of another trial" in said
+    assert "not the outcomes of 540 trains of this trial" in said
 
 
 def test_ctrl_c_keeps_what_is_humped(trial: Path, tmp_path: Path) -> None:

@@ -4,7 +4,6 @@ import json
 import os
 import subprocess
 import sys
-import textwrap
 import time
 from pathlib import Path
 
@@ -107,6 +106,61 @@ def test_unwritable_bases_are_passed_over(base: Path, tmp_path: Path, monkeypatc
     assert use_kernel_cache() == private
 
 
+def modes(directory: Path, top: Path) -> set[int]:
+    """The permissions of `directory` and all above it below `top`."""
+    return {each.stat().st_mode & 0o777 for each in (directory, *directory.parents) if each.is_relative_to(top)}
+
+
+def test_what_is_made_is_the_users_alone_whatever_the_umask(base: Path) -> None:
+    before = os.umask(0)
+    try:
+        assert modes(use_kernel_cache(), base) == {0o700}
+    finally:
+        os.umask(before)
+
+
+@pytest.mark.parametrize("which", ["retarder-synth", "fingerprint"])
+@pytest.mark.parametrize("fault", ["group", "others", "alien"])
+def test_a_directory_of_others_is_passed_over_with_one_warning(
+    base: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    which: str,
+    fault: str,
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", "")
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    ours = use_kernel_cache()
+    victim = ours if which == "fingerprint" else ours.parent
+    if fault == "alien" and os.getuid() != 0:
+        monkeypatch.setattr(os, "getuid", lambda: 4321)
+    elif fault == "alien":
+        os.chown(victim, 4321, -1)
+    else:
+        victim.chmod(0o720 if fault == "group" else 0o702)
+    found = use_kernel_cache()
+    assert not found.is_relative_to(base)
+    assert found.is_dir()
+    (told,) = capsys.readouterr().err.splitlines()
+    assert str(victim) in told or fault == "alien"
+    assert f"kernels are kept in {found.parent}" in told
+    if fault != "alien":
+        assert found.is_relative_to(tmp_path / "home" / ".cache")
+        assert use_kernel_cache() == found  # as what this process starts does
+        assert capsys.readouterr().err == ""
+
+
+def test_without_user_ids_the_directory_is_taken_as_it_is(base: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As on Windows."""
+    ours = use_kernel_cache()
+    ours.chmod(0o777)
+    monkeypatch.delattr(os, "getuid")
+    assert use_kernel_cache() == ours
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "")
+    assert use_kernel_cache() == ours
+
+
 def test_only_own_directories_unused_for_a_month_are_removed(base: Path) -> None:
     now = time.time()
     ages_days = {"0123456789abcdef": 31, "fedcba9876543210": 29, "notes": 400}
@@ -189,18 +243,50 @@ print(json.dumps(report))
 """
 
 
-def test_damaged_cache_is_emptied_and_the_kernel_compiled_anew(tmp_path: Path) -> None:
+FORGE = """
+import importlib, json, os, pickle, sys
+from synth.kernels.cache import cache_in_use, use_kernel_cache
+import kernel
+
+class Forged:
+    def __reduce__(self):
+        return os.mkdir, ("PWNED",)
+
+def cached(directory):
+    (path,) = directory.rglob("*.nbi")
+    return path
+
+kernel.double(1.5)
+forged = cached(cache_in_use())
+forged.write_bytes(pickle.dumps(Forged()))
+cache_in_use().chmod(0o777)
+os.environ["HOME"] = os.getcwd()
+use_kernel_cache()
+result = importlib.reload(kernel).double(1.5)
+print(json.dumps([result, os.path.exists("PWNED"), cached(cache_in_use()) != forged]))
+"""
+
+
+def test_a_forged_kernel_in_a_directory_that_others_may_write_is_not_run(tmp_path: Path) -> None:
+    run = in_a_process(FORGE, tmp_path)
+    assert run.returncode == 0, run.stderr
+    assert json.loads(run.stdout) == [3.0, False, True]
+    assert "other users may write to" in run.stderr
+
+
+def in_a_process(text: str, tmp_path: Path) -> subprocess.CompletedProcess[str]:
+    """`text` run with a cache and the module `kernel` of its own."""
     (tmp_path / "kernel.py").write_text(KERNEL)
     environment = {k: v for k, v in os.environ.items() if not k.startswith("NUMBA_")}
-    environment |= {"RETARDER_SYNTH_CACHE": str(tmp_path / "cache"), "PYTHONPATH": str(tmp_path)}
-    run = subprocess.run(
-        [sys.executable, "-c", textwrap.dedent(DAMAGE_AND_MEND)],
-        env=environment,
-        cwd=Path(__file__).parents[2],
-        capture_output=True,
-        text=True,
-        check=False,
+    environment |= {"RETARDER_SYNTH_CACHE": str(tmp_path / "cache"), "XDG_CACHE_HOME": ""}
+    environment["PYTHONPATH"] = os.pathsep.join((str(tmp_path), str(Path(__file__).parents[2])))
+    return subprocess.run(
+        [sys.executable, "-c", text], env=environment, cwd=tmp_path, capture_output=True, text=True, check=False
     )
+
+
+def test_damaged_cache_is_emptied_and_the_kernel_compiled_anew(tmp_path: Path) -> None:
+    run = in_a_process(DAMAGE_AND_MEND, tmp_path)
     assert run.returncode == 0, run.stderr
     report = json.loads(run.stdout)
     assert len(report) == 10

@@ -11,10 +11,10 @@ from typing import Protocol
 from synth.frame.results_directory import ResultsDirectory
 from synth.sweep.trains.batch import BatchOrder
 from synth.sweep.work import Engine
-from synth.yard.humping.outcome_file import from_npz, to_npz
+from synth.yard.humping.outcome_file import TrialTrains, from_npz, to_npz
 from synth.yard.humping.outcomes import TrainOutcomes, joined
 from tuning_tables import DamagedTable
-from tuning_tables.seal import seal_of, unsealed
+from tuning_tables.seal import unsealed
 
 FOLDER = "batches"
 
@@ -35,11 +35,10 @@ class BatchFailed(Exception):
 
 @dataclass(frozen=True)
 class BatchFiles:
-    """The stored batches of a trial in `directory`, each under a seal; `numbers` of the elements by column."""
+    """The stored batches of `trial` in `directory`, each under a seal."""
 
     directory: ResultsDirectory
-    numbers: tuple[int, ...]
-    trains_sha256: str
+    trial: TrialTrains
 
     def name(self, key: str) -> str:
         """The name of the file of one batch."""
@@ -51,13 +50,12 @@ class BatchFiles:
 
     def store(self, key: str, found: TrainOutcomes) -> None:
         """Write a batch, complete or not at all; raises `OSError`."""
-        body = to_npz(found, self.numbers, self.trains_sha256)
-        self.directory.store(self.name(key), body + seal_of(body))
+        self.directory.store(self.name(key), to_npz(found, self.trial))
 
-    def stored(self, key: str) -> TrainOutcomes:
-        """A batch; `FileNotFoundError`, or `DamagedTable` where a byte has changed."""
+    def stored(self, key: str, count: int) -> TrainOutcomes:
+        """A batch of `count` trains; `FileNotFoundError`, or `DamagedTable` where a byte has changed."""
         path = self.file(key)
-        return from_npz(unsealed(path.read_bytes(), str(path)), str(path), self.trains_sha256)
+        return from_npz(path.read_bytes(), str(path), self.trial, count)
 
     def has(self, key: str) -> bool:
         """Whether a batch is there; `DamagedTable` where a byte has changed."""
@@ -101,7 +99,7 @@ def run_trains(
             files.store(answer.key, answer.result)
             watcher.done(f"{names[answer.key]}: {words(answer.result)}")
     files.directory.retain(*(files.name(order.key) for order in orders))
-    return joined([files.stored(order.key) for order in orders])
+    return joined([files.stored(order.key, order.count) for order in orders])
 
 
 def words(found: TrainOutcomes) -> str:

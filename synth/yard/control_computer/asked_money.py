@@ -36,10 +36,8 @@ from synth.yard.control_computer.economics.uncertainty.ranges import (
     Triangular,
     Uniform,
 )
-from synth.yard.humping.outcome_file import from_npz
 from synth.yard.humping.outcomes import TrainOutcomes
-
-TRAINS = "trains.npz"
+from synth.yard.humping.stored_trains import stored_trains
 
 
 @dataclass(frozen=True)
@@ -73,11 +71,8 @@ def figure_sources(rates: RatesSettings, folder: Path, place: str) -> HumpFigure
 
 def trains_in(directory: Path, place: str, key: str) -> tuple[TrainOutcomes, str]:
     """The trains that `hump simulate` left in `directory`, and the hash of their file."""
-    file = directory / TRAINS
-    if not file.is_file():
-        raise InputError(f"{place}: rates.{key} is {str(directory)!r}; there is no {TRAINS} of 'hump simulate' in it")
-    content = file.read_bytes()
-    return from_npz(content, str(file), None), hashlib.sha256(content).hexdigest()
+    stored = stored_trains(directory, f"{place}: rates.{key} is {str(directory)!r}")
+    return stored.found, hashlib.sha256(stored.content).hexdigest()
 
 
 def told_rates(told: FigureSettings, place: str) -> HumpRates:

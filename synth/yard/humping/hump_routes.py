@@ -64,6 +64,12 @@ class HumpRoutes:
         return np.array([route.track for route in self.routes])
 
     @property
+    def first_element(self) -> tuple[int, float]:
+        """Number of the element that all cuts come to first, and how far the track has fallen from the crest to it."""
+        from_m = self.place_m[0, 0, Mark.FIRST_IN]
+        return self.numbers[self.vertex[0, 0]], float(self.routes[0].roll_track.fall_m(from_m))
+
+    @property
     def elements(self) -> int:
         """Most elements of a route."""
         return int(self.vertex.shape[1])

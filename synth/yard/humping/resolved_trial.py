@@ -42,6 +42,7 @@ from synth.yard.humping.asked_trains import (
 )
 from synth.yard.humping.hump_routes import HumpRoutes, hump_routes
 from synth.yard.humping.position_choice import PositionChoice, position_choices
+from synth.yard.humping.rising_track import require_falling
 from synth.yard.humping.table_aim import aim_warnings, require_fitting
 from synth.yard.humping.trial_parameters import (
     CHANGES_NO_TRAIN,
@@ -147,6 +148,7 @@ def resolve_trial(file: TrialFile) -> ResolvedTrial:
         shares = category_shares(settings, categories)
         trains = trains_of(settings, file.folder, people, shares, routes)
         require_speeds(settings)
+        require_falling(routes, settings)
         aims = aim_choices(routes.routes, settings.aim, file.hump_source.parent, file.folder)
         for each in aims:
             require_fitting(each, routes, cars_of_cuts(trains, categories), settings.aim.knowledge == "measured")

@@ -9,6 +9,7 @@ from synth.yard.humping.humping import Hump
 from synth.yard.humping.route_rolling import rolling_on
 from synth.yard.humping.train_cuts import TrainCuts
 from synth.yard.humping.train_memory import TrainMemory
+from synth.yard.humping.train_passages import train_passages
 from synth.yard.humping.train_trace import TrainTrace, train_trace
 from synth.yard.humping.trial import HumpTrial
 
@@ -30,6 +31,10 @@ class OneTrain:
     def controlled(self) -> ControlledTrain:
         """What the hump control records of it."""
         return controlled_train(self.trial.routes, self.trains, self.memory, 0)
+
+    def standing(self) -> int:
+        """How many of its cuts come to no element: they stand between the crest and the first one."""
+        return sum(not way for way in train_passages(self.trial.routes, self.trains, self.memory, 0).ways)
 
 
 def one_train(trial: HumpTrial, number: int) -> OneTrain:

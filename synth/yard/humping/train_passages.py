@@ -44,14 +44,14 @@ class TrainPassages:
 
     @property
     def begins_s(self) -> float:
-        """When the first axle passes the first joint."""
-        return min(passage.in_s[0] for way in self.ways for passage in way)
+        """When the first axle passes the first joint; 0, the first cut at the crest, where none ever does."""
+        return min((passage.in_s[0] for way in self.ways for passage in way), default=0.0)
 
     @property
     def ends_s(self) -> float:
-        """When the last axle passes the last joint."""
+        """When the last axle passes the last joint; 0 as above."""
         times = [time for way in self.ways for passage in way for time in (*passage.in_s, *passage.out_s)]
-        return max(time for time in times if np.isfinite(time))
+        return max((time for time in times if np.isfinite(time)), default=0.0)
 
 
 def train_passages(routes: HumpRoutes, trains: TrainCuts, memory: TrainMemory, lane: int) -> TrainPassages:
@@ -64,7 +64,8 @@ def train_passages(routes: HumpRoutes, trains: TrainCuts, memory: TrainMemory, l
 
 def with_contacts(memory: TrainMemory, lane: int) -> Floats:
     """Times (cuts, elements, marks) of a train. The simulation finds a contact at the next joint; there the cut comes
-    no sooner than the last axle of the one that it touched; its first axle, where the last one never comes."""
+    no sooner than the last axle of the one that it touched; its first axle, where the last one never comes. It never
+    comes there behind a cut that stands ahead of the joint with all its axles."""
     times: Floats = memory.time_s[lane].copy()
     for cut in range(len(times)):
         at = int(memory.contact_at[lane, cut])
@@ -72,7 +73,8 @@ def with_contacts(memory: TrainMemory, lane: int) -> Floats:
         if leader >= 0:
             joint = times[cut, at, Mark.FIRST_IN : Mark.LAST_IN + 1]
             ahead = times[leader, at, Mark.FIRST_IN : Mark.LAST_IN + 1]
-            joint += max(0.0, ahead[np.isfinite(ahead)][-1] - joint[0])
+            came = ahead[np.isfinite(ahead)]
+            joint += max(0.0, came[-1] - joint[0]) if len(came) else np.inf
     return times
 
 

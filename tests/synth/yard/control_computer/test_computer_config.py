@@ -81,7 +81,7 @@ def test_what_is_only_shown_changes_no_hash_and_numbers_do() -> None:
         ),
         ("[uncertainty]\nsobol_points = 100\n", ("uncertainty.sobol_points is 100", "power of 2")),
         ('[rates]\ntoday_trial = "x"\n', ("today_trial and new_trial",)),
-        ('[rates]\ntoday_trial = "x"\nnew_trial = "y"\n', ("rates.today_trial", "trains.npz")),
+        ('[rates]\ntoday_trial = "x"\nnew_trial = "y"\n', ("rates.today_trial", "inputs/config.toml")),
         ('hump = "larg"\n', ("hump", "larg")),
     ],
 )
