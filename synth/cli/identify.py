@@ -38,5 +38,7 @@ def identify_command(
     if as_json:
         sys.stdout.write((output / "summary.json").read_text(encoding="utf-8"))
     else:
-        print("\n".join((*identify_sentences(found), f"{output}: config.toml, plots/, report.html, summary.json")))
+        from synth.cli.printed_page import print_page
+
+        print_page(*identify_sentences(found), f"{output}: config.toml, plots/, report.html, summary.json")
     return LIMITS_MISSED if found.wrong else OK

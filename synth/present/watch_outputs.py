@@ -37,7 +37,7 @@ class WrittenWatch:
     """The text of `watch.json`, and the verdict in sentences."""
 
     json: str
-    verdict: str
+    verdict: tuple[str, ...]
 
 
 def write_watch(found: Watch, config: ResolvedConfig, created: str, directory: Path) -> WrittenWatch:
@@ -55,7 +55,7 @@ def write_watch(found: Watch, config: ResolvedConfig, created: str, directory: P
     save_picture(picture, directory)
     write_atomically(directory / "report.html", document(stamp, box, sections).encode())
     write_atomically(directory / WATCH_LAYOUT.summary, text.encode())
-    return WrittenWatch(text, "\n".join(sentences))
+    return WrittenWatch(text, sentences)
 
 
 def verdict(found: Watch) -> tuple[str, ...]:

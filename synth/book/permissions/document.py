@@ -8,6 +8,7 @@ from importlib.metadata import version
 
 from synth.book.output_directory import PERMISSIONS_LAYOUT
 from synth.book.permissions.case_document import results_document
+from synth.book.permissions.overview import median_ratios
 from synth.book.permissions.permission import CasePermissions
 from synth.book.summary import Document, plain
 from synth.configuration.resolved_config import ResolvedConfig
@@ -30,6 +31,7 @@ def permissions_document(
                 "config_sha256": config.sha256,
             },
             "title": config.title,
+            "median_ratios": median_ratios(cases),
             "cases": [case_document(case) for case in cases],
             "files": dict(hashes),
         }
