@@ -7,10 +7,7 @@ from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 from synth.cli.printed_table import PrintedTable, table_lines
-from synth.cli.printed_words import wrapped
-
-HANGING = 2
-"""How much farther right a sentence goes on."""
+from synth.cli.printed_words import HANGING, wrapped
 
 
 @dataclass(frozen=True)

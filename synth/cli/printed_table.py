@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from synth.book.printed_numbers import ABSENT
-from synth.cli.printed_words import least_width, longest_word, wrapped
+from synth.cli.printed_words import HANGING, least_width, longest_word, wrapped
 
 Row = TypeVar("Row")
 
@@ -84,7 +84,7 @@ def table_lines(table: PrintedTable[Row], width: int | None) -> list[str]:
             f"{table.elsewhere}."
         )
     told = [table.title, *lines] if table.title else lines
-    return told if width is None else [part for line in told for part in wrapped(line, width)]
+    return told if width is None else [part for line in told for part in wrapped(line, width, HANGING)]
 
 
 def fill(column: Column[Row], rows: Sequence[Row]) -> Filled:

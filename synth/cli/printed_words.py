@@ -9,6 +9,9 @@ SPACE: Final = " "
 NO_BREAK: Final = "\u00a0"
 """Printed as a space, but no line is broken there."""
 
+HANGING: Final = 2
+"""How much farther right a sentence goes on."""
+
 BREAKS: Final = "/_-"
 """A word that is longer than a line is broken behind one of these."""
 

@@ -9,11 +9,16 @@ from synth.cli.printed_table import Column, PrintedTable
 from synth.present.humping_outputs import TrialResult
 from synth.present.report.figure_table import ShownFigure, shown_figure
 
+
+def title(figure: ShownFigure) -> str:
+    """What a figure is, and in what."""
+    return f"{figure.title}{f', {figure.unit}' if figure.unit not in ('', '1/h') else ''}"
+
+
 COLUMNS = (
-    Column[ShownFigure]("figure", lambda figure: figure.title, words=True),
+    Column[ShownFigure]("figure", title, words=True),
     Column[ShownFigure]("value", lambda figure: figure.value),
     Column[ShownFigure]("95 %", lambda figure: figure.interval),
-    Column[ShownFigure]("unit", lambda figure: figure.unit, words=True),
 )
 
 
