@@ -27,7 +27,8 @@ class Column(Generic[Row]):
 
     `words`: the cells are words, which stand left and may be wrapped; otherwise figures, which stand right and are
     never broken. `once`: a cell is blank where it and the `once` columns before it repeat the row above. `spare`: 0 for
-    what a reader cannot do without; of the others the highest is the first that a narrow terminal does without.
+    what a reader cannot do without; of the others the highest is the first that a narrow terminal does without, of
+    equal ones the last.
     """
 
     heading: str
@@ -98,7 +99,7 @@ def fitting(columns: Sequence[Filled], width: int | None) -> list[Filled]:
     """The columns that fit side by side into `width`; none if not even those fit that have to stay."""
     kept = list(columns)
     while width is not None and line_width(column.least for column in kept) > width:
-        spare = max(kept, key=lambda column: column.spare)
+        spare = max(reversed(kept), key=lambda column: column.spare)
         if not spare.spare:
             return []
         kept.remove(spare)

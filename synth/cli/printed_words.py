@@ -9,6 +9,9 @@ SPACE: Final = " "
 NO_BREAK: Final = "\u00a0"
 """Printed as a space, but no line is broken there."""
 
+WORD: Final = re.compile(r" *[^ ]+(?:(?<=\d) [%\w/]{1,4}[,;.:)\]]*(?= |$))?")
+"""A word with the spaces before it; a number and its unit are one word."""
+
 HANGING: Final = 2
 """How much farther right a sentence goes on."""
 
@@ -23,7 +26,7 @@ def wrapped(text: str, width: int, hang: int = 0) -> list[str]:
     """
     margin = SPACE * min(len(text) - len(text.lstrip(SPACE)) + hang, width // 2)
     lines = [""]
-    for token in re.findall(" *[^ ]+", text):
+    for token in WORD.findall(text):
         if lines[-1].strip(SPACE) and len(lines[-1] + token) > width:
             lines.append(margin + token.lstrip(SPACE))
         else:
@@ -52,4 +55,4 @@ def least_width(text: str, most_lines: int) -> int:
 
 def longest_word(text: str) -> int:
     """Characters of the longest word."""
-    return max(map(len, text.split(SPACE)))
+    return max((len(word.strip(SPACE)) for word in WORD.findall(text)), default=0)
