@@ -4,12 +4,23 @@ from __future__ import annotations
 
 import gc
 import os
+from collections.abc import Iterator
 
+import pytest
 from hypothesis import settings
+
+from tests.printed_page import Page, caught
 
 settings.register_profile("ci", derandomize=True, deadline=None)
 settings.register_profile("here", deadline=None)
 settings.load_profile("ci" if os.environ.get("CI") else "here")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def pages() -> Iterator[list[Page]]:
+    """Every page that commands have printed in this process; each is found whole at every width as it is printed."""
+    with caught() as found:
+        yield found
 
 
 def pytest_collection_finish() -> None:

@@ -41,6 +41,21 @@ def in_ten_thousand(share: float, ends: tuple[float, float]) -> str:
     return f"{most} [{low}, {high}]" if share else f"fewer than {high}"
 
 
+def plus_minus(value: float | None, ends: Sequence[float | None] | None, digits: int = 2) -> str:
+    """A figure with the wider half of its 95 % interval, which is never printed as 0; None is what is not known."""
+    if value is None or ends is None or ends[0] is None or ends[1] is None:
+        return ABSENT
+    return f"{value:.{digits}f} ±{max(value - ends[0], ends[1] - value, 0.1**digits):.{digits}f}"
+
+
+def ten_thousand(share: float, ends: Sequence[float | None]) -> str:
+    """A probability as cuts in 10 000, with the wider half of its 95 % interval; where no pass met one, a bound."""
+    low, high = (1e4 * (end or 0.0) for end in ends)
+    if share == 0.0:
+        return f"below {few(high)}"
+    return f"{few(1e4 * share)} ±{few(max(1e4 * share - low, high - 1e4 * share))}"
+
+
 def few(number: float) -> str:
     """A number of cuts: two figures below 10."""
     return f"{number:#.2g}" if number < 9.95 else f"{number:.0f}"

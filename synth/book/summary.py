@@ -21,6 +21,7 @@ from synth.book.comparison.limit_cycle import hunting_report
 from synth.book.comparison.measured import Measured
 from synth.book.comparison.pressure_cycle import pressure_hunting
 from synth.book.permissions.case_document import results_document
+from synth.book.permissions.overview import Overview, median_ratios
 from synth.book.tune import Book
 from synth.book.tuned_table import AnyEstimate
 from synth.configuration.resolved_config import ResolvedConfig
@@ -40,7 +41,7 @@ def summary_of(book: Book, verdict: Verdict, file_hashes: Mapping[str, str]) -> 
     """The document of `book`; `file_hashes`: SHA-256 by file name, all files but summary.json itself."""
     document = {
         **summary_head((FORMAT, VERSION), book.config, book.created, verdict),
-        "overall": overall(book.cases),
+        "overall": overall(book.cases) | permitted(book.permissions),
         "cases": [case_of(case, word) for case, word in zip(book.cases, verdict.cases, strict=True)],
         "degree_studies": [study_of(study) for study in book.degree_studies],
         "files": dict(file_hashes),
@@ -80,6 +81,13 @@ def overall(cases: tuple[CaseResult, ...]) -> Document:
             "as_published_honesty": [min(published), max(published)],
         }
     return figures
+
+
+def permitted(found: Overview | None) -> Document:
+    """Figures of permissions over all cases that tell of some; empty where nobody asked."""
+    if found is None:
+        return {}
+    return {"permission_median_ratios": median_ratios(found.cases), "permission_widest_half_ci95": found.widest}
 
 
 def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:

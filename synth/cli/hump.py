@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from synth.cli import OK
+from synth.cli.printed_page import print_page
 from synth.yard.hump.number_ranges import ranges
 
 if TYPE_CHECKING:
@@ -28,11 +29,12 @@ def check_command(source: Path, as_json: bool) -> int:
     if as_json:
         print(json.dumps({"path": str(source), **found, "ignored": read.ignored}, indent=1, ensure_ascii=False))
         return OK
-    print(*check_words(found), sep="\n")
+    page = check_words(found)
     if read.ignored:
         more = len(read.ignored) - MOST_TOLD
         rest = f" and {more} more" if more > 0 else ""
-        print(f"  read over: {', '.join(read.ignored[:MOST_TOLD])}{rest}")
+        page.append(f"  read over: {', '.join(read.ignored[:MOST_TOLD])}{rest}")
+    print_page(*page)
     return OK
 
 
@@ -75,15 +77,15 @@ def routes_command(source: Path, as_json: bool) -> int:
     if as_json:
         print(json.dumps(routes_document(graph), indent=1, ensure_ascii=False))
         return OK
-    print(
+    page = [
         "Elements with their metres from the crest; switches with the position that they need. Code: 0 left, 1 right."
-    )
+    ]
     for lead in graph.leads:
-        for route in graph.routes(lead).values():
-            print(route_words(route))
+        page += map(route_words, graph.routes(lead).values())
     for switch in graph.switches:
         left, right = graph.left_tracks(switch.number), graph.right_tracks(switch.number)
-        print(f"switch {switch.number}: left to tracks {ranges(left)}; right to tracks {ranges(right)}")
+        page.append(f"switch {switch.number}: left to tracks {ranges(left)}; right to tracks {ranges(right)}")
+    print_page(*page)
     return OK
 
 

@@ -171,9 +171,11 @@ def speed_command(source: Path | None, asked: AskedTrains, train: int, output: P
     if as_json:
         print(json.dumps(program_document(program, files), indent=1, ensure_ascii=False))
         return OK
-    print(
+    from synth.cli.printed_page import print_page
+
+    print_page(
         f"train {train}: cuts: {len(program.rows)}; over the crest in {program.rows[-1].time_s:.0f} s at "
-        f"{program.mean_m_s:.2f} m/s, {program.cars_per_hour:.0f} cars an hour"
+        f"{program.mean_m_s:.2f} m/s, {program.cars_per_hour:.0f} cars an hour",
+        *map(str, files),
     )
-    print(*files, sep="\n")
     return OK

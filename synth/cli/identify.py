@@ -39,6 +39,8 @@ def identify_command(
     if as_json:
         sys.stdout.write((output / "summary.json").read_text(encoding="utf-8"))
     else:
+        from synth.cli.printed_page import print_page
+
         left = f"{output}: config.toml, plots/, report.html, summary.json"
-        print("\n".join((*identify_sentences(found), *other_tests(found), left)))
+        print_page(*identify_sentences(found), *other_tests(found), left)
     return LIMITS_MISSED if found.wrong else OK

@@ -112,6 +112,7 @@ def sensors_file(name: str) -> tuple[str, str]:
 def print_list(as_json: bool) -> int:
     """What the library holds."""
     from plant_models.library import KINDS
+    from synth.cli.printed_page import print_page
 
     titles = {kind.folder: titles_of(kind) for kind in KINDS}
     if as_json:
@@ -119,10 +120,11 @@ def print_list(as_json: bool) -> int:
         print(json.dumps(document, indent=1, ensure_ascii=False))
         return 0
     width = max(len(name) for found in titles.values() for name in found)
+    page = []
     for kind in KINDS:
-        print(f"{kind.folder}:")
-        for name, title in titles[kind.folder].items():
-            print(f"  {name:<{width}}  {title}")
+        page.append(f"{kind.folder}:")
+        page += (f"  {name:<{width}}  {title}" for name, title in titles[kind.folder].items())
+    print_page(*page)
     return 0
 
 

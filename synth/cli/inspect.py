@@ -15,8 +15,11 @@ from synth.book.forms.exported_code import exported_code
 from synth.book.forms.passage_file import read_passages
 from synth.book.forms.table_file import TableFile, holds_tables, read_tables, summary_beside
 from synth.book.printed_numbers import counted
-from synth.cli.inspect_aim import aim_document, aim_words
-from synth.cli.inspect_passages import passage_document, passage_words
+from synth.cli.inspect_aim import aim_document, aim_page
+from synth.cli.inspect_passages import passage_document, passage_page
+from synth.cli.printed_page import Exhibit, print_page
+from synth.cli.printed_table import Column, PrintedTable
+from synth.cli.printed_words import NO_BREAK
 from tuning_tables import DamagedTable
 from tuning_tables.approach import Approach
 from tuning_tables.decisions import Decisions
@@ -43,20 +46,21 @@ def inspect_command(source: Path, as_json: bool) -> int:
         print(json.dumps(found, indent=1, ensure_ascii=False))
         return 0
     mixed = is_mixed([table for file in files for table in file.tables])
+    page: list[Exhibit] = []
     for file in files:
-        print(f"{file.path}: {contents(file)}")
+        page.append(f"{file.path}: {contents(file)}")
         for table in file.tables:
-            print(*table_words(table, mixed), sep="\n")
+            page += table_page(table, mixed)
     if passages:
-        print(f"{source}: {counted(len(passages), 'table')} for point sensors; their sums are right")
+        page.append(f"{source}: {counted(len(passages), 'table')} for point sensors; their sums are right")
     for each in passages:
-        print(*passage_words(each), sep="\n")
+        page += passage_page(each)
     for aim in aims:
-        print(*aim_words(aim), sep="\n")
-    for export in code:
-        print(f"{export.path}: {export.sentence}")
+        page += aim_page(aim)
+    page += (f"{export.path}: {export.sentence}" for export in code)
     if summary is not None:
-        print(f"{source / 'summary.json'}: {summary['sentence']}")
+        page.append(f"{source / 'summary.json'}: {summary['sentence']}")
+    print_page(*page)
     return 0
 
 
@@ -87,8 +91,8 @@ def file_document(file: TableFile) -> dict[str, Any]:
     return {"path": str(file.path), "kind": file.kind, "checksum": "right", "tables": tables}
 
 
-def table_words(table: ControllerTable, says_none: bool) -> list[str]:
-    """A table in words, a line a fact; `says_none`: one about a missing estimator too."""
+def table_page(table: ControllerTable, says_none: bool) -> list[Exhibit]:
+    """A table in words, a line a fact, and its lines; `says_none`: one fact about a missing estimator too."""
     retarder, cut, predicted = table.retarder, table.cut, table.predicted
     zones = ", ".join(f"{begin:g} to {end:g} m" for begin, end in retarder.zones_m)
     validated = "it was not simulated"
@@ -98,16 +102,16 @@ def table_words(table: ControllerTable, says_none: bool) -> list[str]:
         validated = f"simulated rms {rms:.4f} m/s [{low:.4f}, {high:.4f}] in {table.validated.passes} passes"
     number = "without a number" if cut.number is None else f"number {cut.number}"
     origin = "exact" if predicted.passes is None else f"from {predicted.passes} simulated passes"
-    words = [
+    words: list[Exhibit] = [
         f"  {table.id}: leave with {table.target_speed_m_s:g} m/s",
         f"    retarder   {retarder.name}; zones {zones}; the pass ends at {retarder.exit_m:g} m",
         f"    cut        category {cut.category} ({number}), {cut.mass_t:g} t on {len(cut.axle_offsets_m)} axles",
         f"    made       {table.created} by {table.generator.name} {table.generator.version}, "
-        f"configuration {table.generator.config_sha256[:16]}…",
+        f"configuration {table.generator.config_sha256[:16]}",
         f"    promised   rms {predicted.rms_m_s:.4f} m/s, bias {predicted.bias_m_s:+.4f} m/s, over-speed "
         f"{predicted.p_overspeed:.2g}, {predicted.switchings:.1f} switchings a pass ({origin}); {validated}",
         f"    lines      degree {table.degree}, path {table.valid.s_m[0]:g} to {table.valid.s_m[1]:g} m, "
-        f"speed {table.valid.v_m_s[0]:g} to {table.valid.v_m_s[1]:g} m/s; in m/s at",
+        f"speed {table.valid.v_m_s[0]:g} to {table.valid.v_m_s[1]:g} m/s",
     ]
     if table.estimator is not None:
         words.insert(-1, f"    estimator  {estimator_words(table.estimator)}")
@@ -117,14 +121,25 @@ def table_words(table: ControllerTable, says_none: bool) -> list[str]:
         words.insert(-1, f"    decides    {decision_words(table)}")
     if table.approach is not None:
         words.insert(-1, f"    approach   {approach_words(table.approach)}")
-    path = shown_path(table)
-    slopes = "  + m/s per 100 kPa" if table.has_gauge else ""
-    words.append(f"      {'s, m':<22}" + "".join(f"{s:>9.2f}" for s in path) + slopes)
-    for line in lines_at(table):
-        name = f"stage {line['k']} ({line['pressure_kpa']:g} kPa) {line['line']}"
-        slope = f"{1e2 * line['slope_m_s_per_kpa']:>+11.4f}" if table.has_gauge else ""
-        words.append(f"      {name:<22}" + "".join(f"{v:>9.3f}" for v in line["v_m_s"]) + slope)
-    return words
+    return [*words, lines_table(table)]
+
+
+def lines_table(table: ControllerTable) -> PrintedTable[dict[str, Any]]:
+    """The lines at some places, in m/s, and what a gauge adds."""
+
+    def speed_column(place: int, path_m: float) -> Column[dict[str, Any]]:
+        return Column(f"at {path_m:.2f}{NO_BREAK}m", lambda line: f"{line['v_m_s'][place]:.3f}")
+
+    def name(line: dict[str, Any]) -> str:
+        return f"stage {line['k']} ({line['pressure_kpa']:g} kPa) {line['line']}"
+
+    def slope(line: dict[str, Any]) -> str:
+        return f"{1e2 * line['slope_m_s_per_kpa']:+.4f}"
+
+    slopes = (Column("+ m/s per 100 kPa", slope),) if table.has_gauge else ()
+    speeds = (speed_column(place, path_m) for place, path_m in enumerate(shown_path(table)))
+    columns = (Column("line, m/s", name, words=True), *speeds, *slopes)
+    return PrintedTable(columns, lines_at(table), "the output of --json")
 
 
 def decision_words(table: ControllerTable) -> str:
@@ -163,14 +178,14 @@ def shown_path(table: ControllerTable) -> list[float]:
 def lines_at(table: ControllerTable) -> list[dict[str, Any]]:
     """Every line of the stages in use at the shown places, as evaluated in double precision."""
     found: list[dict[str, Any]] = []
+    path_m = shown_path(table)
     for stage in table.stages:
         for name, line, slope in zip(("down below", "up above"), stage.lines, stage.slopes, strict=True):
             if line is not None:
-                speeds = [float(np.polynomial.polynomial.polyval(s, line)) for s in shown_path(table)]
+                speeds = [float(np.polynomial.polynomial.polyval(s, line)) for s in path_m]
                 sloped = {} if slope is None else {"slope_m_s_per_kpa": slope}
-                found.append(
-                    {"k": stage.k, "pressure_kpa": stage.pressure_kpa, "line": name, "v_m_s": speeds, **sloped}
-                )
+                head = {"k": stage.k, "pressure_kpa": stage.pressure_kpa, "line": name}
+                found.append({**head, "s_m": path_m, "v_m_s": speeds, **sloped})
         if stage.upper is None:
             break  # the stages above are never asked for
     return found

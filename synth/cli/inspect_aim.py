@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from synth.book.forms.aim_file import AimFile
+from synth.book.printed_numbers import counted
+from synth.cli.printed_page import Exhibit
+from synth.cli.printed_table import Column, PrintedTable
+from synth.cli.printed_words import NO_BREAK
 from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.aim.document import to_aim_document
 from tuning_tables.aim.purpose import CategoryAlone
@@ -21,8 +24,8 @@ def aim_document(file: AimFile) -> dict[str, Any]:
     return {"path": str(file.path), "kind": "aim table", "checksum": "right", "tables": [document]}
 
 
-def aim_words(file: AimFile) -> list[str]:
-    """An aim table in words, a line a fact."""
+def aim_page(file: AimFile) -> list[Exhibit]:
+    """An aim table in words, a line a fact, and some of its exit speeds."""
     table = file.table
     required, (low, high) = table.required, table.bounds_m_s
     nodes, missing = table.exit_speed_m_s.size, int(np.isnan(table.exit_speed_m_s).sum())
@@ -35,12 +38,12 @@ def aim_words(file: AimFile) -> list[str]:
         f"    position   {table.position.name}, left {table.position.exit_at_m:g} m from the crest",
         f"    cuts       category {table.category.name} (number {table.category.number}), {known_words(table)}",
         f"    made       {table.created} by {generator.name} {generator.version}, "
-        f"configuration {generator.config_sha256[:16]}…",
+        f"configuration {generator.config_sha256[:16]}",
         f"    reported   {reported_words(table)}",
         f"    nodes      {' x '.join(map(str, table.axes.shape))}, free distance {first:g} to {last:g} m; "
         f"{missing} of {nodes} have no exit speed, between them at most {table.interpolation_error_m_s:g} m/s too slow",
-        f"    speeds     {low:g} to {high:g} m/s; in m/s at",
-        *speed_lines(table),
+        f"    speeds     {low:g} to {high:g} m/s",
+        speed_table(table),
     ]
 
 
@@ -69,15 +72,31 @@ def reported_words(table: AimTable) -> str:
     )
 
 
-def speed_lines(table: AimTable) -> Iterator[str]:
+class SpeedRow(NamedTuple):
+    """Exit speeds in m/s at the shown distances, NaN where there is none."""
+
+    cuts: str
+    speed_m_s: list[float]
+
+
+def speed_table(table: AimTable) -> PrintedTable[SpeedRow]:
     """Exit speeds at some free distances, for every number of cars; at the ends and the middle of the resistances."""
     distance, resistance = table.axes.free_distance_m, table.axes.resistance_n_per_kn
     shown = np.unique(np.linspace(0, len(distance) - 1, SHOWN_DISTANCES).round().astype(int))
-    yield f"      {'free distance, m':<22}" + "".join(f"{distance[place]:>9g}" for place in shown)
     count = table.speed_nodes.shape[2]
+    rows = []
     for row, cars in enumerate(table.axes.cars.tolist()):
         for column in sorted({0, count // 2, count - 1}):
             of = "" if resistance is None else f", {resistance[column]:g} N/kN"
-            speeds = table.speed_nodes[row, shown, column]
-            name = f"{cars} car{'s' if cars > 1 else ''}{of}"
-            yield f"      {name:<22}" + "".join(f"{'none' if np.isnan(v) else f'{v:.3f}':>9}" for v in speeds)
+            rows.append(SpeedRow(f"{counted(cars, 'car')}{of}", table.speed_nodes[row, shown, column].tolist()))
+
+    def speed_column(place: int, distance_m: float) -> Column[SpeedRow]:
+        def cell(row: SpeedRow) -> str:
+            speed = row.speed_m_s[place]
+            return "none" if np.isnan(speed) else f"{speed:.3f}"
+
+        return Column(f"{distance_m:g}{NO_BREAK}m free", cell)
+
+    speeds = (speed_column(place, distance[node]) for place, node in enumerate(shown))
+    cuts = Column[SpeedRow]("exit speed, m/s", lambda row: row.cuts, words=True)
+    return PrintedTable((cuts, *speeds), rows, "the output of --json")

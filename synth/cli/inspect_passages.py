@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 from synth.book.highest_stage import highest_stage
+from synth.cli.printed_page import Exhibit
+from synth.cli.printed_table import Column, PrintedTable
+from synth.cli.printed_words import NO_BREAK
 from tuning_tables.passages.document import to_passage_document
 from tuning_tables.passages.passage_row import PassageRow
 from tuning_tables.passages.passage_table import PassageTable
@@ -19,7 +22,7 @@ def passage_document(table: PassageTable) -> dict[str, Any]:
     return {**to_passage_document(table), "category_number": table.cut.number}
 
 
-def passage_words(table: PassageTable) -> list[str]:
+def passage_page(table: PassageTable) -> list[Exhibit]:
     """A table in words, a line a fact, then its switching speeds."""
     retarder, cut, predicted, sensors = table.retarder, table.cut, table.predicted, table.sensors
     zones = ", ".join(f"{begin:g} to {end:g} m" for begin, end in retarder.zones_m)
@@ -35,7 +38,7 @@ def passage_words(table: PassageTable) -> list[str]:
         f"    retarder   {retarder.name}; zones {zones}; the pass ends at {retarder.exit_m:g} m",
         f"    cut        category {cut.category} ({number}), {cut.mass_t:g} t on {len(cut.axle_offsets_m)} axles",
         f"    made       {table.created} by {table.generator.name} {table.generator.version}, "
-        f"configuration {table.generator.config_sha256[:16]}…",
+        f"configuration {table.generator.config_sha256[:16]}",
         f"    promised   rms {predicted.rms_m_s:.4f} m/s, bias {predicted.bias_m_s:+.4f} m/s, over-speed "
         f"{predicted.p_overspeed:.2g}, {predicted.switchings:.1f} switchings a pass (exact); {validated}",
         f"    sensors    {len(sensors.path_m)} at {places} m; base {sensors.base_m:g} m, timer "
@@ -46,25 +49,34 @@ def passage_words(table: PassageTable) -> list[str]:
         f"    tracker    believes {table.plausible.speed_m_s[0]:g} to {table.plausible.speed_m_s[1]:g} m/s, gains of "
         f"{table.plausible.acceleration_m_s2:.2f} and losses of {table.plausible.deceleration_m_s2:.2f} m/s2",
         f"    passages   {len(table.passages)}; switching speeds in m/s, below which the lower stage is wanted:",
-        *switching_words(table),
+        switching_table(table),
     ]
 
 
-def switching_words(table: PassageTable) -> list[str]:
-    """A line for each passage and stage in force, up to the highest stage that is ever asked for."""
+class InForce(NamedTuple):
+    """What holds at a passage while a stage is in force; sensor and axle are counted from 0, as in the file."""
+
+    passage: PassageRow
+    stage: int
+
+
+def switching_table(table: PassageTable) -> PrintedTable[InForce]:
+    """A row for each passage and stage in force, up to the highest stage that is ever asked for."""
     used = highest_stage(table) + 1
-    head = f"      {'path, m':>8}{'sensor':>8}{'axle':>6}{'in force':>10}"
-    heads = "".join(f"{f'{below} | {below + 1}':>9}" for below in range(used - 1))
-    return [head + heads, *(line for passage in table.passages for line in passage_lines(passage, used))]
 
+    def speed_column(below: int) -> Column[InForce]:
+        name = f"{below}{NO_BREAK}|{NO_BREAK}{below + 1}"
+        return Column(name, lambda row: speed_word(row.passage.switching_m_s[row.stage][below]))
 
-def passage_lines(passage: PassageRow, used: int) -> list[str]:
-    """The lines of one passage; sensor and axle are counted from 0, as in the file."""
-    lines = []
-    for stage, row in enumerate(passage.switching_m_s[:used]):
-        place = f"{passage.path_m:>8.2f}{passage.sensor:>8}{passage.axle:>6}" if stage == 0 else " " * 22
-        lines.append(f"      {place}{stage:>10}" + "".join(f"{speed_word(speed):>9}" for speed in row[: used - 1]))
-    return lines
+    columns = (
+        Column[InForce]("path, m", lambda row: f"{row.passage.path_m:.2f}", once=True),
+        Column[InForce]("sensor", lambda row: str(row.passage.sensor), once=True),
+        Column[InForce]("axle", lambda row: str(row.passage.axle), once=True),
+        Column[InForce]("in force", lambda row: str(row.stage)),
+        *map(speed_column, range(used - 1)),
+    )
+    rows = [InForce(passage, stage) for passage in table.passages for stage in range(used)]
+    return PrintedTable(columns, rows, "the output of --json")
 
 
 def speed_word(speed_m_s: float) -> str:

@@ -53,8 +53,7 @@ def loop_command(source: Path, output: Path, config_path: Path | None, as_json: 
     if as_json:
         print(text)
     else:
-        print_loops(loops)
-        print(f"{len(files)} pictures and {DOCUMENT} in {output}")
+        print_loops(loops, f"{len(files)} pictures and {DOCUMENT} in {output}")
     return OK if all(loop.agrees for loop in loops) else LIMITS_MISSED
 
 
@@ -122,41 +121,34 @@ def sentence(loop: AnyLoop) -> str:
     return f"python-control and the simulator {word}: at most {1e3 * abs(found.largest_m_s):.3f} mm/s apart{parted}"
 
 
-def print_loops(loops: Sequence[AnyLoop]) -> None:
-    """A table with one row for each loop, and what its columns mean."""
-    from rich import box
-    from rich.table import Table
-
+def print_loops(loops: Sequence[AnyLoop], files: str) -> None:
+    """A table with one row for each loop, what its columns mean, and where the `files` are."""
     from synth.book.control_loop import TOLERANCE_M_S
-    from synth.cli.book_table import stdout_console
+    from synth.cli.printed_page import Exhibit, print_page
+    from synth.cli.printed_table import Column, PrintedTable
 
-    shown = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for name in ("table", "exit m/s\npython-control", "exit m/s\nsimulator", "largest difference\nmm/s",
-                 "commands\nin a pass", "predicted limit cycle\nstages: path, amplitude, period"):  # fmt: skip
-        shown.add_column(name, justify="left" if name.startswith(("table", "predicted")) else "right", no_wrap=True)
-    for loop in loops:
+    def difference(loop: AnyLoop) -> str:
         found = loop.difference
-        mark = "" if found.parted_s is None else " *"
-        shown.add_row(
-            loop.table.id,
-            f"{loop.response.exit_speed_m_s:.4f}",
-            f"{loop.trace.exit_speed_m_s:.4f}",
-            f"{1e3 * abs(found.largest_m_s):.3f}{mark}",
-            str(len(loop.response.commands)),
-            cycles(loop),
-        )
-    console = stdout_console()
-    console.print(shown, markup=False)
-    console.print(
+        return f"{1e3 * abs(found.largest_m_s):.3f}{'' if found.parted_s is None else ' *'}"
+
+    columns: tuple[Column[AnyLoop], ...] = (
+        Column("table", lambda loop: loop.table.id, words=True),
+        Column("exit by python-control, m/s", lambda loop: f"{loop.response.exit_speed_m_s:.4f}"),
+        Column("exit by the simulator, m/s", lambda loop: f"{loop.trace.exit_speed_m_s:.4f}"),
+        Column("largest difference, mm/s", difference),
+        Column("commands in a pass", lambda loop: str(len(loop.response.commands)), spare=1),
+        Column("predicted limit cycle, stages: path, amplitude, period", cycles, words=True, spare=2),
+    )
+    page: list[Exhibit] = [
+        PrintedTable(columns, loops, DOCUMENT),
         "Nominal pass: mean friction and resistance, median entry speed, no noise. Python-control and the simulator "
         f"agree where the largest difference is {1e3 * TOLERANCE_M_S:g} mm/s or less.",
-        soft_wrap=True,
-    )
+    ]
     if any(loop.difference.parted_s is not None for loop in loops):
-        console.print(
-            "*: up to a decision at a speed on a line. Rounding decides there; from then on these are two passes.",
-            soft_wrap=True,
+        page.append(
+            "*: up to a decision at a speed on a line. Rounding decides there; from then on these are two passes."
         )
+    print_page(*page, files)
 
 
 def cycles(loop: AnyLoop) -> str:

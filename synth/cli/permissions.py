@@ -12,7 +12,7 @@ from synth.cli import OK, say
 from synth.cli.tables_refused import tables_refused
 
 if TYPE_CHECKING:
-    from synth.book.permissions.permission import CasePermissions
+    from synth.book.permissions.permission import CasePermissions, Permission
 
 
 def permissions_command(path: Path | None, output: Path, workers: int, as_json: bool) -> int:
@@ -51,26 +51,29 @@ def permissions_command(path: Path | None, output: Path, workers: int, as_json: 
 
 def print_permissions(cases: Sequence[CasePermissions], directory: Path) -> None:
     """A table with a row for each case and a column for each permission."""
-    from rich import box
-    from rich.table import Table
-
     from synth.book.permissions.overview import asked_of, medians
-    from synth.cli.book_table import plus_minus, stdout_console
+    from synth.book.printed_numbers import plus_minus
+    from synth.cli.printed_page import print_page
+    from synth.cli.printed_table import Column, PrintedTable
 
-    asked = asked_of(cases)
-    shown = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for name in ("case", "target\nm/s", "rms as configured\nm/s", *(each.value.replace(", ", ",\n") for each in asked)):
-        shown.add_column(name, justify="left" if name == "case" else "right", no_wrap=True)
-    for case in cases:
-        found = [case.of(each) for each in asked]
-        ratios = [plus_minus(each.ratio, each.ratio_ci95) if each else "–" for each in found]
-        rms = plus_minus(case.table.rms_m_s, case.table.rms_ci95_m_s, 4)
-        shown.add_row(case.label, f"{case.target_speed_m_s:g}", rms, *ratios)
-    console = stdout_console()
-    console.print(shown, markup=False)
-    console.print(
+    def column(permission: Permission) -> Column[CasePermissions]:
+        def cell(case: CasePermissions) -> str | None:
+            found = case.of(permission)
+            return None if found is None else plus_minus(found.ratio, found.ratio_ci95)
+
+        return Column(permission.value, cell, spare=1)
+
+    columns: tuple[Column[CasePermissions], ...] = (
+        Column("case", lambda case: case.label, words=True, once=True),
+        Column("target, m/s", lambda case: f"{case.target_speed_m_s:g}"),
+        Column(
+            "rms as configured, m/s", lambda case: plus_minus(case.table.rms_m_s, case.table.rms_ci95_m_s, 4), spare=2
+        ),
+        *map(column, asked_of(cases)),
+    )
+    print_page(
+        PrintedTable(columns, cases, "summary.json"),
         f"{cases[0].table.passes} stratified passes a case. Columns of permissions: rms over that of the table as "
         f"configured, on the same passes, ± 95 %. Medians: {medians(cases)}.",
-        soft_wrap=True,
+        f"{directory}: plots/, summary.json",
     )
-    console.print(f"{directory}: plots/, summary.json", soft_wrap=True)

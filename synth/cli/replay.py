@@ -45,5 +45,7 @@ def replay_command(
     if as_json:
         sys.stdout.write((output / "summary.json").read_text(encoding="utf-8"))
     else:
-        print("\n".join((*replay_sentences(found), f"{output}: plots/, report.html, summary.json")))
+        from synth.cli.printed_page import print_page
+
+        print_page(*replay_sentences(found), f"{output}: plots/, report.html, summary.json")
     return OK if is_described(found) else LIMITS_MISSED

@@ -47,6 +47,8 @@ def retune_command(
     if as_json:
         sys.stdout.write((output / "summary.json").read_text(encoding="utf-8"))
     else:
+        from synth.cli.printed_page import print_page
+
         files = ("tables/, book.h5, " if found.tables else "") + "plots/, report.html, summary.json"
-        print("\n".join((*retune_sentences(found), f"{output}: {files}")))
+        print_page(*retune_sentences(found), f"{output}: {files}")
     return OK if found.changed else LIMITS_MISSED

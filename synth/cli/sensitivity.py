@@ -77,19 +77,21 @@ def shared_out(
 def print_found(found: Sensitivity, directory: Path) -> None:
     """What to measure first, by output, and where the files are."""
     from synth.book.sensitivity.ranking import UNDECIDABLE, measure_first, percent
+    from synth.cli.printed_page import print_page
 
     trial = found.trial
-    print(f"mean over {len(found.cases)} tables, each on {trial.points} plants with {trial.passes} passes:")
+    page = [f"mean over {len(found.cases)} tables, each on {trial.points} plants with {trial.passes} passes:"]
     for each in found.overall:
-        print(measure_first(found.names, each))
+        page.append(measure_first(found.names, each))
         if each.varies:
             open_ones = sum(not share.decided for share in each.shares)
-            print(
+            page.append(
                 f"  parameters together {percent(each.together)}, noise of the passes {100.0 * each.noise.value:.1f} %"
                 f"; {open_ones} of {len(found.keys)} parameters {UNDECIDABLE}"
             )
     output = found.config.output
-    print(
+    print_page(
+        *page,
         f"{directory}: {'plots/, ' * output.plots}{'report.html, ' * output.report}sensitivity.csv, sensitivity.json, "
-        "summary.json"
+        "summary.json",
     )

@@ -3,27 +3,43 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from synth.book.sensors.layout_results import LayoutResults
-from synth.book.sensors.layout_summary import all_places
+from synth.book.sensors.layout_summary import judged, rounded
+from synth.cli.printed_page import Verdict, print_page
+from synth.cli.printed_table import Column, PrintedTable
+
+Layout = dict[str, Any]
+"""A layout of the summary and its name; a radar has neither sensors nor places."""
+
+
+def places(layout: Layout) -> str | None:
+    """Where the sensors are."""
+    return ", ".join(f"{place:g}" for place in layout["path_m"]) if "path_m" in layout else None
+
+
+COLUMNS = (
+    Column[Layout]("layout", lambda layout: layout["layout"], words=True),
+    Column[Layout]("sensors", lambda layout: str(layout["sensors"]) if "sensors" in layout else None),
+    Column[Layout]("rms, m/s", lambda layout: f"{layout['rms_m_s']:.4f}"),
+    Column[Layout]("sensors at, m", places, words=True, spare=1),
+)
 
 
 def print_plan(results: LayoutResults, directory: Path) -> None:
-    """A line for each number of sensors, what stands beside them, and which were chosen."""
-    for plan in results.plans:
-        places = "  ".join(f"{place:g}" for place in all_places(results, plan.best))
-        print(
-            f"{plan.deciding + 1} sensors: rms {plan.best.rms_m_s:.4f} m/s "
-            f"(equal sections {plan.equal.rms_m_s:.4f}) at {places} m"
-        )
-    print(f"by the rule, {len(results.rule.deciding_m) + 1} sensors: rms {results.rule.rms_m_s:.4f} m/s")
-    print(f"radar: rms {results.radar_mean_rms_m_s:.4f} m/s")
-    if results.wanted_rms_m_s is None:
-        wanted = "an rms of at most 1.1 times the radar's"
-    else:
-        wanted = f"an rms of at most {results.wanted_rms_m_s:g} m/s"
+    """The layouts of each number of sensors, what stands beside them, and which were chosen."""
+    layouts = [
+        {"layout": name, **judged(results, layout)}
+        for plan in results.plans
+        for name, layout in (("planned", plan.best), ("equal sections", plan.equal))
+    ]
+    layouts.append({"layout": "by the rule", **judged(results, results.rule)})
+    layouts.append({"layout": "radar", "rms_m_s": rounded(results.radar_mean_rms_m_s)})
+    wanted = f"an rms of at most {rounded(results.wanted_rms_m_s):g} m/s"
     if results.chosen is None:
-        print(f"not accepted: none of these numbers of sensors gives {wanted}")
+        verdict = Verdict(False, f"none of these numbers of sensors gives {wanted}")
     else:
-        print(f"accepted: {results.chosen.deciding + 1} sensors are the fewest that give {wanted}")
-    print(f"{directory}: plots/, {'sensors.toml, ' * (results.chosen is not None)}summary.json")
+        verdict = Verdict(True, f"{results.chosen.deciding + 1} sensors are the fewest that give {wanted}")
+    files = f"{directory}: plots/, {'sensors.toml, ' * (results.chosen is not None)}summary.json"
+    print_page(PrintedTable(COLUMNS, layouts, "summary.json"), verdict, files)

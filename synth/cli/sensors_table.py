@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rich import box
-from rich.table import Table
-from rich.text import Text
-
-from synth.cli.book_table import Figures, plus_minus, stdout_console, ten_thousand
+from synth.cli import case_columns as of
+from synth.cli.book_table import places
+from synth.cli.printed_page import Verdict, print_page
+from synth.cli.printed_table import PrintedTable
 
 COLUMNS = (
-    "case", "target\nm/s", "rms [95 %]\nm/s", "for want of\nbrake, m/s", "95 of 100\nwithin ± m/s",
-    "out of brake\nin 10 000", "predicted /\nsimulated", "switch-\nings", "verdict",
+    of.CASE, of.TARGET, of.RMS, of.FOR_WANT_OF_BRAKE, of.WITHIN_95, of.OUT_OF_BRAKE, of.HONESTY, of.SWITCHINGS,
+    of.VERDICT,
 )  # fmt: skip
 
 LEGEND = (
@@ -21,42 +20,13 @@ LEGEND = (
 )
 
 
-def print_sensors(summary: Figures, directory: Path) -> None:
+def print_sensors(summary: of.Case, directory: Path) -> None:
     """Print the table of cases, the verdict, and where everything is."""
-    console = stdout_console()
-    table = Table(box=box.SIMPLE_HEAD, title=summary["title"], title_justify="left", pad_edge=False)
-    for name in COLUMNS:
-        table.add_column(name, justify="left" if name in ("case", "verdict") else "right", no_wrap=True)
-    before = None
-    for case in summary["cases"]:
-        table.add_row(*row(case, case["label"] != before), style=None if case["feasible"] else "dim")
-        before = case["label"]
-    console.print(table)
-    passes = summary["cases"][0]["simulated"]["passes"]
-    console.print(f"{passes} stratified passes a case. {LEGEND}", soft_wrap=True)
-    accepted = summary["accepted"]
-    word = Text("accepted" if accepted else "NOT ACCEPTED", style="bold green" if accepted else "bold red")
-    console.print(word + Text(f": {summary['verdict']}", style="default"), soft_wrap=True)
-    files = summary["files"]
-    places = [f"tables in {directory / 'tables'}", f"code in {directory / 'c'} and {directory / 'st'}"]
-    if any(name.startswith("plots/") for name in files):
-        places.append(f"pictures in {directory / 'plots'}")
-    if "report.html" in files:
-        places.append(f"report {directory / 'report.html'}")
-    console.print(" · ".join(places), soft_wrap=True, highlight=False)
-
-
-def row(case: Figures, first: bool) -> tuple[str, ...]:
-    """The cells of one case."""
-    simulated, power = case["simulated"], case["brake_power"]
-    return (
-        case["label"] if first else "",
-        f"{case['target_speed_m_s']:g}",
-        plus_minus(simulated["rms_m_s"], simulated["rms_ci95_m_s"], 4),
-        plus_minus(case["unavoidable_rms_m_s"], case["unavoidable_ci95_m_s"], 4),
-        plus_minus(simulated["p95_m_s"], simulated["p95_ci95_m_s"], 4),
-        ten_thousand(power["out_of_brake"], power["out_of_brake_ci95"]),
-        plus_minus(case["honesty"], case["honesty_ci95"]),
-        f"{simulated['switchings']:.1f}",
-        case["verdict"],
+    cases = summary["cases"]
+    tables = (f"tables in {directory / 'tables'}", f"code in {directory / 'c'} and {directory / 'st'}")
+    print_page(
+        PrintedTable(COLUMNS, cases, "summary.json and the report", summary["title"]),
+        f"{cases[0]['simulated']['passes']} stratified passes a case. {LEGEND}",
+        Verdict(summary["accepted"], summary["verdict"]),
+        places(tables, summary, directory),
     )

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from synth.cli import LIMITS_MISSED, OK, say
+from synth.cli.printed_page import print_page
 from synth.faults.input_error import InputError
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ def study_command(name: str | None, words: list[str], wanted: Wanted, general_he
     from synth.studies.registry import STUDIES
 
     if wanted.show_list:
-        print(listing(STUDIES, wanted.as_json))
+        print_list(STUDIES, wanted.as_json)
         return OK
     if name is None or name in HELP:
         if name in HELP or HELP.intersection(words):
@@ -56,13 +57,14 @@ def study_command(name: str | None, words: list[str], wanted: Wanted, general_he
     return run_command(study, words, wanted)
 
 
-def listing(studies: tuple[Study, ...], as_json: bool) -> str:
+def print_list(studies: tuple[Study, ...], as_json: bool) -> None:
     """Name, time and question of every study."""
     if as_json:
         rows = [{"name": s.name, "question": s.question, "seconds": s.seconds, "page": s.page} for s in studies]
-        return json.dumps({"studies": rows}, indent=1, ensure_ascii=False)
+        print(json.dumps({"studies": rows}, indent=1, ensure_ascii=False))
+        return
     wide, long = max(len(s.name) for s in studies), max(len(s.duration) for s in studies)
-    return "\n".join(f"{s.name:<{wide}}  {s.duration:>{long}}  {s.question}" for s in studies)
+    print_page(*(f"{s.name:<{wide}}  {s.duration:>{long}}  {s.question}" for s in studies))
 
 
 def help_of(study: Study) -> str:

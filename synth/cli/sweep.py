@@ -137,27 +137,32 @@ def told(directory: SweepDirectory, summary: dict[str, Any], as_json: bool) -> N
     if as_json:
         sys.stdout.write(directory.summary.read_text(encoding="utf-8"))
         return
+    from synth.cli.printed_page import print_page
+
+    page = []
     for each in summary["conditions"]:
         folder = directory.book_folder(each["name"] or "")
         if not each["tables"]:
-            print(f"{folder}: no table; all {each['classes']} classes failed")
+            page.append(f"{folder}: no table; all {each['classes']} classes failed")
             continue
-        print(
+        page.append(
             f"{folder / 'book.h5'}: {each['tables']} tables of {each['classes'] - each['failed']} classes; rms median "
             f"{each['median_rms_m_s']:.3f}, highest {each['highest_rms_m_s']:.3f} m/s; {each['missing_a_limit']} "
             "miss a limit of [acceptance]"
         )
         if each["refused_targets"]:
-            print(f"  targets without a table: {each['refused_targets']}; see 'retarder-synth sweep failed'")
+            page.append(f"  targets without a table: {each['refused_targets']}; see 'retarder-synth sweep failed'")
         if each["highest_interpolation_loss_m_s"] is not None:
-            print(f"  lines between two tables lose at most {1e3 * each['highest_interpolation_loss_m_s']:.2f} mm/s")
+            loss_mm_s = 1e3 * each["highest_interpolation_loss_m_s"]
+            page.append(f"  lines between two tables lose at most {loss_mm_s:.2f} mm/s")
         if each["shadowed_tables"]:
-            print(
+            page.append(
                 f"  {each['shadowed_tables']} tables are not reached by a choice by category and axles alone: it takes "
                 "the heaviest class"
             )
         if each["no_controller_code"]:
-            print(f"  the book makes no controller code: {each['no_controller_code']}")
+            page.append(f"  the book makes no controller code: {each['no_controller_code']}")
+    print_page(*page)
 
 
 def status_command(path: Path, as_json: bool) -> int:
@@ -165,6 +170,7 @@ def status_command(path: Path, as_json: bool) -> int:
     import json
     from dataclasses import asdict
 
+    from synth.cli.printed_page import print_page
     from synth.sweep.status import status_of
 
     status = status_of(path)
@@ -173,15 +179,16 @@ def status_command(path: Path, as_json: bool) -> int:
         return OK
     state = "running" if status.running else "complete" if status.complete else "not running, not complete"
     refused = f", targets without a table: {status.refused_targets}" if status.refused_targets else ""
-    print(
+    page = [
         f"{path}: {status.title}: {state}; {status.done} of {status.units} units done, {status.failed} failed{refused}"
-    )
+    ]
     if status.rate_units_per_min is not None and status.remaining_s is not None:
-        print(f"  {status.rate_units_per_min:.1f} units a minute, about {status.remaining_s:.0f} s left")
+        page.append(f"  {status.rate_units_per_min:.1f} units a minute, about {status.remaining_s:.0f} s left")
     if status.in_flight:
-        print(f"  under way: {', '.join(status.in_flight)}")
+        page.append(f"  under way: {', '.join(status.in_flight)}")
     if status.bad_ledger_lines:
-        print(f"  {status.bad_ledger_lines} lines of the ledger are torn or damaged and were passed over")
+        page.append(f"  {status.bad_ledger_lines} lines of the ledger are torn or damaged and were passed over")
+    print_page(*page)
     return OK
 
 
@@ -190,14 +197,14 @@ def failed_command(path: Path, as_json: bool) -> int:
     import json
     from dataclasses import asdict
 
+    from synth.cli.printed_page import print_page
     from synth.sweep.status import failed_units
 
     found = failed_units(path)
     if as_json:
         print(json.dumps([asdict(unit) for unit in found], indent=1, ensure_ascii=False))
         return OK
-    for unit in found:
-        print(f"{unit.name}: {unit.reason}")
+    print_page(*(f"{unit.name}: {unit.reason}" for unit in found))
     if not found:
-        print(f"{path}: no unit has failed")
+        print_page(f"{path}: no unit has failed")
     return OK

@@ -12,7 +12,7 @@ from synth.cli import LIMITS_MISSED, OK, say
 from synth.cli.processors import available
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from synth.book.validate_table import Rehearsal, Revalidation
     from tuning_tables import ControllerTable
@@ -87,11 +87,9 @@ def validate_command(
     if as_json:
         from synth.book.summary import plain
 
-        print(json.dumps(plain([document(each) for each in found]), indent=1, ensure_ascii=False))
+        print(json.dumps(plain([document(each, seed) for each in found]), indent=1, ensure_ascii=False))
     else:
-        print_found(found, seed)
-        if log is not None:
-            print(f"{log.passes} passes of each table, as a controller logs them: {log.path}")
+        print_found(found, seed, log)
     return OK if all(each.judgement.word == "accepted" or each.infeasible for each in found) else LIMITS_MISSED
 
 
@@ -117,7 +115,7 @@ def write_rehearsed_log(tables: Sequence[ControllerTable], rehearsal: Rehearsal,
     write_log(log, asked.path)
 
 
-def document(each: Revalidation) -> dict[str, Any]:
+def document(each: Revalidation, seed: int) -> dict[str, Any]:
     """One table's result for programs."""
     from dataclasses import asdict
 
@@ -126,6 +124,7 @@ def document(each: Revalidation) -> dict[str, Any]:
         "id": each.table.id,
         "label": each.label,
         "target_speed_m_s": each.table.target_speed_m_s,
+        "seed": seed,
         "simulated": asdict(each.statistics),
         "brake_power": asdict(each.brake_power),
         "overspeed_beyond_margin": each.overspeed[0],
@@ -139,48 +138,58 @@ def document(each: Revalidation) -> dict[str, Any]:
         "confirmed": each.confirmed,
         "missed_limits": each.judgement.missed,
         "undecided_limits": each.judgement.undecided,
+        "sentences": each.judgement.phrases,
         "known_infeasible": each.infeasible,
         "same_config": each.same_config,
     }
 
 
-def print_found(found: list[Revalidation], seed: int) -> None:
+def print_found(found: list[Revalidation], seed: int, log: AskedLog | None) -> None:
     """A table with one row for each table, and what it comes to."""
-    from rich import box
-    from rich.table import Table
+    from synth.book.printed_numbers import plus_minus, speed, ten_thousand
+    from synth.cli.book_table import LEGEND
+    from synth.cli.case_columns import OUT_OF_BRAKE_IN, PREDICTED, WITHIN
+    from synth.cli.printed_page import Exhibit, print_page
+    from synth.cli.printed_table import Column, PrintedTable
 
-    from synth.cli.book_table import LEGEND, plus_minus, speed, stdout_console, ten_thousand
-
-    shown = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for name in ("table", "rms [95 %]\nm/s", "95 of 100\nwithin ± m/s", "99 of 100\nwithin ± m/s",
-                 "out of brake\nin 10 000",
-                 "switch-\nings", "the file\nstates, m/s", "predicted\nm/s", "predicted /\nsimulated",
-                 "verdict"):  # fmt: skip
-        shown.add_column(name, justify="left" if name in ("table", "verdict") else "right", no_wrap=True)
-    for each in found:
-        s, stated, power = each.statistics, each.table.validated, each.brake_power
-        shown.add_row(
-            each.table.id,
-            plus_minus(s.rms_m_s, s.rms_ci95_m_s, 4),
-            plus_minus(s.p95_m_s, s.p95_ci95_m_s, 4),
-            plus_minus(s.p99_m_s, s.p99_ci95_m_s, 4),
-            ten_thousand(power.out_of_brake, power.out_of_brake_ci95),
-            f"{s.switchings:.1f}",
-            plus_minus(stated.rms_m_s, stated.rms_ci95_m_s, 4) if stated else "–",
-            speed(each.table.predicted.rms_m_s),
-            plus_minus(*each.honesty),
-            verdict(each),
+    def error(figure: str) -> Callable[[Revalidation], str]:
+        return lambda each: plus_minus(
+            getattr(each.statistics, f"{figure}_m_s"), getattr(each.statistics, f"{figure}_ci95_m_s"), 4
         )
-    console = stdout_console()
-    console.print(shown, markup=False)
-    console.print(f"{found[0].statistics.passes} stratified passes of each table, seed {seed}")
-    console.print(LEGEND, soft_wrap=True)
+
+    def stated(each: Revalidation) -> str | None:
+        validated = each.table.validated
+        return None if validated is None else plus_minus(validated.rms_m_s, validated.rms_ci95_m_s, 4)
+
+    def out_of_brake(each: Revalidation) -> str:
+        return ten_thousand(each.brake_power.out_of_brake, each.brake_power.out_of_brake_ci95)
+
+    columns: tuple[Column[Revalidation], ...] = (
+        Column("table", lambda each: each.table.id, words=True),
+        Column("rms, m/s", error("rms")),
+        Column(WITHIN["p95"], error("p95"), spare=4),
+        Column(WITHIN["p99"], error("p99"), spare=5),
+        Column(OUT_OF_BRAKE_IN, out_of_brake, spare=1),
+        Column("switchings", lambda each: f"{each.statistics.switchings:.1f}", spare=6),
+        Column("the file states, m/s", stated, spare=2),
+        Column("predicted, m/s", lambda each: speed(each.table.predicted.rms_m_s), spare=3),
+        Column(PREDICTED, lambda each: plus_minus(*each.honesty)),
+        Column("verdict", verdict, words=True),
+    )
+    page: list[Exhibit] = [
+        PrintedTable(columns, found, "the output of --json"),
+        f"{found[0].statistics.passes} stratified passes of each table, seed {seed}",
+        LEGEND,
+    ]
     for each in found:
         if each.confirmed is False:
-            console.print(f"{each.table.id}: these passes do not confirm the interval that the file states")
+            page.append(f"{each.table.id}: these passes do not confirm the interval that the file states")
         if each.judgement.phrases:
             outside = "; summary.json calls this case infeasible, so it does not count" if each.infeasible else ""
-            console.print(f"{each.table.id}: {', '.join(each.judgement.phrases)}{outside}", soft_wrap=True)
+            page.append(f"{each.table.id}: {', '.join(each.judgement.phrases)}{outside}")
+    if log is not None:
+        page.append(f"{log.passes} passes of each table, as a controller logs them: {log.path}")
+    print_page(*page)
 
 
 def verdict(each: Revalidation) -> str:

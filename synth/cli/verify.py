@@ -28,7 +28,9 @@ def verify_command(source: Path, passes: int, seed: int, as_json: bool) -> int:
     if as_json:
         print(json.dumps(document(verdict), indent=1, ensure_ascii=False))
     else:
-        print(*words(verdict), sep="\n")
+        from synth.cli.printed_page import print_page
+
+        print_page(*words(verdict))
     return verdict.code
 
 
@@ -58,6 +60,7 @@ def table_document(each: TableVerdict) -> dict[str, Any]:
         "ok": not each.findings,
         "skipped": each.skipped,
         "exit_gap_m_s": each.exit_gap_m_s,
+        "predicted_rms_m_s": each.table.predicted_rms_m_s,
         "simulated": simulated_document(each.figures),
     }
 
@@ -67,6 +70,7 @@ def simulated_document(figures: ExitFigures | None) -> dict[str, Any] | None:
     if figures is None:
         return None
     return {
+        "passes": figures.passes,
         "rms_m_s": figures.rms_m_s,
         "rms_ci95_m_s": figures.rms_ci95_m_s,
         "bias_m_s": figures.bias_m_s,
@@ -101,6 +105,7 @@ def passages_document(each: PassageVerdict) -> dict[str, Any]:
         "id": each.table.id,
         "ok": not each.findings,
         "passages": len(each.table.passages),
+        "predicted_rms_m_s": each.table.predicted_rms_m_s,
         "simulated": simulated_document(each.figures),
     }
 

@@ -64,6 +64,7 @@ def watch_command(asked: AskedWatch, as_json: bool) -> int:
     if as_json:
         print(written.json, end="")
     else:
-        print(written.verdict)
-        print(f"watch.json, charts.csv, watch.png and report.html in {asked.output}")
+        from synth.cli.printed_page import print_page
+
+        print_page(*written.verdict, f"watch.json, charts.csv, watch.png and report.html in {asked.output}")
     return OK if found.drift is None else LIMITS_MISSED

@@ -35,7 +35,7 @@ class WrittenWatch:
     """The text of `watch.json`, and the verdict in sentences."""
 
     json: str
-    verdict: str
+    verdict: tuple[str, ...]
 
 
 def write_watch(found: Watch, config: ResolvedConfig, created: str, directory: ResultsDirectory) -> WrittenWatch:
@@ -53,7 +53,7 @@ def write_watch(found: Watch, config: ResolvedConfig, created: str, directory: R
     directory.write_all(picture_files([picture]))
     directory.write("report.html", document(stamp, box, sections).encode())
     directory.finish(text.encode())
-    return WrittenWatch(text, "\n".join(sentences))
+    return WrittenWatch(text, sentences)
 
 
 def verdict(found: Watch) -> tuple[str, ...]:

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from statistics import median
 
 import pytest
 
 from synth.book.case_result import CaseResult
-from synth.book.permissions.overview import HINT, Overview, overview_of
+from synth.book.permissions.case_document import results_document
+from synth.book.permissions.overview import HINT, SHORT, Overview, overview_of
 from synth.book.permissions.permission import Permission
 from synth.book.tune import Book
-from synth.cli.book_table import COLUMNS, FIRST_TO_GO, PERMITTED, WITHIN, columns_for
-from synth.cli.permissions_column import HEADS, cell, head
+from synth.cli import case_columns
+from synth.cli.book_table import columns_of
 from synth.configuration.config_file import parse_config
-from synth.present.report.permissions_section import SHORT, column_cell, column_head, permissions_section
+from synth.present.report.permissions_section import column_cell, column_head, permissions_section
 from tests.synth.case_factory import make_case, make_permissions
 
 LIGHT = (Permission.JUMPS, Permission.ANY_TIME, Permission.WITHOUT_GAUGE, Permission.APPROACH)
@@ -40,18 +40,20 @@ def overview(cases: tuple[CaseResult, ...]) -> Overview:
     return found
 
 
-def test_every_figure_stands_below_its_name(overview: Overview) -> None:
-    assert set(overview.in_column) == set(HEADS) == set(SHORT) == {*LIGHT, *HEAVY} - {Permission.WITHOUT_GAUGE}
-    title, _, names = head(overview).split("\n")
-    assert title == "rms × if permitted"
-    assert names.split() == ["time", "mator", "both", "jumps", "proach", "proach"]
+def test_every_permission_has_a_column_of_its_figures(overview: Overview) -> None:
+    assert set(overview.in_column) == set(SHORT) == {*LIGHT, *HEAVY} - {Permission.WITHOUT_GAUGE}
+    for permission in overview.in_column:
+        column = case_columns.permission_column(permission)
+        assert column.heading.replace("\u00a0", " ") == f"rms × if {SHORT[permission]}"
+        for case in overview.cases:
+            found, told = case.of(permission), column.cell({"permissions": results_document(case)})
+            assert told == (None if found is None else f"{found.ratio:.2f}")
+        assert column.cell({"permissions": None}) is column.cell({}) is None
     for case in overview.cases:
-        figures = cell(case, overview)
-        found = [figures[: word.end()].split()[-1] for word in re.finditer(r"\S+", names)]
         ratios = [case.of(each) for each in overview.in_column]
-        assert found == ["–" if each is None else f"{each.ratio:.2f}" for each in ratios]
-        assert len(figures) == len(names)
-        assert column_cell(case, overview).text == " ".join(found)
+        assert column_cell(case, overview).text == " ".join(
+            "–" if each is None else f"{each.ratio:.2f}" for each in ratios
+        )
     assert column_head(overview).count(",") == len(overview.in_column) - 1
 
 
@@ -67,15 +69,13 @@ def test_the_line_tells_medians_and_bounds_every_interval(overview: Overview) ->
     assert "(jumps: several stages a command)" in few.line
 
 
-def test_who_asks_sees_the_column_before_others(overview: Overview) -> None:
-    names = (*COLUMNS[:-1], PERMITTED, COLUMNS[-1])
-    heads = (*COLUMNS[:-1], head(overview), COLUMNS[-1])
-    rows = [tuple("x" * 12 for _ in heads)]
-    kept = {width: [names[place] for place in columns_for(width, names, heads, rows)] for width in range(60, 300)}
-    assert kept[299] == list(names)
-    assert not set(FIRST_TO_GO) & set(kept[60])
-    assert all(PERMITTED in each for each in kept.values() if WITHIN in each)
-    assert any(PERMITTED in each and WITHIN not in each for each in kept.values())
+def test_who_asks_sees_their_columns_before_others(overview: Overview) -> None:
+    columns = columns_of([], overview)
+    asked = [column for column in columns if column.heading.startswith("rms × if")]
+    assert len(asked) == len(overview.in_column)
+    assert {column.spare for column in asked} == {case_columns.OUT_OF_BRAKE.spare + 1}
+    assert min(column.spare for column in columns if column not in asked and column.spare > 1) > asked[0].spare
+    assert not any(column.heading.startswith("rms × if") for column in columns_of([], None))
 
 
 def test_the_report_tells_every_interval(overview: Overview) -> None:

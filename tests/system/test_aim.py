@@ -20,6 +20,7 @@ from synth.cli import main
 from synth.frame.own_files import MARKER
 from synth.frame.results_directory import LEFTOVER
 from tests.frame.results import results_in
+from tests.printed_page import Page, page_about, require_column, table_of
 from tests.system.conftest import EPOCH, Command
 from tuning_tables.aim import aim_exit_speed
 from tuning_tables.aim.json_file import read_aim_json
@@ -115,6 +116,25 @@ def test_aim_leaves_tables_code_pictures_report_and_a_summary_of_them(aimed_once
     for words in ("Accepted", "assumed", "No exit speed keeps that chance", summary["generator"]["config_sha256"]):
         assert words in page
     assert "http" not in page.split("</style>")[1].split("Sources")[0].replace("http://www.w3.org", "")
+
+
+def test_it_prints_the_figures_of_its_summary(aimed_once: tuple[Path, int], pages: list[Page]) -> None:
+    directory, _ = aimed_once
+    tables = json.loads((directory / "summary.json").read_bytes())["tables"]
+    told = table_of(page_about(pages, directory))
+    rows = [(table, place) for table in tables for place in (0, len(table["cars"]) - 1)]
+    require_column(told, "cuts", [f"{table['category']} by {table['knowledge']}" for table, _ in rows])
+    require_column(told, "cars", [str(table["cars"][place]) for table, place in rows])
+    distances = [heading for heading in told[0] if heading.startswith("gap, m, at ")]
+    assert len(distances) > 1
+    for heading in distances:
+        number = tables[0]["free_distances_m"].index(float(heading.split()[3]))
+        gaps = [table["mean_gap_m"][place][number] for table, place in rows]
+        require_column(told, heading, [None if gap is None else f"{gap:.1f}" for gap in gaps])
+    for (table, _), row in zip(rows, told, strict=True):
+        printed = [float(word.strip("[],")) for word in row["worst cell, over-speed, %"].split()]
+        worst = table["worst_cell"]
+        assert printed == pytest.approx([100.0 * each for each in (worst["p_overspeed"], *worst["ci95"])], rel=0.05)
 
 
 def test_the_summary_tells_what_the_tables_hold(aimed_once: tuple[Path, int]) -> None:

@@ -52,7 +52,7 @@ def test_inspect_tells_the_contents(command: Command, aims: Path) -> None:
     ):
         assert words in ran.out
     lines = command("inspect", aims / "tables" / "c.json").out.splitlines()
-    shown = next(line for line in lines if "      1 car  " in line).split()[2:]
+    shown = next(line for line in lines if line.startswith("1 car  ")).split()[2:]
     speeds = TABLES[0].exit_speed_m_s[0, [0, 1, 2, 4, 5, 6]]
     assert shown == [*(f"{speed:.3f}" for speed in speeds[:-1]), "none"]
     found = json.loads(command("inspect", aims / "tables" / "b.json", "--json").out)["files"]

@@ -11,7 +11,11 @@ from typing import Any
 
 import pytest
 
+from synth.cli import main
+from synth.cli.printed_page import Verdict
+from synth.cli.printed_table import PrintedTable
 from synth.frame.results_directory import SUMMARY
+from tests.printed_page import Page, cells_of, page_about, require_column
 
 COMMAND = (sys.executable, "-c", "import sys; from synth.cli import main; raise SystemExit(main(sys.argv[1:]))")
 
@@ -80,13 +84,42 @@ def test_the_same_configuration_gives_the_same_bytes(first: tuple[Path, str]) ->
         assert (folder / "out" / name).read_bytes() == (folder / "again" / name).read_bytes(), name
 
 
-def test_limits_that_are_missed_are_told_and_change_the_exit_code(tmp_path: Path) -> None:
+def test_limits_that_are_missed_are_told_and_change_the_exit_code(tmp_path: Path, pages: list[Page]) -> None:
     slow = "[service]\nsimulated_requests = 3000\nspeed_op_s = 60000.0\n[uncertainty]\ndraws = 200\nsobol_points = 16\n"
     config = written(tmp_path / "c.toml", slow + "[acceptance]\npay_back_years = 0.1\nloss_per_year = 1.0\n")
-    done = run("computer", str(config), "-o", str(tmp_path / "out"))
-    assert done.returncode == 1, done.stderr
-    assert [limit["kept"] for limit in told(tmp_path / "out")["limits"]] == [False, False, False]
-    assert "not accepted" in done.stdout
+    assert main(["computer", str(config), "-o", str(tmp_path / "out")]) == 1
+    summary, page = told(tmp_path / "out"), page_about(pages, tmp_path / "out")
+    limits = summary["limits"]
+    assert [limit["kept"] for limit in limits] == [False, False, False]
+    assert page[-2] == Verdict(False, "; ".join(limit["sentence"] for limit in limits))
+    require_figures(summary, page)
+
+
+def require_figures(summary: dict[str, Any], page: Page) -> None:
+    """What is printed is what the summary says."""
+    waits, controllers = (cells_of(each) for each in page if isinstance(each, PrintedTable))
+    sizing, money = summary["sizing"], summary["economics"]["figures"]
+    require_column(waits, "task", [task["task"] for task in sizing["tasks"]])
+    for heading, figures in (
+        ("mean wait, s", [task["mean_wait_s"] for task in sizing["tasks"]]),
+        ("a wait is long above, s", [task["long_wait"]["longer_than_s"] for task in sizing["tasks"]]),
+        ("share of long waits", [task["long_wait"]["share"] for task in sizing["tasks"]]),
+    ):
+        assert [float(row[heading]) for row in waits] == pytest.approx(figures, rel=0.005)
+    for heading, name in (("controller", "name"), ("positions at most", "most_positions"),
+                          ("positions of the hump", "positions")):  # fmt: skip
+        require_column(controllers, heading, [str(each[name]) for each in sizing["controllers"]])
+    text = " ".join(each for each in page if isinstance(each, str))
+    assert f"in cycles {sizing['cyclic']['speed_op_s']:,.0f}" in text
+    assert any(f"needed on demand {speed:,.0f} op/s" in text for speed in sizing["needed_op_s"].values())
+    assert f"one computer {sum(summary['reliability']['single_loss']):,.0f} " in text
+    assert f"two {summary['reliability']['duplex_loss']:,.0f} " in text
+    assert f"effect of a year {money['effect_per_year']:,.0f} " in text
+    assert f"net present value {money['net_present_value']:,.0f} " in text
+    (drawn,) = (each for each in summary["uncertainty"]["outputs"] if each["name"] == "net_present_value")
+    low, high = drawn["quantiles"][0], drawn["quantiles"][-1]
+    spread = f"{low['value']:,.0f} [{low['low95']:,.0f}, {low['high95']:,.0f}] (5 %) to {high['value']:,.0f} "
+    assert f"over {drawn['n']} draws: net present value {spread}" in text
 
 
 def test_a_pay_back_that_never_comes_is_a_statement(tmp_path: Path) -> None:

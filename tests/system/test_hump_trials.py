@@ -17,6 +17,7 @@ import pytest
 
 from synth.cli import main
 from tests.frame.results import results_in
+from tests.printed_page import Page, page_about, table_of
 from tests.system.conftest import EPOCH, Command, changed
 
 SMALL = """\
@@ -62,6 +63,17 @@ def arrays_of(directory: Path) -> Mapping[str, Any]:
     """The arrays by train, read with numpy alone."""
     with np.load(directory / "trains.npz", allow_pickle=False) as arrays:
         return dict(arrays)
+
+
+def test_it_prints_the_figures_of_its_summary(humped: Path, pages: list[Page]) -> None:
+    summary, page = summary_of(humped), page_about(pages, humped)
+    assert f"trains: {summary['trains']}; cuts: {summary['cuts']}; cars: {summary['cars']}" in str(page[0])
+    for row, figure in zip(table_of(page), summary["figures"].values(), strict=True):
+        scale = 100.0 if row["figure"].endswith(", %") else 1.0
+        ends = (figure["low95"], figure["high95"])
+        found = [float(word.strip("[],")) for word in f"{row['value']} {row['95 %']}".split() if word != "–"]
+        wanted = [scale * each for each in (figure["value"], *(() if None in ends else ends)) if each is not None]
+        assert found == pytest.approx(wanted, rel=0.006)
 
 
 def test_every_file_is_whole_and_listed(humped: Path) -> None:

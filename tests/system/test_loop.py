@@ -14,6 +14,7 @@ import pytest
 
 from synth.configuration.config_file import load_config
 from tests.frame.results import results_in
+from tests.printed_page import Page, table_of
 from tests.synth.conftest import GONDOLA_OFFSETS_M
 from tests.system.conftest import Command
 from tuning_tables import Approach, CutId, Generator, Predicted, RetarderId
@@ -29,11 +30,12 @@ TABLE = "gondola-4-22t-to-1.5-m-s"
 
 
 def test_a_directory_gives_pictures_figures_and_a_table(
-    command: Command, tuned: Path, two_classes: Path, tmp_path: Path
+    command: Command, tuned: Path, two_classes: Path, tmp_path: Path, pages: list[Page]
 ) -> None:
     out = tmp_path / "loops"
     ran = command("loop", tuned, "-o", out, "--config", two_classes)
     assert ran.code == 0
+    told = table_of(pages[-1])
     document = json.loads((out / "loops.json").read_bytes())
     assert [each["id"] for each in document["loops"]] == [TABLE, "gondola-4-30t-to-1.5-m-s"]
     names = set(results_in(out)) - {"loops.json"}
@@ -43,7 +45,11 @@ def test_a_directory_gives_pictures_figures_and_a_table(
     for each in document["loops"]:
         assert each["difference"]["agrees"] is True
         assert abs(each["difference"]["largest_m_s"]) <= each["difference"]["tolerance_m_s"]
-        assert f"{each['python_control']['exit_speed_m_s']:.4f}" in ran.out
+        row = next(row for row in told if row["table"] == each["id"])
+        assert row["exit by python-control, m/s"] == f"{each['python_control']['exit_speed_m_s']:.4f}"
+        assert row["exit by the simulator, m/s"] == f"{each['simulator']['exit_speed_m_s']:.4f}"
+        assert row["largest difference, mm/s"].split()[0] == f"{1e3 * abs(each['difference']['largest_m_s']):.3f}"
+        assert row["commands in a pass"] == str(len(each["python_control"]["commands"]))
         cycles = sum(name.startswith(f"{each['id']}-cycle") for name in names)
         assert cycles == 2 * len(each["limit_cycles"])  # PNG and SVG
     assert "Python-control and the simulator agree where" in ran.out

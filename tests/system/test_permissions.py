@@ -21,6 +21,7 @@ from synth.checker.stated_permissions import permission_faults
 from synth.checker.verdict import verify
 from synth.cli import main
 from synth.configuration.config_file import parse_config
+from tests.printed_page import Page, page_about, table_of, with_half
 
 SMALL = """\
 [position]
@@ -119,6 +120,23 @@ def test_every_permission_is_told_with_its_interval(ran: Path) -> None:
         assert 0.85 < each["predicted_rms_m_s"] / each["rms_m_s"] < 1.15
 
 
+def test_it_prints_the_figures_of_its_summary(ran: Path, pages: list[Page]) -> None:
+    read = summary(ran / "one")
+    (case,), page = read["cases"], page_about(pages, ran / "one")
+    (told,) = table_of(page)
+    configured = case["as_configured"]
+    wanted = {
+        "case": case["label"],
+        "target, m/s": f"{case['target_speed_m_s']:g}",
+        "rms as configured, m/s": with_half(configured["rms_m_s"], configured["rms_ci95_m_s"], 4),
+        **{name: with_half(each["ratio"], each["ratio_ci95"]) for name, each in case["permissions"].items()},
+    }
+    assert told == wanted
+    medians = ", ".join(f"{name} {ratio:.2f}" for name, ratio in read["median_ratios"].items())
+    assert str(page[1]).startswith(f"{configured['passes']} stratified passes a case. ")
+    assert str(page[1]).endswith(f"Medians: {medians}.")
+
+
 def test_commands_at_any_time_gain_and_no_approach_loses(ran: Path) -> None:
     permissions = summary(ran / "one")["cases"][0]["permissions"]
     assert permissions["commands at any time"]["ratio_ci95"][1] < 1.0
@@ -180,6 +198,9 @@ def test_a_tune_tells_permissions_in_one_column_and_one_line(tuned: Path) -> Non
     assert f"on the same {case['simulated']['passes']} passes" in line
     for name, ratio in ratios.items():  # of one case: the medians
         assert re.search(rf"(: |, ){name} {ratio}[,.]", line)
+    overall = summary(tuned / "1")["overall"]
+    assert f"±{overall['permission_widest_half_ci95']:.2f} " in line
+    assert overall["permission_median_ratios"].keys() == ratios.keys()
     page = html.unescape((tuned / "1" / "report.html").read_text(encoding="utf-8"))
     assert line in page
     assert f">{' '.join(column)}</td>" in page

@@ -16,6 +16,7 @@ from synth.checker.verdict import verify
 from synth.cli import main
 from tests.checker.planted_fault import rewrite
 from tests.frame.results import results_in
+from tests.printed_page import Page, page_about, require_column, table_of, with_half
 from tests.system.conftest import EPOCH, Command, changed
 from tuning_tables.passages.json_file import read_passage_json
 
@@ -84,6 +85,20 @@ def test_it_leaves_tables_code_pictures_report_and_a_summary_of_them_all(tuned_p
     assert [case["target_speed_m_s"] for case in summary["cases"]] == [2.0, 2.5]
 
 
+def test_it_prints_the_figures_of_its_summary(tuned_points: Path, pages: list[Page]) -> None:
+    cases = json.loads((tuned_points / "summary.json").read_bytes())["cases"]
+    told = table_of(page_about(pages, tuned_points))
+    require_column(told, "case", [case["label"] for case in cases])
+    require_column(told, "target, m/s", [f"{case['target_speed_m_s']:g}" for case in cases])
+    for heading, figure in (("rms, m/s", "rms"), ("95 of 100 within ±, m/s", "p95")):
+        of = [case["simulated"] for case in cases]
+        require_column(told, heading, [with_half(s[f"{figure}_m_s"], s[f"{figure}_ci95_m_s"], 4) for s in of])
+    wanted = [with_half(case["unavoidable_rms_m_s"], case["unavoidable_ci95_m_s"], 4) for case in cases]
+    require_column(told, "for want of brake, m/s", wanted)
+    require_column(told, "predicted / simulated", [with_half(case["honesty"], case["honesty_ci95"]) for case in cases])
+    require_column(told, "switchings", [f"{case['simulated']['switchings']:.1f}" for case in cases])
+
+
 def test_tables_say_what_was_predicted_and_simulated(tuned_points: Path) -> None:
     summary = json.loads((tuned_points / "summary.json").read_bytes())
     for case in summary["cases"]:
@@ -149,7 +164,9 @@ def test_without_sensors_in_the_configuration_those_of_the_table_count(
     assert "differs in cut.mass_t (23, in the table 22)" in ran.sentence
 
 
-def test_inspect_tells_sensors_passages_and_switching_speeds(command: Command, tuned_points: Path) -> None:
+def test_inspect_tells_sensors_passages_and_switching_speeds(
+    command: Command, tuned_points: Path, pages: list[Page]
+) -> None:
     ran = command("inspect", tuned_points / "tables" / f"{TABLE}.json")
     table = read_passage_json(tuned_points / "tables" / f"{TABLE}.json")
     assert ran.code == 0
@@ -157,6 +174,9 @@ def test_inspect_tells_sensors_passages_and_switching_speeds(command: Command, t
     rows = [line.split() for line in ran.out.splitlines()]
     of_third = rows.index(["4.00", "2", "0", "0", *(f"{v:.3f}" for v in table.switching_m_s[2, 0, :3])])
     assert rows[of_third + 3] == ["3", *(f"{v:.3f}" for v in table.switching_m_s[2, 3, :3])]
+    speeds = [list(row.values())[4:] for row in table_of(pages[-1])]
+    wanted = table.switching_m_s[:, :4, :3].reshape(-1, 3)
+    assert speeds == [[f"{v:.3f}" if np.isfinite(v) else "never" for v in row] for row in wanted]
     whole = command("inspect", tuned_points, "--json")
     document = json.loads(whole.out)
     assert [each["id"] for each in document["passage_tables"]] == ["gondola-4-22t-to-2-m-s", "gondola-4-22t-to-2.5-m-s"]

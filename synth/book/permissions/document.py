@@ -7,6 +7,7 @@ from dataclasses import asdict
 from importlib.metadata import version
 
 from synth.book.permissions.case_document import results_document
+from synth.book.permissions.overview import median_ratios
 from synth.book.permissions.permission import CasePermissions
 from synth.book.summary import Document, plain
 from synth.configuration.resolved_config import ResolvedConfig
@@ -29,6 +30,7 @@ def permissions_document(
                 "config_sha256": config.sha256,
             },
             "title": config.title,
+            "median_ratios": median_ratios(cases),
             "cases": [case_document(case) for case in cases],
             "files": dict(hashes),
         }

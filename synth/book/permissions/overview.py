@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import median
 from typing import Final
 
 from synth.book.permissions.permission import CasePermissions, Permission, PermissionResult
 
-IN_THE_COLUMN: Final = (
-    Permission.ANY_TIME,
-    Permission.ESTIMATOR,
-    Permission.ANY_TIME_ESTIMATOR,
-    Permission.JUMPS,
-    Permission.APPROACH,
-    Permission.NO_APPROACH,
-)
-"""Permissions in the order of the column. Without a gauge commands at any time are rarely asked for: only the line and
-the report tell of them."""
+SHORT: Final[Mapping[Permission, str]] = {
+    Permission.ANY_TIME: "any time",
+    Permission.ESTIMATOR: "estimator",
+    Permission.ANY_TIME_ESTIMATOR: "both",
+    Permission.JUMPS: "jumps",
+    Permission.APPROACH: "approach",
+    Permission.NO_APPROACH: "no approach",
+}
+"""What permissions are called above their figures, in the order of those. Without a gauge commands at any time are
+rarely asked for: only the line and the report tell of them."""
 
 IN_SHORT: Final = {
     Permission.ANY_TIME_ESTIMATOR: "both: any time and estimator",
@@ -42,7 +42,7 @@ class Overview:
     @property
     def in_column(self) -> tuple[Permission, ...]:
         """What the column tells, in its order."""
-        return tuple(each for each in IN_THE_COLUMN if any(case.of(each) for case in self.cases))
+        return tuple(each for each in SHORT if any(case.of(each) for case in self.cases))
 
     @property
     def line(self) -> str:
@@ -71,12 +71,14 @@ def asked_of(cases: Sequence[CasePermissions]) -> list[Permission]:
     return [each for each in Permission if any(case.of(each) for case in cases)]
 
 
+def median_ratios(cases: Sequence[CasePermissions]) -> dict[str, float]:
+    """The median of each permission's ratio over all cases, by its name."""
+    return {each.value: median(result.ratio for case in cases if (result := case.of(each))) for each in asked_of(cases)}
+
+
 def medians(cases: Sequence[CasePermissions]) -> str:
-    """The median of each permission's ratio over all cases, as a list in words."""
-    return ", ".join(
-        f"{each.value} {median(result.ratio for case in cases if (result := case.of(each))):.2f}"
-        for each in asked_of(cases)
-    )
+    """The same as a list in words."""
+    return ", ".join(f"{name} {ratio:.2f}" for name, ratio in median_ratios(cases).items())
 
 
 def half_width(result: PermissionResult) -> float:

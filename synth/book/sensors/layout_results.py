@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -24,7 +24,7 @@ RADAR_DEGREE = 3
 """Of the polynomial lines of the radar's tables."""
 
 NEAR_RADAR = 1.1
-"""Without a wanted rms, the fewest sensors are chosen whose rms is at most so many times the radar's."""
+"""Times the radar's rms is wanted where no rms is asked for."""
 
 
 @dataclass(frozen=True)
@@ -32,8 +32,8 @@ class LayoutResults:
     """Plans by number of sensors, rising; the layout by the rule; the radar's predicted rms by case and aim.
 
     `labels`: of the cases. `anywhere`: what a regulator would command that could decide anywhere, in the first case for
-    its first aim. `wanted_rms_m_s`: as asked for, None where the radar decides. `chosen`: the plan of the
-    fewest sensors that reach it, None if none does.
+    its first aim. `wanted_rms_m_s`: as asked for, or as the radar has it. `chosen`: the plan of the fewest
+    sensors that reach it, None if none does.
     """
 
     problem: LayoutProblem
@@ -42,7 +42,7 @@ class LayoutResults:
     rule: JudgedLayout
     radar_rms_m_s: tuple[tuple[float, ...], ...]
     anywhere: PolicyMap
-    wanted_rms_m_s: float | None
+    wanted_rms_m_s: float
     chosen: PlannedLayout | None
 
     @property
@@ -53,7 +53,12 @@ class LayoutResults:
     @property
     def radar_mean_rms_m_s(self) -> float:
         """Root of the mean square over all cases and aims."""
-        return float(np.sqrt(np.mean([rms**2 for case in self.radar_rms_m_s for rms in case])))
+        return root_mean_square(self.radar_rms_m_s)
+
+
+def root_mean_square(rms_m_s: Sequence[Sequence[float]]) -> float:
+    """Of all cases and aims."""
+    return float(np.sqrt(np.mean([rms**2 for case in rms_m_s for rms in case])))
 
 
 def layout_results(
@@ -73,9 +78,9 @@ def layout_results(
     with ThreadPoolExecutor(max_workers=threads) as pool:
         radar = tuple(pool.map(lambda case: radar_rms(case, problem.resolution), problem.cases))
     anywhere = policy_anywhere(problem.cases[0], problem.sensors, problem.farthest_m)
-    found = LayoutResults(problem, tuple(labels), plans, rule, radar, anywhere, wanted_rms_m_s, None)
-    limit = NEAR_RADAR * found.radar_mean_rms_m_s if wanted_rms_m_s is None else wanted_rms_m_s
-    return replace(found, chosen=fewest_for(plans, limit))
+    wanted = NEAR_RADAR * root_mean_square(radar) if wanted_rms_m_s is None else wanted_rms_m_s
+    chosen = fewest_for(plans, wanted)
+    return LayoutResults(problem, tuple(labels), plans, rule, radar, anywhere, wanted, chosen)
 
 
 def radar_rms(case: LayoutCase, resolution: Resolution) -> tuple[float, ...]:

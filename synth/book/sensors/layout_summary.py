@@ -42,7 +42,7 @@ def layout_summary(results: LayoutResults, config_sha256: str, created: str, fil
             {"planned": judged(results, plan.best), "equal_sections": judged(results, plan.equal)}
             for plan in results.plans
         ],
-        "wanted_rms_m_s": results.wanted_rms_m_s,
+        "wanted_rms_m_s": rounded(results.wanted_rms_m_s),
         "chosen": None if results.chosen is None else judged(results, results.chosen.best),
         "files": dict(files),
     }

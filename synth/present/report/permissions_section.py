@@ -2,23 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Final
 
-from synth.book.permissions.overview import Overview, asked_of
+from synth.book.permissions.overview import SHORT, Overview, asked_of
 from synth.book.permissions.permission import CasePermissions, Permission
 from synth.book.printed_numbers import ABSENT, interval, quotient, quotient_interval, speed
 from synth.present.report.markup import Cell, Markup, element, head_row, joined, table
-
-SHORT: Final[Mapping[Permission, str]] = {
-    Permission.ANY_TIME: "any time",
-    Permission.ESTIMATOR: "estimator",
-    Permission.ANY_TIME_ESTIMATOR: "both",
-    Permission.JUMPS: "jumps",
-    Permission.APPROACH: "approach",
-    Permission.NO_APPROACH: "no approach",
-}
-"""What permissions are called above the column."""
 
 GROUP: Final = "rms × if permitted"
 """What stands above the head of the column."""

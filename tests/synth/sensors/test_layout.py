@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,8 +14,11 @@ from synth.book.sensors.anywhere import policy_anywhere
 from synth.book.sensors.candidate_places import CandidatePlaces, LayoutCase, candidate_places
 from synth.book.sensors.layout import equal_layout, fastest_m_s, first_sensor_m, longest_change_s, rule_layout
 from synth.book.sensors.layout_plan import LayoutProblem, fewest_for, plan_layouts
+from synth.book.sensors.layout_results import layout_results
 from synth.book.sensors.layout_search import LayoutSearch
+from synth.book.sensors.layout_summary import layout_summary
 from synth.book.sensors.tuned_passages import passage_chains
+from synth.cli.sensors_plan_table import print_plan
 from synth.present.plots.sensors.plan_map import plan_map
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
@@ -23,6 +27,7 @@ from synth.solver.backward_induction import solve
 from synth.solver.chain.sensor_passages import with_point_sensors
 from synth.solver.evaluation import Evaluation
 from synth.solver.passage_speeds import passage_speeds
+from tests.printed_page import Page, require_column, table_of
 
 SENSORS = PointSensors((0.0,))
 TARGET_M_S = 2.5
@@ -138,3 +143,22 @@ def test_the_map_under_a_plan_brakes_what_is_fast_and_releases_what_is_slow(plan
     shown = [axes for axes in figure.axes if axes.images]
     assert len(shown) == 3
     assert all(len(axes.collections) > 0 for axes in shown)  # the passages
+
+
+def test_what_is_printed_of_a_plan_is_its_summary(plant_22t: Plant, pages: list[Page]) -> None:
+    problem = LayoutProblem((LayoutCase(plant_22t, AIMS),), SENSORS, COARSE)
+    results = layout_results(problem, ("light",), (3,), None, 1, lambda _: None)
+    summary = layout_summary(results, "", "", {})
+    print_plan(results, Path("out"))
+    (plan,) = summary["plans"]
+    radar = summary["radar"]["rms_m_s"]
+    layouts = [plan["planned"], plan["equal_sections"], summary["rule"], {"rms_m_s": radar}]
+    told = table_of(pages[-1])
+    require_column(told, "layout", ["planned", "equal sections", "by the rule", "radar"])
+    require_column(told, "rms, m/s", [f"{each['rms_m_s']:.4f}" for each in layouts])
+    require_column(told, "sensors", [str(each["sensors"]) for each in layouts[:-1]] + [None])
+    places = [", ".join(f"{place:g}" for place in each["path_m"]) for each in layouts[:-1]]
+    require_column(told, "sensors at, m", [*places, None])
+    assert summary["wanted_rms_m_s"] == pytest.approx(1.1 * radar, abs=2e-5)
+    assert f"an rms of at most {summary['wanted_rms_m_s']:g} m/s" in str(pages[-1][1])
+    assert (summary["chosen"] is None) == (plan["planned"]["rms_m_s"] > summary["wanted_rms_m_s"])

@@ -11,11 +11,13 @@ from plant_models.rolling.weather import Weather
 from synth.configuration.hump import hump_text
 from synth.configuration.humping.trial_file import parse_trial_file
 from synth.faults.input_error import InputError
+from synth.frame.results_directory import results_directory
 from synth.present import humping_outputs
-from synth.present.humping_outputs import FIGURES, TRAINS, judged, write_trains
+from synth.present.humping_outputs import FIGURES, judged, write_trains
 from synth.yard.humping.controlled_train import controlled_train
 from synth.yard.humping.hump_routes import Mark
 from synth.yard.humping.made_trial import made_trial
+from synth.yard.humping.outcome_file import TRAINS
 from synth.yard.humping.resolved_trial import resolve_trial
 from synth.yard.humping.traced_train import OneTrain, one_train
 from synth.yard.humping.train_memory import TrainMemory
@@ -97,7 +99,8 @@ def test_cuts_that_stand_are_told_and_figures_come_before_the_train_that_is_show
     trial = made_trial(config)
     result = judged(config, trial, trial.batch(0, 2), "2026-01-01T00:00:00Z")
     told: list[str] = []
-    write_trains(result, [], tmp_path, told.append)
+    with results_directory(tmp_path / "out", "hump simulate") as directory:
+        write_trains(result, directory, told.append)
     assert told == [
         "warning: 5 of the 6 cuts of train 1 stand before element 1; the track falls by -0.18 m up to there"
     ]
@@ -106,8 +109,7 @@ def test_cuts_that_stand_are_told_and_figures_come_before_the_train_that_is_show
         raise ZeroDivisionError
 
     monkeypatch.setattr(humping_outputs, "one_train", fails)
-    lost = tmp_path / "lost"
-    lost.mkdir()
-    with pytest.raises(ZeroDivisionError):
-        write_trains(result, [], lost, told.append)
-    assert {file.name for file in lost.iterdir()} == {TRAINS, FIGURES}
+    with results_directory(tmp_path / "lost", "hump simulate") as directory:
+        with pytest.raises(ZeroDivisionError):
+            write_trains(result, directory, told.append)
+        assert set(directory.written) == {TRAINS, FIGURES}

@@ -1,0 +1,230 @@
+"""What is printed fits the terminal, and each figure in it is the one of `--json`.
+
+A page is caught as a command hands it over, and laid out for terminals of several widths: that costs nothing. Tables of
+commands that take longer are tried beside their other tests.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import pty
+import struct
+import subprocess
+import sys
+import termios
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from synth.cli import main
+from synth.cli.book_table import print_book
+from synth.cli.printed_page import Verdict, page_lines
+from synth.cli.printed_table import Column, PrintedTable, table_lines
+from synth.cli.printed_words import wrapped
+from tests.printed_page import (
+    WIDTHS,
+    Page,
+    cells_of,
+    plain,
+    require_column,
+    require_nothing_cut,
+    table_of,
+    with_half,
+)
+from tests.system.conftest import Command
+
+Row = tuple[str, str, str | None]
+
+TABLE = PrintedTable(
+    (
+        Column[Row]("case", lambda row: row[0], words=True, once=True),
+        Column[Row]("rms, m/s", lambda row: row[1]),
+        Column[Row]("99\u00a0of\u00a0100 within\u00a0±, m/s", lambda row: row[2], spare=2),
+        Column[Row]("out of brake in 10\u00a0000", lambda row: row[1][:4], spare=1),
+        Column[Row]("what it comes to", lambda row: "the limits are kept, as the file states; " * 2, words=True),
+    ),
+    (
+        ("gondola-4-22t", "0.0256 ±0.0011", "0.1234 ±0.0100"),
+        ("gondola-4-22t", "0.0333 ±0.0012", None),
+        ("gondola-4-85t", "–", "0.2222 ±0.0200"),
+    ),
+    "summary.json",
+    "A title that is longer than the narrowest of the terminals, which has sixty characters",
+)
+
+
+def test_a_table_is_whole_at_every_width() -> None:
+    require_nothing_cut((TABLE,))
+    for width in range(20, 200):
+        assert all(len(line) <= width for line in table_lines(TABLE, width))
+
+
+def test_columns_go_by_their_importance_and_then_rows_are_stacked() -> None:
+    rules = {width: next((line for line in table_lines(TABLE, width) if "─" in line), "") for width in range(20, 200)}
+    counts = [len(rule.split()) for rule in rules.values()]
+    assert counts == sorted(counts)
+    assert set(counts) == {0, 3, 4, 5}
+    narrow = " ".join(table_lines(TABLE, 20 + counts.index(4)))
+    assert "too narrow for 1 of 5 columns; every figure is in summary.json." in " ".join(narrow.split())
+    assert "within" not in narrow
+    assert "brake" in narrow
+    stacked = table_lines(TABLE, 40)
+    assert stacked.count("  99 of 100 within ±, m/s: –") == 1
+    assert stacked.count("case: gondola-4-22t") == 2
+
+
+def test_a_case_is_named_once_and_none_is_told_by_a_dash() -> None:
+    lines = table_lines(TABLE, None)
+    assert [line.split()[0] for line in lines[-3:]] == ["gondola-4-22t", "0.0333", "gondola-4-85t"]
+    assert "  –  " in lines[-2]
+    assert table_lines(PrintedTable(TABLE.columns, (), ""), None)[-1].strip("─ ") == ""
+
+
+def test_only_a_word_longer_than_a_line_is_broken_and_behind_a_sign() -> None:
+    path = "/tmp/pytest-of-root/pytest-0/tuned0/out/tables/gondola-4-22t-to-1.5-m-s.json"
+    for width in range(12, 100):
+        lines = wrapped(f"  tables in {path} and 0.0256\u00a0±0.002", width, 2)
+        assert all(len(line) <= width for line in lines)
+        assert "".join("".join(lines).split()) == f"tablesin{path}and0.0256±0.002"
+        assert any(path in line for line in lines) == (len(path) + 4 <= width)
+        assert width < 20 or all(line[-1] in "/_-" for line in lines if line.strip() in path[:-1])
+    assert wrapped("a b", 80) == ["a b"]
+    assert wrapped("", 80) == [""]
+
+
+def test_a_page_keeps_tables_apart_and_colours_a_verdict() -> None:
+    lines = list(page_lines(("before", TABLE, Verdict(False, "too slow"), Verdict(True, "all kept")), None))
+    assert lines[:2] == [("before", ""), ("", "")]
+    assert lines[-3:] == [("", ""), ("not accepted: too slow", "bold red"), ("accepted: all kept", "bold green")]
+
+
+def printed(pages: list[Page], *words: object) -> Page:
+    """The page that a command prints."""
+    before = len(pages)
+    assert main([str(word) for word in words]) in (0, 1)
+    (page,) = pages[before:]
+    return page
+
+
+def test_a_tune_prints_the_figures_of_its_summary(tuned: Path, pages: list[Page]) -> None:
+    summary = json.loads((tuned / "summary.json").read_bytes())
+    failed = {"label": "tank-4-90t", "target_speed_m_s": 2.0, "verdict": "failed", "feasible": True, "estimate": None}
+    print_book({**summary, "cases": [*summary["cases"], failed]}, tuned, None, "")
+    *told, last = table_of(pages[-1])
+    cases = summary["cases"]
+    require_column(told, "case", [case["label"] for case in cases])
+    require_column(told, "target, m/s", [f"{case['target_speed_m_s']:g}" for case in cases])
+    for heading, figure in (
+        ("rms, m/s", "rms"),
+        ("95 of 100 within ±, m/s", "p95"),
+        ("99 of 100 within ±, m/s", "p99"),
+    ):
+        of = [case["simulated"] for case in cases]
+        require_column(told, heading, [with_half(s[f"{figure}_m_s"], s[f"{figure}_ci95_m_s"], 4) for s in of])
+    for heading, figure in (("predicted / simulated", "honesty"), ("table loss", "table_loss"), ("regret", "regret")):
+        require_column(told, heading, [with_half(case[figure], case[f"{figure}_ci95"]) for case in cases])
+    best = [(case["best_baseline"], case["comparison"][case["best_baseline"]]) for case in cases]
+    wanted = [f"{with_half(found['rms_m_s'], found['rms_ci95_m_s'], 4)} {name}" for name, found in best]
+    require_column(told, "best baseline, m/s", wanted)
+    require_column(told, "switchings", [f"{case['simulated']['switchings']:.1f}" for case in cases])
+    require_brake(told, [case["brake_power"] for case in cases])
+    figures = set(last) - {"case", "target, m/s", "verdict"}
+    assert {last[heading] for heading in figures} == {"–"}
+
+
+def require_brake(told: list[dict[str, str]], powers: list[dict[str, Any]]) -> None:
+    """Cuts out of brake in 10 000, of two figures, or the highest number where no pass met one."""
+    for row, power in zip(told, powers, strict=True):
+        value, (low, high) = power["out_of_brake"], power["out_of_brake_ci95"]
+        numbers = [float(word.lstrip("±")) for word in row["out of brake in 10 000"].split() if word != "below"]
+        wanted = [1e4 * value, 1e4 * max(value - low, high - value)] if value else [1e4 * high]
+        assert numbers == pytest.approx(wanted, rel=0.06)
+
+
+@pytest.mark.parametrize("name", ["book.h5", "tables/gondola-4-22t-to-1.5-m-s.json"])
+def test_validate_prints_the_figures_of_its_json(
+    tuned: Path, command: Command, pages: list[Page], two_classes: Path, name: str
+) -> None:
+    words = ("validate", tuned / name, "--config", two_classes, "--seed", "7")
+    page, found = printed(pages, *words), json.loads(command(*words, "--json").out)
+    told = table_of(page)
+    require_column(told, "table", [each["id"] for each in found])
+    for heading, figure in (
+        ("rms, m/s", "rms"),
+        ("95 of 100 within ±, m/s", "p95"),
+        ("99 of 100 within ±, m/s", "p99"),
+    ):
+        of = [each["simulated"] for each in found]
+        require_column(told, heading, [with_half(s[f"{figure}_m_s"], s[f"{figure}_ci95_m_s"], 4) for s in of])
+    stated = [each["stated"]["validated"] for each in found]
+    require_column(told, "the file states, m/s", [with_half(s["rms_m_s"], s["rms_ci95_m_s"], 4) for s in stated])
+    require_column(told, "predicted, m/s", [f"{each['stated']['predicted_rms_m_s']:.4f}" for each in found])
+    require_column(told, "predicted / simulated", [with_half(each["honesty"], each["honesty_ci95"]) for each in found])
+    require_column(told, "switchings", [f"{each['simulated']['switchings']:.1f}" for each in found])
+    require_brake(told, [each["brake_power"] for each in found])
+    assert f"{found[0]['simulated']['passes']} stratified passes of each table, seed {found[0]['seed']}" in page
+    said = " ".join(each for each in page if isinstance(each, str))
+    assert all(sentence in said for each in found for sentence in each["sentences"])
+
+
+def test_inspect_prints_the_lines_of_its_json(tuned: Path, command: Command, pages: list[Page]) -> None:
+    page, found = (
+        printed(pages, "inspect", tuned / "book.h5"),
+        json.loads(command("inspect", tuned / "book.h5", "--json").out),
+    )
+    tables = [each for each in page if isinstance(each, PrintedTable)]
+    for table, document in zip(tables, found["files"][0]["tables"], strict=True):
+        lines = document["lines_at"]
+        told = cells_of(table)
+        require_column(told, "line, m/s", [f"stage {x['k']} ({x['pressure_kpa']:g} kPa) {x['line']}" for x in lines])
+        for place, path_m in enumerate(lines[0]["s_m"]):
+            require_column(told, f"at {path_m:.2f} m", [f"{line['v_m_s'][place]:.3f}" for line in lines])
+
+
+def test_verify_prints_the_figures_of_its_json(tuned: Path, command: Command, pages: list[Page]) -> None:
+    words = ("verify", tuned, "--passes", "100")
+    page, found = printed(pages, *words), json.loads(command(*words, "--json").out)
+    for each in found["tables"]:
+        simulated, (low, high) = each["simulated"], each["simulated"]["rms_ci95_m_s"]
+        sentence = (
+            f"rms {simulated['rms_m_s']:.3f} [{low:.3f}, {high:.3f}] m/s in {simulated['passes']} passes, "
+            f"{each['predicted_rms_m_s']:.3f} predicted"
+        )
+        assert sum(sentence in str(line) for line in page) == 1
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_the_width_is_that_of_the_terminal(tuned: Path, pages: list[Page], width: int) -> None:
+    leader, follower = pty.openpty()
+    fcntl.ioctl(follower, termios.TIOCSWINSZ, struct.pack("HHHH", 24, width, 0, 0))
+    environment = {key: value for key, value in os.environ.items() if key not in ("COLUMNS", "LINES", "NO_COLOR")}
+    words = ("-c", "from synth.cli import script; script()", "inspect", str(tuned / "book.h5"))
+    with subprocess.Popen([sys.executable, *words], stdout=follower, env={**environment, "TERM": "xterm"}) as process:
+        os.close(follower)
+        text = b""
+        while part := read_from(leader):
+            text += part
+    os.close(leader)
+    assert process.returncode == 0
+    lines = text.decode().splitlines()
+    page = printed(pages, "inspect", tuned / "book.h5")
+    assert lines == [line.rstrip() for line, _ in page_lines(page, width)]
+    assert width - 12 < max(map(len, lines)) <= width
+
+
+def read_from(terminal: int) -> bytes:
+    """What stands there; nothing when the other side has gone."""
+    try:
+        return os.read(terminal, 65536)
+    except OSError:
+        return b""
+
+
+def test_a_pipe_gets_every_column_and_no_broken_line(tuned: Path, command: Command, pages: list[Page]) -> None:
+    page = printed(pages, "inspect", tuned)
+    ran = command("inspect", tuned)
+    assert ran.out.splitlines() == [line for line, _ in page_lines(page, None)]
+    assert all(plain(each) in map(plain, ran.out.splitlines()) for each in page if isinstance(each, str))
