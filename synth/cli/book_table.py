@@ -56,14 +56,16 @@ def print_book(summary: Figures, directory: Path, permissions: Overview | None, 
     """Print the table of cases, what is infeasible, the verdict, and where everything is."""
     names = (*COLUMNS[:-1], PERMITTED, COLUMNS[-1]) if permissions else COLUMNS
     heads, rows = heads_of(names, summary["cases"], permissions), rows_of(summary["cases"], permissions)
+    rows += [failed_row(case, len(names)) for case in summary["failed"]]
+    styles = [None if case["feasible"] else "dim" for case in summary["cases"]] + ["dim"] * len(summary["failed"])
     console = stdout_console(WIDTH_OF_A_FILE + (widest_line(heads[-2:-1]) + GAP if permissions else 0))
     columns = columns_for(console.width, names, heads, rows)
     table = Table(box=box.SIMPLE_HEAD, title=summary["title"], title_justify="left", pad_edge=False)
     for place in columns:
         justify: JustifyMethod = "left" if names[place] in ("case", "verdict") else "right"
         table.add_column(heads[place], justify=justify, no_wrap=True)
-    for case, cells in zip(summary["cases"], rows, strict=True):
-        table.add_row(*(cells[place] for place in columns), style=None if case["feasible"] else "dim")
+    for style, cells in zip(styles, rows, strict=True):
+        table.add_row(*(cells[place] for place in columns), style=style)
     console.print(table)
     if summary["cases"]:
         passes = summary["cases"][0]["simulated"]["passes"]
@@ -113,6 +115,11 @@ def rows_of(cases: list[Figures], permissions: Overview | None) -> list[tuple[st
         return rows
     told = (cell(each, permissions) for each in permissions.cases)
     return [(*cells[:-1], figures, cells[-1]) for cells, figures in zip(rows, told, strict=True)]
+
+
+def failed_row(case: Figures, columns: int) -> tuple[str, ...]:
+    """The cells of a case without a table; the verdict tells why."""
+    return (case["label"], f"{case['target_m_s']:g}", *["–"] * (columns - 3), "no table")
 
 
 def columns_for(width: int, names: tuple[str, ...], heads: tuple[str, ...], rows: list[tuple[str, ...]]) -> list[int]:

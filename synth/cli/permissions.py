@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from synth.cli import OK, say
-from synth.cli.tables_refused import tables_refused
+from synth.cli import LIMITS_MISSED, OK, say
+from synth.cli.tables_refused import require_a_table, tables_refused
 
 if TYPE_CHECKING:
-    from synth.book.permissions.permission import CasePermissions
+    from synth.book.permissions.permission import AllPermissions
 
 
 def permissions_command(path: Path | None, output: Path, workers: int, as_json: bool) -> int:
@@ -38,26 +37,27 @@ def permissions_command(path: Path | None, output: Path, workers: int, as_json: 
             from synth.book.permissions.case_permissions import permissions_of
             from synth.present.permissions_outputs import write_permissions
 
-            with tables_refused(source):
-                cases = guarded(permissions_of, config, created, workers, progress.done)
-            write_permissions(config, cases, created, directory)
+            with tables_refused(source, config):
+                told = guarded(permissions_of, config, created, workers, progress)
+                require_a_table(told.cases, told.failed)
+            write_permissions(config, told, created, directory)
             progress.note(f"all files written after {time.monotonic() - started:.1f} s")
     if as_json:
         sys.stdout.write((output / SUMMARY).read_text(encoding="utf-8"))
     else:
-        print_permissions(cases, output)
-    return OK
+        print_permissions(told, output)
+    return OK if told.complete else LIMITS_MISSED
 
 
-def print_permissions(cases: Sequence[CasePermissions], directory: Path) -> None:
-    """A table with a row for each case and a column for each permission."""
+def print_permissions(told: AllPermissions, directory: Path) -> None:
+    """A table with a row for each case and a column for each permission; below it what cannot be told."""
     from rich import box
     from rich.table import Table
 
-    from synth.book.permissions.overview import asked_of, medians
+    from synth.book.permissions.overview import asked_of, medians, missing
     from synth.cli.book_table import plus_minus, stdout_console
 
-    asked = asked_of(cases)
+    cases, asked = told.cases, asked_of(told.cases)
     shown = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for name in ("case", "target\nm/s", "rms as configured\nm/s", *(each.value.replace(", ", ",\n") for each in asked)):
         shown.add_column(name, justify="left" if name == "case" else "right", no_wrap=True)
@@ -70,7 +70,9 @@ def print_permissions(cases: Sequence[CasePermissions], directory: Path) -> None
     console.print(shown, markup=False)
     console.print(
         f"{cases[0].table.passes} stratified passes a case. Columns of permissions: rms over that of the table as "
-        f"configured, on the same passes, ± 95 %. Medians: {medians(cases)}.",
+        f"configured, on the same passes, ± 95 %. Medians: {medians(cases)}.{missing(cases)}",
         soft_wrap=True,
     )
+    for each in told.failed:
+        console.print(each.sentence, soft_wrap=True, markup=False)
     console.print(f"{directory}: plots/, summary.json", soft_wrap=True)

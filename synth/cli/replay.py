@@ -8,6 +8,7 @@ from pathlib import Path
 
 from synth.cli import LIMITS_MISSED, OK, say
 from synth.cli.processors import available
+from synth.cli.tables_refused import require_a_table, tables_refused
 
 
 def replay_command(
@@ -18,6 +19,7 @@ def replay_command(
     from synth.book.creation_time import creation_time, require_date
     from synth.book.forms.table_file import read_tables
     from synth.book.output_directory import REPLAY_LAYOUT, output_directory
+    from synth.book.watcher import Teller
     from synth.cli.interrupt import interruptible
     from synth.configuration.config_file import BUILT_IN, load_config
     from synth.kernels.cache import guarded
@@ -38,7 +40,12 @@ def replay_command(
     with output_directory(output, REPLAY_LAYOUT) as directory, interruptible(directory, "summary"):
         if drove is None:
             setups = class_setups(config, created)
-            drove = tuple(guarded(tuned_tables, config, setups, available(), lambda _: None).values())
+            with tables_refused(source, config):
+                made = guarded(tuned_tables, config, setups, available(), Teller(lambda _: None))
+                require_a_table(tuple(made.tables), made.failed)
+            for case in made.failed:
+                say(f"warning: {case.sentence}")
+            drove = tuple(made.tables.values())
         found = guarded(replay, passes, config, ReplayOrder(drove, other.tables))
         write_replay(found, config, created, directory)
     if as_json:

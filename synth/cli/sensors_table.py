@@ -8,7 +8,7 @@ from rich import box
 from rich.table import Table
 from rich.text import Text
 
-from synth.cli.book_table import Figures, plus_minus, stdout_console, ten_thousand
+from synth.cli.book_table import Figures, failed_row, plus_minus, stdout_console, ten_thousand
 
 COLUMNS = (
     "case", "target\nm/s", "rms [95 %]\nm/s", "for want of\nbrake, m/s", "95 of 100\nwithin ± m/s",
@@ -31,6 +31,8 @@ def print_sensors(summary: Figures, directory: Path) -> None:
     for case in summary["cases"]:
         table.add_row(*row(case, case["label"] != before), style=None if case["feasible"] else "dim")
         before = case["label"]
+    for case in summary["failed"]:
+        table.add_row(*failed_row(case, len(COLUMNS)), style="dim")
     console.print(table)
     passes = summary["cases"][0]["simulated"]["passes"]
     console.print(f"{passes} stratified passes a case. {LEGEND}", soft_wrap=True)

@@ -12,6 +12,7 @@ from synth.book.acceptance import judge
 from synth.book.printed_numbers import few
 from synth.book.summary import summary_of
 from synth.book.tune import tune
+from synth.book.watcher import Teller
 from synth.configuration.config_file import load_config
 from synth.simulation.replicates import Interval
 from synth.studies.cases import of_masses
@@ -111,8 +112,8 @@ def run(options: Options, tell: Tell) -> Results:
     """Tune the book."""
     config = of_masses(load_config(options.config), options.masses_t)
     with tempfile.TemporaryDirectory() as tables:
-        book = tune(config, Path(tables), tell)
-    summary = summary_of(book, judge(book.cases, config.acceptance), {})
+        book = tune(config, Path(tables), Teller(tell))
+    summary = summary_of(book, judge(book.whole, config.acceptance), {})
     rows = tuple(map(row_of, summary["cases"]))
     return Results(config.sha256, config.validation.seed, config.validation.passes, rows)
 

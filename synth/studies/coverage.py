@@ -17,6 +17,7 @@ from pathlib import Path
 
 from plant_models import Plant
 from synth.book.tune import tune
+from synth.book.watcher import Teller
 from synth.checker.coarse_simulation import Passes
 from synth.checker.coarse_simulation import simulate as simulate_coarsely
 from synth.checker.plant import plant_of
@@ -130,7 +131,7 @@ def rows_of(case: str, options: Options) -> Iterator[Row]:
     """Tune one case and count."""
     config = parse_config(configuration(case), f"study coverage, case {case}")
     with tempfile.TemporaryDirectory() as folder:
-        (found,) = tune(config, Path(folder), silent).cases
+        (found,) = tune(config, Path(folder), Teller(silent)).whole
         read = read_table((Path(folder) / f"{found.table.id}.json").read_bytes())
     plant, target = found.plant, found.target_speed_m_s
     most = max(options.passes)

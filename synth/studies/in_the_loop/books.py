@@ -8,6 +8,7 @@ from pathlib import Path
 
 from plant_models import Plant
 from synth.book.tune import tune
+from synth.book.watcher import Teller
 from synth.configuration.config_file import load_config
 from synth.studies.cases import of_masses
 from synth.studies.study import Tell
@@ -28,7 +29,7 @@ def tuned_book(config: Path | None, estimator: bool, masses_t: tuple[float, ...]
     loaded = of_masses(load_config(config), masses_t)
     regulated = replace(loaded, regulator=loaded.regulator.model_copy(update={"estimator": estimator}))
     with tempfile.TemporaryDirectory() as tables:
-        cases = tune(regulated, Path(tables), tell).cases
+        cases = tune(regulated, Path(tables), Teller(tell)).whole
     book = TableBook(tuple(case.table for case in cases))
     return Tuned(book, tuple(case.plant for case in cases), regulated.sha256)
 
