@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from synth.book.case_names import case_name, why_infeasible
 from synth.book.case_result import CaseResult
+from synth.book.failed_case import FailedCase, told_together
 from synth.book.judgement import Judgement, interval_text, judgement
 from synth.book.printed_numbers import counted
 from synth.configuration.settings import AcceptanceSettings
@@ -38,7 +39,8 @@ class CaseVerdict:
 
 @dataclass(frozen=True)
 class Verdict:
-    """`accepted`: there are feasible cases, and all of them keep every limit; `sentence` says it in words.
+    """`accepted`: no case has `failed`, there are feasible cases, and all of them keep every limit; `sentence` says it
+    in words.
 
     Infeasible cases do not count, but the sentence names them.
     """
@@ -46,16 +48,22 @@ class Verdict:
     accepted: bool
     sentence: str
     cases: tuple[CaseVerdict, ...]
+    failed: tuple[FailedCase, ...] = ()
 
 
-def judge(cases: Sequence[CaseResult], limits: AcceptanceSettings) -> Verdict:
-    """The verdict on the simulated passes of `cases`."""
+def judge(cases: Sequence[CaseResult], limits: AcceptanceSettings, failed: tuple[FailedCase, ...] = ()) -> Verdict:
+    """The verdict on the simulated passes of `cases`, where other cases have `failed`."""
     judged = tuple(judge_case(case, limits) for case in cases)
-    return verdict_on(judged, [case.comparison.table.statistics for case in cases], limits)
+    return verdict_on(judged, [case.comparison.table.statistics for case in cases], limits, failed)
 
 
-def verdict_on(judged: tuple[CaseVerdict, ...], found: Sequence[ExitStatistics], limits: AcceptanceSettings) -> Verdict:
-    """What the verdicts on all cases, of which `found` was simulated, come to."""
+def verdict_on(
+    judged: tuple[CaseVerdict, ...],
+    found: Sequence[ExitStatistics],
+    limits: AcceptanceSettings,
+    failed: tuple[FailedCase, ...],
+) -> Verdict:
+    """What the verdicts on all cases, of which `found` was simulated, come to where others have `failed`."""
     feasible = [(each, verdict) for each, verdict in zip(found, judged, strict=True) if verdict.feasible]
     bad = [verdict for _, verdict in feasible if verdict.judgement.missed]
     open_ones = [verdict for _, verdict in feasible if verdict.judgement.word == "not decidable"]
@@ -77,7 +85,12 @@ def verdict_on(judged: tuple[CaseVerdict, ...], found: Sequence[ExitStatistics],
     outside = [f"{verdict.name} ({verdict.obstacle})" for verdict in judged if not verdict.feasible]
     if outside:
         sentence += f"; infeasible and outside this verdict: {', '.join(outside)}"
-    return Verdict(bool(feasible) and not bad and not open_ones, sentence, judged)
+    if failed:
+        every = counted(len(judged) + len(failed), "case")
+        sentence = (
+            f"there is no table for {len(failed)} of {every} ({told_together(failed)}); of the others: {sentence}"
+        )
+    return Verdict(bool(feasible) and not bad and not open_ones and not failed, sentence, judged, failed)
 
 
 def told(verdicts: Sequence[CaseVerdict]) -> str:

@@ -20,7 +20,7 @@ from synth.book.case_result import CaseResult, DegreeStudy
 from synth.book.comparison.limit_cycle import hunting_report
 from synth.book.comparison.measured import Measured
 from synth.book.comparison.pressure_cycle import pressure_hunting
-from synth.book.permissions.case_document import results_document
+from synth.book.permissions.case_document import failed_document, results_document
 from synth.book.permissions.overview import Overview, median_ratios
 from synth.book.tune import Book
 from synth.book.tuned_table import AnyEstimate
@@ -64,6 +64,7 @@ def summary_head(kind: tuple[str, int], config: ResolvedConfig, created: str, ve
         "criterion": config.criterion.sentence,
         "accepted": verdict.accepted,
         "verdict": verdict.sentence,
+        "failed": [asdict(case) for case in verdict.failed],
     }
 
 
@@ -127,6 +128,7 @@ def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
         "indifference": asdict(case.study.indifference),
         "estimate": None if case.estimate is None else {**estimate_of(case.estimate), "left_out": case.left_out},
         "permissions": None if case.permissions is None else results_document(case.permissions),
+        "permissions_failed": {} if case.permissions is None else failed_document(case.permissions),
         "warnings": case.warnings,
         "polish": polish_of(case.polish),
         "ties": case.study.policy_map.ties,

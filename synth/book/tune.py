@@ -7,20 +7,22 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from plant_models import Plant
-from synth.book.case_error import naming
 from synth.book.case_result import CaseResult, DegreeStudy
-from synth.book.class_setup import TUNING_PASSES, Origin, class_setup, origin_of, validation_passes
+from synth.book.class_setup import TUNING_PASSES, ClassSetup, Origin, class_setup, origin_of, validation_passes
 from synth.book.creation_time import creation_time
 from synth.book.degree_study import degree_study, tables_by_degree
+from synth.book.failed_case import FailedCase, attempted, require_none
 from synth.book.permissions.case_permissions import asking
 from synth.book.permissions.overview import HINT, Overview, overview_of
 from synth.book.permissions.refusal import tellable
 from synth.book.tune_case import CaseOrder, tune_case
 from synth.book.tuned_table import Store, solutions
+from synth.book.watcher import Watcher
 from synth.book.work_queue import run_nested
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.simulation.random_passes import RandomPasses, random_passes
+from synth.solver.backward_induction import Solution
 from synth.solver.chain.chain import as_published
 from synth.solver.chain.grid import require_memory
 from synth.solver.one_blas_thread import one_blas_thread
@@ -28,7 +30,6 @@ from synth.solver.one_blas_thread import one_blas_thread
 DEGREES = (1, 2, 3, 4, 5, 6)
 PUBLISHED_LEVELS = 3
 
-Progress = Callable[[str], None]
 CaseDone = Callable[[CaseResult], None]
 
 
@@ -38,12 +39,22 @@ def no_notice(case: CaseResult) -> None:
 
 @dataclass(frozen=True)
 class Book:
-    """Result of a tune: all cases and the degree studies, classes in the order of the configuration."""
+    """Result of a tune: all cases and the degree studies, classes in the order of the configuration.
+
+    `failed`: cases without a table, which are not among `cases`.
+    """
 
     config: ResolvedConfig
     created: str
     cases: tuple[CaseResult, ...]
     degree_studies: tuple[DegreeStudy, ...]
+    failed: tuple[FailedCase, ...] = ()
+
+    @property
+    def whole(self) -> tuple[CaseResult, ...]:
+        """All cases, for who needs every one; `PlantError` where one has no table."""
+        require_none(self.failed)
+        return self.cases
 
     @property
     def permissions(self) -> Overview | None:
@@ -63,9 +74,9 @@ class Book:
 class TuneRun:
     """What all classes of a tune share.
 
-    `passes`: that every table is validated on; `tuning`: that baselines are tuned on. `progress` is told a sentence
-    whenever a case is done, `case_done` given its result. With `permissions` each case also tells what those of the
-    hardware would give.
+    `passes`: that every table is validated on; `tuning`: that baselines are tuned on. `watcher` is told a sentence
+    whenever a case has ended, `case_done` given its result if it has a table. With `permissions` each case also tells
+    what those of the hardware would give.
     """
 
     config: ResolvedConfig
@@ -73,19 +84,19 @@ class TuneRun:
     passes: RandomPasses
     tuning: RandomPasses
     store: Store
-    progress: Progress
+    watcher: Watcher
     case_done: CaseDone
     permissions: bool
 
 
-Task = Callable[[], CaseResult | DegreeStudy]
+Task = Callable[[], CaseResult | FailedCase | DegreeStudy | None]
 
 
 @one_blas_thread()
 def tune(
     config: ResolvedConfig,
     store: Store,
-    progress: Progress,
+    watcher: Watcher,
     workers: int = 2,
     case_done: CaseDone = no_notice,
     permissions: bool = False,
@@ -93,8 +104,9 @@ def tune(
     """Tune every cut class and target of `config`; each table is handed to `store` as soon as it is made.
 
     Work runs on `workers` threads (the kernels release the interpreter); the result does not depend on how
-    many. `progress` is told a sentence whenever a case is done, `case_done` given its result. `permissions`: each case
-    also tells what those of the hardware would give; for configurations that `require_tellable` lets pass.
+    many. `watcher` is told a sentence whenever a case has ended, `case_done` given its result. `permissions`: each case
+    also tells what those of the hardware would give; for configurations that `require_tellable` lets pass. A case that
+    no table can be made for is told of in the book, and the others are made.
     """
     plants = config.plants()
     for label, plant in plants:
@@ -105,7 +117,7 @@ def tune(
         passes=validation_passes(config),
         tuning=random_passes(config.validation.seed + 1, 0, TUNING_PASSES),
         store=store,
-        progress=progress,
+        watcher=watcher,
         case_done=case_done,
         permissions=permissions,
     )
@@ -118,14 +130,25 @@ def tune(
         run.origin.created,
         tuple(result for result in results if isinstance(result, CaseResult)),
         tuple(result for result in results if isinstance(result, DegreeStudy)),
+        tuple(result for result in results if isinstance(result, FailedCase)),
     )
 
 
 def class_tasks(run: TuneRun, label: str, plant: Plant, studied: bool) -> list[Task]:
     """Solve all targets of one cut class together; returns what is left to do for each, as tasks.
 
-    With `studied` the degree study of the first target comes first, because it takes longest.
+    With `studied` the degree study of a target comes first, because it takes longest.
     """
+    targets = run.config.targets_of(label)
+    orders = attempted(partial(case_orders, run, label, plant), label, targets[0], run.config)
+    if isinstance(orders, FailedCase):
+        return [partial(case_failed, run, replace(orders, target_m_s=target)) for target in targets]
+    tasks: list[Task] = [partial(study_task, run, orders)] if studied else []
+    return tasks + [partial(case_task, run, order) for order in orders]
+
+
+def case_orders(run: TuneRun, label: str, plant: Plant) -> list[CaseOrder]:
+    """All targets of one cut class solved, and what is to be done with each."""
     config = run.config
     setup = class_setup(config, label, plant, run.passes, run.origin)
     aims = [Aim(target, config.criterion) for target in config.targets_of(label)]
@@ -133,36 +156,53 @@ def class_tasks(run: TuneRun, label: str, plant: Plant, studied: bool) -> list[T
     both = solutions(setup.design, [*aims, *free])
     published = solutions(as_published(setup.design, PUBLISHED_LEVELS), aims)
     rehearsal = setup.passes.of_others(run.tuning)
-    asks = [asking(config, setup, aim, run.passes, run.origin) if run.permissions else None for aim in aims]
-    orders = [
+    asks = [asking(config, setup, aim) if run.permissions else None for aim in aims]
+    return [
         CaseOrder(setup, solution, plain, as_was, config.acceptance.rms_m_s, rehearsal, run.store, ask)
         for solution, plain, as_was, ask in zip(both[: len(aims)], both[len(aims) :], published, asks, strict=True)
     ]
 
-    def study() -> DegreeStudy:
-        with naming(label, aims[0].target_speed_m_s):
-            tables = tuple(tables_by_degree(both[0], DEGREES, run.origin))
-            result = degree_study(both[0], setup.check, label, tables)
-        run.progress(f"{label} to {aims[0].target_speed_m_s:g} m/s: degree study done")
-        return result
 
-    tasks: list[Task] = [study] if studied else []
-    return tasks + [partial(case_task, run, order) for order in orders]
+def study_task(run: TuneRun, orders: list[CaseOrder]) -> DegreeStudy | None:
+    """The degree study of the first target of a class that one can be made for, told of."""
+    told = ""
+    for order in orders:
+        label, target = order.setup.label, order.solution.aim.target_speed_m_s
+        found = attempted(partial(study_of, order.setup, order.solution, run.origin), label, target, run.config)
+        if isinstance(found, DegreeStudy):
+            run.watcher.note(f"{label} to {target:g} m/s: degree study done")
+            return found
+        told = told or f"{found.name}: no degree study: {found.reason}"
+    run.watcher.note(told)
+    return None
 
 
-def case_task(run: TuneRun, order: CaseOrder) -> CaseResult:
+def study_of(setup: ClassSetup, solution: Solution, origin: Origin) -> DegreeStudy:
+    """Tables of all degrees for one solution, predicted."""
+    tables = tuple(tables_by_degree(solution, DEGREES, origin))
+    return degree_study(solution, setup.check, setup.label, tables)
+
+
+def case_task(run: TuneRun, order: CaseOrder) -> CaseResult | FailedCase:
     """One case tuned, and told of."""
     label, target = order.setup.label, order.solution.aim.target_speed_m_s
-    with naming(label, target):
-        result = tune_case(order)
+    result = attempted(partial(tune_case, order), label, target, run.config)
+    if isinstance(result, FailedCase):
+        return case_failed(run, result)
     run.case_done(result)
     figures = result.comparison.table.statistics
     low, high = figures.rms_ci95_m_s
     rms = f"rms {figures.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s in {figures.passes} passes"
     told = [f"{label} to {target:g} m/s: {rms}", result.left_out, result.permissions.told if result.permissions else ""]
-    run.progress("; ".join(filter(None, told)))
+    run.watcher.done("; ".join(filter(None, told)))
     for warning in result.warnings:
-        run.progress(f"warning: {label} to {target:g} m/s: {warning}")
+        run.watcher.note(f"warning: {label} to {target:g} m/s: {warning}")
     if result.finding is not None:
-        run.progress(f"{label} to {target:g} m/s: {result.finding.sentence}")
+        run.watcher.note(f"{label} to {target:g} m/s: {result.finding.sentence}")
     return result
+
+
+def case_failed(run: TuneRun, case: FailedCase) -> FailedCase:
+    """A case without a table, told of."""
+    run.watcher.done(case.sentence)
+    return case

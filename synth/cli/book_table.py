@@ -22,8 +22,8 @@ LEGEND = (
 def print_book(summary: of.Case, directory: Path, permissions: Overview | None, permissions_line: str) -> None:
     """Print the table of cases, what is infeasible, the verdict, and where everything is."""
     cases = summary["cases"]
-    columns = columns_of(cases, permissions)
-    page: list[Exhibit] = [PrintedTable(columns, cases, "summary.json and the report", summary["title"])]
+    columns, rows = columns_of(cases, permissions), [*cases, *map(of.without_table, summary["failed"])]
+    page: list[Exhibit] = [PrintedTable(columns, rows, "summary.json and the report", summary["title"])]
     if cases:
         page.append(f"{cases[0]['simulated']['passes']} stratified passes a case. {LEGEND}")
     if permissions_line:

@@ -68,6 +68,11 @@ def permission_column(permission: Permission) -> Column[Case]:
     return Column(f"rms × if {SHORT[permission].replace(' ', NO_BREAK)}", cell, spare=2)
 
 
+def without_table(failed: dict[str, Any]) -> Case:
+    """The row of an entry of `failed` of a summary.json."""
+    return {"label": failed["label"], "target_speed_m_s": failed["target_m_s"], "verdict": "no table"}
+
+
 CASE: Final = Column[Case]("case", lambda case: case["label"], words=True, once=True)
 TARGET: Final = Column[Case]("target, m/s", lambda case: f"{case['target_speed_m_s']:g}")
 RMS: Final = Column[Case]("rms, m/s", error("rms"))

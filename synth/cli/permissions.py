@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from synth.cli import OK, say
-from synth.cli.tables_refused import tables_refused
+from synth.cli import LIMITS_MISSED, OK, say
+from synth.cli.tables_refused import require_a_table, tables_refused
 
 if TYPE_CHECKING:
-    from synth.book.permissions.permission import CasePermissions, Permission
+    from synth.book.permissions.permission import AllPermissions, CasePermissions, Permission
 
 
 def permissions_command(path: Path | None, output: Path, workers: int, as_json: bool) -> int:
@@ -38,20 +37,21 @@ def permissions_command(path: Path | None, output: Path, workers: int, as_json: 
             from synth.book.permissions.case_permissions import permissions_of
             from synth.present.permissions_outputs import write_permissions
 
-            with tables_refused(source):
-                cases = guarded(permissions_of, config, created, workers, progress.done)
-            write_permissions(config, cases, created, directory)
+            with tables_refused(source, config):
+                told = guarded(permissions_of, config, created, workers, progress)
+                require_a_table(told.cases, told.failed)
+            write_permissions(config, told, created, directory)
             progress.note(f"all files written after {time.monotonic() - started:.1f} s")
     if as_json:
         sys.stdout.write((output / SUMMARY).read_text(encoding="utf-8"))
     else:
-        print_permissions(cases, output)
-    return OK
+        print_permissions(told, output)
+    return OK if told.complete else LIMITS_MISSED
 
 
-def print_permissions(cases: Sequence[CasePermissions], directory: Path) -> None:
-    """A table with a row for each case and a column for each permission."""
-    from synth.book.permissions.overview import asked_of, medians
+def print_permissions(told: AllPermissions, directory: Path) -> None:
+    """A table with a row for each case and a column for each permission; below it what cannot be told."""
+    from synth.book.permissions.overview import asked_of, medians, missing
     from synth.book.printed_numbers import plus_minus
     from synth.cli.printed_page import print_page
     from synth.cli.printed_table import Column, PrintedTable
@@ -69,11 +69,12 @@ def print_permissions(cases: Sequence[CasePermissions], directory: Path) -> None
         Column(
             "rms as configured, m/s", lambda case: plus_minus(case.table.rms_m_s, case.table.rms_ci95_m_s, 4), spare=2
         ),
-        *map(column, asked_of(cases)),
+        *map(column, asked_of(told.cases)),
     )
     print_page(
-        PrintedTable(columns, cases, "summary.json"),
-        f"{cases[0].table.passes} stratified passes a case. Columns of permissions: rms over that of the table as "
-        f"configured, on the same passes, ± 95 %. Medians: {medians(cases)}.",
+        PrintedTable(columns, told.cases, "summary.json"),
+        f"{told.cases[0].table.passes} stratified passes a case. Columns of permissions: rms over that of the table as "
+        f"configured, on the same passes, ± 95 %. Medians: {medians(told.cases)}.{missing(told.cases)}",
+        *(each.sentence for each in told.failed),
         f"{directory}: plots/, summary.json",
     )

@@ -44,9 +44,8 @@ class Progress:
             self.note(f"{there} of {self._cases} {self._noun} are there already")
 
     def done(self, sentence: str) -> None:
-        """`sentence` tells of a finished case, or of a study beside the cases."""
-        if "study" not in sentence:
-            self._done = min(self._done + 1, self._cases)
+        """`sentence` tells of a case that has ended."""
+        self._done += 1
         self._bar.update(self._task, completed=self._done)
         elapsed = time.monotonic() - self._started
         own = self._done - self._before

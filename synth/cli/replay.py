@@ -8,6 +8,7 @@ from pathlib import Path
 
 from synth.cli import LIMITS_MISSED, OK, say
 from synth.cli.processors import available
+from synth.cli.tables_refused import require_a_table, tables_refused
 
 
 def replay_command(
@@ -17,6 +18,7 @@ def replay_command(
     """Run the passes in `logs` again under `tables`; 1 where the configuration does not describe the log."""
     from synth.book.creation_time import creation_time, require_date
     from synth.book.forms.table_file import read_tables
+    from synth.book.watcher import Teller
     from synth.cli.interrupt import interruptible
     from synth.configuration.config_file import BUILT_IN, load_config
     from synth.frame.results_directory import results_directory
@@ -39,7 +41,12 @@ def replay_command(
     with results_directory(output, "replay", reads) as directory, interruptible(directory, "summary"):
         if drove is None:
             setups = class_setups(config, created)
-            drove = tuple(guarded(tuned_tables, config, setups, available(), lambda _: None).values())
+            with tables_refused(source, config):
+                made = guarded(tuned_tables, config, setups, available(), Teller(lambda _: None))
+                require_a_table(tuple(made.tables), made.failed)
+            for case in made.failed:
+                say(f"warning: {case.sentence}")
+            drove = tuple(made.tables.values())
         found = guarded(replay, passes, config, ReplayOrder(drove, other.tables))
         write_replay(found, config, created, directory)
     if as_json:

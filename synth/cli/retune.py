@@ -8,13 +8,14 @@ from pathlib import Path
 
 from synth.cli import LIMITS_MISSED, OK, say
 from synth.cli.processors import available
+from synth.cli.tables_refused import tables_refused
 
 
 def retune_command(
     logs: Sequence[Path], tables: Path | None, mapping: Path | None, config_path: Path | None, output: Path,
     as_json: bool,
 ) -> int:  # fmt: skip
-    """Tune tables for what `logs` say; 1 where none of them is better beyond doubt than the old ones."""
+    """Tune tables for what `logs` say; 1 where none is better beyond doubt than the old ones, or a case has none."""
     from synth.book.creation_time import creation_time, require_date
     from synth.book.forms.table_file import read_tables
     from synth.cli.interrupt import interruptible
@@ -42,7 +43,8 @@ def retune_command(
         Progress(len(config.problems())) as progress,
     ):
         order = RetuneOrder(old, creation_time(), threads=available())
-        found = guarded(retune, passes, source, order, progress.note)
+        with tables_refused(source.place, config):
+            found = guarded(retune, passes, source, order, progress)
         write_retune(found, directory)
     if as_json:
         sys.stdout.write((output / "summary.json").read_text(encoding="utf-8"))
@@ -51,4 +53,4 @@ def retune_command(
 
         files = ("tables/, book.h5, " if found.tables else "") + "plots/, report.html, summary.json"
         print_page(*retune_sentences(found), f"{output}: {files}")
-    return OK if found.changed else LIMITS_MISSED
+    return OK if found.changed and not found.failed else LIMITS_MISSED

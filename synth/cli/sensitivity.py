@@ -69,7 +69,7 @@ def shared_out(
     from synth.book.sensitivity.fixed_tables import tables_tuned
     from synth.book.sensitivity.sensitivity import sensitivity
 
-    with tables_refused(source):
+    with tables_refused(source, config):
         fixed = given or tables_tuned(config, created, min(len(config.cuts), available()), tell)
         return sensitivity(config, fixed, trial, available(), tell)
 

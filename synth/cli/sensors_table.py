@@ -23,9 +23,10 @@ LEGEND = (
 def print_sensors(summary: of.Case, directory: Path) -> None:
     """Print the table of cases, the verdict, and where everything is."""
     cases = summary["cases"]
+    rows = [*cases, *map(of.without_table, summary["failed"])]
     tables = (f"tables in {directory / 'tables'}", f"code in {directory / 'c'} and {directory / 'st'}")
     print_page(
-        PrintedTable(COLUMNS, cases, "summary.json and the report", summary["title"]),
+        PrintedTable(COLUMNS, rows, "summary.json and the report", summary["title"]),
         f"{cases[0]['simulated']['passes']} stratified passes a case. {LEGEND}",
         Verdict(summary["accepted"], summary["verdict"]),
         places(tables, summary, directory),

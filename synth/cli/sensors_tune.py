@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from synth.cli import LIMITS_MISSED, OK, say
 from synth.cli.processors import available
+from synth.cli.tables_refused import require_a_table, tables_refused
 
 if TYPE_CHECKING:
     from synth.configuration.point_sensors.resolved_sensors import ResolvedSensors
@@ -72,27 +73,18 @@ def tune_into(
     with interruptible(directory), Progress(len(config.problems())) as progress:
         if cache is None or next(cache.rglob("*.nbi"), None) is None:
             progress.note("compiling the kernels for this machine, once; this takes a few minutes")
-        from synth.book.case_error import CaseError
         from synth.book.printed_numbers import counted
         from synth.book.sensors.sensor_acceptance import judge_sensors
         from synth.book.sensors.sensor_tune import tune_sensors
-        from synth.faults.input_error import InputError
         from synth.present.sensor_outputs import store_passages, write_sensors
-        from tuning_tables import InvalidTable
 
-        store = partial(store_passages, directory=directory)
-        try:
-            book = guarded(tune_sensors, config, sensors, store, progress.done, workers)
+        with tables_refused(place, config):
+            store = partial(store_passages, directory=directory)
+            book = guarded(tune_sensors, config, sensors, store, progress, workers)
+            require_a_table(book.cases, book.failed)
             progress.note(f"{counted(len(book.cases), 'case')} computed in {time.monotonic() - started:.1f} s")
             verdict = judge_sensors(book)
             summary = write_sensors(book, verdict, directory, progress.note)
-        except CaseError as fault:
-            raise InputError(
-                f"{place}: no table for {fault.case}: {fault}; now grid.path_step_m is {config.grid.path_step_m:g} and "
-                f"grid.speed_step_m_s {config.grid.speed_step_m_s:g}"
-            ) from None
-        except InvalidTable as fault:
-            raise InputError(f"{place}: what was found makes no tables: {fault}") from None
         progress.note(f"all files written after {time.monotonic() - started:.1f} s")
     if as_json:
         sys.stdout.write((directory.path / "summary.json").read_text(encoding="utf-8"))

@@ -3,22 +3,35 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 from synth.faults.input_error import InputError
 
+if TYPE_CHECKING:
+    from synth.book.failed_case import FailedCase
+    from synth.configuration.resolved_config import ResolvedConfig
+
 
 @contextlib.contextmanager
-def tables_refused(source: str) -> Iterator[None]:
-    """Within, a `PlantError` and an `InvalidTable` become an `InputError` of `source`."""
-    from synth.configuration.plant_fault import in_file
+def tables_refused(source: str, config: ResolvedConfig) -> Iterator[None]:
+    """Within, a `PlantError` and an `InvalidTable` become an `InputError` of `source`, which says `config`."""
+    from plant_models import PlantError
+    from synth.book.failed_case import reason_of
     from tuning_tables import InvalidTable
 
     try:
-        with in_file(source):
-            yield
-    except InvalidTable as fault:
-        raise InputError(
-            f"{source}: the lines that were found make no table ({fault}) make grid.path_step_m or "
-            "grid.speed_step_m_s smaller, or lower fit.degree"
-        ) from None
+        yield
+    except (PlantError, InvalidTable) as fault:
+        raise InputError(f"{source}: {reason_of(fault, config)}") from None
+
+
+def require_a_table(cases: Sequence[object], failed: Sequence[FailedCase]) -> None:
+    """`PlantError` where all cases have failed; it tells the first."""
+    from plant_models import PlantError
+
+    if cases or not failed:
+        return
+    first, others = failed[0], len(failed) - 1
+    more = f" (nor for the {others} other case{'s' * (others > 1)})" if others else ""
+    raise PlantError(f"no table for {first.name}{more}: {first.reason}")

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from synth.cli import LIMITS_MISSED, OK, say
 from synth.cli.processors import available
+from synth.cli.tables_refused import require_a_table, tables_refused
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.faults.input_error import InputError
 
@@ -72,29 +73,18 @@ def tune_into(directory: ResultsDirectory, config: ResolvedConfig, path: Path | 
         wanted = config.output.plots or config.output.report
         studio = stack.enter_context(Studio(asked.workers if wanted else 1))
         from synth.book.acceptance import judge
-        from synth.book.case_error import CaseError
         from synth.book.printed_numbers import counted
         from synth.book.tune import no_notice, tune
         from synth.present.outputs import store_table, write_outputs
-        from tuning_tables import InvalidTable
 
         case_done = studio.case_done if wanted else no_notice
-        try:
+        with tables_refused(str(path or "built-in configuration"), config):
             store = partial(store_table, directory=directory)
-            book = guarded(tune, config, store, progress.done, asked.workers, case_done, asked.permissions)
+            book = guarded(tune, config, store, progress, asked.workers, case_done, asked.permissions)
+            require_a_table(book.cases, book.failed)
             progress.note(f"{counted(len(book.cases), 'case')} computed in {time.monotonic() - started:.1f} s")
-            verdict = judge(book.cases, config.acceptance)
+            verdict = judge(book.cases, config.acceptance, book.failed)
             summary = write_outputs(book, verdict, directory, studio, progress.note)
-        except CaseError as fault:
-            raise InputError(
-                f"{path or 'built-in configuration'}: no table for {fault.case}: {fault}; now grid.path_step_m is "
-                f"{config.grid.path_step_m:g} and grid.speed_step_m_s {config.grid.speed_step_m_s:g}"
-            ) from None
-        except InvalidTable as fault:
-            raise InputError(
-                f"{path or 'built-in configuration'}: the lines that were found make no table ({fault}) "
-                "make grid.path_step_m or grid.speed_step_m_s smaller, or lower fit.degree"
-            ) from None
         progress.note(f"all files written after {time.monotonic() - started:.1f} s")
     if asked.as_json:
         sys.stdout.write((directory.path / "summary.json").read_text(encoding="utf-8"))

@@ -58,6 +58,7 @@ def report_of(book: Book, verdict: Verdict, hashes: dict[str, str], pictures: tu
         config_sha256=config.sha256,
         created=book.created,
         cases=book.cases,
+        failed=book.failed,
         degree_studies=book.degree_studies,
         parameters=config.parameters,
         accepted=verdict.accepted,

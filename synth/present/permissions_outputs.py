@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from synth.book.permissions.document import permissions_document
-from synth.book.permissions.permission import CasePermissions
+from synth.book.permissions.permission import AllPermissions
 from synth.book.summary import Document
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.frame.results_directory import ResultsDirectory
@@ -13,14 +11,14 @@ from tuning_tables.canonical import canonical_json
 
 
 def write_permissions(
-    config: ResolvedConfig, cases: Sequence[CasePermissions], created: str, directory: ResultsDirectory
+    config: ResolvedConfig, told: AllPermissions, created: str, directory: ResultsDirectory
 ) -> Document:
     """Write everything; the summary as written. Raises `OSError`."""
     if config.output.plots:
         from synth.present.plots.permissions import permissions_picture  # matplotlib
         from synth.present.plots.picture import picture_files
 
-        directory.write_all(picture_files([permissions_picture(config.title, cases)], "plots"))
-    summary = permissions_document(config, cases, created, directory.written)
+        directory.write_all(picture_files([permissions_picture(config.title, told.cases)], "plots"))
+    summary = permissions_document(config, told, created, directory.written)
     directory.finish(canonical_json(summary) + b"\n")
     return summary

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.solver.backward_induction import Solution
+from synth.solver.coarse_grid import require_positive
 from synth.solver.descent import CostAndSlopes, descend
 from synth.solver.evaluation import Evaluation, Gradient
 from synth.solver.one_blas_thread import one_blas_thread
@@ -37,6 +38,8 @@ def polish_passages(solution: Solution, max_iterations: int = 40, tolerance: flo
 
     Sequential quadratic programming in units in which being off costs the same for each. It ends when a step changes
     the cost by less than `tolerance` of the first; the cost of the result is no higher than the start's.
+
+    Raises `CoarseGridError` if the cost to start from is not positive.
     """
     from scipy.optimize import LinearConstraint  # start-up: scipy only where it is needed
 
@@ -45,7 +48,8 @@ def polish_passages(solution: Solution, max_iterations: int = 40, tolerance: flo
     evaluation = Evaluation(solution.chain, solution.aim)
     first = evaluation.gradient(start)
     off = np.maximum(being_off(solution, start)[free], 0.0)
-    unit = np.minimum(np.sqrt(first[0] / (off + 1e-12)), LOOSE_M_S)
+    cost = require_positive(first[0], "switching speeds")
+    unit = np.minimum(np.sqrt(cost / (off + 1e-12)), LOOSE_M_S)
 
     def policy(y: NDArray[np.float64]) -> PassageSpeeds:
         t = np.array(start.switching_m_s)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.errors import require
+from synth.solver.coarse_grid import require_positive
 from synth.solver.descent import CostAndSlopes, descend
 from synth.solver.one_blas_thread import one_blas_thread
 from synth.solver.polynomial_lines import MINIMUM_GAP_M_S, PolynomialLines, gap_of, opened
@@ -51,7 +51,7 @@ def polish(
     It ends when a step changes the cost by less than `tolerance` of the first cost. The cost of the result is positive
     and no higher than the start's. A negative cost can only come from a grid that is too coarse.
 
-    Raises `PlantError` if the cost to start from is not positive: the grid is too coarse.
+    Raises `CoarseGridError` if the cost to start from is not positive.
 
     Sequential quadratic programming in coordinates in which the `curvature` (K + 1, 2, N) of `fit_lines` is
     the unit matrix, so that the first steps are Newton steps.
@@ -59,12 +59,7 @@ def polish(
     free, width = np.nonzero(start.has_line), start.degree + 1
     matrix = start.basis(nodes_m)[: curvature.shape[2]]
     first = evaluate(start.at(nodes_m))
-    before = first[0]
-    require(
-        before > 0.0,
-        "the grid is too coarse for these lines (an expected square came out negative): make path_step_m and "
-        "speed_step_m_s smaller",
-    )
+    before = require_positive(first[0], "lines")
     scale = whitening(curvature[free], matrix, before)
 
     def unpack(y: NDArray[np.float64]) -> PolynomialLines:

@@ -12,12 +12,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models import Plant, PlantError
+from plant_models import Plant
 from plant_models.frozen_arrays import frozen_arrays
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.solver.chain.chain import Chain
 from synth.solver.chain.scenarios import equally_spaced_normal
+from synth.solver.coarse_grid import CoarseGridError
 from synth.solver.evaluation import Evaluation
 from synth.solver.finer_speed import known_factors
 from synth.solver.policy_density import scenario_densities
@@ -112,7 +113,7 @@ def improved(
     for begin in begins:
         try:
             end = polish(begin, curvature, nodes_m, evaluation.gradient, iterations, tolerance)
-        except PlantError:
+        except CoarseGridError:
             continue
         if end.cost_after <= most:
             return end.lines

@@ -12,6 +12,7 @@ from synth.book.printed_numbers import few
 from synth.book.summary import summary_of
 from synth.book.tune import tune
 from synth.book.tuned_table import read_back
+from synth.book.watcher import Teller
 from synth.configuration.config_file import load_config
 from synth.simulation.replicates import Interval
 from synth.studies.cases import of_masses
@@ -110,8 +111,8 @@ def cells(row: Row) -> tuple[str, ...]:
 def run(options: Options, tell: Tell) -> Results:
     """Tune the book."""
     config = of_masses(load_config(options.config), options.masses_t)
-    book = tune(config, read_back, tell)
-    summary = summary_of(book, judge(book.cases, config.acceptance), {})
+    book = tune(config, read_back, Teller(tell))
+    summary = summary_of(book, judge(book.whole, config.acceptance), {})
     rows = tuple(map(row_of, summary["cases"]))
     return Results(config.sha256, config.validation.seed, config.validation.passes, rows)
 

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from plant_models import Plant
 from synth.book.tune import tune
 from synth.book.tuned_table import read_back
+from synth.book.watcher import Teller
 from synth.checker.coarse_simulation import Passes
 from synth.checker.coarse_simulation import simulate as simulate_coarsely
 from synth.checker.plant import plant_of
@@ -129,7 +130,7 @@ def configuration(case: str) -> str:
 def rows_of(case: str, options: Options) -> Iterator[Row]:
     """Tune one case and count."""
     config = parse_config(configuration(case), f"study coverage, case {case}")
-    (found,) = tune(config, read_back, silent).cases
+    (found,) = tune(config, read_back, Teller(silent)).whole
     read = read_table(to_json(found.table))
     plant, target = found.plant, found.target_speed_m_s
     most = max(options.passes)

@@ -20,6 +20,7 @@ from synth.book.acceptance import judge
 from synth.book.summary import plain, summary_of
 from synth.book.tune import tune
 from synth.book.tuned_table import read_back
+from synth.book.watcher import Teller
 from synth.checker.claims import Honesty, own_faults, simulated_faults
 from synth.checker.coarse_simulation import Passes, simulate
 from synth.checker.low_friction import GROUP
@@ -94,10 +95,10 @@ def run(options: Options, tell: Tell) -> Verification:
     with tempfile.TemporaryDirectory() as folder:
         directory = Path(folder)
         (directory / "tables").mkdir()
-        book = tune(config, read_back, tell)
-        for case in book.cases:
+        book = tune(config, read_back, Teller(tell))
+        for case in book.whole:
             write_json(case.table, directory / "tables" / f"{case.table.id}.json")
-        summary = plain(summary_of(book, judge(book.cases, config.acceptance), {}))
+        summary = plain(summary_of(book, judge(book.whole, config.acceptance), {}))
         (directory / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
         names = sorted(path.name for path in (directory / "tables").glob("*.json"))
         with get_context("spawn").Pool(THREADS) as pool:

@@ -4,24 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from plant_models import PlantError
 from synth.book.class_setup import ClassSetup, class_setup, origin_of, validation_passes
+from synth.book.failed_case import FailedCase, attempted, parted
 from synth.book.judgement import judgement
 from synth.book.tuned_table import predict, solutions, tuned_table, validated_table
 from synth.configuration.resolved_config import ResolvedConfig, resolve
 from synth.configuration.settings import Settings
 from synth.problem.aim import Aim
 from synth.simulation.exit_statistics import overspeed_of
+from synth.solver.backward_induction import Solution
 from synth.solver.chain.chain import Chain
 from synth.solver.one_blas_thread import one_blas_thread
 from synth.sweep.plan import TARGETS_AT_ONCE, Refinement, UnitOrder
 from synth.sweep.refinement import Bench, Gap, refined
-from synth.sweep.unit_result import Refused, Row, UnitResult
-from tuning_tables import ControllerTable, InvalidTable, Stage, from_json, to_json
+from synth.sweep.unit_result import Row, UnitResult
+from tuning_tables import ControllerTable, Stage, from_json, to_json
 from tuning_tables.active_table import between
 
 
@@ -33,12 +36,13 @@ def tune_unit(order: UnitOrder) -> UnitResult:
     refused: its gaps could not be measured.
     """
     config, setup = setup_of(order)
-    refused: tuple[Refused, ...] = ()
+    refused: tuple[FailedCase, ...] = ()
     gaps: tuple[Gap, ...] = ()
     if order.refinement is None:
-        tables, refused = tuned_tables(config, setup, config.targets_of(order.label))
-        if not tables:
+        made, refused = tuned_tables(config, setup, config.targets_of(order.label))
+        if not made:
             raise PlantError(refused[0].reason)
+        tables = list(made)
     else:
         tables, gaps = refined_tables(config, setup, order.refinement)
     rows = tuple(row_of(config, setup, table) for table in tables)
@@ -63,7 +67,7 @@ def refined_tables(
         tables, refused = tuned_tables(config, setup, targets_m_s)
         if refused:
             raise PlantError(refused[0].reason)
-        return tables
+        return list(tables)
 
     bench = Bench(
         tune=tune,
@@ -75,20 +79,23 @@ def refined_tables(
 
 def tuned_tables(
     config: ResolvedConfig, setup: ClassSetup, targets_m_s: Sequence[float]
-) -> tuple[list[ControllerTable], tuple[Refused, ...]]:
+) -> tuple[tuple[ControllerTable, ...], tuple[FailedCase, ...]]:
     """Predicted tables for some targets, and those for which there is none, both in the order of the targets.
 
     A few are solved together, and then given up.
     """
-    tables, refused = [], []
+    results = []
     for first in range(0, len(targets_m_s), TARGETS_AT_ONCE):
         aims = [Aim(target, config.criterion) for target in targets_m_s[first : first + TARGETS_AT_ONCE]]
         for solution in solutions(setup.design, aims):
-            try:
-                tables.append(tuned_table(setup, solution).table)
-            except (PlantError, InvalidTable) as fault:
-                refused.append(Refused(solution.aim.target_speed_m_s, " ".join(str(fault).split())))
-    return tables, tuple(refused)
+            target = solution.aim.target_speed_m_s
+            results.append(attempted(partial(table_of, setup, solution), setup.label, target, config))
+    return parted(results)
+
+
+def table_of(setup: ClassSetup, solution: Solution) -> ControllerTable:
+    """The predicted table of one solution."""
+    return tuned_table(setup, solution).table
 
 
 def between_rms_m_s(check: Chain, slower: ControllerTable, faster: ControllerTable, target_m_s: float) -> float:

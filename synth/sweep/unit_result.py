@@ -6,6 +6,7 @@ import json
 from dataclasses import asdict, dataclass
 from typing import Any, cast
 
+from synth.book.failed_case import FailedCase
 from synth.book.judgement import Judgement
 from synth.sweep.refinement import Gap
 from tuning_tables import ControllerTable, DamagedTable, TableError
@@ -13,7 +14,7 @@ from tuning_tables.canonical import canonical_json
 from tuning_tables.document import from_document, to_document
 from tuning_tables.seal import seal_of, unsealed
 
-FORMAT, VERSION = "retarder-sweep-unit", 3
+FORMAT, VERSION = "retarder-sweep-unit", 4
 
 
 @dataclass(frozen=True)
@@ -23,14 +24,6 @@ class Row:
     table: ControllerTable
     simulated: dict[str, Any]
     judgement: Judgement
-
-
-@dataclass(frozen=True)
-class Refused:
-    """A target that no table can be made for, and why, in one sentence."""
-
-    target_m_s: float
-    reason: str
 
 
 @dataclass(frozen=True)
@@ -45,7 +38,7 @@ class UnitResult:
     label: str
     rows: tuple[Row, ...]
     gaps: tuple[Gap, ...]
-    refused: tuple[Refused, ...] = ()
+    refused: tuple[FailedCase, ...] = ()
 
 
 def to_bytes(result: UnitResult) -> bytes:
@@ -79,7 +72,7 @@ def from_bytes(content: bytes, source: str) -> UnitResult:
                     label=found["label"],
                     rows=tuple(row_from(row, source) for row in found["rows"]),
                     gaps=tuple(Gap(**gap) for gap in found["gaps"]),
-                    refused=tuple(Refused(**each) for each in found["refused"]),
+                    refused=tuple(FailedCase(**each) for each in found["refused"]),
                 )
     except TableError:
         raise

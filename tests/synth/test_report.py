@@ -18,6 +18,7 @@ from synth.book.case_result import CaseResult
 from synth.book.comparison.limit_cycle import hunting_report
 from synth.book.comparison.measured import Measured
 from synth.book.estimation.estimated_table import EstimatedTable
+from synth.book.failed_case import FailedCase
 from synth.book.permissions.permission import Permission
 from synth.book.printed_numbers import counted, percent, quotient, span
 from synth.present.plots.picture import Drawing, Picture
@@ -86,6 +87,7 @@ def book() -> BookReport:
             make_case("gondola-85t", 2.0, stages=5, feasible=False),
             make_case("gondola-85t", 4.0, stages=5, spread=0.09),
         ),
+        failed=(FailedCase("gondola-85t", 1.5, "the grid is <too> coarse; now grid.speed_step_m_s is 0.04"),),
         degree_studies=(make_study(),),
         parameters=(
             SourcedValue("friction.common_cv", 0.15, "1", (0.1, 0.25), "engineering judgement: usual", "L"),
@@ -250,7 +252,8 @@ def test_the_same_book_gives_the_same_bytes(book: BookReport) -> None:
 def test_a_book_without_feasible_case_and_one_without_infeasible(book: BookReport) -> None:
     only = replace(book, cases=book.cases[1:2], pictures=())
     assert "Worst of" not in Page(report_page(only)).text
-    assert "Every case is feasible." in verdict(replace(book, cases=book.cases[:1]))
+    assert "Every case with a table is feasible." in verdict(replace(book, cases=book.cases[:1]))
+    assert "Every case is feasible." in verdict(replace(book, cases=book.cases[:1], failed=()))
 
 
 def test_the_report_is_written_without_matplotlib() -> None:

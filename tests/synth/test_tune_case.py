@@ -11,6 +11,7 @@ import pytest
 
 from synth.book.case_result import CaseResult
 from synth.book.tune import Book, tune
+from synth.book.watcher import Teller
 from synth.configuration.config_file import parse_config
 from synth.solver.tabulate import lines_of
 from tuning_tables import ControllerTable, read_json, write_json
@@ -44,7 +45,8 @@ def directory(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def book(directory: Path) -> Book:
     said: list[str] = []
-    result = tune(parse_config(SMALL, "small.toml"), partial(stored, directory=directory), said.append, workers=2)
+    store = partial(stored, directory=directory)
+    result = tune(parse_config(SMALL, "small.toml"), store, Teller(said.append), workers=2)
     assert any("to 4 m/s" in sentence for sentence in said)
     return result
 

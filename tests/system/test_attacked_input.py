@@ -146,7 +146,7 @@ def test_a_target_that_the_grid_is_too_coarse_for_is_named(command: Command, tmp
     assert (ran.code, ran.out) == (2, "")
     told = ran.err.splitlines()[-1]
     assert told.startswith(f"retarder-synth: {config}: no table for gondola-4-22t to 1.5 m/s: the grid is too coarse")
-    assert "grid.path_step_m is 1 and grid.speed_step_m_s 0.04" in told
+    assert "now grid.speed_step_m_s is 0.04 and grid.path_step_m is 1" in told
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes with names are POSIX's")

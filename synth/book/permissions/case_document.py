@@ -8,6 +8,11 @@ from typing import Any
 from synth.book.permissions.permission import CasePermissions
 
 
+def failed_document(case: CasePermissions) -> dict[str, str]:
+    """Why a permission cannot be told, by its name: `permissions_failed` of a case."""
+    return {each.permission.value: each.reason for each in case.failed}
+
+
 def results_document(case: CasePermissions) -> dict[str, Any]:
     """Figures by name of the permission: `permissions` of a case."""
     return {

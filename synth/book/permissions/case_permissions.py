@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Literal, TypeVar
 
-from plant_models import Plant
+from plant_models import Plant, PlantError
 from plant_models.approach import Approach
 from synth.book.any_time.surface_table import polished_surfaces, starting_surfaces
-from synth.book.class_setup import ClassSetup, Origin, class_setup, origin_of, validation_passes
+from synth.book.class_setup import ClassSetup, class_setup, origin_of, validation_passes
 from synth.book.estimation.simulated_prediction import prediction_passes, simulated_prediction
-from synth.book.permissions.permission import CasePermissions, Permission, PermissionResult
+from synth.book.failed_case import FailedCase, attempted, parted
+from synth.book.permissions.permission import (
+    AllPermissions,
+    CasePermissions,
+    FailedPermission,
+    Permission,
+    PermissionResult,
+)
 from synth.book.tuned_table import TunedTable, predicted_by_passes, rounded, solutions, tuned_table, with_prediction
+from synth.book.watcher import Watcher
 from synth.book.work_queue import run_nested
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
@@ -20,17 +29,20 @@ from synth.problem.any_time_resolution import design_resolution
 from synth.simulation.closed_loop import TableController
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
-from synth.simulation.random_passes import RandomPasses
 from synth.solver.any_time.surface_polish import SurfacePolish
+from synth.solver.backward_induction import Solution
 from synth.solver.one_blas_thread import one_blas_thread
 
 APPROACH_M = 4.0
 """The approach that is tried where the configuration has none."""
 
-Tell = Callable[[str], None]
-
 Ask = Callable[[TunedTable, ExitSample], CasePermissions]
 """What permissions give beside the table of a case, and its passes."""
+
+Design = Callable[[], PermissionResult]
+"""Designs, predicts and simulates one permission; raises what `attempted` takes for a failure."""
+
+Made = TypeVar("Made")
 
 
 @dataclass(frozen=True)
@@ -53,68 +65,74 @@ class CaseTuned:
         ratio, ci95 = rms_ratio(sample, self.sample, self.target_m_s)
         return PermissionResult(permission, exit_statistics(sample, self.target_m_s), ratio, ci95, predicted_m_s)
 
+    def attempt(self, make: Callable[[], Made]) -> Made | FailedCase:
+        """What `make` gives for this case, or why it gives nothing."""
+        return attempted(make, self.setup.label, self.target_m_s, self.config)
+
 
 @one_blas_thread()
-def permissions_of(config: ResolvedConfig, created: str, workers: int, tell: Tell) -> tuple[CasePermissions, ...]:
+def permissions_of(config: ResolvedConfig, created: str, workers: int, watcher: Watcher) -> AllPermissions:
     """All cases of `config`, on `workers` threads; no figure depends on how many.
 
-    Raises `PlantError` where `Plant.drive_at_any_time` does.
+    A case without a table, or a permission without a design, is told of, and loses no other.
     """
     origin, passes = origin_of(config.sha256, created), validation_passes(config)
 
-    def start(label: str, plant: Plant) -> list[Callable[[], CasePermissions]]:
+    def start(label: str, plant: Plant) -> list[Callable[[], CasePermissions | FailedCase]]:
         aims = [Aim(target, config.criterion) for target in config.targets_of(label)]
-        cases = tuned_cases(config, label, plant, aims, passes, origin)
-        return [partial(told_permissions, case, passes, origin, tell) for case in cases]
+        setup = attempted(partial(class_setup, config, label, plant, passes, origin), label, 0.0, config)
+        if isinstance(setup, FailedCase):
+            failed = [replace(setup, target_m_s=aim.target_speed_m_s) for aim in aims]
+            return [partial(case_failed, watcher, case) for case in failed]
+        return [partial(told_permissions, watcher, config, setup, each) for each in solutions(setup.design, aims)]
 
     found = run_nested([partial(start, *each) for each in config.plants()], workers)
-    return tuple(case for cases in found for case in cases)
+    return AllPermissions(*parted(case for cases in found for case in cases))
 
 
-def tuned_cases(
-    config: ResolvedConfig, label: str, plant: Plant, aims: list[Aim], passes: RandomPasses, origin: Origin
-) -> list[CaseTuned]:
-    """The tables of a class, and their passes."""
-    setup = class_setup(config, label, plant, passes, origin)
-    found = []
-    for solution in solutions(setup.design, aims):
-        tuned = tuned_table(setup, solution)
-        found.append(CaseTuned(config, setup, solution.aim, tuned, setup.passes.run(TableController(tuned.table))))
-    return found
-
-
-def told_permissions(case: CaseTuned, passes: RandomPasses, origin: Origin, tell: Tell) -> CasePermissions:
+def told_permissions(
+    watcher: Watcher, config: ResolvedConfig, setup: ClassSetup, solution: Solution
+) -> CasePermissions | FailedCase:
     """All permissions of one case, told of."""
-    found = case_permissions(case, passes, origin)
-    tell(f"{found.label} to {found.target_speed_m_s:g} m/s: {found.told}")
+    make = partial(case_tuned, config, setup, solution)
+    case = attempted(make, setup.label, solution.aim.target_speed_m_s, config)
+    if isinstance(case, FailedCase):
+        return case_failed(watcher, case)
+    found = case_permissions(case)
+    watcher.done(f"{found.label} to {found.target_speed_m_s:g} m/s: {found.told}")
     return found
 
 
-def asking(config: ResolvedConfig, setup: ClassSetup, aim: Aim, passes: RandomPasses, origin: Origin) -> Ask:
+def case_failed(watcher: Watcher, case: FailedCase) -> FailedCase:
+    """A case without a table, told of."""
+    watcher.done(case.sentence)
+    return case
+
+
+def case_tuned(config: ResolvedConfig, setup: ClassSetup, solution: Solution) -> CaseTuned:
+    """The table of a solution, and its passes."""
+    tuned = tuned_table(setup, solution)
+    return CaseTuned(config, setup, solution.aim, tuned, setup.passes.run(TableController(tuned.table)))
+
+
+def asking(config: ResolvedConfig, setup: ClassSetup, aim: Aim) -> Ask:
     """The function that a tune asks once it has the table of a case: nothing is tuned twice."""
 
     def ask(tuned: TunedTable, sample: ExitSample) -> CasePermissions:
-        return case_permissions(CaseTuned(config, setup, aim, tuned, sample), passes, origin)
+        return case_permissions(CaseTuned(config, setup, aim, tuned, sample))
 
     return ask
 
 
-def case_permissions(case: CaseTuned, passes: RandomPasses, origin: Origin) -> CasePermissions:
-    """All permissions of one case."""
-    plant, polish = case.setup.plant, None
-    results = [several_stages(case)]
-    if not case.config.regulator.estimator and case.config.criterion.requirement is None:
-        with_estimator, polish = estimators(case, passes, origin)
-        results += with_estimator
-    results += [
-        at_any_time(case, Permission.ANY_TIME, polish or polished(case, has_gauge=True)),
-        at_any_time(case, Permission.WITHOUT_GAUGE, polished(case, has_gauge=False)),
-    ]
-    ahead = plant.approach.length_m > 0.0
-    kind = Permission.NO_APPROACH if ahead else Permission.APPROACH
-    approach = Approach() if ahead else Approach(APPROACH_M, plant.approach.entrance_stage)
-    (other,) = tuned_cases(case.config, case.setup.label, replace(plant, approach=approach), [case.aim], passes, origin)
-    results.append(case.result(kind, other.sample, other.tuned.table.predicted.rms_m_s))
+def case_permissions(case: CaseTuned) -> CasePermissions:
+    """All permissions of one case; with its reason each that nothing can be designed for."""
+    results, failed = [], []
+    for permission, design in designs(case):
+        found = case.attempt(design)
+        if isinstance(found, FailedCase):
+            failed.append(FailedPermission(permission, found.reason))
+        else:
+            results.append(found)
     in_order = {each.permission: each for each in results}
     return CasePermissions(
         case.setup.label,
@@ -122,26 +140,68 @@ def case_permissions(case: CaseTuned, passes: RandomPasses, origin: Origin) -> C
         exit_statistics(case.sample, case.target_m_s),
         case.tuned.table.predicted.rms_m_s,
         tuple(in_order[each] for each in Permission if each in in_order),
+        tuple(failed),
     )
 
 
-def estimators(
-    case: CaseTuned, passes: RandomPasses, origin: Origin
-) -> tuple[list[PermissionResult], SurfacePolish | None]:
-    """Estimator alone, and with commands at any time: one tune designs both, and surfaces for the measured speed."""
-    regulator = case.config.regulator.model_copy(update={"estimator": True, "commands": "any_time"})
-    config = replace(case.config, regulator=regulator)
-    (both,) = tuned_cases(config, case.setup.label, case.setup.plant, [case.aim], passes, origin)
+def designs(case: CaseTuned) -> Iterator[tuple[Permission, Design]]:
+    """Every permission that can be asked for, with its design."""
+    config, plant = case.config, case.setup.plant
+    yield Permission.JUMPS, partial(several_stages, case)
+    both: CaseTuned | FailedCase | None = None
+    if not config.regulator.estimator and config.criterion.requirement is None:
+        both = case.attempt(partial(other_case, case, estimating(config, "any_time"), plant))
+        yield Permission.ESTIMATOR, partial(estimator_alone, case, both)
+        yield Permission.ANY_TIME_ESTIMATOR, partial(at_any_time_estimating, case, both)
+    yield Permission.ANY_TIME, partial(at_any_time, case, Permission.ANY_TIME, both)
+    yield Permission.WITHOUT_GAUGE, partial(at_any_time, case, Permission.WITHOUT_GAUGE, None)
+    ahead = plant.approach.length_m > 0.0
+    kind = Permission.NO_APPROACH if ahead else Permission.APPROACH
+    approach = Approach() if ahead else Approach(APPROACH_M, plant.approach.entrance_stage)
+    yield kind, partial(from_elsewhere, case, kind, approach)
+
+
+def estimating(config: ResolvedConfig, commands: Literal["at_rest", "any_time"]) -> ResolvedConfig:
+    """`config` with an estimator and such commands."""
+    regulator = config.regulator.model_copy(update={"estimator": True, "commands": commands})
+    return replace(config, regulator=regulator)
+
+
+def other_case(case: CaseTuned, config: ResolvedConfig, plant: Plant) -> CaseTuned:
+    """The same case tuned with another configuration or plant, on the same passes."""
+    setup = class_setup(config, case.setup.label, plant, case.setup.passes.passes, case.setup.origin)
+    (solution,) = solutions(setup.design, [case.aim])
+    return case_tuned(config, setup, solution)
+
+
+def estimator_alone(case: CaseTuned, both: CaseTuned | FailedCase) -> PermissionResult:
+    """With an estimator and commands at rest. A tune for `both` permissions designs that, too."""
+    if isinstance(both, FailedCase):
+        other = other_case(case, estimating(case.config, "at_rest"), case.setup.plant)
+        return case.result(Permission.ESTIMATOR, other.sample, other.tuned.table.predicted.rms_m_s)
     made, setup = both.tuned.estimate, both.setup
     alone, sample = case.tuned.table, case.sample
     if made is not None and made.gains and setup.estimator is not None:
         alone, _ = predicted_by_passes(setup, made, setup.estimator, case.target_m_s)
         sample = setup.passes.run(TableController(alone))
-    found = [
-        case.result(Permission.ESTIMATOR, sample, alone.predicted.rms_m_s),
-        case.result(Permission.ANY_TIME_ESTIMATOR, both.sample, both.tuned.table.predicted.rms_m_s),
-    ]
-    return found, None if both.tuned.surfaces is None else both.tuned.surfaces.polish
+    return case.result(Permission.ESTIMATOR, sample, alone.predicted.rms_m_s)
+
+
+def at_any_time_estimating(case: CaseTuned, both: CaseTuned | FailedCase) -> PermissionResult:
+    """With an estimator and commands at any time."""
+    if isinstance(both, FailedCase):
+        raise PlantError(both.reason)
+    return case.result(Permission.ANY_TIME_ESTIMATOR, both.sample, both.tuned.table.predicted.rms_m_s)
+
+
+def at_any_time(case: CaseTuned, permission: Permission, both: CaseTuned | FailedCase | None) -> PermissionResult:
+    """The table of polished surfaces for the measured speed, predicted and simulated; of `both`, if these have them."""
+    if isinstance(both, CaseTuned) and both.tuned.surfaces is not None:
+        polish = both.tuned.surfaces.polish
+    else:
+        polish = polished(case, has_gauge=permission is not Permission.WITHOUT_GAUGE)
+    table, _ = with_prediction(case.setup.check, rounded(case.setup, polish.surfaces, case.target_m_s))
+    return case.result(permission, case.setup.passes.run(TableController(table)), table.predicted.rms_m_s)
 
 
 def polished(case: CaseTuned, has_gauge: bool) -> SurfacePolish:
@@ -151,10 +211,10 @@ def polished(case: CaseTuned, has_gauge: bool) -> SurfacePolish:
     return polished_surfaces(plant, case.aim, start, design_resolution(plant, case.target_m_s))
 
 
-def at_any_time(case: CaseTuned, permission: Permission, polish: SurfacePolish) -> PermissionResult:
-    """The table of polished surfaces for the measured speed, predicted and simulated."""
-    table, _ = with_prediction(case.setup.check, rounded(case.setup, polish.surfaces, case.target_m_s))
-    return case.result(permission, case.setup.passes.run(TableController(table)), table.predicted.rms_m_s)
+def from_elsewhere(case: CaseTuned, permission: Permission, approach: Approach) -> PermissionResult:
+    """With another approach."""
+    other = other_case(case, case.config, replace(case.setup.plant, approach=approach))
+    return case.result(permission, other.sample, other.tuned.table.predicted.rms_m_s)
 
 
 def several_stages(case: CaseTuned) -> PermissionResult:

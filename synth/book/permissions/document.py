@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict
 from importlib.metadata import version
 
-from synth.book.permissions.case_document import results_document
+from synth.book.permissions.case_document import failed_document, results_document
 from synth.book.permissions.overview import median_ratios
-from synth.book.permissions.permission import CasePermissions
+from synth.book.permissions.permission import AllPermissions, CasePermissions
 from synth.book.summary import Document, plain
 from synth.configuration.resolved_config import ResolvedConfig
 
@@ -16,7 +16,7 @@ VERSION = 1
 
 
 def permissions_document(
-    config: ResolvedConfig, cases: Sequence[CasePermissions], created: str, hashes: Mapping[str, str]
+    config: ResolvedConfig, told: AllPermissions, created: str, hashes: Mapping[str, str]
 ) -> Document:
     """The document; `hashes`: SHA-256 by name of the other files."""
     document: Document = plain(
@@ -30,8 +30,9 @@ def permissions_document(
                 "config_sha256": config.sha256,
             },
             "title": config.title,
-            "median_ratios": median_ratios(cases),
-            "cases": [case_document(case) for case in cases],
+            "median_ratios": median_ratios(told.cases),
+            "cases": [case_document(case) for case in told.cases],
+            "failed": [asdict(case) for case in told.failed],
             "files": dict(hashes),
         }
     )
@@ -45,4 +46,5 @@ def case_document(case: CasePermissions) -> Document:
         "target_speed_m_s": case.target_speed_m_s,
         "as_configured": {**asdict(case.table), "predicted_rms_m_s": case.predicted_rms_m_s},
         "permissions": results_document(case),
+        "permissions_failed": failed_document(case),
     }

@@ -51,6 +51,7 @@ class Overview:
         return (
             f"rms × if permitted: rms over that of the table as configured, on the same {self.cases[0].table.passes} "
             f"passes, no 95 % interval wider than ±{self.widest:.2f} ({words}). Medians: {medians(self.cases)}."
+            f"{missing(self.cases)}"
         )
 
     @property
@@ -79,6 +80,12 @@ def median_ratios(cases: Sequence[CasePermissions]) -> dict[str, float]:
 def medians(cases: Sequence[CasePermissions]) -> str:
     """The same as a list in words."""
     return ", ".join(f"{name} {ratio:.2f}" for name, ratio in median_ratios(cases).items())
+
+
+def missing(cases: Iterable[CasePermissions]) -> str:
+    """A sentence, after a space, about permissions that cannot be told; nothing where there is none."""
+    parts = [part for case in cases for part in case.missing]
+    return f" What cannot be told: {'; '.join(parts)}." if parts else ""
 
 
 def half_width(result: PermissionResult) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
+from synth.book.failed_case import FailedCase
 from synth.simulation.exit_statistics import ExitStatistics
 from synth.simulation.replicates import Interval
 
@@ -36,14 +37,26 @@ class PermissionResult:
 
 
 @dataclass(frozen=True)
+class FailedPermission:
+    """A permission that nothing could be designed for in one case, and why."""
+
+    permission: Permission
+    reason: str
+
+
+@dataclass(frozen=True)
 class CasePermissions:
-    """One cut class and target: the table as configured, and what each permission would give on the same passes."""
+    """One cut class and target: the table as configured, and what each permission would give on the same passes.
+
+    `failed`: what was asked for besides, and cannot be told.
+    """
 
     label: str
     target_speed_m_s: float
     table: ExitStatistics
     predicted_rms_m_s: float
     results: tuple[PermissionResult, ...]
+    failed: tuple[FailedPermission, ...] = ()
 
     def of(self, permission: Permission) -> PermissionResult | None:
         """The result of a permission, None where it was not asked for."""
@@ -51,6 +64,27 @@ class CasePermissions:
 
     @property
     def told(self) -> str:
-        """The case in a few words, for who waits for it: what commands at any time give, which are always asked for."""
+        """The case in a few words, for who waits for it: what commands at any time give, which are always asked for,
+        and what cannot be told."""
         found = self.of(Permission.ANY_TIME)
-        return "" if found is None else f"rms with commands at any time × {found.ratio:.2f}"
+        words = [] if found is None else [f"rms with commands at any time × {found.ratio:.2f}"]
+        return "; ".join([*words, *(f"{each.permission.value} cannot be told" for each in self.failed)])
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """A sentence's part for each permission that cannot be told."""
+        where = f"{self.label} to {self.target_speed_m_s:g} m/s"
+        return tuple(f"{where}, {each.permission.value}: {each.reason}" for each in self.failed)
+
+
+@dataclass(frozen=True)
+class AllPermissions:
+    """The cases of a configuration, in its order; `failed`: those without a table to compare anything with."""
+
+    cases: tuple[CasePermissions, ...]
+    failed: tuple[FailedCase, ...]
+
+    @property
+    def complete(self) -> bool:
+        """Whether all that was asked for is told."""
+        return not self.failed and not any(case.failed for case in self.cases)

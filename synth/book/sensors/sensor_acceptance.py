@@ -20,7 +20,7 @@ def judge_sensors(book: SensorBook) -> Verdict:
     """
     limits = book.config.acceptance
     judged = tuple(judge_sensor_case(case, limits) for case in book.cases)
-    return verdict_on(judged, [case.statistics for case in book.cases], limits)
+    return verdict_on(judged, [case.statistics for case in book.cases], limits, book.failed)
 
 
 def judge_sensor_case(case: SensorCase, limits: AcceptanceSettings) -> CaseVerdict:

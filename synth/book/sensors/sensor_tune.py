@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
 from plant_models import Plant
-from synth.book.case_error import naming
 from synth.book.class_setup import Origin, origin_of, validation_passes
 from synth.book.creation_time import creation_time
+from synth.book.failed_case import FailedCase, attempted, parted
 from synth.book.sensors.passage_table import passage_table
 from synth.book.sensors.sensor_case import HeardShares, SensorCase
 from synth.book.sensors.sensor_class import SensorClass, sensor_class
 from synth.book.sensors.tuned_passages import tuned_passages
+from synth.book.watcher import Watcher
 from synth.book.work_queue import run_nested
 from synth.configuration.point_sensors.resolved_sensors import ResolvedSensors
 from synth.configuration.resolved_config import ResolvedConfig
@@ -32,41 +33,44 @@ from tuning_tables.passages.passage_table import PassageTable
 
 TRACE_FACTORS = (0.8, 1.0, 1.2)
 
-Progress = Callable[[str], None]
 Store = Callable[[PassageTable], PassageTable]
 """Keeps a table, and gives it back as a controller will read it."""
 
 
 @dataclass(frozen=True)
 class SensorBook:
-    """Result of a tune for point sensors: all cases, classes in the order of the configuration."""
+    """Result of a tune for point sensors: all cases, classes in the order of the configuration.
+
+    `failed`: cases without a table, which are not among `cases`.
+    """
 
     config: ResolvedConfig
     sensors: ResolvedSensors
     created: str
     cases: tuple[SensorCase, ...]
+    failed: tuple[FailedCase, ...] = ()
 
 
 @dataclass(frozen=True)
 class SensorRun:
-    """What all classes share; `progress` is told a sentence whenever a case is done."""
+    """What all classes share; `watcher` is told a sentence whenever a case has ended."""
 
     config: ResolvedConfig
     sensors: ResolvedSensors
     origin: Origin
     passes: RandomPasses
     store: Store
-    progress: Progress
+    watcher: Watcher
 
 
 @one_blas_thread()
 def tune_sensors(
-    config: ResolvedConfig, sensors: ResolvedSensors, store: Store, progress: Progress, workers: int = 2
+    config: ResolvedConfig, sensors: ResolvedSensors, store: Store, watcher: Watcher, workers: int = 2
 ) -> SensorBook:
     """Tune every cut class and target of `config` for `sensors`; each table is handed to `store` when it is made.
 
-    Work runs on `workers` threads; the result does not depend on how many. Raises `CaseError` for a case that cannot
-    be computed, `InvalidTable` for switching speeds that make no table.
+    Work runs on `workers` threads; the result does not depend on how many. A case that no table can be made for is told
+    of in the book, and the others are made.
     """
     run = SensorRun(
         config=config,
@@ -74,31 +78,42 @@ def tune_sensors(
         origin=origin_of(config.sha256, creation_time()),
         passes=validation_passes(config),
         store=store,
-        progress=progress,
+        watcher=watcher,
     )
     starts = [partial(class_tasks, run, label, plant) for label, plant in config.plants()]
     results = run_nested(starts, workers)
-    return SensorBook(config, sensors, run.origin.created, tuple(case for cases in results for case in cases))
+    cases, failed = parted(case for cases in results for case in cases)
+    return SensorBook(config, sensors, run.origin.created, cases, failed)
 
 
-def class_tasks(run: SensorRun, label: str, plant: Plant) -> list[Callable[[], SensorCase]]:
+def class_tasks(run: SensorRun, label: str, plant: Plant) -> list[Callable[[], SensorCase | FailedCase]]:
     """Prepare a class; a task for each of its targets."""
-    targets = run.config.targets_of(label)
-    with naming(label, targets[0]):
-        setup = sensor_class(label, plant, run.sensors, run.config.resolution, run.passes, run.origin)
-    return [partial(case_task, run, setup, Aim(target, run.config.criterion)) for target in targets]
+    config, targets = run.config, run.config.targets_of(label)
+    prepare = partial(sensor_class, label, plant, run.sensors, config.resolution, run.passes, run.origin)
+    setup = attempted(prepare, label, targets[0], config)
+    if isinstance(setup, FailedCase):
+        return [partial(case_failed, run, replace(setup, target_m_s=target)) for target in targets]
+    return [partial(case_task, run, setup, Aim(target, config.criterion)) for target in targets]
 
 
-def case_task(run: SensorRun, setup: SensorClass, aim: Aim) -> SensorCase:
+def case_task(run: SensorRun, setup: SensorClass, aim: Aim) -> SensorCase | FailedCase:
     """One case tuned, and told of."""
-    with naming(setup.label, aim.target_speed_m_s):
-        case = sensor_case(setup, aim, run.store)
+    make = partial(sensor_case, setup, aim, run.store)
+    case = attempted(make, setup.label, aim.target_speed_m_s, run.config)
+    if isinstance(case, FailedCase):
+        return case_failed(run, case)
     found = case.statistics
     low, high = found.rms_ci95_m_s
     told = f"{setup.label} to {aim.target_speed_m_s:g} m/s"
-    run.progress(f"{told}: rms {found.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s in {found.passes} passes")
+    run.watcher.done(f"{told}: rms {found.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s in {found.passes} passes")
     for warning in case.warnings:
-        run.progress(f"warning: {told}: {warning}")
+        run.watcher.note(f"warning: {told}: {warning}")
+    return case
+
+
+def case_failed(run: SensorRun, case: FailedCase) -> FailedCase:
+    """A case without a table, told of."""
+    run.watcher.done(case.sentence)
     return case
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from plant_models.library import SourcedValue
 from synth.book.case_result import CaseResult, DegreeStudy
+from synth.book.failed_case import FailedCase
 from synth.book.permissions.overview import Overview, overview_of
 from synth.present.plots.picture import Picture
 
@@ -15,7 +16,8 @@ from synth.present.plots.picture import Picture
 class BookReport:
     """A tune's results and where they come from.
 
-    `created`: UTC instant, given by the caller; `verdict`: one sentence, `accepted`: the same as a bit;
+    `created`: UTC instant, given by the caller; `failed`: cases without a table, not among `cases`; `verdict`: one
+    sentence, `accepted`: the same as a bit;
     `acceptance_rms_m_s`: the limit that the tables had to keep; `parameters`: every number the results depend on;
     `permissions_line`: what those of the hardware would give, or how to ask for it, empty for neither;
     `file_hashes`: SHA-256 by file name; `pictures` in the order of the page.
@@ -26,6 +28,7 @@ class BookReport:
     config_sha256: str
     created: str
     cases: tuple[CaseResult, ...]
+    failed: tuple[FailedCase, ...]
     degree_studies: tuple[DegreeStudy, ...]
     parameters: tuple[SourcedValue, ...]
     accepted: bool

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from synth.book.case_names import why_infeasible
 from synth.book.case_result import CaseResult
+from synth.book.failed_case import FailedCase
 from synth.book.printed_numbers import ABSENT, in_ten_thousand, interval, percent, quotient, quotient_interval, speed
 from synth.present.report.book_report import BookReport
 from synth.present.report.markup import Cell, Markup, head_row, table
@@ -27,7 +28,7 @@ COLUMNS = (
 
 
 def case_table(book: BookReport) -> Markup:
-    """All cases; infeasible ones are marked, not left out."""
+    """All cases; infeasible ones, and at the end those without a table, are marked, not left out."""
     rows = [(case_row(case, book.acceptance_rms_m_s), "" if case.feasibility.feasible else "infeasible")
             for case in book.cases]  # fmt: skip
     groups, columns, permissions = list(GROUPS), list(COLUMNS), book.permissions
@@ -36,7 +37,14 @@ def case_table(book: BookReport) -> Markup:
         columns.append(column_head(permissions))
         for (cells, _), case in zip(rows, permissions.cases, strict=True):
             cells.append(column_cell(case, permissions))
+    rows += [(failed_row(case, len(columns)), "infeasible") for case in book.failed]
     return table("Results by case", (head_row(*groups), head_row(*columns)), rows, kind="cases")
+
+
+def failed_row(case: FailedCase, columns: int) -> list[str | Cell]:
+    """The cells of a case without a table."""
+    words = Cell("no table: see the verdict", kind="words")
+    return [case.label, ABSENT, f"{case.target_m_s:g}", words, *[ABSENT] * (columns - 4)]
 
 
 def case_row(case: CaseResult, limit_m_s: float) -> list[str | Cell]:

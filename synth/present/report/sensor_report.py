@@ -12,10 +12,11 @@ from synth.book.printed_numbers import in_ten_thousand, interval, quotient, quot
 from synth.book.sensors.sensor_case import SensorCase
 from synth.book.sensors.sensor_tune import SensorBook
 from synth.present.plots.picture import Picture
-from synth.present.report.case_table import HONEST, share_cell, within_power
+from synth.present.report.case_table import HONEST, failed_row, share_cell, within_power
 from synth.present.report.document import Stamp, document, file_table, picture_sections
 from synth.present.report.markup import Cell, Markup, element, head_row, joined, table
 from synth.present.report.parameter_table import parameter_section
+from synth.present.report.verdict import failed_cases
 
 COLUMNS = (
     "case", "mass, t", "target, m/s", "verdict", "rms, m/s", "95 % interval", "predicted", "predicted / simulated",
@@ -80,7 +81,13 @@ def verdict_box(report: SensorReport) -> Markup:
     sentence = element(
         "p", element("strong", "Accepted" if accepted else "Not accepted"), f" — {report.verdict.sentence}."
     )
-    return element("section", sentence, class_=f"verdict {'accepted' if accepted else 'refused'}", id="verdict")
+    return element(
+        "section",
+        sentence,
+        *failed_cases(report.book.failed),
+        class_=f"verdict {'accepted' if accepted else 'refused'}",
+        id="verdict",
+    )
 
 
 def sections(report: SensorReport) -> Iterator[tuple[str, str, Markup]]:
@@ -101,6 +108,7 @@ def case_table(report: SensorReport) -> Markup:
         (case_row(case, verdict.word, limit), "" if verdict.feasible else "infeasible")
         for case, verdict in zip(report.book.cases, report.verdict.cases, strict=True)
     ]
+    rows += [(failed_row(case, len(COLUMNS)), "infeasible") for case in report.book.failed]
     return table("Results by case", (head_row(*COLUMNS),), rows, kind="cases")
 
 

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.errors import require
 from plant_models.frozen_arrays import frozen_arrays
 from synth.problem.aim import Aim
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces, moved_apart
 from synth.solver.any_time.surface_evaluation import SurfaceCost, SurfaceEvaluation
+from synth.solver.coarse_grid import OWN_GRID, require_positive
 from synth.solver.descent import CostAndSlopes, descend
 from synth.solver.one_blas_thread import one_blas_thread
 from synth.solver.polish import LOOSE_M_S
@@ -89,7 +89,7 @@ def polish_surfaces(
     """Minimise the cost over all coefficients, keeping V_hi − V_lo ≥ `MINIMUM_GAP_M_S` at all pressures.
 
     It ends when a step changes the cost by less than `tolerance` of the first cost. The result costs no more than the
-    start, with its gaps opened. Raises `PlantError` if that cost is not positive: the grid is too coarse.
+    start, with its gaps opened. Raises `CoarseGridError` if that cost is not positive.
     """
     modes, nodes_m = evaluation.chain.modes, evaluation.chain.grid.path_m[:-1]
     start = opened(start)
@@ -100,11 +100,7 @@ def polish_surfaces(
         return evaluation.gradient(surfaces.at(nodes_m, modes), aim)
 
     first = at(start)
-    require(
-        first.cost_m2_s2 > 0.0,
-        "the grid is too coarse for these surfaces (an expected square came out negative): make path_step_m and "
-        "speed_step_m_s smaller",
-    )
+    require_positive(first.cost_m2_s2, "surfaces", OWN_GRID, keys=())
     coordinates = Coordinates(start, whitening(terms, first))
 
     def by_point(cost: SurfaceCost) -> CostAndSlopes:

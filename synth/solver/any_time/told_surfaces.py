@@ -10,13 +10,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models import PlantError
 from plant_models.frozen_arrays import frozen_arrays
 from synth.problem.aim import Aim
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
 from synth.solver.any_time.sampled_chain import SampledChain
 from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
 from synth.solver.any_time.surface_polish import NEGLIGIBLE_MASS, polish_surfaces
+from synth.solver.coarse_grid import CoarseGridError
 from synth.solver.finer_speed import known_factors
 from synth.solver.told_lines import SQUARED_ERROR_ALONE, from_the_middle, told_factors
 
@@ -71,5 +71,5 @@ def improved(evaluation: SurfaceEvaluation, aim: Aim, start: PolynomialSurfaces,
     """The polished surfaces; `start` where its cost comes out negative, because the grid is too coarse for it."""
     try:
         return polish_surfaces(start, evaluation, aim, iterations).surfaces
-    except PlantError:
+    except CoarseGridError:
         return start

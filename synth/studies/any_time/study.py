@@ -14,10 +14,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models import Plant
+from plant_models import Plant, PlantError
 from synth.book.comparison.baselines import FAMILIES, tune
 from synth.book.permissions.case_permissions import permissions_of
 from synth.book.permissions.permission import Permission
+from synth.book.watcher import Teller
 from synth.configuration.config_file import load_config, parse_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
@@ -174,9 +175,11 @@ def run(options: Options, tell: Tell) -> AnyTime:
 def permission_rows(config: ResolvedConfig, options: Options, tell: Tell) -> list[PermissionRow]:
     """What permissions give in the cases of a configuration, on so many passes of its own validation."""
     few = replace(config, validation=config.validation.model_copy(update={"passes": options.passes}))
-    found = permissions_of(few, NO_DATE, options.threads, tell)
+    found = permissions_of(few, NO_DATE, options.threads, Teller(tell))
+    if not found.complete:
+        raise PlantError(f"permissions of {config.title}: what was told above cannot be")
     rows = []
-    for case in found:
+    for case in found.cases:
         any_time = next(each for each in case.results if each.permission is Permission.ANY_TIME)
         rows.append(
             PermissionRow(

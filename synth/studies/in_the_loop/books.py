@@ -8,6 +8,7 @@ from pathlib import Path
 from plant_models import Plant
 from synth.book.tune import tune
 from synth.book.tuned_table import read_back
+from synth.book.watcher import Teller
 from synth.configuration.config_file import load_config
 from synth.studies.cases import of_masses
 from synth.studies.study import Tell
@@ -27,7 +28,7 @@ def tuned_book(config: Path | None, estimator: bool, masses_t: tuple[float, ...]
     """The book of a configuration (the built-in one for None), of all its cuts or of those of these masses."""
     loaded = of_masses(load_config(config), masses_t)
     regulated = replace(loaded, regulator=loaded.regulator.model_copy(update={"estimator": estimator}))
-    cases = tune(regulated, read_back, tell).cases
+    cases = tune(regulated, read_back, Teller(tell)).whole
     book = TableBook(tuple(case.table for case in cases))
     return Tuned(book, tuple(case.plant for case in cases), regulated.sha256)
 

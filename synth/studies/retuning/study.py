@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from plant_models.pressure_gauge import PressureGauge
+from synth.book.watcher import Teller
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.simulation.closed_loop import simulate
 from synth.simulation.controllers import TableController
@@ -151,8 +152,8 @@ class Yards:
     source: ConfigSource
     assumed: ResolvedConfig
     truth: ResolvedConfig
-    old: dict[Case, ControllerTable]
-    best: dict[Case, ControllerTable]
+    old: Mapping[Case, ControllerTable]
+    best: Mapping[Case, ControllerTable]
     fresh: RandomPasses
 
     def rms(self, case: Case, controller_table: ControllerTable) -> float:
@@ -171,7 +172,7 @@ def run(options: Options, tell: Tell) -> Retunings:
     assert isinstance(exhaust, float)
     changes = {SLOPE: options.friction * slope, EXHAUST: options.exhaust * exhaust}
     truth = with_numbers(source, changes, "truth", lambda _: "truth").resolved()
-    old, best = (tuned_tables(each, class_setups(each, CREATED), 2, tell) for each in (config, truth))
+    old, best = (tuned_tables(each, class_setups(each, CREATED), 2, Teller(tell)).whole for each in (config, truth))
     yards = Yards(source, config, truth, old, best, stratified_passes(FRESH, 0, options.passes))
     rows: list[Row] = []
     unchanged = []
@@ -191,7 +192,7 @@ def retuned(yards: Yards, logged: int, seed: int) -> list[Row]:
     classes = [LoggedClass(plants[case[0]], TableController(each), case[1]) for case, each in yards.old.items()]
     log = mixed_log(classes, [logged] * len(classes), 1000 + seed, PressureGauge(2.0, 1.0))
     passes = fitting_passes(log, yards.assumed.plants(), "retuning")
-    found = retune(passes, yards.source, RetuneOrder(yards.old, CREATED, threads=2), lambda _: None)
+    found = retune(passes, yards.source, RetuneOrder(yards.old, CREATED, threads=2), Teller(lambda _: None))
     rows = []
     for gain in found.gains:
         tables = (yards.old[gain.case], found.new[gain.case], yards.best[gain.case])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import asdict
 from importlib.metadata import version
 
 from synth.book.summary import Document, plain
@@ -16,10 +17,16 @@ def retune_sentences(found: Retuned) -> tuple[str, ...]:
     """What was found, the most important first."""
     changed, n = found.changed, found.estimate.passes
     kept = len(found.gains) - len(changed)
+    failed = tuple(
+        f"{case.name}: no new table, {'the old one is kept' if case.case in found.old else 'and no old one'}: "
+        f"{case.reason}"
+        for case in found.failed
+    )
     if not changed:
         return (
             f"within noise: no table tuned for what {n} passes say is better beyond doubt than the old one in any of "
             f"{len(found.gains)} cases, judged together; no book is written",
+            *failed,
         )
     most = min(changed, key=lambda gain: gain.ratio)
     low, high = most.ratio_ci95
@@ -28,6 +35,7 @@ def retune_sentences(found: Retuned) -> tuple[str, ...]:
         "and keep their lines",
         f"most is gained for {most.label} to {most.target_m_s:g} m/s: rms {most.old_rms_m_s:.4f} to "
         f"{most.new_rms_m_s:.4f} m/s, ratio {most.ratio:.3f} [{low:.3f}, {high:.3f}] (95 %)",
+        *failed,
     )
 
 
@@ -58,6 +66,7 @@ def retune_summary(found: Retuned, file_hashes: Mapping[str, str]) -> Document:
              "changed": g in found.changed}
             for g in found.gains
         ],
+        "failed": [asdict(case) for case in found.failed],
         "files": dict(file_hashes),
     }  # fmt: skip
     plain_document: Document = plain(document)

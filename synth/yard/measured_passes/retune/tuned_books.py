@@ -2,25 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from plant_models import Plant
 from synth.book.class_setup import ClassSetup, class_setup, origin_of, validation_passes
 from synth.book.estimation.simulated_prediction import simulated_prediction
+from synth.book.failed_case import FailedCase, attempted, require_none
 from synth.book.tuned_table import solutions, tuned_table, validated_table, with_prediction
 from synth.book.validate_table import plant_for
+from synth.book.watcher import Watcher
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.simulation.controllers import TableController
+from synth.solver.backward_induction import Solution
 from synth.solver.one_blas_thread import one_blas_thread
 from tuning_tables import ControllerTable, from_json, to_json
 
 Case = tuple[str, float]
 """Label of a cut class, and target in m/s."""
 
-Tell = Callable[[str], None]
+
+@dataclass(frozen=True)
+class TunedTables:
+    """Tables by case, in the order of a configuration; `failed`: its cases without one."""
+
+    tables: Mapping[Case, ControllerTable]
+    failed: tuple[FailedCase, ...] = ()
+
+    @property
+    def whole(self) -> Mapping[Case, ControllerTable]:
+        """All cases, for who needs every one; `PlantError` where one has no table."""
+        require_none(self.failed)
+        return self.tables
+
+
+def cases_of(config: ResolvedConfig) -> tuple[Case, ...]:
+    """All cases of `config`, in its order."""
+    return tuple((label, target) for label, _ in config.plants() for target in config.targets_of(label))
 
 
 def class_setups(config: ResolvedConfig, created: str) -> tuple[ClassSetup, ...]:
@@ -30,22 +50,24 @@ def class_setups(config: ResolvedConfig, created: str) -> tuple[ClassSetup, ...]
 
 
 @one_blas_thread()
-def tuned_tables(
-    config: ResolvedConfig, setups: Sequence[ClassSetup], threads: int, tell: Tell
-) -> dict[Case, ControllerTable]:
+def tuned_tables(config: ResolvedConfig, setups: Sequence[ClassSetup], threads: int, watcher: Watcher) -> TunedTables:
     """The tables of all cases of `config`, as they are read back; not yet simulated."""
 
-    def of_class(setup: ClassSetup) -> dict[Case, ControllerTable]:
-        aims = [Aim(target, config.criterion) for target in config.targets_of(setup.label)]
-        made = {}
-        for solution in solutions(setup.design, aims):
-            target = solution.aim.target_speed_m_s
-            made[setup.label, target] = from_json(to_json(tuned_table(setup, solution).table))
-            tell(f"{setup.label} to {target:g} m/s tuned")
+    def of_case(setup: ClassSetup, solution: Solution) -> ControllerTable | FailedCase:
+        label, target = setup.label, solution.aim.target_speed_m_s
+        made = attempted(lambda: from_json(to_json(tuned_table(setup, solution).table)), label, target, config)
+        watcher.done(made.sentence if isinstance(made, FailedCase) else f"{label} to {target:g} m/s tuned")
         return made
 
+    def of_class(setup: ClassSetup) -> list[tuple[Case, ControllerTable | FailedCase]]:
+        aims = [Aim(target, config.criterion) for target in config.targets_of(setup.label)]
+        found = solutions(setup.design, aims)
+        return [((setup.label, each.aim.target_speed_m_s), of_case(setup, each)) for each in found]
+
     with ThreadPoolExecutor(threads) as pool:
-        return {case: table for found in pool.map(of_class, setups) for case, table in found.items()}
+        results = [pair for found in pool.map(of_class, setups) for pair in found]
+    tables = {case: made for case, made in results if not isinstance(made, FailedCase)}
+    return TunedTables(tables, tuple(made for _, made in results if isinstance(made, FailedCase)))
 
 
 def tables_by_case(

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import pytest
 
+from synth.book.watcher import Teller
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.yard.measured_passes.config_source import ConfigSource, source_of_text
 from synth.yard.measured_passes.identified_config import with_numbers
@@ -43,13 +45,13 @@ class Yard:
 
     source: ConfigSource
     config: ResolvedConfig
-    tables: dict[Case, ControllerTable]
+    tables: Mapping[Case, ControllerTable]
 
 
 def yard_of(source: ConfigSource) -> Yard:
     """`source`, tuned."""
     config = source.resolved()
-    return Yard(source, config, tuned_tables(config, class_setups(config, CREATED), 2, lambda _: None))
+    return Yard(source, config, tuned_tables(config, class_setups(config, CREATED), 2, Teller(lambda _: None)).whole)
 
 
 @pytest.fixture(scope="session")

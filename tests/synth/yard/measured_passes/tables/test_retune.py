@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from synth.book.failed_case import FailedCase
+from synth.book.watcher import Teller
 from synth.cli import main
 from synth.simulation.closed_loop import TableController, simulate
 from synth.simulation.logged_passes import LoggedClass, mixed_log
@@ -34,7 +37,7 @@ def log_of(yard: Yard, tables: Yard, seed: int) -> PassLog:
 @pytest.fixture(scope="module")
 def retuned(assumed: Yard, worn: Yard) -> Retuned:
     passes = fitting_passes(log_of(worn, assumed, 3), assumed.config.plants(), "test")
-    return retune(passes, assumed.source, RetuneOrder(assumed.tables, CREATED, threads=2), lambda _: None)
+    return retune(passes, assumed.source, RetuneOrder(assumed.tables, CREATED, threads=2), Teller(lambda _: None))
 
 
 def test_the_retuned_tables_recover_what_can_be_recovered(retuned: Retuned, assumed: Yard, worn: Yard) -> None:
@@ -84,11 +87,30 @@ def test_a_log_of_the_unchanged_plant_is_refused(
     assert main(["replay", str(tmp_path / "nothing.h5"), *words]) == 2
 
 
+def test_a_case_without_a_new_table_keeps_its_old_one_and_is_told(retuned: Retuned, assumed: Yard) -> None:
+    from synth.yard.measured_passes.retune.retune import book_of
+    from synth.yard.measured_passes.retune.retune_summary import retune_sentences, retune_summary
+
+    first, second = CASES
+    new = {first: retuned.new[first]}
+    tables, kept = book_of(CASES, assumed.tables, new, {first})
+    assert list(tables) == CASES
+    assert kept == {second}
+    assert tables[second] is assumed.tables[second]
+    assert list(book_of(CASES, {first: assumed.tables[first]}, new, {first})[0]) == [first]  # nowhere a second one
+    found = replace(retuned, failed=(FailedCase(*second, "the grid is too coarse"),))
+    told = "S-1 to 3 m/s: no new table, the old one is kept: the grid is too coarse"
+    assert retune_sentences(found)[-1] == told
+    assert retune_summary(found, {})["failed"] == [
+        {"label": "S-1", "target_m_s": 3.0, "reason": "the grid is too coarse"}
+    ]
+
+
 def test_a_mixed_book_keeps_lines_without_a_proven_gain(retuned: Retuned, assumed: Yard, tmp_path: Path) -> None:
     from synth.yard.measured_passes.retune.retune import book_of
     from synth.yard.measured_passes.retune.tuned_books import class_setups, finished
 
-    tables, kept = book_of(assumed.tables, retuned.new, {CASES[0]})
+    tables, kept = book_of(CASES, assumed.tables, retuned.new, {CASES[0]})
     assert kept == {CASES[1]}
     made = finished(class_setups(retuned.identified, CREATED), tables, kept)
     assert made[0].stages == retuned.new[CASES[0]].stages
