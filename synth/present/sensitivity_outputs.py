@@ -25,7 +25,7 @@ def write_sensitivity(found: Sensitivity, created: str, directory: Path) -> Docu
     output = found.config.output
     document = sensitivity_document(found, created)
     write_atomically(directory / DOCUMENT, canonical_json(document) + b"\n")
-    write_atomically(directory / TABLE, sensitivity_csv(found).encode())
+    write_atomically(directory / TABLE, sensitivity_csv(found))
     files, pictures = [directory / DOCUMENT, directory / TABLE], drawn(found)
     if output.plots:
         for picture in pictures:
