@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
@@ -29,6 +30,8 @@ REACH = 5.0
 
 LEAST_REACH_M_S = 0.05
 
+BEGINNING, ALARM = "beginning of the drift", "alarm"
+
 
 def control_charts(found: Watch) -> Figure:
     """All charts over the number of the pass; beginning and alarm of a drift are marked."""
@@ -46,7 +49,8 @@ def control_charts(found: Watch) -> Figure:
         mark_drift(axes, found)
     panels[-1, 0].set_xlabel("pass", fontsize=9)
     for axes in panels[:2, 0]:
-        axes.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False)
+        handles = [each for each in axes.get_legend_handles_labels()[0] if axes is panels[0, 0] or not is_mark(each)]
+        axes.legend(handles=handles, fontsize=8, loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False)
     return figure
 
 
@@ -119,5 +123,10 @@ def mark_drift(axes: Axes, found: Watch) -> None:
         return
     diagnosis = found.drift.diagnosis
     begin, alarm = (float(found.number_of[each] + 1) for each in (diagnosis.first.begin, diagnosis.alarm))
-    axes.axvline(begin, color=INK, linestyle=":", linewidth=1.2, label="beginning of the drift")
-    axes.axvline(alarm, color=INK, linewidth=1.0, label="alarm")
+    axes.axvline(begin, color=INK, linestyle=":", linewidth=1.2, label=BEGINNING)
+    axes.axvline(alarm, color=INK, linewidth=1.0, label=ALARM)
+
+
+def is_mark(handle: Artist) -> bool:
+    """Whether a legend has it from `mark_drift`: all panels have the same marks."""
+    return handle.get_label() in (BEGINNING, ALARM)
