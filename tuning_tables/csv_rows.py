@@ -5,12 +5,10 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterator, Sequence
-from typing import Final
 
 from tuning_tables.errors import InvalidTable
 from tuning_tables.excerpt import excerpt
-
-FORMULA_MARKS: Final = ("=", "+", "-", "@")
+from tuning_tables.sheet import FORMULA_MARKS
 
 
 def rectangle(rows: Sequence[Sequence[str]]) -> bytes:

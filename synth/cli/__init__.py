@@ -22,6 +22,9 @@ UNFORESEEN, MACHINE_FAULT = 70, 74
 MOST_FAULTS = 50
 """Of one configuration, that are told."""
 
+LONGEST_WORD, LONGEST_LINE = 300, 2000
+"""Characters of what is told."""
+
 TRACEBACK = "RETARDER_SYNTH_TRACEBACK"
 """Name of the environment variable that has the traceback of an unforeseen fault printed."""
 
@@ -135,5 +138,8 @@ def say_each(sentences: Sequence[str]) -> None:
 
 
 def say(sentence: str) -> None:
-    """One line on stderr."""
-    print(f"retarder-synth: {' '.join(sentence.split())}", file=sys.stderr, flush=True)
+    """One line on stderr; long words, as paths can be, and long lines show their beginning and their end."""
+    from tuning_tables.excerpt import excerpt
+
+    words = (excerpt(word, LONGEST_WORD) for word in sentence.split())
+    print(f"retarder-synth: {excerpt(' '.join(words), LONGEST_LINE)}", file=sys.stderr, flush=True)

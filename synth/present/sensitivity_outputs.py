@@ -22,7 +22,7 @@ def write_sensitivity(found: Sensitivity, created: str, directory: ResultsDirect
     output, pictures = found.config.output, drawn(found)
     document = sensitivity_document(found, created)
     directory.write(DOCUMENT, canonical_json(document) + b"\n")
-    directory.write(TABLE, sensitivity_csv(found).encode())
+    directory.write(TABLE, sensitivity_csv(found))
     if output.plots:
         directory.write_all(picture_files(pictures, "plots"))
     if output.report:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from dataclasses import asdict, dataclass
 from importlib.metadata import version
@@ -15,19 +13,23 @@ from synth.frame.results_directory import ResultsDirectory
 from synth.present.plots.control_charts import control_charts
 from synth.present.plots.figure_file import draw
 from synth.present.plots.picture import Picture, picture_files
-from synth.present.report.document import Stamp, document, picture_sections
+from synth.present.report.document import Stamp, document, figure
 from synth.present.report.markup import Markup, element, head_row, joined, table
 from synth.yard.measured_passes.drift.charts import RUN_LENGTH
 from synth.yard.measured_passes.drift.watch import Drift, Watch
+from tuning_tables.sheet import sheet
 
 VERSION = 1
 """Of `watch.json`."""
 
 CAPTION = (
-    "Upper panel: the sum of each chart; the dashed line is its limit. Below: exponentially weighted mean of exit "
-    "speed less target by weight category, with limits at three standard deviations. Vertical lines: the beginning of "
-    "the drift (dotted) and the alarm (solid)."
+    "Upper panel: the sums that decide. There is one for each drift that is supposed; the four highest are named, and "
+    "of the others the highest is drawn at each pass. An alarm is where a sum reaches the dashed limit, and nowhere "
+    "else. Lower panels: exit speed less target of each pass, by weight category, and the median of the last 25. They "
+    "decide nothing, so they have no limits. Triangles: the brake was full to the end, so the cut may have left too "
+    "fast whatever the table. Hollow marks at an edge: beyond the panel; charts.csv has the value."
 )
+MARKED = " Vertical lines: the beginning of the drift (dotted) and the alarm (solid)."
 
 
 @dataclass(frozen=True)
@@ -42,14 +44,15 @@ def write_watch(found: Watch, config: ResolvedConfig, created: str, directory: R
     """Write all files into `directory`; raises `OSError`."""
     sentences = verdict(found)
     text = json.dumps(plain(watch_document(found, config.sha256, sentences)), indent=1, ensure_ascii=False) + "\n"
-    picture = Picture("watch", "Charts", "Control charts", CAPTION, draw(control_charts(found)))
+    caption = CAPTION if found.drift is None else CAPTION + MARKED
+    picture = Picture("watch", "Charts", "Charts of the watch", caption, draw(control_charts(found)))
     stamp = Stamp(f"Watch on {config.plants()[0][1].position.name}", created, version("retarder-synth"), config.sha256)
     kind = "accepted" if found.drift is None else "refused"
     box = element("section", *(element("p", each) for each in sentences), class_=f"verdict {kind}", id="verdict")
-    sections = [("charts", "Charts", picture_sections([picture]))]
+    sections = [("charts", "Charts", figure(picture))]
     if found.drift is not None:
         sections.append(("causes", "Causes", causes_table(found.drift)))
-    directory.write("charts.csv", charts_csv(found).encode())
+    directory.write("charts.csv", charts_csv(found))
     directory.write_all(picture_files([picture]))
     directory.write("report.html", document(stamp, box, sections).encode())
     directory.finish(text.encode())
@@ -139,18 +142,17 @@ def watch_document(found: Watch, config_sha256: str, sentences: tuple[str, ...])
     }  # fmt: skip
 
 
-def charts_csv(found: Watch) -> str:
-    """A row a pass: number, cut, exit error, and the sum of each chart."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
+def charts_csv(found: Watch) -> bytes:
+    """A row a pass: number, cut, exit error, whether the brake was full to the end, and the sum of each chart."""
     causes = found.evidence.causes
     names = [f"{causes[k].name} {causes[k].told(size)}" for k, size in found.charts.kinds]
-    writer.writerow(["pass", "cut_id", "exit_error_m_s", *names])
-    for i, row in enumerate(found.charts.sums.tolist()):
+    rows = []
+    for i, sums in enumerate(found.charts.sums.tolist()):
         error = float(found.errors_m_s[i])
         shown = "" if error != error else f"{error:.4f}"
-        writer.writerow([number(found, i), found.passes.log.cut_id[i], shown, *(f"{each:.3f}" for each in row)])
-    return text.getvalue()
+        of_pass = (number(found, i), found.passes.log.cut_id[i], shown, int(found.full_brake[i]))
+        rows.append((*of_pass, *(f"{each:.3f}" for each in sums)))
+    return sheet(("pass", "cut_id", "exit_error_m_s", "full_brake", *names), rows)
 
 
 def causes_table(drift: Drift) -> Markup:

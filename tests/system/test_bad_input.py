@@ -169,6 +169,20 @@ def test_a_flipped_bit_is_damage(command: Command, tuned: Path, two_classes: Pat
         assert not (tuned / "new").exists()
 
 
+def test_a_long_path_is_told_by_its_beginning_and_its_end(command: Command, tmp_path: Path) -> None:
+    long = tmp_path.joinpath(*["a" * 100] * 30, "end.json")
+    for arguments in (
+        ("watch", long, "-o", tmp_path / "out"),
+        ("tune", long, "-o", tmp_path / "out"),
+        *command_lines(long, long, tmp_path / "out"),
+    ):
+        ran = command(*arguments)
+        assert ran.code == 2
+        assert len(ran.sentence) < 700, arguments
+        assert "aaa...aaa" in ran.sentence
+        assert "end.json" in ran.sentence
+
+
 def command_lines(table: Path, config: Path, output: Path) -> list[tuple[object, ...]]:
     """Every command that reads a table."""
     return [

@@ -24,6 +24,21 @@ COLUMNS: Final = (
     "mass_t", "axles", "category", "target_m_s", "stopped_by_hand",
 )  # fmt: skip
 NUMBERS: Final = tuple(name for name in COLUMNS if name not in TEXTS)
+FASTEST_M_S: Final = 40.0
+MOST_STAGES: Final = 31
+WHOLE: Final = ("stage", "axles")
+RANGES: Final[Mapping[str, tuple[float, float, str]]] = MappingProxyType(
+    {
+        "speed_m_s": (0.0, FASTEST_M_S, " m/s"),
+        "stage": (0.0, MOST_STAGES, ""),
+        "pressure_kpa": (-100.0, 5000.0, " kPa"),
+        "mass_t": (1.0, 20_000.0, " t"),
+        "axles": (1.0, 1000.0, " axles"),
+        "target_m_s": (0.0, FASTEST_M_S, " m/s"),
+        "stopped_by_hand": (0.0, 1.0, ""),
+    }
+)
+"""Lowest and highest value of a number, and its unit in a sentence. No position has more than 31 stages above 0."""
 CONSTANT: Final = ("mass_t", "axles", "target_m_s", "stopped_by_hand")
 """Numbers that are one and the same in all rows of a pass."""
 

@@ -24,7 +24,7 @@ from typing import Any, Final
 
 from tuning_tables.errors import DamagedTable, InvalidLog
 from tuning_tables.excerpt import excerpt
-from tuning_tables.pass_log.log_columns import COLUMNS, LONGEST_TEXT, TEXTS
+from tuning_tables.pass_log.log_columns import COLUMNS, LONGEST_TEXT, RANGES, TEXTS, WHOLE
 from tuning_tables.regular_file import read_regular_file
 
 LARGEST_MAPPING_BYTES: Final = 100_000
@@ -127,7 +127,13 @@ def _constant(source: str, name: str, value: Any) -> float | str:
         return text
     if (isinstance(value, bool) and name != "stopped_by_hand") or not isinstance(value, int | float):
         raise InvalidLog(f"{source}: constant.{name} is {value!r:.60}; it must be a number.")
-    try:
-        return float(value)
-    except OverflowError as fault:
-        raise InvalidLog(f"{source}: constant.{name} is beyond all numbers; give a smaller one.") from fault
+    if name not in RANGES:
+        raise InvalidLog(f"{source}: constant.{name} is not possible: it changes from row to row.")
+    low, high, unit = RANGES[name]
+    # Compared as it is: a whole number may be too long for a float.
+    if not low <= value <= high or (name in WHOLE and value != int(value)):
+        kind = "a whole number" if name in WHOLE else "a number"
+        raise InvalidLog(
+            f"{source}: constant.{name} is {value!r:.60}; it must be {kind} from {low:g} to {high:g}{unit}."
+        )
+    return float(value)

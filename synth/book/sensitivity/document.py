@@ -12,6 +12,7 @@ from synth.book.sensitivity.sensitivity import REPEATED, OutputShares, Sensitivi
 from synth.book.sensitivity.shares import GROUPS, HARMONICS, Share
 from synth.book.sensitivity.varied import NEVER_VARIED
 from synth.book.summary import Document, plain
+from tuning_tables.sheet import sheet
 
 VERSION = 1
 DIGITS = 6
@@ -21,7 +22,7 @@ METHOD: Final = (
     "first-order shares by random balance designs (SALib rbd_fast, bias corrected) on a Latin hypercube; 95 % "
     "intervals by a jackknife of groups"
 )
-HEAD: Final = "label,target_m_s,output,key,share,ci95_low,ci95_high,decided"
+HEAD: Final = ("label", "target_m_s", "output", "key", "share", "ci95_low", "ci95_high", "decided")
 ALL: Final = "all"
 
 
@@ -85,12 +86,12 @@ def share_document(share: Share) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def sensitivity_csv(found: Sensitivity) -> str:
+def sensitivity_csv(found: Sensitivity) -> bytes:
     """One row a case, output and key; noise and together are keys too. Lines end as in RFC 4180."""
-    return "\r\n".join((HEAD, *csv_rows(found), ""))
+    return sheet(HEAD, csv_rows(found))
 
 
-def csv_rows(found: Sensitivity) -> Iterator[str]:
+def csv_rows(found: Sensitivity) -> Iterator[tuple[str, ...]]:
     """The rows, those of all cases together first."""
     cases = [(ALL, "", found.overall), *((c.label, f"{c.target_m_s:g}", c.outputs) for c in found.cases)]
     for label, target, outputs in cases:
@@ -98,6 +99,5 @@ def csv_rows(found: Sensitivity) -> Iterator[str]:
             if each.varies:
                 rows = (*ranked(found.keys, each), ("noise", each.noise), ("together", each.together))
                 for key, share in rows:
-                    low, high = share.ci95
-                    figures = f"{share.value:.{DIGITS}f},{low:.{DIGITS}f},{high:.{DIGITS}f}"
-                    yield f"{label},{target},{each.output.name},{key},{figures},{str(share.decided).lower()}"
+                    figures = (f"{figure:.{DIGITS}f}" for figure in (share.value, *share.ci95))
+                    yield label, target, each.output.name, key, *figures, str(share.decided).lower()

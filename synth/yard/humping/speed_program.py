@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +11,7 @@ from synth.yard.humping.hump_routes import HumpRoutes
 from synth.yard.humping.train_cuts import TrainCuts
 from synth.yard.humping.train_plan import TrainPlan
 from synth.yard.humping.trial import HumpTrial
+from tuning_tables.sheet import sheet
 
 Floats = NDArray[np.float64]
 
@@ -88,7 +87,7 @@ def program_of(number: int, trains: TrainCuts, plan: TrainPlan, aim_m_s: Floats,
 
 def locomotive_csv(program: SpeedProgram) -> bytes:
     """For the locomotive: the speed that it has at each moment; in between it changes evenly."""
-    return csv_bytes(
+    return sheet(
         ("cut", "time_s", "pushed_m", "speed_m_s"),
         [(r.cut, f"{r.time_s:.2f}", f"{r.pushed_m:.2f}", f"{r.hump_speed_m_s:.2f}") for r in program.rows],
     )
@@ -99,7 +98,7 @@ def uncoupler_csv(program: SpeedProgram) -> bytes:
     way to its track have empty cells."""
     exits = tuple(f"exit_{place}_m_s" for place in range(1, program.positions + 1))
     head = ("cut", "cars", "axles", "mass_t", "length_m", "category", "track", "hump_speed_m_s", "time_s", *exits)
-    return csv_bytes(
+    return sheet(
         head,
         [
             (
@@ -110,11 +109,3 @@ def uncoupler_csv(program: SpeedProgram) -> bytes:
             for r in program.rows
         ],
     )  # fmt: skip
-
-
-def csv_bytes(head: tuple[str, ...], rows: list[tuple[object, ...]]) -> bytes:
-    """CSV of RFC 4180 in UTF-8."""
-    text = io.StringIO(newline="")
-    writer = csv.writer(text, lineterminator="\r\n")
-    writer.writerows([head, *rows])
-    return text.getvalue().encode()

@@ -13,9 +13,9 @@ from synth.yard.humping.aim_choice import AimChoice
 from synth.yard.humping.hump_routes import HumpRoutes
 from synth.yard.humping.outcomes import TrainOutcomes
 from synth.yard.humping.resolved_trial import ResolvedTrial
-from synth.yard.humping.speed_program import csv_bytes
 from synth.yard.humping.train_figures import TrainFigure
 from synth.yard.humping.trial_acceptance import TrialVerdict
+from tuning_tables.sheet import sheet
 
 VERSION = 1
 
@@ -122,4 +122,4 @@ def aimed_tracks(routes: HumpRoutes, number: int) -> list[int]:
 def figures_csv(figures: Figures) -> bytes:
     """The figures as CSV, a row each."""
     rows = [(f.name, f.unit, repr(float(f.value)), repr(float(f.low95)), repr(float(f.high95)), f.n) for f in figures]
-    return csv_bytes(("figure", "unit", "value", "low95", "high95", "n"), list(rows))
+    return sheet(("figure", "unit", "value", "low95", "high95", "n"), rows)

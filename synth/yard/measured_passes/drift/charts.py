@@ -1,4 +1,4 @@
-"""Control charts of a drift: Page's sums of the logarithms of likelihood ratios, and moving means for the picture.
+"""Control charts of a drift: Page's sums of the logarithms of likelihood ratios, and running medians for the picture.
 
 Without a drift the mean of exp(ratio) of a pass is 1, so a sum that begins anew at each pass goes above h with a mean
 run length of e^h at least (Lorden 1971). A ratio cut off above only makes the sum smaller, so the bound stays; and no
@@ -27,8 +27,8 @@ RUN_LENGTH = 10_000.0
 MOST = 4.0
 """A ratio counts by so much at most: then an alarm takes three passes at least."""
 
-MEMORY = 0.1
-"""Weight of the newest pass in a moving mean."""
+WINDOW, FEWEST = 25, 10
+"""Passes of a running median: so many, and at its beginning so many at least."""
 
 
 @frozen_arrays
@@ -86,31 +86,22 @@ def page_sums(steps: Floats) -> Floats:
 
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
-class MovingMean:
-    """Of the exit errors of one category: `numbers` of its passes, `means` after each, `centre` and limits around."""
+class CategoryExits:
+    """Exits of the passes of one weight category, with a known target: `numbers` of the passes, `errors_m_s` of exit
+    speed less target, `medians_m_s` running (`running_medians`). They are for the eye: no alarm comes from them."""
 
     category: str
     numbers: Ints
-    means: Floats
-    centre: float
-    low: Floats
-    high: Floats
+    errors_m_s: Floats
+    medians_m_s: Floats
 
 
-def moving_mean(category: str, numbers: Ints, errors: Floats, in_order: int) -> MovingMean:
-    """Exponentially weighted mean with limits at three standard deviations of it (Roberts 1959).
+def running_medians(errors: Floats) -> Floats:
+    """Of each of `errors` (m,) and the `WINDOW` − 1 before it, or as many as there are; NaN for fewer than `FEWEST`.
 
-    Centre and spread are median and quartiles of those of `errors` whose number is below `in_order`; of all where these
-    are fewer than 10.
+    A few cuts that ran out of brake hardly move them.
     """
-    calm = errors[numbers < in_order]
-    calm = errors if len(calm) < 10 else calm
-    low, centre, high = np.quantile(calm, [0.25, 0.5, 0.75])
-    std = (high - low) / 1.3489795
-    means, mean = np.empty(len(errors)), float(centre)
-    for i, error in enumerate(errors.tolist()):
-        mean += MEMORY * (error - mean)
-        means[i] = mean
-    memory = (1.0 - MEMORY) ** (2 * np.arange(1, len(errors) + 1))
-    reach = 3.0 * std * np.sqrt(MEMORY / (2.0 - MEMORY) * (1.0 - memory))
-    return MovingMean(category, numbers, means, float(centre), centre - reach, centre + reach)
+    medians = np.full(len(errors), np.nan)
+    for i in range(FEWEST - 1, len(errors)):
+        medians[i] = np.median(errors[max(0, i + 1 - WINDOW) : i + 1])
+    return medians

@@ -13,7 +13,7 @@ from plant_models.frozen_arrays import frozen_arrays
 from synth.simulation.exit_statistics import OVERSPEED_M_S
 from synth.yard.measured_passes import unknowns as asked
 from synth.yard.measured_passes.drift.causes import causes_of
-from synth.yard.measured_passes.drift.charts import Charts, MovingMean, charts_of, moving_mean
+from synth.yard.measured_passes.drift.charts import CategoryExits, Charts, charts_of, running_medians
 from synth.yard.measured_passes.drift.diagnosis import FURTHER, Diagnosis, diagnosed
 from synth.yard.measured_passes.drift.drift_size import DriftSize, drift_size
 from synth.yard.measured_passes.drift.evidence import Evidence, evidence_of
@@ -62,16 +62,24 @@ class Watch:
     drift: Drift | None
 
     @cached_property
-    def moving_means(self) -> tuple[MovingMean, ...]:
-        """Of the exit errors of each weight category."""
-        begin = len(self.passes) if self.drift is None else self.drift.diagnosis.first.begin
+    def full_brake(self) -> NDArray[np.bool_]:
+        """Passes with the highest stage that their class may be given until their last row, (m,): they may have left
+        too fast whatever the table."""
+        log = self.passes.log
+        top = np.array([plant.top_stage for _, plant in self.passes.plants])[self.passes.class_of]
+        return np.asarray(log.stage[log.first_row[1:] - 1] >= top)
+
+    @cached_property
+    def exits(self) -> tuple[CategoryExits, ...]:
+        """Of each weight category that has any with a known target."""
         category = np.array(self.passes.log.category)
         known = np.isfinite(self.errors_m_s)
         found = []
         for name in sorted(set(self.passes.log.category)):
             numbers = np.flatnonzero((category == name) & known)
-            if len(numbers) >= 2:
-                found.append(moving_mean(name, numbers, self.errors_m_s[numbers], begin))
+            if len(numbers):
+                errors = self.errors_m_s[numbers]
+                found.append(CategoryExits(name, numbers, errors, running_medians(errors)))
         return tuple(found)
 
 

@@ -5,11 +5,19 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import pytest
 from scipy.stats import chi2
 
 from synth.yard.measured_passes.drift.causes import TIMES, Cause, Remedy
-from synth.yard.measured_passes.drift.charts import MOST, charts_of, limit_of, moving_mean, page_sums, steps_of
+from synth.yard.measured_passes.drift.charts import (
+    FEWEST,
+    MOST,
+    WINDOW,
+    charts_of,
+    limit_of,
+    page_sums,
+    running_medians,
+    steps_of,
+)
 from synth.yard.measured_passes.drift.evidence import Evidence
 
 
@@ -57,10 +65,10 @@ def test_a_pass_far_off_gives_no_alarm_and_a_drift_does() -> None:
     assert limit_of(20) > 3 * MOST
 
 
-def test_a_moving_mean_goes_to_the_new_mean_and_leaves_its_limits() -> None:
+def test_a_running_median_follows_a_shift_and_not_a_few_cuts_out_of_brake() -> None:
     errors = np.concatenate((np.tile([-0.1, 0.1, 0.0, 0.0], 25), np.full(60, 0.2)))
-    mean = moving_mean("S", np.arange(160), errors, 100)
-    assert mean.centre == 0.0
-    assert (np.abs(mean.means[:100]) < mean.high[:100]).all()
-    assert mean.means[-1] == pytest.approx(0.2, abs=1e-3)
-    assert mean.means[-1] > mean.high[-1]
+    errors[[20, 21, 40, 60, 80]] = 1.5
+    medians = running_medians(errors)
+    assert np.isnan(medians[: FEWEST - 1]).all()
+    assert np.abs(medians[FEWEST - 1 : 100]).max() <= 0.1
+    assert medians[100 + WINDOW :].tolist() == [0.2] * (60 - WINDOW)
