@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 
 from synth.cli import main
+from synth.cli.printed_table import PrintedTable
 from synth.configuration.config_file import load_config, parse_config
 from synth.solver.chain.chain import check_chain
 from synth.sweep.tune_unit import between_rms_m_s
+from tests.printed_page import Page, cells_of
 from tuning_tables import ControllerTable, Decisions, read_book
 
 BOOK = """\
@@ -97,11 +99,18 @@ def test_the_independent_checker_confirms_them(folder: Path, name: str, capsys: 
     assert "nothing found" in capsys.readouterr().out
 
 
-def test_inspect_tells_when_they_decide_and_how_lines_rise(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_inspect_tells_when_they_decide_and_how_lines_rise(
+    folder: Path, capsys: pytest.CaptureFixture[str], pages: list[Page]
+) -> None:
     assert main(["inspect", str(folder / "one" / "book.h5")]) == 0
     told = capsys.readouterr().out
     assert "at every sample, also while the pressure is on its way; with the pressure of a gauge" in told
-    assert "m/s per 100 kPa" in told
+    tables = [each for each in pages[-1] if isinstance(each, PrintedTable)]
+    for table, printed in zip(read_book(folder / "one" / "book.h5"), tables, strict=True):
+        slopes = [slope for stage in table.stages for slope in stage.slopes if slope is not None]
+        told_slopes = [row["+ m/s per 100 kPa"] for row in cells_of(printed)]
+        assert told_slopes == [f"{100.0 * slope:+.4f}" for slope in slopes[: len(told_slopes)]]
+        assert told_slopes
     assert main(["inspect", str(folder / "none" / "book.h5")]) == 0
     assert "without a pressure gauge" in capsys.readouterr().out
 

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 from synth.cli import main
+from synth.present.report.figure_table import TITLES
 from tests.frame.results import results_in
 from tests.printed_page import Page, page_about, table_of
 from tests.system.conftest import EPOCH, Command, changed
@@ -68,11 +69,15 @@ def arrays_of(directory: Path) -> Mapping[str, Any]:
 def test_it_prints_the_figures_of_its_summary(humped: Path, pages: list[Page]) -> None:
     summary, page = summary_of(humped), page_about(pages, humped)
     assert f"trains: {summary['trains']}; cuts: {summary['cuts']}; cars: {summary['cars']}" in str(page[0])
-    for row, figure in zip(table_of(page), summary["figures"].values(), strict=True):
+    figures = {TITLES.get(name, name.replace("_", " ")): figure for name, figure in summary["figures"].items()}
+    told = {row["figure"].removesuffix(", %").removesuffix(", m/s").removesuffix(", m"): row for row in table_of(page)}
+    assert told.keys() == figures.keys()
+    for title, row in told.items():
+        figure = figures[title]
         scale = 100.0 if row["figure"].endswith(", %") else 1.0
-        ends = (figure["low95"], figure["high95"])
+        ends = figure["ci95"]
         found = [float(word.strip("[],")) for word in f"{row['value']} {row['95 %']}".split() if word != "–"]
-        wanted = [scale * each for each in (figure["value"], *(() if None in ends else ends)) if each is not None]
+        wanted = [scale * each for each in (figure["value"], *([] if None in ends else ends)) if each is not None]
         assert found == pytest.approx(wanted, rel=0.006)
 
 

@@ -132,7 +132,9 @@ def test_it_prints_the_figures_of_its_summary(ran: Path, pages: list[Page]) -> N
         **{name: with_half(each["ratio"], each["ratio_ci95"]) for name, each in case["permissions"].items()},
     }
     assert told == wanted
-    medians = ", ".join(f"{name} {ratio:.2f}" for name, ratio in read["median_ratios"].items())
+    ratios = read["median_ratios"]
+    medians = ", ".join(f"{name} {ratios[name]:.2f}" for name in told if name in ratios)
+    assert ratios.keys() == case["permissions"].keys()
     assert str(page[1]).startswith(f"{configured['passes']} stratified passes a case. ")
     assert str(page[1]).endswith(f"Medians: {medians}.")
 
