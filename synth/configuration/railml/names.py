@@ -9,6 +9,9 @@ from plant_models.hump import Switch, Vertex
 RAILML: Final = "https://www.railml.org/schemas/3.1"
 OWN: Final = "urn:retarder-synth:hump:1"
 
+LIBRARY, OWN_ZONES = "library", "own"
+"""Where the zones of a retarder come from: its position in the library, or one that the library does not have."""
+
 SIDES: Final = ("left", "right")
 
 
@@ -25,6 +28,11 @@ def own(name: str) -> str:
 def net_element(vertex: Vertex, branch: int) -> str:
     """The identifier of an edge: that of a branch of a switch tells the side."""
     return f"ne_{vertex.number}_{SIDES[branch]}" if isinstance(vertex, Switch) else f"ne_{vertex.number}"
+
+
+def net_relation(ahead: str, behind: str) -> str:
+    """The identifier of the way from one edge to the next."""
+    return f"nr_{ahead}_{behind}"
 
 
 CONTAINERS: Final = (

@@ -22,8 +22,10 @@ from plant_models.hump import (
     TrackSection,
     Vertex,
 )
+from plant_models.library.hump_elements import zones_of
 from plant_models.library.hump_entry import HumpEntry
-from synth.configuration.railml.names import SIDES, own
+from synth.configuration.railml.agreement import require_agreement
+from synth.configuration.railml.names import OWN_ZONES, SIDES, net_element, own
 from synth.configuration.railml.tree import RailmlTree, railml_tree
 from synth.faults.input_error import InputError
 from tuning_tables.excerpt import excerpt
@@ -37,6 +39,7 @@ def from_railml(text: str, name: str, file: str) -> tuple[HumpEntry, tuple[str, 
     whole = tree.every_own("hump")
     if len(whole) != 1:
         raise InputError(f"{file}: it has {len(whole)} elements hump of the namespace of retarder-synth; one is needed")
+    require_edges(tree)
     leads = tree.text(whole[0], "leads").split()
     if not all(lead.isascii() and lead.isdigit() and len(lead) < 10 for lead in leads):
         raise tree.fault(whole[0], f"leads is {excerpt(' '.join(leads))!r}; it must be numbers of signals")
@@ -47,18 +50,38 @@ def from_railml(text: str, name: str, file: str) -> tuple[HumpEntry, tuple[str, 
         graph = HumpGraph(vertices, tuple(map(int, leads)))
     except PlantError as error:
         raise InputError(f"{file}: {error}") from None
-    return HumpEntry(name, title, notes, graph), tree.ignored
+    hump = HumpEntry(name, title, notes, graph)
+    return hump, (*tree.ignored, *require_agreement(tree, hump, edge_names(tree, graph)))
+
+
+def require_edges(tree: RailmlTree) -> None:
+    """`InputError` for what stands on an edge that is not there."""
+    names = {each.get("id") for each in tree.every("netElement")}
+    for told in tree.told:
+        for each in (told, *told.iterfind(".//*[@netElementRef]")):
+            name = each.get("netElementRef")
+            if name is not None and name not in names:
+                raise tree.fault(told, f"netElementRef is {excerpt(name)!r}; there is no netElement with this id")
+
+
+def edge_names(tree: RailmlTree, graph: HumpGraph) -> dict[str, str]:
+    """What the writer calls the edges of `graph`, by their identifiers in the file that it was read from."""
+    branches = switch_branches(tree)
+    names = {edge: net_element(graph.vertex(n), side) for n, two in branches.items() for side, edge in enumerate(two)}
+    return names | {tree.text(at, "netElementRef"): net_element(graph.vertex(n), 0) for n, at, _ in begun_edges(tree)}
+
+
+def begun_edges(tree: RailmlTree) -> list[tuple[int, Xml.Element, Xml.Element]]:
+    """(number, what tells the edge, element) of what one edge begins in: signals, retarders, sections."""
+    own_ones = [(tree.whole(e, "number"), e, e) for kind in ("retarder", "section") for e in tree.every_own(kind)]
+    return [*((tree.named(e), tree.inner(e, "spotLocation"), e) for e in tree.every("signalIS")), *own_ones]
 
 
 def vertices_of(tree: RailmlTree) -> Iterator[Vertex]:
     """Every element of the hump."""
     edges = Edges.of(tree)
-    branches = switch_branches(tree)
+    branches, begun = switch_branches(tree), begun_edges(tree)
     numbers = {name: number for number, names in branches.items() for name in names}
-    begun = [
-        *((tree.named(e), tree.inner(e, "spotLocation"), e) for e in tree.every("signalIS")),
-        *((tree.whole(e, "number"), e, e) for kind in ("retarder", "section") for e in tree.every_own(kind)),
-    ]
     numbers |= {tree.text(place, "netElementRef"): number for number, place, _ in begun}
     elements = {tree.whole(e, "number"): e for e in tree.every_own("switch")}
     fouling = fouling_points(tree)
@@ -125,20 +148,23 @@ def element_from(tree: RailmlTree, number: int, element: Xml.Element, edge: Edge
     if kind == "retarder":
         return made(tree, element, lambda: retarder_from(tree, number, element, edge))
     track = None if element.get("track") is None else tree.whole(element, "track")
-    length, standing = tree.number(element, "length"), tree.number(element, "standing", 0.0)
+    length, standing = tree.number(element, "length"), tree.number(element, "standing")
     counted = tree.truth(element, "axleCounters")
     return made(tree, element, lambda: TrackSection(number, edge, length, track, standing, counted))
 
 
 def retarder_from(tree: RailmlTree, number: int, element: Xml.Element, edge: Edge) -> Retarder:
-    """A retarder with its zones and its controller."""
+    """A retarder with its zones and its controller; one whose zones are not its own is of the library."""
+    position = tree.text(element, "position")
+    if tree.text(element, "zones") != OWN_ZONES:
+        zones_of(position)
     zones = tuple((tree.number(e, "posBegin"), tree.number(e, "posEnd")) for e in element.findall(own("zone")))
     joints = tree.number(element, "entryJoint"), tree.number(element, "exitJoint")
     book = None if element.get("book") is None else tree.text(element, "book")
     exit_std = None if element.get("exitStd") is None else tree.number(element, "exitStd")
     files = tuple(tree.text(e, "file") for e in element.findall(own("aimTables")))
     counted = tree.truth(element, "axleCounters")
-    return Retarder(number, edge, zones, *joints, tree.text(element, "position"), book, files, counted, exit_std)
+    return Retarder(number, edge, zones, *joints, position, book, files, counted, exit_std)
 
 
 @dataclass(frozen=True)
@@ -158,8 +184,8 @@ class Edges:
         """All edges of the file."""
         behind: dict[str, list[str]] = {}
         for relation in tree.every("netRelation"):
-            ahead = tree.text(tree.inner(relation, "elementA"), "ref")
-            behind.setdefault(ahead, []).append(tree.text(tree.inner(relation, "elementB"), "ref"))
+            ahead, next_one = tree.ends(relation)
+            behind.setdefault(ahead, []).append(next_one)
         grades: dict[str, list[tuple[float, float]]] = {}
         for element in tree.every("gradientCurve"):
             place = tree.inner(element, "associatedNetElement")

@@ -6,10 +6,11 @@ import math
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 from xml.etree import ElementTree as Xml
 
-from synth.configuration.railml.names import CONTAINERS, OWN, READ
+from synth.configuration.railml.names import CONTAINERS, OWN, RAILML, READ, own
 from synth.faults.input_error import InputError
 from tuning_tables.excerpt import excerpt
 
@@ -25,13 +26,44 @@ class RailmlTree:
     file: str
     namespace: str
 
+    @classmethod
+    def of_ours(cls, root: Xml.Element, file: str) -> RailmlTree:
+        """A tree as `write` makes it."""
+        return cls(root, file, RAILML)
+
     def every(self, name: str) -> list[Xml.Element]:
-        """All elements of railML with that name."""
-        return list(self.root.iter(f"{{{self.namespace}}}{name}"))
+        """All elements of railML with that name that are read."""
+        return [each for each in self.told if each.tag == f"{{{self.namespace}}}{name}"]
 
     def every_own(self, name: str) -> list[Xml.Element]:
         """All elements of our namespace with that name."""
-        return list(self.root.iter(f"{{{OWN}}}{name}"))
+        return [each for each in self.told if each.tag == own(name)]
+
+    def ends(self, relation: Xml.Element) -> tuple[str, str]:
+        """The edges (ahead, behind) of a netRelation."""
+        return self.text(self.inner(relation, "elementA"), "ref"), self.text(self.inner(relation, "elementB"), "ref")
+
+    @cached_property
+    def told(self) -> tuple[Xml.Element, ...]:
+        """What is read: the elements in containers; the hump of our namespace, and then what is in it."""
+        waiting, found = [self.root], []
+        for container in waiting:
+            for child in container:
+                if self.is_container(child) or child.tag == own("hump"):
+                    waiting.append(child)
+                if self.is_known(child) and not self.is_container(child):
+                    found.append(child)
+        return tuple(found)
+
+    def is_container(self, element: Xml.Element) -> bool:
+        """Whether it is an element of railML that only holds others."""
+        return element.tag.startswith(f"{{{self.namespace}}}") and local(element) in CONTAINERS
+
+    def is_known(self, element: Xml.Element) -> bool:
+        """Whether it is one of ours, or one of railML that is read or holds such."""
+        if element.tag.startswith(f"{{{OWN}}}"):
+            return True
+        return element.tag.startswith(f"{{{self.namespace}}}") and local(element) in CONTAINERS + READ
 
     def inner(self, element: Xml.Element, name: str) -> Xml.Element:
         """The element of railML that must be in `element`."""
@@ -47,13 +79,11 @@ class RailmlTree:
             raise self.fault(element, f"the attribute {key} is missing or not printable; give it")
         return value
 
-    def number(self, element: Xml.Element, key: str, absent: float | None = None) -> float:
-        """The attribute `key` as a finite number; `absent` where it is not there, if that is not None."""
-        if absent is not None and element.get(key) is None:
-            return absent
+    def number(self, element: Xml.Element, key: str) -> float:
+        """The attribute `key` as a finite number."""
         raw = self.text(element, key)
         try:
-            value = float(raw)
+            value = float(raw) if raw.isascii() and "_" not in raw else math.nan
         except ValueError:
             value = math.nan
         if not math.isfinite(value):
@@ -68,8 +98,8 @@ class RailmlTree:
         return int(raw)
 
     def truth(self, element: Xml.Element, key: str) -> bool:
-        """The attribute `key` as true or false; true where it is not there."""
-        raw = element.get(key, "true")
+        """The attribute `key` as true or false."""
+        raw = self.text(element, key)
         if raw not in ("true", "false"):
             raise self.fault(element, f"{key} is {excerpt(raw)!r}; it must be true or false")
         return raw == "true"
@@ -81,7 +111,8 @@ class RailmlTree:
     def fault(self, element: Xml.Element, sentence: str) -> InputError:
         """The fault of an element, which is called by its name and identifier."""
         told = element.get("id") or element.get("number") or element.get("netElementRef") or ""
-        return InputError(f"{self.file}: {local(element)} {excerpt(told) if told.isprintable() else ''}: {sentence}")
+        name = f"{local(element)} {excerpt(told)}" if told and told.isprintable() else local(element)
+        return InputError(f"{self.file}: {name}: {sentence}")
 
     @property
     def ignored(self) -> tuple[str, ...]:
@@ -92,9 +123,7 @@ class RailmlTree:
     def _unknown(self, element: Xml.Element) -> Iterator[str]:
         for child in element:
             namespace, _, name = child.tag[1:].rpartition("}")
-            if namespace == OWN:
-                continue
-            if namespace == self.namespace and name in CONTAINERS + READ:
+            if self.is_known(child):
                 yield from self._unknown(child)
             else:
                 yield name if namespace == self.namespace else f"{name} of {namespace or 'no namespace'}"
@@ -116,6 +145,9 @@ def railml_tree(text: str, file: str) -> RailmlTree:
     namespace, _, name = root.tag[1:].rpartition("}")
     if name != "railML" or not namespace.startswith(RAILML_3):
         raise InputError(f"{file}: its root is {excerpt(root.tag)}; it must be railML of {RAILML_3}x")
+    version = root.get("version", "3.")
+    if not version.startswith("3."):
+        raise InputError(f"{file}: version is {excerpt(version)!r}, but its namespace is that of railML 3; correct one")
     waiting = [(root, 0)]
     while waiting:  # no recursion: the tree may be deeper than Python's stack
         element, depth = waiting.pop()

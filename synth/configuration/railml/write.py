@@ -6,9 +6,21 @@ from collections.abc import Iterator
 from typing import Final
 from xml.etree import ElementTree as Xml
 
+from plant_models import PlantError
 from plant_models.hump import Edge, HumpGraph, Retarder, Signal, Switch, TrackSection, Vertex
+from plant_models.library.hump_elements import zones_of
 from plant_models.library.hump_entry import HumpEntry
-from synth.configuration.railml.names import OWN, RAILML, SIDES, net_element, own, railml
+from synth.configuration.railml.names import (
+    LIBRARY,
+    OWN,
+    OWN_ZONES,
+    RAILML,
+    SIDES,
+    net_element,
+    net_relation,
+    own,
+    railml,
+)
 
 LANGUAGE: Final = "en"
 
@@ -17,14 +29,20 @@ def to_railml(hump: HumpEntry) -> bytes:
     """The bytes of the file; the origins of the numbers are not in it. Same hump, same bytes."""
     Xml.register_namespace("", RAILML)
     Xml.register_namespace("rs", OWN)
+    root = railml_of(hump)
+    Xml.indent(root, " ")
+    return bytes(Xml.tostring(root, encoding="utf-8", xml_declaration=True)) + b"\n"
+
+
+def railml_of(hump: HumpEntry) -> Xml.Element:
+    """The root of the file."""
     root = Xml.Element(railml("railML"), {"version": "3.1"})
     infrastructure = below(root, "infrastructure", id="hump")
     write_topology(below(infrastructure, "topology"), hump.graph)
     write_geometry(below(infrastructure, "geometry"), hump.graph)
     write_elements(below(infrastructure, "functionalInfrastructure"), hump.graph)
     write_own(infrastructure, hump)
-    Xml.indent(root, " ")
-    return bytes(Xml.tostring(root, encoding="utf-8", xml_declaration=True)) + b"\n"
+    return root
 
 
 def below(parent: Xml.Element, name: str, /, **attributes: object) -> Xml.Element:
@@ -51,7 +69,7 @@ def relations_of(graph: HumpGraph) -> Iterator[tuple[str, str, str]]:
             behind = graph.vertex(edge.to)
             for side in range(len(behind.edges)):
                 ahead, next_one = net_element(vertex, branch), net_element(behind, side)
-                yield f"nr_{ahead}_{next_one}", ahead, next_one
+                yield net_relation(ahead, next_one), ahead, next_one
 
 
 def write_topology(topology: Xml.Element, graph: HumpGraph) -> None:
@@ -126,7 +144,9 @@ def write_switch(switches: Xml.Element, graph: HumpGraph, switch: Switch) -> Non
     ahead, branch, edge = edge_to(graph, switch.number)
     write_spot(told, net_element(ahead, branch), edge.length_m)
     for place, side in enumerate(SIDES):
-        below(told, f"{side}Branch", netRelationRef=f"nr_{net_element(ahead, branch)}_{net_element(switch, place)}")
+        below(
+            told, f"{side}Branch", netRelationRef=net_relation(net_element(ahead, branch), net_element(switch, place))
+        )
 
 
 def write_joints(detection: Xml.Element, graph: HumpGraph, vertex: Vertex) -> None:
@@ -185,10 +205,19 @@ def write_retarder(parent: Xml.Element, retarder: Retarder) -> None:
         told.set("book", retarder.book)
     if retarder.exit_std_m_s is not None:
         told.set("exitStd", str(retarder.exit_std_m_s))
+    told.set("zones", LIBRARY if of_library(retarder) else OWN_ZONES)
     for begin, end in retarder.zones_m:
         own_below(told, "zone", posBegin=begin, posEnd=end)
     for file in retarder.aim_tables:
         own_below(told, "aimTables", file=file)
+
+
+def of_library(retarder: Retarder) -> bool:
+    """Whether its zones are those of its position in the library."""
+    try:
+        return zones_of(retarder.position) == retarder.zones_m
+    except PlantError:
+        return False
 
 
 def yes(truth: bool) -> str:
