@@ -31,6 +31,12 @@ OF_CATEGORY = {
 ENTRANCE_STAGE: Final = "entrance_stage"
 """A key that may be left out: then the allowed stage is allowed at the entrance, too."""
 
+STAGES: Final = ("allowed_stage", ENTRANCE_STAGE)
+"""Keys whose numbers are stages."""
+
+BRAKING_STAGES: Final = "braking_stages"
+"""A key of the file that may be left out: of how many braking stages its stages are."""
+
 BY_MASS = {"mass_above_t": Quantity("t", number), **OF_CATEGORY}
 BY_AXLE_LOAD = {"axle_load_above_t": Quantity("t", number), **OF_CATEGORY}
 """Every key of a category: its limit is the mass of a 4-axle car, or the load of an axle."""
@@ -56,7 +62,8 @@ class WeightCategory:
     """A category of 4-axle cars heavier than `mass_above_t`, up to the limit of the next category.
 
     `name` is the name in tables, `latin` a second one for keyboards; `number` stands for it in tables and
-    controllers and is fixed for good, wherever the category stands in a file.
+    controllers and is fixed for good, wherever the category stands in a file. `of_stages`: of how many braking stages
+    `allowed_stage` and `entrance_stage` are, None where the file does not say.
     """
 
     name: str
@@ -66,7 +73,34 @@ class WeightCategory:
     resistance: RollingResistance
     allowed_stage: int
     entrance_stage: int
+    of_stages: int | None
     provenance: tuple[SourcedValue, ...]
+
+    def at(self, top_stage: int) -> WeightCategory:
+        """The same at a position whose highest stage is `top_stage`: its stages are counted in those of that position.
+
+        Where `of_stages` tells of how many braking stages they are, the same part of them is allowed there, rounded
+        down: the highest stays the highest, and a light car gets no harder brake by a coarser division. Otherwise they
+        stay as they are, as far as the position has them. Sensible ranges end with the position's highest stage.
+        """
+        values = tuple(
+            counted_in(value, self.of_stages, top_stage) if value.key in STAGES else value for value in self.provenance
+        )
+        table = SourcedTable(values)
+        allowed, at_entrance = (int(table.number(key)) for key in STAGES)
+        return replace(self, allowed_stage=allowed, entrance_stage=at_entrance, of_stages=top_stage, provenance=values)
+
+
+def counted_in(value: SourcedValue, of_stages: int | None, top_stage: int) -> SourcedValue:
+    """The number of a stage of `of_stages` (None: of any) at a position whose highest stage is `top_stage`."""
+    assert isinstance(value.value, float), value.key
+    stage = int(value.value)
+    there = min(stage, top_stage) if of_stages is None else top_stage * stage // of_stages
+    here = max(there, min(stage, 1))
+    low, high = value.range or (0.0, float(top_stage))
+    span = min(low, float(here)), float(top_stage if of_stages is not None else min(high, top_stage))
+    source = value.source if of_stages in (None, top_stage) else f"{value.source}; {stage} of {of_stages} stages there"
+    return replace(value, value=float(here), range=span, source=source)
 
 
 @dataclass(frozen=True)
@@ -101,6 +135,7 @@ def categories_from(file: TypeFile) -> WeightCategories:
     with telling(file.place):
         tree = parse_toml(file.text)
         title = take_string(tree, "title")
+        of_stages = take_stages(tree)
         for latin, below in tree.items():
             require(
                 LATIN.fullmatch(latin) is not None,
@@ -109,9 +144,32 @@ def categories_from(file: TypeFile) -> WeightCategories:
             )
             require(isinstance(below, dict), f"{latin} is {shown(below)}; it must be a table")
             with telling(f"{file.place}: {latin}", {"rolling resistance: ": "rolling_resistance."}):
-                members.append(category_of(latin, below, tuple(members), file.origin))
+                members.append(replace(category_of(latin, below, tuple(members), file.origin), of_stages=of_stages))
+                require_among(members[-1], of_stages)
         require(len(members) > 0, "it holds no category")
     return WeightCategories(file.name, title, tuple(members))
+
+
+def take_stages(tree: dict[str, Any]) -> int | None:
+    """Remove and return the number of braking stages that stages are counted in, None where it is left out."""
+    if BRAKING_STAGES not in tree:
+        return None
+    stages = tree.pop(BRAKING_STAGES)
+    whole = isinstance(stages, int) and not isinstance(stages, bool)
+    require(
+        whole and 1 <= stages <= HIGHEST_STAGE,
+        f"{BRAKING_STAGES} is {shown(stages)}; it must be a whole number from 1 to {HIGHEST_STAGE}",
+    )
+    return int(stages)
+
+
+def require_among(category: WeightCategory, of_stages: int | None) -> None:
+    """Raise where a category has a stage beyond those that stages are counted in."""
+    for key, stage in zip(STAGES, (category.allowed_stage, category.entrance_stage), strict=True):
+        require(
+            of_stages is None or stage <= of_stages,
+            f"{key} is {stage}; it must be at most {of_stages}, the {BRAKING_STAGES} of this file",
+        )
 
 
 def category_of(latin: str, tree: dict[str, Any], lighter: tuple[WeightCategory, ...], origin: str) -> WeightCategory:
@@ -142,7 +200,8 @@ def category_of(latin: str, tree: dict[str, Any], lighter: tuple[WeightCategory,
         limit == 0.0 if lowest is None else limit > lowest,
         f"{key} is {table.number(key):g}; the limits must start at 0 and increase",
     )
-    return WeightCategory(name, its_number, latin, limit, resistance, int(allowed), int(at_entrance), table.values)
+    stages = int(allowed), int(at_entrance)
+    return WeightCategory(name, its_number, latin, limit, resistance, *stages, None, table.values)
 
 
 def with_entrance_stage(table: SourcedTable) -> SourcedTable:

@@ -1,9 +1,9 @@
 """The command line `retarder-synth`: what the exit codes mean, and how a fault is told.
 
-0 done; 1 ran, but a limit of the configuration is missed or not decidable; 2 the input is at fault; 3 a table or book
-is damaged; 70 a fault of this program; 74 a fault of the machine (a full disk, for one); 130 interrupted; 141 nobody
-reads what is printed. A fault is one sentence on stderr. Nothing heavy is imported here: each command imports what it
-needs.
+0 done; 1 ran, but a limit of the configuration is missed or not decidable, or a case has no table; 2 the input is at
+fault; 3 a table or book is damaged; 70 a fault of this program; 74 a fault of the machine (a full disk, for one); 130
+interrupted; 141 nobody reads what is printed. A fault is one sentence on stderr. Nothing heavy is imported here: each
+command imports what it needs.
 """
 
 from __future__ import annotations

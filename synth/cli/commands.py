@@ -88,7 +88,7 @@ def tune(
 ) -> int:
     """Make a book of tables, its pictures and report.
 
-    Exit code 1 if the table of a feasible case misses a limit of the configuration.
+    Exit code 1 if the table of a feasible case misses a limit of the configuration, or a case has no table.
     """
     from synth.cli.tune import tune_command
 

@@ -74,7 +74,7 @@ def retune(
 ) -> int:
     """Make new tables for what measured passes say of the plant, and tell what they gain.
 
-    Exit code 1, and no book, if the gain is within noise in every case.
+    Exit code 1, and no book, if the gain is within noise in every case; also 1 if a case has no new table.
     """
     from synth.cli.retune import retune_command
 

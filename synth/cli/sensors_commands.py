@@ -32,7 +32,7 @@ def tune(
 ) -> int:
     """Make tables that decide where axles pass point sensors, with their code, pictures and report.
 
-    Exit code 1 if the table of a feasible case misses a limit of the configuration.
+    Exit code 1 if the table of a feasible case misses a limit of the configuration, or a case has no table.
     """
     from synth.cli.sensors_tune import sensors_tune_command
 

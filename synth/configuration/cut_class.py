@@ -95,7 +95,7 @@ def resolve_cut(settings: CutSettings, index: int, at: Surroundings) -> CutClass
     with in_file(file, lambda sentence: of_class(sentence, key)):
         axles = sum(len(car.axle_offsets_m) for car in consist.cars)
         by_mass = at.categories.of(consist.mass_t, axles)
-        category = by_mass if settings.category is None else at.categories.named(settings.category)
+        category = (by_mass if settings.category is None else at.categories.named(settings.category)).at(top)
         table = SourcedTable(category.provenance).replaced(overrides_of(settings))
         resistance = RollingResistance(
             table.number("rolling_resistance.mean_n_per_kn"), table.number("rolling_resistance.std_n_per_kn")

@@ -79,7 +79,8 @@ FORM: Final = {
 # number: stands for the category in controllers for good: 16 to 255; 1 to 5 only for Л, ЛС, С, СТ, Т.
 # The limit, exceeded by all cuts of the category: axle_load_above_t, or mass_above_t of a car with four axles; 0 first.
 # allowed_stage: the highest stage that cuts of the category may be given; entrance_stage: the same while the first axle
-# is before the entrance (left out: as allowed_stage).""",
+# is before the entrance (left out: as allowed_stage). braking_stages: of how many braking stages these are; at a
+# position with another number of them the same part is allowed, rounded down (left out: the stages as they are).""",
     TRACKS: """\
 # [bends] may be left out as a whole: a track without switches and curves. The park position must end before the track
 # does, and the stretch must end before the entrance of the park position.""",

@@ -87,7 +87,7 @@ def book() -> BookReport:
             make_case("gondola-85t", 2.0, stages=5, feasible=False),
             make_case("gondola-85t", 4.0, stages=5, spread=0.09),
         ),
-        failed=(FailedCase("gondola-85t", 1.5, "the grid is <too> coarse; now grid.speed_step_m_s is 0.04"),),
+        failed=(FailedCase("gondola-85t", 1.5, "the grid is too coarse"),),
         degree_studies=(make_study(),),
         parameters=(
             SourcedValue("friction.common_cv", 0.15, "1", (0.1, 0.25), "engineering judgement: usual", "L"),
@@ -254,6 +254,10 @@ def test_a_book_without_feasible_case_and_one_without_infeasible(book: BookRepor
     assert "Worst of" not in Page(report_page(only)).text
     assert "Every case with a table is feasible." in verdict(replace(book, cases=book.cases[:1]))
     assert "Every case is feasible." in verdict(replace(book, cases=book.cases[:1], failed=()))
+
+
+def test_a_case_without_a_table_has_a_row(page: Page) -> None:
+    assert "gondola-85t–1.5no table: see the verdict–" in page.text
 
 
 def test_the_report_is_written_without_matplotlib() -> None:

@@ -16,7 +16,6 @@ from synth.present.report.case_table import HONEST, failed_row, share_cell, with
 from synth.present.report.document import Stamp, document, file_table, picture_sections
 from synth.present.report.markup import Cell, Markup, element, head_row, joined, table
 from synth.present.report.parameter_table import parameter_section
-from synth.present.report.verdict import failed_cases
 
 COLUMNS = (
     "case", "mass, t", "target, m/s", "verdict", "rms, m/s", "95 % interval", "predicted", "predicted / simulated",
@@ -81,13 +80,7 @@ def verdict_box(report: SensorReport) -> Markup:
     sentence = element(
         "p", element("strong", "Accepted" if accepted else "Not accepted"), f" — {report.verdict.sentence}."
     )
-    return element(
-        "section",
-        sentence,
-        *failed_cases(report.book.failed),
-        class_=f"verdict {'accepted' if accepted else 'refused'}",
-        id="verdict",
-    )
+    return element("section", sentence, class_=f"verdict {'accepted' if accepted else 'refused'}", id="verdict")
 
 
 def sections(report: SensorReport) -> Iterator[tuple[str, str, Markup]]:

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from synth.book.case_names import case_name, why_infeasible
 from synth.book.case_result import CaseResult
-from synth.book.failed_case import FailedCase
 from synth.book.printed_numbers import counted, in_ten_thousand, interval, speed
 from synth.present.report.book_report import BookReport
 from synth.present.report.markup import Markup, element
@@ -16,7 +13,6 @@ def verdict(book: BookReport) -> Markup:
     """The box at the head of the page."""
     word = "Accepted" if book.accepted else "Not accepted"
     parts = [element("p", element("strong", word), " — ", book.verdict)]
-    parts += failed_cases(book.failed)
     if book.feasible:
         parts.append(element("p", worst_case(book)))
     if book.infeasible:
@@ -36,15 +32,6 @@ def verdict(book: BookReport) -> Markup:
 def every(book: BookReport) -> str:
     """How many cases there are to judge."""
     return f"{len(book.cases)} with a table" if book.failed else str(len(book.cases))
-
-
-def failed_cases(failed: Sequence[FailedCase]) -> list[Markup]:
-    """Cases without a table, with what to change; nothing where there is none."""
-    if not failed:
-        return []
-    lead = f"No table, and not in the book: {counted(len(failed), 'case')}. All others are whole."
-    items = (element("li", element("strong", case.name), f": {case.reason}.") for case in failed)
-    return [element("p", lead), element("ul", *items)]
 
 
 def worst_case(book: BookReport) -> str:

@@ -40,7 +40,8 @@ class LibraryBrake:
 
     def head_m(self, mass_t: Floats, axles: Ints, category: Ints) -> Floats:
         """The same of any cuts (n,)."""
-        allowed = np.array([member.allowed_stage for member in self.categories.members])[category]
+        top = self.position.top_stage
+        allowed = np.array([member.at(top).allowed_stage for member in self.categories.members])[category]
         return np.asarray(self.share * self.full.head_m(mass_t, axles, allowed))
 
     @cached_property

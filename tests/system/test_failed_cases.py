@@ -1,0 +1,202 @@
+"""A tune in which a case cannot be solved: the others are whole, and everybody is told of that one."""
+
+from __future__ import annotations
+
+import contextlib
+import html
+import io
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from plant_models import PlantError
+from synth.book.failed_case import FailedCase, attempted, told_together
+from synth.checker.verdict import verify
+from synth.cli import main
+from synth.configuration.config_file import parse_config
+from synth.solver.coarse_grid import CoarseGridError
+from tests.system.conftest import CLASS, SECOND_CLASS, Command, changed
+from tests.system.test_permissions import COARSE
+from tests.system.test_sensors_tune import CONFIG as POINTS
+from tuning_tables import InvalidTable, read_book
+
+STEEP = "[criterion]\noverspeed_factor = 1000\n"
+"""A cost that the coarse grid of `CLASS` cannot hold at 1.5 m/s; 2.5 m/s is well."""
+
+ONE_BAD = changed(CLASS, ("[1.5]", "[1.5, 2.5]")) + STEEP + SECOND_CLASS + "targets_m_s = [2.5]\n"
+BAD = "gondola-4-22t to 1.5 m/s"
+REASON = "the grid is too coarse for these lines (an expected square came out negative): make grid.speed_step_m_s"
+KEYS = "; now grid.speed_step_m_s is 0.04 and grid.path_step_m is 1"
+
+
+@dataclass(frozen=True)
+class Tuned:
+    """A tune: exit code, what it printed, and its directory."""
+
+    code: int
+    out: str
+    err: str
+    directory: Path
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """summary.json."""
+        found: dict[str, Any] = json.loads((self.directory / "summary.json").read_bytes())
+        return found
+
+
+@pytest.fixture(scope="module")
+def tuned(tmp_path_factory: pytest.TempPathFactory) -> Tuned:
+    """Three cases in two classes, of which one cannot be solved; not to be changed."""
+    folder = tmp_path_factory.mktemp("one-bad")
+    (folder / "c.toml").write_text(ONE_BAD, encoding="utf-8")
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        code = main(["tune", str(folder / "c.toml"), "-o", str(folder / "out"), "--workers", "2"])
+    return Tuned(code, out.getvalue(), err.getvalue(), folder / "out")
+
+
+def test_the_other_cases_are_whole(tuned: Tuned) -> None:
+    assert tuned.code == 1
+    ids = ["gondola-4-22t-to-2.5-m-s", "gondola-4-30t-to-2.5-m-s"]
+    assert [table.id for table in read_book(tuned.directory / "book.h5")] == ids
+    assert sorted(path.stem for path in (tuned.directory / "tables").glob("*.json")) == ids
+    assert (tuned.directory / "c" / "retarder_table.c").is_file()
+    assert [case["id"] for case in tuned.summary["cases"]] == ids
+    pictures = {path.name for path in (tuned.directory / "plots").glob("*.svg")}
+    assert {"rms-by-controller.svg", "degree-study.svg"} <= pictures
+    assert not [name for name in pictures if "1.5" in name]
+
+
+def test_the_bad_case_is_named_with_its_reason_and_what_to_change(tuned: Tuned) -> None:
+    (failed,) = tuned.summary["failed"]
+    assert (failed["label"], failed["target_m_s"]) == ("gondola-4-22t", 1.5)
+    assert failed["reason"].startswith(REASON)
+    assert failed["reason"].endswith(KEYS)
+    page = html.unescape((tuned.directory / "report.html").read_text(encoding="utf-8"))
+    for text in (tuned.summary["verdict"], tuned.out, page, tuned.err):
+        assert BAD in text
+        assert failed["reason"] in " ".join(text.split())
+    assert "there is no table for 1 of 3 cases (" in tuned.summary["verdict"]
+    assert tuned.summary["accepted"] is False
+    (row,) = (line.split() for line in tuned.out.splitlines() if line.rstrip().endswith("no table"))
+    assert row[:2] == ["gondola-4-22t", "1.5"]
+    assert "no table: see the verdict" in page
+
+
+def test_the_counter_counts_cases_and_nothing_else(tuned: Tuned) -> None:
+    counted = [line for line in tuned.err.splitlines() if line.startswith("[")]
+    assert [line[:5] for line in counted] == ["[1/3]", "[2/3]", "[3/3]"]
+    assert sum("no table" in line for line in counted) == 1
+    assert "gondola-4-22t to 2.5 m/s: degree study done" in tuned.err
+
+
+def test_what_a_tune_leaves_is_read_by_who_checks_it(tuned: Tuned, command: Command) -> None:
+    assert verify(tuned.directory, 100, 1).code in (0, 1)
+    ran = command("inspect", tuned.directory)
+    assert ran.code == 0
+    assert f"there is no table for 1 of 3 cases ({BAD}: " in ran.out
+    config = tuned.directory.parent / "c.toml"
+    assert command("validate", tuned.directory / "book.h5", "--config", config, "--passes", "1000").code in (0, 1)
+
+
+def test_tables_for_point_sensors_lose_none_but_the_bad_case(command: Command, tmp_path: Path) -> None:
+    config, out = tmp_path / "c.toml", tmp_path / "out"
+    swaps = (
+        ("speed_step_m_s = 0.04", "speed_step_m_s = 0.1"),
+        ("[2.0, 2.5]", "[3.0, 2.5]"),
+        ("csv", "plots = false\ncsv"),
+    )
+    config.write_text(changed(POINTS, *swaps) + STEEP, encoding="utf-8")
+    ran = command("sensors", "tune", config, "-o", out, "--workers", "1")
+    assert ran.code == 1
+    summary = json.loads((out / "summary.json").read_bytes())
+    assert [path.stem for path in (out / "tables").glob("*.json")] == ["gondola-4-22t-to-2.5-m-s"]
+    (failed,) = summary["failed"]
+    assert (failed["label"], failed["target_m_s"]) == ("gondola-4-22t", 3.0)
+    assert "the grid is too coarse for these switching speeds" in failed["reason"]
+    page = html.unescape((out / "report.html").read_text(encoding="utf-8"))
+    for text in (summary["verdict"], page, ran.out):
+        assert f"gondola-4-22t to 3 m/s: {failed['reason']}" in text
+    assert [line[:5] for line in ran.err.splitlines() if line.startswith("[")] == ["[1/2]", "[2/2]"]
+    assert verify(out, 100, 1).code in (0, 1)
+    assert command("inspect", out).code == 0
+
+
+@pytest.fixture
+def no_surfaces(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Commands at any time find no design."""
+
+    def too_coarse(*_: object) -> None:
+        raise CoarseGridError("no surfaces on this grid")
+
+    monkeypatch.setattr("synth.book.permissions.case_permissions.polished_surfaces", too_coarse)
+
+
+WITHOUT_SURFACES = ("commands at any time", "commands at any time, no pressure gauge")
+
+
+@pytest.mark.usefixtures("no_surfaces")
+def test_a_permission_without_a_design_is_missing_alone(command: Command, tmp_path: Path) -> None:
+    config, out = tmp_path / "c.toml", tmp_path / "out"
+    config.write_text(changed(COARSE, ("plots = false", "plots = false\nreport = false")), encoding="utf-8")
+    ran = command("tune", config, "-o", out, "--permissions")
+    assert ran.code == 0  # the table is there, and keeps its limits
+    (case,) = json.loads((out / "summary.json").read_bytes())["cases"]
+    assert set(case["permissions"]) == {"several stages a command", "approach of 4 m"}
+    assert case["permissions_failed"] == dict.fromkeys(WITHOUT_SURFACES, "no surfaces on this grid")
+    for permission in WITHOUT_SURFACES:
+        assert f"gondola-4-22t to 2.5 m/s, {permission}: no surfaces on this grid" in ran.out
+    assert verify(out, 100, 1).code in (0, 1)
+
+
+@pytest.mark.usefixtures("no_surfaces")
+def test_permissions_of_the_other_cases_are_told(command: Command, tmp_path: Path) -> None:
+    config, out = tmp_path / "c.toml", tmp_path / "out"
+    swaps = ("[2.5]", "[2.5, 1.5]"), ("speed_step_m_s = 0.05", "speed_step_m_s = 0.04")
+    config.write_text(changed(COARSE, *swaps) + STEEP, encoding="utf-8")
+    ran = command("permissions", config, "-o", out)
+    assert ran.code == 1
+    summary = json.loads((out / "summary.json").read_bytes())
+    (case,), (failed,) = summary["cases"], summary["failed"]
+    assert (case["target_speed_m_s"], failed["target_m_s"]) == (2.5, 1.5)
+    assert set(case["permissions_failed"]) == set(WITHOUT_SURFACES)
+    assert f"{BAD}: no table: {REASON}" in ran.out
+    assert f"gondola-4-22t to 2.5 m/s, {WITHOUT_SURFACES[0]}: no surfaces on this grid" in ran.out
+    assert [line[:5] for line in ran.err.splitlines() if line.startswith("[")] == ["[1/2]", "[2/2]"]
+
+
+def test_all_cases_bad_are_one_sentence(command: Command, tmp_path: Path) -> None:
+    config = tmp_path / "c.toml"
+    config.write_text(CLASS + STEEP + SECOND_CLASS, encoding="utf-8")
+    ran = command("tune", config, "-o", tmp_path / "out")
+    assert (ran.code, ran.out) == (2, "")
+    told = ran.err.splitlines()[-1]
+    assert told.startswith(f"retarder-synth: {config}: no table for {BAD} (nor for the 1 other case): {REASON}")
+    assert not [path for path in (tmp_path / "out").rglob("*") if path.is_file()]
+
+
+def test_what_a_case_fails_by_is_told_in_the_words_of_the_configuration() -> None:
+    config = parse_config(CLASS, "c.toml")
+
+    def told(fault: Exception) -> str:
+        def fail() -> int:
+            raise fault
+
+        case = attempted(fail, "a", 2.0, config)
+        assert isinstance(case, FailedCase)
+        return case.reason
+
+    assert told(PlantError("sensor: noise_m_s is 0")) == "sensor.noise_m_s is 0"
+    assert told(CoarseGridError("make it finer", ("fit.degree",))) == "make it finer; now fit.degree is 2"
+    assert told(InvalidTable("lines touch.")).startswith("what was found makes no table (lines touch): make grid.")
+    with pytest.raises(ZeroDivisionError):
+        attempted(lambda: 1 // 0, "a", 2.0, config)
+
+
+def test_cases_that_fail_alike_are_told_together() -> None:
+    cases = [FailedCase("a", 1.5, "coarse"), FailedCase("b", 2.0, "other"), FailedCase("c", 1.5, "coarse")]
+    assert told_together(cases) == "a to 1.5 m/s, c to 1.5 m/s: coarse; b to 2 m/s: other"
