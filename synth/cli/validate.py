@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tuning_tables.passages.passage_table import PassageTable
 
 
-LOG_PASSES, GAUGE_STD_KPA = 200, 2.0
+LOG_PASSES = 200
 """Of a log, unless the user says otherwise."""
 
 
@@ -44,7 +44,9 @@ def asked_log(path: Path | None, passes: int | None, gauge_std_kpa: float | None
         return None
     require_writable_name(path)
     require_new(path)
-    return AskedLog(path, passes or LOG_PASSES, GAUGE_STD_KPA if gauge_std_kpa is None else gauge_std_kpa)
+    from plant_models.pressure_gauge import USUAL_NOISE_KPA
+
+    return AskedLog(path, passes or LOG_PASSES, USUAL_NOISE_KPA if gauge_std_kpa is None else gauge_std_kpa)
 
 
 def validate_command(

@@ -23,6 +23,7 @@ from tuning_tables.pass_log.log_columns import (
     LogColumns,
     TextRuns,
 )
+from tuning_tables.pass_log.path_resets import path_resets_m
 
 Rows = npt.NDArray[np.bool_]
 
@@ -132,8 +133,10 @@ def gap(s: Segments) -> Rows:
 
 
 def path_goes_back(s: Segments) -> Rows:
-    """Rows more than the tolerance behind the farthest row before."""
-    path, back = s["path_m"], s.step(s["path_m"]) < 0.0
+    """Rows more than the tolerance behind the farthest row before, but for what the path was set anew."""
+    reset = path_resets_m(s["time_s"], s["path_m"], s["speed_m_s"], s.first_row)
+    path = s["path_m"] - np.cumsum(reset)
+    back = s.step(path) < 0.0
     found = np.zeros(len(path), dtype=np.bool_)
     for number in np.unique(s.pass_of_row[back]).tolist():
         rows = slice(int(s.first_row[number]), int(s.first_row[number + 1]))

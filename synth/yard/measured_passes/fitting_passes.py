@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from plant_models import Cut, Plant
 from plant_models.frozen_arrays import frozen_arrays
 from synth.faults.input_error import InputError
+from synth.yard.measured_passes.released_drive import released_drive_vents
 from tuning_tables.pass_log.pass_log import PassLog
 
 Ints = NDArray[np.int64]
@@ -21,12 +22,14 @@ Ints = NDArray[np.int64]
 class FittingPasses:
     """A log whose passes all belong to classes of one position.
 
-    `plants`: (label, plant) of the classes; `class_of` (m,): number of the class of each pass.
+    `plants`: (label, plant) of the classes; `class_of` (m,): number of the class of each pass. `released_vents`: a
+    released drive is open to the air (`released_drive`).
     """
 
     log: PassLog
     plants: tuple[tuple[str, Plant], ...]
     class_of: Ints
+    released_vents: bool
 
     def __len__(self) -> int:
         return len(self.log)
@@ -43,7 +46,7 @@ class FittingPasses:
 
     def taken(self, numbers: Ints) -> FittingPasses:
         """Some of the passes."""
-        return FittingPasses(self.log.taken(numbers), self.plants, self.class_of[numbers])
+        return replace(self, log=self.log.taken(numbers), class_of=self.class_of[numbers])
 
 
 def fitting_passes(log: PassLog, plants: Sequence[tuple[str, Plant]], source: str) -> FittingPasses:
@@ -66,4 +69,6 @@ def fitting_passes(log: PassLog, plants: Sequence[tuple[str, Plant]], source: st
     highest = int(log.stage.max())
     if highest > top:
         raise InputError(f"{source}: the position has the stages 0 to {top}, but the log commands stage {highest}")
-    return FittingPasses(log, tuple(plants), np.argmin(apart, axis=1))
+    position = plants[0][1].position
+    vents = released_drive_vents(log, position.stage_pressures_kpa, position.pneumatics)
+    return FittingPasses(log, tuple(plants), np.argmin(apart, axis=1), vents)

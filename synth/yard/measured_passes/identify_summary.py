@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
+import numpy as np
+
 from synth.yard.measured_passes import unknowns as asked
+from synth.yard.measured_passes.fitting_passes import FittingPasses
 from synth.yard.measured_passes.identifiability import Finding
 from synth.yard.measured_passes.identify import Identified
 from synth.yard.measured_passes.residual_tests import ResidualTest
+from tuning_tables.pass_log.path_resets import path_resets_m
 
 CONFIG: Final = "config.toml"
 
@@ -31,6 +36,7 @@ def _sentences(found: Identified) -> Iterator[str]:
         if finding.key == asked.BIAS and not finding.within:
             low, high = finding.interval
             yield f"The speed sensor shows {finding.value:+.3f} [{low:+.3f}, {high:+.3f}] m/s too much: adjust it."
+    yield from log_sentences(found.passes, found.estimate.values)
     yield (
         f"Surprises of the readings, over what is expected (1 where the numbers are right): "
         f"{found.before.surprise_rms:.2f} with the numbers before, {found.after.surprise_rms:.2f} with these."
@@ -44,6 +50,27 @@ def _sentences(found: Identified) -> Iterator[str]:
         yield (
             f"Of {len(open_ones)} {'effect' if len(open_ones) == 1 else 'effects'} these passes do not say whether it "
             "matters; more passes would."
+        )
+
+
+def log_sentences(passes: FittingPasses, values: Mapping[str, float]) -> Iterator[str]:
+    """What is otherwise in the log than in the model, and how it was taken; `values`: the identified numbers."""
+    log = passes.log
+    reset = path_resets_m(log.time_s, log.path_m, log.speed_m_s, log.first_row)
+    rows = np.flatnonzero(reset)
+    if len(rows):
+        in_passes = len(np.unique(log.pass_of_row[rows]))
+        yield (
+            f"The path was set anew {len(rows)} times, in {in_passes} of {len(log)} passes, "
+            f"by {np.max(np.abs(reset)):.2f} m at most: the rows ahead are shifted by as much."
+        )
+    if passes.released_vents:
+        drive = passes.plant.position.pneumatics
+        band, supply = values[asked.DEAD_BAND], drive.supply_pressure_kpa - drive.exhaust_pressure_kpa
+        sooner_s = values[asked.FILL] * math.log(supply / (supply - band))
+        yield (
+            "The released drive is open to the air: it rests at the pressure of the air, not at the edge of the dead "
+            f"band. Simulator and tables let it rest at the edge, so it fills {1e3 * sooner_s:.0f} ms sooner there."
         )
 
 
@@ -77,6 +104,7 @@ def identify_summary(found: Identified, created: str, hashes: dict[str, str]) ->
         "created": created,
         "config_sha256": found.config.sha256,
         "passes": len(found.passes),
+        "released_vents": found.passes.released_vents,
         "log_likelihood": found.estimate.log_likelihood,
         "sentences": list(identify_sentences(found)),
         "numbers": [number(finding) for finding in found.findings],

@@ -19,6 +19,7 @@ from synth.kernels.measured.pass_filter import BySpeed, Cuts, Rows, Spread, filt
 from synth.yard.measured_passes import unknowns as asked
 from synth.yard.measured_passes.fitting_passes import FittingPasses
 from synth.yard.measured_passes.pass_rows import PassRows, pass_rows
+from synth.yard.measured_passes.released_drive import OPEN_BAND_KPA
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -71,8 +72,9 @@ class Likelihood:
             exhaust_s=values[asked.EXHAUST],
             band_kpa=values[asked.DEAD_BAND],
         )
+        released = drive._replace(band_kpa=OPEN_BAND_KPA) if self.passes.released_vents else drive
         over, kpa = np.empty_like(self.rows.brake_m2_s2_per_kpa), np.empty(len(self.rows.step_m))
-        drive_rows(self.commands, drive, 0, len(self.passes), over, kpa)
+        drive_rows(self.commands, drive, released, 0, len(self.passes), over, kpa)
         return over, kpa
 
     def at(self, values: Mapping[str, float], pressures: tuple[Floats, Floats] | None = None) -> Surprises:

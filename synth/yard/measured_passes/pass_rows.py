@@ -1,6 +1,7 @@
 """The motion of measured passes as the filter takes it: what grade, resistance and brake do from row to row.
 
-From `plant_models.motion`, exactly averaged over path; the logged path is linear in time between two rows.
+From `plant_models.motion`, exactly averaged over path; the logged path is linear in time between two rows. Where it was
+set anew within a pass, it is the path that was set right (`path_resets`).
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from plant_models import Cut, Plant, path_breaks_m, path_coefficients
 from plant_models.frozen_arrays import frozen_arrays
 from plant_models.motion import braked_axles, mean_braked_axles
 from synth.yard.measured_passes.fitting_passes import FittingPasses
+from tuning_tables.pass_log.path_resets import path_resets_m, path_set_right_m
 
 Floats = NDArray[np.float64]
 
@@ -49,7 +51,9 @@ def pass_rows(passes: FittingPasses) -> PassRows:
     inner[log.first_row[1:] - 1] = False
     following = np.minimum(np.arange(n) + 1, n - 1)
     step_s = np.where(inner, log.time_s[following] - log.time_s, 0.0)
-    step_m = np.where(inner, log.path_m[following] - log.path_m, 0.0)
+    reset_m = path_resets_m(log.time_s, log.path_m, log.speed_m_s, log.first_row)
+    path_m = path_set_right_m(log.path_m, reset_m, log.first_row)
+    step_m = np.where(inner, path_m[following] - path_m, 0.0)
     parts = max(1, math.ceil(float(np.median(step_s[inner])) / PART_S - 1e-9))
     mean_axles = float(np.mean([mean_braked_axles(plant.position, plant.cut) for _, plant in passes.plants]))
     gained, drag = np.zeros(n), np.zeros(n)
@@ -61,7 +65,7 @@ def pass_rows(passes: FittingPasses) -> PassRows:
         rows = np.flatnonzero((class_of_row == number) & inner)
         if len(rows) == 0:
             continue
-        at = log.path_m[rows, None] + step_m[rows, None] * shares
+        at = path_m[rows, None] + step_m[rows, None] * shares
         way = way_of(plant, float(at.min()), mean_axles)
         gravity, force = scales(plant, passes, cuts)
         gravity_of, force_of = (x[log.pass_of_row[rows]] for x in (gravity, force))
@@ -70,7 +74,15 @@ def pass_rows(passes: FittingPasses) -> PassRows:
         drag[rows] = gravity_of * plant.cut.reduced_gravity_m_s2 * 1e-3 * step_m[rows]
         brake[rows] = force_of[:, None] * np.diff(np.interp(at, edges, braked), axis=1)
         by_axles[rows] = force_of[:, None] * np.diff(np.interp(at, edges, braked_by_axles), axis=1)
-    return PassRows(step_m, gained, drag, brake, by_axles, mean_axles, shown_m_s(passes, step_s, step_m))
+    return PassRows(
+        step_m,
+        gained,
+        drag,
+        brake,
+        by_axles,
+        mean_axles,
+        shown_m_s(passes, step_s, np.where(reset_m[following] == 0.0, step_m, np.nan)),
+    )
 
 
 def way_of(plant: Plant, from_m: float, mean_axles: float) -> tuple[Floats, Floats, Floats, Floats]:
@@ -100,7 +112,7 @@ def on(edges: Floats, values: Floats, at: Floats) -> Floats:
 
 
 def shown_m_s(passes: FittingPasses, step_s: Floats, step_m: Floats) -> Floats:
-    """How much more than path by time the sensor showed on the mean of each pass."""
+    """How much more than path by time the sensor showed on the mean of each pass; NaN in `step_m` is left out."""
     log = passes.log
     if not log.path_is_independent:
         return np.full(len(log), np.nan)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.library import SourcedValue
+from plant_models.pressure_gauge import USUAL_NOISE_KPA
 from synth.yard.measured_passes.fitting_passes import FittingPasses
 
 Floats = NDArray[np.float64]
@@ -42,7 +43,7 @@ RANGES: Mapping[str, tuple[float, float, float]] = {
     SLOPE_BY_AXLES: (0.0, -0.1, 0.1),
     BIAS: (0.0, -0.05, 0.05),
     RESISTANCE_SPREAD: (1.0, 0.6, 1.7),
-    GAUGE_NOISE: (3.0, 0.5, 20.0),
+    GAUGE_NOISE: (USUAL_NOISE_KPA, 0.5, 20.0),
 }
 """(value, low, high) of numbers that no configuration has."""
 

@@ -16,6 +16,7 @@ from matplotlib.lines import Line2D
 
 from synth.configuration.config_file import load_config
 from synth.configuration.resolved_config import ResolvedConfig
+from synth.frame.results_directory import results_directory
 from synth.present.plots.control_charts import control_charts
 from synth.present.watch_outputs import charts_csv, write_watch
 from synth.yard.measured_passes.drift.charts import charts_of
@@ -109,7 +110,8 @@ def test_cuts_out_of_brake_are_marked_and_move_no_median(config: ResolvedConfig)
 
 
 def test_the_page_has_its_charts_under_one_heading(config: ResolvedConfig, tmp_path: Path) -> None:
-    write_watch(watch_of(config, False), config, "2000-01-01T00:00:00Z", tmp_path)
+    with results_directory(tmp_path, "watch", summary="watch.json") as directory:
+        write_watch(watch_of(config, False), config, "2000-01-01T00:00:00Z", directory)
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert re.findall(r"<h[1-6][^>]*>(.*?)</h[1-6]>", page)[1:] == ["Charts"]
     assert "Vertical lines" not in page
