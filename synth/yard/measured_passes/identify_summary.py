@@ -45,11 +45,11 @@ def _sentences(found: Identified) -> Iterator[str]:
         yield "No test says that the model does not hold."
     for test in found.wrong:
         yield f"The model does not hold: {test_sentence(test)} (p = {test.p:.1g})."
-    open_ones = [test for test in found.tests if test.may_matter and test not in found.wrong]
-    if open_ones:
+    undecided = sum(test.may_matter and test not in found.wrong for test in found.tests)
+    if undecided:
         yield (
-            f"Of {len(open_ones)} {'effect' if len(open_ones) == 1 else 'effects'} these passes do not say whether it "
-            "matters; more passes would."
+            f"{undecided} of {len(found.tests)} tests {'is' if undecided == 1 else 'are'} not decided: the interval "
+            "reaches beyond what matters. More passes make it shorter."
         )
 
 
@@ -70,7 +70,7 @@ def log_sentences(passes: FittingPasses, values: Mapping[str, float]) -> Iterato
         sooner_s = values[asked.FILL] * math.log(supply / (supply - band))
         yield (
             "The released drive is open to the air: it rests at the pressure of the air, not at the edge of the dead "
-            f"band. Simulator and tables let it rest at the edge, so it fills {1e3 * sooner_s:.0f} ms sooner there."
+            f"band. Simulator and tables take it to rest at the edge, and to fill {1e3 * sooner_s:.0f} ms too soon."
         )
 
 

@@ -19,6 +19,7 @@ from synth.yard.measured_passes.fitting_passes import FittingPasses
 from tuning_tables.pass_log.path_resets import path_resets_m, path_set_right_m
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 PART_S = 0.025
 """Longest part of the time between two rows over which a pressure counts by its mean."""
@@ -32,7 +33,7 @@ class PassRows:
     `step_m`, `gained_m2_s2` (n,): path, and ΔG by the grade; `drag_m2_s2_per_n_kn` (n,): ΔR;
     `brake_m2_s2_per_kpa` (n, parts): ∫β ds of each part of the time; `by_axles_m2_s2_per_kpa` (n, parts): the same of
     β (N − N̄), what a force slope that depends on the number N of braked wheel pairs adds; `mean_axles`: N̄ of the log.
-    `show_m_s` (m,): mean measured speed less path by time, NaN where the path was summed up from the speed.
+    `show_m_s` (m,): mean measured speed less path by time, NaN where no path tells it.
     """
 
     step_m: Floats
@@ -81,7 +82,7 @@ def pass_rows(passes: FittingPasses) -> PassRows:
         brake,
         by_axles,
         mean_axles,
-        shown_m_s(passes, step_s, np.where(reset_m[following] == 0.0, step_m, np.nan)),
+        shown_m_s(passes, step_s, np.where(right_steps(reset_m, log.first_row), step_m, np.nan)),
     )
 
 
@@ -109,6 +110,19 @@ def on(edges: Floats, values: Floats, at: Floats) -> Floats:
     """`values` at `at`; beyond the last edge they go on as before it."""
     slope = (values[-1] - values[-2]) / (edges[-1] - edges[-2])
     return np.asarray(np.interp(at, edges, values) + slope * np.maximum(at - edges[-1], 0.0))
+
+
+def right_steps(reset_m: Floats, first_row: Ints) -> NDArray[np.bool_]:
+    """From each row to the next, whether the path is known to count right, (n,): in a pass without a correction
+    everywhere; in others between the first and the last one, for ahead of them it is off by the correction."""
+    right = np.ones(len(reset_m), dtype=np.bool_)
+    rows = np.flatnonzero(reset_m)
+    passes = np.searchsorted(first_row, rows, side="right") - 1
+    for number in np.unique(passes).tolist():
+        of_pass = rows[passes == number]
+        right[first_row[number] : first_row[number + 1]] = False
+        right[of_pass[0] : of_pass[-1]] = True
+    return right
 
 
 def shown_m_s(passes: FittingPasses, step_s: Floats, step_m: Floats) -> Floats:

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
 
+from plant_models.pressure_gauge import USUAL_NOISE_KPA
+from synth.cli.arguments import GaugeStd
 from synth.cli.identify import identify_command
+from synth.cli.validate import asked_log
 from synth.faults.input_error import InputError
 from synth.studies.identification.truths import text_of_classes
 from synth.yard.measured_passes.estimate import Estimate
 from synth.yard.measured_passes.fitting_passes import FittingPasses
 from synth.yard.measured_passes.residual_tests import MOTION, ResidualTest, residual_tests, wrong
+from synth.yard.measured_passes.unknowns import GAUGE_NOISE, RANGES
 from tuning_tables.pass_log.log_files import write_log
 
 
@@ -31,7 +36,9 @@ def test_holm_stops_at_the_first_that_may_be_chance() -> None:
     assert [test.p for test in wrong(tests[1:])] == [0.0001, 0.004]
 
 
-def test_a_log_becomes_a_configuration(passes: FittingPasses, tmp_path: Path) -> None:
+def test_a_log_becomes_a_configuration(
+    passes: FittingPasses, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "my.toml").write_text(text_of_classes() + "[output]\nplots = true\n", encoding="utf-8")
     write_log(passes.log, tmp_path / "day.csv")
     code = identify_command([tmp_path / "day.csv"], None, tmp_path / "my.toml", tmp_path / "out", as_json=False)
@@ -43,6 +50,23 @@ def test_a_log_becomes_a_configuration(passes: FittingPasses, tmp_path: Path) ->
     low, high = numbers["sensor.noise_m_s"]["ci95"]
     assert low < 0.05 < high
     assert "identified from 80 passes" in (tmp_path / "out" / "config.toml").read_text(encoding="utf-8")
+    report, printed = (tmp_path / "out" / "report.html").read_text(encoding="utf-8"), capsys.readouterr().out
+    assert [test["matters_from"] for test in summary["tests"]] == [2.0, 5.0, 10.0, 0.01, 3.0]
+    for test in summary["tests"]:
+        assert not test["model_wrong"]
+        low, high = test["ci95"]
+        assert low < test["size"] < high
+        told = f"{test['looks_for']}, by {test['size']:+.2g} [{low:+.2g}, {high:+.2g}] {test['unit']}; it matters from"
+        assert f"{test['verdict']}: {told} {test['matters_from']:g}\n" in printed
+        assert f"<td>{low:+.2g} to {high:+.2g}</td><td>{test['matters_from']:g}</td><td>{test['unit']}</td>" in report
+
+
+def test_a_rehearsal_and_its_identification_begin_with_one_gauge() -> None:
+    asked_for = asked_log(Path("passes.csv"), None, None)
+    assert asked_for is not None
+    assert asked_for.gauge_std_kpa == RANGES[GAUGE_NOISE][0] == USUAL_NOISE_KPA
+    (option,) = (each for each in get_args(GaugeStd) if hasattr(each, "help"))
+    assert option.help == f"Noise of the logged pressure; {USUAL_NOISE_KPA:g} unless given."
 
 
 def test_too_few_passes_are_refused(passes: FittingPasses, tmp_path: Path) -> None:

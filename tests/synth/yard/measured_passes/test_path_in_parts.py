@@ -23,11 +23,33 @@ def set_right(log: PassLog, off_m: float) -> PassLog:
     return replace(log, path_m=np.where(log.path_m < TREADLE_M, log.path_m + off_m, log.path_m))
 
 
+def log_start(log: PassLog) -> float:
+    """Ahead of all passes."""
+    return float(log.path_m.min())
+
+
 @pytest.mark.parametrize("off_m", [0.2, -0.2])
 def test_steps_are_those_of_the_cut(passes: FittingPasses, off_m: float) -> None:
     true, parted = pass_rows(passes), pass_rows(replace(passes, log=set_right(passes.log, off_m)))
     assert np.max(np.abs(parted.step_m - true.step_m)) < 0.03
-    assert np.max(np.abs(parted.show_m_s - true.show_m_s)) < 0.005
+    met = set_right(passes.log, off_m).path_m != passes.log.path_m
+    alone = np.add.reduceat(met, passes.log.first_row[:-1]) == np.diff(passes.log.first_row)
+    assert (np.isfinite(parted.show_m_s) == alone).all()
+
+
+def test_a_path_that_counts_too_much_says_nothing_wrong_of_the_sensor(passes: FittingPasses) -> None:
+    """2 % too much from each treadle to the next; between the first and the last the path is known."""
+    treadles_m = (0.0, 8.0, 16.0, 24.0)
+    log, last = passes.log, np.full(len(passes.log.path_m), log_start(passes.log))
+    for at in treadles_m:
+        last = np.where(log.path_m >= at, at, last)
+    counted = last + 1.02 * (log.path_m - last)
+    true, parted = pass_rows(passes), pass_rows(replace(passes, log=replace(log, path_m=counted)))
+    both = np.isfinite(parted.show_m_s)
+    assert both.mean() > 0.9
+    assert abs(np.mean((parted.show_m_s - true.show_m_s)[both])) < 0.005
+    known = (log.path_m > 8.5) & (log.path_m < 15.0)
+    assert np.max(np.abs(parted.step_m - true.step_m)[known]) < 0.002
 
 
 @pytest.mark.parametrize("off_m", [0.2, -0.2])
