@@ -33,8 +33,8 @@ class ResolvedComputer:
     """Everything that the results depend on.
 
     `ranges`: uncertain inputs by their keys. `parameters`: every number with unit, range, source and whether it is
-    assumed; `warnings`: sentences about values outside their sensible range, and about long work; `place`: what messages
-    call the file.
+    assumed; `warnings`: sentences about values outside their sensible range, and about long work. `place`: what
+    messages call the file.
     """
 
     place: str
