@@ -107,7 +107,8 @@ FUNCTION_BLOCK RETARDER_OBSERVE
 (* To be called once at every sample, also while a change of stage is under way. What cannot be true is not believed: a
    speed above $LARGEST_SPEED m/s, negative or not finite (a missing reading: hand over -1.0) corrects nothing; such an
    overpressure (above $LARGEST_OVERPRESSURE kPa) counts as 0; a path that goes back, or on by more than
-   $LARGEST_STEP m, as no movement. *)
+   $LARGEST_STEP m, as no movement. A reading of 0.0 is believed: the cut stands, so the brake is released, and Unseen
+   stays 0. If the radar shows 0.0 where it has lost its target, hand over -1.0 in place of that. *)
 VAR_INPUT
     Path_m : REAL; (* first axle, from the entrance of the first retarder *)
     Speed_m_s : REAL; (* measured *)

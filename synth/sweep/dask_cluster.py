@@ -24,7 +24,7 @@ AHEAD = 2
 """Units given to the scheduler for each of its threads: one under way, one to begin with at once."""
 
 CLOSE_WITHIN_S = 5
-SCHEDULER_LOST = "the scheduler was lost before it was done; run the sweep again"
+SCHEDULER_LOST = "the scheduler was lost before it was done; the same command goes on"
 LOST = (OSError, TimeoutError, asyncio.TimeoutError, asyncio.CancelledError)
 """What the client raises when its scheduler is gone."""
 
@@ -95,6 +95,13 @@ def connect(address: str, work: Work = answer) -> DaskCluster:
             f"--scheduler is {address!r}, where no Dask scheduler answers ({' '.join(str(fault).split())[:120]}); give "
             "the address that it prints, such as tcp://host:8786"
         ) from None
-    for name in LOGGERS:
-        logging.getLogger(name).setLevel(logging.CRITICAL + 1)
+    silence(LOGGERS)
     return DaskCluster(client, distributed, work)
+
+
+def silence(names: Sequence[str]) -> None:
+    """Let the loggers `names` tell nothing, nor any below them: distributed gives these levels of their own."""
+    known = tuple(logging.root.manager.loggerDict)
+    below = (each for each in known if each.startswith(tuple(f"{name}." for name in names)))
+    for each in (*names, *below):
+        logging.getLogger(each).setLevel(logging.CRITICAL + 1)

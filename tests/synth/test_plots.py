@@ -21,7 +21,7 @@ from synth.present.plots.degree_study import degree_study
 from synth.present.plots.exit_density import bin_edges_m_s, exit_density, predicted_density
 from synth.present.plots.feasibility import feasibility
 from synth.present.plots.figure_file import draw, figure_files
-from synth.present.plots.house_style import logarithmic_y
+from synth.present.plots.house_style import MATHEMATICS, logarithmic_y, new_figure
 from synth.present.plots.picture import picture_files
 from synth.present.plots.picture_book import all_pictures
 from synth.present.plots.policy_map import command_image, parts_in_stage, policy_map
@@ -67,6 +67,30 @@ def test_a_figure_gives_the_same_png_and_svg_twice(name: str, cases: list[CaseRe
     root = ElementTree.fromstring(first.svg)
     assert root.tag == "{http://www.w3.org/2000/svg}svg"
     assert b"<dc:date>" not in first.svg
+
+
+PRINTABLE = "".join(map(chr, range(0x20, 0x7F))) + r" a $\frac{1}$ b $x^$, 5 $ and 6 $"
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_any_text_of_a_picture_may_be_any_text(name: str, cases: list[CaseResult]) -> None:
+    """Names and titles are the user's: a `$` in them is no mathematics."""
+    figure = FIGURES[name](cases)
+    texts = [text for text in figure.findobj(Text) if text.get_text()]
+    for text in texts:
+        text.set_text(PRINTABLE)
+    draw(figure)
+    assert len(texts) > 5
+    assert not any(text.get_parse_math() for text in figure.findobj(Text))
+
+
+def test_a_dollar_is_drawn_as_one() -> None:
+    """Not as mathematics, which a text is only where it is marked as such."""
+    drawn = [draw(new_figure(4.0, 1.0, title)).png for title in ("5 $ and 6 $", "5  and 6 ")]
+    assert drawn[0] != drawn[1]
+    formula = new_figure(4.0, 1.0, "5 $ and 6 $")
+    formula.texts[0].set_label(MATHEMATICS)
+    assert draw(formula).png != drawn[0]
 
 
 def test_no_text_leaves_the_figure(cases: list[CaseResult]) -> None:

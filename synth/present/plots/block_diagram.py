@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch, Rectangle
 
 from synth.present.plots.block_layout import HEIGHT_IN, NAMES, SIZE_IN, WIDTH_IN, Place, Route, centre, corners
-from synth.present.plots.house_style import GREY, INK, new_figure
+from synth.present.plots.house_style import GREY, INK, MATHEMATICS, new_figure
 from synth.simulation.structure.diagram import Box, Sketch, Wire
 from synth.simulation.structure.part import Block
 
@@ -76,7 +76,8 @@ def draw_part(axes: Axes, box: Box) -> None:
     axes.add_patch(frame)
     name = textwrap.fill(box.name, LETTERS_A_LINE)
     text = f"{name}\n{in_mathtext(box.symbol)}" if box.symbol else name
-    axes.text(x, y, text, ha="center", va="center", fontsize=8.5, linespacing=1.15, color=INK, zorder=4)
+    axes.text(x, y, text, ha="center", va="center", fontsize=8.5, linespacing=1.15, color=INK, zorder=4,
+              label=MATHEMATICS)  # fmt: skip
 
 
 def draw_wire(axes: Axes, wire: Wire, route: Route) -> None:
@@ -90,7 +91,7 @@ def draw_wire(axes: Axes, wire: Wire, route: Route) -> None:
     )  # fmt: skip
     if not wire.source:
         axes.text(*places[0], in_mathtext(wire.signal), ha="center", va="bottom" if ys[0] > ys[-1] else "top",
-                  fontsize=9.5, color=INK)  # fmt: skip
+                  fontsize=9.5, color=INK, label=MATHEMATICS)  # fmt: skip
     elif route.label >= 0:
         draw_name(axes, wire.signal, places[route.label], places[route.label + 1])
 
@@ -100,9 +101,9 @@ def draw_name(axes: Axes, signal: str, start: Place, end: Place) -> None:
     x, y = 0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])
     text = in_mathtext(signal)
     if start[1] == end[1]:
-        axes.text(x, y + 0.05, text, ha="center", va="bottom", fontsize=9.5, color=INK, zorder=5)
+        axes.text(x, y + 0.05, text, ha="center", va="bottom", fontsize=9.5, color=INK, zorder=5, label=MATHEMATICS)
     else:
-        axes.text(x + 0.06, y, text, ha="left", va="center", fontsize=9.5, color=INK, zorder=5)
+        axes.text(x + 0.06, y, text, ha="left", va="center", fontsize=9.5, color=INK, zorder=5, label=MATHEMATICS)
 
 
 def branches(sketch: Sketch, routes: Mapping[tuple[str, str], Route]) -> set[Place]:

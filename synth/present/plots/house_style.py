@@ -22,6 +22,9 @@ GREY, PALE_GREY, INK = "#767676", "#e6e6e6", "#222222"
 
 DOTS_PER_INCH = 110
 
+MATHEMATICS: Final = "mathematics"
+"""Label of a text whose `$…$` is set as mathematics; in all others a `$` is one, as users write it in titles."""
+
 LINE_COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BLACK)
 LINE_STYLES: Final[tuple[LineStyleType, ...]] = ("-", "--", "-.", ":", (0, (5, 1, 1, 1)), (0, (8, 2)), (0, (1, 1)))
 ENTRANCE_STYLE: Final[LineStyleType] = (0, (1, 2))

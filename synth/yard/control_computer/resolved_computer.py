@@ -20,6 +20,7 @@ from synth.yard.control_computer.asked_service import Service, asked_cycle, aske
 from synth.yard.control_computer.computer_parameters import computer_numbers
 from synth.yard.control_computer.economics.economic_case import EconomicCase
 from synth.yard.control_computer.economics.uncertainty.ranges import Range
+from synth.yard.control_computer.long_work import long_work
 from synth.yard.control_computer.reliability.upkeep import Upkeep, asked_upkeep
 from synth.yard.control_computer.sizing.carried_positions import PositionTimes
 from synth.yard.control_computer.sizing.cyclic_service import Cycle
@@ -32,7 +33,8 @@ class ResolvedComputer:
     """Everything that the results depend on.
 
     `ranges`: uncertain inputs by their keys. `parameters`: every number with unit, range, source and whether it is
-    assumed; `warnings`: sentences about values outside their sensible range; `place`: what messages call the file.
+    assumed; `warnings`: sentences about values outside their sensible range, and about long work. `place`: what
+    messages call the file.
     """
 
     place: str
@@ -96,7 +98,7 @@ def resolve_computer(file: ComputerFile) -> ResolvedComputer:
         ranges=ranges,
         settings=settings,
         parameters=parameters,
-        warnings=tuple(range_warnings(parameters)),
+        warnings=(*range_warnings(parameters), *long_work(settings, ranges)),
         names={
             "hump_sha256": hashlib.sha256(to_railml(file.hump)).hexdigest(),
             "tasks": [json.loads(task.model_dump_json()) for task in settings.task],

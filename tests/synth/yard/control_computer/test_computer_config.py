@@ -52,6 +52,28 @@ def test_the_figures_of_the_hump_are_those_of_the_kept_study() -> None:
         assert (each.low, each.high) == pytest.approx((told["low95"], told["high95"]), rel=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (
+            "[service]\nsimulated_requests = 10000000\n",
+            "service.simulated_requests is 10000000; that takes about 1 min",
+        ),
+        (
+            "[uncertainty]\ndraws = 1000000\n",
+            "uncertainty.draws is 1000000; that takes about 3 min; a number up to 300000",
+        ),
+        (
+            "[uncertainty]\nsobol_points = 65536\n",
+            "uncertainty.sobol_points is 65536; that takes about 4 min; a number",
+        ),
+    ],
+)
+def test_work_without_end_is_told_before_it_begins(text: str, words: str) -> None:
+    (told,) = (each for each in resolved(text).warnings if "takes about" in each)
+    assert told.startswith(words)
+
+
 def test_what_is_only_shown_changes_no_hash_and_numbers_do() -> None:
     built_in = resolve_computer(read_computer_file(None))
     assert resolved('title = "x"\n[output]\nplots = false\n').sha256 == built_in.sha256

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -53,6 +54,11 @@ def figures(humped: HumpedTrains, trace: TrainTrace, found: TrainOutcomes) -> di
         "no catch_ups": catch_ups(humped.entry, {}, TRAINS * CUTS),
         "couplings": couplings(found),
     }
+
+
+def test_the_title_of_a_hump_may_have_any_letters(humped: HumpedTrains) -> None:
+    entry = replace(humped.entry, title="".join(map(chr, range(0x20, 0x7F))) + r" a $\frac{1}$ b $x^$")
+    assert draw(catch_ups(entry, {}, 1)).png
 
 
 def texts(figure: Figure) -> list[Text]:
