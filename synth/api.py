@@ -23,7 +23,7 @@ from synth.book.tuned_table import with_prediction
 from synth.configuration.config_file import load_config as load_config_file
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.configuration.settings import FitSettings, GridSettings
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.kernels.cache import guarded
 from synth.problem.aim import Aim
 from synth.problem.problem import Problem

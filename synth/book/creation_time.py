@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from datetime import UTC, datetime
 
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 
 
 def creation_time() -> str:

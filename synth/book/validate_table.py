@@ -12,7 +12,7 @@ from plant_models.library.position_entry import APPROACH
 from synth.book.comparison.measured import honesty_of
 from synth.book.judgement import Judgement, judgement
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.simulation.closed_loop import TableController, simulate_many
 from synth.simulation.controllers import Controller, full_brake
 from synth.simulation.exit_statistics import BrakePower, ExitStatistics, brake_power, exit_statistics, overspeed_of

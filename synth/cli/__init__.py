@@ -89,7 +89,7 @@ def told(call: Callable[[], int]) -> int:
         return MACHINE_FAULT
     except ValueError as fault:
         from plant_models import PlantError
-        from synth.faults.input_error import InputError
+        from synth.frame.input_error import InputError
         from tuning_tables import OtherDecisions, TableError
         from tuning_tables.errors import InvalidLog
 
@@ -104,7 +104,7 @@ def told(call: Callable[[], int]) -> int:
 
 def told_of_system(fault: OSError) -> int:
     """Tell of what the system has refused; the exit code."""
-    from synth.faults.machine_fault import MACHINE_FAULTS
+    from synth.frame.machine_fault import MACHINE_FAULTS
 
     if fault.errno is None:  # from a library, not from the system
         return told_of_unforeseen(fault)
@@ -116,7 +116,7 @@ def told_of_system(fault: OSError) -> int:
 
 def told_of_unforeseen(fault: Exception) -> int:
     """Tell of a fault of this program; the exit code."""
-    from synth.faults.unforeseen import unforeseen
+    from synth.frame.unforeseen import unforeseen
 
     if os.environ.get(TRACEBACK):
         import traceback

@@ -123,7 +123,7 @@ def export_command(source: Path, output: Path) -> int:
     """Write the hump in `source` as railML into the file `output`."""
     from synth.configuration.hump import RAILML_SUFFIXES, read_hump
     from synth.configuration.railml.write import to_railml
-    from synth.faults.input_error import InputError
+    from synth.frame.input_error import InputError
     from synth.frame.new_file import require_new
     from tuning_tables.atomic_file import write_atomically
 
@@ -147,7 +147,7 @@ def schema_command() -> int:
 
 def drawn_route(graph: HumpGraph, track: int | None) -> Route:
     """The route to `track` from the first crest that reaches it; without a track, to the one with the most turning."""
-    from synth.faults.input_error import InputError
+    from synth.frame.input_error import InputError
 
     routes = [route for lead in graph.leads for route in graph.routes(lead).values()]
     if track is None:

@@ -32,7 +32,7 @@ def asked_for(types: dict[str, str | None]) -> tuple[str, str]:
     from synth.configuration.config_template import default_config_toml
     from synth.configuration.position_choice import require_held
     from synth.configuration.type_template import type_toml
-    from synth.faults.input_error import InputError
+    from synth.frame.input_error import InputError
 
     asked = [kind for kind in KINDS if types.get(kind.folder) is not None]
     aim, hump, computer = types.get("aim"), types.get("hump"), types.get("computer")
@@ -63,7 +63,7 @@ def aim_file(name: str) -> tuple[str, str]:
     from plant_models.library.near_miss import near_miss
     from synth.configuration.aim.template import default_aim_toml
     from synth.configuration.type_template import type_toml
-    from synth.faults.input_error import InputError
+    from synth.frame.input_error import InputError
 
     if not name:
         return "configuration", default_aim_toml()
@@ -80,7 +80,7 @@ def hump_file(name: str) -> tuple[str, str]:
     from plant_models.library.near_miss import near_miss
     from synth.configuration.hump import hump_text
     from synth.configuration.humping.template import default_trial_toml
-    from synth.faults.input_error import InputError
+    from synth.frame.input_error import InputError
 
     if not name:
         return "configuration", default_trial_toml()
@@ -92,7 +92,7 @@ def hump_file(name: str) -> tuple[str, str]:
 def computer_file(name: str) -> tuple[str, str]:
     """As `asked_for`: the configuration of a control computer, which has no types to be named."""
     from synth.configuration.computer.template import default_computer_toml
-    from synth.faults.input_error import InputError
+    from synth.frame.input_error import InputError
 
     if name:
         raise InputError(f"init --computer {name}: the library has no control computers; leave the name out")

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from synth.cli import LIMITS_MISSED, OK, say
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -55,7 +55,7 @@ class Surroundings:
 
     def passes(self, simulate: Callable[[], Drawn]) -> Drawn | None:
         """What `simulate` gives; None, with a word why, where no class fits and no configuration was asked for."""
-        from synth.faults.input_error import InputError
+        from synth.frame.input_error import InputError
         from synth.kernels.cache import guarded
 
         try:

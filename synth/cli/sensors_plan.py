@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 
 from synth.cli import LIMITS_MISSED, OK, say
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 
 FEWEST, MOST = 2, 24
 

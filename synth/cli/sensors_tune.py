@@ -37,7 +37,7 @@ def read_configuration(path: Path | None) -> tuple[str, ResolvedConfig, Resolved
     """(what messages call it, the configuration, its sensors); `InputError` where it asks for what is not possible."""
     from synth.configuration.config_file import load_config
     from synth.configuration.point_sensors.template import BUILT_IN_SENSORS, built_in_sensors
-    from synth.faults.input_error import InputError
+    from synth.frame.input_error import InputError
 
     place = BUILT_IN_SENSORS if path is None else str(path)
     config = built_in_sensors() if path is None else load_config(path)
@@ -98,7 +98,7 @@ def tune_into(
 def require_room(config: ResolvedConfig, sensors: ResolvedSensors, place: str, workers: int) -> None:
     """`InputError` if the grid would not fit into memory."""
     from plant_models import PlantError
-    from synth.faults.input_error import InputError
+    from synth.frame.input_error import InputError
     from synth.solver.chain.grid import require_memory
 
     for label, plant in config.plants():

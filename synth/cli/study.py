@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from synth.cli import LIMITS_MISSED, OK, say
 from synth.cli.printed_page import print_page
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 
 if TYPE_CHECKING:
     from synth.studies.result import Result

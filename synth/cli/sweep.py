@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from synth.cli import LIMITS_MISSED, OK, say
 from synth.cli.processors import available
 from synth.cli.tune import sensors_left_aside
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 
 if TYPE_CHECKING:
     from synth.cli.progress import Progress

@@ -6,7 +6,7 @@ import contextlib
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 
 if TYPE_CHECKING:
     from synth.book.failed_case import FailedCase

@@ -14,7 +14,7 @@ from synth.cli import LIMITS_MISSED, OK, say
 from synth.cli.processors import available
 from synth.cli.tables_refused import require_a_table, tables_refused
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 
 if TYPE_CHECKING:
     from synth.frame.results_directory import ResultsDirectory

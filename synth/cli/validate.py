@@ -34,7 +34,7 @@ class AskedLog:
 
 def asked_log(path: Path | None, passes: int | None, gauge_std_kpa: float | None) -> AskedLog | None:
     """What the options ask for; None for no log. `InputError` for options of a log without one, or a wrong ending."""
-    from synth.faults.input_error import InputError
+    from synth.frame.input_error import InputError
     from synth.frame.new_file import require_new
     from tuning_tables.pass_log.log_files import require_writable_name
 
@@ -56,7 +56,7 @@ def validate_command(
     from synth.book.forms.table_file import is_infeasible, summary_beside
     from synth.cli.interrupt import interruptible
     from synth.cli.tables_configuration import configuration_for
-    from synth.faults.input_error import InputError
+    from synth.frame.input_error import InputError
     from synth.kernels.cache import guarded
 
     passages, tables = tables_in(path)

@@ -11,7 +11,7 @@ from synth.configuration.own_types import with_own_types
 from synth.configuration.resolved_config import ResolvedConfig, resolve
 from synth.configuration.settings import Settings
 from synth.configuration.toml_file import Tree, read_text, toml_tree
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 
 BUILT_IN = "built-in configuration"
 

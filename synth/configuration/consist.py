@@ -10,7 +10,7 @@ from plant_models.library import CARS, CarEntry, Library, SourcedValue, load_car
 from synth.configuration.plant_fault import in_file
 from synth.configuration.plant_settings import CutSettings
 from synth.configuration.position_choice import require_held
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 
 
 @dataclass(frozen=True)

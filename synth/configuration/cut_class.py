@@ -15,7 +15,7 @@ from synth.configuration.consist import Consist, consist_values, resolve_consist
 from synth.configuration.plant_fault import in_file
 from synth.configuration.plant_settings import DEFAULT_CUTS, CutSettings
 from synth.configuration.targets import resolve_targets
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 
 DEFAULT_BOOK = "default book: one gondola for each weight category"
 

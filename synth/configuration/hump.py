@@ -14,7 +14,7 @@ from plant_models.library.type_file import HUMPS
 from synth.configuration.plant_fault import in_file
 from synth.configuration.railml.read import from_railml
 from synth.configuration.toml_file import read_text, toml_tree
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 
 RAILML_SUFFIXES: Final = (".railml", ".xml")
 

@@ -9,7 +9,7 @@ from typing import Final
 from plant_models import PlantError
 from plant_models.library import TypeFileError
 from plant_models.library.data_file import keyed
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from tuning_tables.excerpt import excerpt
 
 LONGEST_SENTENCE: Final = 400

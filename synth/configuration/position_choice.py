@@ -8,7 +8,7 @@ from plant_models.library.position_entry import position_with_types
 from synth.configuration.plant_fault import in_file
 from synth.configuration.plant_settings import DEFAULT_POSITION
 from synth.configuration.settings import Settings
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from tuning_tables.excerpt import excerpt
 
 

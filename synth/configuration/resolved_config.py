@@ -37,7 +37,7 @@ from synth.configuration.settings import (
     ValidationSettings,
 )
 from synth.configuration.targets import resolve_targets
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.problem.aim import Aim
 from synth.problem.any_time_resolution import design_resolution
 from synth.problem.criterion import Criterion

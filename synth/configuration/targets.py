@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from plant_models import EntryLaw
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 
 
 def resolve_targets(key: str, speeds_m_s: tuple[float, ...], entry: EntryLaw, file: str) -> tuple[float, ...]:

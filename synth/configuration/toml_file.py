@@ -6,8 +6,8 @@ import tomllib
 from pathlib import Path
 from typing import Any, Final
 
-from synth.faults.input_error import InputError
-from synth.faults.machine_fault import MACHINE_FAULTS
+from synth.frame.input_error import InputError
+from synth.frame.machine_fault import MACHINE_FAULTS
 from tuning_tables import DamagedTable
 from tuning_tables.excerpt import excerpt
 from tuning_tables.regular_file import read_regular_file

@@ -1,1 +1,1 @@
-"""What every command stands on: the directory that its results go to, held by one and changed by nobody else."""
+"""What every command stands on: what can go wrong, and the directory of its results, which nobody else changes."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 
 
 def require_new(path: Path) -> None:

@@ -17,9 +17,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Final
 
-from synth.faults.input_error import InputError
-from synth.faults.machine_fault import MACHINE_FAULTS
 from synth.frame.held_directory import held
+from synth.frame.input_error import InputError
+from synth.frame.machine_fault import MACHINE_FAULTS
 from synth.frame.own_files import CHANGING, MARKER, OwnFiles, command_of, sha256_of
 from tuning_tables.atomic_file import faults_naming, replacing
 

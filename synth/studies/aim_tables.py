@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from synth.book.creation_time import creation_time
 from synth.book.printed_numbers import percent
 from synth.configuration.aim.aim_file import BUILT_IN_AIM, parse_aim_file
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.simulation.replicates import Interval
 from synth.studies.markdown_table import MarkdownTable, around, table
 from synth.studies.options import option

@@ -23,7 +23,7 @@ from synth.checker.plant import plant_of
 from synth.checker.statistics import figures_of
 from synth.checker.table_reading import read_table
 from synth.configuration.config_file import parse_config
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.simulation.closed_loop import LineController, TableController, simulate_many
 from synth.simulation.controllers import full_brake
 from synth.simulation.exit_statistics import brake_power, exit_statistics, rms_ratio

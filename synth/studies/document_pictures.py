@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.studies.result import Result
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from functools import cache
 from pathlib import Path
 
 from plant_models.library.near_miss import near_miss
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.studies.document_pictures import is_stale, pictures_of, write_picture
 from synth.studies.markdown_table import table
 from synth.studies.named_study import study_named

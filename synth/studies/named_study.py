@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from plant_models.library.near_miss import near_miss
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.studies.registry import STUDIES
 from synth.studies.study import Study
 

@@ -15,7 +15,7 @@ from types import UnionType
 from typing import Any, NoReturn, TypeVar, get_args, get_origin, get_type_hints
 
 from plant_models.library.near_miss import near_miss
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 
 _T = TypeVar("_T")
 _O = TypeVar("_O")

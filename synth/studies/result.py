@@ -10,7 +10,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.studies.study import Findings, Study, Tell, silent
 
 if TYPE_CHECKING:

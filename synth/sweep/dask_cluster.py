@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.sweep.work import Answer, Begun, Order, Work, answer
 
 ANSWER_WITHIN_S = 15

@@ -9,7 +9,7 @@ from importlib.metadata import version
 from typing import Protocol
 
 from synth.book.creation_time import creation_time
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.solver.chain.grid import available_memory_bytes
 from synth.sweep.bind import Failure, Outcome, bind
 from synth.sweep.ledger import DONE, ENDED, FAILED, FOUND_DAMAGED, PLAN, STARTED, Ledger, LedgerWriter

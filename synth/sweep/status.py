@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from synth.faults.input_error import InputError
 from synth.frame.held_directory import is_held
+from synth.frame.input_error import InputError
 from synth.sweep.ledger import DONE, FAILED, STARTED, Event, Ledger
 from synth.sweep.sweep_directory import SweepDirectory
 

@@ -20,7 +20,7 @@ from synth.configuration.resolved_config import ResolvedConfig, resolve
 from synth.configuration.section import setting_limits
 from synth.configuration.settings import Settings
 from synth.configuration.toml_file import Tree, read_text, toml_tree
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.sweep.sweep_settings import CONDITION_SECTIONS, SweepSettings, SweptCuts
 from tuning_tables.excerpt import excerpt
 

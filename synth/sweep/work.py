@@ -13,7 +13,7 @@ from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar
 
-from synth.faults.unforeseen import unforeseen
+from synth.frame.unforeseen import unforeseen
 from synth.sweep.plan import UnitOrder
 from synth.sweep.software import software_sha256
 from synth.sweep.unit_result import UnitResult

@@ -7,7 +7,7 @@ from pathlib import Path
 from plant_models import PlantError
 from synth.book.forms.table_file import read_tables
 from synth.configuration.config_file import BUILT_IN, load_config
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.yard.table_class import TableClass, table_classes
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.simulation.passes import ExitSample
 from synth.studies.coverage import (
     CASES,

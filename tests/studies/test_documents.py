@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.studies.documents import KEPT, documents, filled, listed, result_of, stale, written
 from synth.studies.registry import STUDIES
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.studies.options import option, options_from, parser_of
 
 

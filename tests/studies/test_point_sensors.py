@@ -13,7 +13,7 @@ from synth.book.sensors.candidate_places import LayoutCase, candidate_places
 from synth.book.sensors.layout import equal_layout, with_layout
 from synth.book.sensors.layout_plan import LayoutProblem, best_places, found_layouts
 from synth.book.sensors.tuned_passages import PassageChains, TunedPassages, passage_chains, tuned_passages
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.problem.resolution import Resolution
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.passage_sample import DECIDED, NOT_HEARD, UNFINISHED, PassageSample

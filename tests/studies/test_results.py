@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.studies import study as study_module
 from synth.studies.markdown_table import MarkdownTable, around, plus_minus, table
 from synth.studies.options import option

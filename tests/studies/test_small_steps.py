@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from synth.configuration.config_file import load_config
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.problem.aim import Aim
 from synth.problem.criterion import SQUARED_ERROR_CRITERION
 from synth.problem.problem import Problem

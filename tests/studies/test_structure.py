@@ -11,7 +11,7 @@ import pytest
 
 from plant_models import Approach, Plant
 from synth.configuration.config_file import load_config
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.simulation.controllers import TableController
 from synth.simulation.nominal_pass import nominal_entry_m_s, nominal_pass, nominal_plant
 from synth.simulation.passage_loop import close_passage_loop

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.simulation.passes import PassTrace
 from synth.studies.integration_error import commands_of, compared
 from synth.studies.times.commands import NO_PICTURES, run_process, tune_calls

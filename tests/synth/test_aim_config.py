@@ -14,7 +14,7 @@ from synth.configuration.aim.settings import ResistanceSettings
 from synth.configuration.aim.template import default_aim_toml
 from synth.configuration.section import setting_limits
 from synth.configuration.type_template import type_toml
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.yard.aim.resolved_aim import ResolvedAim, load_aim, resolve_aim
 
 

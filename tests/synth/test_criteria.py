@@ -12,7 +12,7 @@ import pytest
 from plant_models import EntrySpeed, Plant, PlantError, PressingForce, RetarderPosition, RollingResistance
 from synth.configuration.config_file import parse_config
 from synth.configuration.config_template import default_config_toml
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.problem import Problem

@@ -16,7 +16,7 @@ from plant_models.library.type_file import TypeFileError
 from synth.configuration.config_file import load_config, parse_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.configuration.type_template import START_FROM, type_toml
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 
 CUT = '[[cut]]\ncar = "gondola-4"\nmass_t = 22\n'
 

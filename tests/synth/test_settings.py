@@ -9,7 +9,7 @@ import pytest
 from plant_models.library import position_names
 from synth.configuration.config_file import load_config, parse_config
 from synth.configuration.config_template import default_config_toml
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.problem.resolution import Resolution
 from tuning_tables.canonical import canonical_json
 

@@ -18,7 +18,7 @@ import pytest
 
 import synth
 from plant_models import Plant
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from tests.system.coefficients import coefficients_sha256
 from tuning_tables import ControllerTable, read_json
 

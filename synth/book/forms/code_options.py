@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from tuning_tables.correction import LARGEST_LIMIT_M_S, LEAST_LIMIT_M_S
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize

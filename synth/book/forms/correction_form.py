@@ -9,7 +9,7 @@ from typing import Final
 
 from synth.book.forms.code_options import CodeOptions
 from synth.book.forms.table_forms import Files
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from tuning_tables import ControllerTable
 from tuning_tables.correction import Correction
 

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from synth.book.forms.aim_file import is_aim_table
 from synth.book.forms.passage_mark import is_passage_table
-from synth.faults.input_error import InputError
-from synth.faults.machine_fault import MACHINE_FAULTS
+from synth.frame.input_error import InputError
+from synth.frame.machine_fault import MACHINE_FAULTS
 from tuning_tables import ControllerTable, read_book, read_json
 from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.passages.passage_table import PassageTable

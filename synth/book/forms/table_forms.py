@@ -7,7 +7,7 @@ from typing import TypeVar
 
 from synth.book.forms.code_options import PLAIN, CodeOptions
 from synth.book.forms.table_file import file_stem
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from tuning_tables import ControllerTable, to_csv, to_json
 from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.passages.passage_table import PassageTable

@@ -5,7 +5,7 @@ from __future__ import annotations
 from plant_models import PlantError
 from synth.configuration.plant_fault import in_file
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.problem.any_time_resolution import design_resolution
 
 

@@ -15,7 +15,7 @@ from synth.book.sensitivity.responses import responses
 from synth.book.sensitivity.shares import Estimates, Share, first_order, mean_estimates, noise_share
 from synth.book.sensitivity.varied import Varied, moving, varied_parameters
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.simulation.stratified_passes import stratified_passes
 
 Floats = NDArray[np.float64]

@@ -12,7 +12,7 @@ from synth.configuration.aim.settings import AimFileSettings
 from synth.configuration.file_fault import faults_in
 from synth.configuration.own_types import with_own_types
 from synth.configuration.toml_file import read_text, toml_tree
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 
 BUILT_IN_AIM = "built-in aim configuration"
 

@@ -13,7 +13,7 @@ from synth.configuration.file_fault import faults_in
 from synth.configuration.hump import read_graph
 from synth.configuration.humping.trial_file import hump_source
 from synth.configuration.toml_file import read_text, toml_tree
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 
 BUILT_IN_COMPUTER = "built-in computer configuration"
 

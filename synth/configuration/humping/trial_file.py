@@ -17,7 +17,7 @@ from synth.configuration.hump import RAILML_SUFFIXES, read_graph
 from synth.configuration.humping.settings import HumpTrialSettings
 from synth.configuration.own_types import with_own_types
 from synth.configuration.toml_file import Tree, read_text, toml_tree
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 
 BUILT_IN_TRIAL = "built-in hump trial"
 HUMP_FORMAT = "hump"

@@ -18,7 +18,7 @@ from plant_models.library.hump_entry import HumpEntry
 from synth.configuration.railml.names import OWN, net_relation
 from synth.configuration.railml.tree import RailmlTree, local
 from synth.configuration.railml.write import railml_of
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from tuning_tables.excerpt import excerpt
 
 FREE: Final = ("id", "language")

@@ -27,7 +27,7 @@ from plant_models.library.hump_entry import HumpEntry
 from synth.configuration.railml.agreement import require_agreement
 from synth.configuration.railml.names import OWN_ZONES, SIDES, net_element, own
 from synth.configuration.railml.tree import RailmlTree, railml_tree
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from tuning_tables.excerpt import excerpt
 
 _T = TypeVar("_T")

@@ -11,7 +11,7 @@ from typing import Final
 from xml.etree import ElementTree as Xml
 
 from synth.configuration.railml.names import CONTAINERS, OWN, RAILML, READ, own
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from tuning_tables.excerpt import excerpt
 
 DEEPEST: Final = 30

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.simulation.exit_statistics import clopper_pearson
 from synth.studies.identification.truths import TRUTHS, Truth, Yard, assumed_yard
 from synth.studies.markdown_table import MarkdownTable, table

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.studies.in_the_loop.books import tuned_book
 from synth.studies.in_the_loop.code_cost import CodeSize, dearest_call, missing, object_size
 from synth.studies.in_the_loop.controller_process import COMMAND, READING, SAMPLE, build_controller, compile_with

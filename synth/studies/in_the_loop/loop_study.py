@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.random_passes import random_passes
 from synth.studies.in_the_loop.books import Tuned, tuned_book

@@ -9,7 +9,7 @@ from plant_models import Plant
 from plant_models.library.near_miss import near_miss
 from synth.configuration.config_file import parse_config
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.problem.aim import Aim
 
 TEXTS = {

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from itertools import count
 from pathlib import Path
 
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.studies.timing.turns import Call
 
 COMMAND = Path(sys.executable).with_name("retarder-synth")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from plant_models import PlantError
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.yard.aim.position_models import NormalPosition, PositionModel
 from synth.yard.aim.resolved_aim import ResolvedAim
 

@@ -40,7 +40,7 @@ from synth.configuration.config_file import load_config
 from synth.configuration.plant_fault import in_file
 from synth.configuration.position_choice import require_held
 from synth.configuration.resolved_config import range_warnings
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.yard.aim.scene import AimScene, MeasuredStretch
 from tuning_tables.canonical import canonical_json
 

@@ -16,7 +16,7 @@ from synth.configuration.computer.money_settings import (
     usual_ranges,
 )
 from synth.configuration.computer.settings import ComputerSettings
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.yard.control_computer.computer_model import require_input
 from synth.yard.control_computer.economics.economic_case import EconomicCase, Terms
 from synth.yard.control_computer.economics.hump_day_change import (

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.yard.hump.event import Event, Kind
 from tuning_tables.atomic_file import write_atomically
 from tuning_tables.errors import TableError

@@ -6,7 +6,7 @@ import csv
 import io
 from collections.abc import Iterable
 
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.yard.hump.event import Event, Kind
 from tuning_tables.excerpt import excerpt
 

@@ -20,8 +20,8 @@ from plant_models.errors import PlantError
 from plant_models.library import load_weight_categories
 from plant_models.library.near_miss import near_miss
 from plant_models.library.weight_category import WeightCategories
-from synth.faults.input_error import InputError
-from synth.faults.machine_fault import MACHINE_FAULTS
+from synth.frame.input_error import InputError
+from synth.frame.machine_fault import MACHINE_FAULTS
 from synth.yard.hump.cut_record import USUAL_CAR_M, USUAL_HUMP_SPEED_M_S, CutRecord, Mark, Rolling
 from synth.yard.hump.sorting_list import SortingList
 from tuning_tables.errors import DamagedTable

@@ -12,7 +12,7 @@ from plant_models.rolling.random_cuts import CutPopulation
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
 from plant_models.rolling.weather import Weather
 from synth.configuration.humping.settings import CATEGORY_SHARES, HumpTrialSettings
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.yard.hump.sorting_list import SortingList
 from synth.yard.hump.sorting_list_file import load_sorting_list
 from synth.yard.hump.train_population import TrainPopulation

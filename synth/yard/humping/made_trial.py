@@ -10,7 +10,7 @@ from plant_models import PlantError
 from plant_models.cut import Car
 from plant_models.library import load_position
 from plant_models.library.position_entry import PositionEntry
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.yard.book_classes import book_classes, unfitting
 from synth.yard.hump.sorting_list import SortingList
 from synth.yard.humping.asked_speeds import ExitRange

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from plant_models import Cut, Plant
 from plant_models.frozen_arrays import frozen_arrays
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.yard.measured_passes.released_drive import released_drive_vents
 from tuning_tables.pass_log.pass_log import PassLog
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.yard.measured_passes import unknowns as asked
 from synth.yard.measured_passes.estimate import Estimate, estimate
 from synth.yard.measured_passes.fitting_passes import FittingPasses

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.yard.measured_passes.fitting_passes import FittingPasses, fitting_passes
 from tuning_tables.errors import InvalidLog
 from tuning_tables.pass_log.log_files import read_logs

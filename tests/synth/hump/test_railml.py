@@ -15,7 +15,7 @@ from plant_models.library.hump_entry import HumpEntry, hump_names, load_hump
 from synth.configuration.railml.read import from_railml
 from synth.configuration.railml.tree import local
 from synth.configuration.railml.write import to_railml
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from tests.plant_models.hump.random_humps import random_hump, small_hump, small_vertices
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.simulation.controllers import TableController
 from synth.yard.book_classes import book_classes
 from tests.synth.yard.humping.coarse_book import PARK, coarse_classes

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from plant_models.library import SourcedValue
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.yard.measured_passes import unknowns as asked
 from synth.yard.measured_passes.estimate import estimate
 from synth.yard.measured_passes.fitting_passes import FittingPasses

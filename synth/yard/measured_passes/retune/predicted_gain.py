@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant, PlantError
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.simulation.closed_loop import close_loop
 from synth.simulation.controllers import TableController
 from synth.simulation.replicates import student_quantile

@@ -11,7 +11,7 @@ import pytest
 from synth.configuration.computer.computer_file import parse_computer_file, read_computer_file
 from synth.configuration.computer.template import default_computer_toml
 from synth.configuration.plant_fault import in_file
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.yard.control_computer.computer_results import computer_results
 from synth.yard.control_computer.economics.hump_rates import HumpRates
 from synth.yard.control_computer.resolved_computer import ResolvedComputer, resolve_computer

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.yard.hump.event import ALARMS, Event, Kind
 from synth.yard.hump.event_file import read_events, write_events
 from synth.yard.hump.event_log import EventLog, events_of_csv, to_log_csv

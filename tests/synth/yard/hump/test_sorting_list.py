@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from plant_models.errors import PlantError
 from plant_models.library import load_weight_categories
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.yard.hump.cut_record import CutRecord, Mark, Rolling
 from synth.yard.hump.sorting_list import SortingList
 from synth.yard.hump.sorting_list_file import load_sorting_list, sorting_list_of_csv, to_sorting_csv

@@ -10,7 +10,7 @@ import pytest
 
 from synth.configuration.hump import hump_text
 from synth.configuration.humping.trial_file import parse_trial_file
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.frame.results_directory import results_directory
 from synth.sweep.trains.trial_inputs import write_inputs
 from synth.yard.humping.hump_position import Arrivals

@@ -10,7 +10,7 @@ import pytest
 from plant_models.rolling.weather import Weather
 from synth.configuration.hump import hump_text
 from synth.configuration.humping.trial_file import parse_trial_file
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.frame.results_directory import results_directory
 from synth.present import humping_outputs
 from synth.present.humping_outputs import FIGURES, judged, write_trains

@@ -13,7 +13,7 @@ from plant_models.hump import Retarder
 from synth.configuration.aim.aim_file import parse_aim_file
 from synth.configuration.hump import hump_text
 from synth.configuration.humping.trial_file import parse_trial_file
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.frame.results_directory import results_directory
 from synth.sweep.trains.trial_inputs import write_inputs
 from synth.yard.aim.aim_book import aim_book

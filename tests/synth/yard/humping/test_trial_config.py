@@ -11,7 +11,7 @@ from plant_models.rolling.resistance_law import Tb10062Law
 from synth.configuration.hump import hump_text
 from synth.configuration.humping.template import default_trial_toml
 from synth.configuration.humping.trial_file import parse_trial_file, read_trial_file
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.yard.hump.sorting_list import SortingList
 from synth.yard.hump.train_population import TrainPopulation
 from synth.yard.humping.resolved_trial import ResolvedTrial, load_trial, resolve_trial

@@ -10,7 +10,7 @@ import pytest
 from plant_models.library import POSITIONS
 from synth.configuration.config_file import load_config, parse_config
 from synth.configuration.type_template import type_toml
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.studies.identification.truths import text_of_classes
 from synth.yard.measured_passes import unknowns as asked
 from synth.yard.measured_passes.config_source import ConfigSource, config_source

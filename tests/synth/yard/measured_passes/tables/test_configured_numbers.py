@@ -11,7 +11,7 @@ from plant_models import Plant, PlantError, PressingForce, RollingResistance
 from plant_models.motion import braked_axles, mean_braked_axles
 from synth.configuration.config_file import parse_config
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.faults.input_error import InputError
+from synth.frame.input_error import InputError
 from synth.yard.measured_passes.config_source import ConfigSource, source_of_text
 from synth.yard.measured_passes.configured_numbers import configured_numbers
 from synth.yard.measured_passes.identified_config import config_files, with_numbers
