@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, Final
 
 import numpy as np
@@ -12,7 +12,7 @@ from synth.yard.measured_passes import unknowns as asked
 from synth.yard.measured_passes.fitting_passes import FittingPasses
 from synth.yard.measured_passes.identifiability import Finding
 from synth.yard.measured_passes.identify import Identified
-from synth.yard.measured_passes.residual_tests import ResidualTest
+from synth.yard.measured_passes.residual_tests import MOTION, ResidualTest
 from tuning_tables.pass_log.path_resets import path_resets_m
 
 CONFIG: Final = "config.toml"
@@ -32,10 +32,7 @@ def _sentences(found: Identified) -> Iterator[str]:
         f"{len(found.passes)} passes tell {len(told)} of {len(found.findings)} numbers; of {len(moved)} what was taken "
         "before is outside the 95 % interval."
     )
-    for finding in found.findings:
-        if finding.key == asked.BIAS and not finding.within:
-            low, high = finding.interval
-            yield f"The speed sensor shows {finding.value:+.3f} [{low:+.3f}, {high:+.3f}] m/s too much: adjust it."
+    yield from bias_sentences(found.findings)
     yield from log_sentences(found.passes, found.estimate.values)
     yield (
         f"Surprises of the readings, over what is expected (1 where the numbers are right): "
@@ -51,6 +48,14 @@ def _sentences(found: Identified) -> Iterator[str]:
             f"{undecided} of {len(found.tests)} tests {'is' if undecided == 1 else 'are'} not decided: the interval "
             "reaches beyond what matters. More passes make it shorter."
         )
+
+
+def bias_sentences(findings: Iterable[Finding]) -> Iterator[str]:
+    """What the sensor shows too much, where that matters: less is not worth the adjusting."""
+    for finding in findings:
+        low, high = finding.interval
+        if finding.key == asked.BIAS and max(low, -high) > MOTION.matters_from:
+            yield f"The speed sensor shows {finding.value:+.3f} [{low:+.3f}, {high:+.3f}] m/s too much: adjust it."
 
 
 def log_sentences(passes: FittingPasses, values: Mapping[str, float]) -> Iterator[str]:

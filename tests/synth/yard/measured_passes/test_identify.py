@@ -17,8 +17,10 @@ from synth.frame.input_error import InputError
 from synth.studies.identification.truths import text_of_classes
 from synth.yard.measured_passes.estimate import Estimate
 from synth.yard.measured_passes.fitting_passes import FittingPasses
+from synth.yard.measured_passes.identifiability import Finding
+from synth.yard.measured_passes.identify_summary import bias_sentences
 from synth.yard.measured_passes.residual_tests import MOTION, ResidualTest, residual_tests, wrong
-from synth.yard.measured_passes.unknowns import GAUGE_NOISE, RANGES
+from synth.yard.measured_passes.unknowns import BIAS, GAUGE_NOISE, RANGES
 from tuning_tables.pass_log.log_files import write_log
 
 
@@ -74,3 +76,9 @@ def test_too_few_passes_are_refused(passes: FittingPasses, tmp_path: Path) -> No
     write_log(passes.log.taken(np.arange(12)), tmp_path / "day.csv")
     with pytest.raises(InputError, match="the log has 12 sound passes; 40 are needed at least"):
         identify_command([tmp_path / "day.csv"], None, tmp_path / "my.toml", tmp_path / "out", as_json=False)
+
+
+@pytest.mark.parametrize(("bias_m_s", "told"), [(0.002, False), (0.03, True), (-0.03, True)])
+def test_a_sensor_is_to_be_adjusted_only_where_it_matters(bias_m_s: float, told: bool) -> None:
+    finding = Finding(BIAS, "m/s", bias_m_s, (bias_m_s - 0.0005, bias_m_s + 0.0005), 0.0, 0.1, ())
+    assert bool(list(bias_sentences([finding]))) == told
