@@ -12,10 +12,11 @@ from synth.configuration.hump import hump_text
 from synth.configuration.humping.trial_file import parse_trial_file
 from synth.faults.input_error import InputError
 from synth.present import humping_outputs
-from synth.present.humping_outputs import FIGURES, TRAINS, judged, write_trains
+from synth.present.humping_outputs import FIGURES, judged, write_trains
 from synth.yard.humping.controlled_train import controlled_train
 from synth.yard.humping.hump_routes import Mark
 from synth.yard.humping.made_trial import made_trial
+from synth.yard.humping.outcome_file import TRAINS
 from synth.yard.humping.resolved_trial import resolve_trial
 from synth.yard.humping.traced_train import OneTrain, one_train
 from synth.yard.humping.train_memory import TrainMemory
