@@ -94,7 +94,6 @@ def test_no_file_depends_on_the_number_of_threads(folder: Path) -> None:
 
 @pytest.mark.parametrize("name", ["one", "none"])
 def test_the_independent_checker_confirms_them(folder: Path, name: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["export", str(folder / name / "book.h5"), "--format", "c", "-o", str(folder / name / "code")]) == 0
     assert main(["verify", str(folder / name)]) == 0
     assert "nothing found" in capsys.readouterr().out
 
