@@ -136,4 +136,9 @@ def say_each(sentences: Sequence[str]) -> None:
 
 def say(sentence: str) -> None:
     """One line on stderr."""
-    print(f"retarder-synth: {' '.join(sentence.split())}", file=sys.stderr, flush=True)
+    print(f"retarder-synth: {printable(' '.join(sentence.split()))}", file=sys.stderr, flush=True)
+
+
+def printable(text: str) -> str:
+    """`text` with the codes of signs that would steer a terminal: files of others may hold such."""
+    return "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in text)
