@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import io
+import random
 import zipfile
 from collections.abc import Iterator
 from dataclasses import fields
@@ -18,9 +19,12 @@ from synth.yard.humping.outcome_file import from_npz, to_npz
 from synth.yard.humping.outcomes import TrainOutcomes
 from synth.yard.humping.resolved_trial import load_trial, resolve_trial
 from tests.attack.attempt import Changed, Kind, Reading
+from tests.attack.mutants import mutant
 from tuning_tables.seal import seal_of
 
 NUMBER: Final = 4
+DAMAGED: Final = 500
+"""Archives that are damaged at random before they are sealed; a seal on top would let nothing come to what is behind it."""
 CONFIG: Final = f"""\
 hump = "medium"
 [trains]
@@ -79,6 +83,9 @@ def forged(content: bytes) -> Iterator[Changed]:
         yield Changed(body, how, Reading.SAME)
         yield Changed(body + seal_of(body), f"{how}, sealed", Reading.SAME)
     yield Changed(packed({**members, "cuts.npy": npy(cuts + 1)}), "other numbers", Reading.SAME)
+    for number in range(DAMAGED):
+        body = mutant(packed(members), random.Random(number), text=False)
+        yield Changed(body + seal_of(body), "damaged, sealed", Reading.SAME)
 
 
 def npy(array: np.ndarray[Any, Any]) -> bytes:
