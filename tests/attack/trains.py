@@ -24,7 +24,7 @@ from tuning_tables.seal import seal_of
 
 NUMBER: Final = 4
 DAMAGED: Final = 500
-"""Archives that are damaged at random before they are sealed; a seal on top would let nothing come to what is behind it."""
+"""Archives that are damaged at random and then sealed: nothing else comes to what is behind a seal."""
 CONFIG: Final = f"""\
 hump = "medium"
 [trains]
