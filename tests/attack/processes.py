@@ -6,6 +6,7 @@ import contextlib
 import io
 import math
 import multiprocessing
+import os
 import resource
 import signal
 import tempfile
@@ -20,6 +21,7 @@ from tests.attack.attempt import Attempt, Kind, Outcome, attempted
 
 CONTEXT: Final = multiprocessing.get_context("forkserver")
 CONTEXT.set_forkserver_preload(["tests.attack.kinds"])  # else each process would load all readers
+os.environ["OPENBLAS_NUM_THREADS"] = "1"  # as the command line does; a process with threads must not fork
 HANGS: Final = (-signal.SIGALRM, -signal.SIGPROF)
 BATCH: Final = 100
 """Attempts of a process."""
