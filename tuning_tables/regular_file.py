@@ -19,10 +19,13 @@ def read_regular_file(path: str | os.PathLike[str], largest_bytes: int) -> bytes
     """
     source = os.fspath(path)
     with _opened(source) as descriptor:
-        _require_length(os.fstat(descriptor).st_size, largest_bytes, source)
+        length = os.fstat(descriptor).st_size
+        _require_length(length, largest_bytes, source)
         with open(descriptor, "rb", closefd=False) as file:
-            # One byte more than allowed: the file may have grown since its length was asked.
-            content = file.read(largest_bytes + 1)
+            # Python sets aside as much memory as is asked for, so that is not all that is allowed.
+            content = file.read(length + 1)
+            if len(content) > length:  # it has grown since
+                content += file.read(largest_bytes + 1 - len(content))
     _require_length(len(content), largest_bytes, source)
     return content
 

@@ -142,4 +142,9 @@ def say(sentence: str) -> None:
     from tuning_tables.excerpt import excerpt
 
     words = (excerpt(word, LONGEST_WORD) for word in sentence.split())
-    print(f"retarder-synth: {excerpt(' '.join(words), LONGEST_LINE)}", file=sys.stderr, flush=True)
+    print(f"retarder-synth: {printable(excerpt(' '.join(words), LONGEST_LINE))}", file=sys.stderr, flush=True)
+
+
+def printable(text: str) -> str:
+    """`text` with the codes of signs that would steer a terminal: files of others may hold such."""
+    return "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in text)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -43,10 +44,11 @@ def read_hump(source: Path) -> ReadHump:
 def read_graph(source: Path) -> ReadHump:
     """The hump in the file `source`, or the one of that name in the library, whatever files it names."""
     name = str(source)
-    if name in hump_names() and not source.exists():
+    there = os.path.exists(source)  # pathlib would raise for a name that is too long to ask for
+    if name in hump_names() and not there:
         with in_file(name):
             return ReadHump(load_of_library(name))
-    if not source.exists():
+    if not there:
         hint = near_miss(name, hump_names())
         raise InputError(f"{name}: there is no such file, and no such hump in the library; {hint}")
     text = read_text(source)

@@ -72,6 +72,24 @@ def test_one_short_sentence(command: Command, tmp_path: Path, name: str) -> None
     assert not out.exists()
 
 
+def test_a_name_cannot_steer_the_terminal(command: Command, tmp_path: Path) -> None:
+    trial = tmp_path / "trial.toml"
+    trial.write_text('hump = "\\u001b[31mred\\u202e"')
+    ran = command("hump", "simulate", trial, "-o", tmp_path / "out")
+    assert ran.code == 2
+    assert ran.sentence.isprintable()
+    assert "/\\x1b[31mred\\u202e: there is no such file" in ran.sentence
+
+
+def test_too_long_a_name_is_told_of_the_file_that_holds_it(command: Command, tmp_path: Path) -> None:
+    trial = tmp_path / "trial.toml"
+    trial.write_text(f'hump = "{"x" * 300}.toml"')
+    ran = command("hump", "simulate", trial, "-o", tmp_path / "out")
+    assert ran.code == 2
+    assert ran.sentence.startswith(f"{trial}: hump: ")
+    assert "there is no such file" in ran.sentence
+
+
 @pytest.mark.parametrize("name", ["com10", "console", "dry.1", "sweep1", "a"])
 def test_names_that_conditions_may_have(tmp_path: Path, name: str) -> None:
     from synth.sweep.sweep_file import parse_sweep

@@ -233,6 +233,8 @@ def _require_texts(source: str, name: str, texts: TextRuns, first_number: int) -
     for row, text in zip(texts.first_row, texts.value, strict=True):
         if text in ("", "nan"):
             raise InvalidLog(f"{source}: row {first_number + row}, column {name}: the cell is empty; fill it.")
+        if not text.isprintable():
+            raise InvalidLog(f"{source}: row {first_number + row}, column {name}: {text!r:.60} is no name; write one.")
         if len(text) > LONGEST_TEXT:
             raise InvalidLog(
                 f"{source}: row {first_number + row}, column {name}: longer than {LONGEST_TEXT} characters; shorten it."

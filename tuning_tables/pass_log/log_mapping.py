@@ -68,7 +68,7 @@ def read_mapping(path: str | os.PathLike[str]) -> LogMapping:
         tree = tomllib.loads(read_regular_file(path, LARGEST_MAPPING_BYTES).decode())
     except DamagedTable as fault:
         raise InvalidLog(str(fault)) from fault
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as fault:
+    except (ValueError, RecursionError) as fault:  # no UTF-8, no TOML, or a number of thousands of digits
         raise InvalidLog(f"{source}: no TOML file ({excerpt(str(fault), 200)}); correct it there.") from fault
     _require_known(source, "", tree, KEYS)
     delimiter = _one_of(source, "delimiter", tree.get("delimiter", ","), DELIMITERS)

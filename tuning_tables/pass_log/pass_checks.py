@@ -31,6 +31,8 @@ LONGEST_GAP_S: Final = 1.0
 LARGEST_STEP_BACK_M: Final = 0.2
 FEWEST_ROWS: Final = 5
 LOOSE_PATH_M: Final = 5.0
+FARTHEST: Final = 1e12
+"""Seconds since 1970 are 2e9; a number of three hundred digits would fill the sentences below."""
 """How far a path that is known by passages may jump within a row."""
 
 
@@ -108,6 +110,15 @@ def duplicated(s: Segments) -> Rows:
     return same
 
 
+def far_off(name: str) -> Check:
+    """The column holds numbers of no clock and no track."""
+    return (
+        name,
+        lambda s: np.abs(s[name]) > FARTHEST,
+        lambda s, row: f"is {s[name][row]:g}; it must lie from {-FARTHEST:g} to {FARTHEST:g}",
+    )
+
+
 def clock_stands_or_goes_back(s: Segments) -> Rows:
     """Rows no later than the row before."""
     late: Rows = s.step(s["time_s"]) <= 0.0
@@ -174,6 +185,8 @@ CHECKS: Final[tuple[Check, ...]] = (
     missing("stage"),
     missing("mass_t"),
     missing("axles"),
+    far_off("time_s"),
+    far_off("path_m"),
     ("time_s", duplicated, lambda _, __: "and all others are those of the row before; take one of the two out"),
     (
         "time_s", clock_stands_or_goes_back,

@@ -60,6 +60,8 @@ def same_cut(table: Table) -> None:
     [
         (put(1, "nan"), FIRST + 5, "time_s", "a number must stand there"),
         (put(2, ""), FIRST + 5, "path_m", "a number must stand there"),
+        (put(1, "-1e300"), FIRST + 5, "time_s", "time_s is -1e+300; it must lie from -1e+12 to 1e+12"),
+        (put(2, "1e300"), FIRST + 5, "path_m", "path_m is 1e+300; it must lie from -1e+12 to 1e+12"),
         (twice, FIRST + 6, "time_s", "all others are those of the row before"),
         (shift(1, -0.5), FIRST + 5, "time_s", "0.400 s back"),
         (shift(1, 3.0), FIRST + 5, "time_s", "jumps by 3.100 s"),
@@ -101,6 +103,7 @@ def test_a_faulty_pass_is_left_out_and_named(
     [
         (put(3, "fast"), f"row {FIRST + 5}, column speed_m_s: 'fast' is no number"),
         (put(0, ""), f"row {FIRST + 5}, column cut_id: the cell is empty"),
+        (put(0, "cut\x1b[31m"), f"row {FIRST + 5}, column cut_id: 'cut\\x1b[31m' is no name"),
         (put(2, "way", row=2), "row 2: there is no column path_m"),
         (put(4, "time_s", row=2), "row 2: the column time_s stands there twice"),
         (lambda table: table.insert(FIRST + 4, [""]), f"row {FIRST + 5}: the line is empty"),
