@@ -21,13 +21,7 @@ SHORT = Limits(processor_s=0.5, memory_bytes=2**28)
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the limits of the processes are those of Linux")
 
 
-KNOWN = ("mapping", "trains", "railml-attributes")
-"""Kinds in which issue 35 has faults that are mended on other branches; empty after these."""
-
-
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.xfail(name in KNOWN, reason="issue 35")) for name in KINDS]
-)
+@pytest.mark.parametrize("name", KINDS)
 def test_a_changed_file_is_refused_in_order_or_read_as_what_it_is(name: str) -> None:
     kind = KINDS[name]()
     numbers = range(0, max(FEW, len(kind.first)), max(1, len(kind.first) // FEW))

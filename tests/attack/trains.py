@@ -15,9 +15,10 @@ import numpy as np
 
 from synth.configuration.humping.trial_file import parse_trial_file
 from synth.yard.humping.made_trial import made_trial
-from synth.yard.humping.outcome_file import from_npz, to_npz
+from synth.yard.humping.outcome_file import TrialTrains, to_npz
 from synth.yard.humping.outcomes import TrainOutcomes
-from synth.yard.humping.resolved_trial import load_trial, resolve_trial
+from synth.yard.humping.resolved_trial import resolve_trial
+from synth.yard.humping.stored_trains import stored_trains
 from tests.attack.attempt import Changed, Kind, Reading
 from tests.attack.mutants import mutant
 from tuning_tables.seal import seal_of
@@ -39,9 +40,7 @@ design_cuts = 200
 
 def read_trains(folder: Path) -> str:
     """As `hump report`: the hash of all outcomes."""
-    path = folder / "trains.npz"
-    config = load_trial(folder / "inputs" / "config.toml")
-    found = from_npz(path.read_bytes(), str(path), config.trains_sha256)
+    found = stored_trains(folder, str(folder)).found
     arrays = [np.asarray(getattr(found, field.name)) for field in fields(TrainOutcomes)]
     return hashlib.sha256(b"".join(f"{a.dtype} {a.shape}".encode() + a.tobytes() for a in arrays)).hexdigest()
 
@@ -49,7 +48,7 @@ def read_trains(folder: Path) -> str:
 def trains_kind() -> Kind:
     """Trains of a small trial; a changed file is refused with 3, or has the same trains."""
     config = resolve_trial(parse_trial_file(CONFIG, "trial.toml"))
-    content = to_npz(made_trial(config).batch(0, NUMBER), config.routes.numbers, config.trains_sha256)
+    content = to_npz(made_trial(config).batch(0, NUMBER), TrialTrains(config.routes, config.trains_sha256))
     return Kind(
         name="trains",
         files={"inputs/config.toml": CONFIG.encode(), "trains.npz": content},
