@@ -48,7 +48,7 @@ def table_of(page: Page) -> Read:
 
 def page_about(pages: Sequence[Page], directory: object) -> Page:
     """The first page that ends with the files in `directory`."""
-    return next(page for page in pages if str(directory) in str(page[-1]))
+    return next(page for page in pages if str(directory) in str(page[-1:]))
 
 
 def cells_of(table: PrintedTable[Any]) -> Read:

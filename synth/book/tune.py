@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from plant_models import Plant
+from synth.book.attempted_case import attempted
 from synth.book.case_result import CaseResult, DegreeStudy
 from synth.book.class_setup import TUNING_PASSES, ClassSetup, Origin, class_setup, origin_of, validation_passes
 from synth.book.creation_time import creation_time
 from synth.book.degree_study import degree_study, tables_by_degree
-from synth.book.failed_case import FailedCase, attempted, require_none
+from synth.book.failed_case import FailedCase, require_none
 from synth.book.permissions.case_permissions import asking
 from synth.book.permissions.overview import HINT, Overview, overview_of
 from synth.book.permissions.refusal import tellable

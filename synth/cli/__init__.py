@@ -141,8 +141,8 @@ def say(sentence: str) -> None:
     """One line on stderr; long words, as paths can be, and long lines show their beginning and their end."""
     from tuning_tables.excerpt import excerpt
 
-    words = (excerpt(word, LONGEST_WORD) for word in sentence.split())
-    print(f"retarder-synth: {printable(excerpt(' '.join(words), LONGEST_LINE))}", file=sys.stderr, flush=True)
+    words = (excerpt(printable(word), LONGEST_WORD) for word in sentence.split())
+    print(f"retarder-synth: {excerpt(' '.join(words), LONGEST_LINE)}", file=sys.stderr, flush=True)
 
 
 def printable(text: str) -> str:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def tables_refused(source: str, config: ResolvedConfig) -> Iterator[None]:
     """Within, a `PlantError` and an `InvalidTable` become an `InputError` of `source`, which says `config`."""
     from plant_models import PlantError
-    from synth.book.failed_case import reason_of
+    from synth.book.attempted_case import reason_of
     from tuning_tables import InvalidTable
 
     try:

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from plant_models import PlantError
+from synth.book.attempted_case import attempted
 from synth.book.class_setup import ClassSetup, class_setup, origin_of, validation_passes
-from synth.book.failed_case import FailedCase, attempted, parted
+from synth.book.failed_case import FailedCase, parted
 from synth.book.judgement import judgement
 from synth.book.tuned_table import predict, solutions, tuned_table, validated_table
 from synth.configuration.resolved_config import ResolvedConfig, resolve

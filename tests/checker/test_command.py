@@ -33,7 +33,7 @@ def test_json(tuned: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert found["exit_code"] == 3
     assert not found["confirmed"]
     assert {finding["kind"] for finding in found["findings"]} >= {"damaged", "disagrees"}
-    assert {"id", "ok", "skipped", "simulated", "exit_gap_m_s"} == set(found["tables"][0])
+    assert {"id", "ok", "skipped", "predicted_rms_m_s", "simulated", "exit_gap_m_s"} == set(found["tables"][0])
 
 
 @pytest.mark.parametrize("missing", ["nowhere", "empty"])

@@ -58,7 +58,7 @@ def test_sound_tables_and_exports_are_confirmed(exported_once: Path, capsys: pyt
     assert "every: ok; 14 passages over point sensors; not simulated" in capsys.readouterr().out
     assert main(["verify", str(alone), "--json"]) == 0
     told = json.loads(capsys.readouterr().out)["passages"]
-    assert told == [{"id": "every", "ok": True, "passages": 14, "simulated": None}]
+    assert told == [{"id": "every", "ok": True, "passages": 14, "predicted_rms_m_s": 0.08, "simulated": None}]
 
 
 @pytest.mark.parametrize("table", (*passage_book().tables, *every_axle_book().tables)[:4], ids=lambda table: table.id)

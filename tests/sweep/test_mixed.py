@@ -46,7 +46,7 @@ def test_no_tune_into_a_sweep(command: Callable[..., Ran], serial: Path, tune_co
     before = contents(out)
     code, told, said = command("tune", tune_config, "-o", out)
     assert (code, told) == (2, "")
-    assert f"{out}: it holds the results of a sweep; give another directory by -o" in said
+    assert f"{out}: it holds the results of 'sweep'; give another directory by -o" in said
     assert contents(out) == before
 
 
@@ -60,7 +60,7 @@ def test_no_tune_into_a_condition_of_a_sweep(
         monkeypatch.chdir(out / "dry")
         code, _, said = command("tune", tune_config, "-o", path)
         assert code == 2
-        assert "the results of a sweep" in said
+        assert "it holds config.toml, which 'tune' did not write" in said
     assert [path.name for path in (out / "dry").iterdir()] == ["config.toml"]
 
 
@@ -73,7 +73,7 @@ def test_no_sweep_into_a_tune(
         (folder / name).write_bytes(b"of a tune")
         code, _, said = command("sweep", file, "-o", tmp_path / folder.relative_to(tmp_path).parts[0])
         assert code == 2
-        assert f"{folder}: it holds the results of something else" in said
+        assert f"{name}, which 'sweep' did not write; give a new or an empty directory by -o" in said
         assert contents(folder) == {name: b"of a tune"}
 
 

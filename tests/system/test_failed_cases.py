@@ -13,11 +13,13 @@ from typing import Any
 import pytest
 
 from plant_models import PlantError
-from synth.book.failed_case import FailedCase, attempted, told_together
+from synth.book.attempted_case import attempted
+from synth.book.failed_case import FailedCase, told_together
 from synth.checker.verdict import verify
 from synth.cli import main
 from synth.configuration.config_file import parse_config
 from synth.solver.coarse_grid import CoarseGridError
+from tests.frame.results import results_in
 from tests.system.conftest import CLASS, SECOND_CLASS, Command, changed
 from tests.system.test_permissions import COARSE
 from tests.system.test_sensors_tune import CONFIG as POINTS
@@ -176,7 +178,7 @@ def test_all_cases_bad_are_one_sentence(command: Command, tmp_path: Path) -> Non
     assert (ran.code, ran.out) == (2, "")
     told = ran.err.splitlines()[-1]
     assert told.startswith(f"retarder-synth: {config}: no table for {BAD} (nor for the 1 other case): {REASON}")
-    assert not [path for path in (tmp_path / "out").rglob("*") if path.is_file()]
+    assert results_in(tmp_path / "out") == {}
 
 
 def test_what_a_case_fails_by_is_told_in_the_words_of_the_configuration() -> None:

@@ -12,6 +12,7 @@ import pytest
 
 import synth.cli.sensitivity as command
 from synth.cli import main
+from tests.frame.results import results_in
 
 SMALL = """\
 [retarder]
@@ -91,10 +92,8 @@ def test_same_bytes_whatever_the_threads(ran: Path, monkeypatch: pytest.MonkeyPa
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
     monkeypatch.setattr(command, "available", lambda: 3)
     assert asked(ran, "three") == 0
-    names = sorted(path.relative_to(ran / "one") for path in (ran / "one").rglob("*") if path.is_file())
-    assert len(names) == 8
-    for name in names:
-        assert (ran / "one" / name).read_bytes() == (ran / "three" / name).read_bytes(), name
+    assert len(results_in(ran / "one")) == 8
+    assert results_in(ran / "one") == results_in(ran / "three")
 
 
 def test_files_are_those_of_the_summary_and_csv_says_what_the_document_says(ran: Path) -> None:

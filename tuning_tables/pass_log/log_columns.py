@@ -26,7 +26,7 @@ COLUMNS: Final = (
 NUMBERS: Final = tuple(name for name in COLUMNS if name not in TEXTS)
 FASTEST_M_S: Final = 40.0
 MOST_STAGES: Final = 31
-WHOLE: Final = ("stage", "axles")
+WHOLE: Final = ("stage", "axles", "stopped_by_hand")
 RANGES: Final[Mapping[str, tuple[float, float, str]]] = MappingProxyType(
     {
         "speed_m_s": (0.0, FASTEST_M_S, " m/s"),

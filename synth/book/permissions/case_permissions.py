@@ -10,9 +10,10 @@ from typing import Literal, TypeVar
 from plant_models import Plant, PlantError
 from plant_models.approach import Approach
 from synth.book.any_time.surface_table import polished_surfaces, starting_surfaces
+from synth.book.attempted_case import attempted
 from synth.book.class_setup import ClassSetup, class_setup, origin_of, validation_passes
 from synth.book.estimation.simulated_prediction import prediction_passes, simulated_prediction
-from synth.book.failed_case import FailedCase, attempted, parted
+from synth.book.failed_case import FailedCase, parted
 from synth.book.permissions.permission import (
     AllPermissions,
     CasePermissions,

@@ -9,9 +9,10 @@ from functools import partial
 import numpy as np
 
 from plant_models import Plant
+from synth.book.attempted_case import attempted
 from synth.book.class_setup import Origin, origin_of, validation_passes
 from synth.book.creation_time import creation_time
-from synth.book.failed_case import FailedCase, attempted, parted
+from synth.book.failed_case import FailedCase, parted
 from synth.book.sensors.passage_table import passage_table
 from synth.book.sensors.sensor_case import HeardShares, SensorCase
 from synth.book.sensors.sensor_class import SensorClass, sensor_class

@@ -90,7 +90,7 @@ def test_a_foreign_log_is_read_by_a_mapping(tmp_path: Path) -> None:
         ("[constant]\naxles = inf", "constant.axles is inf; it must be a whole number from 1 to 1000 axles."),
         ("[constant]\ntarget_m_s = nan", "constant.target_m_s is nan; it must be a number from 0 to 40 m/s."),
         (f"[constant]\nmass_t = 1{'0' * 400}", "it must be a number from 1 to 20000 t."),
-        ("[constant]\nstopped_by_hand = 2", "constant.stopped_by_hand is 2; it must be a number from 0 to 1."),
+        ("[constant]\nstopped_by_hand = 2", "constant.stopped_by_hand is 2; it must be a whole number from 0 to 1."),
         ("[constant]\ntime_s = 0.1", "constant.time_s is not possible: it changes from row to row."),
         ('[constant]\ncut_id = "1"', "constant.cut_id is not possible"),
         ('[constant]\nmass_t = 80.0\n[columns]\nmass_t = "m"', "mass_t stands in [columns] and in [constant]"),

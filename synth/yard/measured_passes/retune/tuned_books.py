@@ -7,9 +7,10 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 from plant_models import Plant
+from synth.book.attempted_case import attempted
 from synth.book.class_setup import ClassSetup, class_setup, origin_of, validation_passes
 from synth.book.estimation.simulated_prediction import simulated_prediction
-from synth.book.failed_case import FailedCase, attempted, require_none
+from synth.book.failed_case import FailedCase, require_none
 from synth.book.tuned_table import solutions, tuned_table, validated_table, with_prediction
 from synth.book.validate_table import plant_for
 from synth.book.watcher import Watcher
