@@ -1,4 +1,4 @@
-"""An attempt at one case of a book: what is made, or the case as failed, with its reason in words of its configuration."""
+"""An attempt at one case of a book: what is made, or the case as failed, with what to change in its configuration."""
 
 from __future__ import annotations
 
