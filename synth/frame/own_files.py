@@ -51,6 +51,14 @@ def lines_of(directory: Path) -> Iterator[Any]:
             continue
 
 
+def is_inside(directory: Path, name: str) -> bool:
+    """Whether `name` is that of a file below `directory`: a marker may come from somebody else, as in an archive."""
+    try:
+        return (directory / name).resolve().is_relative_to(directory.resolve())
+    except (OSError, ValueError, RuntimeError):  # a name with a zero byte, a link to itself
+        return False
+
+
 class OwnFiles:
     """The files that a command wrote into `directory`, in this run or earlier; only its holder may make one.
 
@@ -63,7 +71,7 @@ class OwnFiles:
         self._lock = threading.Lock()
         for line in lines_of(directory):
             match line:
-                case [str(name), *contents]:
+                case [str(name), *contents] if is_inside(directory, name):
                     self._contents.setdefault(name, set()).update(map(str, contents))
 
     def __iter__(self) -> Iterator[str]:

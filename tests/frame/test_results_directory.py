@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import random
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -168,6 +169,27 @@ def test_a_marker_that_is_none_marks_nothing(tmp_path: Path) -> None:
         with refused(MARKER, "did not write"):
             run(tmp_path, {"a": b"a"})
         assert (tmp_path / MARKER).read_bytes() == content
+
+
+def test_a_marker_of_somebody_else_reaches_nothing_outside(tmp_path: Path) -> None:
+    """It lists files elsewhere as results that may have any content."""
+    users = tmp_path / "users"
+    users.mkdir()
+    (users / "a").write_bytes(b"precious")
+    out = tmp_path / "out"
+    run(out, {"b": b"b"})
+    (out / "link").symlink_to(users)
+    (out / "file").symlink_to(users / "a")
+    (out / "loop").symlink_to(out / "loop")
+    names = ("../users/a", str(users / "a"), "link/a", "file", "loop", "loop/a", "a\0b", "c/../../users/a")
+    with (out / MARKER).open("ab") as marker:
+        marker.write(b"".join(json.dumps([name, "changes"]).encode() + b"\n" for name in names))
+    run(out, {"c": b"c"})
+    assert files(users) == {"a": b"precious"}
+    for name in ("link/a", "file"):
+        with refused("did not write it"):
+            run(out, {name: b"ours"})
+    assert files(users) == {"a": b"precious"}
 
 
 def test_the_same_run_leaves_the_same_marker(tmp_path: Path) -> None:
