@@ -85,7 +85,7 @@ DIRECTORIES = (
     Writing(("computer", "computer.toml"), "report.html"),
     Writing(("hump", "simulate", "trial.toml", "--list", "train.csv"), "inputs/config.toml"),
     Writing(("hump", "speed", "trial.toml"), "train-1-locomotive.csv"),
-    Writing(("hump", "draw", "hump.toml"), "medium-hump.png"),
+    Writing(("hump", "draw", "hump.toml"), "hump-hump.png"),
     Writing(("identify", "log.csv", "--config", "own.toml", "--mapping", "mapping.toml"), "config.toml"),
     Writing(("watch", "log.csv", "--config", "yard.toml", "--reference", "log.h5"), "watch.json"),
     Writing(("retune", "log.csv", "--config", "yard.toml", "--table", "book.h5"), "book.h5"),

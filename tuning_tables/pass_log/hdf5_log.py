@@ -92,7 +92,8 @@ def _require_lengths(
 
 
 def _decoded(source: str, name: str, values: npt.NDArray[Any]) -> tuple[str, ...]:
-    texts = tuple(value.decode() for value in values.tolist())
+    # Bytes that are no UTF-8 become signs that are not printable, and are told like these.
+    texts = tuple(value.decode(errors="surrogateescape") for value in values.tolist())
     for number, text in enumerate(texts):
         if not text or not text.isprintable():
             raise InvalidLog(f"{source}: column {name}, pass {number + 1}: {text!r:.60} is no name; write one.")

@@ -134,3 +134,12 @@ def test_values_that_were_never_stored_are_not_taken_for_zeros(tmp_path: Path, c
         with h5py.File(path, "r+") as file:
             file["speed_m_s"][12:] = values[12:]
         assert len(read_logs([path], None, None).log) == 2
+
+
+def test_a_name_that_is_no_text_is_told(tmp_path: Path) -> None:
+    path = tmp_path / "log.h5"
+    write_log(sample_log(passes=2, rows=8), path)
+    with h5py.File(path, "r+") as file:
+        file["cut_id"][1] = b"cut-\xf8"
+    with pytest.raises(InvalidLog, match="column cut_id, pass 2: 'cut-.*' is no name; write one"):
+        read_logs([path], None, None)
