@@ -141,5 +141,5 @@ def test_a_name_that_is_no_text_is_told(tmp_path: Path) -> None:
     write_log(sample_log(passes=2, rows=8), path)
     with h5py.File(path, "r+") as file:
         file["cut_id"][1] = b"cut-\xf8"
-    with pytest.raises(InvalidLog, match="column cut_id, pass 2: 'cut-.*' is no name; write one"):
+    with pytest.raises(InvalidLog, match=r"column cut_id, pass 2: 'cut-.*' is no name; write one"):
         read_logs([path], None, None)
