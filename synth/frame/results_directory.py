@@ -2,7 +2,8 @@
 
 A command writes into a directory that is new, empty, or marked as its own (`own_files`). It replaces and removes only
 files that it wrote itself and nobody changed, and none that it reads. What breaks this rule is told before anything is
-computed. One command at a time holds a directory.
+computed, but for a file that comes into the place of a result later: that is told when the result would be written.
+One command at a time holds a directory.
 """
 
 from __future__ import annotations
