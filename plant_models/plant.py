@@ -94,6 +94,11 @@ class Plant:
         return grade + self.start_m * cells.resistance_m_s2_per_n_kn * np.asarray(resistance_n_per_kn)
 
     @property
+    def pass_m(self) -> float:
+        """Length of a pass: path from where the regulator acts to S_exit."""
+        return self.exit_m - self.start_m
+
+    @property
     def exit_m(self) -> float:
         """S_exit, metres."""
         return self.position.exit_m(self.cut)

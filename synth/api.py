@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from plant_models.library.near_miss import near_miss
 from synth.book.class_setup import origin_of
 from synth.book.creation_time import creation_time
-from synth.book.tuned_table import with_prediction
+from synth.book.rounded_table import with_prediction
 from synth.configuration.config_file import load_config as load_config_file
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.configuration.settings import FitSettings, GridSettings
@@ -221,7 +221,7 @@ def plot_passes(table: ControllerTable, problem: Problem, seed: int = 1) -> Figu
 
 def usual_resolution(problem: Problem) -> Resolution:
     """The grid of the built-in configuration, with the transients of this sensor's sampling period."""
-    return GridSettings().resolution(problem.plant.sensor.sample_period_s)
+    return GridSettings().resolution(problem.plant.sensor.sample_period_s).for_pass(problem.plant.pass_m)
 
 
 def problem_sha256(problem: Problem) -> str:

@@ -12,6 +12,7 @@ from plant_models import Plant
 from plant_models.frozen_arrays import frozen_arrays
 from synth.book.comparison.comparison import Comparison
 from synth.book.comparison.measured import Feasibility
+from synth.book.grid_check import GridCheck
 from synth.book.permissions.permission import CasePermissions
 from synth.problem.criterion import Criterion
 from synth.problem.problem import Problem
@@ -100,7 +101,8 @@ class CaseResult:
     """One cut class and target: the table with its prediction, its closed loop, and the comparison.
 
     `predicted`: exact density of the exported table, or a simulated one if the table has an estimator; `polish`: how
-    the lines of least cost were found; `finding`: what the criterion's requirement took; `estimate`: where an estimator
+    the lines of least cost were found; `grid`: whether the grid of the design for the measured speed and commands at
+    rest is to be believed; `finding`: what the criterion's requirement took; `estimate`: where an estimator
     is asked for, how its lines were designed. `exit_speeds_m_s` simulated, stalls as 0, and `exit_weight`: how many
     cuts each pass stands for; `brake_power`: what of their error is for want of it; `permissions`: where they are asked
     for, what those of the hardware would give.
@@ -111,6 +113,7 @@ class CaseResult:
     table: ControllerTable
     predicted: ExitDensity
     polish: Polish | SurfacePolish
+    grid: GridCheck
     finding: Finding | None
     estimate: AnyEstimate | None
     exit_speeds_m_s: NDArray[np.float32]
@@ -144,6 +147,11 @@ class CaseResult:
             found.append(
                 f"the polish ended before it converged ({self.polish.status}): its lines are the best of "
                 f"{self.polish.evaluations} evaluations"
+            )
+        if not self.grid.is_believed:
+            found.append(
+                f"on the grid of its design the rms is {self.grid.design_rms_m_s:.4f} m/s, on a finer one "
+                f"{self.grid.finer_rms_m_s:.4f}: there may be better lines; lower grid.speed_step_m_s"
             )
         if self.predicted.escaped > MOST_ESCAPED:
             found.append(

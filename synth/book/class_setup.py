@@ -68,14 +68,14 @@ def class_setup(
     config: ResolvedConfig, label: str, plant: Plant, passes: RandomPasses, origin: Origin, table_stem: str = ""
 ) -> ClassSetup:
     """The setup of the class `label` of `config`, simulated on `passes`; `table_stem` is the label unless given."""
-    compared = common_passes(plant, passes)
+    compared, resolution = common_passes(plant, passes), config.resolution_of(plant)
     return ClassSetup(
         label=label,
         table_stem=table_stem or label,
         plant=plant,
         degree=config.fit.degree,
-        design=persistent_chain(plant, config.resolution),
-        check=check_chain(plant, finer_for_check(config.resolution)),
+        design=persistent_chain(plant, resolution),
+        check=check_chain(plant, finer_for_check(resolution)),
         passes=compared,
         origin=origin,
         estimator=estimator_setup(config, label, compared) if config.regulator.estimator else None,
@@ -87,7 +87,7 @@ def estimator_setup(config: ResolvedConfig, label: str, compared: CommonPasses) 
     """Grid and passes to design for the estimator of a plant; the passes are not those `compared`, nor anybody's."""
     seed = config.validation.seed
     return EstimatorSetup(
-        design=estimator_design(compared.plant, config.resolution, min(config.targets_of(label))),
+        design=estimator_design(compared.plant, config.resolution_of(compared.plant), min(config.targets_of(label))),
         tuning=trim_passes(seed, compared.plant),
         prediction=compared.of_others(prediction_passes(seed + 2, label)),
     )

@@ -10,7 +10,7 @@ import numpy as np
 
 from synth.book.case_result import DegreeStudy
 from synth.book.class_setup import Origin
-from synth.book.tuned_table import predict
+from synth.book.rounded_table import predict
 from synth.solver.backward_induction import Solution
 from synth.solver.chain.chain import Chain
 from synth.solver.policy_density import density_and_occupancy

@@ -130,6 +130,7 @@ def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
         "permissions": None if case.permissions is None else results_document(case.permissions),
         "permissions_failed": {} if case.permissions is None else failed_document(case.permissions),
         "warnings": case.warnings,
+        "grid_check": asdict(case.grid),
         "polish": polish_of(case.polish),
         "ties": case.study.policy_map.ties,
         "escaped_probability": case.predicted.escaped,

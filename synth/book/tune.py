@@ -111,7 +111,7 @@ def tune(
     """
     plants = config.plants()
     for label, plant in plants:
-        require_memory(label, plant, config.design_resolutions, workers)
+        require_memory(label, plant, config.design_resolutions(plant), workers)
     run = TuneRun(
         config=config,
         origin=origin_of(config.sha256, creation_time()),

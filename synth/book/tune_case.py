@@ -15,7 +15,8 @@ from synth.book.comparison.measured import Measured
 from synth.book.estimation.estimated_table import controller_of
 from synth.book.permissions.case_permissions import Ask
 from synth.book.policy_map import policy_map
-from synth.book.tuned_table import Store, TunedTable, ValidatedTable, rounded, tuned_table, validated_table
+from synth.book.rounded_table import rounded
+from synth.book.tuned_table import Store, TunedTable, ValidatedTable, tuned_table, validated_table
 from synth.problem.problem import Problem
 from synth.simulation.closed_loop import Controller, LineController, TableController
 from synth.simulation.common_passes import CommonPasses
@@ -63,8 +64,9 @@ def tune_case(order: CaseOrder) -> CaseResult:
         problem=Problem(setup.plant, solution.aim),
         table=validated.table,
         predicted=tuned.predicted,
-        polish=tuned.polish if tuned.surfaces is None else tuned.surfaces.polish,
-        finding=tuned.finding,
+        polish=tuned.design.kept.polish if tuned.surfaces is None else tuned.surfaces.polish,
+        grid=tuned.design.grid,
+        finding=tuned.design.kept.finding,
         estimate=tuned.estimate if tuned.surfaces is None else tuned.surfaces.estimate,
         exit_speeds_m_s=validated.sample.exit_speed_m_s.astype(np.float32),
         exit_weight=validated.sample.weight,
@@ -86,7 +88,7 @@ def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable, t
         return beside_table(name, passes.run(controller), sample, target)
 
     def without_estimator() -> Measured:
-        lines = LineController(tuned.lines.at(tuned.lines.nodes_m(LINE_NODES)))
+        lines = LineController(tuned.design.kept.lines.at(tuned.design.kept.lines.nodes_m(LINE_NODES)))
         if tuned.surfaces is None:
             return measured("without estimator", lines)
         surfaces = rounded(order.setup, tuned.surfaces.polish.surfaces, target)
@@ -94,7 +96,7 @@ def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable, t
 
     def at_rest() -> Measured:
         made = tuned.estimate if tuned.estimate is not None and tuned.estimate.gains else None
-        kept, estimator = (tuned.lines, None) if made is None else (made.lines, made.estimator)
+        kept, estimator = (tuned.design.kept.lines, None) if made is None else (made.lines, made.estimator)
         return measured("commands at rest", controller_of(kept, estimator))
 
     return Comparison(
@@ -142,7 +144,7 @@ def case_study(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable) -
 
 def indifference(order: CaseOrder, tuned: TunedTable) -> Indifference:
     """Predicted switchings and rms of the solver's lines with the tolerance, and of lines solved without it."""
-    aim, with_it = order.solution.aim, tuned.solver_density
+    aim, with_it = order.solution.aim, exit_density(order.solution.chain, order.solution.lines)
     without = exit_density(order.solution.chain, order.without_tolerance.lines)
     return Indifference(
         tolerance_m2_s2=aim.criterion.switching_tolerance_m2_s2,

@@ -8,19 +8,17 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
 from plant_models.frozen_arrays import frozen_arrays
-from synth.book.any_time.surface_table import polished_surfaces, starting_surfaces, surface_density
+from synth.book.any_time.surface_table import polished_surfaces, starting_surfaces
+from synth.book.checked_design import CheckedDesign, checked_design
 from synth.book.class_setup import ClassSetup, EstimatorSetup
 from synth.book.estimation.estimated_surfaces import estimated_surfaces
 from synth.book.estimation.estimated_table import EstimatedTable, estimated_table
 from synth.book.estimation.simulated_prediction import density_of, simulated_prediction
+from synth.book.rounded_table import rounded, with_prediction
 from synth.problem.aim import Aim
 from synth.problem.any_time_resolution import design_resolution
 from synth.problem.problem import Problem
-from synth.problem.requirement_found import Finding
 from synth.simulation.closed_loop import TableController
 from synth.simulation.exit_statistics import BrakePower, ExitStatistics, brake_power, exit_statistics
 from synth.simulation.passes import ExitSample
@@ -29,15 +27,9 @@ from synth.solver.any_time.surface_polish import SurfacePolish
 from synth.solver.backward_induction import Solution, solve_all
 from synth.solver.chain.chain import Chain
 from synth.solver.exit_density import ExitDensity
-from synth.solver.policy_density import density_and_occupancy
-from synth.solver.polish import Polish
-from synth.solver.polynomial_fit import fit_lines
 from synth.solver.polynomial_lines import PolynomialLines
-from synth.solver.required_lines import required_lines
-from synth.solver.resolved_density import resolved_density
-from synth.solver.switching_lines import SwitchingLines
-from synth.solver.tabulate import UNPREDICTED, lines_of, prediction_of, tabulate
-from tuning_tables import ControllerTable, Decisions, Validated, from_json, to_json
+from synth.solver.tabulate import UNPREDICTED, tabulate
+from tuning_tables import ControllerTable, Validated, from_json, to_json
 
 NODES_KEPT = 1
 """Path nodes at which a solution keeps its values: the entrance. Nothing after the solve reads more."""
@@ -61,19 +53,14 @@ class SurfaceDesign:
 class TunedTable:
     """The rounded table with its prediction, not yet simulated.
 
-    `predicted`: the exit density behind the prediction; `lines`: polished, for the measured speed and commands at rest;
-    `solver_density`: of the solver's own lines on the design chain; `curvature` (K + 1, 2, N) of its cost, as
-    `fit_lines` has it; `estimate`: where an estimator is asked for, how its lines were designed; `surfaces`: those of a
-    regulator that commands at any time.
+    `predicted`: the exit density behind the prediction; `design`: of lines for the measured speed and commands at rest;
+    `estimate`: where an estimator is asked for, how its lines were designed; `surfaces`: those of a regulator that
+    commands at any time.
     """
 
     table: ControllerTable
     predicted: ExitDensity
-    lines: PolynomialLines
-    polish: Polish
-    solver_density: ExitDensity
-    curvature: NDArray[np.float64]
-    finding: Finding | None
+    design: CheckedDesign
     estimate: EstimatedTable[PolynomialLines] | None
     surfaces: SurfaceDesign | None
 
@@ -98,22 +85,19 @@ def tuned_table(setup: ClassSetup, solution: Solution) -> TunedTable:
 
     Raises `PlantError` where the grid is too coarse for lines, `InvalidTable` where rounding would let lines touch.
     """
-    problem = Problem(setup.plant, solution.aim)
-    density, occupancy = density_and_occupancy(solution.chain, solution.lines)
-    fit = fit_lines(solution, occupancy.samples, setup.degree)
-    kept = required_lines(solution, setup.check, fit)
-    made = None
+    problem, design = Problem(setup.plant, solution.aim), checked_design(setup, solution)
+    lines, made = design.kept.lines, None
     if setup.estimator is not None:
-        made = estimated_table(problem, setup.estimator.design, kept.lines, setup.estimator.tuning)
-    surfaces = surface_design(setup, solution.aim, kept.lines, made) if setup.regulator.at_any_time else None
-    chosen: PolynomialLines | PolynomialSurfaces = kept.lines if surfaces is None else surfaces.polish.surfaces
+        made = estimated_table(problem, setup.estimator.design, lines, setup.estimator.tuning)
+    surfaces = surface_design(setup, solution.aim, lines, made) if setup.regulator.at_any_time else None
     estimate: AnyEstimate | None = made if surfaces is None else surfaces.estimate
+    table, predicted = design.table, design.predicted
     if setup.estimator is not None and estimate is not None and estimate.gains:
         table, predicted = predicted_by_passes(setup, estimate, setup.estimator, problem.target_speed_m_s)
-    else:
-        table, predicted = with_prediction(setup.check, rounded(setup, chosen, problem.target_speed_m_s))
-    tuned = table, predicted, kept.lines, kept.polish, density, fit.curvature, kept.finding, made, surfaces
-    return TunedTable(*tuned)
+    elif surfaces is not None:
+        table = rounded(setup, surfaces.polish.surfaces, problem.target_speed_m_s)
+        table, predicted = with_prediction(setup.check, table)
+    return TunedTable(table, predicted, design, made, surfaces)
 
 
 def surface_design(
@@ -143,12 +127,6 @@ def validated_table(setup: ClassSetup, table: ControllerTable, store: Store) -> 
     return ValidatedTable(store(kept.with_validated(figures)), sample, found, power)
 
 
-def rounded(setup: ClassSetup, lines: PolynomialLines | PolynomialSurfaces, target_speed_m_s: float) -> ControllerTable:
-    """The table of `lines` for the measured speed, not yet predicted."""
-    origin = (setup.origin.generator, setup.table_id(target_speed_m_s), setup.origin.created)
-    return tabulate(setup.plant, lines, target_speed_m_s, UNPREDICTED, *origin)
-
-
 def predicted_by_passes(
     setup: ClassSetup, made: AnyEstimate, estimator: EstimatorSetup, target_speed_m_s: float
 ) -> tuple[ControllerTable, ExitDensity]:
@@ -158,22 +136,3 @@ def predicted_by_passes(
     sample = estimator.prediction.run(TableController(table))
     density = density_of(sample, estimator.design.grid.speed_m_s)
     return replace(table, predicted=simulated_prediction(sample, target_speed_m_s)), density
-
-
-def with_prediction(check: Chain, table: ControllerTable) -> tuple[ControllerTable, ExitDensity]:
-    """`table` with the figures of its exit-speed density, and the density; as `predict`."""
-    density = predict(check, table)
-    return replace(table, predicted=prediction_of(density, table.target_speed_m_s)), density
-
-
-def predict(check: Chain, table: ControllerTable) -> ExitDensity:
-    """Exit-speed density of an exported table for the measured speed, resolved near its target.
-
-    On `check` if it decides at rest; at any time on a chain of its own of the same plant.
-    """
-    if table.decisions is Decisions.AT_ANY_TIME:
-        return surface_density(check.plant, table)
-    lines = lines_of(table, check.grid.path_m)
-    stages = check.actuator.stages
-    used = SwitchingLines(lines.nodes_m, lines.lower_m_s[:stages], lines.upper_m_s[:stages])
-    return resolved_density(check, used, table.target_speed_m_s)

@@ -115,13 +115,16 @@ class ResolvedConfig:
         """The grid settings as the solver takes them."""
         return self.grid.resolution(self.retarder.sensor.sample_period_s)
 
-    @property
-    def design_resolutions(self) -> tuple[Resolution, ...]:
+    def resolution_of(self, plant: Plant) -> Resolution:
+        """The grid that lines of a class are designed on."""
+        return self.resolution.for_pass(plant.pass_m)
+
+    def design_resolutions(self, plant: Plant) -> tuple[Resolution, ...]:
         """Every grid that lines of a class are designed on: one more where the regulator has an estimator."""
+        measured = self.resolution_of(plant)
         if not self.regulator.estimator:
-            return (self.resolution,)
-        finer = estimator_resolution(self.resolution, self.retarder.sensor, self.lowest_target_m_s)
-        return self.resolution, finer
+            return (measured,)
+        return measured, estimator_resolution(measured, self.retarder.sensor, self.lowest_target_m_s)
 
     def canonical_json(self) -> str:
         """What the results depend on, in the canonical form of RFC 8785.

@@ -29,19 +29,26 @@ from synth.configuration.section import Section, setting
 from synth.configuration.value_forms import Source, Title
 from synth.problem.criterion import Criterion
 from synth.problem.requirement import FrictionRange, OverspeedLimit, Requirement
-from synth.problem.resolution import Resolution
+from synth.problem.resolution import LONG_PASS_M, Resolution
 from synth.problem.terminal_cost import AsymmetricSquare, SquaredError
 
 
 class GridSettings(Section):
     """Discretisation of the dynamic programme."""
 
-    path_step_m: float = setting(0.5, "m", 0.02, 5.0, "path quantum, rounded so that whole quanta fill S_exit")
+    path_step_m: float = setting(
+        0.5,
+        "m",
+        0.02,
+        5.0,
+        "path quantum, rounded so that whole quanta fill S_exit; "
+        f"in passes of more than {LONG_PASS_M:g} m longer, in proportion",
+    )
     speed_step_m_s: float = setting(0.03, "m/s", 0.002, 0.2, "step of the speed grid")
     transient_step_s: float = setting(0.05, "s", 0.002, 0.2, "longest time step within a change of stage")
-    friction_scenarios: int = setting(4, "1", 1, 15, "Gauss–Hermite nodes of the friction of a cut")
+    friction_scenarios: int = setting(6, "1", 1, 15, "Gauss–Hermite nodes of the friction of a cut")
     path_levels: int = setting(2, "1", 1, 9, "levels of the friction that varies along the path")
-    resistance_scenarios: int = setting(1, "1", 1, 15, "Gauss nodes of the running resistance of a cut")
+    resistance_scenarios: int = setting(3, "1", 1, 15, "Gauss nodes of the running resistance of a cut")
 
     def resolution(self, sample_period_s: float) -> Resolution:
         """The same for the solver, which cuts a sampling period of `sample_period_s` into equal parts."""

@@ -12,6 +12,10 @@ from synth.problem.resolution import LEAST_SPEED_STEP_M_S, Resolution
 FIRST_SHARE = 0.45
 """Guess of the estimate's error, as a share of the measured speed's."""
 
+FRICTION_NODES, RESISTANCE_NODES = 4, 1
+"""Scenarios of a design for estimated speeds: of the running resistance only the mean, as the estimator does not learn
+it. More of both were not tried with an estimator."""
+
 STEP_SHARE = 0.65
 """Largest speed step of the grid, in standard deviations of the guessed error: coarser ones are exploited."""
 
@@ -22,7 +26,7 @@ def guessed_error_m_s(sensor: DopplerSensor) -> float:
 
 
 def estimator_resolution(resolution: Resolution, sensor: DopplerSensor, lowest_target_m_s: float) -> Resolution:
-    """`resolution` with a speed step for the error of the estimate, for all targets of a plant.
+    """`resolution` with a speed step for the error of the estimate, and fewer scenarios, for all targets of a plant.
 
     Raises `PlantError`, whose sentence names the keys of the sensor, where the error is too small for a grid.
     """
@@ -37,4 +41,9 @@ def estimator_resolution(resolution: Resolution, sensor: DopplerSensor, lowest_t
         f"sqrt(noise_m_s² + resolution_m_s²/12) must be {least_m_s:g} m/s or more, because lines for the estimated "
         "speed would need too fine a grid; set the noise that the sensor has, or regulator.estimator = false",
     )
-    return replace(resolution, speed_step_m_s=min(resolution.speed_step_m_s, step))
+    return replace(
+        resolution,
+        speed_step_m_s=min(resolution.speed_step_m_s, step),
+        friction_nodes=FRICTION_NODES,
+        resistance_nodes=RESISTANCE_NODES,
+    )

@@ -12,6 +12,10 @@ CHECK_FRICTION_NODES = 13
 
 LEAST_SPEED_STEP_M_S = 1e-3
 
+LONG_PASS_M = 60.0
+"""A longer pass has as many quanta of path as one of this length: long cuts brake slowly. With quanta of 1 m instead of
+0.5 the predicted rms of cuts of 70 to 165 m changes by at most 3 %, and a design takes a third of the time."""
+
 
 @dataclass(frozen=True)
 class Resolution:
@@ -27,9 +31,9 @@ class Resolution:
     speed_step_m_s: float = 0.03
     reference_speed_m_s: float = 3.0
     transient_substeps: int = 2
-    friction_nodes: int = 4
+    friction_nodes: int = 6
     path_levels: int = 2
-    resistance_nodes: int = 1
+    resistance_nodes: int = 3
 
     def __post_init__(self) -> None:
         require_between("grid: path_step_m", self.path_step_m, 0.01, 5.0)
@@ -38,6 +42,10 @@ class Resolution:
         for name in ("transient_substeps", "friction_nodes", "path_levels", "resistance_nodes"):
             value = getattr(self, name)
             require(1 <= value <= 64, f"grid: {name} is {value}; it must be a whole number from 1 to 64")
+
+    def for_pass(self, length_m: float) -> Resolution:
+        """The same for a pass of this length, from where the regulator acts to S_exit; see `LONG_PASS_M`."""
+        return replace(self, path_step_m=self.path_step_m * max(1.0, length_m / LONG_PASS_M))
 
 
 def finer_for_check(resolution: Resolution) -> Resolution:

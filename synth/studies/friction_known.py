@@ -148,16 +148,16 @@ def compared(setup: ClassSetup, aim: Aim, name: str, config: ResolvedConfig, opt
     tuned = tuned_table(setup, solutions(setup.design, [aim])[0])
     sample = common.run(TableController(tuned.table))
     limit = config.acceptance.rms_m_s
-    told = by_lines(told_lines(setup.design, target, tuned.lines, tuned.curvature))
+    told = by_lines(told_lines(setup.design, target, tuned.design.kept.lines, tuned.design.fit.curvature))
     bound = bound_of(common, [told], tuned.table, sample, limit)
     finer = replace(IN_A_TUNE, frictions=options.frictions)
-    more = by_lines(told_lines(setup.design, target, tuned.lines, tuned.curvature, finer))
+    more = by_lines(told_lines(setup.design, target, tuned.design.kept.lines, tuned.design.fit.curvature, finer))
     effort = replace(THOROUGH, degree=options.degree, iterations=(options.iterations, options.iterations))
     fine = replace(persistent_chain(setup.plant, setup.check.resolution), scenarios=setup.design.scenarios)
-    quanta, coarse = len(fine.grid.path_m) - 1, tuned.curvature.shape[2]
+    quanta, coarse = len(fine.grid.path_m) - 1, tuned.design.fit.curvature.shape[2]
     # Half the path step, but not always twice the quanta: both grids round their number.
-    curvature = tuned.curvature[:, :, np.arange(quanta) * coarse // quanta]
-    best = by_lines(told_lines(fine, target, tuned.lines, curvature, effort))
+    curvature = tuned.design.fit.curvature[:, :, np.arange(quanta) * coarse // quanta]
+    best = by_lines(told_lines(fine, target, tuned.design.kept.lines, curvature, effort))
     in_tune, by_more, by_effort = (run_told(common.loop, common.draws, each) for each in (told, more, best))
     in_groups = run_told(common.loop, common.draws, told, options.groups)
     thorough = best_by_others([by_effort, in_tune, sample], target)

@@ -117,20 +117,19 @@ def unit_key(config: ResolvedConfig, condition: str, refinement: Refinement | No
 
 def unit_memory_bytes(plant: Plant, config: ResolvedConfig) -> int:
     """What a worker holds at its peak, from the sizes of the largest arrays; `config` has one class."""
-    resolution = config.resolution
-    grid = make_grid(plant, resolution)
+    grid = make_grid(plant, config.resolution_of(plant))
     nodes, points, stages = len(grid.path_m), len(grid.speed_m_s), plant.top_stage + 1
     width = min(len(config.problems()), TARGETS_AT_ONCE)
     solved = 8 * width * nodes * points * 4 * stages
-    return PROCESS_BYTES + memory_estimate_bytes(plant, config.design_resolutions) + solved
+    return PROCESS_BYTES + memory_estimate_bytes(plant, config.design_resolutions(plant)) + solved
 
 
 def unit_work(plant: Plant, config: ResolvedConfig) -> float:
     """In proportion to the time of a unit: state space of solver and check, times the targets."""
-    check = finer_for_check(config.resolution)
+    design = config.resolution_of(plant)
     points = [
         len(grid.path_m) * len(grid.speed_m_s) * resolution.friction_nodes
-        for resolution in (config.resolution, check)
+        for resolution in (design, finer_for_check(design))
         for grid in (make_grid(plant, resolution),)
     ]
     return float(sum(points) * plant.top_stage * (2 + len(config.problems())))

@@ -14,7 +14,8 @@ from synth.book.attempted_case import attempted
 from synth.book.class_setup import ClassSetup, class_setup, origin_of, validation_passes
 from synth.book.failed_case import FailedCase, parted
 from synth.book.judgement import judgement
-from synth.book.tuned_table import predict, solutions, tuned_table, validated_table
+from synth.book.rounded_table import predict
+from synth.book.tuned_table import solutions, tuned_table, validated_table
 from synth.configuration.resolved_config import ResolvedConfig, resolve
 from synth.configuration.settings import Settings
 from synth.problem.aim import Aim

@@ -18,7 +18,7 @@ from synth.solver.switching_lines import SwitchingLines
 
 STEPS_M = (1.0, 0.5, 0.25)
 
-GRID = Resolution(1.0, 0.02, transient_substeps=2, friction_nodes=5, path_levels=2)
+GRID = Resolution(1.0, 0.02, transient_substeps=2, friction_nodes=5, path_levels=2, resistance_nodes=1)
 
 
 def braked_spread(t: Chain) -> float:

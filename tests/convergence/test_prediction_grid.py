@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from plant_models import Plant
-from synth.book.tuned_table import predict
+from synth.book.rounded_table import predict
 from synth.configuration.config_file import load_config, parse_config
 from synth.problem.resolution import Resolution, finer_for_check
 from synth.simulation.closed_loop import TableController, simulate_many

@@ -20,7 +20,7 @@ from synth.solver.switching_lines import SwitchingLines
 
 TARGET_M_S = 3.0
 
-BASE = Resolution(0.25, 0.02, transient_substeps=4, friction_nodes=3, path_levels=2)
+BASE = Resolution(0.25, 0.02, transient_substeps=4, friction_nodes=3, path_levels=2, resistance_nodes=1)
 
 
 def straight_lines(nodes_m: NDArray[np.float64]) -> SwitchingLines:

@@ -149,7 +149,7 @@ def test_the_density_predicts_the_closed_loop(plant: Plant, approach: Approach) 
 
 def test_more_permission_costs_nothing(plant: Plant) -> None:
     """The programme's own value at the entry falls with each stage allowed at the entrance, and with the approach."""
-    coarse = Resolution(path_step_m=0.25, speed_step_m_s=0.03)
+    coarse = Resolution(path_step_m=0.25, speed_step_m_s=0.03, friction_nodes=4, resistance_nodes=1)
     aim = Aim(2.2)
     costs = []
     for approach in (Approach(4.0, 0), Approach(4.0, 1), Approach(4.0, 2)):

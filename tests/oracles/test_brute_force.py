@@ -277,7 +277,9 @@ def zero_between(low: float, high: float, at_low: float, at_high: float) -> floa
     return low + (high - low) * a / (a - b)
 
 
-TINY = Resolution(path_step_m=0.5, speed_step_m_s=0.14, transient_substeps=3, friction_nodes=2, path_levels=2)
+TINY = Resolution(
+    path_step_m=0.5, speed_step_m_s=0.14, transient_substeps=3, friction_nodes=2, path_levels=2, resistance_nodes=1
+)
 """11 quanta × 25 speeds × 2 scenarios × 2 levels."""
 
 

@@ -119,7 +119,7 @@ def costs(
     return v[inside], np.array([search.best(0.0, float(v[j]), 0, rest) for j in inside]), found[inside]
 
 
-FINE = Resolution(0.05, 0.004, transient_substeps=10, friction_nodes=1, path_levels=1)
+FINE = Resolution(0.05, 0.004, transient_substeps=10, friction_nodes=1, path_levels=1, resistance_nodes=1)
 
 
 def tiny(plant_with: Callable[..., Plant], drive: Pneumatics, **changes: object) -> Plant:

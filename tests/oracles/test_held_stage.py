@@ -17,7 +17,9 @@ from synth.solver.switching_lines import SwitchingLines
 
 NEVER = math.inf
 
-ONE_SCENARIO = Resolution(path_step_m=0.25, speed_step_m_s=0.02, transient_substeps=2, friction_nodes=1, path_levels=1)
+ONE_SCENARIO = Resolution(
+    path_step_m=0.25, speed_step_m_s=0.02, transient_substeps=2, friction_nodes=1, path_levels=1, resistance_nodes=1
+)
 
 
 def without_commands(t: Chain) -> ExitDensity:
@@ -109,7 +111,9 @@ def brake_work(plant: Plant) -> float:
 def test_constant_braking_takes_the_brake_work(plant_with: Callable[..., Plant], path_step_m: float) -> None:
     """The energy falls by exactly ξ·∫β p ds however the quanta fall on the steps of N(s)."""
     plant = constantly_braked(plant_with)
-    resolution = Resolution(path_step_m, 0.02, transient_substeps=2, friction_nodes=1, path_levels=1)
+    resolution = Resolution(
+        path_step_m, 0.02, transient_substeps=2, friction_nodes=1, path_levels=1, resistance_nodes=1
+    )
     mean, variance = moments(without_commands(persistent_chain(plant, resolution)))
     assert mean == pytest.approx(4.5**2 / 2 + coasting_gain(plant) - brake_work(plant), abs=1e-9)
     assert variance < 0.3 * 0.06**2
@@ -118,7 +122,7 @@ def test_constant_braking_takes_the_brake_work(plant_with: Callable[..., Plant],
 def test_persistent_friction_spreads_the_exit_by_its_own_variance(plant_with: Callable[..., Plant]) -> None:
     """Var e = (CV·work)² with CV² = σ_c² + σ_a²/N̄, N̄ = (1.5·1 + 2.5·2 + 1.5·1)/5.5; Gauss–Hermite is exact."""
     plant = constantly_braked(plant_with, friction=Friction(0.10, 0.08, 0.0, 2.0))
-    resolution = Resolution(0.5, 0.02, transient_substeps=2, friction_nodes=5, path_levels=1)
+    resolution = Resolution(0.5, 0.02, transient_substeps=2, friction_nodes=5, path_levels=1, resistance_nodes=1)
     mean, variance = moments(without_commands(persistent_chain(plant, resolution)))
     work = brake_work(plant)
     cv_square = 0.10**2 + 0.08**2 / (8.0 / 5.5)
@@ -161,7 +165,9 @@ def test_path_noise_has_the_variance_of_the_continuous_process(
     plant = constantly_braked(
         plant_with, axles_m=(0.0,), zones_m=((0.0, 8.0),), mass_t=8.0, friction=Friction(0.0, 0.0, 0.2, 1.0)
     )
-    resolution = Resolution(path_step_m, 0.02, transient_substeps=2, friction_nodes=1, path_levels=levels)
+    resolution = Resolution(
+        path_step_m, 0.02, transient_substeps=2, friction_nodes=1, path_levels=levels, resistance_nodes=1
+    )
     _, variance = moments(without_commands(persistent_chain(plant, resolution)))
     braking = 0.05 * 65.0 / (8.0 + 0.42)
     expected = 2.0 * 0.2**2 * (8.0 - 1.0 + math.exp(-8.0)) * braking**2

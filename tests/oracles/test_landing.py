@@ -20,7 +20,9 @@ Array = NDArray[np.float64]
 
 STALLED = -1.0
 
-RESOLUTION = Resolution(path_step_m=0.5, speed_step_m_s=0.1, transient_substeps=5, friction_nodes=1, path_levels=1)
+RESOLUTION = Resolution(
+    path_step_m=0.5, speed_step_m_s=0.1, transient_substeps=5, friction_nodes=1, path_levels=1, resistance_nodes=1
+)
 """Every edge of N(s) of the small plant (1.5, 4.0, 5.5 m) lies on a node."""
 
 

@@ -27,7 +27,7 @@ from synth.solver.passage_polish import by_switching, polish_passages
 from synth.solver.passage_speeds import PassageSpeeds, passage_speeds
 from synth.solver.policy_density import commands_of, forward_all
 
-TINY = Resolution(path_step_m=0.5, speed_step_m_s=0.14, friction_nodes=2, path_levels=2)
+TINY = Resolution(path_step_m=0.5, speed_step_m_s=0.14, friction_nodes=2, path_levels=2, resistance_nodes=1)
 SENSORS = PointSensors(
     (-2.0, 0.6, 2.4), timer_noise_s=3e-3, timer_resolution_s=0.0, scan_period_s=0.05, missed_share=0.15
 )

@@ -205,7 +205,9 @@ def threshold(gain: Array, v: Array, upwards: bool) -> float:
     return float(v[j - 1] + (v[j] - v[j - 1]) * low / (low - high))
 
 
-SMALL = Resolution(path_step_m=0.5, speed_step_m_s=0.1, transient_substeps=3, friction_nodes=1, path_levels=1)
+SMALL = Resolution(
+    path_step_m=0.5, speed_step_m_s=0.1, transient_substeps=3, friction_nodes=1, path_levels=1, resistance_nodes=1
+)
 
 
 def noisy(plant_with: Callable[..., Plant]) -> Plant:

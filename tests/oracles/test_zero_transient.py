@@ -24,7 +24,7 @@ from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import Chain, as_published, persistent_chain
 from synth.solver.evaluation import Evaluation
 
-QUANTUM = Resolution(0.5, 0.02, transient_substeps=2, friction_nodes=1, path_levels=1)
+QUANTUM = Resolution(0.5, 0.02, transient_substeps=2, friction_nodes=1, path_levels=1, resistance_nodes=1)
 
 AT_ONCE = Pneumatics(700.0, 0.0, 0.0, 0.0, 0.0, 1e-3, 1e-3, 0.1)
 

@@ -49,7 +49,9 @@ def random_plant(
     )  # fmt: skip
 
 
-COARSE = Resolution(path_step_m=0.5, speed_step_m_s=0.05, transient_substeps=5, friction_nodes=3, path_levels=2)
+COARSE = Resolution(
+    path_step_m=0.5, speed_step_m_s=0.05, transient_substeps=5, friction_nodes=3, path_levels=2, resistance_nodes=1
+)
 
 
 @pytest.fixture(scope="session")

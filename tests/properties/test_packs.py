@@ -114,7 +114,9 @@ def test_what_is_kept_of_the_values_does_not_matter(small: Callable[[], Chain]) 
     np.testing.assert_array_equal(first.lines.lower_m_s, whole.lines.lower_m_s)
 
 
-TINY = Resolution(path_step_m=2.0, speed_step_m_s=0.4, transient_substeps=2, friction_nodes=2, path_levels=2)
+TINY = Resolution(
+    path_step_m=2.0, speed_step_m_s=0.4, transient_substeps=2, friction_nodes=2, path_levels=2, resistance_nodes=1
+)
 
 
 def figures(plant: Plant) -> list[float]:

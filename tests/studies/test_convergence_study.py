@@ -15,7 +15,7 @@ from synth.solver.chain.chain import persistent_chain
 from synth.studies.convergence.findings import orders
 from synth.studies.convergence.study import at_level, halved, lines_apart
 
-BASE = Resolution(path_step_m=0.5, speed_step_m_s=0.04, transient_substeps=2)
+BASE = Resolution(path_step_m=0.5, speed_step_m_s=0.04, transient_substeps=2, friction_nodes=4, resistance_nodes=1)
 
 
 def test_a_level_halves_the_step_of_its_kind_alone() -> None:
@@ -40,7 +40,9 @@ def test_observed_orders_of_a_known_error() -> None:
 
 
 def test_lines_that_are_shifted_are_so_far_apart(plant_of: Callable[[float], Plant]) -> None:
-    chain = persistent_chain(plant_of(22.0), Resolution(path_step_m=1.0, speed_step_m_s=0.1))
+    chain = persistent_chain(
+        plant_of(22.0), Resolution(path_step_m=1.0, speed_step_m_s=0.1, friction_nodes=4, resistance_nodes=1)
+    )
     solution = solve(chain, Aim(3.0))
     assert lines_apart(solution, solution) == 0.0
     assert lines_apart(solution, replace(solution, lines_m_s=solution.lines_m_s - 0.07)) == pytest.approx(0.07)

@@ -20,6 +20,7 @@ path_step_m = 1.0
 speed_step_m_s = 0.06
 transient_step_s = 0.1
 friction_scenarios = 2
+resistance_scenarios = 1
 [validation]
 passes = 1000
 """

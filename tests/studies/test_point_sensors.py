@@ -29,7 +29,7 @@ from synth.studies.point_sensors.sites import TEXTS, Site, single_stage, site_of
 from synth.studies.point_sensors.tables import kind_of, tables_of
 from synth.studies.point_sensors.told import speeds_for, squares_at, told_bound
 
-COARSE = Resolution(path_step_m=0.5, speed_step_m_s=0.05, friction_nodes=5)
+COARSE = Resolution(path_step_m=0.5, speed_step_m_s=0.05, friction_nodes=5, resistance_nodes=1)
 DECIDING = 5
 
 

@@ -48,7 +48,7 @@ from tuning_tables import (
 
 TARGET_M_S = 3.0
 MARGINS_M_S = (0.3, 0.5, 0.7)
-DESIGN = Resolution(path_step_m=0.5, speed_step_m_s=0.06)
+DESIGN = Resolution(path_step_m=0.5, speed_step_m_s=0.06, friction_nodes=4, resistance_nodes=1)
 
 
 def weak_plant() -> Plant:

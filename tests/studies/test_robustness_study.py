@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from synth.book.tuned_table import predict
+from synth.book.rounded_table import predict
 from synth.configuration.config_file import load_config
 from synth.configuration.plant_parameter import Parameter
 from synth.problem.resolution import finer_for_check

@@ -27,7 +27,9 @@ AIM = Aim(2.0, Criterion())
 
 @pytest.fixture
 def chain(plant_with: Callable[..., Plant]) -> Chain:
-    return persistent_chain(plant_with(stages_kpa=(0.0, 200.0, 400.0)), Resolution(1.0, 0.1, friction_nodes=2))
+    return persistent_chain(
+        plant_with(stages_kpa=(0.0, 200.0, 400.0)), Resolution(1.0, 0.1, friction_nodes=2, resistance_nodes=1)
+    )
 
 
 def test_the_slope_of_a_power_is_its_exponent() -> None:

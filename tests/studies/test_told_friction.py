@@ -18,7 +18,7 @@ from synth.solver.told_lines import SQUARED_ERROR_ALONE
 from synth.solver.tuned_lines import tuned_lines
 from synth.studies.told_friction import THOROUGH, simulate_told, thorough, told_friction
 
-COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.05)
+COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=4, resistance_nodes=1)
 
 
 def test_knowing_more_is_never_worse(plant_of: Callable[[float], Plant]) -> None:

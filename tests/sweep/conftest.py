@@ -32,6 +32,7 @@ high_m_s = 4.0
 path_step_m = 1.0
 speed_step_m_s = 0.05
 friction_scenarios = 3
+resistance_scenarios = 1
 [fit]
 degree = 2
 """

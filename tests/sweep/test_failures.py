@@ -63,6 +63,7 @@ approach_m = 0.0
 path_step_m = 2.0
 speed_step_m_s = 0.2
 friction_scenarios = 2
+resistance_scenarios = 1
 [sweep]
 exit_speeds_m_s = {speeds}
 passes = 1000

@@ -22,6 +22,7 @@ from plant_models import (
 from synth.book.case_result import CaseResult, CaseStudy, DegreeStudy, Indifference, PolicyMap
 from synth.book.comparison.comparison import Comparison
 from synth.book.comparison.measured import Feasibility, Measured
+from synth.book.grid_check import GridCheck
 from synth.book.permissions.permission import CasePermissions, Permission, PermissionResult
 from synth.problem.aim import Aim
 from synth.problem.problem import Problem
@@ -97,6 +98,7 @@ def make_case(
         table=make_table(label, plant, target),
         predicted=density,
         polish=Polish(make_polynomials(plant), 2.0 * spread**2, spread**2, 20, True, "Optimization terminated"),
+        grid=GridCheck(1.02 * promised, promised, again=False),
         finding=None,
         estimate=None,
         exit_speeds_m_s=samples[0].exit_speed_m_s.astype(np.float32),

@@ -37,7 +37,7 @@ from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tuned_lines import fitted, polished
 from synth.solver.worst_case import FACTORS, guard_worst_case
 
-COARSE = Resolution(path_step_m=0.5, speed_step_m_s=0.05, friction_nodes=3)
+COARSE = Resolution(path_step_m=0.5, speed_step_m_s=0.05, friction_nodes=3, resistance_nodes=1)
 TARGET_M_S = 3.0
 DEGREE = 2
 RANGE = FrictionRange(0.75, 1.25)

@@ -103,7 +103,7 @@ def test_it_is_designed_for_its_own_error_and_better_than_no_estimator(
 ) -> None:
     plant = plant_of(36.0)
     problem = Problem(plant, Aim(3.0, Criterion()))
-    coarse = Resolution(path_step_m=1.0, speed_step_m_s=0.05)
+    coarse = Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=4, resistance_nodes=1)
     measured = tuned_lines(persistent_chain(plant, coarse), Aim(3.0, problem.criterion), 3).lines
     made = estimated_table(problem, estimator_design(plant, coarse, 3.0), measured, passes)
     assert made.designed
@@ -122,7 +122,7 @@ def test_it_is_designed_for_its_own_error_and_better_than_no_estimator(
 @pytest.mark.slow
 def test_lines_for_an_uncertain_mean_keep_a_reserve(plant_of: Callable[[float], Plant], passes: RandomPasses) -> None:
     """On a day of little friction fewer cuts leave too fast, beyond chance, and the mean day hardly pays."""
-    coarse, target = Resolution(path_step_m=1.0, speed_step_m_s=0.05), 3.0
+    coarse, target = Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=4, resistance_nodes=1), 3.0
     plants = [
         replace(plant, friction=replace(plant.friction, mean_cv=m)) for m in (0.0, 0.15) for plant in [plant_of(36.0)]
     ]
@@ -148,7 +148,10 @@ def test_where_the_mean_is_known_lines_are_designed_as_for_the_friction_of_a_cut
     plant_of: Callable[[float], Plant],
 ) -> None:
     """Scenarios and lines to the bit; an uncertain mean gives others."""
-    plant, coarse = plant_of(36.0), Resolution(path_step_m=1.0, speed_step_m_s=0.05)
+    plant, coarse = (
+        plant_of(36.0),
+        Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=4, resistance_nodes=1),
+    )
     uncertain = replace(plant, friction=replace(plant.friction, mean_cv=0.15))
     known, wide = (estimator_design(each, coarse, 3.0) for each in (plant, uncertain))
     asked = persistent_chain(plant, known.resolution)
@@ -179,7 +182,10 @@ def test_a_trim_cannot_make_lines_meet(plant_of: Callable[[float], Plant]) -> No
 
 def test_a_white_error_enters_the_commands_alone(plant_of: Callable[[float], Plant]) -> None:
     """Lines for another measurement of the same chain are, to the bit, those of a plant with a sensor like that."""
-    plant, coarse = plant_of(36.0), Resolution(path_step_m=1.0, speed_step_m_s=0.04)
+    plant, coarse = (
+        plant_of(36.0),
+        Resolution(path_step_m=1.0, speed_step_m_s=0.04, friction_nodes=4, resistance_nodes=1),
+    )
     seen = replace(persistent_chain(plant, coarse), measurement=SmoothMeasurement(0.02))
     other = replace(plant, sensor=replace(plant.sensor, noise_m_s=0.02, resolution_m_s=0.0))
     lines = [tuned_lines(chain, Aim(3.0), 3).lines for chain in (seen, persistent_chain(other, coarse))]

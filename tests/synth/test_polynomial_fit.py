@@ -21,7 +21,7 @@ from synth.solver.polynomial_fit import Fit, fit_lines
 from synth.solver.polynomial_lines import MINIMUM_GAP_M_S, PolynomialLines, gap_of, opened
 from synth.solver.switching_lines import SwitchingLines
 
-COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=3)
+COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=3, resistance_nodes=1)
 TARGET_M_S = 3.0
 CRITERION = Criterion()
 

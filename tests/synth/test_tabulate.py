@@ -75,7 +75,9 @@ def test_prediction_counts_stalls_and_overspeed() -> None:
 def test_the_staircase_of_the_sensor_is_the_exact_quantisation(plant_of: Callable[[float], Plant]) -> None:
     """P(round((v + noise)/q)·q > line), by the definition of rounding, against the command probabilities."""
     plant = plant_of(52.0)
-    design = persistent_chain(plant, Resolution(path_step_m=4.0, speed_step_m_s=0.1, friction_nodes=1))
+    design = persistent_chain(
+        plant, Resolution(path_step_m=4.0, speed_step_m_s=0.1, friction_nodes=1, resistance_nodes=1)
+    )
     nodes = design.grid.path_m
     level = 3.017
     shape = (design.actuator.stages, len(nodes))
@@ -91,7 +93,9 @@ def test_the_staircase_of_the_sensor_is_the_exact_quantisation(plant_of: Callabl
 
 
 def test_density_is_a_distribution(plant_52t: Plant) -> None:
-    design = persistent_chain(plant_52t, Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=3))
+    design = persistent_chain(
+        plant_52t, Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=3, resistance_nodes=1)
+    )
     lines = lines_of(table_of(plant_52t), design.grid.path_m)
     density = exit_density(design.quantised(), lines)
     assert density.probability.sum() + density.stalled == pytest.approx(1.0, abs=1e-8)

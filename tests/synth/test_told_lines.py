@@ -31,7 +31,7 @@ from synth.solver.told_lines import (
 )
 from synth.solver.tuned_lines import fitted, polished
 
-COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.04)
+COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.04, friction_nodes=4, resistance_nodes=1)
 TARGET_M_S = 3.0
 
 

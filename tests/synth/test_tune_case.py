@@ -26,6 +26,7 @@ exit_speeds_m_s = [3.0, 4.0]
 path_step_m = 1.0
 speed_step_m_s = 0.05
 friction_scenarios = 3
+resistance_scenarios = 1
 [validation]
 passes = 4000
 """

@@ -23,6 +23,7 @@ path_step_m = 1.0
 speed_step_m_s = 0.04
 transient_step_s = 0.05
 friction_scenarios = 3
+resistance_scenarios = 1
 [fit]
 degree = 2
 [validation]

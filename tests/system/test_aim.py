@@ -339,6 +339,7 @@ exit_speeds_m_s = [1.2, 2.0, 3.0]
 path_step_m = 1.0
 speed_step_m_s = 0.04
 friction_scenarios = 3
+resistance_scenarios = 1
 [fit]
 degree = 2
 [validation]

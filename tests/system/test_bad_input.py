@@ -30,7 +30,8 @@ CONFIGURATIONS = {
         changed(
             CLASS,
             ("path_step_m = 1.0\nspeed_step_m_s = 0.04", "path_step_m = 0.02\nspeed_step_m_s = 0.002"),
-            ("friction_scenarios = 3", "friction_scenarios = 15\npath_levels = 9\nresistance_scenarios = 15"),
+            ("friction_scenarios = 3", "friction_scenarios = 15\npath_levels = 9"),
+            ("resistance_scenarios = 1", "resistance_scenarios = 15"),
         ),
         "would take about",
     ),

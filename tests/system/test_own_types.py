@@ -22,6 +22,7 @@ EXAMPLE = Path(__file__).parents[2] / "docs" / "examples" / "us-group"
 COARSE = """
 speed_step_m_s = 0.05
 friction_scenarios = 3
+resistance_scenarios = 1
 [validation]
 passes = 1000
 [acceptance]

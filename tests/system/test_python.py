@@ -146,7 +146,9 @@ def arrays_in(value: Any, path: str, seen: set[int]) -> Iterator[tuple[str, np.n
 
 def test_nothing_on_the_way_can_be_written_to(table: ControllerTable, problem: synth.Problem) -> None:
     """However deep: the values of a solve, a fit, a table, a simulation and a pass."""
-    solution = synth.solve(problem, synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2))
+    solution = synth.solve(
+        problem, synth.Resolution(path_step_m=1.0, speed_step_m_s=0.05, friction_nodes=2, resistance_nodes=1)
+    )
     found = {
         "solution": solution,
         "lines": synth.fit(solution, 2),

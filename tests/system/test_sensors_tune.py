@@ -29,6 +29,7 @@ exit_speeds_m_s = [2.0, 2.5]
 path_step_m = 1.0
 speed_step_m_s = 0.04
 friction_scenarios = 3
+resistance_scenarios = 1
 [validation]
 passes = 1000
 [acceptance]

@@ -72,11 +72,12 @@ def bound_of(
 def told_regulators(setup: ClassSetup, tuned: TunedTable, target_m_s: float) -> Sequence[Told]:
     """Regulators of the table's kind that are told the friction; where that commands at any time, and one at rest."""
     told: list[Told]
+    curvature = tuned.design.fit.curvature
     if tuned.estimate is not None and tuned.table.estimator is not None and setup.estimator is not None:
         tuning = setup.passes.of_others(setup.estimator.tuning)
-        told = [*told_with_estimator(tuned.estimate, setup.estimator.design, tuned.curvature, tuning, target_m_s)]
+        told = [*told_with_estimator(tuned.estimate, setup.estimator.design, curvature, tuning, target_m_s)]
     else:
-        told = [by_lines(told_lines(setup.design, target_m_s, tuned.lines, tuned.curvature))]
+        told = [by_lines(told_lines(setup.design, target_m_s, tuned.design.kept.lines, curvature))]
     if tuned.surfaces is None:
         return told
     if tuned.surfaces.estimate is not None and tuned.table.estimator is not None and setup.estimator is not None:

@@ -21,7 +21,8 @@ from synth.book.permissions.permission import (
     Permission,
     PermissionResult,
 )
-from synth.book.tuned_table import TunedTable, predicted_by_passes, rounded, solutions, tuned_table, with_prediction
+from synth.book.rounded_table import rounded, with_prediction
+from synth.book.tuned_table import TunedTable, predicted_by_passes, solutions, tuned_table
 from synth.book.watcher import Watcher
 from synth.book.work_queue import run_nested
 from synth.configuration.resolved_config import ResolvedConfig
@@ -208,7 +209,7 @@ def at_any_time(case: CaseTuned, permission: Permission, both: CaseTuned | Faile
 def polished(case: CaseTuned, has_gauge: bool) -> SurfacePolish:
     """Surfaces polished from the lines of the table."""
     plant = case.setup.plant
-    start = starting_surfaces(plant, case.tuned.lines, has_gauge)
+    start = starting_surfaces(plant, case.tuned.design.kept.lines, has_gauge)
     return polished_surfaces(plant, case.aim, start, design_resolution(plant, case.target_m_s))
 
 

@@ -13,7 +13,7 @@ from synth.book.sensors.candidate_places import LayoutCase, candidate_places
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import solve_all
 
-MAP = Resolution(path_step_m=0.5, speed_step_m_s=0.03, friction_nodes=7)
+MAP = Resolution(path_step_m=0.5, speed_step_m_s=0.03, friction_nodes=7, resistance_nodes=1)
 """Its grid: finer in speed than the search's, for it is looked at."""
 
 TOLERANCE_M2_S2 = 1e-5

@@ -23,6 +23,9 @@ LEAST_FRICTIONS = 7
 """Of fewer, sensors that measure well tell one from the other: lines polished on five frictions and 64 evaluations cost
 0.009 m/s there, and 0.031 on a fine grid (12 equal sections, every axle, 22 t to 2 m/s)."""
 
+RESISTANCES = 1
+"""Of the running resistance a design takes the mean: more was not tried with sensors."""
+
 
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
@@ -59,7 +62,8 @@ def passage_chains(plant: Plant, sensors: PointSensors, resolution: Resolution) 
 
     The design counts with `missed_share`; the prediction hears every passage.
     """
-    tuned_on = replace(resolution, friction_nodes=max(resolution.friction_nodes, LEAST_FRICTIONS))
+    frictions = max(resolution.friction_nodes, LEAST_FRICTIONS)
+    tuned_on = replace(resolution, friction_nodes=frictions, resistance_nodes=RESISTANCES)
     design = persistent_chain(plant, tuned_on, SensorPassages(sensors))
     every = replace(sensors, missed_share=0.0)
     check = check_chain(plant, finer_for_check(resolution), SensorPassages(every))

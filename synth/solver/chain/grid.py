@@ -56,7 +56,7 @@ class Grid:
 
 def make_grid(plant: Plant, resolution: Resolution) -> Grid:
     """The grid for `plant`: it holds every speed that an unbraked pass can reach, and a margin."""
-    length_m = plant.exit_m - plant.start_m
+    length_m = plant.pass_m
     quanta = max(4, round(length_m / resolution.path_step_m))
     step = resolution.speed_step_m_s * resolution.reference_speed_m_s
     downhill = max(0.0, max(plant.profile.grades_permille)) * 1e-3 * plant.cut.reduced_gravity_m_s2 * length_m
@@ -71,7 +71,7 @@ def memory_estimate_bytes(plant: Plant, designs: Sequence[Resolution]) -> int:
     """What solves of `plant` on the `designs` and a check of the first will hold at most, from their largest arrays."""
     total = 0
     for r in (*designs, finer_for_check(designs[0])):
-        quanta = max(4, round((plant.exit_m - plant.start_m) / r.path_step_m))
+        quanta = max(4, round(plant.pass_m / r.path_step_m))
         points = 0.5 * plant.entry.high_m_s**2 / (r.speed_step_m_s * r.reference_speed_m_s) * 1.2
         modes, chains = 2 * plant.top_stage, 4 * plant.top_stage
         landings = quanta * chains * 7 * points * 2

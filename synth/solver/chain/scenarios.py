@@ -21,15 +21,24 @@ class Scenarios:
     weight: NDArray[np.float64]
 
 
+RARE = 0.1
+"""Gauss nodes of ξ_cut of less weight have the mean running resistance alone."""
+
+
 def persistent_scenarios(plant: Plant, friction_nodes: int, resistance_nodes: int) -> Scenarios:
-    """Product of Gauss–Hermite nodes of ξ_cut and Gauss nodes of w."""
+    """Gauss–Hermite nodes of ξ_cut, each with all Gauss nodes of w, or where it is `RARE` with the mean of w.
+
+    The law of ξ_cut is that of the whole product, that of w too for most of the cuts; and there are half as many
+    scenarios.
+    """
     z, z_weight = np.polynomial.hermite_e.hermegauss(friction_nodes)
-    factor = plant.friction.cut_factor(z, plant.friction_cv)
-    extra, w_weight = resistance_scenarios(plant, resistance_nodes)
+    factor, z_weight = plant.friction.cut_factor(z, plant.friction_cv), z_weight / z_weight.sum()
+    spread, at_mean = resistance_scenarios(plant, resistance_nodes), (np.zeros(1), np.ones(1))
+    resistance = [at_mean if weight < RARE else spread for weight in z_weight]
     return Scenarios(
-        factor=np.repeat(factor, len(extra)),
-        extra_m_s2=np.tile(extra, len(z)),
-        weight=np.outer(z_weight / z_weight.sum(), w_weight).ravel(),
+        factor=np.repeat(factor, [len(extra) for extra, _ in resistance]),
+        extra_m_s2=np.concatenate([extra for extra, _ in resistance]),
+        weight=np.concatenate([share * weight for share, (_, weight) in zip(z_weight, resistance, strict=True)]),
     )
 
 

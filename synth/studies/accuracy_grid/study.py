@@ -23,7 +23,7 @@ from synth.book.comparison.told_regulator import by_lines
 from synth.book.estimation.estimated_table import estimated_table, estimator_design
 from synth.book.estimation.simulated_prediction import simulated_prediction
 from synth.book.estimation.told_estimator import told_with_estimator
-from synth.book.tuned_table import predict
+from synth.book.rounded_table import predict
 from synth.book.work_queue import run_nested
 from synth.configuration.config_file import parse_config
 from synth.configuration.resolved_config import ResolvedConfig

@@ -29,7 +29,7 @@ from synth.studies.study import Method, Tell
 from synth.studies.timing.machine import this_machine
 from synth.studies.timing.turns import Call, in_turns
 
-COARSE = Resolution(path_step_m=2.0, speed_step_m_s=0.2, friction_nodes=2)
+COARSE = Resolution(path_step_m=2.0, speed_step_m_s=0.2, friction_nodes=2, resistance_nodes=1)
 
 
 @dataclass(frozen=True)

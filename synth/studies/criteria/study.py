@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from synth.book.tuned_table import predict
+from synth.book.rounded_table import predict
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion

@@ -6,10 +6,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from plant_models import PointSensors
+from synth.book.rounded_table import predict
 from synth.book.sensors.candidate_places import LayoutCase
 from synth.book.sensors.layout_plan import LayoutProblem, best_places
 from synth.book.sensors.tuned_passages import TunedPassages, passage_chains
-from synth.book.tuned_table import predict
 from synth.problem.resolution import Resolution, finer_for_check
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import common_passes

@@ -32,7 +32,7 @@ CLASS_SHARES = (0.25, 0.75)
 
 ENERGY_RULE = next(family for family in FAMILIES if family.name == "energy rule")
 
-COARSE = "[grid]\npath_step_m = 1.0\nspeed_step_m_s = 0.06\nfriction_scenarios = 2\n"
+COARSE = "[grid]\npath_step_m = 1.0\nspeed_step_m_s = 0.06\nfriction_scenarios = 2\nresistance_scenarios = 1\n"
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from synth.solver.tabulate import UNPREDICTED, tabulate
 from synth.solver.tuned_lines import tuned_lines
 from tuning_tables import ControllerTable, Generator
 
-COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.06, friction_nodes=3)
+COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.06, friction_nodes=3, resistance_nodes=1)
 DEGREE = 3
 
 

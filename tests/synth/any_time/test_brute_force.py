@@ -172,7 +172,7 @@ def best_threshold(gain: Row, seen: Row, v: Row, above: bool) -> float:
 def tiny(plant: Plant) -> SampledChain:
     sensor = replace(plant.sensor, sample_period_s=0.25, computing_delay_s=0.05, resolution_m_s=0.04)
     small = replace(plant, resistance=RollingResistance(1.75, 0.6), sensor=sensor)
-    coarse = Resolution(path_step_m=1.2, speed_step_m_s=0.2, friction_nodes=2, path_levels=2)
+    coarse = Resolution(path_step_m=1.2, speed_step_m_s=0.2, friction_nodes=2, path_levels=2, resistance_nodes=1)
     return sampled_chain(small, coarse, pressure_step_kpa=90.0)
 
 

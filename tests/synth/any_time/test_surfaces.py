@@ -32,7 +32,7 @@ from tests.synth.any_time.tabled import tabled
 
 TARGET_M_S = 3.0
 AIM = Aim(TARGET_M_S, Criterion())
-KNOWN = Resolution(path_step_m=0.15, speed_step_m_s=0.01, friction_nodes=1)
+KNOWN = Resolution(path_step_m=0.15, speed_step_m_s=0.01, friction_nodes=1, resistance_nodes=1)
 GRID_ERROR = 0.015
 """Of a cost on this grid; halving its steps changes it by less."""
 

@@ -32,7 +32,7 @@ from tests.printed_page import Page, require_column, table_of
 SENSORS = PointSensors((0.0,))
 TARGET_M_S = 2.5
 AIMS = (Aim(TARGET_M_S, Criterion()),)
-COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.1, friction_nodes=3, path_levels=1)
+COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.1, friction_nodes=3, path_levels=1, resistance_nodes=1)
 AHEAD_M = 10.0
 
 
@@ -55,7 +55,7 @@ def test_by_the_rule_every_section_outlasts_the_longest_change(plant_52t: Plant)
 
 def test_the_cost_of_a_layout_is_that_of_its_own_chain(plant_22t: Plant) -> None:
     """Sensors at nodes of the path: the same as the chain of these sensors, solved and evaluated by itself."""
-    resolution = Resolution(path_step_m=0.5, speed_step_m_s=0.06, friction_nodes=7, path_levels=2)
+    resolution = Resolution(path_step_m=0.5, speed_step_m_s=0.06, friction_nodes=7, path_levels=2, resistance_nodes=1)
     probe = candidate_places(LayoutCase(plant_22t, AIMS), SENSORS, AHEAD_M, resolution)
     path = probe.chain.grid.path_m
     layout = tuple(float(path[node]) for node in (0, 30, 50, 70))

@@ -61,7 +61,7 @@ def test_passages_are_nodes_and_the_figures_hardly_depend_on_the_path_step(axles
     met = deciding_passages(sensors, plant.cut, plant.exit_m)
     rms = []
     for step_m in (0.5, 0.125):
-        grid = Resolution(path_step_m=step_m, speed_step_m_s=0.015, friction_nodes=7)
+        grid = Resolution(path_step_m=step_m, speed_step_m_s=0.015, friction_nodes=7, resistance_nodes=1)
         chain = persistent_chain(plant, grid, SensorPassages(sensors))
         at_nodes = chain.grid.path_m[chain.decisions.node]
         assert at_nodes == pytest.approx([each.path_m for each in met], abs=1e-9)

@@ -24,7 +24,7 @@ from tuning_tables import Generator
 from tuning_tables.passages import regulator, tracker
 from tuning_tables.passages.passage_table import PassageTable
 
-COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.1, friction_nodes=3, path_levels=1)
+COARSE = Resolution(path_step_m=1.0, speed_step_m_s=0.1, friction_nodes=3, path_levels=1, resistance_nodes=1)
 
 
 def solved(mass_t: float, axles: Axles, resolution: Resolution = COARSE) -> tuple[PassageTable, PassageLoop]:

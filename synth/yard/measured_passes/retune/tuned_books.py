@@ -11,7 +11,8 @@ from synth.book.attempted_case import attempted
 from synth.book.class_setup import ClassSetup, class_setup, origin_of, validation_passes
 from synth.book.estimation.simulated_prediction import simulated_prediction
 from synth.book.failed_case import FailedCase, require_none
-from synth.book.tuned_table import solutions, tuned_table, validated_table, with_prediction
+from synth.book.rounded_table import with_prediction
+from synth.book.tuned_table import solutions, tuned_table, validated_table
 from synth.book.validate_table import plant_for
 from synth.book.watcher import Watcher
 from synth.configuration.resolved_config import ResolvedConfig

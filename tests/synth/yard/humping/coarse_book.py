@@ -29,6 +29,7 @@ exit_speeds_m_s = [1.5, 2.0, 3.0]
 path_step_m = 1.0
 speed_step_m_s = 0.05
 friction_scenarios = 3
+resistance_scenarios = 1
 [fit]
 degree = 2
 [validation]

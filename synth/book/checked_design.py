@@ -1,0 +1,78 @@
+"""Lines whose cost on the grid of their design is what a finer grid says it is.
+
+A polish goes wherever the expected cost of its own grid is least, into the errors of that grid too. So its end is
+evaluated twice: on the grid of the design, and on the finer one of the prediction. Where the two do not agree, the
+design is done again on a finer grid, once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+from plant_models.frozen_arrays import frozen_arrays
+from synth.book.class_setup import ClassSetup
+from synth.book.grid_check import GridCheck
+from synth.book.rounded_table import rounded, with_prediction
+from synth.solver.backward_induction import Solution, solve
+from synth.solver.chain.chain import Chain
+from synth.solver.chain.scenarios import persistent_scenarios
+from synth.solver.coarse_grid import CoarseGridError
+from synth.solver.exit_density import ExitDensity
+from synth.solver.finer_speed import finer_in_speed
+from synth.solver.policy_density import exit_density
+from synth.solver.polynomial_fit import Fit
+from synth.solver.required_lines import RequiredLines, required_lines
+from synth.solver.tuned_lines import fitted
+from tuning_tables import ControllerTable
+
+FINER_SPEED: Final = 2.0
+FINER_FRICTIONS, FINER_RESISTANCES = 9, 5
+"""The second design: speed steps divided by the first, so many Gauss nodes of ξ_cut and of w."""
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class CheckedDesign:
+    """Polished lines for one aim, and the table of them for the measured speed, decided at rest, with its prediction.
+
+    `kept`: how the lines were found from `fit`; `predicted`: the exit density on the finer grid; `grid`: what the grid
+    of the design says of the lines beside it.
+    """
+
+    fit: Fit
+    kept: RequiredLines
+    table: ControllerTable
+    predicted: ExitDensity
+    grid: GridCheck
+
+
+def checked_design(setup: ClassSetup, solution: Solution) -> CheckedDesign:
+    """The lines of `solution` on `setup.design`; where its grid is not believed, these or a second design's.
+
+    Of the two those with the lesser predicted rms. Where the first grid is too coarse for lines, the second's alone.
+    Raises `PlantError` where the grid is too coarse for lines, `InvalidTable` where rounding would let lines touch.
+    """
+    try:
+        designs = [design_of(setup, solution, again=False)]
+    except CoarseGridError:
+        designs = []
+    if not designs or not designs[0].grid.is_believed:
+        designs.append(design_of(setup, solve(finer(setup.design), solution.aim), again=True))
+    return min(designs, key=lambda each: each.table.predicted.rms_m_s)
+
+
+def design_of(setup: ClassSetup, solution: Solution, again: bool) -> CheckedDesign:
+    """Lines fitted to a solution, polished, rounded, and predicted on both grids."""
+    target_m_s, fit = solution.aim.target_speed_m_s, fitted(solution, setup.degree)
+    kept = required_lines(solution, setup.check, fit)
+    table, predicted = with_prediction(setup.check, rounded(setup, kept.lines, target_m_s))
+    on_design = exit_density(solution.chain, kept.lines.at(solution.chain.grid.path_m))
+    grid = GridCheck(on_design.rms_m_s(target_m_s), table.predicted.rms_m_s, again)
+    return CheckedDesign(fit, kept, table, predicted, grid)
+
+
+def finer(design: Chain) -> Chain:
+    """The chain of a second design: the same path nodes, finer speeds, more scenarios."""
+    scenarios = persistent_scenarios(design.plant, FINER_FRICTIONS, FINER_RESISTANCES)
+    return finer_in_speed(design, FINER_SPEED, scenarios)
