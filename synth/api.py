@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.library.near_miss import near_miss
+from synth.book.checked_design import checked_design
 from synth.book.class_setup import origin_of
 from synth.book.creation_time import creation_time
 from synth.book.rounded_table import with_prediction
@@ -40,10 +41,8 @@ from synth.solver.chain.chain import Chain, check_chain, persistent_chain
 from synth.solver.one_blas_thread import one_blas_thread
 from synth.solver.polish import Polish
 from synth.solver.polynomial_lines import PolynomialLines
-from synth.solver.required_lines import required_lines
 from synth.solver.tabulate import UNPREDICTED
 from synth.solver.tabulate import tabulate as tabulate_lines
-from synth.solver.tuned_lines import fitted
 from tuning_tables import ControllerTable, Predicted
 from tuning_tables.canonical import canonical_json
 
@@ -148,10 +147,10 @@ def solve(problem: Problem, resolution: Resolution | None = None) -> Solution:
 @_as_a_command
 def fit(solution: Solution, degree: int = DEGREE) -> FittedLines:
     """Polynomial lines of `degree` for a solution: fitted, polished, and made to keep what the criterion requires."""
-    chain = solution.chain
-    check = check_chain(chain.plant, finer_for_check(chain.resolution))
-    kept = required_lines(solution, check, fitted(solution, degree))
-    return FittedLines(Problem(chain.plant, solution.aim), kept.lines, kept.polish, kept.finding, check)
+    problem = Problem(solution.chain.plant, solution.aim)
+    check = check_chain(problem.plant, finer_for_check(solution.chain.resolution))
+    kept = checked_design(solution, check, degree, lambda lines: _rounded(problem, lines, "", None)).kept
+    return FittedLines(problem, kept.lines, kept.polish, kept.finding, check)
 
 
 @_as_a_command
@@ -161,12 +160,15 @@ def tabulate(lines: FittedLines, name: str = "", config: Config = None) -> Contr
     `name`: the table's id, by default told from position, mass and target. `config`: the configuration that the problem
     is from, whose hash the table then carries; by default the hash of the problem itself.
     """
-    problem = lines.problem
+    return with_prediction(lines.check, _rounded(lines.problem, lines.lines, name, config))[0]
+
+
+def _rounded(problem: Problem, lines: PolynomialLines, name: str, config: Config) -> ControllerTable:
+    """The table of `lines`, not yet predicted; `name` and `config` as of `tabulate`."""
     plant, target = problem.plant, problem.target_speed_m_s
     stamp = origin_of(problem_sha256(problem) if config is None else resolved(config).sha256, creation_time())
     table_id = name or f"{plant.position.name}-{plant.cut.mass_t:g}t-to-{target:g}-m-s"
-    table = tabulate_lines(plant, lines.lines, target, UNPREDICTED, stamp.generator, table_id, stamp.created)
-    return with_prediction(lines.check, table)[0]
+    return tabulate_lines(plant, lines, target, UNPREDICTED, stamp.generator, table_id, stamp.created)
 
 
 @_as_a_command

@@ -7,13 +7,13 @@ design is done again on a finer grid, once.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
 from plant_models.frozen_arrays import frozen_arrays
-from synth.book.class_setup import ClassSetup
 from synth.book.grid_check import GridCheck
-from synth.book.rounded_table import rounded, with_prediction
+from synth.book.rounded_table import with_prediction
 from synth.solver.backward_induction import Solution, solve
 from synth.solver.chain.chain import Chain
 from synth.solver.chain.scenarios import persistent_scenarios
@@ -22,6 +22,7 @@ from synth.solver.exit_density import ExitDensity
 from synth.solver.finer_speed import finer_in_speed
 from synth.solver.policy_density import exit_density
 from synth.solver.polynomial_fit import Fit
+from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.required_lines import RequiredLines, required_lines
 from synth.solver.tuned_lines import fitted
 from tuning_tables import ControllerTable
@@ -29,6 +30,9 @@ from tuning_tables import ControllerTable
 FINER_SPEED: Final = 2.0
 FINER_FRICTIONS, FINER_RESISTANCES = 9, 5
 """The second design: speed steps divided by the first, so many Gauss nodes of ξ_cut and of w."""
+
+Rounding = Callable[[PolynomialLines], ControllerTable]
+"""Lines → the table of them as a controller holds it, not yet predicted."""
 
 
 @frozen_arrays
@@ -47,27 +51,28 @@ class CheckedDesign:
     grid: GridCheck
 
 
-def checked_design(setup: ClassSetup, solution: Solution) -> CheckedDesign:
-    """The lines of `solution` on `setup.design`; where its grid is not believed, these or a second design's.
+def checked_design(solution: Solution, check: Chain, degree: int, rounding: Rounding) -> CheckedDesign:
+    """The lines of `solution`; where the grid of its chain is not believed, these or a second design's.
 
-    Of the two those with the lesser predicted rms. Where the first grid is too coarse for lines, the second's alone.
-    Raises `PlantError` where the grid is too coarse for lines, `InvalidTable` where rounding would let lines touch.
+    Of the two those with the lesser rms predicted on `check`; of the second where the first grid is too coarse for
+    lines. Raises `PlantError` where that is too coarse as well, `InvalidTable` where rounding would let lines touch.
     """
     try:
-        designs = [design_of(setup, solution, again=False)]
+        designs = [design_of(solution, check, degree, rounding, again=False)]
     except CoarseGridError:
         designs = []
     if not designs or not designs[0].grid.is_believed:
-        designs.append(design_of(setup, solve(finer(setup.design), solution.aim), again=True))
+        second = solve(finer(solution.chain), solution.aim)
+        designs.append(design_of(second, check, degree, rounding, again=True))
     return min(designs, key=lambda each: each.table.predicted.rms_m_s)
 
 
-def design_of(setup: ClassSetup, solution: Solution, again: bool) -> CheckedDesign:
+def design_of(solution: Solution, check: Chain, degree: int, rounding: Rounding, again: bool) -> CheckedDesign:
     """Lines fitted to a solution, polished, rounded, and predicted on both grids."""
-    target_m_s, fit = solution.aim.target_speed_m_s, fitted(solution, setup.degree)
-    kept = required_lines(solution, setup.check, fit)
-    table, predicted = with_prediction(setup.check, rounded(setup, kept.lines, target_m_s))
-    on_design = exit_density(solution.chain, kept.lines.at(solution.chain.grid.path_m))
+    chain, target_m_s, fit = solution.chain, solution.aim.target_speed_m_s, fitted(solution, degree)
+    kept = required_lines(solution, check, fit)
+    table, predicted = with_prediction(check, rounding(kept.lines))
+    on_design = exit_density(chain, kept.lines.at(chain.grid.path_m))
     grid = GridCheck(on_design.rms_m_s(target_m_s), table.predicted.rms_m_s, again)
     return CheckedDesign(fit, kept, table, predicted, grid)
 

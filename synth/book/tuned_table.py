@@ -85,7 +85,8 @@ def tuned_table(setup: ClassSetup, solution: Solution) -> TunedTable:
 
     Raises `PlantError` where the grid is too coarse for lines, `InvalidTable` where rounding would let lines touch.
     """
-    problem, design = Problem(setup.plant, solution.aim), checked_design(setup, solution)
+    problem, target_m_s = Problem(setup.plant, solution.aim), solution.aim.target_speed_m_s
+    design = checked_design(solution, setup.check, setup.degree, lambda lines: rounded(setup, lines, target_m_s))
     lines, made = design.kept.lines, None
     if setup.estimator is not None:
         made = estimated_table(problem, setup.estimator.design, lines, setup.estimator.tuning)
@@ -93,9 +94,9 @@ def tuned_table(setup: ClassSetup, solution: Solution) -> TunedTable:
     estimate: AnyEstimate | None = made if surfaces is None else surfaces.estimate
     table, predicted = design.table, design.predicted
     if setup.estimator is not None and estimate is not None and estimate.gains:
-        table, predicted = predicted_by_passes(setup, estimate, setup.estimator, problem.target_speed_m_s)
+        table, predicted = predicted_by_passes(setup, estimate, setup.estimator, target_m_s)
     elif surfaces is not None:
-        table = rounded(setup, surfaces.polish.surfaces, problem.target_speed_m_s)
+        table = rounded(setup, surfaces.polish.surfaces, target_m_s)
         table, predicted = with_prediction(setup.check, table)
     return TunedTable(table, predicted, design, made, surfaces)
 

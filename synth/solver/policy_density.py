@@ -112,7 +112,7 @@ def forward_pass(
         samples[i] *= weight
         exits += weight * exits_of[i]
         totals += weight * totals_of[i]
-    stalled = max(float(totals[0]), 0.0)  # cubic weights leave −1e-8 or so
+    stalled = max(float(totals[0]), 0.0)  # where policies keep away from a stall, cubic weights leave −1e-8 or so
     total = ExitDensity(c.grid.speed_m_s, exits, stalled, float(totals[1]), float(totals[2] + totals[3]))
     return total, band
 

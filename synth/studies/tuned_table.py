@@ -18,7 +18,7 @@ CREATED = "2000-01-01T00:00:00Z"
 
 def tuned_table(config: ResolvedConfig, plant: Plant, target_m_s: float) -> ControllerTable:
     """Solved, fitted, polished and rounded as in a tune of `plant`, which need not be one of the configuration."""
-    resolution = config.grid.resolution(plant.sensor.sample_period_s)
+    resolution = config.grid.resolution(plant.sensor.sample_period_s).for_pass(plant.pass_m)
     design = persistent_chain(plant, resolution)
     lines = tuned_lines(design, Aim(target_m_s, config.criterion), config.fit.degree).lines
     return rounded(config, plant, lines, target_m_s)
