@@ -12,6 +12,7 @@ from synth.book.comparison.baselines import tune_baselines
 from synth.book.comparison.comparison import Comparison
 from synth.book.comparison.friction_bound import friction_bound
 from synth.book.comparison.measured import Measured
+from synth.book.comparison.served_entry import feasibility_of
 from synth.book.estimation.estimated_table import controller_of
 from synth.book.permissions.case_permissions import Ask
 from synth.book.policy_map import policy_map
@@ -57,7 +58,7 @@ def tune_case(order: CaseOrder) -> CaseResult:
     setup, solution = order.setup, order.solution
     tuned = tuned_table(setup, solution)
     validated = validated_table(setup, tuned.table, order.store)
-    bound = friction_bound(setup, tuned, validated, order.limit_m_s)
+    told = friction_bound(setup, tuned, validated)
     return CaseResult(
         label=setup.label,
         problem=Problem(setup.plant, solution.aim),
@@ -69,8 +70,8 @@ def tune_case(order: CaseOrder) -> CaseResult:
         exit_speeds_m_s=validated.sample.exit_speed_m_s.astype(np.float32),
         exit_weight=validated.sample.weight,
         brake_power=validated.brake_power,
-        comparison=comparison(order, tuned, validated, bound.sample),
-        feasibility=bound.feasibility,
+        comparison=comparison(order, tuned, validated, told),
+        feasibility=feasibility_of(setup.passes, solution.aim.target_speed_m_s, order.limit_m_s),
         study=case_study(order, tuned, validated),
         permissions=None if order.ask is None else order.ask(tuned, validated.sample),
     )

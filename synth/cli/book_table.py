@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from synth.book.printed_numbers import plus_minus
 from synth.cli import case_columns as of
 from synth.cli.printed_page import Exhibit, Verdict, print_page
 from synth.cli.printed_table import Column, PrintedTable
@@ -58,8 +59,11 @@ def places(tables: Sequence[str], summary: of.Case, directory: Path) -> str:
 def infeasible(case: of.Case) -> str:
     """What of an infeasible case can be served."""
     served, entry = case["served_entry_m_s"], case["entry_m_s"]
-    part = f"entry speeds from {served[0]:.2f} to {served[1]:.2f} m/s are served" if served else "no entry speed is"
+    least = plus_minus(case["unavoidable_rms_m_s"], case["unavoidable_ci95_m_s"], 4)
+    part = (
+        f"entry speeds from {served[0]:.2f} to {served[1]:.2f} m/s can be served" if served else "no entry speed can be"
+    )
     return (
         f"{case['label']} to {case['target_speed_m_s']:g} m/s, {case['why_infeasible']}; {part}, "
-        f"of the {entry[0]:g} to {entry[1]:g} m/s asked for"
+        f"of the {entry[0]:g} to {entry[1]:g} m/s asked for, where the rms that no regulator avoids is {least} m/s"
     )

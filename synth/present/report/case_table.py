@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from synth.book.case_names import why_infeasible
 from synth.book.case_result import CaseResult
 from synth.book.failed_case import FailedCase
 from synth.book.printed_numbers import ABSENT, in_ten_thousand, interval, percent, quotient, quotient_interval, speed
@@ -59,7 +58,7 @@ def case_row(case: CaseResult, limit_m_s: float) -> list[str | Cell]:
         case.label,
         f"{case.plant.cut.mass_t:g}",
         f"{case.target_speed_m_s:g}",
-        Cell("yes" if feasible else f"no: {why_infeasible(case)}", kind="words"),
+        Cell("yes" if feasible else f"no: {case.feasibility.obstacle}", kind="words"),
         Cell(speed(table.rms_m_s), f"{table.passes} passes, bias {table.bias_m_s:+.3f} m/s", over),
         interval(table.rms_ci95_m_s),
         speed(found.table.predicted_rms_m_s),
