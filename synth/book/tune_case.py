@@ -81,6 +81,8 @@ def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable, t
     """The closed loops of all controllers on the common passes; `told`: that of the reference."""
     passes, target, sample = order.setup.passes, order.solution.aim.target_speed_m_s, validated.sample
     baselines = tune_baselines(order.tuning, target, permitted(tuned))
+    by_baselines = {each.name: passes.run(each.controller) for each in baselines}
+    best = min(by_baselines, key=lambda name: exit_statistics(by_baselines[name], target).rms_m_s)
     predicted, published = validated.table.predicted, order.as_published
 
     def measured(name: str, controller: Controller) -> Measured:
@@ -106,7 +108,8 @@ def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable, t
             predicted_rms_m_s=Evaluation(published.chain.quantised(), published.aim).rms_m_s(published.lines),
         ),
         friction_known=beside_table("friction known", told, sample, target),
-        baselines=tuple(measured(b.name, b.controller) for b in baselines),
+        baselines=tuple(beside_table(name, each, sample, target) for name, each in by_baselines.items()),
+        baseline_ratio_ci95=beside_table(best, by_baselines[best], told, target).table_ratio_ci95,
         without_estimator=None if tuned.estimate is None else without_estimator(),
         at_rest=None if tuned.surfaces is None else at_rest(),
     )

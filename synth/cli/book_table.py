@@ -19,6 +19,11 @@ LEGEND = (
     "too fast whatever a table does. Intervals and ± are 95 %."
 )
 
+NO_REGRET = (
+    "No regret is told where the regulator that is told the friction is beaten by one that is not: it is no reference "
+    "there."
+)
+
 
 def print_book(summary: of.Case, directory: Path, permissions: Overview | None, permissions_line: str) -> None:
     """Print the table of cases, what is infeasible, the verdict, and where everything is."""
@@ -27,6 +32,8 @@ def print_book(summary: of.Case, directory: Path, permissions: Overview | None, 
     page: list[Exhibit] = [PrintedTable(columns, rows, "summary.json and the report", summary["title"])]
     if cases:
         page.append(f"{cases[0]['simulated']['passes']} stratified passes a case. {LEGEND}")
+    if any(case["regret"] is None for case in cases):
+        page.append(NO_REGRET)
     if permissions_line:
         page.append(permissions_line)
     page += (f"infeasible: {infeasible(case)}" for case in cases if not case["feasible"])

@@ -70,7 +70,7 @@ def case_row(case: CaseResult, limit_m_s: float) -> list[str | Cell]:
         speed(found.full_lines.statistics.rms_m_s),
         f"{quotient(found.table_loss, 3)} {quotient_interval(found.full_lines.table_ratio_ci95, 3)}",
         speed(found.friction_known.statistics.rms_m_s),
-        f"{quotient(found.regret, 3)} {quotient_interval(found.friction_known.table_ratio_ci95, 3)}",
+        f"{quotient(found.regret, 3)} {quotient_interval(found.regret_ci95, 3)}".rstrip(),
         best.name if best else ABSENT,
         speed(best.statistics.rms_m_s) if best else ABSENT,
         speed(found.as_published.predicted_rms_m_s),
