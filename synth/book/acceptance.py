@@ -112,7 +112,7 @@ def judge_case(case: CaseResult, limits: AcceptanceSettings) -> CaseVerdict:
     judged = verdict_within(case_name(case), found, case.feasibility.unavoidable, limits)
     missed = case.comparison.table.statistics.rms_ci95_m_s[0] > limits.rms_m_s
     if judged.word == "missed" and missed:
-        return replace(judged, advice=(what_to_change(case),))
+        return replace(judged, advice=(what_to_change(case, limits.rms_m_s),))
     return judged
 
 
@@ -127,15 +127,21 @@ def verdict_within(
     return CaseVerdict(name, unavoidable.obstacle if unavoidable.forbids(limits.rms_m_s) else "", found)
 
 
-def what_to_change(case: CaseResult) -> str:
-    """What may help where a table misses the rms that its position does not forbid."""
+def what_to_change(case: CaseResult, limit_m_s: float) -> str:
+    """What may help where a table misses the rms `limit_m_s` that its position does not forbid.
+
+    Where a tuned law keeps it, the position is known to be able to.
+    """
     ways = ["another fit.degree"]
     if case.estimate is None:
         ways.append("regulator.estimator = true")
     if case.table.decisions is Decisions.AT_REST:
         ways.append('regulator.commands = "any_time"')
+    can, best = "does not forbid it", case.comparison.best_baseline
+    if best is not None and best.statistics.rms_ci95_m_s[1] <= limit_m_s:
+        can = f"can, as a tuned {best.name} shows with {best.statistics.rms_m_s:.4f} m/s"
     return (
-        "the table does not reach this rms though the position does not forbid it "
+        f"the table does not reach this rms though the position {can} "
         f"({unavoidable_text(case.feasibility.unavoidable)}): try {', '.join(ways)} or another target"
     )
 

@@ -70,6 +70,15 @@ def test_what_is_to_be_changed_follows_from_what_is_asked_for_and_what_is_missed
     assert (verdict.word, verdict.advice) == ("missed", ())  # another limit than that of the rms
 
 
+def test_a_tuned_law_that_keeps_the_limit_shows_that_the_position_can() -> None:
+    bad = make_case("gondola-85t", 2.0, spread=0.15)
+    (*others, best) = bad.comparison.baselines
+    for high, words in ((0.1, "can, as a tuned energy rule shows with 0.0900 m/s"), (0.101, "does not forbid it")):
+        good = replace(best, statistics=statistics(rms_m_s=0.09, rms_ci95_m_s=(0.08, high)))
+        case = replace(bad, comparison=replace(bad.comparison, baselines=(*others, good)))
+        assert f"though the position {words} (the rms that" in judge([case], LIMITS).sentence
+
+
 def test_cuts_that_are_too_slow_without_any_braking_are_named_so() -> None:
     bad = honest_case(feasible=False)
     error = replace(bad.feasibility.unavoidable, too_fast=False)
