@@ -32,7 +32,7 @@ def print_book(summary: of.Case, directory: Path, permissions: Overview | None, 
     page: list[Exhibit] = [PrintedTable(columns, rows, "summary.json and the report", summary["title"])]
     if cases:
         page.append(f"{cases[0]['simulated']['passes']} stratified passes a case. {LEGEND}")
-    if any(case["regret"] is None for case in cases):
+    if any(case.get("simulated") and case["regret"] is None for case in cases):
         page.append(NO_REGRET)
     if permissions_line:
         page.append(permissions_line)
