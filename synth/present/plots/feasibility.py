@@ -53,7 +53,7 @@ def feasibility(cases: Sequence[CaseResult]) -> Figure:
             axes.axvspan(*asked_m_s, color=PALE_GREY, zorder=0)
             axes.tick_params(labelleft=column == 0)
         if column == 0:
-            above.set_ylabel("rms of exit speed − target, m/s", fontsize=9)
+            above.set_ylabel("unavoidable rms, m/s", fontsize=9)
     handles = [
         Line2D([], [], color=colour, marker=marker, linestyle=style, markersize=4.5, label=label)
         for label, colour, marker, style in zip(labels, LINE_COLOURS, LINE_MARKERS, LINE_STYLES, strict=False)
@@ -88,7 +88,7 @@ def draw_served(axes: Axes, cases: Sequence[CaseResult], labels: Sequence[str]) 
         else:
             colour = LINE_COLOURS[row % len(LINE_COLOURS)]
             axes.barh(row, served[1] - served[0], left=served[0], height=0.55, color=colour)
-    dress(axes, "served: rms within the limit", "entry speed, m/s")
+    dress(axes, "can be served: rms within the limit", "entry speed, m/s")
     axes.set_ylim(len(labels) - 0.4, -0.6)
     axes.set_yticks(range(len(labels)), labels)
     axes.grid(False, axis="y")

@@ -44,7 +44,7 @@ def book_pictures(cases: Sequence[CaseResult], studies: Sequence[DegreeStudy], l
         feasibility(cases),
         "feasibility",
         "Accuracy",
-        "Served entry speeds",
+        "Entry speeds that can be served",
         "Rms of the error that no controller avoids, over entry speed: what the position can do at all.",
     )
     yield picture(
