@@ -132,7 +132,7 @@ def what_to_change(case: CaseResult, limit_m_s: float) -> str:
 
     Where a tuned law keeps it, the position is known to be able to.
     """
-    ways = ["another fit.degree"]
+    ways = []
     if case.estimate is None:
         ways.append("regulator.estimator = true")
     if case.table.decisions is Decisions.AT_REST:
@@ -140,9 +140,10 @@ def what_to_change(case: CaseResult, limit_m_s: float) -> str:
     can, best = "does not forbid it", case.comparison.best_baseline
     if best is not None and best.statistics.rms_ci95_m_s[1] <= limit_m_s:
         can = f"can, as a tuned {best.name} shows with {best.statistics.rms_m_s:.4f} m/s"
+    ways.append("another fit.degree or another target")
     return (
         f"the table does not reach this rms though the position {can} "
-        f"({unavoidable_text(case.feasibility.unavoidable)}): try {', '.join(ways)} or another target"
+        f"({unavoidable_text(case.feasibility.unavoidable)}): try {', '.join(ways)}"
     )
 
 
