@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from synth.book.case_names import case_name, why_infeasible
+from synth.book.case_names import case_name
 from synth.book.case_result import CaseResult
 from synth.book.failed_case import FailedCase, told_together
 from synth.book.judgement import Judgement, interval_text, judgement
@@ -13,22 +13,26 @@ from synth.book.printed_numbers import counted
 from synth.configuration.settings import AcceptanceSettings
 from synth.simulation.exit_statistics import ExitStatistics
 from synth.simulation.replicates import share_of
+from synth.simulation.unavoidable_error import UnavoidableError
+from tuning_tables import Decisions
 
 
 @dataclass(frozen=True)
 class CaseVerdict:
     """One case: `judgement` of its table, whether it is feasible or not.
 
-    `obstacle`: what makes the case infeasible, '' for a feasible one.
+    `obstacle`: what makes the case infeasible, '' for a feasible one; `advice`: what to change where the table misses
+    an rms that its position does not forbid.
     """
 
     name: str
     obstacle: str
     judgement: Judgement
+    advice: tuple[str, ...] = ()
 
     @property
     def feasible(self) -> bool:
-        """A controller that knows the friction would keep the limit of the rms."""
+        """The position does not forbid the limit of the rms, or the passes cannot tell."""
         return not self.obstacle
 
     @property
@@ -94,18 +98,55 @@ def verdict_on(
 
 
 def told(verdicts: Sequence[CaseVerdict]) -> str:
-    """Cases with what is missed or undecided in them."""
-    return "; ".join(f"{verdict.name}: {', '.join(verdict.judgement.phrases)}" for verdict in verdicts)
+    """Cases with what is missed or undecided in them, and what to change."""
+    return "; ".join(
+        ", ".join((f"{each.name}: {', '.join(each.judgement.phrases)}", *each.advice)) for each in verdicts
+    )
 
 
 def judge_case(case: CaseResult, limits: AcceptanceSettings) -> CaseVerdict:
     """The verdict on one case, from the passes that its table was simulated on."""
     error = case.exit_speeds_m_s.astype(float) - case.target_speed_m_s
     over = share_of(error > limits.overspeed_margin_m_s, case.exit_weight)
-    obstacle = "" if case.feasibility.feasible else why_infeasible(case)
     found = judgement(case.comparison.table.statistics, over, case.table.predicted, limits)
-    if case.feasibility.undecided and found.missed:
+    judged = verdict_within(case_name(case), found, case.feasibility.unavoidable, limits)
+    missed = case.comparison.table.statistics.rms_ci95_m_s[0] > limits.rms_m_s
+    if judged.word == "missed" and missed:
+        return replace(judged, advice=(what_to_change(case, limits.rms_m_s),))
+    return judged
+
+
+def verdict_within(
+    name: str, found: Judgement, unavoidable: UnavoidableError, limits: AcceptanceSettings
+) -> CaseVerdict:
+    """The verdict on a case of which `found` was said, where no table avoids the error `unavoidable`."""
+    if unavoidable.undecided(limits.rms_m_s) and found.missed:
         # What is missed would not count in an infeasible case, and that cannot be told.
-        unsure = "the friction-known reference is too near to the limit to tell whether the case is feasible"
+        unsure = f"{unavoidable_text(unavoidable)}, too near to the limit to tell whether the case is feasible"
         found = Judgement((), (*found.missed, *found.undecided, unsure))
-    return CaseVerdict(case_name(case), obstacle, found)
+    return CaseVerdict(name, unavoidable.obstacle if unavoidable.forbids(limits.rms_m_s) else "", found)
+
+
+def what_to_change(case: CaseResult, limit_m_s: float) -> str:
+    """What may help where a table misses the rms `limit_m_s` that its position does not forbid.
+
+    Where a tuned law keeps it, the position is known to be able to.
+    """
+    ways = []
+    if case.estimate is None:
+        ways.append("regulator.estimator = true")
+    if case.table.decisions is Decisions.AT_REST:
+        ways.append('regulator.commands = "any_time"')
+    can, best = "does not forbid it", case.comparison.best_baseline
+    if best is not None and best.statistics.rms_ci95_m_s[1] <= limit_m_s:
+        can = f"can, as a tuned {best.name} shows with {best.statistics.rms_m_s:.4f} m/s"
+    ways.append("another fit.degree or another target")
+    return (
+        f"the table does not reach this rms though the position {can} "
+        f"({unavoidable_text(case.feasibility.unavoidable)}): try {', '.join(ways)}"
+    )
+
+
+def unavoidable_text(error: UnavoidableError) -> str:
+    """The bound of every regulator's rms, with its interval."""
+    return f"the rms that no regulator avoids is {error.rms_m_s:.4f} {interval_text(error.rms_ci95_m_s)} m/s"

@@ -35,9 +35,3 @@ def by_class(cases: Iterable[CaseResult]) -> tuple[tuple[CaseResult, ...], ...]:
     for case in cases:
         groups.setdefault(case.label, []).append(case)
     return tuple(tuple(group) for group in groups.values())
-
-
-def why_infeasible(case: CaseResult) -> str:
-    """What stands in the way of an infeasible case, in three words."""
-    too_fast = case.comparison.friction_known.statistics.bias_m_s > 0.0
-    return "out of brake power" if too_fast else "leaves too slow"

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from plant_models import Plant
 from plant_models.frozen_arrays import frozen_arrays
 from synth.book.comparison.comparison import Comparison
-from synth.book.comparison.measured import Feasibility
+from synth.book.feasibility import Feasibility
 from synth.book.grid_check import GridCheck
 from synth.book.permissions.permission import CasePermissions
 from synth.problem.criterion import Criterion

@@ -74,9 +74,10 @@ def overall(cases: tuple[CaseResult, ...]) -> Document:
     figures: Document = {"cases": len(cases), "feasible": len(found)}
     if found:
         honest, published = [c.table.honesty for c in found], [c.as_published.honesty for c in found]
+        regrets = [c.regret for c in found if c.has_reference]
         figures |= {
             "highest_rms_m_s": max(c.table.statistics.rms_m_s for c in found),
-            "median_regret": median(c.regret for c in found),
+            "median_regret": median(regrets) if regrets else None,
             "highest_table_loss": max(c.table_loss for c in found),
             "honesty": [min(honest), max(honest)],
             "as_published_honesty": [min(published), max(published)],
@@ -108,8 +109,11 @@ def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
         "undecided_limits": verdict.judgement.undecided,
         "feasible": verdict.feasible,
         "why_infeasible": verdict.obstacle or None,
+        "advice": verdict.advice,
         "entry_m_s": (entry.low_m_s, entry.high_m_s),
         "served_entry_m_s": served,
+        "unavoidable_rms_m_s": case.feasibility.unavoidable.rms_m_s,
+        "unavoidable_ci95_m_s": case.feasibility.unavoidable.rms_ci95_m_s,
         "predicted": asdict(case.table.predicted),
         "simulated": measured_of(found.table),
         "brake_power": asdict(case.brake_power),
@@ -118,7 +122,7 @@ def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
         "table_loss": found.table_loss,
         "table_loss_ci95": found.full_lines.table_ratio_ci95,
         "regret": found.regret,
-        "regret_ci95": found.friction_known.table_ratio_ci95,
+        "regret_ci95": found.regret_ci95,
         "at_rest_ratio": None if found.at_rest is None else found.at_rest.table_ratio,
         "at_rest_ratio_ci95": None if found.at_rest is None else found.at_rest.table_ratio_ci95,
         "best_baseline": found.best_baseline.name if found.best_baseline else None,

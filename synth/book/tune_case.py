@@ -12,6 +12,7 @@ from synth.book.comparison.baselines import tune_baselines
 from synth.book.comparison.comparison import Comparison
 from synth.book.comparison.friction_bound import friction_bound
 from synth.book.comparison.measured import Measured
+from synth.book.comparison.served_entry import feasibility_of
 from synth.book.estimation.estimated_table import controller_of
 from synth.book.permissions.case_permissions import Ask
 from synth.book.policy_map import policy_map
@@ -58,7 +59,7 @@ def tune_case(order: CaseOrder) -> CaseResult:
     setup, solution = order.setup, order.solution
     tuned = tuned_table(setup, solution)
     validated = validated_table(setup, tuned.table, order.store)
-    bound = friction_bound(setup, tuned, validated, order.limit_m_s)
+    told = friction_bound(setup, tuned, validated)
     return CaseResult(
         label=setup.label,
         problem=Problem(setup.plant, solution.aim),
@@ -71,8 +72,8 @@ def tune_case(order: CaseOrder) -> CaseResult:
         exit_speeds_m_s=validated.sample.exit_speed_m_s.astype(np.float32),
         exit_weight=validated.sample.weight,
         brake_power=validated.brake_power,
-        comparison=comparison(order, tuned, validated, bound.sample),
-        feasibility=bound.feasibility,
+        comparison=comparison(order, tuned, validated, told),
+        feasibility=feasibility_of(setup.passes, solution.aim.target_speed_m_s, order.limit_m_s),
         study=case_study(order, tuned, validated),
         permissions=None if order.ask is None else order.ask(tuned, validated.sample),
     )
@@ -82,6 +83,8 @@ def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable, t
     """The closed loops of all controllers on the common passes; `told`: that of the reference."""
     passes, target, sample = order.setup.passes, order.solution.aim.target_speed_m_s, validated.sample
     baselines = tune_baselines(order.tuning, target, permitted(tuned))
+    by_baselines = {each.name: passes.run(each.controller) for each in baselines}
+    best = min(by_baselines, key=lambda name: exit_statistics(by_baselines[name], target).rms_m_s)
     predicted, published = validated.table.predicted, order.as_published
 
     def measured(name: str, controller: Controller) -> Measured:
@@ -107,7 +110,8 @@ def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable, t
             predicted_rms_m_s=Evaluation(published.chain.quantised(), published.aim).rms_m_s(published.lines),
         ),
         friction_known=beside_table("friction known", told, sample, target),
-        baselines=tuple(measured(b.name, b.controller) for b in baselines),
+        baselines=tuple(beside_table(name, each, sample, target) for name, each in by_baselines.items()),
+        baseline_ratio_ci95=beside_table(best, by_baselines[best], told, target).table_ratio_ci95,
         without_estimator=None if tuned.estimate is None else without_estimator(),
         at_rest=None if tuned.surfaces is None else at_rest(),
     )

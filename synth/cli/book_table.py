@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from synth.book.printed_numbers import plus_minus
 from synth.cli import case_columns as of
 from synth.cli.printed_page import Exhibit, Verdict, print_page
 from synth.cli.printed_table import Column, PrintedTable
@@ -18,6 +19,11 @@ LEGEND = (
     "too fast whatever a table does. Intervals and ± are 95 %."
 )
 
+NO_REGRET = (
+    "No regret is told where the regulator that is told the friction is beaten by one that is not: it is no reference "
+    "there."
+)
+
 
 def print_book(summary: of.Case, directory: Path, permissions: Overview | None, permissions_line: str) -> None:
     """Print the table of cases, what is infeasible, the verdict, and where everything is."""
@@ -26,6 +32,8 @@ def print_book(summary: of.Case, directory: Path, permissions: Overview | None, 
     page: list[Exhibit] = [PrintedTable(columns, rows, "summary.json and the report", summary["title"])]
     if cases:
         page.append(f"{cases[0]['simulated']['passes']} stratified passes a case. {LEGEND}")
+    if any(case.get("simulated") and case["regret"] is None for case in cases):
+        page.append(NO_REGRET)
     if permissions_line:
         page.append(permissions_line)
     page += (f"infeasible: {infeasible(case)}" for case in cases if not case["feasible"])
@@ -58,8 +66,11 @@ def places(tables: Sequence[str], summary: of.Case, directory: Path) -> str:
 def infeasible(case: of.Case) -> str:
     """What of an infeasible case can be served."""
     served, entry = case["served_entry_m_s"], case["entry_m_s"]
-    part = f"entry speeds from {served[0]:.2f} to {served[1]:.2f} m/s are served" if served else "no entry speed is"
+    least = plus_minus(case["unavoidable_rms_m_s"], case["unavoidable_ci95_m_s"], 4)
+    part = (
+        f"entry speeds from {served[0]:.2f} to {served[1]:.2f} m/s can be served" if served else "no entry speed can be"
+    )
     return (
         f"{case['label']} to {case['target_speed_m_s']:g} m/s, {case['why_infeasible']}; {part}, "
-        f"of the {entry[0]:g} to {entry[1]:g} m/s asked for"
+        f"of the {entry[0]:g} to {entry[1]:g} m/s asked for, where the rms that no regulator avoids is {least} m/s"
     )

@@ -76,8 +76,8 @@ def without_table(failed: dict[str, Any]) -> Case:
 CASE: Final = Column[Case]("case", lambda case: case["label"], words=True, once=True)
 TARGET: Final = Column[Case]("target, m/s", lambda case: f"{case['target_speed_m_s']:g}")
 RMS: Final = Column[Case]("rms, m/s", error("rms"))
-FOR_WANT_OF_BRAKE: Final = Column[Case](
-    "for want of brake, m/s",
+UNAVOIDABLE: Final = Column[Case](
+    "unavoidable, m/s",
     lambda case: plus_minus(case.get("unavoidable_rms_m_s"), case.get("unavoidable_ci95_m_s"), 4),
     spare=2,
 )

@@ -10,12 +10,12 @@ from synth.cli.printed_page import Verdict, print_page
 from synth.cli.printed_table import PrintedTable
 
 COLUMNS = (
-    of.CASE, of.TARGET, of.RMS, of.FOR_WANT_OF_BRAKE, of.WITHIN_95, of.OUT_OF_BRAKE, of.HONESTY, of.SWITCHINGS,
+    of.CASE, of.TARGET, of.RMS, of.UNAVOIDABLE, of.WITHIN_95, of.OUT_OF_BRAKE, of.HONESTY, of.SWITCHINGS,
     of.VERDICT,
 )  # fmt: skip
 
 LEGEND = (
-    "For want of brake: what of the rms no table can avoid. 95 of 100 within ±: so many cuts leave within so many m/s "
+    "Unavoidable: what of the rms no table can avoid. 95 of 100 within ±: so many cuts leave within so many m/s "
     "of the target. Out of brake: leaves more than 0.3 m/s too fast even at full brake. Intervals and ± are 95 %."
 )
 

@@ -10,6 +10,7 @@ from plant_models import Plant
 from synth.kernels.loop.closed_loop import Draws
 from synth.simulation.closed_loop import ClosedLoop, close_loop
 from synth.simulation.controllers import Regulator, full_brake
+from synth.simulation.exit_range import ExitRange, exit_range
 from synth.simulation.passes import ExitSample, PassTrace
 from synth.simulation.random_passes import RandomPasses
 
@@ -35,9 +36,14 @@ class CommonPasses:
 
     @cached_property
     def at_full_brake(self) -> ExitSample:
-        """All passes under a regulator that raises at every decision: what brake power can do at most."""
+        """All passes under a regulator that raises at every decision: what a table can brake at most."""
         plant = self.plant
         return self.run(full_brake(plant.top_stage + 1, plant.start_m, plant.exit_m))
+
+    @cached_property
+    def exit_range(self) -> ExitRange:
+        """What the position can do to each pass, whatever regulator commands it."""
+        return exit_range(self.loop(self.plant.top_stage + 1), self.draws)
 
     def trace(self, controller: Regulator, index: int, cut_factor: float) -> PassTrace:
         """Pass `index` event by event, but with the friction factor `cut_factor`."""

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from synth.book.acceptance import judge
-from synth.book.printed_numbers import few
+from synth.book.printed_numbers import ABSENT, few
 from synth.book.summary import summary_of
 from synth.book.tune import tune
 from synth.book.tuned_table import read_back
@@ -56,7 +56,7 @@ class Row:
     predicted_rms_m_s: float
     honesty: Measure
     table_loss: Measure
-    regret: Measure
+    regret: Measure | None
     best_baseline: str
     baseline_rms: Measure
 
@@ -103,7 +103,8 @@ def cells(row: Row) -> tuple[str, ...]:
     return (
         f"{row.label} to {row.target_m_s:g} m/s", "yes" if row.feasible else "no", row.rms.cell(4), row.p95.cell(3),
         row.p99.cell(3), f"{few(most)} [{few(low)}, {few(high)}]", row.rms_within.cell(4),
-        f"{row.predicted_rms_m_s:.4f}", row.honesty.cell(3), row.table_loss.cell(3), row.regret.cell(3),
+        f"{row.predicted_rms_m_s:.4f}", row.honesty.cell(3), row.table_loss.cell(3),
+        ABSENT if row.regret is None else row.regret.cell(3),
         f"{row.baseline_rms.cell(4)} ({row.best_baseline})",
     )  # fmt: skip
 
@@ -134,7 +135,7 @@ def row_of(case: Mapping[str, Any]) -> Row:
         predicted_rms_m_s=found["predicted_rms_m_s"],
         honesty=measure(case, "honesty"),
         table_loss=measure(case, "table_loss"),
-        regret=measure(case, "regret"),
+        regret=None if case["regret"] is None else measure(case, "regret"),
         best_baseline=best,
         baseline_rms=measure(baseline, "rms_m_s"),
     )

@@ -2,8 +2,8 @@
 
 The reference of a tune takes one step of the polish at most frictions, on the design grid. Here its lines are polished
 to the end on the grid of the prediction, with a higher degree and the resistance's spread; and single choices of the
-tune are refined: the frictions with lines of their own, the groups in which cuts are told theirs, the passes at each
-entry speed. All on the same passes.
+tune are refined: the frictions with lines of their own, the groups in which cuts are told theirs. All on the same
+passes.
 """
 
 from __future__ import annotations
@@ -16,11 +16,10 @@ from statistics import median
 import numpy as np
 
 from synth.book.class_setup import ClassSetup, class_setup, origin_of
-from synth.book.comparison.friction_bound import ENTRY_PASSES, bound_of, feasibility_of
+from synth.book.comparison.friction_bound import bound_of
 from synth.book.comparison.told_regulator import best_by_others, by_lines, run_told
 from synth.book.tuned_table import solutions, tuned_table
 from synth.configuration.config_file import load_config
-from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.simulation.closed_loop import TableController
 from synth.simulation.exit_statistics import rms_ratio
@@ -52,7 +51,6 @@ class Options:
     iterations: int = option(30, "of their polish at each friction", (1, 10_000))
     frictions: int = option(25, "that have lines of their own, instead of those of a tune", (3, 201))
     groups: int = option(104, "in which cuts are told their friction, instead of those of a tune", (2, 10_000))
-    entry_passes: int = option(4000, "at each entry speed, instead of those of a tune", (100, 10**6))
 
 
 @dataclass(frozen=True)
@@ -70,16 +68,13 @@ class Ratio:
 
 @dataclass(frozen=True)
 class Row:
-    """One case: regret of its table; rms of the tune's reference / rms with more effort, frictions, groups; and the
-    highest entry speed that is served, as a tune finds it and with more passes."""
+    """One case: regret of its table; rms of the tune's reference / rms with more effort, frictions, groups."""
 
     case: str
     regret: Ratio
     loose: Ratio
     frictions: Ratio
     groups: Ratio
-    served_m_s: float | None
-    served_with_more_m_s: float | None
 
 
 @dataclass(frozen=True)
@@ -93,13 +88,8 @@ class References(Findings):
 
     def tables(self) -> Mapping[str, MarkdownTable]:
         """`references`: a row a case."""
-        heads = ("case", "regret", "reference / with more effort", "/ with more frictions", "/ with more groups",
-                 "highest entry speed served, m/s", "with more passes")  # fmt: skip
-        rows = (
-            (row.case, row.regret.cell, row.loose.cell, row.frictions.cell, row.groups.cell,
-             speed(row.served_m_s), speed(row.served_with_more_m_s))
-            for row in self.rows
-        )  # fmt: skip
+        heads = ("case", "regret", "reference / with more effort", "/ with more frictions", "/ with more groups")
+        rows = ((row.case, row.regret.cell, row.loose.cell, row.frictions.cell, row.groups.cell) for row in self.rows)
         return {"references": table("rms of the friction-known reference", heads, rows)}
 
     def sentences(self) -> tuple[str, ...]:
@@ -119,11 +109,6 @@ class References(Findings):
         )  # fmt: skip
 
 
-def speed(value_m_s: float | None) -> str:
-    """'6.62', or '–'."""
-    return "–" if value_m_s is None else f"{value_m_s:.2f}"
-
-
 def run(options: Options, tell: Tell) -> References:
     """All cases."""
     config = load_config(options.config)
@@ -132,9 +117,7 @@ def run(options: Options, tell: Tell) -> References:
     def row_of(case: Case) -> Row:
         passes = stratified_passes(seed, 0, options.passes)
         setup = class_setup(config, case.label, case.plant, passes, origin_of("0" * 64, CREATED))
-        row = compared(
-            replace(setup, estimator=None), Aim(case.target_m_s, config.criterion), case.name, config, options
-        )
+        row = compared(replace(setup, estimator=None), Aim(case.target_m_s, config.criterion), case.name, options)
         tell(f"{row.case}: regret {row.regret.cell}, reference / with more effort {row.loose.cell}")
         return row
 
@@ -142,14 +125,13 @@ def run(options: Options, tell: Tell) -> References:
     return References(config.sha256, seed, options.passes, side_by_side(row_of, cases))
 
 
-def compared(setup: ClassSetup, aim: Aim, name: str, config: ResolvedConfig, options: Options) -> Row:
+def compared(setup: ClassSetup, aim: Aim, name: str, options: Options) -> Row:
     """One case."""
     target, common = aim.target_speed_m_s, setup.passes
     tuned = tuned_table(setup, solutions(setup.design, [aim])[0])
     sample = common.run(TableController(tuned.table))
-    limit = config.acceptance.rms_m_s
     told = by_lines(told_lines(setup.design, target, tuned.design.kept.lines, tuned.design.fit.curvature))
-    bound = bound_of(common, [told], tuned.table, sample, limit)
+    bound = bound_of(common, [told], sample, target)
     finer = replace(IN_A_TUNE, frictions=options.frictions)
     more = by_lines(told_lines(setup.design, target, tuned.design.kept.lines, tuned.design.fit.curvature, finer))
     effort = replace(THOROUGH, degree=options.degree, iterations=(options.iterations, options.iterations))
@@ -161,19 +143,14 @@ def compared(setup: ClassSetup, aim: Aim, name: str, config: ResolvedConfig, opt
     in_tune, by_more, by_effort = (run_told(common.loop, common.draws, each) for each in (told, more, best))
     in_groups = run_told(common.loop, common.draws, told, options.groups)
     thorough = best_by_others([by_effort, in_tune, sample], target)
-    many = feasibility_of(common, told, target, (0.0, 0.0), limit, options.entry_passes)
-    few = feasibility_of(common, told, target, (0.0, 0.0), limit, ENTRY_PASSES)
     return Row(
         case=name,
-        regret=Ratio(*rms_ratio(sample, bound.sample, target)),
-        loose=Ratio(*rms_ratio(bound.sample, thorough, target)),
+        regret=Ratio(*rms_ratio(sample, bound, target)),
+        loose=Ratio(*rms_ratio(bound, thorough, target)),
         frictions=Ratio(*rms_ratio(in_tune, by_more, target)),
         groups=Ratio(*rms_ratio(in_tune, in_groups, target)),
-        served_m_s=few.served_m_s and few.served_m_s[1],
-        served_with_more_m_s=many.served_m_s and many.served_m_s[1],
     )
 
 
-SMALLEST = Options(masses_t=(52.0,), targets_m_s=(3.0,), passes=400, degree=3, iterations=1, frictions=3, groups=2,
-                   entry_passes=100)  # fmt: skip
+SMALLEST = Options(masses_t=(52.0,), targets_m_s=(3.0,), passes=400, degree=3, iterations=1, frictions=3, groups=2)
 METHOD = Method(Options, SMALLEST, References, run)

@@ -130,7 +130,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
     ),
     Study(
         "friction-known",
-        "How good is the reference that regret and feasibility are measured by: what would more effort make of it?",
+        "How good is the reference that regret is measured by: what would more effort make of it?",
         150.0,
         "limits.md#the-friction-known-reference",
         "synth.studies.friction_known",

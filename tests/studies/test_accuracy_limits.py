@@ -95,7 +95,7 @@ def test_the_worst_case_counts_as_well_as_the_median() -> None:
 
 def test_time_and_an_empty_grid_are_told() -> None:
     assert missed(case(), minutes=15.1) == ["the whole grid on two cores: ≤ 15 min"]
-    assert missed(case(None)) == ["a feasible case"]
+    assert missed(case(None)) == ["a case that is served"]
 
 
 def test_what_is_not_met_is_bold_and_a_fault() -> None:

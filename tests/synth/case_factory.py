@@ -21,13 +21,15 @@ from plant_models import (
 )
 from synth.book.case_result import CaseResult, CaseStudy, DegreeStudy, Indifference, PolicyMap
 from synth.book.comparison.comparison import Comparison
-from synth.book.comparison.measured import Feasibility, Measured
+from synth.book.comparison.measured import Measured
+from synth.book.feasibility import Feasibility
 from synth.book.grid_check import GridCheck
 from synth.book.permissions.permission import CasePermissions, Permission, PermissionResult
 from synth.problem.aim import Aim
 from synth.problem.problem import Problem
 from synth.simulation.exit_statistics import brake_power, exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample, PassTrace
+from synth.simulation.unavoidable_error import UnavoidableError
 from synth.solver.exit_density import ExitDensity
 from synth.solver.polish import Polish
 from synth.solver.polynomial_lines import PolynomialLines
@@ -91,7 +93,6 @@ def make_case(
         measured(name, sample, samples[0], target, promises.get(name, math.nan))
         for (name, _), sample in zip(NAMES_AND_SPREAD, samples, strict=True)
     )
-    entry = np.linspace(5.0, 6.5, 5)
     return CaseResult(
         label=label,
         problem=Problem(plant, Aim(target)),
@@ -105,7 +106,7 @@ def make_case(
         exit_weight=samples[0].weight,
         brake_power=brake_power(samples[0], samples[1], target),
         comparison=Comparison(table, lines, published, known, tuple(baselines)),
-        feasibility=Feasibility(entry, np.full(5, spread + abs(bias)), 0.1, (5.0, 6.5) if feasible else None, feasible),
+        feasibility=make_feasibility(feasible),
         study=CaseStudy(
             table_lines=make_lines(plant, target, 129),
             solver_lines=make_lines(plant, target, 76, wiggle=0.05),
@@ -115,6 +116,18 @@ def make_case(
             trace_factors=(0.8, 1.0, 1.2),
         ),
         permissions=None,
+    )
+
+
+def make_feasibility(feasible: bool) -> Feasibility:
+    """Twice the limit everywhere if infeasible, for want of brake power, else a fifth of it."""
+    rms_m_s = 0.02 if feasible else 0.2
+    return Feasibility(
+        limit_m_s=0.1,
+        unavoidable=UnavoidableError(rms_m_s, (0.98 * rms_m_s, 1.02 * rms_m_s), too_fast=True),
+        entry_m_s=np.linspace(5.0, 6.5, 5),
+        entry_rms_m_s=np.full(5, rms_m_s),
+        served_m_s=(5.0, 6.5) if feasible else None,
     )
 
 

@@ -15,8 +15,9 @@ from synth.book.judgement import judgement
 from synth.configuration.settings import AcceptanceSettings
 from synth.simulation.exit_statistics import ExitStatistics, overspeed_of
 from synth.simulation.passes import ExitSample
+from synth.simulation.unavoidable_error import UnavoidableError
 from tests.synth.case_factory import make_case
-from tuning_tables import Predicted
+from tuning_tables import Decisions, Predicted
 
 LIMITS = AcceptanceSettings()
 
@@ -51,6 +52,38 @@ def test_one_bad_case_refuses_the_book_and_says_why() -> None:
     assert [case.word for case in verdict.cases] == ["accepted", "missed"]
     assert "missed in 1 of 2 feasible cases (gondola-85t, target 2 m/s: rms 0.14" in verdict.sentence
     assert "allowed 0.1" in verdict.sentence
+    assert verdict.sentence.endswith(
+        "the table does not reach this rms though the position does not forbid it (the rms that no regulator avoids is "
+        '0.0200 [0.0196, 0.0204] m/s): try regulator.estimator = true, regulator.commands = "any_time", another '
+        "fit.degree or another target)"
+    )
+
+
+def test_what_is_to_be_changed_follows_from_what_is_asked_for_and_what_is_missed() -> None:
+    bad = make_case("gondola-85t", 2.0, spread=0.15)
+    (advice,) = judge([replace(bad, table=replace(bad.table, decisions=Decisions.AT_ANY_TIME))], LIMITS).cases[0].advice
+    assert advice.endswith("try regulator.estimator = true, another fit.degree or another target")
+    assert judge([honest_case()], LIMITS).cases[0].advice == ()
+    assert judge([honest_case(feasible=False)], LIMITS).cases[0].advice == ()
+    slow = replace(honest_case(), table=replace(honest_case().table, predicted=Predicted(0.5, 0.0, 0.0, 9.0)))
+    verdict = judge([slow], LIMITS).cases[0]
+    assert (verdict.word, verdict.advice) == ("missed", ())  # another limit than that of the rms
+
+
+def test_a_tuned_law_that_keeps_the_limit_shows_that_the_position_can() -> None:
+    bad = make_case("gondola-85t", 2.0, spread=0.15)
+    (*others, best) = bad.comparison.baselines
+    for high, words in ((0.1, "can, as a tuned energy rule shows with 0.0900 m/s"), (0.101, "does not forbid it")):
+        good = replace(best, statistics=statistics(rms_m_s=0.09, rms_ci95_m_s=(0.08, high)))
+        case = replace(bad, comparison=replace(bad.comparison, baselines=(*others, good)))
+        assert f"though the position {words} (the rms that" in judge([case], LIMITS).sentence
+
+
+def test_cuts_that_are_too_slow_without_any_braking_are_named_so() -> None:
+    bad = honest_case(feasible=False)
+    error = replace(bad.feasibility.unavoidable, too_fast=False)
+    verdict = judge([replace(bad, feasibility=replace(bad.feasibility, unavoidable=error))], LIMITS)
+    assert verdict.cases[0].obstacle == "leaves too slow"
 
 
 def test_infeasible_cases_are_named_and_do_not_count() -> None:
@@ -125,11 +158,11 @@ def test_a_book_that_the_passes_cannot_judge_says_so() -> None:
 
 def test_a_miss_does_not_count_where_the_passes_cannot_tell_whether_the_case_is_feasible() -> None:
     bad = make_case("gondola-85t", 2.0, spread=0.15)
-    unsure = replace(bad, feasibility=replace(bad.feasibility, undecided=True))
+    unsure = replace(bad, feasibility=replace(bad.feasibility, unavoidable=UnavoidableError(0.1, (0.09, 0.11), True)))
     verdict = judge([honest_case(), unsure], LIMITS)
     assert [case.word for case in verdict.cases] == ["accepted", "not decidable"]
     assert not verdict.accepted
-    assert "too near to the limit to tell whether the case is feasible" in verdict.sentence
+    assert "0.1000 [0.0900, 0.1100] m/s, too near to the limit to tell whether the case is feasible" in verdict.sentence
 
 
 def test_overspeed_is_counted_beyond_the_configured_margin() -> None:

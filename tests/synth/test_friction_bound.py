@@ -1,4 +1,4 @@
-"""The friction-known reference: who is told what, whose choice it is, what entry speeds are served."""
+"""The friction-known reference: who is told what, and whose choice it is."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from plant_models import EntrySpeed, Friction, Plant
-from synth.book.comparison.friction_bound import ENTRY_PASSES, ENTRY_POINTS, bound_of, feasibility_of, served
+from plant_models import Friction, Plant
+from synth.book.comparison.friction_bound import bound_of
 from synth.book.comparison.told_regulator import Told, best_by_others, by_lines, run_told
 from synth.book.estimation.estimated_table import controller_of
 from synth.book.estimation.estimator_design import estimator_of
@@ -132,33 +132,11 @@ def test_a_table_that_is_better_than_what_is_told_is_the_reference(passes: Commo
     bad, good = (by_lines(ToldLines(np.array([1.0]), (constant_lines(plant, height),))) for height in (4.6, 3.7))
 
     def ratio(regulators: list[Told]) -> float:
-        return rms_ratio(sample, bound_of(passes, regulators, table, sample, 0.1).sample, TARGET_M_S)[0]
+        return rms_ratio(sample, bound_of(passes, regulators, sample, TARGET_M_S), TARGET_M_S)[0]
 
     assert ratio([bad]) == 1.0
     assert ratio([]) == 1.0
     assert ratio([bad, good]) == pytest.approx(1.0, abs=0.02)  # the same lines, not rounded
-
-
-def test_served_speeds_end_where_the_limit_is_met() -> None:
-    entry = np.array([2.0, 3.0, 4.0, 5.0])
-    assert served(entry, np.array([0.2, 0.05, 0.06, 0.16]), 0.1) == pytest.approx((2.0 + 2.0 / 3.0, 4.4))
-    assert served(entry, np.array([0.02, 0.05, 0.06, 0.07]), 0.1) == (2.0, 5.0)
-    assert served(entry, np.array([0.2, 0.3, 0.4, 0.5]), 0.1) is None
-
-
-def test_feasibility_is_that_of_cuts_that_enter_with_that_speed(passes: CommonPasses) -> None:
-    """At one entry speed: the same passes of a plant whose cuts all enter with it."""
-    lines = constant_lines(passes.plant, 3.7)
-    told = by_lines(ToldLines(np.array([1.0]), (lines,)))
-    found = feasibility_of(passes, told, TARGET_M_S, (0.04, 0.06), 0.05)
-    assert len(found.entry_m_s) == ENTRY_POINTS
-    assert (found.feasible, found.undecided) == (True, True)
-    place = ENTRY_POINTS // 2
-    speed = float(found.entry_m_s[place])
-    plant = replace(passes.plant, entry=EntrySpeed(speed, speed))
-    few = common_passes(plant, passes.passes.part(0, ENTRY_PASSES))
-    exact = exit_statistics(few.run(LineController(lines.at(lines.nodes_m(301)))), TARGET_M_S).rms_m_s
-    assert found.bound_rms_m_s[place] == pytest.approx(exact, rel=1e-9)
 
 
 def test_an_estimator_that_knows_the_friction_foretells_the_speed(plant_of: Callable[[float], Plant]) -> None:

@@ -15,7 +15,7 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from synth.book.case_names import by_class, file_stem, why_infeasible
+from synth.book.case_names import by_class, file_stem
 from synth.book.case_result import CaseResult
 from synth.present.plots.degree_study import degree_study
 from synth.present.plots.exit_density import bin_edges_m_s, exit_density, predicted_density
@@ -198,7 +198,7 @@ def test_roles_and_names(cases: list[CaseResult]) -> None:
         found.as_published.predicted_rms_m_s / found.as_published.statistics.rms_m_s
     )
     assert [len(group) for group in by_class(cases)] == [2, 2]
-    assert why_infeasible(cases[2]) == "out of brake power"
+    assert cases[2].feasibility.obstacle == "out of brake power"
     assert file_stem("exit-density", "Four tanks, 3.5 m/s") == "exit-density-four-tanks-3.5-m-s"
 
 

@@ -151,7 +151,7 @@ def test_the_verdict_comes_first_and_names_the_infeasible_case(page: Page, book:
     text = page.text
     assert text.index("Not accepted") < text.index("Results")
     assert "gondola-85t, target 2 m/s: out of brake power" in text
-    assert "at entry speeds of 5 to 6.5 m/s; no entry speed is served" in text
+    assert "at entry speeds of 5 to 6.5 m/s; no entry speed can be served" in text
     assert "Worst of the 2 feasible cases: gondola-85t, target 4 m/s" in text
     assert all(case.label in text for case in book.cases)
 

@@ -109,7 +109,13 @@ def test_feasibility_falls_with_entry_speed(case: CaseResult) -> None:
     assert found.feasible
     assert found.served_m_s is not None
     assert found.served_m_s[0] == pytest.approx(case.target_speed_m_s)
-    assert found.bound_rms_m_s[-1] > found.bound_rms_m_s[len(found.entry_m_s) // 2]
+    assert found.entry_rms_m_s[-1] > found.entry_rms_m_s[len(found.entry_m_s) // 2]
+
+
+def test_no_controller_of_a_case_has_less_than_the_unavoidable_error(book: Book) -> None:
+    for case in book.cases:
+        least = case.feasibility.unavoidable.rms_m_s
+        assert 0.0 < least < min(entry.statistics.rms_m_s for entry in case.comparison.entries)
 
 
 def test_traces_are_passes_of_the_exported_table(case: CaseResult) -> None:

@@ -135,6 +135,16 @@ def test_a_tune_prints_the_figures_of_its_summary(tuned: Path, pages: list[Page]
     assert {last[heading] for heading in figures} == {"–"}
 
 
+def test_a_regret_that_is_left_out_is_explained(tuned: Path, pages: list[Page]) -> None:
+    summary = json.loads((tuned / "summary.json").read_bytes())
+    print_book(summary, tuned, None, "")
+    assert "No regret is told" not in str(pages[-1])
+    one, other = summary["cases"]
+    print_book({**summary, "cases": [{**one, "regret": None, "regret_ci95": [None, None]}, other]}, tuned, None, "")
+    assert "No regret is told" in str(pages[-1])
+    assert [row["regret"] == "–" for row in table_of(pages[-1])] == [True, False]
+
+
 def require_brake(told: list[dict[str, str]], powers: list[dict[str, Any]]) -> None:
     """Cuts out of brake in 10 000, of two figures, or the highest number where no pass met one."""
     for row, power in zip(told, powers, strict=True):

@@ -95,7 +95,7 @@ def test_it_prints_the_figures_of_its_summary(tuned_points: Path, pages: list[Pa
         of = [case["simulated"] for case in cases]
         require_column(told, heading, [with_half(s[f"{figure}_m_s"], s[f"{figure}_ci95_m_s"], 4) for s in of])
     wanted = [with_half(case["unavoidable_rms_m_s"], case["unavoidable_ci95_m_s"], 4) for case in cases]
-    require_column(told, "for want of brake, m/s", wanted)
+    require_column(told, "unavoidable, m/s", wanted)
     require_column(told, "predicted / simulated", [with_half(case["honesty"], case["honesty_ci95"]) for case in cases])
     require_column(told, "switchings", [f"{case['simulated']['switchings']:.1f}" for case in cases])
 

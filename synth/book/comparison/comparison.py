@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
-from synth.book.comparison.measured import Measured
+from synth.book.comparison.measured import UNKNOWN, Measured
+from synth.simulation.replicates import Interval
 
 
 @dataclass(frozen=True)
@@ -13,7 +15,8 @@ class Comparison:
 
     `friction_known`: the same kind of regulator, told the friction of every cut; `full_lines`: the solver's lines, not
     yet polynomials; `as_published`: lines of the formulation as published, with its own prediction; `baselines`: tuned
-    classical laws; `without_estimator`: polished lines or surfaces for the measured speed, where an estimator was asked
+    classical laws; `baseline_ratio_ci95`: of rms of the friction-known regulator / rms of the best of them, paired, NaN
+    without any; `without_estimator`: polished lines or surfaces for the measured speed, where an estimator was asked
     for; `at_rest`: where commands come at any time, the lines that the same tune makes for commands at rest.
     """
 
@@ -22,6 +25,7 @@ class Comparison:
     as_published: Measured
     friction_known: Measured
     baselines: tuple[Measured, ...]
+    baseline_ratio_ci95: Interval = UNKNOWN
     without_estimator: Measured | None = None
     at_rest: Measured | None = None
 
@@ -42,9 +46,21 @@ class Comparison:
         return self.table.honesty
 
     @property
+    def has_reference(self) -> bool:
+        """Nothing that is not told the friction beats the friction-known regulator beyond chance."""
+        beaten_by_baseline = self.baseline_ratio_ci95[0] > 1.0
+        beaten_by_table = self.friction_known.table_ratio_ci95[1] < 1.0
+        return not (beaten_by_baseline or beaten_by_table)
+
+    @property
     def regret(self) -> float:
-        """rms of the table / rms of the friction-known bound."""
-        return self.friction_known.table_ratio
+        """rms of the table / rms of the friction-known regulator; NaN where that is no reference."""
+        return self.friction_known.table_ratio if self.has_reference else math.nan
+
+    @property
+    def regret_ci95(self) -> Interval:
+        """The 95 % interval of `regret`."""
+        return self.friction_known.table_ratio_ci95 if self.has_reference else UNKNOWN
 
     @property
     def table_loss(self) -> float:

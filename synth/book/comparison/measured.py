@@ -5,10 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
-from plant_models.frozen_arrays import frozen_arrays
 from synth.simulation.exit_statistics import ExitStatistics
 from synth.simulation.replicates import Interval
 
@@ -63,22 +59,3 @@ def log_half_width(found: ExitStatistics) -> float:
     """Half the 95 % interval of log(rms)."""
     low, high = found.rms_ci95_m_s
     return 0.5 * math.log(high / low)
-
-
-@frozen_arrays
-@dataclass(frozen=True, eq=False)
-class Feasibility:
-    """Entry speeds that the position can serve when the friction is known.
-
-    `entry_m_s` (n,) from the target to the position's highest entry speed, and `bound_rms_m_s` (n,): friction-known
-    rms by entry speed; `served_m_s`: (low, high) where it meets `limit_m_s`, None if nowhere; `feasible`: the 95 %
-    interval of the simulated bound over the configured entry range reaches down to the limit, so that the passes do
-    not exclude that the bound meets it; `undecided`: the limit lies within that interval.
-    """
-
-    entry_m_s: NDArray[np.float64]
-    bound_rms_m_s: NDArray[np.float64]
-    limit_m_s: float
-    served_m_s: tuple[float, float] | None
-    feasible: bool
-    undecided: bool = False

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from synth.book.acceptance import CaseVerdict, Verdict, verdict_on
-from synth.book.judgement import Judgement, judgement
+from synth.book.acceptance import CaseVerdict, Verdict, verdict_on, verdict_within
+from synth.book.judgement import judgement
 from synth.book.sensors.sensor_case import SensorCase
 from synth.book.sensors.sensor_tune import SensorBook
 from synth.configuration.settings import AcceptanceSettings
 from synth.simulation.replicates import share_of
 
-OUT_OF_BRAKE = "out of brake power"
-
 
 def judge_sensors(book: SensorBook) -> Verdict:
     """The verdict on the simulated passes of all cases.
 
-    A case is infeasible if the brake alone makes its rms miss the limit, with all of the 95 % interval: then no rule
-    with these sensors keeps it.
+    A case is infeasible if its unavoidable error makes the rms miss the limit, with all of the 95 % interval: then no
+    rule with these sensors keeps it.
     """
     limits = book.config.acceptance
     judged = tuple(judge_sensor_case(case, limits) for case in book.cases)
@@ -28,9 +26,4 @@ def judge_sensor_case(case: SensorCase, limits: AcceptanceSettings) -> CaseVerdi
     error = case.exit_speeds_m_s.astype(float) - case.target_speed_m_s
     over = share_of(error > limits.overspeed_margin_m_s, case.exit_weight)
     found = judgement(case.statistics, over, case.table.predicted, limits)
-    low, high = case.unavoidable_ci95_m_s
-    if low <= limits.rms_m_s < high and found.missed:
-        # What is missed would not count in an infeasible case, and that cannot be told.
-        unsure = "the passes are too few to tell whether the brake suffices for the limit"
-        found = Judgement((), (*found.missed, *found.undecided, unsure))
-    return CaseVerdict(case.name, OUT_OF_BRAKE if low > limits.rms_m_s else "", found)
+    return verdict_within(case.name, found, case.unavoidable, limits)

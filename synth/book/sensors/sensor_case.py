@@ -13,6 +13,7 @@ from synth.book.case_result import MOST_ESCAPED
 from synth.simulation.exit_statistics import BrakePower, ExitStatistics
 from synth.simulation.passage_sample import PassageTrace
 from synth.simulation.replicates import Interval
+from synth.simulation.unavoidable_error import UnavoidableError
 from synth.solver.exit_density import ExitDensity
 from synth.solver.passage_polish import PassagePolish
 from tuning_tables.passages.passage_table import PassageTable
@@ -35,9 +36,9 @@ class HeardShares:
 class SensorCase:
     """One case: the table as read back, its prediction, and what the closed loop says of it.
 
-    `exit_speeds_m_s` simulated, stalls as 0, `exit_weight`: how many cuts each pass stands for. `unavoidable_rms_m_s`:
-    rms of what cuts leave too fast by under the harder braking of two, the table and full brake at every passage; no
-    rule has less for want of brake power. `traces`: passes with the friction factors `trace_factors`.
+    `exit_speeds_m_s` simulated, stalls as 0, `exit_weight`: how many cuts each pass stands for. `unavoidable`: the
+    error that no rule with these sensors avoids; slowest are cuts under the harder braking of two, the table and full
+    brake at every passage. `traces`: passes with the friction factors `trace_factors`.
     """
 
     label: str
@@ -50,8 +51,7 @@ class SensorCase:
     exit_weight: NDArray[np.float64]
     statistics: ExitStatistics
     brake_power: BrakePower
-    unavoidable_rms_m_s: float
-    unavoidable_ci95_m_s: Interval
+    unavoidable: UnavoidableError
     heard: HeardShares
     traces: tuple[PassageTrace, ...]
     trace_factors: tuple[float, ...]

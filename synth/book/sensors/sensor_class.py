@@ -14,10 +14,12 @@ from synth.book.sensors.tuned_passages import PassageChains, passage_chains
 from synth.configuration.point_sensors.resolved_sensors import ResolvedSensors
 from synth.kernels.loop.closed_loop import Draws
 from synth.problem.resolution import Resolution
+from synth.simulation.exit_range import exit_range
 from synth.simulation.filled_trace import filled_trace
 from synth.simulation.passage_controller import PassageController, of_speeds
 from synth.simulation.passage_loop import PassageLoop, close_passage_loop
 from synth.simulation.passage_sample import PassageSample, PassageTrace
+from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from synth.solver.tabulate import LOWEST_VALID_SPEED_M_S
 
@@ -41,6 +43,11 @@ class SensorPasses:
     def at_full_brake(self) -> PassageSample:
         """All passes under a regulator that goes to the highest stage allowed at every decision."""
         return self.run(full_brake(self.loop))
+
+    @cached_property
+    def released(self) -> ExitSample:
+        """All passes without any braking: released where the radar would act first."""
+        return exit_range(self.loop.radar, self.draws).fastest
 
     def trace(self, controller: PassageController, index: int, cut_factor: float) -> PassageTrace:
         """Pass `index`, but with the friction factor `cut_factor`; points at most `TRACE_STEP_S` apart."""

@@ -15,7 +15,7 @@ from synth.book.creation_time import creation_time
 from synth.book.failed_case import FailedCase, parted
 from synth.book.sensors.passage_table import passage_table
 from synth.book.sensors.sensor_case import HeardShares, SensorCase
-from synth.book.sensors.sensor_class import SensorClass, sensor_class
+from synth.book.sensors.sensor_class import SensorClass, SensorPasses, sensor_class
 from synth.book.sensors.tuned_passages import tuned_passages
 from synth.book.watcher import Watcher
 from synth.book.work_queue import run_nested
@@ -27,7 +27,8 @@ from synth.simulation.passage_controller import of_table
 from synth.simulation.passage_sample import NO_DECISION, NOT_BELIEVED, NOT_HEARD, PassageSample, unfinished_shares
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
-from synth.simulation.replicates import Interval, rms_of, share_of
+from synth.simulation.replicates import share_of
+from synth.simulation.unavoidable_error import UnavoidableError, unavoidable_error
 from synth.solver.one_blas_thread import one_blas_thread
 from tuning_tables import Validated
 from tuning_tables.passages.passage_table import PassageTable
@@ -126,7 +127,6 @@ def sensor_case(setup: SensorClass, aim: Aim, store: Store) -> SensorCase:
     controller = of_table(kept, tracking=True)
     sample = setup.passes.run(controller)
     found = exit_statistics(sample, target)
-    unavoidable, unavoidable_ci95 = unavoidable_rms(sample, setup.passes.at_full_brake, target)
     return SensorCase(
         label=setup.label,
         plant=setup.plant,
@@ -138,18 +138,17 @@ def sensor_case(setup: SensorClass, aim: Aim, store: Store) -> SensorCase:
         exit_weight=sample.weight,
         statistics=found,
         brake_power=brake_power(sample, setup.passes.at_full_brake, target),
-        unavoidable_rms_m_s=unavoidable,
-        unavoidable_ci95_m_s=unavoidable_ci95,
+        unavoidable=unavoidable(setup.passes, sample, target),
         heard=heard_shares(sample),
         traces=tuple(setup.passes.trace(controller, i, factor) for i, factor in enumerate(TRACE_FACTORS)),
         trace_factors=TRACE_FACTORS,
     )
 
 
-def unavoidable_rms(sample: ExitSample, full_brake: ExitSample, target_m_s: float) -> tuple[float, Interval]:
-    """Rms, with its 95 % interval, of what the cuts leave too fast by in the slower of two closed loops."""
-    slowest = np.minimum(sample.exit_speed_m_s, full_brake.exit_speed_m_s)
-    return rms_of(np.maximum(slowest - target_m_s, 0.0), sample.weight)
+def unavoidable(passes: SensorPasses, sample: ExitSample, target_m_s: float) -> UnavoidableError:
+    """The error that no rule with these sensors avoids; `sample`: the passes under a table."""
+    slowest = np.minimum(sample.exit_speed_m_s, passes.at_full_brake.exit_speed_m_s)
+    return unavoidable_error(replace(sample, exit_speed_m_s=slowest), passes.released, target_m_s)
 
 
 def heard_shares(sample: PassageSample) -> HeardShares:

@@ -38,14 +38,14 @@ def book_pictures(cases: Sequence[CaseResult], studies: Sequence[DegreeStudy], l
         "Accuracy",
         "Exit-speed error by controller",
         "Simulated rms with its 95 % interval, the same passes for every controller. Hollow: the rms that the method "
-        "itself predicted. Grey: infeasible, even one told the friction misses the limit.",
+        "itself predicted. Grey: infeasible, no controller keeps the limit.",
     )
     yield picture(
         feasibility(cases),
         "feasibility",
         "Accuracy",
-        "Served entry speeds",
-        "Rms of a controller that knows the friction of the cut, over entry speed: what the position can do at all.",
+        "Entry speeds that can be served",
+        "Rms of the error that no controller avoids, over entry speed: what the position can do at all.",
     )
     yield picture(
         switchings(cases),

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from synth.book.case_names import by_class, why_infeasible
+from synth.book.case_names import by_class
 from synth.book.case_result import CaseResult
 from synth.book.comparison.measured import Measured
 from synth.present.plots.house_style import (
@@ -123,7 +123,7 @@ def mark_cases(axes: Axes, cases: Sequence[CaseResult]) -> None:
         if not case.feasibility.feasible:
             axes.axvspan(index - 0.5, index + 0.5, color=PALE_GREY, zorder=0)
             axes.text(
-                index - 0.46, 0.02, why_infeasible(case), transform=axes.get_xaxis_transform(), rotation=90,
+                index - 0.46, 0.02, case.feasibility.obstacle, transform=axes.get_xaxis_transform(), rotation=90,
                 va="bottom", fontsize=8, color=INK,
             )  # fmt: skip
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from synth.book.case_names import why_infeasible
 from synth.book.case_result import CaseResult
 from synth.book.failed_case import FailedCase
 from synth.book.printed_numbers import ABSENT, in_ten_thousand, interval, percent, quotient, quotient_interval, speed
@@ -59,7 +58,7 @@ def case_row(case: CaseResult, limit_m_s: float) -> list[str | Cell]:
         case.label,
         f"{case.plant.cut.mass_t:g}",
         f"{case.target_speed_m_s:g}",
-        Cell("yes" if feasible else f"no: {why_infeasible(case)}", kind="words"),
+        Cell("yes" if feasible else f"no: {case.feasibility.obstacle}", kind="words"),
         Cell(speed(table.rms_m_s), f"{table.passes} passes, bias {table.bias_m_s:+.3f} m/s", over),
         interval(table.rms_ci95_m_s),
         speed(found.table.predicted_rms_m_s),
@@ -71,7 +70,7 @@ def case_row(case: CaseResult, limit_m_s: float) -> list[str | Cell]:
         speed(found.full_lines.statistics.rms_m_s),
         f"{quotient(found.table_loss, 3)} {quotient_interval(found.full_lines.table_ratio_ci95, 3)}",
         speed(found.friction_known.statistics.rms_m_s),
-        f"{quotient(found.regret, 3)} {quotient_interval(found.friction_known.table_ratio_ci95, 3)}",
+        f"{quotient(found.regret, 3)} {quotient_interval(found.regret_ci95, 3)}".rstrip(),
         best.name if best else ABSENT,
         speed(best.statistics.rms_m_s) if best else ABSENT,
         speed(found.as_published.predicted_rms_m_s),

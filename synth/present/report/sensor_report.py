@@ -19,17 +19,17 @@ from synth.present.report.parameter_table import parameter_section
 
 COLUMNS = (
     "case", "mass, t", "target, m/s", "verdict", "rms, m/s", "95 % interval", "predicted", "predicted / simulated",
-    "95 of 100 within ±, m/s", "99 of 100 within ±, m/s", "for want of brake, m/s", "in 10 000 out of brake",
+    "95 of 100 within ±, m/s", "99 of 100 within ±, m/s", "unavoidable, m/s", "in 10 000 out of brake",
     "rms of all others, m/s", "over-speed, % [95 %]", "stopped inside, % [95 %]", "switchings a pass",
 )  # fmt: skip
 
 HOW_TO_READ = (
-    "rms: root mean square of exit speed − target; a cut that stops in the position counts with exit speed 0. For want "
-    "of brake: rms of what cuts leave too fast by under the harder braking of the table and of a regulator that goes "
-    "to the highest stage at every passage; where that alone is above the limit, the case is infeasible and outside "
-    "the verdict. Over-speed: more than 0.3 m/s above the target. Out of brake: leaves that fast even at the highest "
-    "stage from every passage on. Brackets: 95 % intervals, from passes in strata of the friction; the chance of these "
-    "passes is all that they cover."
+    "rms: root mean square of exit speed − target; a cut that stops in the position counts with exit speed 0. "
+    "Unavoidable: rms of what cuts leave too fast by under the harder braking of the table and of a regulator that "
+    "goes to the highest stage at every passage, and too slow by if never braked; where that alone is above the limit, "
+    "the case is infeasible and outside the verdict. Over-speed: more than 0.3 m/s above the target. Out of brake: "
+    "leaves that fast even at the highest stage from every passage on. Brackets: 95 % intervals, from passes in strata "
+    "of the friction; the chance of these passes is all that they cover."
 )
 
 HEARD_COLUMNS = (
@@ -122,7 +122,7 @@ def case_row(case: SensorCase, verdict: str, limit_m_s: float) -> list[str | Cel
         Cell(f"{quotient(ratio, 3)} {quotient_interval((low, high), 3)}", kind="" if honest or not feasible else "bad"),
         f"{speed(found.p95_m_s)} {interval(found.p95_ci95_m_s)}",
         f"{speed(found.p99_m_s)} {interval(found.p99_ci95_m_s)}",
-        f"{speed(case.unavoidable_rms_m_s)} {interval(case.unavoidable_ci95_m_s)}",
+        f"{speed(case.unavoidable.rms_m_s)} {interval(case.unavoidable.rms_ci95_m_s)}",
         in_ten_thousand(power.out_of_brake, power.out_of_brake_ci95),
         within_power(power),
         share_cell(found.overspeed, found.overspeed_ci95),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from synth.book.case_names import case_name, why_infeasible
+from synth.book.case_names import case_name
 from synth.book.case_result import CaseResult
 from synth.book.printed_numbers import counted, in_ten_thousand, interval, speed
 from synth.present.report.book_report import BookReport
@@ -17,9 +17,9 @@ def verdict(book: BookReport) -> Markup:
         parts.append(element("p", worst_case(book)))
     if book.infeasible:
         lead = (
-            f"{counted(len(book.infeasible), 'case')} of {every(book)} infeasible: even a controller that is "
-            f"told the friction of every cut, and moves one stage a command, stays above "
-            f"{speed(book.acceptance_rms_m_s)} m/s there. "
+            f"{counted(len(book.infeasible), 'case')} of {every(book)} infeasible: whatever regulator is there, the "
+            f"cuts that leave too fast under the hardest braking, or too slow without any, keep its rms above "
+            f"{speed(book.acceptance_rms_m_s)} m/s. "
             "They take no part in the verdict and are shown everywhere."
         )
         parts.append(element("p", lead))
@@ -57,12 +57,14 @@ def in_cuts(case: CaseResult) -> str:
 
 def infeasible_case(case: CaseResult) -> str:
     """Why one case cannot be served, and what of it can."""
-    known = case.comparison.friction_known.statistics.rms_m_s
-    entry, served = case.plant.entry, case.feasibility.served_m_s
+    found, entry, served = case.feasibility, case.plant.entry, case.feasibility.served_m_s
     part = (
-        f"entry speeds from {served[0]:.2f} to {served[1]:.2f} m/s are served" if served else "no entry speed is served"
+        f"entry speeds from {served[0]:.2f} to {served[1]:.2f} m/s can be served"
+        if served
+        else "no entry speed can be served"
     )
     return (
-        f"{case_name(case)}: {why_infeasible(case)}; rms with the friction known {speed(known)} m/s at entry speeds of "
-        f"{entry.low_m_s:g} to {entry.high_m_s:g} m/s; {part}."
+        f"{case_name(case)}: {found.obstacle}; rms that no regulator avoids {speed(found.unavoidable.rms_m_s)} m/s "
+        f"{interval(found.unavoidable.rms_ci95_m_s)} at entry speeds of {entry.low_m_s:g} to {entry.high_m_s:g} m/s; "
+        f"{part}."
     )

@@ -18,7 +18,7 @@ class Errors:
 
 @dataclass(frozen=True)
 class Figures:
-    """All controllers of a feasible case on the same passes; seconds to make a table, shared work in proportion.
+    """All controllers of a case that is served on the same passes; seconds to make a table, shared work in proportion.
 
     `told`, `told_estimated`: the references of the table and of the one with estimator; `ratio`: rms with estimator /
     without, paired; `finer`: the speed grid had to be halved, as `tune` advises.
@@ -75,14 +75,14 @@ class Figures:
 
 @dataclass(frozen=True)
 class GridCase:
-    """One case of the grid; no figures where the position cannot serve it.
+    """One case of the grid; no figures where it is not `served`.
 
-    `known_rms_m_s`: of the reference that is told the friction, by which feasibility is judged.
+    `known_rms_m_s`: of the reference that is told the friction. A case is served if its interval reaches the limit.
     """
 
     case: str
     cv: float
     target_m_s: float
-    feasible: bool
+    served: bool
     known_rms_m_s: float
     figures: Figures | None

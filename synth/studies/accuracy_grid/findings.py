@@ -22,7 +22,7 @@ class Grid(Findings):
 
     @property
     def known(self) -> tuple[tuple[GridCase, Figures], ...]:
-        """The feasible cases with their figures."""
+        """The cases that are served, with their figures."""
         return tuple((case, case.figures) for case in self.cases if case.figures is not None)
 
     @property
@@ -31,20 +31,20 @@ class Grid(Findings):
         return limits(self.cases, self.minutes)
 
     def tables(self) -> Mapping[str, MarkdownTable]:
-        """`limits`: a row a limit; `cases`: a row a feasible case."""
+        """`limits`: a row a limit; `cases`: a row a case that is served."""
         verdict = [(each.asked, each.found if each.met else f"**{each.found}: not met**") for each in self.verdict]
         heads = ("case", "told", "told, with estimator", "with estimator", "table", "best baseline",
                  "predicted / simulated: with, without", "switchings: with, without, baseline")  # fmt: skip
         return {
             "limits": table("limits", ("asked", "found"), verdict),
-            "cases": table("rms of the feasible cases, m/s", heads, (cells(*each) for each in self.known)),
+            "cases": table("rms of the cases that are served, m/s", heads, (cells(*each) for each in self.known)),
         }
 
     def sentences(self) -> tuple[str, ...]:
         """How many cases."""
         left_out = sum(not figures.estimator_used for _, figures in self.known)
         return (
-            f"{len(self.known)} of {len(self.cases)} cases are feasible or too near to the limit to tell; "
+            f"{len(self.known)} of {len(self.cases)} cases are served, or too near to the limit to tell; "
             f"{self.passes} passes each, seed {self.seed}",
             f"in {left_out} cases the estimator gained nothing on the tuning passes and was left out",
         )

@@ -33,12 +33,12 @@ class Limit:
 
 
 def limits(cases: Sequence[GridCase], minutes: float) -> tuple[Limit, ...]:
-    """The verdict on the feasible `cases`; `minutes` that the whole grid took."""
+    """The verdict on the `cases` that are served; `minutes` that the whole grid took."""
     known = [(case, case.figures) for case in cases if case.figures is not None]
     figures = [each for _, each in known]
     nominal = [each for case, each in known if case.cv == NOMINAL_CV]
     if not figures:
-        return (Limit("a feasible case", "none", False),)
+        return (Limit("a case that is served", "none", False),)
     return (
         *(regret(figures, key) for key in NAMES),
         *(rms(nominal, key) for key in NAMES if nominal),

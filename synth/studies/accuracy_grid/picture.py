@@ -30,7 +30,7 @@ LIMIT_M_S = 0.1
 def picture(figures: Sequence[Figures]) -> Figure:
     """Told, with estimator, table, best baseline."""
     rows = sorted(figures, key=lambda each: each.told.rms_m_s)
-    subject = f"{len(rows)} feasible cases, sorted by what is left when the friction is told; dashed: {LIMIT_M_S:g} m/s"
+    subject = f"{len(rows)} cases, sorted by what is left when the friction is told; dashed: {LIMIT_M_S:g} m/s"
     figure = new_figure(11.0, 6.0, "Exit-speed error over the whole grid", subject)
     place(figure, left=0.8, right=0.2, bottom=1.0, top=0.9)
     axes = figure.subplots()

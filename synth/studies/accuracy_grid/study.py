@@ -1,8 +1,9 @@
 """How near the tables are to what physics leaves, with and without an estimator, over a whole grid of cases.
 
 5 masses × 4 targets × 3 spreads of friction × 2 positions, a cut of three cars and an eight-axle tank car. Of every
-feasible case: the exported cubic table, the same with the estimator, full lines, tuned baselines, and the references of
-both tables that are told the friction of every cut, all on fresh common passes.
+case that is served (who is told the friction keeps the rms limit, or comes too near to it to tell): the exported cubic
+table, the same with the estimator, full lines, tuned baselines, and the references of both tables that are told the
+friction of every cut, all on fresh common passes.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from numpy.typing import NDArray
 from plant_models import Plant, PlantError
 from plant_models.frozen_arrays import frozen_arrays
 from synth.book.comparison.baselines import tune_baselines
-from synth.book.comparison.friction_bound import FrictionBound, bound_of
+from synth.book.comparison.friction_bound import bound_of
 from synth.book.comparison.told_regulator import by_lines
 from synth.book.estimation.estimated_table import estimated_table, estimator_design
 from synth.book.estimation.simulated_prediction import simulated_prediction
@@ -128,7 +129,7 @@ class Plain:
     curvature: NDArray[np.float64]
     table: ControllerTable
     sample: ExitSample
-    bound: FrictionBound
+    told: ExitSample
     solver_lines: SwitchingLines
     predicted_rms_m_s: float
     seconds: float
@@ -171,7 +172,7 @@ def class_tasks(order: ClassOrder, options: Options, passes: Row, tell: Tell) ->
     def task(target: float) -> GridCase:
         name = f"{order.named(label)} to {target:g} m/s"
         found = on_a_grid_fine_enough(shared, target, GridCase(name, order.cv, target, False, 0.0, None))
-        tell(f"{name}: {'infeasible' if found.figures is None else f'{found.figures.table.rms_m_s:.4f} m/s'}")
+        tell(f"{name}: {'not served' if found.figures is None else f'{found.figures.table.rms_m_s:.4f} m/s'}")
         return found
 
     return [partial(task, target) for target in targets]
@@ -191,10 +192,10 @@ def on_a_grid_fine_enough(shared: Class, target_m_s: float, case: GridCase) -> G
 def found_in(shared: Class, target: float, design: Chain, resolution: Resolution, case: GridCase) -> GridCase:
     """`case` with what is reached with the friction known, and the figures if that is enough."""
     plain = plain_table(shared, target, design, resolution)
-    known_rms_m_s = errors(plain.bound.sample, target).rms_m_s
-    feasible = plain.bound.feasibility.feasible
-    figures = figures_of(shared, target, plain) if feasible else None
-    return replace(case, feasible=feasible, known_rms_m_s=known_rms_m_s, figures=figures)
+    known = errors(plain.told, target)
+    served = known.ci95_m_s[0] <= shared.config.acceptance.rms_m_s
+    figures = figures_of(shared, target, plain) if served else None
+    return replace(case, served=served, known_rms_m_s=known.rms_m_s, figures=figures)
 
 
 def plain_table(shared: Class, target: float, design: Chain, resolution: Resolution) -> Plain:
@@ -208,13 +209,12 @@ def plain_table(shared: Class, target: float, design: Chain, resolution: Resolut
     predicted = predict(shared.check, table).rms_m_s(target)
     seconds = shared.seconds + time.perf_counter() - started
     sample = fresh.run(TableController(table))
-    told = [by_lines(told_lines(design, target, lines, fit.curvature))]
-    bound = bound_of(fresh, told, table, sample, config.acceptance.rms_m_s)
-    return Plain(resolution, lines, fit.curvature, table, sample, bound, solution.lines, predicted, seconds)
+    told = bound_of(fresh, [by_lines(told_lines(design, target, lines, fit.curvature))], sample, target)
+    return Plain(resolution, lines, fit.curvature, table, sample, told, solution.lines, predicted, seconds)
 
 
 def figures_of(shared: Class, target: float, plain: Plain) -> Figures:
-    """All controllers of a feasible case on the same passes."""
+    """All controllers of a case that is served on the same passes."""
     plant, config, passes, fresh = shared.plant, shared.config, shared.passes, shared.fresh
     started = time.perf_counter()
     problem = Problem(plant, Aim(target, config.criterion))
@@ -223,11 +223,11 @@ def figures_of(shared: Class, target: float, plain: Plain) -> Figures:
     estimated = rounded(config, plant, made.lines, target, made.estimator)
     promised = simulated_prediction(fresh.of_others(passes.prediction).run(TableController(estimated)), target).rms_m_s
     seconds = shared.seconds + time.perf_counter() - started
-    by_estimated, told = plain.sample, plain.bound.sample
+    by_estimated, told = plain.sample, plain.told
     if made.gains:  # as `tune` does
         by_estimated = fresh.run(TableController(estimated))
         regulators = told_with_estimator(made, design, plain.curvature, fresh.of_others(passes.trim), target)
-        told = bound_of(fresh, regulators, estimated, by_estimated, config.acceptance.rms_m_s).sample
+        told = bound_of(fresh, regulators, by_estimated, target)
     ratio, ratio_ci95 = rms_ratio(by_estimated, plain.sample, target)
     tuned = tune_baselines(fresh.of_others(passes.tuning.part(0, BASELINE_PASSES)), target)
     return Figures(
@@ -235,7 +235,7 @@ def figures_of(shared: Class, target: float, plain: Plain) -> Figures:
         estimated=errors(by_estimated, target),
         lines=errors(fresh.run(LineController(plain.solver_lines)), target),
         baselines={each.name: errors(fresh.run(each.controller), target) for each in tuned},
-        told=errors(plain.bound.sample, target),
+        told=errors(plain.told, target),
         told_estimated=errors(told, target),
         predicted_rms_m_s=plain.predicted_rms_m_s,
         estimated_predicted_rms_m_s=promised if made.gains else plain.predicted_rms_m_s,

@@ -15,7 +15,7 @@ from synth.studies.study import Findings
 class CaseRow:
     """One case from the entrance and from before it, with the best rule of thumb of each; `ratio`: rms / rms.
 
-    `served_m_s`: the highest entry speed that a controller which is told the friction serves, without and with.
+    `served_m_s`: the highest entry speed that the position can serve, without and with.
     """
 
     case: str

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from plant_models import Approach, Plant
 from synth.book.comparison.baselines import tune_baselines
-from synth.book.comparison.friction_bound import feasibility_of
+from synth.book.comparison.served_entry import served, unavoidable_by_entry
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import CommonPasses, common_passes
@@ -14,9 +14,6 @@ from synth.simulation.exit_statistics import brake_power, exit_statistics, rms_r
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
 from synth.simulation.replicates import Interval
-from synth.solver.chain.chain import persistent_chain
-from synth.solver.told_lines import IN_A_TUNE
-from synth.studies.told_friction import told_friction
 from synth.studies.tuned_table import tuned_table
 from tuning_tables import ControllerTable
 
@@ -92,8 +89,7 @@ def best_rival(table: ExitSample, passes: CommonPasses, target_m_s: float, given
 
 
 def highest_served_m_s(plant: Plant, target_m_s: float, given: Given) -> float | None:
-    """The highest entry speed at which a controller that is told the friction keeps the limit of the acceptance."""
-    design, limit = persistent_chain(plant, given.config.resolution), given.config.acceptance.rms_m_s
-    told = told_friction(design, target_m_s, given.config.fit.degree, IN_A_TUNE)
-    served = feasibility_of(common_passes(plant, given.passes), told, target_m_s, (0.0, 0.0), limit, SERVED_PASSES)
-    return served.served_m_s and served.served_m_s[1]
+    """The highest entry speed at which the position does not forbid the limit of the acceptance."""
+    entry, rms = unavoidable_by_entry(common_passes(plant, given.passes), target_m_s, SERVED_PASSES)
+    found = served(entry, rms, given.config.acceptance.rms_m_s)
+    return found and found[1]

@@ -14,12 +14,13 @@ from synth.book.acceptance import CaseVerdict
 from synth.book.sensors.sensor_acceptance import judge_sensor_case
 from synth.book.sensors.sensor_case import HeardShares, SensorCase
 from synth.book.sensors.sensor_class import SensorPasses, full_brake, sensor_passes
-from synth.book.sensors.sensor_tune import heard_shares, unavoidable_rms
+from synth.book.sensors.sensor_tune import heard_shares, unavoidable
 from synth.configuration.settings import AcceptanceSettings
 from synth.simulation.exit_statistics import BrakePower, exit_statistics
 from synth.simulation.passage_sample import DECIDED, NO_DECISION, NOT_BELIEVED, NOT_HEARD, UNFINISHED, PassageSample
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import random_passes
+from synth.simulation.unavoidable_error import UnavoidableError
 from synth.solver.exit_density import ExitDensity
 from synth.solver.passage_polish import PassagePolish
 from synth.solver.passage_speeds import PassageSpeeds
@@ -64,13 +65,21 @@ def exits(speeds_m_s: np.ndarray) -> ExitSample:
     return ExitSample(speeds_m_s, speeds_m_s == 0.0, np.zeros(n, np.int32), np.ones(n), np.ones(n))
 
 
-def test_what_no_table_can_avoid_is_the_excess_of_the_slower_of_two() -> None:
-    one = np.tile([2.0, 2.6, 3.0, 1.0], 100)
-    other = np.tile([2.9, 2.4, 3.4, 0.0], 100)  # excess over 2 m/s of the slower: 0, 0.4, 1.0, 0
-    rms, (low, high) = unavoidable_rms(exits(one), exits(other), 2.0)
-    assert rms == pytest.approx(math.sqrt((0.4**2 + 1.0**2) / 4.0))
-    assert low <= rms <= high
-    assert unavoidable_rms(exits(np.full(400, 1.9)), exits(other), 3.5) == (0.0, (0.0, 0.0))
+def test_what_no_table_can_avoid_is_the_excess_of_the_slower_of_two(passes: SensorPasses) -> None:
+    """The table is slower in every other pass; nothing brakes cuts that are released."""
+    braked, free = passes.at_full_brake.exit_speed_m_s, passes.released.exit_speed_m_s
+    assert (passes.released.switchings == 0).all()
+    assert (free > braked).all()
+    slower = np.where(np.arange(COUNT) % 2 == 0, braked - 0.3, braked + 0.3)
+    target = float(np.median(braked)) - 0.1
+    found = unavoidable(passes, exits(slower), target)
+    excess = np.maximum(np.minimum(slower, braked) - target, 0.0)
+    assert found.rms_m_s == pytest.approx(math.sqrt(float(np.mean(excess**2))))
+    assert found.rms_ci95_m_s[0] <= found.rms_m_s <= found.rms_ci95_m_s[1]
+    assert found.too_fast
+    too_slow = unavoidable(passes, exits(slower), 9.0)
+    assert too_slow.rms_m_s == pytest.approx(math.sqrt(float(np.mean((9.0 - free) ** 2))))
+    assert not too_slow.too_fast
 
 
 def test_shares_are_of_the_cuts_that_come_to_a_passage() -> None:
@@ -86,7 +95,7 @@ def test_shares_are_of_the_cuts_that_come_to_a_passage() -> None:
     assert math.isnan(found.unfinished[2][0])
 
 
-def case(spread_m_s: float, unavoidable: float, ci95: tuple[float, float]) -> SensorCase:
+def case(spread_m_s: float, least: float, ci95: tuple[float, float]) -> SensorCase:
     """A case with normal errors, predicted as simulated."""
     error = spread_m_s * np.random.default_rng(7).standard_normal(4000)
     table = passage_table(target_m_s=2.5)
@@ -102,8 +111,7 @@ def case(spread_m_s: float, unavoidable: float, ci95: tuple[float, float]) -> Se
         exit_weight=np.ones(4000),
         statistics=found,
         brake_power=BrakePower(0.0, (0.0, 0.001), found.rms_m_s, found.rms_ci95_m_s),
-        unavoidable_rms_m_s=unavoidable,
-        unavoidable_ci95_m_s=ci95,
+        unavoidable=UnavoidableError(least, ci95, too_fast=True),
         heard=HeardShares((), ()),
         traces=(),
         trace_factors=(),
@@ -113,9 +121,9 @@ def case(spread_m_s: float, unavoidable: float, ci95: tuple[float, float]) -> Se
 LIMITS = AcceptanceSettings(rms_m_s=0.1)
 
 
-def verdict(spread_m_s: float, unavoidable: float = 0.0, ci95: tuple[float, float] = (0.0, 0.0)) -> CaseVerdict:
+def verdict(spread_m_s: float, least: float = 0.0, ci95: tuple[float, float] = (0.0, 0.0)) -> CaseVerdict:
     """That on a case."""
-    return judge_sensor_case(case(spread_m_s, unavoidable, ci95), LIMITS)
+    return judge_sensor_case(case(spread_m_s, least, ci95), LIMITS)
 
 
 def test_a_case_is_judged_by_the_limits_unless_the_brake_alone_misses_them() -> None:
@@ -127,7 +135,7 @@ def test_a_case_is_judged_by_the_limits_unless_the_brake_alone_misses_them() -> 
     assert (short.word, short.obstacle) == ("infeasible", "out of brake power")
     unsure = verdict(0.3, 0.1, (0.09, 0.11))
     assert unsure.word == "not decidable"
-    assert "too few to tell whether the brake suffices" in unsure.judgement.undecided[-1]
+    assert "too near to the limit to tell whether the case is feasible" in unsure.judgement.undecided[-1]
     assert verdict(0.08, 0.1, (0.09, 0.11)).word == "accepted"
 
 
