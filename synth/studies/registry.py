@@ -131,7 +131,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
     Study(
         "every-cut",
         "Does the table that a tune makes beat every tuned rule, for every ordinary cut?",
-        5000.0,
+        1800.0,
         "every-cut.md",
         "synth.studies.every_cut.study",
         "synth.studies.every_cut.picture",

@@ -13,7 +13,7 @@ def median_interval(values: Sequence[float]) -> Interval | None:
 
     From the k-th least to the k-th greatest, k the greatest number for which at most 2.5 % of all samples have fewer
     than k values below the median: these follow the binomial law with probability 1/2 (David and Nagaraja, *Order
-    Statistics*, §7.1).
+    Statistics*, chapter 7).
     """
     count, below = len(values), 0
     k = 0
