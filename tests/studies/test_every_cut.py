@@ -14,6 +14,7 @@ from synth.configuration.config_file import parse_config
 from synth.simulation.common_passes import common_passes
 from synth.simulation.random_passes import random_passes
 from synth.solver.one_blas_thread import one_blas_thread
+from synth.studies.document_pictures import is_stale, write_picture
 from synth.studies.every_cut.cut_figures import Beside, CutFigures, Outcome, Untuned
 from synth.studies.every_cut.findings import EveryCut, class_cells, faults_of, findings_of, length_name
 from synth.studies.every_cut.kept_cases import KeptCases
@@ -23,7 +24,7 @@ from synth.studies.every_cut.picture import figures
 from synth.studies.every_cut.random_case import CARS_OF_A_CUT, RandomCase, random_case
 from synth.studies.every_cut.representable import representable, without
 from synth.studies.every_cut.study import METHOD, Options, configuration
-from synth.studies.result import run_study
+from synth.studies.result import Result, run_study
 from synth.studies.study import Study, silent
 
 MANY = [random_case(5, number) for number in range(400)]
@@ -147,6 +148,17 @@ def test_what_is_told_of_a_class_is_counted() -> None:
     assert any("the grid is too coarse" in sentence for sentence in told.sentences())
     assert length_name(0.0, 60.0) == "below 60 m"
     assert set(figures(told)) == {"ratio"}
+
+
+def test_a_picture_is_the_one_of_its_result_until_that_changes(tmp_path: Path) -> None:
+    study = Study("every-cut", "", 1.0, "", "synth.studies.every_cut.study", "synth.studies.every_cut.picture")
+    result = Result(study, "0", Options(), findings_of(1, 2000, [SOUND]))
+    file = tmp_path / "every-cut-ratio.svg"
+    assert is_stale(file, result, "ratio")
+    write_picture(file, result, "ratio")
+    assert not is_stale(file, result, "ratio")
+    longer = findings_of(1, 2000, [replace(SOUND, length_m=150.0)])
+    assert is_stale(file, replace(result, findings=longer), "ratio")
 
 
 @pytest.mark.parametrize("count", [6, 7, 10, 20, 101, 500])
