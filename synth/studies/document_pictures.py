@@ -67,7 +67,8 @@ def write_picture(file: Path, result: Result, name: str) -> None:
     from synth.present.plots.figure_file import draw
 
     figure = figure_of(result, name)
-    file.write_text(draw(figure).svg.decode().rstrip() + end_of(figure), encoding="utf-8")
+    end = end_of(figure)  # of the figure as `is_stale` sees it: drawing one makes its ticks
+    file.write_text(draw(figure).svg.decode().rstrip() + end, encoding="utf-8")
 
 
 def end_of(figure: Figure) -> str:

@@ -129,6 +129,14 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "synth.studies.estimator.wrong_study",
     ),
     Study(
+        "every-cut",
+        "Does the table that a tune makes beat every tuned rule, for every ordinary cut?",
+        1800.0,
+        "every-cut.md",
+        "synth.studies.every_cut.study",
+        "synth.studies.every_cut.picture",
+    ),
+    Study(
         "friction-known",
         "How good is the reference that regret is measured by: what would more effort make of it?",
         150.0,

@@ -1,0 +1,1 @@
+"""Tables of ordinary cuts, drawn at random over the whole library, beside tuned classical rules."""

@@ -1,0 +1,133 @@
+"""What the study `every-cut` has found: every case, and how many of them a rule controls better than the table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from statistics import median
+
+from synth.simulation.exit_statistics import clopper_pearson
+from synth.studies.every_cut.cut_figures import HONEST, Beside, CutFigures, Outcome, Untuned
+from synth.studies.every_cut.order_statistics import median_interval
+from synth.studies.markdown_table import ABSENT, MarkdownTable, around, span, table
+from synth.studies.study import Findings
+
+LENGTHS_M = (60.0, 100.0)
+"""Paths of a pass at which the classes of length end."""
+
+WORST = 10
+"""Cases in the table of the worst."""
+
+
+@dataclass(frozen=True)
+class EveryCut(Findings):
+    """All cases in the order of their numbers, `seed` that they were drawn with, passes of each."""
+
+    seed: int
+    passes: int
+    cases: tuple[CutFigures, ...]
+    untuned: tuple[Untuned, ...]
+
+    def tables(self) -> Mapping[str, MarkdownTable]:
+        """`classes`: a row a class of length; `worst`: a row a case."""
+        return {"classes": table("Tables beside tuned rules", CLASS_HEADS, self.class_rows()), "worst": self.worst()}
+
+    def class_rows(self) -> Iterator[tuple[str, ...]]:
+        """The rows by length, then those of all cases and of those where the limit can be met, or not."""
+        for low, high in zip((0.0, *LENGTHS_M), (*LENGTHS_M, float("inf")), strict=True):
+            yield class_cells(length_name(low, high), [each for each in self.cases if low <= each.length_m < high])
+        yield class_cells("limit can be met", [each for each in self.cases if each.feasible])
+        yield class_cells("limit cannot be met", [each for each in self.cases if not each.feasible])
+        yield class_cells("all", self.cases)
+
+    def worst(self) -> MarkdownTable:
+        """The cases of the highest rms beside the best rule that a table can express."""
+        ordered = sorted(self.cases, key=lambda each: -each.best_representable.ratio)[:WORST]
+        return table("The worst cases beside the best rule that a table can express", WORST_HEADS,
+                     [case_cells(each) for each in ordered])  # fmt: skip
+
+    def sentences(self) -> tuple[str, ...]:
+        """How much was done, and the cases without a table."""
+        count = len(self.cases) + len(self.untuned)
+        return (
+            f"{count} cases, seed {self.seed}, {self.passes} passes each; {len(self.untuned)} have no table",
+            *(f"{each.case.name}: no table: {each.reason}" for each in self.untuned),
+        )
+
+    def faults(self) -> tuple[str, ...]:
+        """Cases that a rule controls better which the table could express, and predictions that do not hold."""
+        return tuple(sentence for each in self.cases for sentence in faults_of(each))
+
+
+def findings_of(seed: int, passes: int, outcomes: Sequence[Outcome]) -> EveryCut:
+    """The findings of `outcomes`."""
+    figures = tuple(each for each in outcomes if isinstance(each, CutFigures))
+    untuned = tuple(each for each in outcomes if isinstance(each, Untuned))
+    return EveryCut(seed, passes, figures, untuned)
+
+
+def faults_of(found: CutFigures) -> Iterator[str]:
+    """What one case was to keep and does not."""
+    rule = found.best_representable
+    if rule.beaten_by:
+        yield f"{found.case.name}: rms {around(rule.ratio, rule.ratio_ci95, 3)} times that of the {rule.rule}"
+    if not found.honest:
+        told = around(found.honesty, found.honesty_ci95, 3)
+        yield f"{found.case.name}: predicted / simulated rms {told}, allowed {HONEST[0]:g} to {HONEST[1]:g}"
+
+
+CLASS_HEADS = (
+    "path of a pass", "cases", "worse than the best rule that a table can express, % of the cases",
+    "worse than the best rule of all, %", "rms / best rule of all: median", "predicted / simulated: least, greatest",
+)  # fmt: skip
+
+
+def class_cells(name: str, cases: Sequence[CutFigures]) -> tuple[str, ...]:
+    """The cells of one class."""
+    if not cases:
+        return (name, "0", *(ABSENT for _ in CLASS_HEADS[2:]))
+    honesty = [each.honesty for each in cases]
+    return (
+        name, str(len(cases)), share_cell([each.best_representable.beaten_by for each in cases]),
+        share_cell([each.best.beaten_by for each in cases]), median_cell([each.best.ratio for each in cases]),
+        f"{min(honesty):.3f}, {max(honesty):.3f}",
+    )  # fmt: skip
+
+
+def length_name(low_m: float, high_m: float) -> str:
+    """'below 60 m', '60 to 100 m', 'from 100 m'."""
+    if low_m == 0.0:
+        return f"below {high_m:g} m"
+    return f"from {low_m:g} m" if high_m == float("inf") else f"{low_m:g} to {high_m:g} m"
+
+
+def share_cell(hits: Sequence[bool]) -> str:
+    """'1.2 [0.4, 2.8] (6)': per cent with its exact interval, and how many."""
+    found = sum(hits)
+    return f"{around(found / len(hits), clopper_pearson(found, len(hits)), 1, 100.0)} ({found})"
+
+
+def median_cell(values: Sequence[float]) -> str:
+    """'0.71 [0.69, 0.74]'; without the interval where there are too few values for one."""
+    ends = median_interval(values)
+    return f"{median(values):.3f} {ABSENT if ends is None else span(ends, 3)}"
+
+
+WORST_HEADS = (
+    "case", "path, m", "limit can be met", "rms, m/s", "predicted / simulated",
+    "rms / best rule that a table can express", "rms / best rule of all",
+)  # fmt: skip
+
+
+def case_cells(found: CutFigures) -> tuple[str, ...]:
+    """The cells of one case."""
+    return (
+        found.case.name, f"{found.length_m:.0f}", "yes" if found.feasible else "no",
+        around(found.rms_m_s, found.rms_ci95_m_s), f"{found.honesty:.3f}", rule_cell(found.best_representable),
+        rule_cell(found.best),
+    )  # fmt: skip
+
+
+def rule_cell(beside: Beside) -> str:
+    """'0.812 [0.801, 0.823] (energy rule)'."""
+    return f"{around(beside.ratio, beside.ratio_ci95, 3)} ({beside.rule})"

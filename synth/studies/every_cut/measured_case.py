@@ -1,0 +1,72 @@
+"""One case as a tune does it: its table, the rules tuned for it, and all of them on the same passes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import partial
+
+from synth.book.attempted_case import attempted
+from synth.book.class_setup import TUNING_PASSES, ClassSetup, class_setup, origin_of, validation_passes
+from synth.book.comparison.baselines import TunedBaseline, tune, tune_baselines
+from synth.book.comparison.friction_bound import friction_bound
+from synth.book.failed_case import FailedCase
+from synth.book.tuned_table import ValidatedTable, read_back, solutions, tuned_table, validated_table
+from synth.configuration.resolved_config import ResolvedConfig
+from synth.problem.aim import Aim
+from synth.simulation.exit_statistics import exit_statistics, rms_ratio
+from synth.simulation.random_passes import random_passes
+from synth.studies.every_cut.cut_figures import Beside, CutFigures, Outcome, Untuned
+from synth.studies.every_cut.random_case import RandomCase
+from synth.studies.every_cut.representable import representable
+from synth.studies.tuned_table import CREATED
+
+
+def measured(case: RandomCase, config: ResolvedConfig) -> Outcome:
+    """The figures of `case`, of which `config` is the configuration; the case as untuned where a tune refuses it."""
+    ((label, _),) = config.plants()
+    (target,) = config.targets_m_s
+    found = attempted(partial(figures_of, case, config), label, target, config)
+    return Untuned(case, found.reason) if isinstance(found, FailedCase) else found
+
+
+def figures_of(case: RandomCase, config: ResolvedConfig) -> CutFigures:
+    """The figures of `case`; raises `PlantError` and `InvalidTable` as a tune's parts do."""
+    ((label, plant),) = config.plants()
+    (target,) = config.targets_m_s
+    setup = class_setup(config, label, plant, validation_passes(config), origin_of(config.sha256, CREATED))
+    (solution,) = solutions(setup.design, [Aim(target, config.criterion)])
+    tuned = tuned_table(setup, solution)
+    validated = validated_table(setup, tuned.table, read_back)
+    limit_m_s = config.acceptance.rms_m_s
+    bound = friction_bound(setup, tuned, validated, limit_m_s)
+    tuning = setup.passes.of_others(random_passes(config.validation.seed + 1, 0, TUNING_PASSES))
+    best = best_of(tune_baselines(tuning, target), setup, validated)
+    best_representable = best_of([tune(law, tuning, target) for law in representable()], setup, validated)
+    figures = validated.statistics
+    return CutFigures(
+        case=case,
+        length_m=plant.exit_m - plant.start_m,
+        rms_m_s=figures.rms_m_s,
+        rms_ci95_m_s=figures.rms_ci95_m_s,
+        predicted_rms_m_s=validated.table.predicted.rms_m_s,
+        design_rms_m_s=math.sqrt(tuned.polish.cost_after),
+        switchings=figures.switchings,
+        feasible=bound.feasibility.feasible or min(best.rms_m_s, best_representable.rms_m_s) <= limit_m_s,
+        best=best,
+        best_representable=best_representable,
+    )
+
+
+def best_of(rules: Sequence[TunedBaseline], setup: ClassSetup, table: ValidatedTable) -> Beside:
+    """The rule of least rms on the passes of `setup`, beside the table on the same passes."""
+    return min((beside(rule, setup, table) for rule in rules), key=lambda each: each.rms_m_s)
+
+
+def beside(rule: TunedBaseline, setup: ClassSetup, validated: ValidatedTable) -> Beside:
+    """One rule beside the table."""
+    target = validated.table.target_speed_m_s
+    sample = setup.passes.run(rule.controller)
+    found = exit_statistics(sample, target)
+    ratio, ratio_ci95 = rms_ratio(validated.sample, sample, target)
+    return Beside(rule.name, found.rms_m_s, found.switchings, ratio, ratio_ci95)

@@ -1,0 +1,229 @@
+"""Random cases lie where they say, what is kept is what was found, and 12 ordinary cuts are better off with a table."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from scipy.stats import binom
+
+from plant_models.library import car_names, load_car, load_position, position_names
+from synth.book.comparison.baselines import FAMILIES, tune
+from synth.configuration.config_file import parse_config
+from synth.simulation.common_passes import common_passes
+from synth.simulation.random_passes import random_passes
+from synth.solver.one_blas_thread import one_blas_thread
+from synth.studies.document_pictures import is_stale, write_picture
+from synth.studies.every_cut.cut_figures import Beside, CutFigures, Outcome, Untuned
+from synth.studies.every_cut.findings import EveryCut, class_cells, faults_of, findings_of, length_name
+from synth.studies.every_cut.kept_cases import KeptCases
+from synth.studies.every_cut.measured_case import measured
+from synth.studies.every_cut.order_statistics import median_interval
+from synth.studies.every_cut.picture import figures
+from synth.studies.every_cut.random_case import CARS_OF_A_CUT, RandomCase, random_case
+from synth.studies.every_cut.representable import representable, without
+from synth.studies.every_cut.study import METHOD, Options, configuration
+from synth.studies.result import Result, run_study
+from synth.studies.study import Study, silent
+
+MANY = [random_case(5, number) for number in range(400)]
+
+ORDINARY_SEED = 8
+"""The least seed whose first 12 cases have every position and every car type, short passes and long ones."""
+
+ORDINARY = [random_case(ORDINARY_SEED, number) for number in range(12)]
+
+
+def length_m(case: RandomCase) -> float:
+    ((_, plant),) = parse_config(case.text(1000, 1), "a case").plants()
+    return plant.exit_m - plant.start_m
+
+
+def test_a_case_depends_on_seed_and_number_alone() -> None:
+    assert [random_case(5, number) for number in reversed(range(400))] == MANY[::-1]
+    assert random_case(6, 17) != replace(MANY[17], number=17)
+    assert len({replace(case, number=0) for case in MANY}) == 400
+    assert random_case(20_261_124, 0) == RandomCase(0, "knp-5-bunch", "hopper-4", 4, 288.5, 3.5)
+
+
+def test_every_position_car_and_number_of_cars_occurs() -> None:
+    assert {case.position for case in MANY} == set(position_names())
+    assert {case.car for case in MANY} == set(car_names())
+    assert {case.cars for case in MANY} == set(CARS_OF_A_CUT)
+
+
+def test_cases_are_ordinary() -> None:
+    for case in MANY:
+        position, car = load_position(case.position), load_car(case.car)
+        (targets,) = (value for value in position.provenance if value.key == "targets.exit_speeds_m_s")
+        assert targets.range is not None
+        assert targets.range[0] <= case.target_m_s <= targets.range[1]
+        assert min(position.target_speeds_m_s) - 0.2001 <= case.target_m_s <= max(position.target_speeds_m_s)
+        assert case.target_m_s < position.entry.low_m_s
+        each_t = case.mass_t / case.cars
+        assert max(23.0, car.car.tare_t) - 0.05 <= each_t <= min(84.0, car.car.gross_t) + 0.05
+        assert (case.mass_t, case.target_m_s) == (round(case.mass_t, 1), round(case.target_m_s, 1))
+
+
+def test_targets_fill_their_range_and_passes_are_short_and_long() -> None:
+    bunch = {case.target_m_s for case in MANY if case.position.endswith("-bunch")}
+    assert bunch == {round(0.1 * tenths, 1) for tenths in range(18, 41)}
+    lengths = [length_m(case) for case in MANY]
+    assert min(lengths) < 30.0
+    assert max(lengths) > 200.0
+    assert all(sum(low <= each < high for each in lengths) > 80 for low, high in ((0, 60), (60, 100), (100, 300)))
+
+
+def test_the_configuration_of_a_case_is_that_of_a_user() -> None:
+    case = RandomCase(3, "rnz-2m-park", "tank-8", 2, 120.5, 1.9)
+    config = parse_config(configuration(case, Options(seed=100, passes=2000)), "a case")
+    ((_, plant),) = config.plants()
+    assert (config.retarder.name, config.targets_m_s) == ("rnz-2m-park", (1.9,))
+    assert (config.validation.passes, config.validation.seed) == (2000, 130)
+    assert (plant.cut.mass_t, len(plant.cut.axle_offsets_m)) == (120.5, 16)
+    assert config.grid == parse_config("", "nothing").grid
+    assert parse_config(configuration(case, Options(coarse=True)), "a case").grid.path_step_m == 1.0
+
+
+def test_rules_that_a_table_can_express_have_no_lead_and_do_not_jump() -> None:
+    ((_, plant),) = parse_config(MANY[0].text(1000, 1), "a case").plants()
+    passes = common_passes(plant, random_passes(1, 0, 100))
+    laws = {law.name: tune(law, passes, 3.0) for law in representable()}
+    assert set(laws) == {"single threshold", "two-threshold relay", "energy rule"}
+    assert not any(law.controller.multi_step or law.controller.lead_s for law in laws.values())
+    assert set(laws["energy rule"].parameters) == {"friction", "offset_m_s", "hysteresis_m_s"}
+
+
+def test_a_law_without_a_parameter_is_the_law_with_it_at_0() -> None:
+    ((_, plant),) = parse_config(MANY[0].text(1000, 1), "a case").plants()
+    loop = common_passes(plant, random_passes(1, 0, 1)).loop(plant.top_stage + 1)
+    (energy,) = (family for family in FAMILIES if family.name == "energy rule")
+    ours, whole = (
+        without(energy, "lead_s").build(loop, 3.0, 4, 0.9, 0.1, 0.2),
+        energy.build(loop, 3.0, 4, 0.9, 0.1, 0.0, 0.2),
+    )
+    assert (ours.lines.lower_m_s == whole.lines.lower_m_s).all()
+    assert (ours.lines.upper_m_s == whole.lines.upper_m_s).all()
+    assert ours.lead_s == 0.0
+
+
+RULE = Beside("energy rule", 0.1, 5.0, 1.0, (0.99, 1.01))
+SOUND = CutFigures(MANY[0], 76.0, 0.1, (0.095, 0.105), 0.1, 0.1, 6.0, True, RULE, RULE)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "ends", "worse"),
+    [(1.03, (1.01, 1.05), True), (1.03, (0.99, 1.07), False), (1.015, (1.01, 1.02), False), (0.5, (0.4, 0.6), False)],
+)
+def test_a_rule_is_better_beyond_2_per_cent_and_the_interval(
+    ratio: float, ends: tuple[float, float], worse: bool
+) -> None:
+    rule = replace(RULE, ratio=ratio, ratio_ci95=ends)
+    assert rule.beaten_by is worse
+    assert list(faults_of(replace(SOUND, best=rule))) == []
+    faults = list(faults_of(replace(SOUND, best_representable=rule)))
+    assert [fault.rpartition(": ")[0] for fault in faults] == ([MANY[0].name] if worse else [])
+
+
+@pytest.mark.parametrize(("predicted", "honest"), [(0.1, True), (0.086, True), (0.085, False), (0.12, False)])
+def test_a_prediction_off_beyond_the_interval_is_a_fault(predicted: float, honest: bool) -> None:
+    found = replace(SOUND, predicted_rms_m_s=predicted)
+    assert found.honest is honest
+    assert len(list(faults_of(found))) == (not honest)
+
+
+def test_what_is_told_of_a_class_is_counted() -> None:
+    worse = replace(RULE, ratio=1.1, ratio_ci95=(1.05, 1.15))
+    bad = replace(SOUND, length_m=150.0, feasible=False, best=worse, best_representable=worse, predicted_rms_m_s=0.08)
+    told = findings_of(1, 2000, [SOUND, Untuned(MANY[1], "the grid is too coarse"), bad])
+    assert isinstance(told, EveryCut)
+    rows = {row[0]: row for row in told.tables()["classes"].rows}
+    assert [rows[name][1] for name in ("below 60 m", "60 to 100 m", "from 100 m", "all")] == ["0", "1", "1", "2"]
+    assert rows["limit cannot be met"] == class_cells("limit cannot be met", [bad])
+    assert rows["all"][2].startswith("50.0 [1.3, 98.7] (1)")
+    assert rows["all"][4:] == ("1.050 –", "0.800, 1.000")
+    assert told.tables()["worst"].rows[0][0] == bad.case.name
+    assert len(told.faults()) == 2
+    assert any("the grid is too coarse" in sentence for sentence in told.sentences())
+    assert length_name(0.0, 60.0) == "below 60 m"
+    assert set(figures(told)) == {"ratio"}
+
+
+def test_a_picture_is_the_one_of_its_result_until_that_changes(tmp_path: Path) -> None:
+    study = Study("every-cut", "", 1.0, "", "synth.studies.every_cut.study", "synth.studies.every_cut.picture")
+    result = Result(study, "0", Options(), findings_of(1, 2000, [SOUND]))
+    file = tmp_path / "every-cut-ratio.svg"
+    assert is_stale(file, result, "ratio")
+    write_picture(file, result, "ratio")
+    assert not is_stale(file, result, "ratio")
+    longer = findings_of(1, 2000, [replace(SOUND, length_m=150.0)])
+    assert is_stale(file, replace(result, findings=longer), "ratio")
+
+
+@pytest.mark.parametrize("count", [6, 7, 10, 20, 101, 500])
+def test_the_interval_of_a_median_is_the_shortest_that_the_binomial_law_allows(count: int) -> None:
+    ends = median_interval(range(1, count + 1))
+    assert ends is not None
+    low, high = ends
+    assert low + high == count + 1
+    wider, narrower = (2.0 * float(binom.cdf(k, count, 0.5)) for k in (low - 1, low))
+    assert wider <= 0.05 < narrower
+
+
+def test_five_values_tell_no_interval_of_their_median() -> None:
+    assert median_interval(range(5)) is None
+
+
+def test_a_finished_case_is_not_done_again(tmp_path: Path) -> None:
+    file = tmp_path / "every-cut.jsonl"
+    made: list[str] = []
+
+    def outcome_of(text: str, found: Outcome) -> Outcome:
+        def make() -> Outcome:
+            made.append(text)
+            return found
+
+        return KeptCases(file).outcome_of(text, make)
+
+    refused = Untuned(MANY[1], "no")
+    assert [outcome_of("a", SOUND), outcome_of("b", refused)] == [SOUND, refused]
+    file.write_bytes(file.read_bytes() + b'{"torn')
+    assert [outcome_of("a", refused), outcome_of("b", SOUND)] == [SOUND, refused]
+    assert outcome_of("c", SOUND) == SOUND
+    assert made == ["a", "b", "c"]
+
+
+def test_what_another_software_has_found_is_not_taken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "every-cut.jsonl"
+    assert KeptCases(file).outcome_of("a", lambda: SOUND) == SOUND
+    monkeypatch.setattr("synth.studies.every_cut.kept_cases.software_sha256", lambda: "another")
+    other = replace(SOUND, rms_m_s=0.2)
+    assert KeptCases(file).outcome_of("a", lambda: other) == other
+
+
+@pytest.mark.slow
+def test_figures_do_not_depend_on_how_a_run_is_cut() -> None:
+    study = Study("every-cut", "", 1.0, "", "synth.studies.every_cut.study")
+    together = METHOD.run(replace(METHOD.smallest, workers=3), silent)
+    alone = run_study(study, replace(METHOD.smallest, first=1, cases=1, workers=1)).findings
+    assert isinstance(alone, EveryCut)
+    assert alone.cases == together.cases[1:2]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", ORDINARY, ids=lambda case: f"{case.number}-{case.position}-{case.cars}-{case.car}")
+@one_blas_thread()
+def test_the_table_of_an_ordinary_cut_is_no_worse_than_a_rule_that_it_could_express(case: RandomCase) -> None:
+    found = measured(case, parse_config(case.text(2000, 1), case.name))
+    assert isinstance(found, CutFigures), found
+    assert list(faults_of(found)) == []
+    assert 0.9 < found.honesty < 1.1
+
+
+def test_ordinary_cuts_are_of_every_kind() -> None:
+    assert {case.position for case in ORDINARY} == set(position_names())
+    assert {case.car for case in ORDINARY} == set(car_names())
+    lengths = [length_m(case) for case in ORDINARY]
+    assert sum(each < 60.0 for each in lengths) >= 3
+    assert sum(each > 100.0 for each in lengths) >= 3
