@@ -21,14 +21,20 @@ from tuning_tables import Decisions
 class CaseVerdict:
     """One case: `judgement` of its table, whether it is feasible or not.
 
-    `obstacle`: what makes the case infeasible, '' for a feasible one; `advice`: what to change where the table misses
-    an rms that its position does not forbid.
+    `obstacle`: what makes the case infeasible, '' for a feasible one. Where the table misses an rms that its position
+    does not forbid, `within_reach` says what is known of that, and `advice` what to change.
     """
 
     name: str
     obstacle: str
     judgement: Judgement
+    within_reach: str = ""
     advice: tuple[str, ...] = ()
+
+    @property
+    def phrases(self) -> tuple[str, ...]:
+        """What is missed or undecided, and what is known of the rms that the table does not reach."""
+        return (*self.judgement.phrases, *filter(None, [self.within_reach]))
 
     @property
     def feasible(self) -> bool:
@@ -98,10 +104,10 @@ def verdict_on(
 
 
 def told(verdicts: Sequence[CaseVerdict]) -> str:
-    """Cases with what is missed or undecided in them, and what to change."""
-    return "; ".join(
-        ", ".join((f"{each.name}: {', '.join(each.judgement.phrases)}", *each.advice)) for each in verdicts
-    )
+    """Cases with what is missed or undecided in them, and what to change in any of them."""
+    cases = "; ".join(f"{each.name}: {', '.join(each.phrases)}" for each in verdicts)
+    ways = tuple(dict.fromkeys(way for each in verdicts for way in each.advice))
+    return f"{cases}; try {', '.join(ways)}" if ways else cases
 
 
 def judge_case(case: CaseResult, limits: AcceptanceSettings) -> CaseVerdict:
@@ -112,7 +118,7 @@ def judge_case(case: CaseResult, limits: AcceptanceSettings) -> CaseVerdict:
     judged = verdict_within(case_name(case), found, case.feasibility.unavoidable, limits)
     missed = case.comparison.table.statistics.rms_ci95_m_s[0] > limits.rms_m_s
     if judged.word == "missed" and missed:
-        return replace(judged, advice=(what_to_change(case, limits.rms_m_s),))
+        return replace(judged, within_reach=within_reach(case, limits.rms_m_s), advice=what_to_change(case))
     return judged
 
 
@@ -127,24 +133,25 @@ def verdict_within(
     return CaseVerdict(name, unavoidable.obstacle if unavoidable.forbids(limits.rms_m_s) else "", found)
 
 
-def what_to_change(case: CaseResult, limit_m_s: float) -> str:
-    """What may help where a table misses the rms `limit_m_s` that its position does not forbid.
+def within_reach(case: CaseResult, limit_m_s: float) -> str:
+    """What is known of the rms `limit_m_s` that a table misses and its position does not forbid.
 
     Where a tuned law keeps it, the position is known to be able to.
     """
+    best = case.comparison.best_baseline
+    if best is not None and best.statistics.rms_ci95_m_s[1] <= limit_m_s:
+        return f"which the position can: a tuned {best.name} has {best.statistics.rms_m_s:.4f} m/s"
+    return f"which the position does not forbid: {unavoidable_text(case.feasibility.unavoidable)}"
+
+
+def what_to_change(case: CaseResult) -> tuple[str, ...]:
+    """What may help where a table misses an rms that its position does not forbid, the likeliest first."""
     ways = []
     if case.estimate is None:
         ways.append("regulator.estimator = true")
     if case.table.decisions is Decisions.AT_REST:
         ways.append('regulator.commands = "any_time"')
-    can, best = "does not forbid it", case.comparison.best_baseline
-    if best is not None and best.statistics.rms_ci95_m_s[1] <= limit_m_s:
-        can = f"can, as a tuned {best.name} shows with {best.statistics.rms_m_s:.4f} m/s"
-    ways.append("another fit.degree or another target")
-    return (
-        f"the table does not reach this rms though the position {can} "
-        f"({unavoidable_text(case.feasibility.unavoidable)}): try {', '.join(ways)}"
-    )
+    return (*ways, "another fit.degree or another target")
 
 
 def unavoidable_text(error: UnavoidableError) -> str:

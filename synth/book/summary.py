@@ -109,6 +109,7 @@ def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
         "undecided_limits": verdict.judgement.undecided,
         "feasible": verdict.feasible,
         "why_infeasible": verdict.obstacle or None,
+        "within_reach": verdict.within_reach or None,
         "advice": verdict.advice,
         "entry_m_s": (entry.low_m_s, entry.high_m_s),
         "served_entry_m_s": served,

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.system.conftest import CLASS, Command
+from tests.system.conftest import CLASS, Command, changed
 
 DIGITS = "9" * 400
 LONG = "x" * 100_000
@@ -159,12 +159,13 @@ def test_a_number_of_the_command_line_tells_what_is_allowed(
 
 def test_a_target_that_the_grid_is_too_coarse_for_is_named(command: Command, tmp_path: Path) -> None:
     config = tmp_path / "coarse.toml"
-    config.write_text(CLASS.replace("csv = true", "plots = false") + "[criterion]\noverspeed_factor = 1000\n")
+    swaps = ("csv = true", "plots = false"), ("speed_step_m_s = 0.04", "speed_step_m_s = 0.2"), ("[1.5]", "[2.5]")
+    config.write_text(changed(CLASS, *swaps) + "[criterion]\noverspeed_factor = 1000\n")
     ran = command("tune", config, "-o", tmp_path / "out")
     assert (ran.code, ran.out) == (2, "")
     told = ran.err.splitlines()[-1]
-    assert told.startswith(f"retarder-synth: {config}: no table for gondola-4-22t to 1.5 m/s: the grid is too coarse")
-    assert "now grid.speed_step_m_s is 0.04 and grid.path_step_m is 1" in told
+    assert told.startswith(f"retarder-synth: {config}: no table for gondola-4-22t to 2.5 m/s: the grid is too coarse")
+    assert "now grid.speed_step_m_s is 0.2 and grid.path_step_m is 1" in told
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes with names are POSIX's")

@@ -26,12 +26,14 @@ from tests.system.test_sensors_tune import CONFIG as POINTS
 from tuning_tables import InvalidTable, read_book
 
 STEEP = "[criterion]\noverspeed_factor = 1000\n"
-"""A cost that the coarse grid of `CLASS` cannot hold at 1.5 m/s; 2.5 m/s is well."""
+WIDE = ("speed_step_m_s = 0.04", "speed_step_m_s = 0.2")
+"""A cost that so wide cells cannot hold at 2.5 m/s, nor half as wide ones; 1.5 m/s is well."""
 
-ONE_BAD = changed(CLASS, ("[1.5]", "[1.5, 2.5]")) + STEEP + SECOND_CLASS + "targets_m_s = [2.5]\n"
-BAD = "gondola-4-22t to 1.5 m/s"
+KEPT = ("honesty_high = 1.35", "honesty_high = 2.0\nrms_m_s = 0.3")
+ONE_BAD = changed(CLASS, WIDE, KEPT, ("[1.5]", "[1.5, 2.5]")) + STEEP + SECOND_CLASS + "targets_m_s = [1.5]\n"
+BAD = "gondola-4-22t to 2.5 m/s"
 REASON = "the grid is too coarse for these lines (an expected square came out negative): make grid.speed_step_m_s"
-KEYS = "; now grid.speed_step_m_s is 0.04 and grid.path_step_m is 1"
+KEYS = "; now grid.speed_step_m_s is 0.2 and grid.path_step_m is 1"
 
 
 @dataclass(frozen=True)
@@ -63,19 +65,19 @@ def tuned(tmp_path_factory: pytest.TempPathFactory) -> Tuned:
 
 def test_the_other_cases_are_whole(tuned: Tuned) -> None:
     assert tuned.code == 1
-    ids = ["gondola-4-22t-to-2.5-m-s", "gondola-4-30t-to-2.5-m-s"]
+    ids = ["gondola-4-22t-to-1.5-m-s", "gondola-4-30t-to-1.5-m-s"]
     assert [table.id for table in read_book(tuned.directory / "book.h5")] == ids
     assert sorted(path.stem for path in (tuned.directory / "tables").glob("*.json")) == ids
     assert (tuned.directory / "c" / "retarder_table.c").is_file()
     assert [case["id"] for case in tuned.summary["cases"]] == ids
     pictures = {path.name for path in (tuned.directory / "plots").glob("*.svg")}
     assert {"rms-by-controller.svg", "degree-study.svg"} <= pictures
-    assert not [name for name in pictures if "1.5" in name]
+    assert not [name for name in pictures if "2.5" in name]
 
 
 def test_the_bad_case_is_named_with_its_reason_and_what_to_change(tuned: Tuned) -> None:
     (failed,) = tuned.summary["failed"]
-    assert (failed["label"], failed["target_m_s"]) == ("gondola-4-22t", 1.5)
+    assert (failed["label"], failed["target_m_s"]) == ("gondola-4-22t", 2.5)
     assert failed["reason"].startswith(REASON)
     assert failed["reason"].endswith(KEYS)
     page = html.unescape((tuned.directory / "report.html").read_text(encoding="utf-8"))
@@ -85,7 +87,7 @@ def test_the_bad_case_is_named_with_its_reason_and_what_to_change(tuned: Tuned) 
     assert "there is no table for 1 of 3 cases (" in tuned.summary["verdict"]
     assert tuned.summary["accepted"] is False
     (row,) = (line.split() for line in tuned.out.splitlines() if line.rstrip().endswith("no table"))
-    assert row[:2] == ["gondola-4-22t", "1.5"]
+    assert row[:2] == ["gondola-4-22t", "2.5"]
     assert "no table: see the verdict" in page
 
 
@@ -93,7 +95,7 @@ def test_the_counter_counts_cases_and_nothing_else(tuned: Tuned) -> None:
     counted = [line for line in tuned.err.splitlines() if line.startswith("[")]
     assert [line[:5] for line in counted] == ["[1/3]", "[2/3]", "[3/3]"]
     assert sum("no table" in line for line in counted) == 1
-    assert "gondola-4-22t to 2.5 m/s: degree study done" in tuned.err
+    assert "gondola-4-22t to 1.5 m/s: degree study done" in tuned.err
 
 
 def test_what_a_tune_leaves_is_read_by_who_checks_it(tuned: Tuned, command: Command) -> None:
@@ -158,22 +160,22 @@ def test_a_permission_without_a_design_is_missing_alone(command: Command, tmp_pa
 @pytest.mark.usefixtures("no_surfaces")
 def test_permissions_of_the_other_cases_are_told(command: Command, tmp_path: Path) -> None:
     config, out = tmp_path / "c.toml", tmp_path / "out"
-    swaps = ("[2.5]", "[2.5, 1.5]"), ("speed_step_m_s = 0.05", "speed_step_m_s = 0.04")
+    swaps = ("[2.5]", "[2.5, 1.5]"), ("speed_step_m_s = 0.05", WIDE[1])
     config.write_text(changed(COARSE, *swaps) + STEEP, encoding="utf-8")
     ran = command("permissions", config, "-o", out)
     assert ran.code == 1
     summary = json.loads((out / "summary.json").read_bytes())
     (case,), (failed,) = summary["cases"], summary["failed"]
-    assert (case["target_speed_m_s"], failed["target_m_s"]) == (2.5, 1.5)
+    assert (case["target_speed_m_s"], failed["target_m_s"]) == (1.5, 2.5)
     assert set(case["permissions_failed"]) == set(WITHOUT_SURFACES)
     assert f"{BAD}: no table: {REASON}" in ran.out
-    assert f"gondola-4-22t to 2.5 m/s, {WITHOUT_SURFACES[0]}: no surfaces on this grid" in ran.out
+    assert f"gondola-4-22t to 1.5 m/s, {WITHOUT_SURFACES[0]}: no surfaces on this grid" in ran.out
     assert [line[:5] for line in ran.err.splitlines() if line.startswith("[")] == ["[1/2]", "[2/2]"]
 
 
 def test_all_cases_bad_are_one_sentence(command: Command, tmp_path: Path) -> None:
     config = tmp_path / "c.toml"
-    config.write_text(CLASS + STEEP + SECOND_CLASS, encoding="utf-8")
+    config.write_text(changed(CLASS, WIDE, ("[1.5]", "[2.5]")) + STEEP + SECOND_CLASS, encoding="utf-8")
     ran = command("tune", config, "-o", tmp_path / "out")
     assert (ran.code, ran.out) == (2, "")
     told = ran.err.splitlines()[-1]
