@@ -64,6 +64,8 @@ path_step_m = 2.0
 speed_step_m_s = 0.2
 friction_scenarios = 2
 resistance_scenarios = 1
+[criterion]
+overspeed_factor = 1000
 [sweep]
 exit_speeds_m_s = {speeds}
 passes = 1000
@@ -81,50 +83,47 @@ def test_a_target_without_a_table_loses_none_but_itself(command: Callable[..., R
 
     code, said = swept("some", "[2.0, 3.0, 3.5, 4.0]")
     assert code == 1
-    assert "targets without a table: 2" in said
-    assert "gondola-4-22t to 2 m/s failed (and 1 more): the grid is too coarse" in said
+    assert "targets without a table: 1" in said
+    assert "gondola-4-22t to 3.5 m/s failed: the grid is too coarse" in said
     code, listed, _ = command("sweep", "failed", tmp_path / "some")
-    assert [line.split(":")[0] for line in listed.splitlines()] == ["gondola-4-22t to 2 m/s", "gondola-4-85t to 4 m/s"]
+    assert [line.split(":")[0] for line in listed.splitlines()] == ["gondola-4-22t to 3.5 m/s"]
     status = command("sweep", "status", tmp_path / "some")[1]
-    assert "complete; 2 of 2 units done, 0 failed, targets without a table: 2" in status
+    assert "complete; 2 of 2 units done, 0 failed, targets without a table: 1" in status
     summary = json.loads((tmp_path / "some" / "summary.json").read_text(encoding="utf-8"))
-    assert [(each["label"], each["target_m_s"]) for each in summary["failed"]] == [
-        ("gondola-4-22t", 2.0),
-        ("gondola-4-85t", 4.0),
-    ]
+    assert [(each["label"], each["target_m_s"]) for each in summary["failed"]] == [("gondola-4-22t", 3.5)]
     refused = {(each["label"], each["target_m_s"]) for each in summary["failed"]}
     axes = heat_map(summary["cases"], refused, load_sweep(tmp_path / "some.toml").conditions[0]).axes[0]
     tables, empty = axes.collections[:2]
-    assert (len(tables.get_paths()), len(empty.get_paths())) == (6, 2)
+    assert (len(tables.get_paths()), len(empty.get_paths())) == (7, 1)
     assert axes.get_title(loc="left").endswith("hatched: no table")
     assert swept("some", "[2.0, 3.0, 3.5, 4.0]")[0] == 1  # it is known, and not computed again
     assert len(events(tmp_path / "some", "started")) == 2
 
-    assert swept("others", "[3.0, 3.5]")[0] == 0
+    assert swept("others", "[2.0, 3.0]")[0] == 0
     some, others = (
         {table.id: (table.stages, table.predicted, table.validated) for table in read_book(tmp_path / name / "book.h5")}
         for name in ("some", "others")
     )
     assert len(others) == 4
-    assert set(some) - set(others) == {"gondola-4-22t-to-4-m-s", "gondola-4-85t-to-2-m-s"}
+    assert set(some) - set(others) == {"gondola-4-22t-to-4-m-s", "gondola-4-85t-to-3.5-m-s", "gondola-4-85t-to-4-m-s"}
     assert {name: some[name] for name in others} == others
 
 
 def test_a_class_without_any_table_has_failed(command: Callable[..., Ran], tmp_path: Path) -> None:
-    (tmp_path / "sweep.toml").write_text(TOO_COARSE.format(speeds="[4.0]"), encoding="utf-8")
+    (tmp_path / "sweep.toml").write_text(TOO_COARSE.format(speeds="[3.5]"), encoding="utf-8")
     code, _, said = command("sweep", tmp_path / "sweep.toml", "-o", tmp_path / "out", "--workers", "1")
     assert code == 1
-    assert "gondola-4-85t failed: the grid is too coarse" in said
+    assert "gondola-4-22t failed: the grid is too coarse" in said
     assert "1 of 2 units done, 1 failed\n" in command("sweep", "status", tmp_path / "out")[1]
 
 
 def test_refining_gives_up_a_class_with_a_target_without_a_table(command: Callable[..., Ran], tmp_path: Path) -> None:
-    text = TOO_COARSE.format(speeds="[3.0, 4.0]").replace("[sweep]", "[sweep]\ninterpolation_loss_m_s = 0.5")
+    text = TOO_COARSE.format(speeds="[3.0, 3.5]").replace("[sweep]", "[sweep]\ninterpolation_loss_m_s = 0.5")
     (tmp_path / "sweep.toml").write_text(text, encoding="utf-8")
     code, _, said = command("sweep", tmp_path / "sweep.toml", "-o", tmp_path / "out", "--workers", "1")
     assert code == 1
-    assert "gondola-4-85t failed: the grid is too coarse" in said
-    assert {table.cut.mass_t for table in read_book(tmp_path / "out" / "book.h5")} == {22.0}
+    assert "gondola-4-22t failed: the grid is too coarse" in said
+    assert {table.cut.mass_t for table in read_book(tmp_path / "out" / "book.h5")} == {85.0}
 
 
 def test_a_worker_that_dies_once_costs_nothing_but_time(
