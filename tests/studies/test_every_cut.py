@@ -109,7 +109,7 @@ def test_a_law_without_a_parameter_is_the_law_with_it_at_0() -> None:
 
 
 RULE = Beside("energy rule", 0.1, 5.0, 1.0, (0.99, 1.01))
-SOUND = CutFigures(MANY[0], 76.0, 0.1, (0.095, 0.105), 0.1, 0.1, 6.0, True, RULE, RULE)
+SOUND = CutFigures(MANY[0], 76.0, 0.1, (0.095, 0.105), 0.1, 0.1, False, 6.0, True, RULE, RULE)
 
 
 @pytest.mark.parametrize(
@@ -142,7 +142,7 @@ def test_what_is_told_of_a_class_is_counted() -> None:
     assert [rows[name][1] for name in ("below 60 m", "60 to 100 m", "from 100 m", "all")] == ["0", "1", "1", "2"]
     assert rows["limit cannot be met"] == class_cells("limit cannot be met", [bad])
     assert rows["all"][2].startswith("50.0 [1.3, 98.7] (1)")
-    assert rows["all"][4:] == ("1.050 –", "0.800, 1.000")
+    assert rows["all"][4:] == ("1.050 –", "0.800, 1.000", "1.000, 1.250", "0")
     assert told.tables()["worst"].rows[0][0] == bad.case.name
     assert len(told.faults()) == 2
     assert any("the grid is too coarse" in sentence for sentence in told.sentences())

@@ -34,8 +34,8 @@ class Beside:
 class CutFigures:
     """The table of a case, simulated; `length_m`: path of a pass, from where the regulator acts to the exit.
 
-    `design_rms_m_s`: of its lines on the grid that they were polished on. `feasible`: a regulator that is told the
-    friction of every cut, the table or one of the rules, meets the limit on the rms. `best`: of all rules as they are;
+    `design_rms_m_s`: of its lines on the grid that they were polished on, in a second design if `designed_again`.
+    `feasible`: the position does not forbid the limit on the rms. `best`: of all rules as they are;
     `best_representable`: of those that a table can express.
     """
 
@@ -45,10 +45,16 @@ class CutFigures:
     rms_ci95_m_s: Interval
     predicted_rms_m_s: float
     design_rms_m_s: float
+    designed_again: bool
     switchings: float
     feasible: bool
     best: Beside
     best_representable: Beside
+
+    @property
+    def design_share(self) -> float:
+        """rms on the grid of the design / predicted rms."""
+        return self.design_rms_m_s / self.predicted_rms_m_s
 
     @property
     def honesty(self) -> float:

@@ -79,6 +79,7 @@ def faults_of(found: CutFigures) -> Iterator[str]:
 CLASS_HEADS = (
     "path of a pass", "cases", "worse than the best rule that a table can express, % of the cases",
     "worse than the best rule of all, %", "rms / best rule of all: median", "predicted / simulated: least, greatest",
+    "design / predicted: least, greatest", "designed again",
 )  # fmt: skip
 
 
@@ -86,11 +87,12 @@ def class_cells(name: str, cases: Sequence[CutFigures]) -> tuple[str, ...]:
     """The cells of one class."""
     if not cases:
         return (name, "0", *(ABSENT for _ in CLASS_HEADS[2:]))
-    honesty = [each.honesty for each in cases]
+    honesty, shares = [each.honesty for each in cases], [each.design_share for each in cases]
     return (
         name, str(len(cases)), share_cell([each.best_representable.beaten_by for each in cases]),
         share_cell([each.best.beaten_by for each in cases]), median_cell([each.best.ratio for each in cases]),
-        f"{min(honesty):.3f}, {max(honesty):.3f}",
+        f"{min(honesty):.3f}, {max(honesty):.3f}", f"{min(shares):.3f}, {max(shares):.3f}",
+        str(sum(each.designed_again for each in cases)),
     )  # fmt: skip
 
 

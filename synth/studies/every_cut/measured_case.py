@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from functools import partial
 
 from synth.book.attempted_case import attempted
 from synth.book.class_setup import TUNING_PASSES, ClassSetup, class_setup, origin_of, validation_passes
 from synth.book.comparison.baselines import TunedBaseline, tune, tune_baselines
-from synth.book.comparison.friction_bound import friction_bound
 from synth.book.failed_case import FailedCase
 from synth.book.tuned_table import ValidatedTable, read_back, solutions, tuned_table, validated_table
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.random_passes import random_passes
+from synth.simulation.unavoidable_error import unavoidable_error
 from synth.studies.every_cut.cut_figures import Beside, CutFigures, Outcome, Untuned
 from synth.studies.every_cut.random_case import RandomCase
 from synth.studies.every_cut.representable import representable
@@ -38,21 +37,22 @@ def figures_of(case: RandomCase, config: ResolvedConfig) -> CutFigures:
     (solution,) = solutions(setup.design, [Aim(target, config.criterion)])
     tuned = tuned_table(setup, solution)
     validated = validated_table(setup, tuned.table, read_back)
-    limit_m_s = config.acceptance.rms_m_s
-    bound = friction_bound(setup, tuned, validated, limit_m_s)
+    ends = setup.passes.exit_range
+    unavoidable = unavoidable_error(ends.slowest, ends.fastest, target)
     tuning = setup.passes.of_others(random_passes(config.validation.seed + 1, 0, TUNING_PASSES))
     best = best_of(tune_baselines(tuning, target), setup, validated)
     best_representable = best_of([tune(law, tuning, target) for law in representable()], setup, validated)
     figures = validated.statistics
     return CutFigures(
         case=case,
-        length_m=plant.exit_m - plant.start_m,
+        length_m=plant.pass_m,
         rms_m_s=figures.rms_m_s,
         rms_ci95_m_s=figures.rms_ci95_m_s,
         predicted_rms_m_s=validated.table.predicted.rms_m_s,
-        design_rms_m_s=math.sqrt(tuned.polish.cost_after),
+        design_rms_m_s=tuned.design.grid.design_rms_m_s,
+        designed_again=tuned.design.grid.again,
         switchings=figures.switchings,
-        feasible=bound.feasibility.feasible or min(best.rms_m_s, best_representable.rms_m_s) <= limit_m_s,
+        feasible=not unavoidable.forbids(config.acceptance.rms_m_s),
         best=best,
         best_representable=best_representable,
     )

@@ -43,7 +43,7 @@ class ToldBound:
 def told_bound(chains: PassageChains, speeds: PassageSpeeds, target_m_s: float, frictions: int) -> ToldBound:
     """Mean squares at `frictions` values of ξ_cut, equally spaced from −4 to 4 standard deviations, by their weights.
 
-    Each is predicted on the finer chain; the resistance adds its main effect at the mean friction, as in a prediction.
+    Each is predicted on the finer chain; the resistance adds its main effect at the mean friction.
     Where speeds for a friction are no better than the table's, the table's are taken: who is told need not use it.
     """
     factor, weight = told_factors(chains.design.plant, frictions)
