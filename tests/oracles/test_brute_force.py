@@ -30,12 +30,12 @@ ROUNDING = 1e-9
 
 
 def interpolate(row: Row, position: float) -> float:
-    """Cubic Lagrange polynomial through four points; linear in the last cell and in the two next to a stall; constant
+    """Cubic Lagrange polynomial through four points; linear in the last cell and in the eight next to a stall; constant
     beyond both ends."""
     last = len(row) - 1
     position = min(max(position, 0.0), float(last))
     i = min(int(position), last - 1)
-    if i < 2 or i == last - 1:
+    if i < 8 or i == last - 1:
         return row[i] + (position - i) * (row[i + 1] - row[i])
     total = 0.0
     for a in range(i - 1, i + 3):

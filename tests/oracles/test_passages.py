@@ -178,11 +178,11 @@ class PlainLoops:
 
 
 def interpolated(row: list[float], position: float) -> float:
-    """Cubic inside; linear in the last cell and the two next to a stall; constant beyond both ends."""
+    """Cubic inside; linear in the last cell and the eight next to a stall; constant beyond both ends."""
     last = len(row) - 1
     position = min(max(position, 0.0), float(last))
     i = min(int(position), last - 1)
-    if i < 2 or i == last - 1:
+    if i < 8 or i == last - 1:
         return row[i] + (position - i) * (row[i + 1] - row[i])
     nodes = range(i - 1, i + 3)
     return sum(row[a] * math.prod((position - b) / (a - b) for b in nodes if b != a) for a in nodes)

@@ -30,7 +30,7 @@ ROUNDING = 1e-9
 
 
 def sampled(rows: Array, position: Array) -> Array:
-    """`rows` (…, E) at `position` (…, P) in cells: cubic; linear in the top cell and in the two above a stall."""
+    """`rows` (…, E) at `position` (…, P) in cells: cubic; linear in the top cell and in the eight above a stall."""
     last = rows.shape[-1] - 1
     position = np.clip(position, 0.0, last)
     i = np.clip(position.astype(int), 0, last - 1)
@@ -42,7 +42,7 @@ def sampled(rows: Array, position: Array) -> Array:
     linear = take(0) + x * (take(1) - take(0))
     cubic = -x * (x - 1) * (x - 2) / 6 * take(-1) + (x + 1) * (x - 1) * (x - 2) / 2 * take(0)
     cubic += -(x + 1) * x * (x - 2) / 2 * take(1) + (x + 1) * x * (x - 1) / 6 * take(2)
-    found: Array = np.where((i < 2) | (i == last - 1), linear, cubic)
+    found: Array = np.where((i < 8) | (i == last - 1), linear, cubic)
     return found
 
 

@@ -52,10 +52,10 @@ class BruteForce:
         return float(drive[b] - drive[a]) + extra - f * kpa * float(brake[b] - brake[a])
 
     def in_energy(self, row: Row, x: float, limited: bool) -> float:
-        """Cubic Lagrange at x cells, linear in the first two cells and in the last, constant beyond both ends."""
+        """Cubic Lagrange at x cells, linear in the first eight cells and in the last, constant beyond both ends."""
         x = min(max(x, 0.0), self.points - 1.0)
         i = min(int(x), self.points - 2)
-        if x < 2.0 or i == self.points - 2:
+        if x < 8.0 or i == self.points - 2:
             total = row[i] + (x - i) * (row[i + 1] - row[i])
         else:
             total = 0.0

@@ -123,7 +123,7 @@ def test_ranks_are_uniform_where_the_configuration_is_true_and_not_elsewhere(
     ranks = np.concatenate([found.rank for found in replayed])
     assert len(ranks) == PASSES * REPETITIONS
     assert kstest(ranks, "uniform").pvalue > 0.01
-    wrong = fitted(assumed, log_of(worn, assumed.tables[CASE], 5, 200))
+    wrong = fitted(assumed, log_of(worn, assumed.tables[CASE], 5, 500))
     own = [assumed.tables[CASE]]
     assert replay(wrong, assumed.config, ReplayOrder(own, own, 32)).uniformity.p_value < 1e-3
 
