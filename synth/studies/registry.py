@@ -131,7 +131,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
     Study(
         "every-cut",
         "Does the table that a tune makes beat every tuned rule, for every ordinary cut?",
-        1800.0,
+        630.0,
         "every-cut.md",
         "synth.studies.every_cut.study",
         "synth.studies.every_cut.picture",
