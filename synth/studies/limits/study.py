@@ -11,21 +11,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from synth.book.checked_design import checked_design
+from synth.book.checked_design import finer
 from synth.book.estimation.estimated_table import controller_of, estimated_table, estimator_design
 from synth.configuration.config_file import load_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.problem import Problem
-from synth.problem.resolution import finer_for_check
 from synth.simulation.closed_loop import LineController, simulate
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.replicates import rms_of
 from synth.simulation.stratified_passes import stratified_passes
-from synth.solver.backward_induction import solve
-from synth.solver.chain.chain import check_chain, persistent_chain
+from synth.solver.chain.chain import persistent_chain
 from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.told_lines import Effort
 from synth.solver.tuned_lines import tuned_lines
@@ -37,7 +35,6 @@ from synth.studies.options import option
 from synth.studies.side_by_side import side_by_side
 from synth.studies.study import Findings, Method, Tell
 from synth.studies.told_friction import THOROUGH, simulate_told, thorough, told_friction
-from synth.studies.tuned_table import rounded
 
 FRESH, TUNING, TUNING_PASSES = 49979687, 32452843, 3000
 LINE_NODES = 301
@@ -121,11 +118,9 @@ def changed(case: Case, change: Change, config: ResolvedConfig, passes: RandomPa
     resolution = config.resolution
     if change.speed_step_m_s is not None:
         resolution = replace(resolution, speed_step_m_s=min(resolution.speed_step_m_s, change.speed_step_m_s))
-    plant, target_m_s = change.plant, case.target_m_s
-    solution = solve(persistent_chain(plant, resolution), Aim(target_m_s, free(config)))
-    check = check_chain(plant, finer_for_check(resolution))
-    design = checked_design(solution, check, change.degree, lambda lines: rounded(config, plant, lines, target_m_s))
-    return simulated(case, change, controller_for(case, design.kept.lines), passes)
+    design = finer(persistent_chain(change.plant, resolution))  # without a spread the polish would live on the grid
+    lines = tuned_lines(design, Aim(case.target_m_s, free(config)), change.degree).lines
+    return simulated(case, change, controller_for(case, lines), passes)
 
 
 def controller_for(case: Case, lines: PolynomialLines) -> LineController:
@@ -146,8 +141,8 @@ def row_of(case: Case, change: str, sample: ExitSample) -> Row:
 
 def told(case: Case, config: ResolvedConfig, passes: RandomPasses, effort: Effort) -> Row:
     """The regulator is told the friction of every cut."""
-    finer = replace(config.resolution, speed_step_m_s=min(config.resolution.speed_step_m_s, QUIET_M_S))
-    design = persistent_chain(case.plant, finer)
+    quiet = replace(config.resolution, speed_step_m_s=min(config.resolution.speed_step_m_s, QUIET_M_S))
+    design = persistent_chain(case.plant, quiet)
     found = told_friction(design, case.target_m_s, config.fit.degree, effort)
     return row_of(case, "told the friction of every cut", simulate_told(case.plant, found, passes))
 
