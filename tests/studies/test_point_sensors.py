@@ -18,8 +18,10 @@ from synth.problem.resolution import Resolution
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.passage_sample import DECIDED, NOT_HEARD, UNFINISHED, PassageSample
 from synth.simulation.stratified_passes import stratified_passes
+from synth.solver.chain.scenarios import Scenarios, resistance_scenarios
 from synth.solver.chain.sensor_passages import with_point_sensors
 from synth.solver.policy_density import exit_density
+from synth.solver.told_lines import told_factors
 from synth.studies.point_sensors.fault_losses import fault_rows
 from synth.studies.point_sensors.findings import PointSensorWorth
 from synth.studies.point_sensors.layouts import equal_sections
@@ -27,7 +29,7 @@ from synth.studies.point_sensors.rows import FaultRow, ManyRow, SensorRow
 from synth.studies.point_sensors.sensor_table import AXLES, SensorTable, tabulated, unfinished_share
 from synth.studies.point_sensors.sites import TEXTS, Site, single_stage, site_of, sites
 from synth.studies.point_sensors.tables import kind_of, tables_of
-from synth.studies.point_sensors.told import speeds_for, squares_at, told_bound
+from synth.studies.point_sensors.told import RESISTANCES, speeds_for, squares_at, told_bound
 
 COARSE = Resolution(path_step_m=0.5, speed_step_m_s=0.05, friction_nodes=5, resistance_nodes=1)
 DECIDING = 5
@@ -54,10 +56,17 @@ def made(site: Site) -> tuple[PassageChains, TunedPassages, SensorTable]:
 def test_the_bound_begins_with_the_prediction_of_the_table(
     site: Site, made: tuple[PassageChains, TunedPassages, SensorTable]
 ) -> None:
-    """The same nodes and weights: mean squares of single frictions make up the density of all scenarios together."""
+    """Mean squares of single frictions, and the main effect of the resistance, make up the density of all together."""
     chains, tuned, _ = made
     bound = told_bound(chains, tuned.speeds, site.target_m_s, 13)
-    together = exit_density(chains.check, tuned.speeds).rms_m_s(site.target_m_s)
+    factor, weight = told_factors(chains.design.plant, 13)
+    extra, share = resistance_scenarios(chains.check.plant, RESISTANCES)
+    all_of_them = Scenarios(
+        np.concatenate([factor, np.ones(len(extra))]),
+        np.concatenate([np.zeros(len(factor)), extra]),
+        np.concatenate([weight - (np.arange(len(factor)) == len(factor) // 2), share]),
+    )
+    together = exit_density(replace(chains.check, scenarios=all_of_them), tuned.speeds).rms_m_s(site.target_m_s)
     assert bound.table_rms_m_s == pytest.approx(together, rel=1e-6)
     assert bound.table_rms_m_s == pytest.approx(tuned.rms_m_s, rel=0.02)  # its last metres are on finer energies
     assert 1.0 < bound.regret < 2.0
