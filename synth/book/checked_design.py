@@ -14,7 +14,7 @@ from typing import Final
 from plant_models.frozen_arrays import frozen_arrays
 from synth.book.grid_check import GridCheck
 from synth.book.rounded_table import with_prediction
-from synth.solver.backward_induction import Solution, solve
+from synth.solver.backward_induction import Solution, solve_all
 from synth.solver.chain.chain import Chain
 from synth.solver.chain.scenarios import persistent_scenarios
 from synth.solver.coarse_grid import CoarseGridError
@@ -30,6 +30,9 @@ from tuning_tables import ControllerTable
 FINER_SPEED: Final = 2.0
 FINER_FRICTIONS, FINER_RESISTANCES = 9, 5
 """The second design: speed steps divided by the first, so many Gauss nodes of ξ_cut and of w."""
+
+NODES_KEPT: Final = 1
+"""Path nodes at which a solution keeps its values: the entrance. Nothing after the solve reads more."""
 
 Rounding = Callable[[PolynomialLines], ControllerTable]
 """Lines → the table of them as a controller holds it, not yet predicted."""
@@ -62,7 +65,7 @@ def checked_design(solution: Solution, check: Chain, degree: int, rounding: Roun
     except CoarseGridError:
         designs = []
     if not designs or not designs[0].grid.is_believed:
-        second = solve(finer(solution.chain), solution.aim)
+        (second,) = solve_all(finer(solution.chain), [solution.aim], nodes_kept=NODES_KEPT)
         designs.append(design_of(second, check, degree, rounding, again=True))
     return min(designs, key=lambda each: each.table.predicted.rms_m_s)
 

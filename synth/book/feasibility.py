@@ -33,11 +33,6 @@ class Feasibility:
         return not self.unavoidable.forbids(self.limit_m_s)
 
     @property
-    def undecided(self) -> bool:
-        """The passes cannot tell whether the position forbids the limit."""
-        return self.unavoidable.undecided(self.limit_m_s)
-
-    @property
     def obstacle(self) -> str:
         """What stands in the way of an infeasible case, in three words."""
         return self.unavoidable.obstacle

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 from plant_models.frozen_arrays import frozen_arrays
 from synth.book.any_time.surface_table import polished_surfaces, starting_surfaces
-from synth.book.checked_design import CheckedDesign, checked_design
+from synth.book.checked_design import NODES_KEPT, CheckedDesign, checked_design
 from synth.book.class_setup import ClassSetup, EstimatorSetup
 from synth.book.estimation.estimated_surfaces import estimated_surfaces
 from synth.book.estimation.estimated_table import EstimatedTable, estimated_table
@@ -30,9 +30,6 @@ from synth.solver.exit_density import ExitDensity
 from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.tabulate import UNPREDICTED, tabulate
 from tuning_tables import ControllerTable, Validated, from_json, to_json
-
-NODES_KEPT = 1
-"""Path nodes at which a solution keeps its values: the entrance. Nothing after the solve reads more."""
 
 AnyEstimate = EstimatedTable[PolynomialLines] | EstimatedTable[PolynomialSurfaces]
 
