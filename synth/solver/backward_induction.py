@@ -43,7 +43,7 @@ class Solution:
 
     @cached_property
     def lines(self) -> SwitchingLines:
-        """The policy as lines over the path: of decisions at every node, commands that go one stage far."""
+        """The policy as lines over the path: of decisions at every node, found for commands that go one stage far."""
         lower, upper = (with_exit_node(each) for each in self.lines_m_s)
         return SwitchingLines(self.chain.grid.path_m, lower, upper)
 
@@ -88,7 +88,7 @@ def solve_all(
     kept = nodes + 1 if nodes_kept is None else nodes_kept
     states = (len(c.actuator.mode_stage), len(c.path_noise.levels), points)
     values = np.empty((len(c.scenarios.factor), kept, *states, width), value_type)
-    shape = (c.decisions.commands, len(c.decisions), stages, width)
+    shape = (2 * c.decisions.swept, len(c.decisions), stages, width)
     lines, gain = np.empty(shape), np.empty((*shape, points))
     heard = np.full((len(c.decisions), width), c.epochs.heard) if heard is None else heard
     readings, noise = c.measurement.readings(c.grid.speed_m_s), c.measurement.std
@@ -128,7 +128,7 @@ def sweep_arguments(c: Chain) -> Any:
     a = c.landings
     return (
         c.grid.speed_m_s, c.actuator.mode_stage, c.actuator.mode_overpressure_kpa,
-        a.change_chain, a.end_mode, a.ends, a.factors,
+        a.change_chain[: 2 * c.decisions.swept], a.end_mode, a.ends, a.factors,
         c.transient_noise.probability, c.transient_noise.mean, c.transient_noise.std,
         c.path_noise.levels, c.path_noise.transition,
         c.drive_m_s2, c.brake_m_s2_per_kpa,

@@ -27,13 +27,13 @@ from synth.solver.policy_density import (
 )
 
 Gradient = tuple[float, NDArray[np.float64]]
-"""A cost, and its derivatives by the lines, (C, R, K + 1): by command, decision and stage."""
+"""A cost, and its derivatives by what the policy consists of: by the lower and upper lines, (2, R, K + 1)."""
 
 
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class ScenarioCosts:
-    """Cost of a policy in every hidden scenario (I,), and its derivatives by the lines (I, C, R, K + 1)."""
+    """Cost of a policy in every hidden scenario (I,), and its derivatives as of `Gradient`, (I, ·)."""
 
     cost: NDArray[np.float64]
     by_lines: NDArray[np.float64]
@@ -96,7 +96,8 @@ class Evaluation:
         for i in range(len(c.scenarios.weight)):
             forward_one(c, policy, i, density, band)
             found.append(self._backward(policy, slopes, i, density, band))
-        return ScenarioCosts(*(np.array(each) for each in zip(*found, strict=True)))
+        cost, by_command = (np.array(each) for each in zip(*found, strict=True))
+        return ScenarioCosts(cost, lines.slopes(c.decisions, by_command))
 
     def _backward(
         self,
@@ -106,7 +107,7 @@ class Evaluation:
         density: NDArray[np.float64],
         band: NDArray[np.int64],
     ) -> Gradient:
-        """Backward recursion in scenario `i`, with the gradient if `density`, `band` are its forward ones."""
+        """Backward recursion in scenario `i`; with derivatives by command if `density`, `band` are its forward ones."""
         c, criterion = self.chain, self.aim.criterion
         by_lines = np.zeros(policy.shape[:3])
         arguments = (

@@ -57,7 +57,7 @@ def polish_passages(solution: Solution, max_iterations: int = 40, tolerance: flo
         return PassageSpeeds(ordered(t))
 
     def by_point(cost_and_slopes: Gradient) -> CostAndSlopes:
-        return cost_and_slopes[0], by_switching(cost_and_slopes[1], start.stages)[free] * unit
+        return cost_and_slopes[0], cost_and_slopes[1][free] * unit
 
     order = order_of(free)
     gaps = order @ start.switching_m_s[free]
@@ -69,14 +69,6 @@ def polish_passages(solution: Solution, max_iterations: int = 40, tolerance: flo
     return PassagePolish(
         speeds, found.cost_before, found.cost_after, found.evaluations, found.converged, found.status
     )  # fmt: skip
-
-
-def by_switching(by_lines: NDArray[np.float64], stages: int) -> NDArray[np.float64]:
-    """Derivatives by the switching speeds (M, K + 1, K) of those by lines (C, R, K + 1)."""
-    found = np.zeros((by_lines.shape[1], stages, stages - 1))
-    for command, stage, parted in parted_by(len(by_lines), stages):
-        found[:, stage, parted] = by_lines[command, :, stage]
-    return found
 
 
 def being_off(solution: Solution, speeds: PassageSpeeds) -> NDArray[np.float64]:

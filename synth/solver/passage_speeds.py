@@ -45,6 +45,13 @@ class PassageSpeeds:
             lines[command, :, stage] = self.switching_m_s[:, stage, parted]
         return lines
 
+    def slopes(self, decisions: Decisions, by_command: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Derivatives by the switching speeds, (I, M, K + 1, K)."""
+        found = np.zeros((len(by_command), *self.switching_m_s.shape))
+        for command, stage, parted in parted_by(decisions.commands, self.stages):
+            found[:, :, stage, parted] = by_command[:, command, :, stage]
+        return found
+
 
 def parted_by(commands: int, stages: int) -> Iterator[tuple[int, int, int]]:
     """(command, stage in force, index of the switching speed in its row) of every line that there can be."""

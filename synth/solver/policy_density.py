@@ -145,7 +145,7 @@ def shared_arguments(c: Chain) -> Any:
     a = c.landings
     return (
         c.grid.speed_m_s, c.actuator.mode_stage, c.actuator.mode_overpressure_kpa,
-        a.change_chain, a.end_mode, a.ends, a.factors,
+        a.change_chain[: c.decisions.commands], a.end_mode, a.ends, a.factors,
         c.transient_noise.probability, c.transient_noise.mean, c.transient_noise.std,
         c.path_noise.levels, c.path_noise.transition, c.path_noise.stationary, c.drive_m_s2, c.brake_m_s2_per_kpa,
     )  # fmt: skip

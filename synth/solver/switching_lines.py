@@ -14,7 +14,9 @@ from synth.solver.chain.decisions import Decisions
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class SwitchingLines:
-    """Below `lower_m_s[k]` go a stage down, above `upper_m_s[k]` go a stage up, between them hold.
+    """Below `lower_m_s[k]` go down, above `upper_m_s[k]` go up, between them hold.
+
+    A command goes on, as far as it may, to the stage at which the same speed no longer asks for the next.
 
     `nodes_m` (N + 1,) increasing from 0 to S_exit, equally spaced; `lower_m_s` and `upper_m_s` of shape
     (K + 1, N + 1), linear between nodes; −inf / +inf where the stage has no such command.
@@ -37,8 +39,32 @@ class SwitchingLines:
         return int(self.lower_m_s.shape[0])
 
     def at_decisions(self, decisions: Decisions) -> NDArray[np.float64]:
-        """The lines (2, R, K + 1), down and up; the nodes must be those of the path."""
-        return np.stack([self.lower_m_s[:, decisions.node].T, self.upper_m_s[:, decisions.node].T])
+        """The lines (C, R, K + 1); the nodes must be those of the path.
+
+        By d stages or more a command goes where the speed is beyond the lines of d stages on end: below the lowest of
+        the lower ones, above the highest of the upper ones.
+        """
+        lower, upper = self.lower_m_s[:, decisions.node], self.upper_m_s[:, decisions.node]
+        found = np.empty((decisions.commands, *lower.T.shape))
+        for d, (down, up) in enumerate(zip(found[0::2], found[1::2], strict=True), start=1):
+            down[:], up[:] = -np.inf, np.inf
+            for k in range(d, self.stages):
+                down[:, k] = lower[k - d + 1 : k + 1].min(axis=0)
+                up[:, k - d] = upper[k - d : k].max(axis=0)
+        return found
+
+    def slopes(self, decisions: Decisions, by_command: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Derivatives by the lower and the upper lines, (I, 2, R, K + 1): of a command by the line that decides."""
+        lower, upper = self.lower_m_s[:, decisions.node], self.upper_m_s[:, decisions.node]
+        found = np.zeros((len(by_command), 2, *lower.T.shape))
+        places = np.arange(len(decisions))
+        for d in range(1, decisions.farthest + 1):
+            for k in range(d, self.stages):
+                first, above = k - d + 1, k - d
+                down, up = lower[first : k + 1].argmin(axis=0) + first, upper[above:k].argmax(axis=0) + above
+                found[:, 0, places, down] += by_command[:, 2 * d - 2, :, k]
+                found[:, 1, places, up] += by_command[:, 2 * d - 1, :, above]
+        return found
 
     def at(self, nodes_m: NDArray[np.float64]) -> SwitchingLines:
         """The same lines at other path nodes."""

@@ -42,7 +42,7 @@ class EveryNode(PlaceEpochs):
         """At every node, with the command half a base behind."""
         node = np.arange(len(grid.path_m) - 1)
         lead_m = np.full(len(node), 0.5 * self.clock.base_m)
-        return Decisions(node, node.astype(np.float64) * grid.path_step_m, lead_m, plant.top_stage)
+        return Decisions(node, node.astype(np.float64) * grid.path_step_m, lead_m, plant.top_stage, plant.top_stage)
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ class CandidatePlaces:
     def at(self, node: NDArray[np.int64]) -> Chain:
         """The chain that decides at these path nodes alone."""
         c = self.chain
-        decisions = Decisions(node, c.decisions.place_m[node], c.decisions.lead_m[node], c.decisions.farthest)
+        decisions = replace(c.decisions, node=node, place_m=c.decisions.place_m[node], lead_m=c.decisions.lead_m[node])
         landings = replace(c.landings, ends=np.ascontiguousarray(c.landings.ends[node]))
         return replace(c, decisions=decisions, landings=landings)
 

@@ -47,6 +47,7 @@ def backward(
     follow_back(
         ahead, values, mixed, np.zeros(row), np.full(1, stalled), np.empty(row),
         np.zeros((change_chain.shape[0], row)), np.empty(change_chain.shape[0]),
+        np.empty((change_chain.shape[0], 2), np.int64),
         np.empty((modes, size)), landing_scratch(row, size, speed.dtype),
         policy, slopes, decision_at, stalled, change_cost, speed, stage, pressure,
         change_chain, chain_mode, ends, factors, met[0], slope[0],
@@ -68,18 +69,20 @@ def backward(
 
 @borrowing
 def follow_back(
-    ahead, values, mixed, scratch, stop, quanta, changed, worth, shift, landing,
+    ahead, values, mixed, scratch, stop, quanta, changed, worth, told, shift, landing,
     policy, slopes, decision_at, stalled, change_cost, speed, stage, pressure,
     change_chain, chain_mode, ends, factors, met, slope,
     levels, transition, drive, brake, factor, extra, path_step, energy_step, period,
     density, band, gradient,
 ):  # fmt: skip
-    """`backward` with its memory: values ahead at held stages, at samples, and before mixing (rings)."""
+    """`backward` with its memory: values ahead at held stages, at samples, and before mixing (rings).
+
+    `told` (C, 2): the energies at which the value of a command counts.
+    """
     nodes, reach, ring = drive.shape[0], ahead.shape[0], values.shape[0]
     modes, size, points = pressure.shape[0], levels.shape[0], speed.shape[0]
     visited_only, least_ahead = density.shape[0] > 0, 0.0 if period > 0.0 else 1.0
     commands, decisions = gradient.shape[0], gradient.shape[1]
-    several = commands > 2
     for n in range(nodes - 1, -1, -1):
         decision, first, last = decision_at[n], 1, points
         if visited_only:
@@ -100,10 +103,11 @@ def follow_back(
                         here[h, q, j] = ahead[1, h, q, j]
                     continue
                 for command in range(commands):
-                    c, begin, end = change_chain[command, h], first, last
-                    if not several:
-                        begin, end = decided(policy[command, decision, k], density, decision, h, q, first, last)
-                    if c < 0 or begin >= end:
+                    c, begin, end = change_chain[command, h], first, first
+                    if c >= 0:
+                        begin, end = decided(policy, slopes, density, command, decision, k, h, q, first, last)
+                    told[command, 0], told[command, 1] = begin, end
+                    if begin >= end:
                         continue
                     change_values(
                         n, decision, nodes, c, q, begin, end, factor, chain_mode[c], ends, factors, met, slope,
@@ -118,9 +122,9 @@ def follow_back(
                     by_change, hold = 0.0, 1.0
                     for command in range(commands):
                         chance = policy[command, decision, k, j]
-                        told = change_chain[command, h] >= 0 and (several or chance > NEGLIGIBLE_PROBABILITY)
-                        worth[command] = change_cost + changed[command, j] if told else np.nan
-                        by_change += chance * (worth[command] if told else 0.0)
+                        is_told = told[command, 0] <= j < told[command, 1]
+                        worth[command] = change_cost + changed[command, j] if is_told else np.nan
+                        by_change += chance * (worth[command] if is_told else 0.0)
                         hold -= chance
                     step = min(int(quanta[j]), reach - 2)
                     x = min(quanta[j] - step, 1.0)
@@ -133,24 +137,33 @@ def follow_back(
                     here[h, q, j] = value
                     for command in range(commands if visited_only else 0):
                         nearer = q_hold if command < 2 else worth[command - 2]
-                        if not np.isnan(worth[command]):
-                            by_line = mass * slopes[command, decision, k, j]
+                        by_line = mass * slopes[command, decision, k, j]
+                        if by_line != 0.0 and not np.isnan(worth[command]):
                             gradient[command, decision, k] += by_line * (worth[command] - nearer)
         mix_values(here, transition, first, last, stop, mixed[n % ring])
 
 
 @borrowing
-def decided(chance, density, decision, h, q, first, last):
-    """Range of energies within [first, last) that hold every visited state in which a command has a `chance` (E,)."""
-    while first < last and not is_decided(chance, density, decision, h, q, first):
+def decided(policy, slopes, density, command, decision, k, h, q, first, last):
+    """Range of energies within [first, last) that hold every state for which the value of a command counts."""
+    while first < last and not counts(policy, slopes, density, command, decision, k, h, q, first):
         first += 1
-    while first < last and not is_decided(chance, density, decision, h, q, last - 1):
+    while first < last and not counts(policy, slopes, density, command, decision, k, h, q, last - 1):
         last -= 1
     return first, last
 
 
 @borrowing
-def is_decided(chance, density, decision, h, q, j):
-    """Whether a visited state may get the command of `chance`; `density` of length 0: every state is visited."""
-    visited = density.shape[0] == 0 or abs(density[decision, h, q, j]) >= NEGLIGIBLE_MASS
-    return visited and chance[j] > NEGLIGIBLE_PROBABILITY
+def counts(policy, slopes, density, command, decision, k, h, q, j):
+    """Whether the value of a command counts in a state: it may be given there, or the gradient asks for it.
+
+    The gradient compares each command with the one that goes a stage less far. `density` of length 0: every state is
+    visited, and there is no gradient.
+    """
+    may_be_given = policy[command, decision, k, j] > NEGLIGIBLE_PROBABILITY
+    if density.shape[0] == 0:
+        return may_be_given
+    if abs(density[decision, h, q, j]) < NEGLIGIBLE_MASS:
+        return False
+    farther = min(command + 2, slopes.shape[0] - 2 + command % 2)
+    return may_be_given or slopes[command, decision, k, j] != 0.0 or slopes[farther, decision, k, j] != 0.0

@@ -128,13 +128,14 @@ def as_published(chain: Chain, levels: int = 5) -> Chain:
     """The same plant, grid and landings as published (zhukovitsky-2002): friction noise independent in every quantum.
 
     The whole spread of friction, persistent or not, is drawn anew in every quantum and not scaled to its length.
-    Sampling, delays and measurement noise are those of the plant, so that only the friction is told apart.
-    `levels`: Gauss–Hermite nodes of the noise in a quantum.
+    Sampling, delays and measurement noise are those of the plant, so that only the friction is told apart, and that a
+    command goes one stage far. `levels`: Gauss–Hermite nodes of the noise in a quantum.
     """
     friction = chain.plant.friction
     path_noise = independent_noise(math.hypot(chain.plant.friction_cv, friction.path_std), levels)
     return replace(
         chain,
+        decisions=replace(chain.decisions, farthest=1),
         path_noise=path_noise,
         transient_noise=noise_on_landings(path_noise, chain.landings, chain.grid),
         scenarios=Scenarios(np.ones(1), np.zeros(1), np.ones(1)),

@@ -16,14 +16,15 @@ class Decisions:
     """R decisions on a path of N quanta, in the order of the path.
 
     `node` (R,): path node of each, rising; `place_m` (R,): its path from where the regulator acts; `lead_m` (R,): path
-    from there to where the command leaves. `farthest`: by how many stages a command may go. Commands are numbered:
-    2·d − 2 goes down, 2·d − 1 up by d stages.
+    from there to where the command leaves. `farthest`: by how many stages a command may go; `swept`: by how many those
+    go whose gains a sweep compares. Commands are numbered: 2·d − 2 goes down, 2·d − 1 up by d stages.
     """
 
     node: NDArray[np.int64]
     place_m: NDArray[np.float64]
     lead_m: NDArray[np.float64]
     farthest: int
+    swept: int
 
     @property
     def commands(self) -> int:
@@ -42,7 +43,7 @@ class Decisions:
     def behind(self, node: int) -> Decisions:
         """Those at path node `node` and behind it, whose nodes are counted from there."""
         kept = self.node >= node
-        return Decisions(self.node[kept] - node, self.place_m[kept], self.lead_m[kept], self.farthest)
+        return Decisions(self.node[kept] - node, self.place_m[kept], self.lead_m[kept], self.farthest, self.swept)
 
 
 def steps_of(command: int) -> int:

@@ -24,6 +24,10 @@ class Policy(Protocol):
         """Its lines (C, R, K + 1), m/s, by command, decision and stage."""
         ...
 
+    def slopes(self, decisions: Decisions, by_command: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Derivatives by what the policy consists of, from those by `at_decisions`, (I, C, R, K + 1)."""
+        ...
+
 
 class DecisionEpochs(Protocol):
     """What the chain of a plant must know of its regulator's decisions."""

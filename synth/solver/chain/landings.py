@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -90,18 +91,42 @@ def make_landings(
     work = np.concatenate([[0.0], np.cumsum(cells.brake_m_s2_per_kpa * np.diff(fine))])
     drive = cells.free_m_s2(plant.resistance.mean_n_per_kn)
     samples = actuator.chain_samples[used]
-    overpressure = np.ascontiguousarray(actuator.chain_overpressure_kpa[used, : samples.max() * actuator.substeps])
+    steps = samples * actuator.substeps
+    overpressure = np.ascontiguousarray(actuator.chain_overpressure_kpa[used, : steps.max()])
     speed = in_whole_packs(grid.speed_m_s)
     ends = np.empty((len(decisions), len(used), len(factors), 2, len(speed)))
     length_m = (len(grid.path_m) - 1) * grid.path_step_m
     land(
-        decisions.place_m, decisions.lead_m, np.array(held), length_m / len(drive), work, drive,
-        overpressure, samples, actuator.substeps, period_s / actuator.substeps, factors, speed, ends,
+        decisions.place_m, decisions.lead_m, np.array(held), length_m / len(drive), work, drive, overpressure, steps,
+        shared_beginnings(overpressure, steps, held), period_s / actuator.substeps, factors, speed, ends,
     )  # fmt: skip
     if not isinstance(grid.stretch, float):
         for decision, node in enumerate(decisions.node):
             ends[decision, :, :, 0] = grid.counted_m(node, ends[decision, :, :, 0])
     return Landings(factors, ends, change_chain, actuator.chain_mode[used], overpressure, samples, len(grid.speed_m_s))
+
+
+def shared_beginnings(
+    overpressure: NDArray[np.float64], steps: NDArray[np.int64], held: Sequence[float]
+) -> NDArray[np.int64]:
+    """The transients (C, 3) in an order to integrate them in: each, the earlier one it branches off from, where.
+
+    Valves know nothing of the goal until the pressure is there: from one pressure all changes in one direction begin
+    alike, and only the longest is integrated from its beginning on. `overpressure` (C, ·) in `steps` (C,).
+    """
+    order = sorted(range(len(steps)), key=lambda c: (held[c], -steps[c], c))
+    found: list[tuple[int, int, int]] = []
+    for c in order:
+        trunk, common = -1, 0
+        for earlier, _, branched in found:
+            if held[earlier] == held[c]:
+                last = min(steps[c], steps[earlier])
+                differ = np.flatnonzero(overpressure[c, :last] != overpressure[earlier, :last])
+                alike = int(differ[0]) if len(differ) else int(last)
+                if alike > max(common, branched):
+                    trunk, common = earlier, alike
+        found.append((c, trunk, common))
+    return np.array(found)
 
 
 def in_whole_packs(speed_m_s: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -109,7 +109,7 @@ class SensorPassages(PlaceEpochs):
         """At the nodes of the passages."""
         place_m = self._places_m(plant)
         node = nodes_of(place_m, grid.path_step_m, len(grid.path_m) - 1)
-        return Decisions(node, place_m, np.full(len(node), 0.5 * self.clock.base_m), plant.top_stage)
+        return Decisions(node, place_m, np.full(len(node), 0.5 * self.clock.base_m), plant.top_stage, plant.top_stage)
 
     def _places_m(self, plant: Plant) -> NDArray[np.float64]:
         """Path of the passages from the first on."""
