@@ -15,7 +15,7 @@ from synth.problem.resolution import Resolution
 from synth.solver.chain.decisions import Decisions
 from synth.solver.chain.epochs import DecisionEpochs
 from synth.solver.chain.grid import Grid
-from synth.solver.chain.landings import CHECK_FACTOR_STEP, FACTOR_STEP, Landings, friction_factors, make_landings
+from synth.solver.chain.landings import Landings, friction_factors, make_landings
 from synth.solver.chain.path_noise import (
     PathNoise,
     TransientNoise,
@@ -74,32 +74,30 @@ def persistent_chain(plant: Plant, resolution: Resolution, epochs: DecisionEpoch
     `epochs`: when the regulator decides; None: at the samples of the plant's radar.
     """
     scenarios = persistent_scenarios(plant, resolution.friction_nodes, resolution.resistance_nodes)
-    return chain_of(plant, resolution, scenarios, epochs=epochs)
+    return chain_of(plant, resolution, scenarios, epochs)
 
 
 def check_chain(plant: Plant, resolution: Resolution, epochs: DecisionEpochs | None = None) -> Chain:
     """The persistent formulation with `check_scenarios` and the sensor's staircase: predicts a finished table."""
     scenarios = check_scenarios(plant, resolution.friction_nodes, resolution.resistance_nodes)
-    return chain_of(plant, resolution, scenarios, CHECK_FACTOR_STEP, epochs).quantised()
+    return chain_of(plant, resolution, scenarios, epochs).quantised()
 
 
 def chain_of(
     plant: Plant,
     resolution: Resolution,
     scenarios: Scenarios,
-    factor_step: float = FACTOR_STEP,
     epochs: DecisionEpochs | None = None,
 ) -> Chain:
-    """The plant on the grid of `resolution`, η as a correlated chain; `factor_step` as in `friction_factors`."""
+    """The plant on the grid of `resolution`, η as a correlated chain."""
     epochs = TimeSamples(plant.sensor) if epochs is None else epochs
     grid = epochs.grid(plant, resolution)
     actuator = stage_locked_actuator(plant.position, epochs.clock, plant.top_stage, epochs.substeps(resolution))
     coefficients = path_coefficients(plant.position, plant.cut, plant.profile, grid.path_m)
     path_noise = correlated_noise(plant.friction, grid.path_step_m, resolution.path_levels)
     decisions = epochs.decisions(plant, grid)
-    landings = make_landings(
-        plant, grid, decisions, actuator, epochs.clock.sample_period_s, friction_factors(plant, factor_step)
-    )
+    factors = friction_factors(plant)
+    landings = make_landings(plant, grid, decisions, actuator, epochs.clock.sample_period_s, factors)
     return Chain(
         plant=plant,
         resolution=resolution,

@@ -17,9 +17,9 @@ from synth.kernels.vector.packs import EIGHT, SIXTEEN
 from synth.solver.chain.decisions import Decisions, steps_of
 from synth.solver.chain.grid import Grid
 
-FACTOR_STEP, CHECK_FACTOR_STEP = 0.5, 1.0
-"""Largest distance of the friction factors for which transients are integrated, to design lines and to predict a
-finished table; between them a parabola. Halving either changes no predicted rms by more than 1e-6 m/s."""
+FACTOR_STEP = 1.0
+"""Largest distance of the friction factors for which transients are integrated; between them a parabola. Halving it
+changes no predicted rms by more than 1e-6 m/s."""
 
 FINE_CELLS_PER_QUANTUM = 4
 
@@ -134,9 +134,9 @@ def in_whole_packs(speed_m_s: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.pad(speed_m_s, (0, EIGHT + -(len(speed_m_s) + EIGHT) % SIXTEEN), mode="edge")
 
 
-def friction_factors(plant: Plant, step: float) -> NDArray[np.float64]:
-    """Factors ξ, at most `step` apart, that cover four standard deviations of ξ_cut and three of η."""
+def friction_factors(plant: Plant) -> NDArray[np.float64]:
+    """Factors ξ, at most `FACTOR_STEP` apart, that cover four standard deviations of ξ_cut and three of η."""
     cv, std = plant.friction_cv, plant.friction.path_std
     low = min(max(plant.friction.floor, 1.0 - 4.0 * cv) * max(1.0 - 3.0 * std, 0.0), 0.9)
     high = max((1.0 + 4.0 * cv) * (1.0 + 3.0 * std), 1.1)
-    return np.linspace(low, high, max(3, math.ceil((high - low) / step) + 1))
+    return np.linspace(low, high, max(3, math.ceil((high - low) / FACTOR_STEP) + 1))
