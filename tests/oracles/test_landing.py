@@ -15,6 +15,7 @@ from scipy.integrate import solve_ivp
 from plant_models import Plant, PressingForce
 from synth.problem.resolution import Resolution
 from synth.solver.chain.chain import Chain, persistent_chain
+from synth.solver.chain.decisions import steps_of
 
 Array = NDArray[np.float64]
 
@@ -94,12 +95,12 @@ def ride(
 
 
 def commands_of(t: Chain) -> list[tuple[int, int, int]]:
-    """(transient, mode before, stage wanted) of all changes to a neighbouring stage."""
+    """(transient, mode before, stage wanted) of all changes, of several stages too."""
     found = []
-    for mode, stage in enumerate(t.actuator.mode_stage):
-        for chains, step in ((t.landings.lower_chain, -1), (t.landings.upper_chain, 1)):
+    for command, chains in enumerate(t.landings.change_chain):
+        for mode, stage in enumerate(t.actuator.mode_stage):
             if chains[mode] >= 0:
-                found.append((int(chains[mode]), mode, int(stage) + step))
+                found.append((int(chains[mode]), mode, int(stage) + steps_of(command)))
     return found
 
 

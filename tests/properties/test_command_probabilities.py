@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 import pytest
 from scipy.stats import norm
 
 from synth.kernels.sweep.commands import CERTAIN, command_probabilities, command_slopes
+from synth.solver.chain.decisions import Decisions, steps_of
+from synth.solver.switching_lines import SwitchingLines
 
 SPEED_M_S = np.sqrt(0.02 * np.arange(201.0))
 NOISE_M_S = 0.07
@@ -50,3 +54,33 @@ def test_a_command_that_goes_farther_is_not_one_that_goes_just_so_far() -> None:
     for command, probability in enumerate(expected):
         np.testing.assert_allclose(found[command, 0, 0], probability, atol=2.5 * norm.sf(CERTAIN))
     assert found.sum(axis=0).max() <= 1.0 + 1e-12
+
+
+@pytest.mark.parametrize("farthest", [1, 2, 4])
+def test_a_command_goes_on_as_long_as_the_same_reading_asks(farthest: int) -> None:
+    """Lines of five stages in any order: the thresholds of the commands say what asking stage by stage says."""
+    rng = np.random.default_rng(farthest)
+    lower = rng.uniform(1.0, 3.0, (5, 4))
+    upper = lower + rng.uniform(0.01, 1.0, (5, 4))
+    lower[0], upper[4] = -np.inf, np.inf
+    node = np.arange(3)
+    decisions = Decisions(node, node.astype(float), np.zeros(3), farthest, 1)
+    thresholds = SwitchingLines(np.arange(4.0), lower, upper).at_decisions(decisions)
+    seen = set()
+    for n, k, v in product(range(3), range(5), rng.uniform(0.5, 4.5, 300)):
+        reached = asked(lower[:, n], upper[:, n], k, v, farthest)
+        gone = [steps_of(c) for c, line in enumerate(thresholds[:, n, k]) if (v < line, v > line)[c % 2]]
+        assert max(gone, key=abs, default=0) == reached - k
+        seen.add(reached - k)
+    assert seen == set(range(-farthest, farthest + 1))
+
+
+def asked(lower: np.ndarray, upper: np.ndarray, stage: int, v: float, farthest: int) -> int:
+    """The stage at which asking stage by stage ends, from `stage` on, after `farthest` steps at the latest."""
+    going = 0
+    for _ in range(farthest):
+        step = int(v > upper[stage]) - int(v < lower[stage])
+        if step == 0 or step == -going:
+            break
+        stage, going = stage + step, step
+    return stage

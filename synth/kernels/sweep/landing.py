@@ -20,7 +20,6 @@ from synth.kernels.vector.packs import (
     whole,
 )
 
-
 STATE = 3 * SIXTEEN
 """Numbers of the state of a pack on its way: path, speed, and the energy that it left with, −1 before."""
 
