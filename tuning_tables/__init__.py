@@ -34,16 +34,13 @@ from tuning_tables.passages.schema import passage_schema, write_passage_schema
 from tuning_tables.passages.sensor_layout import DecidesOn, SensorLayout
 from tuning_tables.passages.tracker import begin_cut, believed_passage
 from tuning_tables.provenance import CutId, Generator, RetarderId
-from tuning_tables.rule import HOLD, LOWER, RAISE, decide, decide_for, decide_many, speed_for, stage_for
+from tuning_tables.rule import decide, decide_for, decide_many, speed_for
 from tuning_tables.schema import table_schema, write_schema
 from tuning_tables.stage import Stage, round_coefficients
 from tuning_tables.table import ControllerTable
 from tuning_tables.table_book import Choice, Status, TableBook
 
 __all__ = [
-    "HOLD",
-    "LOWER",
-    "RAISE",
     "ActiveTable",
     "AnyTable",
     "Approach",
@@ -93,7 +90,6 @@ __all__ = [
     "round_coefficients",
     "rule_of",
     "speed_for",
-    "stage_for",
     "table_schema",
     "to_csv",
     "to_json",

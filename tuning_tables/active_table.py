@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.approach import Approach, entrance_stage, same_approach
-from tuning_tables.decisions import Decisions
+from tuning_tables.decisions import Decisions, farthest
 from tuning_tables.estimator import Estimator
 from tuning_tables.table import ControllerTable
 
@@ -51,6 +51,11 @@ class ActiveTable:
     def entrance_stage(self) -> int:
         """The highest stage that may be commanded at s < 0, for `rule.decide`: stage K without approach."""
         return entrance_stage(self.approach, len(self.coefficients))
+
+    @property
+    def farthest(self) -> int:
+        """By how many stages one command may go, for `rule.decide`."""
+        return farthest(self.decisions, len(self.coefficients))
 
 
 def active(table: ControllerTable) -> ActiveTable:

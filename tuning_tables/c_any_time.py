@@ -25,15 +25,17 @@ AT_REST: Final[Mapping[str, str]] = {
     **dict.fromkeys(
         ("TIMES_HEAD", "TIMES_MACROS", "TIMES_MEMBERS", "TIMES_DECLARATION", "TIMES_WORDS", "MORE_WORDS", "AT_ANY_TIME",
          "SAME_TIMES", "SAME_GAUGE", "SLOPE_BETWEEN", "WRONG_TIMES", "GAUGE_DECLARATION", "DECIDE_AT_PRESSURE",
-         "VECTOR_PRESSURE"),
+         "VECTOR_PRESSURE", "SURFACE_SPEED", "PRESSURE_PARAMETER", "PRESSURE_ARGUMENT"),
         "",
     ),
     "TIMES_ASKED": " * To be asked at each sample at which no change of stage is under way, "
     "from retarder_approach before the entrance on.",
+    "FARTHEST_MEANT": "any stage",
     "SAME_NAMES": "estimator and approach",
     "DECIDE": DECIDE,
-    "LOWER_SPEED": "line_speed(table->coefficients[stage][0], table->powers, s)",
-    "UPPER_SPEED": "line_speed(table->coefficients[stage][1], table->powers, s)",
+    "FARTHEST": "table->stages - 1u",
+    "LOWER_SPEED": "line_speed(table->coefficients[stage][0], table->powers, s_m)",
+    "UPPER_SPEED": "line_speed(table->coefficients[stage][1], table->powers, s_m)",
     "DECIDED_RIGHT": """\
     return retarder_decide(table, (int)golden->stage, float_of(golden->s_bits), float_of(golden->v_bits))
         == golden->answer;""",
@@ -60,6 +62,8 @@ int retarder_at_any_time(const retarder_table *table);""",
     "TIMES_ASKED": """\
  * To be asked at every sample if retarder_at_any_time is 1, else at each sample at which no change of stage is under
  * way, from retarder_approach before the entrance on. `stage` is the stage commanded last.""",
+    "FARTHEST_MEANT": "any stage at rest, and one stage at any time",
+    "FARTHEST": "retarder_at_any_time(table) ? 1u : table->stages - 1u",
     "TIMES_WORDS": "#define TIMES_WORDS 1u\n",
     "MORE_WORDS": " \\\n     + TIMES_WORDS",
     "SAME_NAMES": "estimator, approach,\n * times of decision, and pressures if there are slopes",
@@ -90,8 +94,12 @@ GAUGE: Final[Mapping[str, str]] = {
  * that. A pressure that is not finite counts as that of the stage. */
 int retarder_decide_at_pressure(const retarder_table *table, int stage, float s_m, float v_m_s, float pressure_kpa);""",
     "TIMES_WORDS": "#define TIMES_WORDS (2u + 3u * RETARDER_STAGES)\n",
-    "LOWER_SPEED": "surface_speed(table, stage, 0u, s, pressure_kpa)",
-    "UPPER_SPEED": "surface_speed(table, stage, 1u, s, pressure_kpa)",
+    "LOWER_SPEED": "surface_speed(table, stage, 0u, s_m, pressure_kpa)",
+    "UPPER_SPEED": "surface_speed(table, stage, 1u, s_m, pressure_kpa)",
+    "PRESSURE_PARAMETER": ", const float *pressure_kpa",
+    "PRESSURE_ARGUMENT": ", pressure_kpa",
+    "DECIDE": """/* The rule, for both of its functions. */
+static int decide(const retarder_table *table, int stage, float s_m, float v_m_s, const float *pressure_kpa)""",
     "SAME_TIMES": f"{ANY_TIME['SAME_TIMES']} && is_same_gauge(slower, faster)",
     "SLOPE_BETWEEN": """
             chosen->slopes[stage][line] = rounded(slower->slopes[stage][line]
@@ -128,7 +136,7 @@ def any_time_blanks(book: TableBook, size: BlockSize) -> Mapping[str, str]:
     return {
         **found,
         **GAUGE,
-        "DECIDE": part("surface_speed.c").rstrip("\n"),
+        "SURFACE_SPEED": f"{part('surface_speed.c')}\n",
         "DECIDE_AT_PRESSURE": f"\n{part('decide_at_pressure.c')}",
         "SAME_GAUGE": f"{part('same_gauge.c')}\n",
     }

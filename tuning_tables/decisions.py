@@ -14,3 +14,11 @@ class Decisions(Enum):
 
     AT_REST = "at_rest"
     AT_ANY_TIME = "at_any_time"
+
+
+def farthest(decisions: Decisions, stages: int) -> int:
+    """By how many of its `stages` one command of a table may go: to any at rest, one at any time, as it is asked again.
+
+    See `tuning_tables.rule`.
+    """
+    return stages - 1 if decisions is Decisions.AT_REST else 1

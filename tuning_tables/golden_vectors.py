@@ -22,6 +22,12 @@ SMALLEST: Final = float(np.finfo(np.float32).smallest_subnormal)
 STAGE_LIMITS: Final = (-32768, 32767)
 """Of a 16-bit INT, which every controller has."""
 
+BETWEEN: Final = np.float32(0.8125)
+"""Where on the path range every stage is asked about the lines of all."""
+
+PLACES: Final = 65
+"""Of the path where it is looked for speeds at which a step would be taken back."""
+
 FEW: Final = 20
 """Readings a line, at most, of a self-test for a small controller."""
 
@@ -34,7 +40,7 @@ OUTSIDE_KPA: Final = np.float32(50.0)
 
 @dataclass(frozen=True, eq=False)
 class GoldenVectors:
-    """n readings and their answers: stage int32, s_m, v_m_s and pressure_kpa float32, answer int8, all (n,).
+    """n readings and the stages to command: stage int32, s_m, v_m_s and pressure_kpa float32, answer int32, all (n,).
 
     The pressure is NaN, of no meaning, in those of a table without slopes.
     """
@@ -43,7 +49,7 @@ class GoldenVectors:
     s_m: Floats
     v_m_s: Floats
     pressure_kpa: Floats
-    answer: npt.NDArray[np.int8]
+    answer: npt.NDArray[np.int32]
 
     def __post_init__(self) -> None:
         for array in vars(self).values():
@@ -57,8 +63,9 @@ def golden_vectors(table: ControllerTable) -> GoldenVectors:
     """Readings on, next to (one float32 step) and beyond every line and both ends of the path, and incredible ones.
 
     With an approach also on and next to every line on it, just before, at and just behind the entrance; with slopes all
-    of that at the pressure of the stage and at others, within their range and outside. The same table gives the same
-    vectors, in the same order, each once.
+    of that at the pressure of the stage and at others, within their range and outside. Where one command may go several
+    stages, every stage is asked also on and next to the lines of the others, and where a step would be taken back. The
+    same table gives the same vectors, in the same order, each once.
     """
     readings = [*_line_readings(table, _paths(table), STEPS_AND_ASIDE), *_incredible_readings(table)]
     if table.approach is not None:
@@ -66,6 +73,8 @@ def golden_vectors(table: ControllerTable) -> GoldenVectors:
     if table.has_gauge:
         readings += _line_readings(table, _paths(table), STEPS_AND_ASIDE, _pressures)
         readings += _line_readings(table, _paths(table)[:3], STEPS_AND_ASIDE, _silent_pressures)
+    if table.farthest > 1:
+        readings += [*_far_readings(table), *turning_readings(table)]
     return _answered(table, readings)
 
 
@@ -75,7 +84,7 @@ def few_golden_vectors(table: ControllerTable) -> GoldenVectors:
     The places are the farthest numbers before and behind the range, and two within it; with an approach one of these is
     just before the entrance, and with slopes each place is asked at another pressure. At every stage with a line also a
     negative speed, none, the largest, and what is not finite, within the range or at the entrance; and stages that do
-    not exist.
+    not exist. Where one command may go several stages, also where a step would be taken back.
     """
     low, high = table.valid_range[0], table.valid_range[1]
     near, far = (low + (high - low) * np.float32(part) for part in (0.25, 0.8125))
@@ -90,6 +99,7 @@ def few_golden_vectors(table: ControllerTable) -> GoldenVectors:
     readings += [(k, near, v, _own(table, k)) for k in lined for v in speeds]
     readings += [(k, np.float32(-np.inf), fast, _own(table, k)) for k in lined]
     readings += [(k, near, fast, _own(table, k)) for k in (-1, len(table.stages))]
+    readings += turning_readings(table) if table.farthest > 1 else []
     return _answered(table, readings)
 
 
@@ -101,7 +111,7 @@ def _answered(table: ControllerTable, readings: Sequence[Reading]) -> GoldenVect
     bits = np.stack([each.view(np.uint32) for each in (stage, s_m, v_m_s, kpa)], axis=1)
     first = np.sort(np.unique(bits, axis=0, return_index=True)[1])
     asked = stage[first], s_m[first], v_m_s[first], kpa[first]
-    return GoldenVectors(*asked, decide_many(table, *asked))
+    return GoldenVectors(*asked, decide_many(table, *asked).astype(np.int32))
 
 
 def line_speeds(coefficients: Floats, s_m: Floats) -> Floats:
@@ -154,6 +164,34 @@ def _line_readings(
         for line in lines or [target]:
             for place in places:
                 readings += [(k, s, v, p) for s, v, p in zip(paths, place(line), kpa, strict=True)]
+    return readings
+
+
+def _far_readings(table: ControllerTable) -> list[Reading]:
+    """On and next to every line at a place within the path range, asked of every stage."""
+    low, high = table.valid_range[:2]
+    beside = _line_readings(table, np.array([low + (high - low) * BETWEEN]), STEPS)
+    return [(k, s, v, _own(table, k)) for k in range(len(table.stages)) for _, s, v, _ in beside]
+
+
+def turning_readings(table: ControllerTable) -> list[Reading]:
+    """Speeds at which stage k is raised and stage k+1 lowered, asked of both and of the two stages beside them.
+
+    For each k that has such speeds, where on the path they are most: the middle of them. A rule that goes on after the
+    opposite answer does not end where it should.
+    """
+    low, high = table.valid_range[:2]
+    paths = low + (high - low) * np.linspace(0.0, 1.0, PLACES, dtype=np.float32)
+    readings: list[Reading] = []
+    for k in range(len(table.stages) - 1):
+        if not (table.has_line[k, 1] and table.has_line[k + 1, 0]):
+            continue
+        raised_above, lowered_below = (line_speeds(table.coefficients[k + i, 1 - i], paths) for i in (0, 1))
+        at = int(np.argmax(lowered_below - raised_above))
+        speed = raised_above[at] + (lowered_below[at] - raised_above[at]) / np.float32(2.0)
+        if raised_above[at] < speed < lowered_below[at]:
+            beside = [stage for stage in range(k - 1, k + 3) if 0 <= stage < len(table.stages)]
+            readings += [(stage, paths[at], speed, _own(table, stage)) for stage in beside]
     return readings
 
 

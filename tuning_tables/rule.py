@@ -1,12 +1,22 @@
 """The decision rule of the regulator, stated once for the controller, the simulator and the generated code.
 
-    raise   if the stage has an upper line and  v > upper(s), but before the entrance only below the entrance stage
+At the stage commanded last, with the path s of the first axle and the speed v:
+
     lower   if the stage has a  lower line and  v < lower(s)
+    raise   if the stage has an upper line and  v > upper(s), but before the entrance only below the entrance stage
     hold    otherwise; so a tie, v equal to the line, holds
+
+After lower or raise the same question is asked again at the next stage down or up, with the same s and v. It ends at
+hold, at the opposite answer, or when the command has gone as far as it may: `farthest` stages. The stage where it ends
+is the answer: the stage to command; it is the stage asked for where the first answer is hold.
+
+How far one command may go follows from when a table decides. At rest: to any stage. At any time: one stage, as the
+next sample asks again.
 
 In a table with slopes the lines are surfaces: slope (P - P_k) is added to lower(s) and to upper(s). P is the pressure
 of the gauge, clamped into the pressures from stage 0 to the highest stage that the table raises to; P_k is that of the
-stage asked for. A pressure that is not finite counts as P_k: the gauge is silent, and the valves are going there.
+stage asked for. A pressure that is not finite counts as P_k: the gauge is silent, and the valves are going there. Only
+tables that decide at any time have slopes.
 
 The lower line is looked at first; as lower(s) < upper(s) in every `ControllerTable`, both can never ask at once. Before
 the entrance is s < 0, after rounding and clamping; 0.0 and -0.0 are at the entrance. The entrance stage bounds what the
@@ -18,9 +28,9 @@ is clamped into it. The speed is compared as it is, however far outside the rang
 far too fast must still brake.
 
 Safe answer. A reading that cannot be true moves no valve: where path or speed is NaN, infinite or beyond the float32
-numbers, where the speed is negative, or the stage does not exist, the answer is HOLD. A single false reading is then
-harmless, as the pressure in force was right a sampling period ago; a lasting fault is for the supervision above this
-rule, which alone knows whether braking fully or releasing is the safe side.
+numbers, where the speed is negative, or the stage does not exist, the answer is the stage asked for. A single false
+reading is then harmless, as the pressure in force was right a sampling period ago; a lasting fault is for the
+supervision above this rule, which alone knows whether braking fully or releasing is the safe side.
 """
 
 from __future__ import annotations
@@ -35,10 +45,6 @@ from tuning_tables.active_table import ActiveTable
 from tuning_tables.estimator import hand_on, observe
 from tuning_tables.table import ControllerTable
 
-LOWER: Final = -1
-HOLD: Final = 0
-RAISE: Final = 1
-
 LARGEST_READING: Final = 3.4028234663852886e38  # the largest float32 number
 NO_RISES: Final = (np.float32(0.0), np.float32(0.0))
 NO_GAUGE: Final = math.nan
@@ -50,25 +56,26 @@ def decide(
     has_line: npt.NDArray[np.bool_],
     valid_range: npt.NDArray[np.float32],
     entrance_stage: int,
+    farthest: int,
     stage: int,
     s_m: float,
     v_m_s: float,
     rise: Any = NO_RISES,
 ) -> int:
-    """LOWER, HOLD or RAISE for one reading; the arrays are those of a `ControllerTable`, and only they are trusted.
+    """The stage to command for one reading; the arrays are those of a `ControllerTable`, and only they are trusted.
 
     coefficients float32 (K+1, 2, degree+1), has_line bool (K+1, 2), valid_range float32 (4,), entrance_stage 0..K (K
-    where there is no approach), stage 0..K, path and speed in any float width (rounded to float32 before use); `rise`:
-    what `rises` gives, none for a table without slopes. Pure; raises nothing for any number.
+    where there is no approach), farthest 1..K, stage 0..K, path and speed in any float width (rounded to float32 before
+    use); `rise`: what `rises` gives for `stage`, none for a table without slopes. Pure; raises nothing for any number.
 
     `numba.njit(decide)` compiles this text as it stands and gives the same answers: hence one function without helpers,
     and no literal in the arithmetic, which would promote it to double precision.
     """
     # Written so that NaN fails it, and before the conversion, so that no number overflows in it.
     if not (-LARGEST_READING <= s_m <= LARGEST_READING and 0.0 <= v_m_s <= LARGEST_READING):
-        return HOLD
+        return stage
     if stage < 0 or stage >= coefficients.shape[0]:
-        return HOLD
+        return stage
     s = np.float32(s_m)
     v = np.float32(v_m_s)
     if s < valid_range[0]:
@@ -76,19 +83,26 @@ def decide(
     if s > valid_range[1]:
         s = valid_range[1]
     highest = coefficients.shape[2] - 1
-    if has_line[stage, 0]:
-        line_speed = coefficients[stage, 0, highest]
-        for power in range(highest - 1, -1, -1):
-            line_speed = line_speed * s + coefficients[stage, 0, power]
-        if v < line_speed + rise[0]:
-            return LOWER
-    if has_line[stage, 1]:
-        line_speed = coefficients[stage, 1, highest]
-        for power in range(highest - 1, -1, -1):
-            line_speed = line_speed * s + coefficients[stage, 1, power]
-        if v > line_speed + rise[1] and not (s < 0 and stage >= entrance_stage):
-            return RAISE
-    return HOLD
+    reached, before = stage, 0
+    for _ in range(farthest):
+        step = 0
+        if has_line[reached, 0]:
+            line_speed = coefficients[reached, 0, highest]
+            for power in range(highest - 1, -1, -1):
+                line_speed = line_speed * s + coefficients[reached, 0, power]
+            if v < line_speed + rise[0]:
+                step = -1
+        if step == 0 and has_line[reached, 1] and not (s < 0 and reached >= entrance_stage):
+            line_speed = coefficients[reached, 1, highest]
+            for power in range(highest - 1, -1, -1):
+                line_speed = line_speed * s + coefficients[reached, 1, power]
+            if v > line_speed + rise[1]:
+                step = 1
+        if step == 0 or step == -before:
+            break
+        before = step
+        reached += step
+    return reached
 
 
 def rises(
@@ -117,27 +131,14 @@ def rises(
 def decide_for(
     table: ControllerTable | ActiveTable, stage: int, s_m: float, v_m_s: float, pressure_kpa: float = NO_GAUGE
 ) -> int:
-    """LOWER, HOLD or RAISE of `table`, or of lines chosen from a book, for one reading of path and speed at `stage`.
+    """The stage to command by `table`, or by lines chosen from a book, for one reading of path and speed at `stage`.
 
     `stage` is the one commanded last; a table that decides at rest (`table.decisions`) may only be asked when its
     pressure is reached. `pressure_kpa`, gauge, is looked at where the table has slopes.
     """
     rise = rises(table.slopes, table.pressures, table.highest_raised, stage, pressure_kpa)
-    return decide(table.coefficients, table.has_line, table.valid_range, table.entrance_stage, stage, s_m, v_m_s, rise)
-
-
-def stage_for(
-    table: ControllerTable | ActiveTable, stage: int, s_m: float, v_m_s: float, pressure_kpa: float = NO_GAUGE
-) -> int:
-    """The stage to command if one command may go several stages (a jump), from `stage`; arguments as of `decide_for`.
-
-    The same question is asked again at the stage that the answer leads to, until the answer is HOLD or another one.
-    """
-    step = decide_for(table, stage, s_m, v_m_s, pressure_kpa)
-    reached = stage + step
-    while step != HOLD and decide_for(table, reached, s_m, v_m_s, pressure_kpa) == step:
-        reached += step
-    return reached
+    lines = table.coefficients, table.has_line, table.valid_range
+    return decide(*lines, table.entrance_stage, table.farthest, stage, s_m, v_m_s, rise)
 
 
 def speed_for(
@@ -164,11 +165,11 @@ def decide_many(
     s_m: npt.ArrayLike,
     v_m_s: npt.ArrayLike,
     pressure_kpa: npt.ArrayLike = NO_GAUGE,
-) -> npt.NDArray[np.int8]:
+) -> npt.NDArray[np.integer[Any]]:
     """`decide_for` for whole arrays at once, with identical answers.
 
-    stage (integers), s_m, v_m_s and pressure_kpa broadcast against each other; the result has the broadcast shape.
-    Raises `TypeError` where the stages are not integers.
+    stage (integers), s_m, v_m_s and pressure_kpa broadcast against each other; the result has the broadcast shape and
+    the type of the stages. Raises `TypeError` where the stages are not integers.
     """
     with np.errstate(invalid="ignore"):  # a signalling NaN is an incredible reading like any other
         readings = (np.asarray(each, dtype=np.float64) for each in (s_m, v_m_s, pressure_kpa))
@@ -178,20 +179,40 @@ def decide_many(
     credible = (np.abs(paths) <= LARGEST_READING) & (speeds >= 0) & (speeds <= LARGEST_READING)
     credible &= (stages >= 0) & (stages < table.coefficients.shape[0])
     # An incredible reading is replaced by one that is harmless to compute with; its answer is masked below.
-    index = np.where(credible, stages, 0).astype(np.intp)
+    first = np.where(credible, stages, 0).astype(np.intp)
     s = np.where(credible, paths, 0).astype(np.float32)
     v = np.where(credible, speeds, 0).astype(np.float32)
     s = np.where(s < table.valid_range[0], table.valid_range[0], s)
     s = np.where(s > table.valid_range[1], table.valid_range[1], s)
-    line_speed = table.coefficients[index, :, -1]
+    rise = table.slopes[first] * _above(table, first, kpa)[..., np.newaxis]
+    reached, before, asked = first, np.zeros_like(first), credible
+    for _ in range(table.farthest):
+        step = _steps(table, reached, s, v, rise)
+        asked = asked & (step != 0) & (step != -before)
+        if not asked.any():
+            break
+        before = step
+        reached = np.where(asked, reached + step, reached)
+    return np.where(credible, reached, stages).astype(stages.dtype)
+
+
+def _steps(
+    table: ControllerTable | ActiveTable,
+    stage: npt.NDArray[np.intp],
+    s: npt.NDArray[np.float32],
+    v: npt.NDArray[np.float32],
+    rise: npt.NDArray[np.float32],
+) -> npt.NDArray[np.intp]:
+    """-1 lower, 0 hold, 1 raise at each stage, s clamped; `rise` (..., 2): what the pressure adds to its lines."""
+    line_speed = table.coefficients[stage, :, -1]
     for power in range(table.coefficients.shape[2] - 2, -1, -1):
-        line_speed = line_speed * s[..., np.newaxis] + table.coefficients[index, :, power]
-    line_speed = line_speed + table.slopes[index] * _above(table, index, kpa)[..., np.newaxis]
-    has_line = table.has_line[index] & credible[..., np.newaxis]
-    is_gated = (s < 0) & (stages >= table.entrance_stage)
+        line_speed = line_speed * s[..., np.newaxis] + table.coefficients[stage, :, power]
+    line_speed = line_speed + rise
+    has_line = table.has_line[stage]
+    is_gated = (s < 0) & (stage >= table.entrance_stage)
     raises = has_line[..., 1] & (v > line_speed[..., 1]) & ~is_gated
     lowers = has_line[..., 0] & (v < line_speed[..., 0])
-    return np.where(lowers, LOWER, np.where(raises, RAISE, HOLD)).astype(np.int8)
+    return np.where(lowers, -1, np.where(raises, 1, 0))
 
 
 def _above(

@@ -18,10 +18,11 @@ from tuning_tables.table_block import BlockSize, TableBlock
 AT_REST: Final[Mapping[str, str]] = {
     **dict.fromkeys(
         ("TIMES_HEAD", "GAUGE_RULE", "TIMES_MEMBERS", "PRESSURE_INPUT", "PRESSURE_VARIABLES", "ABOVE", "LOWER_RISE",
-         "UPPER_RISE", "LOAD_TIMES", "CASE_PRESSURES", "SAME_TIMES", "SAME_PRESSURES", "SLOPES_BETWEEN"),
+         "UPPER_RISE", "FARTHEST_RULE", "FARTHEST", "LOAD_TIMES", "CASE_PRESSURES", "SAME_TIMES", "SAME_PRESSURES",
+         "SLOPES_BETWEEN"),
         "",
     ),
-    "WHEN": "at every sample at which no change of stage is under way: what to do with the stage",
+    "WHEN": "at every sample at which no change of stage is under way: the stage to command",
     "ASKED": "To be asked at each sample at which no change of stage is under way.",
     "STAGE_MEANT": "pressure stage in force",
 }  # fmt: skip
@@ -37,12 +38,18 @@ HEAD: Final = """
 ANY_TIME: Final[Mapping[str, str]] = {
     "TIMES_HEAD": HEAD,
     "WHEN": """at every sample if AtAnyTime of the table is TRUE, else at every sample at which no change of stage
-                    is under way: what to do with the stage""",
+                    is under way: the stage to command""",
     "ASKED": """To be asked at each sample if Table.AtAnyTime is TRUE, else at each sample at which no change of stage
    is under way.""",
     "STAGE_MEANT": "pressure stage commanded last",
     "TIMES_MEMBERS": """
         AtAnyTime : BOOL; (* TRUE: the table decides at any time; FALSE: at rest *)""",
+    "FARTHEST_RULE": """
+      A table that decides at any time ends after one step: the next sample asks again.""",
+    "FARTHEST": """
+    IF Table.AtAnyTime THEN
+        Farthest := 1;
+    END_IF;""",
     "LOAD_TIMES": """
     Table.AtAnyTime := AtAnyTimeOf[TableNo];""",
     "SAME_TIMES": """
@@ -83,11 +90,11 @@ GAUGE: Final[Mapping[str, str]] = {
         Above := Above - Table.Pressure_kpa[Stage];
     END_IF;""",
     "LOWER_RISE": """
-        Rise := Table.Slope[Stage * 2] * Above;
-        Line := Line + Rise;""",
+                Rise := Table.Slope[Wanted * 2] * Above;
+                Line := Line + Rise;""",
     "UPPER_RISE": """
-        Rise := Table.Slope[Stage * 2 + 1] * Above;
-        Line := Line + Rise;""",
+                Rise := Table.Slope[Wanted * 2 + 1] * Above;
+                Line := Line + Rise;""",
     "LOAD_TIMES": f"""{ANY_TIME["LOAD_TIMES"]}
     Table.HighestPressure_kpa := HighestPressureOf[TableNo];""",
     "CASE_PRESSURES": """

@@ -26,7 +26,7 @@ APPROACH: Final[Mapping[str, str]] = {
         Approach_m : REAL; (* the regulator acts from so far before the entrance; 0: from the entrance on *)
         EntranceStage : INT; (* the highest stage that may be commanded before the entrance *)""",
     "GATE": """
-        AND ((Path >= 0.0) OR (Stage < Table.EntranceStage))""",
+                AND ((Path >= 0.0) OR (Wanted < Table.EntranceStage))""",
     "SAME_APPROACH": """
                 AND (Table.Approach_m = Faster.Approach_m) AND (Table.EntranceStage = Faster.EntranceStage)""",
     "LOAD_APPROACH": """

@@ -1,4 +1,4 @@
-"""The fixed part of the Structured Text export: the head comment, the type of a table, the rule, the choice.
+"""The fixed part of the Structured Text export: the head comment, the type of a table, the choice.
 
 The texts are templates of `string.Template`; `st_source` and `st_tables` fill the capitals behind a dollar sign. They
 keep to a small subset of the language: no methods, no pointers, no RETURN or EXIT, no typed literals, no initial value
@@ -34,6 +34,8 @@ $CATEGORIES
    3. If the stage has a lower line and the speed is below it: lower, to the next stage down.
    4. If the stage has an upper line and the speed is above it: raise, to the next stage up.$GATE_RULE
    5. Otherwise hold; a speed equal to a line holds.
+   6. After lower or raise, 3 to 5 again at the stage reached, with the same path and speed, until that stage holds or
+      answers the opposite. The stage where this ends is the one to command.$FARTHEST_RULE
 $INTERLOCK$TIMES_HEAD
    Arithmetic. Every operation on REAL stands in a statement of its own, so that its result is rounded to REAL
    (binary32) before the next. A controller that calculates in double precision and rounds when it assigns gives the
@@ -61,69 +63,6 @@ TYPE
         Coefficient : ARRAY[0..$LAST_COEFFICIENT] OF REAL;$ESTIMATOR_MEMBERS
     END_STRUCT;
 END_TYPE
-"""
-
-DECIDE: Final = """\
-FUNCTION_BLOCK RETARDER_DECIDE
-(* $ASKED *)
-VAR_INPUT
-    Stage : INT; (* $STAGE_MEANT, 0: released *)
-    Path_m : REAL; (* first axle, from the entrance of the first retarder *)
-    Speed_m_s : REAL; (* that of RETARDER_OBSERVE *)$PRESSURE_INPUT
-END_VAR
-VAR_IN_OUT
-    Table : RETARDER_TABLE; (* only read; it is not copied *)
-END_VAR
-VAR_OUTPUT
-    Command : INT; (* -1 lower, 0 hold, 1 raise *)
-END_VAR
-VAR
-    Credible : BOOL;
-    Path : REAL;
-    Line : REAL;
-    First : INT;
-    Power : INT;$PRESSURE_VARIABLES
-END_VAR
-
-Command := 0;
-(* No comparison with a NaN is true. 3.4028235E+38 is the largest REAL, rounded up in its last digit. *)
-Credible := (Path_m >= -3.4028235E+38) AND (Path_m <= 3.4028235E+38)
-    AND (Speed_m_s >= 0.0) AND (Speed_m_s <= 3.4028235E+38)
-    AND (Stage >= 0) AND (Stage < Table.Stages)
-    AND (Table.Stages <= $STAGES) AND (Table.Powers >= 1) AND (Table.Powers <= $POWERS);
-(* Indices are used only inside this IF: AND may evaluate both of its sides. *)
-IF Credible THEN
-    Path := Path_m;
-    IF Path < Table.PathMin_m THEN
-        Path := Table.PathMin_m;
-    END_IF;
-    IF Path > Table.PathMax_m THEN
-        Path := Table.PathMax_m;
-    END_IF;$ABOVE
-    IF Table.HasLower[Stage] THEN
-        First := Stage * $STRIDE;
-        Line := Table.Coefficient[First + Table.Powers - 1];
-        FOR Power := Table.Powers - 2 TO 0 BY -1 DO
-            Line := Line * Path;
-            Line := Line + Table.Coefficient[First + Power];
-        END_FOR;$LOWER_RISE
-        IF Speed_m_s < Line THEN
-            Command := -1;
-        END_IF;
-    END_IF;
-    IF (Command = 0) AND Table.HasUpper[Stage]$GATE THEN
-        First := Stage * $STRIDE + $POWERS;
-        Line := Table.Coefficient[First + Table.Powers - 1];
-        FOR Power := Table.Powers - 2 TO 0 BY -1 DO
-            Line := Line * Path;
-            Line := Line + Table.Coefficient[First + Power];
-        END_FOR;$UPPER_RISE
-        IF Speed_m_s > Line THEN
-            Command := 1;
-        END_IF;
-    END_IF;
-END_IF;
-END_FUNCTION_BLOCK
 """
 
 SELECT_DECLARATIONS: Final = """\

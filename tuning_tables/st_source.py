@@ -1,6 +1,6 @@
 """Tables as IEC 61131-3 Structured Text: the types, the rule, the estimator, the choice, the data, and a self-test.
 
-What is fixed in the text stands in `st_blocks`, `st_observe` and `st_test_blocks`; how it is used, in
+What is fixed in the text stands in `st_blocks`, `st_decide`, `st_observe` and `st_test_blocks`; how it is used, in
 docs/structured-text.md.
 """
 
@@ -17,7 +17,8 @@ from tuning_tables.export_prefix import RETARDER, ExportPrefix
 from tuning_tables.self_test_size import FULL, SelfTestSize
 from tuning_tables.st_any_time import any_time_blanks
 from tuning_tables.st_approach import approach_blanks
-from tuning_tables.st_blocks import CATEGORIES, DECIDE, HEAD, TABLE_TYPE
+from tuning_tables.st_blocks import CATEGORIES, HEAD, TABLE_TYPE
+from tuning_tables.st_decide import DECIDE
 from tuning_tables.st_estimator import observe_blocks
 from tuning_tables.st_observe import ESTIMATE_TYPE
 from tuning_tables.st_self_test import self_test_blocks

@@ -50,7 +50,7 @@ TABLE_LOOP: Final = """\
 FOR Index := 0 TO $LAST DO
     Decider(Stage := Stage_$PART[Index], Path_m := Path_$PART[Index], Speed_m_s := Speed_$PART[Index],\
 $PRESSURE_ASKED Table := Table);
-    IF Decider.Command <> Answer_$PART[Index] THEN
+    IF Decider.Wanted <> Answer_$PART[Index] THEN
         IF Failed = 0 THEN
             FirstFailed := Index + $FIRST;
         END_IF;

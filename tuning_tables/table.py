@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.approach import Approach, entrance_stage
-from tuning_tables.decisions import Decisions
+from tuning_tables.decisions import Decisions, farthest
 from tuning_tables.errors import InvalidTable
 from tuning_tables.estimator import Estimator
 from tuning_tables.figures import Predicted, Validated, ValidRange
@@ -105,6 +105,11 @@ class ControllerTable:
     def entrance_stage(self) -> int:
         """The highest stage that may be commanded at s < 0, for `rule.decide`: stage K without approach."""
         return entrance_stage(self.approach, len(self.stages))
+
+    @property
+    def farthest(self) -> int:
+        """By how many stages one command may go, for `rule.decide`."""
+        return farthest(self.decisions, len(self.stages))
 
     @property
     def has_gauge(self) -> bool:

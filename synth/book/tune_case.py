@@ -106,7 +106,7 @@ def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable, t
         table=Measured("table", validated.statistics, predicted.rms_m_s, predicted.passes),
         full_lines=measured("full lines", LineController(order.solution.lines)),
         as_published=replace(
-            measured("as published", LineController(published.lines)),
+            measured("as published", LineController(published.lines, farthest=published.chain.decisions.farthest)),
             predicted_rms_m_s=Evaluation(published.chain.quantised(), published.aim).rms_m_s(published.lines),
         ),
         friction_known=beside_table("friction known", told, sample, target),

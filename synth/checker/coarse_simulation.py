@@ -191,9 +191,9 @@ def one_pass(
         if observer is not None:
             seen = observer.observe(s, seen, pressed / steps)
         if asked:
-            change = decision(table, stage, s, seen, drive.pressure_kpa)
-            if change:
-                stage = min(max(stage + change, 0), len(table.lines) - 1)
+            wanted = decision(table, stage, s, seen, drive.pressure_kpa)
+            if wanted != stage:
+                stage = wanted
                 switchings += 1
                 drive.command(plant.stages_kpa[stage], plant.computing_s)
     return 0.0, True, switchings
@@ -216,15 +216,27 @@ def measured(plant: Plant, v: float, random: Random) -> float:
 
 
 def decision(table: Table, stage: int, s: float, v: float, kpa: float = math.nan) -> int:
-    """The rule, in double precision; `kpa`: what the gauge shows, NaN for none."""
+    """The stage to command, in double precision; `kpa`: what the gauge shows, NaN for none."""
     s = min(max(s, table.path_m[0]), table.path_m[1])
-    lower, upper = table.lines[stage]
-    add_lower, add_upper = added_m_s(table, stage, kpa)
-    if lower is not None and v < speed_at(lower, s) + add_lower:
-        return -1
-    if s < 0.0 and stage >= table.entrance_stage:
-        return 0
-    return 1 if upper is not None and v > speed_at(upper, s) + add_upper else 0
+    added = added_m_s(table, stage, kpa)
+    raised = lowered = stage
+    while raised - stage < table.farthest and is_raised(table, raised, s, v - added[1]):
+        raised += 1
+    while stage - lowered < table.farthest and is_lowered(table, lowered, s, v - added[0]):
+        lowered -= 1
+    return lowered if lowered < stage else raised
+
+
+def is_lowered(table: Table, stage: int, s: float, v: float) -> bool:
+    """Whether the cut is too slow for `stage`."""
+    lower = table.lines[stage][0]
+    return lower is not None and v < speed_at(lower, s)
+
+
+def is_raised(table: Table, stage: int, s: float, v: float) -> bool:
+    """Whether the cut is too fast for `stage`, and the next one may be commanded."""
+    upper = table.lines[stage][1]
+    return upper is not None and (s >= 0.0 or stage < table.entrance_stage) and v > speed_at(upper, s)
 
 
 def added_m_s(table: Table, stage: int, kpa: float) -> tuple[float, float]:

@@ -18,6 +18,8 @@ LARGEST: Final = float.fromhex("0x1.fffffep+127")
 HALF_ULP: Final = 2.0**-24
 SMALLEST: Final = 2.0**-149
 
+Lines = Sequence[tuple[Sequence[float] | None, Sequence[float] | None]]
+
 
 def rounded(x: float) -> float:
     """The binary32 number nearest to `x`, ties to even; infinite beyond the range."""
@@ -91,26 +93,39 @@ def rises(
 
 
 def decide(
-    lines: Sequence[tuple[Sequence[float] | None, Sequence[float] | None]],
+    lines: Lines,
     path_m: tuple[float, float],
     entrance_stage: int,
+    farthest: int,
     stage: int,
     s_m: float,
     v_m_s: float,
     rise_m_s: tuple[float, float] = (0.0, 0.0),
 ) -> int:
-    """-1 lower, 0 hold, +1 raise: the rule of docs/table-format.md for (lower, upper) `lines` of stages 0, 1, …
+    """The stage to command: the rule of docs/table-format.md for (lower, upper) `lines` of stages 0, 1, …
 
-    `rise_m_s`: what the pressure adds to the two lines of the stage, as `rises` gives it; 0 for a table without slopes.
+    `farthest`: how many stages one command may go. `rise_m_s`: what the pressure adds to the two lines of the stage, as
+    `rises` gives it; 0 for a table without slopes.
     """
     s, v = rounded(s_m), rounded(v_m_s)
     if not (math.isfinite(s) and math.isfinite(v)) or v_m_s < 0.0 or not 0 <= stage < len(lines):
-        return 0
+        return stage
     s = min(max(s, rounded(path_m[0])), rounded(path_m[1]))
+    direction = direction_at(lines, entrance_stage, stage, s, v, rise_m_s)
+    wanted = stage + direction
+    while abs(wanted - stage) < farthest and direction:
+        if direction_at(lines, entrance_stage, wanted, s, v, rise_m_s) != direction:
+            break
+        wanted += direction
+    return wanted
+
+
+def direction_at(
+    lines: Lines, entrance_stage: int, stage: int, s: float, v: float, rise_m_s: tuple[float, float]
+) -> int:
+    """-1 lower, 0 hold, +1 raise at one stage; `s`, clamped, and `v` binary32."""
     lower, upper = lines[stage]
     if lower is not None and v < rounded(horner(lower, s) + rise_m_s[0]):
         return -1
     may_raise = s >= 0.0 or stage < entrance_stage
-    if may_raise and upper is not None and v > rounded(horner(upper, s) + rise_m_s[1]):
-        return 1
-    return 0
+    return int(may_raise and upper is not None and v > rounded(horner(upper, s) + rise_m_s[1]))

@@ -42,7 +42,7 @@ def differences(content: bytes, tables: Sequence[Table]) -> Iterator[tuple[str, 
             raise DamagedError(f"row {place} is of table {number}")
         seen.add(number)
         added = rises(table.slopes, table.pressures_kpa, table.top_stage, stage, kpa)
-        right = decide(table.lines, table.path_m, table.entrance_stage, stage, s, v, added)
+        right = decide(table.lines, table.path_m, table.entrance_stage, table.farthest, stage, s, v, added)
         if (name != table.id or right != answer) and number not in wrong:
             wrong.add(number)
             yield table.id, f"row {place} says {answer} of {name!r}, but the rule says {right} of {table.id!r}"

@@ -67,6 +67,11 @@ class Table:
         return next(k for k, (_, upper) in enumerate(self.lines) if upper is None)
 
     @property
+    def farthest(self) -> int:
+        """How many stages one command may go: any number at rest, one where the next sample asks again."""
+        return 1 if self.at_any_time else len(self.lines) - 1
+
+    @property
     def has_gauge(self) -> bool:
         """Whether its lines depend on the pressure, which the controller must then measure."""
         return any(slope is not None for both in self.slopes for slope in both)

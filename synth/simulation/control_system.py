@@ -114,10 +114,10 @@ def regulator_system(plant: Plant, controller: Controller) -> NonlinearIOSystem:
             return [stage]
         measured = regulator.measure(float(u[1]), 0.0, sensor)
         if law.coefficients.shape[0] > 0:
-            wanted = stage_by_table(law, top, stage, float(u[0]), estimated(x, u, measured)[0])
+            wanted = stage_by_table(law, stage, float(u[0]), estimated(x, u, measured)[0])
         else:
             ahead = measured + law.lead_s * filtered_slope(x, measured)
-            lines = (law.lower, law.upper, law.start_m, law.spacing_m, law.multi_step)
+            lines = (law.lower, law.upper, law.start_m, law.spacing_m, law.farthest)
             wanted = regulator.stage_by_lines(*lines, stage, top, float(u[0]), ahead)
         return [regulator.admitted(stage, wanted, float(u[0]), plant.approach.entrance_stage)]
 
@@ -141,15 +141,10 @@ def regulator_system(plant: Plant, controller: Controller) -> NonlinearIOSystem:
     )
 
 
-def stage_by_table(law: regulator.Rule, top: int, stage: int, s_m: float, v_m_s: float) -> int:
+def stage_by_table(law: regulator.Rule, stage: int, s_m: float, v_m_s: float) -> int:
     """Digital controller of a radar: the stage wanted at (s, v) while `stage` is in force."""
     lines = law.coefficients, law.has_line, law.valid, law.entrance_stage
-    step = int(regulator.table_decision(*lines, stage, s_m, v_m_s))
-    wanted = min(max(stage + step, 0), top)
-    jumps = law.multi_step and step != 0
-    while jumps and 0 < wanted < top and regulator.table_decision(*lines, wanted, s_m, v_m_s) == step:
-        wanted += step
-    return wanted
+    return int(regulator.stage_by_table(*lines, law.farthest, stage, s_m, v_m_s))
 
 
 def regulator_start(plant: Plant, controller: Controller) -> NDArray[np.float64]:

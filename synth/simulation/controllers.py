@@ -15,7 +15,7 @@ from synth.solver.switching_lines import SwitchingLines
 from tuning_tables.active_table import ActiveTable
 from tuning_tables.decisions import Decisions
 from tuning_tables.estimator import Estimator
-from tuning_tables.table import ControllerTable
+from tuning_tables.table import MOST_STAGES, ControllerTable
 
 Scalar = TypeVar("Scalar", bound=np.generic)
 
@@ -38,13 +38,11 @@ class TableController:
     """A regulator that runs an exported table, or lines chosen from a book, with the tables' own rule.
 
     If the table has an estimator, the rule is asked with the estimated speed. The gauge of a table with slopes shows
-    `gauge_factor` times the true pressure; NaN: it shows none. `multi_step`: one command may go several stages, as
-    `tuning_tables.rule.stage_for`.
+    `gauge_factor` times the true pressure; NaN: it shows none.
     """
 
     table: ControllerTable | ActiveTable
     gauge_factor: float = 1.0
-    multi_step: bool = False
 
     @property
     def stages(self) -> int:
@@ -70,24 +68,23 @@ class TableController:
             fixed(table.has_line, np.bool_),
             fixed(table.valid_range, np.float32),
         )
-        by_table = *arrays, table.entrance_stage
+        by_table = *arrays, table.entrance_stage, table.farthest
         estimator = estimator_arrays(table.estimator)
-        return regulator.Rule(*by_table, none, none, 0.0, 1.0, self.multi_step, 0.0, 0.0, *estimator)
+        return regulator.Rule(*by_table, none, none, 0.0, 1.0, 0.0, 0.0, *estimator)
 
 
 @dataclass(frozen=True)
 class LineController:
     """A regulator that compares speed with switching lines.
 
-    `multi_step`: the comparison is repeated at the stage reached before the command is sent, so that one
-    command may jump over stages. `lead_s` τ: compared is measured speed + τ·slope, the slope of the
-    measured speed being filtered to first order over `slope_filter_s`. With an `estimator` the estimated
-    speed is compared instead of the measured one. `decisions` at any time: the lines are asked at every sample, with
-    the stage commanded last.
+    The comparison is repeated at the stage reached before the command is sent, so that one command may go `farthest`
+    stages. `lead_s` τ: compared is measured speed + τ·slope, the slope of the measured speed being filtered to first
+    order over `slope_filter_s`. With an `estimator` the estimated speed is compared instead of the measured one.
+    `decisions` at any time: the lines are asked at every sample, with the stage commanded last.
     """
 
     lines: SwitchingLines
-    multi_step: bool = False
+    farthest: int = MOST_STAGES
     lead_s: float = 0.0
     slope_filter_s: float = 0.3
     estimator: Estimator | None = None
@@ -114,11 +111,11 @@ class LineController:
             fixed(np.empty((0, 0)), np.bool_),
             fixed(np.empty(0), np.float32),
             lines.stages - 1,
+            self.farthest,
             fixed(lines.lower_m_s, np.float64),
             fixed(lines.upper_m_s, np.float64),
             float(lines.nodes_m[0]),
             float(lines.nodes_m[-1] - lines.nodes_m[0]) / (lines.nodes_m.size - 1),
-            self.multi_step,
             self.lead_s,
             self.slope_filter_s,
             *estimator_arrays(self.estimator),

@@ -39,7 +39,7 @@ def exit_range(loop: ClosedLoop, draws: Draws) -> ExitRange:
     """
     plant = loop.plant
     free = close_loop(any_stage_at_once(plant), plant.top_stage + 1)
-    hardest = replace(full_brake(free.stages, plant.start_m, plant.exit_m), multi_step=True)
+    hardest = full_brake(free.stages, plant.start_m, plant.exit_m)
     return ExitRange(free.run(hardest, draws), free.run(released(free.stages, plant.start_m, plant.exit_m), draws))
 
 
@@ -52,4 +52,4 @@ def released(stages: int, start_m: float, exit_m: float) -> LineController:
     """A regulator of so many stages that releases at its first decision and never brakes."""
     lower, upper = np.full((stages, 2), ABOVE_EVERY_SPEED_M_S), np.full((stages, 2), np.inf)
     lower[0] = -np.inf
-    return LineController(SwitchingLines(np.array([start_m, exit_m]), lower, upper), multi_step=True)
+    return LineController(SwitchingLines(np.array([start_m, exit_m]), lower, upper))

@@ -95,7 +95,7 @@ def test_the_rule_in_double_precision_is_the_rule() -> None:
         )
         v = chance.uniform(3.0, 5.5)
         added = rises(made.slopes, made.pressures_kpa, made.top_stage, stage, kpa)
-        answer = decide(made.lines, made.path_m, made.entrance_stage, stage, s, v, added)
+        answer = decide(made.lines, made.path_m, made.entrance_stage, made.farthest, stage, s, v, added)
         assert decision(made, stage, s, v, kpa) == answer
         answers.add((stage, answer))
     assert len(answers) == 7

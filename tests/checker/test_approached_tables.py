@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from synth.checker import c_export, golden_export, st_export, track_export
@@ -116,8 +117,8 @@ def test_golden_vectors_of_a_wrong_gate_are_found(approached: Path, wrong: str) 
         asked = {"at the entrance too": right.s_m - (right.s_m == 0.0), "turned round": -right.s_m}
         path = asked.get(wrong, right.s_m)
         ungated = decide_many(replace(table, approach=Approach(4.0, 4)), right.stage, right.s_m, right.v_m_s)
-        gated = (ungated == 1) & (right.stage >= other.entrance_stage) & (path < 0.0)
-        answers = ungated * ~gated
+        gated = np.minimum(ungated, np.maximum(right.stage, other.entrance_stage))
+        answers = np.where(path < 0.0, gated, ungated)
         s_m, v_m_s, kpa = (each.copy() for each in (right.s_m, right.v_m_s, right.pressure_kpa))
         vectors.append(GoldenVectors(right.stage.copy(), s_m, v_m_s, kpa, answers))
     file.write_bytes(vectors_csv(book, vectors))

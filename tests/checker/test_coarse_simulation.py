@@ -212,11 +212,14 @@ def test_the_brake_is_at_rest_in_the_initial_stage(far_plant: Plant, far_table: 
 
 def test_before_the_entrance_no_stage_above_the_entrance_stage_is_commanded(far_table: Table) -> None:
     zero = (0.0,) * (far_table.degree + 1)
-    always = dataclasses.replace(far_table, lines=((None, zero), *[(None, zero)] * (len(far_table.lines) - 1)))
-    assert [decision(always, stage, -0.01, 3.0) for stage in (0, 1, 2)] == [1, 0, 0]
-    assert [decision(always, stage, 0.0, 3.0) for stage in (0, 1, 2)] == [1, 1, 1]
+    top = len(far_table.lines) - 1
+    always = dataclasses.replace(far_table, lines=(*[(None, zero)] * top, (None, None)))
+    assert [decision(always, stage, -0.01, 3.0) for stage in (0, 1, 2)] == [1, 1, 2]
+    assert [decision(always, stage, 0.0, 3.0) for stage in (0, 1, 2)] == [top, top, top]
     # A brake that is always raised fills earlier where it may begin 4 m ahead.
-    assert decision(dataclasses.replace(always, entrance_stage=3), 1, -0.01, 3.0) == 1
+    assert decision(dataclasses.replace(always, entrance_stage=3), 1, -0.01, 3.0) == 3
+    at_any_time = dataclasses.replace(always, at_any_time=True)
+    assert [decision(at_any_time, stage, 0.0, 3.0) for stage in (0, 1, 2)] == [1, 2, 3]
 
 
 def test_agrees_with_the_production_simulator_from_before_the_entrance(far_plant: Plant, far_table: Table) -> None:

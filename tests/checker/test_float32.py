@@ -59,21 +59,25 @@ STAGE = st.integers(-1, 5)
 READING = st.floats(-4, 12, width=32) | st.sampled_from([0.0, -0.0, -1e-45, -1e-60]) | st.floats()
 
 
-@given(st.lists(st.tuples(LINE, LINE), min_size=2, max_size=4), BEGIN, STAGE, STAGE, READING, READING)
+@given(
+    st.lists(st.tuples(LINE, LINE), min_size=2, max_size=6), BEGIN, STAGE, st.integers(1, 5), STAGE, READING, READING
+)
 def test_rule_is_that_of_the_controller(
     lines: list[tuple[list[float] | None, list[float] | None]],
     begin: float,
     entrance: int,
+    farthest: int,
     stage: int,
     s: float,
     v: float,
 ) -> None:
+    lines = [(None, lines[0][1]), *lines[1:-1], (lines[-1][0], None)]  # as in every table
     missing = [math.nan] * 3
     coefficients = np.array([[line or missing for line in both] for both in lines], dtype=np.float32)
     has_line = np.array([[line is not None for line in both] for both in lines])
     valid = np.array([begin, 10.0, 0.0, 9.0], dtype=np.float32)
-    expected = rule.decide(coefficients, has_line, valid, entrance, stage, s, v)
-    assert decide(lines, (begin, 10.0), entrance, stage, s, v) == expected
+    expected = rule.decide(coefficients, has_line, valid, entrance, farthest, stage, s, v)
+    assert decide(lines, (begin, 10.0), entrance, farthest, stage, s, v) == expected
 
 
 @given(st.binary(max_size=300))

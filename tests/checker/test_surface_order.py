@@ -53,7 +53,7 @@ def test_the_rule_with_a_pressure_is_that_of_the_controller(
     v = rounded(on + added[side])
     if aside:
         v = above(v) if aside > 0.0 else below(v)
-    answer = decide(own.lines, own.path_m, own.entrance_stage, stage, s, v, added)
+    answer = decide(own.lines, own.path_m, own.entrance_stage, own.farthest, stage, s, v, added)
     assert answer == decide_for(table, stage, s, v, kpa)
 
 

@@ -36,6 +36,7 @@ def sample_book() -> TableBook:
             table_of("other-degree", "С", 52.0, SIX_AXLES, 3.0, degree=2),
             table_of("many-stages", "СТ", 66.0, FOUR_AXLES, 2.0, stages=9, degree=9),
             table_of("constant", "СТ", 66.0, FOUR_AXLES, 3.0, stages=2, degree=0),
+            replace(table_of("turning", "СТ", 66.0, FOUR_AXLES, 3.5, degree=1), stages=turning_lines()),
             replace(
                 odd,
                 stages=(
@@ -76,7 +77,7 @@ def approaching_book(estimators: bool = True) -> TableBook:
     given = {
         "light-2.0": (4.0, 1), "light-3.3": (4.0, 1), "light-4.0": (4.0, 2), "shadow-1.5": (0.3, 0),
         "shadow-3.0": (4.0, 4), "medium-4.0": (8.0, 3), "medium-2.0": (8.0, 3), "many-stages": (9.0, 6),
-        "constant": (1e-3, 0),
+        "constant": (1e-3, 0), "turning": (4.0, 2),
     }  # fmt: skip
     book = estimating_book() if estimators else sample_book()
     return TableBook(tuple(with_approach(table, *given.get(table.id, (0.0, 0))) for table in book.tables))
@@ -165,6 +166,15 @@ def braking_lines(target: float, stages: int, degree: int) -> tuple[Stage, ...]:
             lower = round_coefficients([10.0] + [0.0] * degree)
         found.append(Stage(k, 150.0 * k, lower, upper))
     return tuple(found)
+
+
+def turning_lines() -> tuple[Stage, ...]:
+    """Lines by which stage 1 raises and stage 2 lowers, and again stage 2 raises and 3 lowers, near the entrance."""
+    uppers, lowers = (4.0, 5.0, 6.5, None, None), (None, 3.5, 5.75, 7.0, 10.0)
+    return tuple(
+        Stage(k, 150.0 * k, None if low is None else (low, -0.125), None if high is None else (high, -0.0625))
+        for k, (low, high) in enumerate(zip(lowers, uppers, strict=True))
+    )
 
 
 def table_of(

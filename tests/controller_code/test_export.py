@@ -141,6 +141,10 @@ def test_every_changed_byte_of_a_block_is_found(book: TableBook, tmp_path: Path,
         ("v_m_s >= 0.0f &&", "", "fault 3 at"),
         ("v_m_s <= FLT_MAX))", "1))", "fault 3 at"),
         ("s = table->s_max_m", "s = s_m", "fault 3 at"),
+        ("table->stages - 1u; left", "1u; left", "fault 3 at"),  # one stage a command
+        ("table->stages - 1u; left", "table->stages - 2u; left", "fault 3 at"),
+        ("step == -before", "step == 9", "fault 3 at"),  # on after the opposite answer
+        ("wanted += step", "wanted = stage + step", "fault 3 at"),
         ("s_m >= -FLT_MAX &&", "", "fault 3 at"),
         ("(lines & 2u) != 0u &&", "", "fault 3 at"),
         ("chosen->target_m_s = speed_m_s;", "", "fault 4 at"),

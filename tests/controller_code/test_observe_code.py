@@ -148,7 +148,7 @@ int main(void)
     while (fread(&table, sizeof table, 1, stdin) == 1 && fread(&estimate, sizeof estimate, 1, stdin) == 1
            && fread(readings, sizeof readings, 1, stdin) == 1) {
         const float speed = retarder_observe(&table, &estimate, readings[0], readings[1], readings[2]);
-        count += retarder_decide(&table, 1, readings[0], speed) != 0;
+        count += retarder_decide(&table, 1, readings[0], speed) != 1;
     }
     printf("%lu\n", count);
     return 0;

@@ -107,7 +107,7 @@ def test_stall_is_counted_and_leaves_with_speed_zero(plant_22t: Plant, passes: R
     assert sample.stalled.all()
     assert not sample.exit_speed_m_s.any()
     assert np.all((sample.transit_time_s > 1.0) & (sample.transit_time_s < 20.0))
-    assert np.all(sample.switchings == 2)
+    assert np.all(sample.switchings == 1)
     end = trace(plant_22t, controller, passes, 3)
     assert end.stalled
     assert end.exit_speed_m_s == 0.0
@@ -305,9 +305,9 @@ def test_trace_is_the_simulated_pass(plant_52t: Plant, passes: RandomPasses) -> 
 # ---------------------------------------------------------------------------------------------- switching
 
 
-def test_the_command_leaves_only_at_rest_and_may_jump_if_told(plant_52t: Plant, passes: RandomPasses) -> None:
-    step = constant_lines(plant_52t, [-math.inf] + [3.2] * 4, [3.2] * 4 + [math.inf])
-    jump = replace(step, multi_step=True)
+def test_the_command_leaves_only_at_rest_and_goes_as_far_as_it_may(plant_52t: Plant, passes: RandomPasses) -> None:
+    jump = constant_lines(plant_52t, [-math.inf] + [3.2] * 4, [3.2] * 4 + [math.inf])
+    step = replace(jump, farthest=1)
     by_one = trace(plant_52t, step, passes, 0)
     at_once = trace(plant_52t, jump, passes, 0)
     assert np.abs(np.diff(by_one.stage)).max() == 1
@@ -319,7 +319,7 @@ def test_the_command_leaves_only_at_rest_and_may_jump_if_told(plant_52t: Plant, 
 
 
 def test_lead_releases_earlier(plant_52t: Plant, passes: RandomPasses) -> None:
-    plain = replace(constant_lines(plant_52t, [-math.inf] + [3.2] * 4, [3.2] * 4 + [math.inf]), multi_step=True)
+    plain = constant_lines(plant_52t, [-math.inf] + [3.2] * 4, [3.2] * 4 + [math.inf])
     released = []
     for controller in (plain, replace(plain, lead_s=0.5)):
         followed = trace(plant_52t, controller, passes, 0)

@@ -54,10 +54,10 @@ def constant_lines(plant: Plant, lower: list[float], upper: list[float], lead_s:
     return LineController(lines, lead_s=lead_s)
 
 
-@pytest.mark.parametrize(("lead_s", "multi_step"), [(0.0, False), (0.0, True), (0.3, True)])
-def test_lines(plant_52t: Plant, passes: RandomPasses, lead_s: float, multi_step: bool) -> None:
+@pytest.mark.parametrize(("lead_s", "farthest"), [(0.0, 1), (0.0, 2), (0.0, 4), (0.3, 4)])
+def test_lines(plant_52t: Plant, passes: RandomPasses, lead_s: float, farthest: int) -> None:
     loop = close_loop(plant_52t, 5)
-    controller = replace(energy_rule(loop, 3.0, 4, 0.8, 0.15, lead_s, 0.15), multi_step=multi_step)
+    controller = replace(energy_rule(loop, 3.0, 4, 0.8, 0.15, lead_s, 0.15), farthest=farthest)
     sample = assert_same(loop, controller, loop.draws(passes))
     assert sample.switchings.mean() > 3.0
 
@@ -96,8 +96,6 @@ def test_tables(plant_52t: Plant, passes: RandomPasses, target_m_s: float) -> No
     controller = TableController(wavy_table(plant_52t, target_m_s))
     sample = assert_same(loop, controller, loop.draws(passes))
     assert sample.switchings.mean() > 5.0
-    jumping = assert_same(loop, replace(controller, multi_step=True), loop.draws(passes))
-    assert jumping.switchings.mean() < sample.switchings.mean() - 1.0
 
 
 @pytest.mark.parametrize("count", [1, LANES - 1, LANES, LANES + 1])
@@ -170,9 +168,9 @@ def test_estimators(plant_52t: Plant, passes: RandomPasses, gaps: bool, period_s
     assert sample.switchings.mean() > 3.0
     without = loop.run(TableController(wavy_table(plant_52t, 3.0)), draws)
     assert np.mean(sample.exit_speed_m_s != without.exit_speed_m_s) > 0.5
-    for lead_s, multi_step in ((0.0, True), (0.2, False)):
+    for lead_s, farthest in ((0.0, 4), (0.2, 1)):
         lines = energy_rule(loop, 3.0, 4, 0.8, 0.15, lead_s, 0.15)
-        assert_same(loop, replace(lines, multi_step=multi_step, estimator=estimator), draws)
+        assert_same(loop, replace(lines, farthest=farthest, estimator=estimator), draws)
 
 
 def exits_of_a_few_passes() -> str:

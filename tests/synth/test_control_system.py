@@ -16,6 +16,7 @@ from synth.simulation.nominal_response import SOLVER, nominal_response
 from synth.simulation.passes import PassTrace
 from synth.simulation.random_passes import random_passes
 from synth.solver.switching_lines import SwitchingLines
+from synth.solver.tabulate import lines_of
 from tuning_tables import ControllerTable, CutId, Generator, Predicted, RetarderId, Stage, ValidRange
 
 control = pytest.importorskip("control")
@@ -62,8 +63,8 @@ def controller_for(plant: Plant, law: str) -> Controller:
     loop = close_loop(plant, plant.top_stage + 1)
     if law == "table":
         return TableController(table_for(plant))
-    if law == "table, several stages a command":
-        return TableController(table_for(plant), multi_step=True)
+    if law == "lines, one stage a command":
+        return LineController(lines_of(table_for(plant), np.linspace(0.0, plant.exit_m, 2)), farthest=1)
     if law == "energy rule":
         return energy_rule(loop, 3.0, plant.top_stage, 0.9, 0.1, 0.2, 0.1)
     return threshold_with_lead(loop, 3.0, 2, 0.1, 0.3)
@@ -74,7 +75,7 @@ def commands_of(events: PassTrace) -> list[tuple[float, int]]:
     return [(float(events.time_s[i]), int(events.stage[i])) for i in changed]
 
 
-@pytest.mark.parametrize("law", ["table", "table, several stages a command", "energy rule", "threshold with lead"])
+@pytest.mark.parametrize("law", ["table", "lines, one stage a command", "energy rule", "threshold with lead"])
 def test_passes_are_the_simulators(quiet: Plant, law: str) -> None:
     controller = controller_for(quiet, law)
     passes = random_passes(7, 0, 3)
@@ -160,7 +161,7 @@ def test_drive_fills_and_exhausts_exponentially(plant_52t: Plant, valve: float, 
 def test_a_stall_is_reported(quiet: Plant) -> None:
     none = np.full((5, 2), np.inf)
     lines = SwitchingLines(np.array([0.0, quiet.exit_m]), -none, np.where(np.arange(5)[:, None] < 4, 0.0, none))
-    controller = LineController(lines, multi_step=True)
+    controller = LineController(lines)
     found = nominal_response(quiet, controller, 5.0, 0.0)
     events = trace(quiet, controller, random_passes(7, 0, 1), 0)
     assert events.stalled

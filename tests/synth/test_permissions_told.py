@@ -18,9 +18,8 @@ from synth.configuration.config_file import parse_config
 from synth.present.report.permissions_section import column_cell, column_head, permissions_section
 from tests.synth.case_factory import make_case, make_permissions
 
-LIGHT = (Permission.JUMPS, Permission.ANY_TIME, Permission.WITHOUT_GAUGE, Permission.APPROACH)
-HEAVY = (Permission.JUMPS, Permission.ANY_TIME, Permission.ESTIMATOR, Permission.ANY_TIME_ESTIMATOR,
-         Permission.NO_APPROACH)  # fmt: skip
+LIGHT = (Permission.ANY_TIME, Permission.WITHOUT_GAUGE, Permission.APPROACH)
+HEAVY = (Permission.ANY_TIME, Permission.ESTIMATOR, Permission.ANY_TIME_ESTIMATOR, Permission.NO_APPROACH)
 
 
 @pytest.fixture(scope="module")
@@ -63,10 +62,11 @@ def test_the_line_tells_medians_and_bounds_every_interval(overview: Overview) ->
     assert overview.widest - 0.01 < max(halves) <= overview.widest
     assert f"no 95 % interval wider than ±{overview.widest:.2f}" in overview.line
     assert f"on the same {overview.cases[0].table.passes} passes" in overview.line
-    jumps = [each.ratio for each in results if each.permission is Permission.JUMPS]
-    assert f"Medians: several stages a command {median(jumps):.2f}, commands at any time" in overview.line
+    any_time = [each.ratio for each in results if each.permission is Permission.ANY_TIME]
+    assert f"Medians: commands at any time {median(any_time):.2f}, commands at any time, no" in overview.line
     few = Overview((replace(overview.cases[0], results=overview.cases[0].results[:1]),))
-    assert "(jumps: several stages a command)" in few.line
+    assert "both: any time and estimator" in overview.line
+    assert "both:" not in few.line
 
 
 def test_who_asks_sees_their_columns_before_others(overview: Overview) -> None:

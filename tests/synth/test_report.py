@@ -267,12 +267,13 @@ def test_the_report_is_written_without_matplotlib() -> None:
 
 def test_permissions_are_told_in_a_column_and_a_section(book: BookReport) -> None:
     cases = tuple(
-        replace(case, permissions=make_permissions(case, Permission.JUMPS, Permission.ANY_TIME)) for case in book.cases
+        replace(case, permissions=make_permissions(case, Permission.ANY_TIME, Permission.ESTIMATOR))
+        for case in book.cases
     )
     page = Page(report_page(replace(book, cases=cases, permissions_line="The line.")))
     assert page.open == []
     assert "rms × if permitted" in page.text
-    assert "any\u00a0time, jumps" in page.text
+    assert "any\u00a0time, estimator" in page.text
     assert "The line." in page.text
     assert {"#permissions"} <= set(page.targets)
     assert "permissions" not in Page(report_page(book)).identifiers

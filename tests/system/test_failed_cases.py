@@ -150,7 +150,7 @@ def test_a_permission_without_a_design_is_missing_alone(command: Command, tmp_pa
     ran = command("tune", config, "-o", out, "--permissions")
     assert ran.code == 0  # the table is there, and keeps its limits
     (case,) = json.loads((out / "summary.json").read_bytes())["cases"]
-    assert set(case["permissions"]) == {"several stages a command", "approach of 4 m"}
+    assert set(case["permissions"]) == {"approach of 4 m"}
     assert case["permissions_failed"] == dict.fromkeys(WITHOUT_SURFACES, "no surfaces on this grid")
     for permission in WITHOUT_SURFACES:
         assert f"gondola-4-22t to 2.5 m/s, {permission}: no surfaces on this grid" in ran.out

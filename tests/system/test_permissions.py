@@ -65,7 +65,6 @@ mass_t = 22
 """From the entrance and with an estimator, so that few permissions are left to ask for."""
 
 ASKED = {
-    "several stages a command",
     "commands at any time",
     "commands at any time, no pressure gauge",
     "estimator",
@@ -146,11 +145,8 @@ def test_commands_at_any_time_gain_and_no_approach_loses(ran: Path) -> None:
     assert permissions["without the approach"]["ratio_ci95"][0] > 1.0
 
 
-def test_jumps_save_commands_and_an_estimator_gains_at_any_time_too(ran: Path) -> None:
-    case = summary(ran / "one")["cases"][0]
-    permissions, jumps = case["permissions"], case["permissions"]["several stages a command"]
-    assert jumps["switchings"] < case["as_configured"]["switchings"] - 0.5
-    assert jumps["ratio_ci95"][0] < 1.0
+def test_an_estimator_gains_at_any_time_too(ran: Path) -> None:
+    permissions = summary(ran / "one")["cases"][0]["permissions"]
     both = permissions["commands at any time, estimator"]
     assert both["ratio_ci95"][1] < permissions["commands at any time"]["ratio"]
 
@@ -192,12 +188,12 @@ def test_a_tune_tells_permissions_in_one_column_and_one_line(tuned: Path) -> Non
     (case,) = summary(tuned / "1")["cases"]
     ratios = {name: f"{each['ratio']:.2f}" for name, each in case["permissions"].items()}
     (row,) = (line for line in printed.splitlines() if line.lstrip().startswith("gondola-4-22t"))
-    column = [ratios[name] for name in ("commands at any time", "several stages a command", "approach of 4 m")]
+    column = [ratios[name] for name in ("commands at any time", "approach of 4 m")]
     assert " ".join(row.split()).endswith(f"{' '.join(column)} {case['verdict']}")
     halves = [max(high - e["ratio"], e["ratio"] - low) for e in case["permissions"].values()
               for low, high in [e["ratio_ci95"]]]  # fmt: skip
     (line,) = (line for line in printed.splitlines() if line.startswith("rms × if permitted:"))
-    assert float(line.split("±")[1].split()[0]) == pytest.approx(max(halves) + 0.005, abs=0.0051)
+    assert float(line.split("±")[1][:4]) == pytest.approx(max(halves) + 0.005, abs=0.0051)
     assert f"on the same {case['simulated']['passes']} passes" in line
     for name, ratio in ratios.items():  # of one case: the medians
         assert re.search(rf"(: |, ){name} {ratio}[,.]", line)

@@ -62,6 +62,20 @@ def linear_table(table: ControllerTable) -> ControllerTable:
 
 
 @pytest.fixture(scope="session")
+def turning_table(linear_table: ControllerTable) -> ControllerTable:
+    """Five stages. At 0 m stages 0 to 3 raise above 4, 5, 6, 7.5 m/s, stages 1 to 4 lower below 3, 4, 7, 8 m/s.
+
+    So between 6 and 7 m/s stage 2 raises and stage 3 lowers, and between 7.5 and 8 m/s stage 3 raises and 4 lowers.
+    """
+    uppers, lowers = (4.0, 5.0, 6.0, 7.5, None), (None, 3.0, 4.0, 7.0, 8.0)
+    stages = tuple(
+        Stage(k, 100.0 * k, None if low is None else (low, 0.125), None if high is None else (high, 0.125))
+        for k, (low, high) in enumerate(zip(lowers, uppers, strict=True))
+    )
+    return replace(linear_table, id="turning", stages=stages, valid=ValidRange((0.0, 40.0), (0.0, 20.0)))
+
+
+@pytest.fixture(scope="session")
 def approached_table(table: ControllerTable) -> ControllerTable:
     """The table with 4 m of approach and entrance stage 1, so of version 3: stage 1 has an upper line to be gated."""
     valid = replace(table.valid, s_m=(-4.0, 37.45))

@@ -11,9 +11,6 @@ import numpy as np
 import pytest
 
 from tuning_tables import (
-    HOLD,
-    LOWER,
-    RAISE,
     Approach,
     ControllerTable,
     DamagedTable,
@@ -50,17 +47,19 @@ def with_estimator(table: ControllerTable, *breaks: float) -> ControllerTable:
 @pytest.mark.parametrize(
     ("stage", "s_m", "v_m_s", "answer"),
     [
-        (0, -4.0, 9.0, RAISE),  # below the entrance stage any raise is allowed
-        (1, -4.0, 9.0, HOLD),
-        (1, -100.0, 9.0, HOLD),  # clamped to the beginning of the approach
-        (1, -TINY, 9.0, HOLD),  # the last float32 number before the entrance
-        (1, -0.0, 9.0, RAISE),  # at the entrance
-        (1, 0.0, 9.0, RAISE),
-        (1, -1e-60, 9.0, RAISE),  # -0.0 in float32
-        (1, TINY, 9.0, RAISE),
-        (1, -2.0, 0.0, LOWER),  # lowering is always allowed
-        (3, -2.0, 0.0, LOWER),  # also where the interlock was broken
-        (3, -2.0, 9.0, HOLD),
+        (0, -4.0, 9.0, 1),  # up to the entrance stage, and no further
+        (1, -4.0, 9.0, 1),
+        (0, 4.0, 9.0, 2),
+        (1, -100.0, 9.0, 1),  # clamped to the beginning of the approach
+        (1, -TINY, 9.0, 1),  # the last float32 number before the entrance
+        (0, -TINY, 9.0, 1),
+        (1, -0.0, 9.0, 2),  # at the entrance
+        (1, 0.0, 9.0, 2),
+        (1, -1e-60, 9.0, 2),  # -0.0 in float32
+        (1, TINY, 9.0, 2),
+        (1, -2.0, 0.0, 0),  # lowering is always allowed
+        (3, -2.0, 0.0, 0),  # also where the interlock was broken
+        (3, -2.0, 9.0, 3),
     ],
 )
 def test_before_the_entrance_no_stage_above_the_entrance_stage_is_commanded(
@@ -74,7 +73,7 @@ def test_before_the_entrance_no_stage_above_the_entrance_stage_is_commanded(
 def test_without_approach_the_entrance_stage_is_the_highest(table: ControllerTable) -> None:
     assert table.entrance_stage == active(table).entrance_stage == 3
     moved = replace(table, valid=ValidRange((-4.0, 37.45), (0.3, 9.0)))
-    assert decide_for(moved, 1, -2.0, 9.0) == RAISE  # as ever: its path range begins before the entrance
+    assert decide_for(moved, 1, -2.0, 9.0) == 2  # as ever: its path range begins before the entrance
 
 
 @pytest.mark.parametrize(

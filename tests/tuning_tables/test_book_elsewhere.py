@@ -81,7 +81,7 @@ def test_a_decision_on_a_surface_with_xarray_is_that_of_the_rule(
     line = (one.coefficients * 4.0**one.power).sum("power")
     for kpa in (0.0, 80.0, 150.0, 220.0, 300.0):
         lower, upper = (line + one.slopes * (kpa - one.pressure_kpa)).values
-        answers = np.where(speeds < lower, -1, np.where(speeds > upper, 1, 0))
+        answers = np.where(speeds < lower, 0, np.where(speeds > upper, 2, 1))
         assert len(set(answers.tolist())) == 3
         assert np.array_equal(answers, decide_many(surface_table, 1, 4.0, speeds, kpa))
 

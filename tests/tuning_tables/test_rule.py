@@ -12,9 +12,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from tests.tuning_tables.random_tables import tables
-from tuning_tables import HOLD, LOWER, RAISE, ControllerTable, Stage, ValidRange, decide, decide_for, decide_many
-from tuning_tables.golden_vectors import golden_vectors
-from tuning_tables.rule import rises, stage_for
+from tuning_tables import ControllerTable, Decisions, Stage, ValidRange, decide, decide_for, decide_many
+from tuning_tables.active_table import active
+from tuning_tables.golden_vectors import GoldenVectors, few_golden_vectors, golden_vectors
+from tuning_tables.rule import rises
 from tuning_tables.stage import Line
 
 NAN, INF = float("nan"), float("inf")
@@ -47,7 +48,9 @@ def exact_surface(table: ControllerTable, stage: Stage, side: int, s: np.float32
 Floats = npt.NDArray[np.float32]
 Readings = tuple[npt.NDArray[np.int64], Floats, Floats, Floats]
 """Stages, paths, speeds, pressures."""
-Answering = Callable[..., npt.NDArray[np.int8]]
+Answering = Callable[..., npt.NDArray[np.int64]]
+
+TABLES = ("table", "approached_table", "turning_table", "surface_table", "surface_estimate")
 
 
 def adversarial_readings(table: ControllerTable, rng: np.random.Generator, count: int) -> Readings:
@@ -76,6 +79,11 @@ def adversarial_readings(table: ControllerTable, rng: np.random.Generator, count
     return stages, s, v, kpa
 
 
+def arrays_of(table: ControllerTable) -> tuple[Any, ...]:
+    """The first arguments of `decide`."""
+    return table.coefficients, table.has_line, table.valid_range, table.entrance_stage, table.farthest
+
+
 @pytest.fixture(scope="module")
 def compiled() -> Answering:
     """`decide` and `rises` compiled as they stand, for arrays of readings of one table."""
@@ -89,10 +97,10 @@ def compiled() -> Answering:
         s: Floats,
         v: Floats,
         kpa: Floats,
-    ) -> npt.NDArray[np.int8]:
-        coefficients, has_line, valid_range, entrance_stage = lines
+    ) -> npt.NDArray[np.int64]:
+        coefficients, has_line, valid_range, entrance_stage, farthest = lines
         slopes, pressures, highest_raised = surfaces
-        answers = np.empty(stages.size, dtype=np.int8)
+        answers = np.empty(stages.size, dtype=np.int64)
         for index in range(stages.size):
             rise = rises_of_one(slopes, pressures, highest_raised, stages[index], kpa[index])
             answers[index] = one(
@@ -100,6 +108,7 @@ def compiled() -> Answering:
                 has_line,
                 valid_range,
                 entrance_stage,
+                farthest,
                 stages[index],
                 s[index],
                 v[index],
@@ -109,17 +118,16 @@ def compiled() -> Answering:
 
     compiled_run: Any = jit(run)
 
-    def of_table(table: ControllerTable, *readings: npt.NDArray[Any]) -> npt.NDArray[np.int8]:
-        lines = (table.coefficients, table.has_line, table.valid_range, table.entrance_stage)
-        answers: npt.NDArray[np.int8] = compiled_run(
-            lines, (table.slopes, table.pressures, table.highest_raised), *readings
+    def of_table(table: ControllerTable, *readings: npt.NDArray[Any]) -> npt.NDArray[np.int64]:
+        answers: npt.NDArray[np.int64] = compiled_run(
+            arrays_of(table), (table.slopes, table.pressures, table.highest_raised), *readings
         )
         return answers
 
     return of_table
 
 
-@pytest.mark.parametrize("name", ["table", "approached_table", "surface_table", "surface_estimate"])
+@pytest.mark.parametrize("name", TABLES)
 def test_the_three_ways_agree_everywhere(name: str, request: pytest.FixtureRequest, compiled: Answering) -> None:
     table: ControllerTable = request.getfixturevalue(name)
     readings = adversarial_readings(table, np.random.default_rng(20261120), 60_000)
@@ -128,7 +136,9 @@ def test_the_three_ways_agree_everywhere(name: str, request: pytest.FixtureReque
     assert np.count_nonzero(many != plain) == 0
     assert np.count_nonzero(compiled(table, *readings) != plain) == 0
     # All answers occur often, so that the agreement means something.
-    assert np.all(np.bincount(plain + 1) > 3_000)
+    far = plain - readings[0]
+    assert min(np.count_nonzero(far < 0), np.count_nonzero(far == 0), np.count_nonzero(far > 0)) > 3_000
+    assert (np.count_nonzero(abs(far) > 1) > 1_000) == (table.farthest > 1)
 
 
 @given(tables())
@@ -141,33 +151,46 @@ def test_the_three_ways_agree_on_tables_of_every_shape(compiled: Answering, tabl
     assert plain == golden.answer[some].tolist() == compiled(table, *readings).tolist()
 
 
-@pytest.mark.parametrize("name", ["table", "approached_table", "surface_table", "surface_estimate"])
+@pytest.mark.parametrize("name", TABLES)
 def test_answers_agree_with_an_independent_float32_evaluation(name: str, request: pytest.FixtureRequest) -> None:
+    """A controller that sent a command for each stage, at once and with one reading, would end at the answer."""
     table: ControllerTable = request.getfixturevalue(name)
     stages, s, v, kpa = adversarial_readings(table, np.random.default_rng(1), 20_000)
     credible = np.isfinite(s) & np.isfinite(v) & (v >= 0) & (stages >= 0) & (stages < len(table.stages))
     readings = zip(stages[credible].tolist(), s[credible], v[credible], kpa[credible], strict=True)
-    ties = gated = turned = 0
-    for k, path, speed, pressure in readings:
-        stage = table.stages[k]
-        clamped = np.clip(path, *table.valid_range[:2])
+    ties = gated = turned = far = back = 0
+
+    def due(k: int, path: np.float32, speed: np.float32, pressure: np.float32) -> int:
+        nonlocal ties, gated
+        stage, clamped = table.stages[k], np.clip(path, *table.valid_range[:2])
         lower = -INF if stage.lower is None else exact_surface(table, stage, 0, clamped, pressure)
         upper = INF if stage.upper is None else exact_surface(table, stage, 1, clamped, pressure)
-        ties += speed in (lower, upper)
+        ties += int(speed in (lower, upper))
         if table.approach is not None and path < 0.0 and k >= table.approach.entrance_stage:
-            gated += speed > upper
+            gated += int(speed > upper)
             upper = INF
-        due = LOWER if speed < lower else RAISE if speed > upper else HOLD
-        assert decide_for(table, k, path, speed, pressure) == due
-        turned += decide_for(table, k, path, speed) != due
+        return -1 if speed < lower else 1 if speed > upper else 0
+
+    for k, *reading in readings:
+        wanted, step = k, due(k, *reading)
+        if step != 0:
+            wanted += step
+            while table.decisions is Decisions.AT_REST and due(wanted, *reading) == step:
+                wanted += step
+            back += due(wanted, *reading) == -step
+        assert decide_for(table, k, *reading) == wanted
+        turned += decide_for(table, k, *reading[:2]) != wanted
+        far += abs(wanted - k) > 1
     assert ties > 500
     assert (gated > 100) == (table.approach is not None)
     assert (turned > 500) == table.has_gauge
+    assert (far > 300) == (table.decisions is Decisions.AT_REST)
+    assert back > 100 or name != "turning_table"
 
 
 def test_both_float_widths_of_a_reading_agree_in_compiled_code(table: ControllerTable) -> None:
     compiled: Any = numba.njit(decide)
-    arrays = (table.coefficients, table.has_line, table.valid_range, table.entrance_stage)
+    arrays = arrays_of(table)
     for s in np.linspace(0.0, 37.0, 50):
         for v in np.linspace(4.0, 7.0, 50):
             assert compiled(*arrays, 1, float(s), float(v)) == compiled(*arrays, 1, np.float32(s), np.float32(v))
@@ -176,20 +199,20 @@ def test_both_float_widths_of_a_reading_agree_in_compiled_code(table: Controller
 @pytest.mark.parametrize(
     ("stage", "s_m", "v_m_s", "answer"),
     [
-        (0, 4.0, 5.0, HOLD),  # tie with the upper line
-        (0, 4.0, math.nextafter(5.0, 6.0), HOLD),  # a tie in float32
-        (0, 4.0, float(np.nextafter(np.float32(5), np.float32(6))), RAISE),
-        (0, 4.0, 0.0, HOLD),  # no lower line at stage 0
-        (1, 4.0, 3.0, HOLD),  # tie with the lower line
-        (1, 4.0, float(np.nextafter(np.float32(3), np.float32(2))), LOWER),
-        (1, 4.0, 1e3, HOLD),  # no upper line at the top stage
-        (1, 4.0, 0.0, LOWER),
-        (1, 4.0, -0.0, LOWER),
-        (0, -100.0, 4.25, HOLD),  # clamped to s = 1, where the line is at 4.25
-        (0, -100.0, 4.5, RAISE),
-        (0, 100.0, 6.0, HOLD),  # clamped to s = 8
-        (0, 100.0, 6.5, RAISE),
-        (0, 4.0, 3.4e38, RAISE),  # beyond the valid speeds, but a number
+        (0, 4.0, 5.0, 0),  # tie with the upper line
+        (0, 4.0, math.nextafter(5.0, 6.0), 0),  # a tie in float32
+        (0, 4.0, float(np.nextafter(np.float32(5), np.float32(6))), 1),
+        (0, 4.0, 0.0, 0),  # no lower line at stage 0
+        (1, 4.0, 3.0, 1),  # tie with the lower line
+        (1, 4.0, float(np.nextafter(np.float32(3), np.float32(2))), 0),
+        (1, 4.0, 1e3, 1),  # no upper line at the top stage
+        (1, 4.0, 0.0, 0),
+        (1, 4.0, -0.0, 0),
+        (0, -100.0, 4.25, 0),  # clamped to s = 1, where the line is at 4.25
+        (0, -100.0, 4.5, 1),
+        (0, 100.0, 6.0, 0),  # clamped to s = 8
+        (0, 100.0, 6.5, 1),
+        (0, 4.0, 3.4e38, 1),  # beyond the valid speeds, but a number
     ],
 )
 def test_the_rule_on_a_table_that_can_be_checked_by_hand(
@@ -218,30 +241,88 @@ def test_the_rule_on_a_table_that_can_be_checked_by_hand(
 def test_an_incredible_reading_moves_no_valve(
     linear_table: ControllerTable, stage: int, s_m: float, v_m_s: float
 ) -> None:
-    # The same reading with credible numbers does ask for a change, so that HOLD is an answer to what is incredible.
-    assert decide_for(linear_table, 1, 4.0, 0.0) == LOWER
-    assert decide_for(linear_table, 0, 4.0, 9.0) == RAISE
-    assert decide_for(linear_table, stage, s_m, v_m_s) == HOLD
-    assert decide_many(linear_table, stage, s_m, v_m_s) == HOLD
+    # The same reading with credible numbers does ask for a change, so that holding is an answer to what is incredible.
+    assert decide_for(linear_table, 1, 4.0, 0.0) == 0
+    assert decide_for(linear_table, 0, 4.0, 9.0) == 1
+    assert decide_for(linear_table, stage, s_m, v_m_s) == stage
+    assert decide_many(linear_table, stage, s_m, v_m_s) == stage
 
 
-@pytest.mark.parametrize("name", ["table", "approached_table", "surface_table"])
-def test_a_jump_ends_where_one_stage_after_the_other_would(name: str, request: pytest.FixtureRequest) -> None:
-    """A controller that could send a command for each stage, at once and with one reading, would end there."""
-    table: ControllerTable = request.getfixturevalue(name)
-    far = 0
-    for stage, s, v, kpa in zip(*adversarial_readings(table, np.random.default_rng(8), 4000), strict=True):
-        wanted = stage_for(table, int(stage), float(s), float(v), float(kpa))
-        answers = [decide_for(table, k, float(s), float(v), float(kpa)) for k in range(len(table.stages))]
-        if not 0 <= stage < len(answers) or answers[stage] == HOLD:
-            assert wanted == stage
-            continue
-        step = answers[stage]
-        assert step * (wanted - stage) > 0
-        assert all(answers[k] == step for k in range(stage, wanted, step))
-        assert answers[wanted] != step
-        far += abs(wanted - stage) > 1
-    assert far > 100
+@pytest.mark.parametrize(
+    ("stage", "v_m_s", "answer"),
+    [
+        (0, 4.0, 0),  # a tie
+        (0, 4.5, 1),
+        (0, 5.5, 2),  # at stage 1 too fast, too
+        (1, 5.5, 2),
+        (2, 5.5, 2),
+        (0, 6.5, 3),  # stage 2 raises, stage 3 would lower: the opposite answer ends it
+        (2, 6.5, 3),
+        (3, 6.5, 2),  # stage 3 lowers, stage 2 would raise
+        (4, 6.5, 2),
+        (0, 7.5, 3),
+        (0, 7.75, 4),
+        (4, 8.0, 4),  # a tie
+        (4, 2.5, 0),
+        (4, 3.5, 1),
+        (3, 5.5, 2),
+    ],
+)
+def test_a_jump_that_can_be_checked_by_hand(
+    turning_table: ControllerTable, stage: int, v_m_s: float, answer: int
+) -> None:
+    assert turning_table.farthest == active(turning_table).farthest == 4
+    assert decide_for(turning_table, stage, 0.0, v_m_s) == answer
+    assert decide_many(turning_table, stage, 0.0, v_m_s) == answer
+    assert decide_for(active(turning_table), stage, 0.0, v_m_s) == answer
+    step = min(max(answer, stage - 1), stage + 1)
+    assert decide_for(replace(turning_table, decisions=Decisions.AT_ANY_TIME), stage, 0.0, v_m_s) == step
+
+
+def followed(table: ControllerTable, golden: GoldenVectors, ends: Callable[[int, int], bool]) -> list[int]:
+    """Where a rule ends that goes on until an answer and the one before it at which it `ends`."""
+    once = replace(table, decisions=Decisions.AT_ANY_TIME)
+    found = []
+    for stage, s, v in zip(golden.stage.tolist(), golden.s_m, golden.v_m_s, strict=True):
+        reached, before = stage, 0
+        for _ in range(table.farthest):
+            step = decide_for(once, reached, s, v) - reached
+            if ends(step, before):
+                break
+            reached, before = reached + step, step
+        found.append(reached)
+    return found
+
+
+OTHER_RULES: dict[str, Callable[[int, int], bool]] = {
+    "the rule": lambda step, before: step in (0, -before),
+    "one stage": lambda step, before: before != 0,
+    "on after the opposite answer": lambda step, before: step == 0,
+}
+
+
+@pytest.mark.parametrize("rule", OTHER_RULES)
+@pytest.mark.parametrize("vectors", [golden_vectors, few_golden_vectors])
+@pytest.mark.parametrize("stages", [4, 5])
+def test_the_golden_vectors_show_a_wrong_jump(
+    turning_table: ControllerTable, stages: int, vectors: Callable[[ControllerTable], GoldenVectors], rule: str
+) -> None:
+    """With an odd number of stages to go, one that turns back and forth may end at the right one by chance."""
+    kept = turning_table.stages[:stages]
+    table = replace(turning_table, stages=(*kept[:-1], replace(kept[-1], upper=None)))
+    golden = vectors(table)
+    assert np.count_nonzero(abs(golden.answer - golden.stage) > 1) > 4
+    assert (followed(table, golden, OTHER_RULES[rule]) == golden.answer.tolist()) == (rule == "the rule")
+
+
+@pytest.mark.parametrize("vectors", [golden_vectors, few_golden_vectors])
+def test_the_golden_vectors_show_a_jump_at_any_time(
+    turning_table: ControllerTable, vectors: Callable[[ControllerTable], GoldenVectors]
+) -> None:
+    golden = vectors(replace(turning_table, decisions=Decisions.AT_ANY_TIME))
+    jumping = decide_many(turning_table, golden.stage, golden.s_m, golden.v_m_s)
+    assert np.count_nonzero(jumping != golden.answer) > 5
+    assert np.all(abs(golden.answer - golden.stage) <= 1)
 
 
 def test_subnormal_coefficients_are_not_flushed_to_zero(linear_table: ControllerTable) -> None:
@@ -252,14 +333,14 @@ def test_subnormal_coefficients_are_not_flushed_to_zero(linear_table: Controller
         valid=ValidRange((0.0, 1.0), (0.0, 1.0)),
     )
     compiled: Any = numba.njit(decide)
-    arrays = (table.coefficients, table.has_line, table.valid_range, table.entrance_stage)
-    for v, answer in ((tiny, HOLD), (float(np.nextafter(np.float32(tiny), np.float32(1))), RAISE)):
+    arrays: Any = arrays_of(table)
+    for v, answer in ((tiny, 0), (float(np.nextafter(np.float32(tiny), np.float32(1))), 1)):
         assert decide(*arrays, 0, 0.5, v) == compiled(*arrays, 0, 0.5, v) == decide_many(table, 0, 0.5, v) == answer
 
 
 def test_many_broadcasts_and_refuses_stages_that_are_no_integers(linear_table: ControllerTable) -> None:
     answers = decide_many(linear_table, [[0], [1]], 4.0, [0.0, 4.0, 9.0])
-    assert answers.tolist() == [[HOLD, HOLD, RAISE], [LOWER, HOLD, HOLD]]
-    assert answers.dtype == np.int8
+    assert answers.tolist() == [[0, 0, 1], [0, 1, 1]]
+    assert decide_many(linear_table, np.array([0, 1, 7], np.uint8), 4.0, 9.0).dtype == np.uint8
     with pytest.raises(TypeError, match="integers"):
         decide_many(linear_table, 0.0, 4.0, 4.0)

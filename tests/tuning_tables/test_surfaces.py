@@ -10,9 +10,6 @@ import numpy as np
 import pytest
 
 from tuning_tables import (
-    HOLD,
-    LOWER,
-    RAISE,
     ControllerTable,
     Decisions,
     InvalidTable,
@@ -79,8 +76,7 @@ def below(value: float) -> float:
 def test_the_rule_on_surfaces_that_can_be_checked_by_hand(
     tilted_table: ControllerTable, stage: int, kpa: float, line: float
 ) -> None:
-    raised, lowered = (RAISE, HOLD) if stage == 0 else (HOLD, LOWER)
-    for speed, answer in ((above(line), raised), (line, HOLD), (below(line), lowered)):
+    for speed, answer in ((above(line), 1), (line, stage), (below(line), 0)):
         assert decide_for(tilted_table, stage, 4.0, speed, kpa) == answer
         assert decide_for(active(tilted_table), stage, 4.0, speed, kpa) == answer
         assert decide_many(tilted_table, stage, 4.0, speed, kpa) == answer
@@ -108,8 +104,8 @@ def test_the_highest_pressure_is_that_of_the_highest_stage_that_is_raised_to(sur
 def test_a_stage_that_there_is_not_has_no_rise(surface_table: ControllerTable, stage: int) -> None:
     arrays = (surface_table.slopes, surface_table.pressures, surface_table.highest_raised)
     assert rises(*arrays, stage, 100.0) == (0.0, 0.0)
-    assert decide_for(surface_table, stage, 1.0, 9.0, 100.0) == HOLD
-    assert decide_many(surface_table, stage, 1.0, 9.0, 100.0) == HOLD
+    assert decide_for(surface_table, stage, 1.0, 9.0, 100.0) == stage
+    assert decide_many(surface_table, stage, 1.0, 9.0, 100.0) == stage
 
 
 @pytest.mark.parametrize("top_kpa", [450.0, 1e39])

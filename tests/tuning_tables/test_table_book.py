@@ -10,7 +10,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from tuning_tables import ControllerTable, CutId, InvalidTable, Stage, decide, round_coefficients
+from tuning_tables import ControllerTable, CutId, InvalidTable, Stage, decide, decide_for, round_coefficients
 from tuning_tables.active_table import active, between
 from tuning_tables.golden_vectors import line_speeds
 from tuning_tables.table_book import Choice, Status, TableBook
@@ -116,8 +116,9 @@ def test_lines_between_are_computed_in_float32_one_rounding_an_operation(book: T
 def test_a_chosen_table_is_what_the_rule_takes(book: TableBook) -> None:
     choice = chosen(book, 2.5)
     assert choice.table is not None
-    arrays = (choice.table.coefficients, choice.table.has_line, choice.table.valid_range, choice.table.entrance_stage)
-    assert decide(*arrays, 0, 37.0, 9.0) == 1
+    arrays = (choice.table.coefficients, choice.table.has_line, choice.table.valid_range)
+    limits = (choice.table.entrance_stage, choice.table.farthest)
+    assert decide(*arrays, *limits, 0, 37.0, 9.0) == decide_for(choice.table, 0, 37.0, 9.0) == 2
     with pytest.raises(ValueError, match="read-only"):
         choice.table.coefficients[0, 0, 0] = 1.0
 

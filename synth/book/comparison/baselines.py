@@ -1,7 +1,7 @@
 """The laws that a table has to beat, each tuned as a competent engineer would.
 
-All four are switching lines with `multi_step`: one command may jump over stages, as these laws do. They
-are tuned on the rms exit error of simulated passes: a coarse grid, then a simplex search from its best point.
+All four are switching lines. They are tuned on the rms exit error of simulated passes: a coarse grid, then a simplex
+search from its best point.
 """
 
 from __future__ import annotations
@@ -103,7 +103,7 @@ def threshold_with_lead(
     upper = np.full((stages, LINE_NODES), np.inf)
     lower[1:] = target_m_s + offset_m_s
     upper[:brake_stage] = target_m_s + offset_m_s + width_m_s
-    return LineController(SwitchingLines(line_nodes_m(loop), lower, upper), multi_step=True, lead_s=lead_s)
+    return LineController(SwitchingLines(line_nodes_m(loop), lower, upper), lead_s=lead_s)
 
 
 def energy_rule(
@@ -133,7 +133,7 @@ def energy_rule(
     upper = np.full((loop.stages, LINE_NODES), np.inf)
     lower[1 : top_stage + 1] = speeds[:-1] - hysteresis_m_s
     upper[:top_stage] = speeds[:-1]
-    return LineController(SwitchingLines(nodes, lower, upper), multi_step=True, lead_s=lead_s)
+    return LineController(SwitchingLines(nodes, lower, upper), lead_s=lead_s)
 
 
 def line_nodes_m(loop: ClosedLoop) -> NDArray[np.float64]:

@@ -12,7 +12,6 @@ from plant_models.approach import Approach
 from synth.book.any_time.surface_table import polished_surfaces, starting_surfaces
 from synth.book.attempted_case import attempted
 from synth.book.class_setup import ClassSetup, class_setup, origin_of, validation_passes
-from synth.book.estimation.simulated_prediction import prediction_passes, simulated_prediction
 from synth.book.failed_case import FailedCase, parted
 from synth.book.permissions.permission import (
     AllPermissions,
@@ -149,7 +148,6 @@ def case_permissions(case: CaseTuned) -> CasePermissions:
 def designs(case: CaseTuned) -> Iterator[tuple[Permission, Design]]:
     """Every permission that can be asked for, with its design."""
     config, plant = case.config, case.setup.plant
-    yield Permission.JUMPS, partial(several_stages, case)
     both: CaseTuned | FailedCase | None = None
     if not config.regulator.estimator and config.criterion.requirement is None:
         both = case.attempt(partial(other_case, case, estimating(config, "any_time"), plant))
@@ -217,11 +215,3 @@ def from_elsewhere(case: CaseTuned, permission: Permission, approach: Approach) 
     """With another approach."""
     other = other_case(case, case.config, replace(case.setup.plant, approach=approach))
     return case.result(permission, other.sample, other.tuned.table.predicted.rms_m_s)
-
-
-def several_stages(case: CaseTuned) -> PermissionResult:
-    """The table as it is, asked again at the stage that its answer leads to."""
-    setup, controller = case.setup, TableController(case.tuned.table, multi_step=True)
-    others = setup.passes.of_others(prediction_passes(case.config.validation.seed + 2, setup.label))
-    predicted = simulated_prediction(others.run(controller), case.target_m_s)
-    return case.result(Permission.JUMPS, setup.passes.run(controller), predicted.rms_m_s)

@@ -13,7 +13,6 @@ from synth.simulation.replicates import Interval
 class Permission(Enum):
     """What a regulator may do or know more, or less, than the configuration says; the value is its name in files."""
 
-    JUMPS = "several stages a command"
     ANY_TIME = "commands at any time"
     WITHOUT_GAUGE = "commands at any time, no pressure gauge"
     ESTIMATOR = "estimator"
@@ -26,7 +25,7 @@ class Permission(Enum):
 class PermissionResult:
     """The closed loop of a regulator with a permission: its figures, and its rms over that of the configured table.
 
-    `ratio_ci95`: paired, 95 %. `predicted_rms_m_s`: exact, or from other passes for an estimator and for jumps.
+    `ratio_ci95`: paired, 95 %. `predicted_rms_m_s`: exact, or from other passes for an estimator.
     """
 
     permission: Permission

@@ -23,7 +23,7 @@ from synth.kernels.loop.regulator import (
     measure,
     pressure_rises,
     stage_by_lines,
-    table_decision,
+    stage_by_table,
 )
 from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 
@@ -121,17 +121,12 @@ def wanted_stage(law: AnyTimeLaw, stage: int, top: int, pressure: float, wait: f
         by_surfaces: int = wanted_by_surfaces(law.surfaces, stage, pressure, wait, s, v)
         return by_surfaces
     if by.coefficients.shape[0] > 0:
-        reached, step, shown = stage, 0, pressure * law.gauge_factor
-        while True:  # with `multi_step` asked again at the stage reached
-            rise = pressure_rises(law.slopes, law.pressures, law.highest_raised, reached, shown)
-            answer = table_decision(by.coefficients, by.has_line, by.valid, by.entrance_stage, reached, s, v, rise)
-            if answer == 0 or answer == -step:
-                return reached
-            step = answer
-            reached = min(max(reached + step, 0), top)
-            if not by.multi_step or reached == 0 or reached == top:
-                return reached
-    wanted: int = stage_by_lines(by.lower, by.upper, by.start_m, by.spacing_m, by.multi_step, stage, top, s, v)
+        shown = pressure * law.gauge_factor
+        rise = pressure_rises(law.slopes, law.pressures, law.highest_raised, stage, shown)
+        lines = (by.coefficients, by.has_line, by.valid, by.entrance_stage)
+        by_table: int = stage_by_table(*lines, by.farthest, stage, s, v, rise)
+        return by_table
+    wanted: int = stage_by_lines(by.lower, by.upper, by.start_m, by.spacing_m, by.farthest, stage, top, s, v)
     return wanted
 
 

@@ -24,7 +24,7 @@ from synth.kernels.loop.regulator import (
     impulse_time_s,
     measure,
     stage_by_lines,
-    table_decision,
+    stage_by_table,
 )
 from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 
@@ -154,7 +154,7 @@ def run_pass(
     A pressure, stage or speed in `events` holds from its time on; the last event is the end of the pass. `known` (8,)
     is memory for the estimator.
     """
-    coefficients, has_line, valid, gate, lower, upper, start_m, spacing_m, multi_step, lead_s, filter_s = law[:11]
+    coefficients, has_line, valid, gate, farthest, lower, upper, start_m, spacing_m, lead_s, filter_s = law[:11]
     parameters, work = law.estimator_parameters, law.estimator_work
     mode_kpa, command, chain_mode, chain_samples, chain_kpa, substeps, mode, stage, entrance_stage = drive
     period, part = sensor.period_s, sensor.period_s / substeps
@@ -181,16 +181,10 @@ def run_pass(
             measured = estimated if chain < 0 else math.nan  # compared, and noted, only at rest
         if chain < 0:
             if tabled:
-                step = table_decision(coefficients, has_line, valid, gate, stage, s, measured)
-                wanted = min(max(stage + step, 0), top)
-                if multi_step and step != 0:
-                    while 0 < wanted < top:
-                        if table_decision(coefficients, has_line, valid, gate, wanted, s, measured) != step:
-                            break
-                        wanted += step
+                wanted = stage_by_table(coefficients, has_line, valid, gate, farthest, stage, s, measured)
             else:
                 ahead = measured + lead_s * slope
-                wanted = stage_by_lines(lower, upper, start_m, spacing_m, multi_step, stage, top, s, ahead)
+                wanted = stage_by_lines(lower, upper, start_m, spacing_m, farthest, stage, top, s, ahead)
             wanted = admitted(stage, wanted, s, entrance_stage)
             if wanted != stage:
                 chain, played, stage = command[mode, wanted], 0, wanted

@@ -26,7 +26,7 @@ from synth.kernels.loop.lane_places import (
     V,
     Work,
 )
-from synth.kernels.loop.regulator import Rule, Sensor, admitted, stage_by_lines, table_decision
+from synth.kernels.loop.regulator import Rule, Sensor, admitted, stage_by_lines, stage_by_table
 from synth.kernels.vector import packs
 from synth.kernels.vector.borrowing import borrowing_inline
 
@@ -133,14 +133,10 @@ def regulate(x: Floats, n: Ints, lane: int, speed_m_s: float, pieces: Pieces, la
     s, stage, top = x[S + lane], n[STAGE + lane], pieces.command.shape[1] - 1
     if law.coefficients.shape[0] > 0:
         lines = (law.coefficients, law.has_line, law.valid, law.entrance_stage)
-        decision = table_decision(*lines, stage, s, speed_m_s)
-        wanted = min(max(stage + decision, 0), top)
-        if law.multi_step and decision != 0:
-            while 0 < wanted < top and table_decision(*lines, wanted, s, speed_m_s) == decision:
-                wanted += decision
+        wanted = stage_by_table(*lines, law.farthest, stage, s, speed_m_s)
     else:
         wanted = stage_by_lines(
-            law.lower, law.upper, law.start_m, law.spacing_m, law.multi_step, stage, top, s, speed_m_s
+            law.lower, law.upper, law.start_m, law.spacing_m, law.farthest, stage, top, s, speed_m_s
         )
     wanted = admitted(stage, wanted, s, pieces.entrance_stage)
     if wanted != stage:

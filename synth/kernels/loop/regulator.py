@@ -32,28 +32,28 @@ class Rule(NamedTuple):
 
     Table: `coefficients` float32 (K + 1, 2, r + 1), NaN where there is no line, `has_line` (K + 1, 2), `valid`
     float32 (4,), `entrance_stage` the highest stage that may be commanded at s < 0. Lines: `lower`, `upper`
-    (K + 1, N + 1) over nodes `spacing_m` apart from `start_m` on. With `multi_step` either is asked again at the stage
-    reached, as long as it answers the same. The speed compared with lines is measured + `lead_s`·slope, the slope
-    filtered over `filter_s`. With `estimator_work` (3, B), B > 0, the speed compared is that of
-    `tuning_tables.estimator`.
+    (K + 1, N + 1) over nodes `spacing_m` apart from `start_m` on. Either is asked again at the stage reached, as long
+    as it answers the same, until the command has gone `farthest` stages. The speed compared with lines is measured +
+    `lead_s`·slope, the slope filtered over `filter_s`. With `estimator_work` (3, B), B > 0, the speed compared is that
+    of `tuning_tables.estimator`.
     """
 
     coefficients: NDArray[np.float32]
     has_line: NDArray[np.bool_]
     valid: NDArray[np.float32]
     entrance_stage: int
+    farthest: int
     lower: Floats
     upper: Floats
     start_m: float
     spacing_m: float
-    multi_step: bool
     lead_s: float
     filter_s: float
     estimator_parameters: NDArray[np.float32]
     estimator_work: NDArray[np.float32]
 
 
-table_decision = njit(cache=True, nogil=True)(rule.decide)
+stage_by_table = njit(cache=True, nogil=True)(rule.decide)
 pressure_rises = njit(cache=True, nogil=True)(rule.rises)
 estimated_speed = njit(cache=True, nogil=True)(estimator.observe)
 
@@ -97,7 +97,7 @@ def stage_by_lines(
     upper: Floats,
     start_m: float,
     spacing_m: float,
-    multi_step: bool,
+    farthest: int,
     stage: int,
     top: int,
     s: float,
@@ -106,9 +106,10 @@ def stage_by_lines(
     """Stage that switching lines want at (s, v) while `stage` rests, within 0 … `top`."""
     step = line_decision(lower, upper, start_m, spacing_m, stage, s, v)
     wanted: int = min(max(stage + step, 0), top)
-    if multi_step and step != 0:
-        while 0 < wanted < top and line_decision(lower, upper, start_m, spacing_m, wanted, s, v) == step:
-            wanted += step
+    while step != 0 and 0 < wanted < top and abs(wanted - stage) < farthest:
+        if line_decision(lower, upper, start_m, spacing_m, wanted, s, v) != step:
+            break
+        wanted += step
     return wanted
 
 

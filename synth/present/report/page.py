@@ -26,8 +26,8 @@ HOW_TO_READ = (
     "cuts leave too fast by under the hardest braking, and too slow by without any. "
     "Over-speed: more than 0.3 m/s above the target. Out of brake: leaves that fast even where every decision raises "
     "the stage, so that no table can hold it. Brackets: 95 % intervals, from passes in strata of the friction; the "
-    "chance of these passes is all that they cover. All controllers see the same passes. Those of the best baseline "
-    "may jump stages in one command, which the tables' rule may not; all may act from the same place."
+    "chance of these passes is all that they cover. All controllers see the same passes, and may act from the same "
+    "place."
 )
 
 

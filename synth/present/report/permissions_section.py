@@ -15,9 +15,8 @@ GROUP: Final = "rms × if permitted"
 NO_BREAK: Final = "\u00a0"
 
 LEAD: Final = (
-    "Each permission is designed, predicted and simulated as a table of its own: with several stages a command the "
-    "lines stay, with all others they are tuned anew. The ratio is paired, on the same passes as the exported table; "
-    "brackets: 95 %. Below 1 the permission makes the error smaller."
+    "Each permission is designed, predicted and simulated as a table of its own. The ratio is paired, on the same "
+    "passes as the exported table; brackets: 95 %. Below 1 the permission makes the error smaller."
 )
 
 

@@ -73,7 +73,7 @@ def deciding_parts(loop: ClosedLoop, controller: TableController) -> tuple[Part,
         Part(
             "digital controller", "D(z)", Block.COMPUTER, "compares the speed with the lines of the stage in force",
             stage_by_table, takes=(("stage", "U[n]"), ("s_m", "S*[n]"), ("v_m_s", "V*[n]")), gives=("D[n]",),
-            given=(("law", controller.law()), ("top", controller.stages - 1)), waits_for=("locked",),
+            given=(("law", controller.law()),), waits_for=("locked",),
             numbers=(Number("K", controller.stages - 1),),
         ),
         Part(

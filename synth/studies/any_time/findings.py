@@ -14,13 +14,12 @@ from synth.studies.study import Findings
 
 LINES, CUBIC = "at rest, lines", "at rest, cubic"
 SURFACES, POLISHED, PLAIN = "any time, surfaces", "any time, cubic and pressure", "any time, cubic"
-CUBIC_JUMPING, JUMPING = "at rest, cubic, jumping", "any time, cubic and pressure, jumping"
 ENERGY, ENERGY_AT_ANY_TIME = "energy rule", "energy rule, any time"
-NAMES = (LINES, CUBIC, CUBIC_JUMPING, SURFACES, POLISHED, JUMPING, PLAIN, ENERGY, ENERGY_AT_ANY_TIME)
+NAMES = (LINES, CUBIC, SURFACES, POLISHED, PLAIN, ENERGY, ENERGY_AT_ANY_TIME)
 SHOWN = (SURFACES, POLISHED, PLAIN, ENERGY, ENERGY_AT_ANY_TIME)
 """Controllers of the pictures of gains."""
 
-GAINING = (CUBIC, CUBIC_JUMPING, POLISHED, JUMPING, PLAIN)
+GAINING = (CUBIC, POLISHED, PLAIN)
 """Tables of the table of gains."""
 
 
@@ -178,10 +177,9 @@ class AnyTime(Findings):
         """
         rules = (ENERGY, ENERGY_AT_ANY_TIME)
         heads = ("valves", "case", *GAINING, *rules, f"{POLISHED} / {CUBIC}",
-                 *(f"{JUMPING} / {rule}" for rule in rules), "the same near the target")  # fmt: skip
+                 *(f"{POLISHED} / {rule}" for rule in rules), "the same near the target")  # fmt: skip
         every = ("valves", "case", *NAMES)
-        names = (Permission.JUMPS, Permission.ANY_TIME, Permission.WITHOUT_GAUGE, Permission.ESTIMATOR,
-                 Permission.ANY_TIME_ESTIMATOR)  # fmt: skip
+        names = (Permission.ANY_TIME, Permission.WITHOUT_GAUGE, Permission.ESTIMATOR, Permission.ANY_TIME_ESTIMATOR)
         granted = ("case", "rms, m/s / switchings", *(each.value for each in names), "predicted / simulated, any time")
         told = (permission_cells(row, [each.value for each in names]) for row in self.permissions)
         wrong = ("valves", "case", *(f"shows × {factor}" for factor in self.rows[0].gauge))

@@ -44,10 +44,8 @@ from synth.solver.chain.chain import persistent_chain
 from synth.solver.polynomial_lines import PolynomialLines
 from synth.studies.any_time.findings import (
     CUBIC,
-    CUBIC_JUMPING,
     ENERGY,
     ENERGY_AT_ANY_TIME,
-    JUMPING,
     LINES,
     PLAIN,
     POLISHED,
@@ -221,8 +219,8 @@ def studied(bench: Bench, valves: float, options: Options, fresh: RandomPasses) 
     samples = samples_of(bench, solved, polish.surfaces, plain.surfaces, passes)
     target = bench.case.target_m_s
     told = {name: told_of(sample, samples[CUBIC], target) for name, sample in samples.items()}
-    beside = {ENERGY: JUMPING, ENERGY_AT_ANY_TIME: JUMPING, PLAIN: POLISHED}
-    others = {name: Ratio(*rms_ratio(samples[mine], samples[name], target)) for name, mine in beside.items()}
+    beside = (ENERGY, ENERGY_AT_ANY_TIME, PLAIN)
+    others = {name: Ratio(*rms_ratio(samples[POLISHED], samples[name], target)) for name in beside}
     predicted = bench.predicted_rms_m_s(polish.surfaces)
     polishing = Polishing(polish.evaluations, polish.converged, seconds, predicted)
     shown = {factor: passes.run(bench.controller(polish.surfaces, factor)) for factor in GAUGE_FACTORS}
@@ -249,10 +247,8 @@ def samples_of(
     controllers: dict[str, Regulator] = {
         LINES: bench.lines,
         CUBIC: LineController(bench.cubics.at(nodes)),
-        CUBIC_JUMPING: LineController(bench.cubics.at(nodes), multi_step=True),
         SURFACES: SurfaceController(solved),
         POLISHED: bench.controller(polished),
-        JUMPING: replace(bench.controller(polished), multi_step=True),
         PLAIN: bench.controller(plain),
         ENERGY: energy[Decisions.AT_REST],
         ENERGY_AT_ANY_TIME: energy[Decisions.AT_ANY_TIME],

@@ -35,8 +35,7 @@ class CutFigures:
     """The table of a case, simulated; `length_m`: path of a pass, from where the regulator acts to the exit.
 
     `design_rms_m_s`: of its lines on the grid that they were polished on, in a second design if `designed_again`.
-    `feasible`: the position does not forbid the limit on the rms. `best`: of all rules as they are;
-    `best_representable`: of those that a table can express.
+    `feasible`: the position does not forbid the limit on the rms. `best`: of all rules.
     """
 
     case: RandomCase
@@ -49,7 +48,6 @@ class CutFigures:
     switchings: float
     feasible: bool
     best: Beside
-    best_representable: Beside
 
     @property
     def design_share(self) -> float:

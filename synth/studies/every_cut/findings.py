@@ -41,10 +41,9 @@ class EveryCut(Findings):
         yield class_cells("all", self.cases)
 
     def worst(self) -> MarkdownTable:
-        """The cases of the highest rms beside the best rule that a table can express."""
-        ordered = sorted(self.cases, key=lambda each: -each.best_representable.ratio)[:WORST]
-        return table("The worst cases beside the best rule that a table can express", WORST_HEADS,
-                     [case_cells(each) for each in ordered])  # fmt: skip
+        """The cases of the highest rms beside the best rule."""
+        ordered = sorted(self.cases, key=lambda each: -each.best.ratio)[:WORST]
+        return table("The worst cases beside the best rule", WORST_HEADS, [case_cells(each) for each in ordered])
 
     def sentences(self) -> tuple[str, ...]:
         """How much was done, and the cases without a table."""
@@ -55,7 +54,7 @@ class EveryCut(Findings):
         )
 
     def faults(self) -> tuple[str, ...]:
-        """Cases that a rule controls better which the table could express, and predictions that do not hold."""
+        """Cases that a rule controls better, and predictions that do not hold."""
         return tuple(sentence for each in self.cases for sentence in faults_of(each))
 
 
@@ -68,7 +67,7 @@ def findings_of(seed: int, passes: int, outcomes: Sequence[Outcome]) -> EveryCut
 
 def faults_of(found: CutFigures) -> Iterator[str]:
     """What one case was to keep and does not."""
-    rule = found.best_representable
+    rule = found.best
     if rule.beaten_by:
         yield f"{found.case.name}: rms {around(rule.ratio, rule.ratio_ci95, 3)} times that of the {rule.rule}"
     if not found.honest:
@@ -77,9 +76,8 @@ def faults_of(found: CutFigures) -> Iterator[str]:
 
 
 CLASS_HEADS = (
-    "path of a pass", "cases", "worse than the best rule that a table can express, % of the cases",
-    "worse than the best rule of all, %", "rms / best rule of all: median", "predicted / simulated: least, greatest",
-    "design / predicted: least, greatest", "designed again",
+    "path of a pass", "cases", "worse than the best rule, % of the cases", "rms / best rule: median",
+    "predicted / simulated: least, greatest", "design / predicted: least, greatest", "designed again",
 )  # fmt: skip
 
 
@@ -89,8 +87,8 @@ def class_cells(name: str, cases: Sequence[CutFigures]) -> tuple[str, ...]:
         return (name, "0", *(ABSENT for _ in CLASS_HEADS[2:]))
     honesty, shares = [each.honesty for each in cases], [each.design_share for each in cases]
     return (
-        name, str(len(cases)), share_cell([each.best_representable.beaten_by for each in cases]),
-        share_cell([each.best.beaten_by for each in cases]), median_cell([each.best.ratio for each in cases]),
+        name, str(len(cases)), share_cell([each.best.beaten_by for each in cases]),
+        median_cell([each.best.ratio for each in cases]),
         f"{min(honesty):.3f}, {max(honesty):.3f}", f"{min(shares):.3f}, {max(shares):.3f}",
         str(sum(each.designed_again for each in cases)),
     )  # fmt: skip
@@ -116,8 +114,7 @@ def median_cell(values: Sequence[float]) -> str:
 
 
 WORST_HEADS = (
-    "case", "path, m", "limit can be met", "rms, m/s", "predicted / simulated",
-    "rms / best rule that a table can express", "rms / best rule of all",
+    "case", "path, m", "limit can be met", "rms, m/s", "predicted / simulated", "rms / best rule",
 )  # fmt: skip
 
 
@@ -125,8 +122,7 @@ def case_cells(found: CutFigures) -> tuple[str, ...]:
     """The cells of one case."""
     return (
         found.case.name, f"{found.length_m:.0f}", "yes" if found.feasible else "no",
-        around(found.rms_m_s, found.rms_ci95_m_s), f"{found.honesty:.3f}", rule_cell(found.best_representable),
-        rule_cell(found.best),
+        around(found.rms_m_s, found.rms_ci95_m_s), f"{found.honesty:.3f}", rule_cell(found.best),
     )  # fmt: skip
 
 

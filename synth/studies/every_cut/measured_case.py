@@ -7,7 +7,7 @@ from functools import partial
 
 from synth.book.attempted_case import attempted
 from synth.book.class_setup import TUNING_PASSES, ClassSetup, class_setup, origin_of, validation_passes
-from synth.book.comparison.baselines import TunedBaseline, tune, tune_baselines
+from synth.book.comparison.baselines import TunedBaseline, tune_baselines
 from synth.book.failed_case import FailedCase
 from synth.book.tuned_table import ValidatedTable, read_back, solutions, tuned_table, validated_table
 from synth.configuration.resolved_config import ResolvedConfig
@@ -17,7 +17,6 @@ from synth.simulation.random_passes import random_passes
 from synth.simulation.unavoidable_error import unavoidable_error
 from synth.studies.every_cut.cut_figures import Beside, CutFigures, Outcome, Untuned
 from synth.studies.every_cut.random_case import RandomCase
-from synth.studies.every_cut.representable import representable
 from synth.studies.tuned_table import CREATED
 
 
@@ -41,7 +40,6 @@ def figures_of(case: RandomCase, config: ResolvedConfig) -> CutFigures:
     unavoidable = unavoidable_error(ends.slowest, ends.fastest, target)
     tuning = setup.passes.of_others(random_passes(config.validation.seed + 1, 0, TUNING_PASSES))
     best = best_of(tune_baselines(tuning, target), setup, validated)
-    best_representable = best_of([tune(law, tuning, target) for law in representable()], setup, validated)
     figures = validated.statistics
     return CutFigures(
         case=case,
@@ -54,7 +52,6 @@ def figures_of(case: RandomCase, config: ResolvedConfig) -> CutFigures:
         switchings=figures.switchings,
         feasible=not unavoidable.forbids(config.acceptance.rms_m_s),
         best=best,
-        best_representable=best_representable,
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final, Literal
 
 from matplotlib.axes import Axes
@@ -22,7 +22,7 @@ from synth.present.plots.house_style import (
 )
 
 if TYPE_CHECKING:
-    from synth.studies.every_cut.cut_figures import Beside, CutFigures
+    from synth.studies.every_cut.cut_figures import CutFigures
     from synth.studies.every_cut.findings import EveryCut
 
 KINDS = (("1 car", 1, 1, "o", BLUE), ("2 to 4 cars", 2, 4, "s", GREEN), ("6 to 10 cars", 5, 10, "^", VERMILLION))
@@ -32,28 +32,25 @@ FILL_OF_FEASIBLE: Final[Mapping[bool, Literal["full", "none"]]] = {True: "full",
 
 
 def picture(found: EveryCut) -> Figure:
-    """Beside all rules, and beside those that a table can express."""
+    """The ratio over the path."""
     subject = f"{len(found.cases)} random cuts over the whole library; below 1 the table is better"
-    figure = new_figure(11.0, 5.8, "Tables beside the best of the rules tuned for the same case", subject)
-    place(figure, left=0.8, right=0.2, bottom=0.95, top=0.9, w=0.12)
-    left, right = figure.subplots(1, 2, sharey=True)
-    panel(left, found.cases, "all rules", lambda each: each.best)
-    panel(right, found.cases, "rules that a table can express", lambda each: each.best_representable)
-    left.set_ylabel("rms of the table / rms of the best rule", fontsize=9)
-    every = [each.ratio for case in found.cases for each in (case.best, case.best_representable)]
-    logarithmic_y(left, [1.0, *every])
+    figure = new_figure(8.0, 5.8, "Tables beside the best of the rules tuned for the same case", subject)
+    place(figure, left=0.8, right=0.2, bottom=0.95, top=0.9)
+    axes = figure.subplots()
+    dress(axes, "", "path of a pass, m", "rms of the table / rms of the best rule")
+    marks(axes, found.cases)
+    logarithmic_y(axes, [1.0, *(case.best.ratio for case in found.cases)])
     legend_below(figure, handles(), len(KINDS) + len(FILL_OF_FEASIBLE))
     return figure
 
 
-def panel(axes: Axes, cases: Sequence[CutFigures], title: str, rule_of: Callable[[CutFigures], Beside]) -> None:
-    """One ratio over the path."""
-    dress(axes, title, "path of a pass, m")
+def marks(axes: Axes, cases: Sequence[CutFigures]) -> None:
+    """A mark for each case."""
     for _, fewest, most, marker, colour in KINDS:
         for feasible, fill in FILL_OF_FEASIBLE.items():
             mine = [each for each in cases if fewest <= each.case.cars <= most and each.feasible is feasible]
             axes.plot(
-                [each.length_m for each in mine], [rule_of(each).ratio for each in mine], marker, color=colour,
+                [each.length_m for each in mine], [each.best.ratio for each in mine], marker, color=colour,
                 markersize=4.5, fillstyle=fill, linestyle="",
             )  # fmt: skip
     axes.axhline(1.0, color=INK, linewidth=1.0, linestyle="--")

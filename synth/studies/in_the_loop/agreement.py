@@ -20,11 +20,11 @@ from tuning_tables.table_book import Status, TableBook
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Questions:
-    """Readings and commands, and what the Python rule answers: decisions (n,), statuses (m,), words (m, words)."""
+    """Readings and commands, and what the Python rule answers: stages (n,), statuses (m,), words (m, words)."""
 
     book: TableBook
     readings: NDArray[np.void]
-    decisions: NDArray[np.int8]
+    decisions: NDArray[np.int32]
     commands: NDArray[np.void]
     statuses: NDArray[np.int32]
     chosen: NDArray[np.uint32]
@@ -97,9 +97,9 @@ def wrongly_told(controller: Controller, book: TableBook) -> int:
     return sum(found != due for found, due in zip(told, zip(right, times, strict=True), strict=True))
 
 
-def decisions_of(book: TableBook, readings: NDArray[np.void]) -> NDArray[np.int8]:
-    """The answers of the Python rule, table by table."""
-    found = np.empty(len(readings), np.int8)
+def decisions_of(book: TableBook, readings: NDArray[np.void]) -> NDArray[np.int32]:
+    """The stages to command by the Python rule, table by table."""
+    found = np.empty(len(readings), np.int32)
     for number, table in enumerate(book.tables):
         of_table = readings["table"] == number
         now = readings[of_table]

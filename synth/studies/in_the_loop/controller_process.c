@@ -1,13 +1,13 @@
 /* An exported table book as a process that answers through its standard input and output; words in the machine's order.
  *
- *   decide          for {uint32 table, int32 stage, float s_m, float v_m_s, float pressure_kpa}: int32 answer; all of a
- *                   stream
+ *   decide          for {uint32 table, int32 stage, float s_m, float v_m_s, float pressure_kpa}: int32 stage to command;
+ *                   all of a stream
  *   observe         for {uint32 table, uint32 start, float s_m, float v_m_s, float overpressure_kpa, 8 words}: the
  *                   estimated speed and the 8 words of the estimate; all of a stream. start 0: the estimate goes on,
  *                   1: it begins, 2: it is the 8 words, whatever they are
  *   serve N         for {int32 what, float s_m, float v_m_s, float kpa}, at once: what OBSERVE, or BEGIN and observe:
- *                   float estimated speed of table N, kpa being the overpressure; else its int32 decision, `what` being
- *                   the stage and kpa the pressure
+ *                   float estimated speed of table N, kpa being the overpressure; else the int32 stage that it
+ *                   commands, `what` being the stage and kpa the pressure
  *   select          for {uint32 layout, uint32 category, uint32 axles, float speed}: int32 status, the table (zeros if none)
  *   intact          for a table: int32, whether its checksum is right
  *   approach        nothing: for every table float approach in m, int32 entrance stage

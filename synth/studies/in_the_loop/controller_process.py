@@ -51,9 +51,9 @@ class Controller:
     table_words: int
     order: Literal["<", ">"] = "<"
 
-    def decide(self, readings: NDArray[np.void]) -> NDArray[np.int8]:
-        """The decisions for `readings`, dtype READING, (n,)."""
-        return np.frombuffer(self._answer(("decide",), readings), f"{self.order}i4").astype(np.int8)
+    def decide(self, readings: NDArray[np.void]) -> NDArray[np.int32]:
+        """The stages to command at `readings`, dtype READING, (n,)."""
+        return np.frombuffer(self._answer(("decide",), readings), f"{self.order}i4").astype(np.int32)
 
     def observe(self, samples: NDArray[np.void]) -> NDArray[np.uint32]:
         """For `samples`, dtype SAMPLE, (n,): the bits of the estimated speed and of the estimate after it, (n, 9)."""

@@ -36,7 +36,7 @@ def golden_readings(book: TableBook) -> NDArray[np.void]:
 
 
 def near_lines(book: TableBook, count: int, rng: np.random.Generator) -> NDArray[np.void]:
-    """Speeds on a line or surface, or up to two float32 steps from it."""
+    """Speeds on a line or surface, or up to two float32 steps from it; half of the lines are another stage's."""
     parts, lines = [], [
         (number, k, i) for number, t in enumerate(book.tables) for k, i in np.argwhere(t.has_line).tolist()
     ]  # fmt: skip
@@ -54,7 +54,10 @@ def near_lines(book: TableBook, count: int, rng: np.random.Generator) -> NDArray
             towards = np.where(steps < 0, -np.inf, np.inf).astype(np.float32)
             v = np.where(steps != 0, np.nextafter(v, towards), v)
             steps -= np.sign(steps)
-        parts.append(readings(np.full(each, number), np.full(each, k), s, v, kpa))
+        stage = np.full(each, k)
+        if table.farthest > 1:
+            stage = np.where(rng.random(each) < 0.5, rng.integers(0, len(table.stages), each), stage)
+        parts.append(readings(np.full(each, number), stage, s, v, kpa))
     return np.concatenate(parts)
 
 

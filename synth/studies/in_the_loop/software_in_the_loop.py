@@ -130,7 +130,7 @@ def run_passes_with(decision: Any, estimated_speed: Any) -> Any:
     loop around them is no other.
     """
     compiled = njit(nogil=True, error_model="numpy")
-    scope = {**vars(kernel), "table_decision": decision, "estimated_speed": estimated_speed}
+    scope = {**vars(kernel), "stage_by_table": decision, "estimated_speed": estimated_speed}
     scope["run_pass"] = compiled(FunctionType(kernel.run_pass.py_func.__code__, scope))
     return compiled(FunctionType(kernel.run_passes.py_func.__code__, scope))
 
@@ -143,7 +143,7 @@ def run_any_time_passes_with(decision: Any, estimated_speed: Any) -> Any:
     def pressure_itself(slopes, pressures, highest_raised, stage, kpa):  # type: ignore[no-untyped-def]  # numba infers the types
         return kpa
 
-    scope = {**vars(any_time), "table_decision": decision, "estimated_speed": estimated_speed}
+    scope = {**vars(any_time), "stage_by_table": decision, "estimated_speed": estimated_speed}
     scope["pressure_rises"] = pressure_itself
     for name in ("wanted_stage", "run_any_time_pass"):
         scope[name] = compiled(FunctionType(getattr(any_time, name).py_func.__code__, scope))
@@ -173,11 +173,13 @@ def _controller_through(ask: int, hear: int) -> tuple[Any, Any, Any]:
         return answer
 
     @njit
-    def decide(coefficients, has_line, valid, entrance_stage, stage, s, v):  # type: ignore[no-untyped-def]  # as above
+    def decide(coefficients, has_line, valid, entrance_stage, farthest, stage, s, v):  # type: ignore[no-untyped-def]  # as above
         return answered(stage, s, v, 0.0)[0]
 
     @njit
-    def decide_at_pressure(coefficients, has_line, valid, entrance_stage, stage, s, v, kpa):  # type: ignore[no-untyped-def]  # as above
+    def decide_at_pressure(  # type: ignore[no-untyped-def]  # as above
+        coefficients, has_line, valid, entrance_stage, farthest, stage, s, v, kpa
+    ):
         return answered(stage, s, v, kpa)[0]
 
     @njit

@@ -110,11 +110,11 @@ def test_slopes_and_gauge_have_a_say(plant_52t: Plant, passes: RandomPasses) -> 
     assert silent.tobytes() == exits[1].tobytes()  # a silent gauge is at the pressure of the stage: no slope counts
 
 
-@pytest.mark.parametrize(("lead_s", "multi_step"), [(0.0, False), (0.0, True), (0.3, True)])
-def test_lines(plant_52t: Plant, passes: RandomPasses, lead_s: float, multi_step: bool) -> None:
+@pytest.mark.parametrize(("lead_s", "farthest"), [(0.0, 1), (0.0, 4), (0.3, 4)])
+def test_lines(plant_52t: Plant, passes: RandomPasses, lead_s: float, farthest: int) -> None:
     loop = close_loop(plant_52t, 5)
     rule = energy_rule(loop, 3.0, 4, 0.8, 0.15, lead_s, 0.15)
-    sample = assert_same(loop, unlocked(replace(rule, multi_step=multi_step)), loop.draws(passes))
+    sample = assert_same(loop, unlocked(replace(rule, farthest=farthest)), loop.draws(passes))
     assert sample.switchings.mean() > 3.0
 
 

@@ -71,28 +71,21 @@ class SlowPass:
         self.v += a * dt
 
 
-def slow_exit(
-    plant: Plant, surfaces: PolynomialSurfaces, cut: SlowPass, first_s: float, z: np.ndarray, farthest: int
-) -> list[float]:
-    """Exit speed and number of commands of a pass; one command goes `farthest` stages at most."""
+def slow_exit(plant: Plant, surfaces: PolynomialSurfaces, cut: SlowPass, first_s: float, z: np.ndarray) -> list[float]:
+    """Exit speed and number of commands of a pass; one command goes one stage."""
     sensor, stage, commands = plant.sensor, 0, 0
     cut.go_on(first_s)
     for sample in range(400):
         if cut.s >= plant.exit_m or cut.v <= 0.0:
             break
         measured = max(0.0, cut.v + sensor.noise_m_s * float(z[sample]))
-        u, asked = 2.0 * cut.s / plant.exit_m - 1.0, [stage]
-        for _ in range(farthest):
-            k = asked[-1]
-            x = (cut.kpa - plant.position.stage_pressures_kpa[k]) / 100.0
-            lower, upper = (float(np.polynomial.legendre.legval(u, c[:4]) + x * c[4]) for c in surfaces.coefficients[k])
-            step = int(surfaces.has_line[k, 1] and measured > upper) - int(surfaces.has_line[k, 0] and measured < lower)
-            if step == 0 or step == asked[0] - k:
-                break
-            if len(asked) > 1 and step != asked[1] - asked[0]:
-                break
-            asked.append(k + step)
-        stage, commands = asked[-1], commands + int(len(asked) > 1)
+        u = 2.0 * cut.s / plant.exit_m - 1.0
+        x = (cut.kpa - plant.position.stage_pressures_kpa[stage]) / 100.0
+        lines = (np.polynomial.legendre.legval(u, c[:4]) + x * c[4] for c in surfaces.coefficients[stage])
+        lower, upper = map(float, lines)
+        step = int(surfaces.has_line[stage, 1] and measured > upper)
+        step -= int(surfaces.has_line[stage, 0] and measured < lower)
+        stage, commands = stage + step, commands + abs(step)
         cut.go_on(sensor.computing_delay_s)
         cut.command(plant.position.stage_pressures_kpa[stage])
         cut.go_on(sensor.sample_period_s - sensor.computing_delay_s)
@@ -106,8 +99,7 @@ def smooth(plant: Plant) -> Plant:
     return replace(plant, friction=replace(plant.friction, path_std=0.0), sensor=sensor)
 
 
-@pytest.mark.parametrize("farthest", [1, 2])
-def test_slow_passes_are_those_of_the_kernel(smooth: Plant, farthest: int) -> None:
+def test_slow_passes_are_those_of_the_kernel(smooth: Plant) -> None:
     coefficients = np.zeros((3, 2, 5))
     coefficients[:, :, 0] = 3.0 + np.array([0.15, 0.3])
     coefficients[:, :, 1], coefficients[:, :, 2], coefficients[:, :, 4] = -0.25, 0.05, 0.06
@@ -116,16 +108,13 @@ def test_slow_passes_are_those_of_the_kernel(smooth: Plant, farthest: int) -> No
     surfaces = PolynomialSurfaces(0.0, smooth.exit_m, stages, CUBIC_AND_SLOPE, coefficients, has_line)
     loop = close_loop(smooth, smooth.position.top_stage + 1)
     draws = loop.draws(random_passes(31, 0, 40))
-    controller = replace(tabled(smooth, surfaces), multi_step=farthest > 1)
-    found = loop.run(controller, draws)
+    found = loop.run(tabled(smooth, surfaces), draws)
     same = 0
     for i in range(40):
         cut = SlowPass(smooth, draws.cut_factor[i], draws.resistance_n_kn[i], draws.entry_m_s[i])
-        speed, commands = slow_exit(smooth, surfaces, cut, float(draws.first_sample_s[i]), draws.noise_z[i], farthest)
+        speed, commands = slow_exit(smooth, surfaces, cut, float(draws.first_sample_s[i]), draws.noise_z[i])
         if commands == found.switchings[i]:
             same += 1
             assert speed == pytest.approx(found.exit_speed_m_s[i], abs=SAME_M_S)
     assert same >= 38  # a speed within a millimetre of a line may fall on either side
     assert found.switchings.mean() > 2.0
-    other = loop.run(replace(controller, multi_step=farthest == 1), draws)
-    assert (found.switchings != other.switchings).any()  # a jump is taken

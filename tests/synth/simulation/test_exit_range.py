@@ -49,7 +49,7 @@ def random_commands(passes: CommonPasses, rng: np.random.Generator, decisions: D
     stage = np.arange(stages)[:, None]
     lower, upper = np.where(stage > wanted, 1e3, -1e3), np.where(stage < wanted, -1e3, 1e3)
     lower[0], upper[-1] = -np.inf, np.inf
-    return LineController(SwitchingLines(nodes, lower, upper), multi_step=True, decisions=decisions)
+    return LineController(SwitchingLines(nodes, lower, upper), decisions=decisions)
 
 
 @pytest.mark.parametrize("approach", APPROACHES, ids=repr)
@@ -68,7 +68,7 @@ def test_no_sequence_of_commands_leaves_the_range(plant_of: Callable[[float], Pl
 
 
 def rules(passes: CommonPasses, target_m_s: float) -> list[tuple[str, Regulator]]:
-    """Classical laws with parameters from their grids, a table, and full brake, one stage a command or several."""
+    """Classical laws with parameters from their grids, a table, and release."""
     plant, loop = passes.plant, passes.loop(passes.plant.top_stage + 1)
     found: list[tuple[str, Regulator]] = []
     for family in FAMILIES:
@@ -114,7 +114,7 @@ def test_where_any_stage_may_be_commanded_at_once_the_bound_is_a_regulator_of_th
         stages = passes.plant.top_stage + 1
         upper = np.tile(np.where(nodes < begins_m, 1e3, -1e3), (stages, 1))
         upper[-1] = np.inf
-        waits = LineController(SwitchingLines(nodes, np.full((stages, nodes.size), -1e3), upper), multi_step=True)
+        waits = LineController(SwitchingLines(nodes, np.full((stages, nodes.size), -1e3), upper))
         speed = passes.run(waits).exit_speed_m_s
         assert (speed >= before - ROUNDING_M_S).all()
         assert (speed > before).any()

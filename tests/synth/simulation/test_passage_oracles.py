@@ -206,7 +206,7 @@ def test_many_sensors_are_a_radar_with_the_same_noise() -> None:
     drawn = stratified_passes(6, 0, 4000)
     points, waves = close_passage_loop(plant, sensors, top + 1), close_loop(radar, top + 1)
     by_points = points.run(rule, points.draws(drawn))
-    by_waves = waves.run(LineController(lines, multi_step=True), waves.draws(drawn))
+    by_waves = waves.run(LineController(lines), waves.draws(drawn))
     one, other = exit_statistics(by_points, 3.0), exit_statistics(by_waves, 3.0)
     assert passages == pytest.approx(plant.exit_m / 0.3, abs=2)
     assert one.switchings == pytest.approx(other.switchings, rel=0.03)

@@ -92,7 +92,7 @@ def test_the_chosen_lines_between_two_tables_decide_as_python(default_book: Tabl
         stage, s = rng.integers(0, 5, 20_000), rng.uniform(-1.0, 39.0, 20_000).astype(np.float32)
         v = rng.uniform(0.0, 9.0, 20_000).astype(np.float32)
         program.call("RETARDER_DECIDE", decider, Stage=stage, Path_m=s, Speed_m_s=v, Table=table)
-        assert np.array_equal(decider["COMMAND"].value, decide_many(chosen, stage, s, v))
+        assert np.array_equal(decider["WANTED"].value, decide_many(chosen, stage, s, v))
 
 
 @pytest.mark.parametrize("order", [(1, 0), (0, 1)])

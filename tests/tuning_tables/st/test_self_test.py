@@ -90,7 +90,7 @@ def test_a_small_self_test_has_few_readings_a_line_and_finds_nothing_wrong(
         for table in each.tables:
             vectors = few_golden_vectors(table)
             assert len(vectors) <= FEW * np.count_nonzero(table.has_line)
-            assert {-1, 0, 1} >= set(vectors.answer.tolist()) >= {0}
+            assert (vectors.answer == vectors.stage).any()
         assert run_all(st_files(each, RETARDER, SMALL), calls_of(each))["FAILED"] == 0
 
 

@@ -79,7 +79,7 @@ def test_both_answer_their_golden_vectors_and_tracks(text: bytes) -> None:
             program.call(
                 f"{name}_DECIDE", decider, Stage=vectors.stage, Path_m=vectors.s_m, Speed_m_s=vectors.v_m_s, Table=table
             )
-            assert np.array_equal(decider["COMMAND"].value, vectors.answer)
+            assert np.array_equal(decider["WANTED"].value, vectors.answer)
         for track in golden_tracks(book):
             program.call(f"{name}_LOAD", program.new(f"{name}_LOAD"), TableNo=track.number, Table=table)
             program.call(f"{name}_BEGIN", program.new(f"{name}_BEGIN"), Estimate=estimate)

@@ -70,7 +70,7 @@ def st_costs() -> CallCosts:
     """
     return CallCosts(
         observe=332,
-        decide=89,
+        decide=326,
         select=882 + 9 * 6 + 127,
         aim=382 + 117,
         intact=None,

@@ -62,8 +62,7 @@ def rule_agreement(passes: FittingPasses, tables: LoggedTables) -> RuleAgreement
         rows = np.flatnonzero((of_row == number) & (log.path_m >= begin_m(table)))
         speed = log.speed_m_s[rows] if table.estimator is None else estimated(log, table, states, rows)
         at, before = log.path_m[rows], states.stage_before[rows]
-        stage = np.clip(before + decide_many(table, before, at, speed), 0, max(len(table.coefficients) - 1, 0))
-        wanted[rows] = np.where(states.resting[rows], stage, NOT_ASKED)
+        wanted[rows] = np.where(states.resting[rows], decide_many(table, before, at, speed), NOT_ASKED)
     return RuleAgreement(wanted, log.stage, states.stage_before, first_differing(log, wanted))
 
 
