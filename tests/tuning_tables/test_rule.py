@@ -81,7 +81,7 @@ def adversarial_readings(table: ControllerTable, rng: np.random.Generator, count
 
 def arrays_of(table: ControllerTable) -> tuple[Any, ...]:
     """The first arguments of `decide`."""
-    return table.coefficients, table.has_line, table.valid_range, table.entrance_stage, table.farthest
+    return table.coefficients, table.has_line, table.valid_range, (table.entrance_stage, table.farthest)
 
 
 @pytest.fixture(scope="module")
@@ -98,7 +98,7 @@ def compiled() -> Answering:
         v: Floats,
         kpa: Floats,
     ) -> npt.NDArray[np.int64]:
-        coefficients, has_line, valid_range, entrance_stage, farthest = lines
+        coefficients, has_line, valid_range, limits = lines
         slopes, pressures, highest_raised = surfaces
         answers = np.empty(stages.size, dtype=np.int64)
         for index in range(stages.size):
@@ -107,8 +107,7 @@ def compiled() -> Answering:
                 coefficients,
                 has_line,
                 valid_range,
-                entrance_stage,
-                farthest,
+                limits,
                 stages[index],
                 s[index],
                 v[index],
