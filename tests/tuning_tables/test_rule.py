@@ -332,9 +332,9 @@ def test_subnormal_coefficients_are_not_flushed_to_zero(linear_table: Controller
         valid=ValidRange((0.0, 1.0), (0.0, 1.0)),
     )
     compiled: Any = numba.njit(decide)
-    arrays: Any = arrays_of(table)
+    arrays = arrays_of(table)
     for v, answer in ((tiny, 0), (float(np.nextafter(np.float32(tiny), np.float32(1))), 1)):
-        assert decide(*arrays, 0, 0.5, v) == compiled(*arrays, 0, 0.5, v) == decide_many(table, 0, 0.5, v) == answer
+        assert decide_for(table, 0, 0.5, v) == compiled(*arrays, 0, 0.5, v) == decide_many(table, 0, 0.5, v) == answer
 
 
 def test_many_broadcasts_and_refuses_stages_that_are_no_integers(linear_table: ControllerTable) -> None:
