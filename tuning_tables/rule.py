@@ -55,8 +55,7 @@ def decide(
     coefficients: npt.NDArray[np.float32],
     has_line: npt.NDArray[np.bool_],
     valid_range: npt.NDArray[np.float32],
-    entrance_stage: int,
-    farthest: int,
+    limits: tuple[int, int],
     stage: int,
     s_m: float,
     v_m_s: float,
@@ -64,9 +63,10 @@ def decide(
 ) -> int:
     """The stage to command for one reading; the arrays are those of a `ControllerTable`, and only they are trusted.
 
-    coefficients float32 (K+1, 2, degree+1), has_line bool (K+1, 2), valid_range float32 (4,), entrance_stage 0..K (K
-    where there is no approach), farthest 1..K, stage 0..K, path and speed in any float width (rounded to float32 before
-    use); `rise`: what `rises` gives for `stage`, none for a table without slopes. Pure; raises nothing for any number.
+    coefficients float32 (K+1, 2, degree+1), has_line bool (K+1, 2), valid_range float32 (4,); limits: the entrance
+    stage, 0..K (K where there is no approach), and by how many stages the command may go, 1..K; stage 0..K, path and
+    speed in any float width (rounded to float32 before use); `rise`: what `rises` gives for `stage`, none for a table
+    without slopes. Pure; raises nothing for any number.
 
     `numba.njit(decide)` compiles this text as it stands and gives the same answers: hence one function without helpers,
     and no literal in the arithmetic, which would promote it to double precision.
@@ -83,6 +83,7 @@ def decide(
     if s > valid_range[1]:
         s = valid_range[1]
     highest = coefficients.shape[2] - 1
+    entrance_stage, farthest = limits
     reached, before = stage, 0
     for _ in range(farthest):
         step = 0
@@ -137,8 +138,8 @@ def decide_for(
     pressure is reached. `pressure_kpa`, gauge, is looked at where the table has slopes.
     """
     rise = rises(table.slopes, table.pressures, table.highest_raised, stage, pressure_kpa)
-    lines = table.coefficients, table.has_line, table.valid_range
-    return decide(*lines, table.entrance_stage, table.farthest, stage, s_m, v_m_s, rise)
+    limits = table.entrance_stage, table.farthest
+    return decide(table.coefficients, table.has_line, table.valid_range, limits, stage, s_m, v_m_s, rise)
 
 
 def speed_for(

@@ -143,8 +143,8 @@ def regulator_system(plant: Plant, controller: Controller) -> NonlinearIOSystem:
 
 def stage_by_table(law: regulator.Rule, stage: int, s_m: float, v_m_s: float) -> int:
     """Digital controller of a radar: the stage wanted at (s, v) while `stage` is in force."""
-    lines = law.coefficients, law.has_line, law.valid, law.entrance_stage
-    return int(regulator.stage_by_table(*lines, law.farthest, stage, s_m, v_m_s))
+    lines, limits = (law.coefficients, law.has_line, law.valid), (law.entrance_stage, law.farthest)
+    return int(regulator.stage_by_table(*lines, limits, stage, s_m, v_m_s))
 
 
 def regulator_start(plant: Plant, controller: Controller) -> NDArray[np.float64]:

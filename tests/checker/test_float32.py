@@ -76,7 +76,7 @@ def test_rule_is_that_of_the_controller(
     coefficients = np.array([[line or missing for line in both] for both in lines], dtype=np.float32)
     has_line = np.array([[line is not None for line in both] for both in lines])
     valid = np.array([begin, 10.0, 0.0, 9.0], dtype=np.float32)
-    expected = rule.decide(coefficients, has_line, valid, entrance, farthest, stage, s, v)
+    expected = rule.decide(coefficients, has_line, valid, (entrance, farthest), stage, s, v)
     assert decide(lines, (begin, 10.0), entrance, farthest, stage, s, v) == expected
 
 

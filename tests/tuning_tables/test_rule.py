@@ -81,7 +81,7 @@ def adversarial_readings(table: ControllerTable, rng: np.random.Generator, count
 
 def arrays_of(table: ControllerTable) -> tuple[Any, ...]:
     """The first arguments of `decide`."""
-    return table.coefficients, table.has_line, table.valid_range, table.entrance_stage, table.farthest
+    return table.coefficients, table.has_line, table.valid_range, (table.entrance_stage, table.farthest)
 
 
 @pytest.fixture(scope="module")
@@ -98,7 +98,7 @@ def compiled() -> Answering:
         v: Floats,
         kpa: Floats,
     ) -> npt.NDArray[np.int64]:
-        coefficients, has_line, valid_range, entrance_stage, farthest = lines
+        coefficients, has_line, valid_range, limits = lines
         slopes, pressures, highest_raised = surfaces
         answers = np.empty(stages.size, dtype=np.int64)
         for index in range(stages.size):
@@ -107,8 +107,7 @@ def compiled() -> Answering:
                 coefficients,
                 has_line,
                 valid_range,
-                entrance_stage,
-                farthest,
+                limits,
                 stages[index],
                 s[index],
                 v[index],
@@ -333,9 +332,9 @@ def test_subnormal_coefficients_are_not_flushed_to_zero(linear_table: Controller
         valid=ValidRange((0.0, 1.0), (0.0, 1.0)),
     )
     compiled: Any = numba.njit(decide)
-    arrays: Any = arrays_of(table)
+    arrays = arrays_of(table)
     for v, answer in ((tiny, 0), (float(np.nextafter(np.float32(tiny), np.float32(1))), 1)):
-        assert decide(*arrays, 0, 0.5, v) == compiled(*arrays, 0, 0.5, v) == decide_many(table, 0, 0.5, v) == answer
+        assert decide_for(table, 0, 0.5, v) == compiled(*arrays, 0, 0.5, v) == decide_many(table, 0, 0.5, v) == answer
 
 
 def test_many_broadcasts_and_refuses_stages_that_are_no_integers(linear_table: ControllerTable) -> None:

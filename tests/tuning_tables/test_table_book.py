@@ -118,7 +118,7 @@ def test_a_chosen_table_is_what_the_rule_takes(book: TableBook) -> None:
     assert choice.table is not None
     arrays = (choice.table.coefficients, choice.table.has_line, choice.table.valid_range)
     limits = (choice.table.entrance_stage, choice.table.farthest)
-    assert decide(*arrays, *limits, 0, 37.0, 9.0) == decide_for(choice.table, 0, 37.0, 9.0) == 2
+    assert decide(*arrays, limits, 0, 37.0, 9.0) == decide_for(choice.table, 0, 37.0, 9.0) == 2
     with pytest.raises(ValueError, match="read-only"):
         choice.table.coefficients[0, 0, 0] = 1.0
 

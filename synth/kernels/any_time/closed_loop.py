@@ -123,8 +123,8 @@ def wanted_stage(law: AnyTimeLaw, stage: int, top: int, pressure: float, wait: f
     if by.coefficients.shape[0] > 0:
         shown = pressure * law.gauge_factor
         rise = pressure_rises(law.slopes, law.pressures, law.highest_raised, stage, shown)
-        lines = (by.coefficients, by.has_line, by.valid, by.entrance_stage)
-        by_table: int = stage_by_table(*lines, by.farthest, stage, s, v, rise)
+        lines, limits = (by.coefficients, by.has_line, by.valid), (by.entrance_stage, by.farthest)
+        by_table: int = stage_by_table(*lines, limits, stage, s, v, rise)
         return by_table
     wanted: int = stage_by_lines(by.lower, by.upper, by.start_m, by.spacing_m, by.farthest, stage, top, s, v)
     return wanted

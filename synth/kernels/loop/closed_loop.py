@@ -181,7 +181,7 @@ def run_pass(
             measured = estimated if chain < 0 else math.nan  # compared, and noted, only at rest
         if chain < 0:
             if tabled:
-                wanted = stage_by_table(coefficients, has_line, valid, gate, farthest, stage, s, measured)
+                wanted = stage_by_table(coefficients, has_line, valid, (gate, farthest), stage, s, measured)
             else:
                 ahead = measured + lead_s * slope
                 wanted = stage_by_lines(lower, upper, start_m, spacing_m, farthest, stage, top, s, ahead)

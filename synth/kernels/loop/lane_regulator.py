@@ -132,8 +132,8 @@ def regulate(x: Floats, n: Ints, lane: int, speed_m_s: float, pieces: Pieces, la
     """What the regulator does where it has a command (as in `closed_loop.run_pass`)."""
     s, stage, top = x[S + lane], n[STAGE + lane], pieces.command.shape[1] - 1
     if law.coefficients.shape[0] > 0:
-        lines = (law.coefficients, law.has_line, law.valid, law.entrance_stage)
-        wanted = stage_by_table(*lines, law.farthest, stage, s, speed_m_s)
+        lines, limits = (law.coefficients, law.has_line, law.valid), (law.entrance_stage, law.farthest)
+        wanted = stage_by_table(*lines, limits, stage, s, speed_m_s)
     else:
         wanted = stage_by_lines(
             law.lower, law.upper, law.start_m, law.spacing_m, law.farthest, stage, top, s, speed_m_s

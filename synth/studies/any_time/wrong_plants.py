@@ -6,16 +6,21 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
+import numpy as np
+
 from plant_models import Plant
-from synth.simulation.closed_loop import Controller, TableController, simulate
+from synth.simulation.closed_loop import Controller, LineController, TableController, simulate
 from synth.simulation.common_passes import CommonPasses
 from synth.simulation.exit_statistics import rms_ratio
 from synth.simulation.random_passes import RandomPasses
+from synth.solver.tabulate import lines_of
 from synth.studies.any_time.findings import Ratio, SilentGauge
 from synth.studies.estimator.wrong import Wrong, braking_otherwise, simulated
 from synth.studies.robustness.condition import aged_valves
 from synth.studies.robustness.sensor_fault import DropOut, LostReadings, at_random
 from tuning_tables import ControllerTable, Decisions
+
+LINE_NODES = 301
 
 
 def otherwise(plant: Plant, seed: int) -> Iterator[Wrong]:
@@ -42,8 +47,9 @@ def ratios_to_rest(
 def with_a_silent_gauge(
     target_m_s: float, table: ControllerTable, at_rest: Controller, passes: CommonPasses
 ) -> SilentGauge:
-    """`table` beside a gauge that shows nothing: asked at every sample all the same, or only at rest."""
-    rest, waiting = passes.run(at_rest), passes.run(TableController(waiting_table(table)))
+    """`table`, one stage a command, beside a gauge that shows nothing: asked at every sample, or at rest."""
+    lines = lines_of(waiting_table(table), np.linspace(*table.valid.s_m, LINE_NODES))
+    rest, waiting = passes.run(at_rest), passes.run(LineController(lines, farthest=table.farthest))
     going_on = passes.run(TableController(table, math.nan))
     pairs = (going_on, rest), (waiting, rest), (waiting, going_on)
     return SilentGauge(*(Ratio(*rms_ratio(*pair, target_m_s)) for pair in pairs))

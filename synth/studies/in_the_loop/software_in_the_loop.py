@@ -173,12 +173,12 @@ def _controller_through(ask: int, hear: int) -> tuple[Any, Any, Any]:
         return answer
 
     @njit
-    def decide(coefficients, has_line, valid, entrance_stage, farthest, stage, s, v):  # type: ignore[no-untyped-def]  # as above
+    def decide(coefficients, has_line, valid, limits, stage, s, v):  # type: ignore[no-untyped-def]  # as above
         return answered(stage, s, v, 0.0)[0]
 
     @njit
     def decide_at_pressure(  # type: ignore[no-untyped-def]  # as above
-        coefficients, has_line, valid, entrance_stage, farthest, stage, s, v, kpa
+        coefficients, has_line, valid, limits, stage, s, v, kpa
     ):
         return answered(stage, s, v, kpa)[0]
 

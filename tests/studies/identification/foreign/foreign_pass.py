@@ -106,7 +106,7 @@ class Controller:
         if s_m < start:
             return self.stage
         speed = speed_for(table, self.state, s_m, v_m_s, overpressure)
-        return self.stage if is_locked else self.stage + decide_for(table, self.stage, s_m, speed)
+        return self.stage if is_locked else decide_for(table, self.stage, s_m, speed)
 
 
 def plant_at_rest(plant: ForeignPlant, draw: ForeignDraw, step_s: float = STEP_S) -> PlantInMotion:

@@ -38,12 +38,11 @@ def test_the_table_decides_and_only_at_rest(label: str, foreign_plants: Plants, 
         ran = foreign_pass(table, plant, foreign_draw(plant, 5, number))
         before = np.concatenate(([0], ran.stage[:-1]))
         decided = [
-            decide_for(table, int(k), s, v) if s >= 0 else 0
+            decide_for(table, int(k), s, v) - k if s >= 0 else 0
             for k, s, v in zip(before, ran.path_m, ran.speed_m_s, strict=True)
         ]
         at_rest = np.abs(ran.pressure_kpa - stages_kpa[before]) <= band
         step = ran.stage - before
-        assert (np.abs(step) <= 1).all()
         assert at_rest[step != 0].all()
         assert (step[step != 0] == np.array(decided)[step != 0]).all()
         held_back += int(np.sum((np.array(decided) != 0) & (step == 0)))
@@ -149,7 +148,7 @@ def test_cuts_differ_as_their_laws_say(foreign_plants: Plants) -> None:
 
 def test_a_cut_that_is_braked_to_a_stand_has_stalled(foreign_plants: Plants, assumed_tables: Tables) -> None:
     plant, table = foreign_plants["empty"], assumed_tables["empty"]
-    grip = replace(plant, brake=replace(plant.brake, friction=0.9, path_std=0.0))
+    grip = replace(plant, brake=replace(plant.brake, friction=1.8, path_std=0.0))
     found = foreign_exits(table, grip, 10, 1)
     assert found.stalled.any()
     assert (found.speed_m_s[found.stalled] == 0.0).all()
@@ -204,7 +203,7 @@ def test_the_estimator_of_a_table_sees_every_sample_and_the_gauge(
                 mean = 0.5 * (over + passed)
                 speed = speed_for(table, state, ran.path_m[i], ran.speed_m_s[i], mean)
                 if ran.stage[i] != stage:
-                    assert ran.stage[i] - stage == decide_for(table, stage, ran.path_m[i], speed)
+                    assert ran.stage[i] == decide_for(table, stage, ran.path_m[i], speed)
                     commands += 1
             passed, stage = over, int(ran.stage[i])
         assert ran.exit_speed_m_s == pytest.approx(3.0, abs=0.5)

@@ -7,12 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from synth.simulation.controllers import TableController
 from synth.studies.identification.truths import TRUTHS, Yard
 from synth.yard.measured_passes import unknowns as asked
 from synth.yard.measured_passes.estimate import SIDE, Estimate, Side, estimate, posterior
 from synth.yard.measured_passes.fitting_passes import FittingPasses
 from synth.yard.measured_passes.identifiability import findings_of
 from synth.yard.measured_passes.unknowns import unknowns_of
+from tuning_tables import ControllerTable
 
 
 def test_intervals_hold_the_truth_of_most_numbers(found: Estimate) -> None:
@@ -50,11 +52,28 @@ def test_threads_change_nothing(passes: FittingPasses, found: Estimate, monkeypa
         assert by_one.information.tobytes() == by_two.information.tobytes()
 
 
-def test_a_summit_on_an_edge_is_no_sharp_number(found: Estimate) -> None:
-    """The pressure rests before the next reading whatever the touch delay is, within a few hundredths of a second."""
-    (number,) = (i for i, unknown in enumerate(found.unknowns) if unknown.key == asked.TOUCH_DELAY)
-    low, high = found.interval(number)
-    assert high - low > 0.01
+def up_to_stage_1(controller: TableController) -> TableController:
+    """A regulator whose commands go one stage."""
+    table = controller.table
+    assert isinstance(table, ControllerTable)
+    stages = (each if each.k == 0 else replace(each, upper=None) for each in table.stages)
+    return TableController(replace(table, stages=tuple(stages)))
+
+
+def test_a_summit_on_an_edge_is_no_sharp_number(yard: Yard, found: Estimate) -> None:
+    """Of a change to stage 1 the pressure rests before the next reading whatever the touch delay is, nearly.
+
+    On the way to a higher stage a gauge is read that tells it.
+    """
+    low_yard = replace(yard, controllers={label: up_to_stage_1(each) for label, each in yard.controllers.items()})
+    passes = low_yard.passes(TRUTHS[0], 80, 7)
+    lowly = estimate(passes, unknowns_of(passes, yard.config.parameters), 2)
+    widths = []
+    for each in (lowly, found):
+        (number,) = (i for i, unknown in enumerate(each.unknowns) if unknown.key == asked.TOUCH_DELAY)
+        low, high = each.interval(number)
+        widths.append(high - low)
+    assert widths[0] > 0.01 > widths[1]
 
 
 def test_without_gauge_and_with_path_from_speed_less_is_told(
