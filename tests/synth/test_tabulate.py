@@ -83,7 +83,8 @@ def test_the_staircase_of_the_sensor_is_the_exact_quantisation(plant_of: Callabl
     shape = (design.actuator.stages, len(nodes))
     upper = np.full(shape, level)
     upper[-1] = np.inf
-    found = commands_of(design.quantised(), SwitchingLines(nodes, np.full(shape, -np.inf), upper))[1, 0, 1]
+    below_top = design.actuator.stages - 2  # all stages have one line: from here a command goes one stage
+    found = commands_of(design.quantised(), SwitchingLines(nodes, np.full(shape, -np.inf), upper))[1, 0, below_top]
     q, noise = plant.sensor.resolution_m_s, plant.sensor.noise_m_s
     z = np.random.default_rng(5).normal(size=40_000)
     near = np.abs(design.grid.speed_m_s - level) < 0.15

@@ -30,7 +30,7 @@ def falling_lines(plant: Plant, nodes: int) -> SwitchingLines:
 def test_without_commands_in_transients_it_is_the_locked_simulator(plant: Plant) -> None:
     loop, lines = close_loop(plant, plant.position.top_stage + 1), falling_lines(plant, 101)
     draws = loop.draws(random_passes(11, 0, 2000))
-    locked = loop.run(LineController(lines), draws)
+    locked = loop.run(LineController(lines, farthest=1), draws)
     unlocked = loop.run(SurfaceController(at_rest_only(lines, drive_modes(plant, 20.0, 5))), draws)
     assert locked.switchings.mean() > 4.0
     assert (unlocked.switchings == locked.switchings).all()

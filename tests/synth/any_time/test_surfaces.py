@@ -22,7 +22,7 @@ from synth.solver.any_time.sampled_chain import SampledChain, check_sampled_chai
 from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
 from synth.solver.any_time.surface_polish import SurfacePolish, polish_surfaces
 from synth.solver.backward_induction import solve
-from synth.solver.chain.chain import persistent_chain
+from synth.solver.chain.chain import Chain, persistent_chain
 from synth.solver.policy_density import exit_density
 from synth.studies.any_time.surface_controller import SurfaceController
 from synth.studies.any_time.surface_induction import solve_surfaces
@@ -35,6 +35,11 @@ AIM = Aim(TARGET_M_S, Criterion())
 KNOWN = Resolution(path_step_m=0.15, speed_step_m_s=0.01, friction_nodes=1, resistance_nodes=1)
 GRID_ERROR = 0.015
 """Of a cost on this grid; halving its steps changes it by less."""
+
+
+def one_stage_a_command(chain: Chain) -> Chain:
+    """As surfaces command."""
+    return replace(chain, decisions=replace(chain.decisions, farthest=1))
 
 
 def falling(plant: Plant, slope_m_s: float = 0.03) -> PolynomialSurfaces:
@@ -123,7 +128,7 @@ def test_stage_locked_lines_cost_what_the_locked_solver_says(plant: Plant) -> No
     needs a finer grid than surfaces do: 2.4 % at 30 kPa.
     """
     resolution = replace(KNOWN, transient_substeps=4)
-    transitions = persistent_chain(plant, resolution)
+    transitions = one_stage_a_command(persistent_chain(plant, resolution))
     lines = solve(transitions, AIM).lines
     density = exit_density(transitions, lines)
     theirs = density.rms_m_s(TARGET_M_S) ** 2 + AIM.criterion.switching_tolerance_m2_s2 * density.switchings
@@ -139,7 +144,7 @@ def test_without_transients_surfaces_are_the_locked_lines(plant: Plant) -> None:
     resolution = replace(KNOWN, path_step_m=0.15, speed_step_m_s=0.02)
     here = sampled_chain(quick, resolution)
     assert here.modes.rests.all()
-    locked = persistent_chain(quick, resolution)
+    locked = one_stage_a_command(persistent_chain(quick, resolution))
     solution = solve(locked, AIM)
     theirs = exit_density(locked, solution.lines)
     ours = SurfaceEvaluation(here).density(solve_surfaces(here, AIM).at_quanta())

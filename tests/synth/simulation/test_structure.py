@@ -21,6 +21,8 @@ from tests.synth.simulation.passage_cases import CREDIBLE, SENSORS, braking_rule
 from tests.synth.test_control_system import table_for
 from tuning_tables.passages.regulator import PassageRule, at_pulse
 from tuning_tables.passages.tracker import NONE, begin_cut
+from tuning_tables.stage import Line
+from tuning_tables.table import ControllerTable
 
 VALVES = ValveDrive(700.0, 0.0, 0.1, 0.2, 0.15, 0.3, 0.4, 15.0, 50.0)
 
@@ -88,17 +90,27 @@ def test_the_functional_converter_tells_when_a_place_is_reached(points: Diagram)
     assert part.run(signals, **constants)["F⁻¹(S)"] == pytest.approx((math.sqrt(16.0 + 2.0 * a * 5.0) - 4.0) / a)
 
 
+def wanted_stage(table: ControllerTable, stage: int, s_m: float, v_m_s: float) -> int:
+    """Stage by stage downward, or upward, as long as straight lines ask for the next."""
+    lower, upper = ([None if line is None else line[0] + line[1] * s_m for line in side] for side in sides(table))
+    if (above := upper[stage]) is not None and v_m_s > above:
+        return next(k for k in range(stage + 1, len(upper)) if (line := upper[k]) is None or v_m_s <= line)
+    if (below := lower[stage]) is not None and v_m_s < below:
+        return next(k for k in range(stage - 1, -1, -1) if (line := lower[k]) is None or v_m_s >= line)
+    return stage
+
+
+def sides(table: ControllerTable) -> tuple[list[Line | None], list[Line | None]]:
+    """The lower and the upper lines of all stages."""
+    return [stage.lower for stage in table.stages], [stage.upper for stage in table.stages]
+
+
 def test_the_controller_of_a_radar_compares_with_the_lines(radar: Diagram, plant_52t: Plant) -> None:
     rng, table = np.random.default_rng(3), table_for(plant_52t)
     asked = 0
     for _ in range(2000):
         s, v, k = rng.uniform(0.0, plant_52t.exit_m), rng.uniform(0.5, 7.0), int(rng.integers(0, 5))
-        stage = table.stages[k]
-        wanted = k
-        if stage.lower is not None and v < stage.lower[0] + stage.lower[1] * s:
-            wanted = k - 1
-        elif stage.upper is not None and v > stage.upper[0] + stage.upper[1] * s:
-            wanted = k + 1
+        wanted = wanted_stage(table, k, s, v)
         asked += wanted != k
         found = radar["digital controller"].run({"U[n]": k, "S*[n]": s, "V*[n]": v})
         assert found == {"D[n]": wanted}
