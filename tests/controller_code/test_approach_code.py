@@ -66,7 +66,8 @@ def test_approaches_without_estimators_decide_as_python(tmp_path: Path, tool: To
     book = approaching_book(estimators=False)
     questions = ask(book, 200_000, 5_000, 14)
     before = (questions.readings["s_m"] < 0.0) & (questions.readings["s_m"] > -10.0)
-    assert all(np.count_nonzero(questions.decisions[before] == answer) > 2_000 for answer in (-1, 0, 1))
+    far = (questions.decisions - questions.readings["stage"])[before]
+    assert min(np.count_nonzero(far < 0), np.count_nonzero(far == 0), np.count_nonzero(far > 0)) > 2_000
     assert differences(build_controller(book, tmp_path), questions, follow(book, 1_000, 15)).none
 
 
@@ -94,12 +95,12 @@ def test_the_words_of_an_approach_come_last_and_only_where_there_is_one() -> Non
         ("s_m >= 0.0f ||", "s_m > 0.0f ||", 3),  # a gate at the entrance, too
         ("s_m >= 0.0f ||", "s_m <= 0.0f ||", 3),  # turned round
         ("s_m >= 0.0f ||", "s_m >= -0.5f ||", 3),
-        ("may_raise(table, stage, s)", "1", 3),  # no gate
-        ("may_raise(table, stage, s)", "may_raise(table, stage + 1, s)", 3),
+        ("may_raise(table, stage, s_m)", "1", 3),  # no gate
+        ("may_raise(table, stage, s_m)", "may_raise(table, stage + 1, s_m)", 3),
         ("(uint32_t)stage < table->entrance_stage", "(uint32_t)stage <= table->entrance_stage", 3),
         ("(uint32_t)stage < table->entrance_stage", "(uint32_t)stage + 1u < table->entrance_stage", 3),
         ("(uint32_t)stage < table->entrance_stage", "0", 3),  # nothing is raised
-        ("(lines & 1u) != 0u && v_m_s <", "(lines & 1u) != 0u && s >= 0.0f && v_m_s <", 3),  # nothing is lowered
+        ("(lines & 1u) != 0u && v_m_s <", "(lines & 1u) != 0u && s_m >= 0.0f && v_m_s <", 3),  # nothing is lowered
         ("1u, /* highest stage before the entrance */", "2u, /* highest stage before the entrance */", 2),
         ("0x1p+2f, /* approach, 4 m */", "0x1p+1f, /* approach, 4 m */", 2),
         ("&& is_same_approach(slower, faster)", "", 4),

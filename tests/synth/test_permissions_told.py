@@ -69,6 +69,12 @@ def test_the_line_tells_medians_and_bounds_every_interval(overview: Overview) ->
     assert "both:" not in few.line
 
 
+def test_a_book_in_which_no_permission_can_be_told_says_so(overview: Overview) -> None:
+    none = Overview(tuple(replace(case, results=()) for case in overview.cases))
+    assert none.line == "rms × if permitted: none can be told."
+    assert none.widest == 0.0
+
+
 def test_who_asks_sees_their_columns_before_others(overview: Overview) -> None:
     columns = columns_of([], overview)
     asked = [column for column in columns if column.heading.startswith("rms × if")]

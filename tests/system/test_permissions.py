@@ -198,7 +198,7 @@ def test_a_tune_tells_permissions_in_one_column_and_one_line(tuned: Path) -> Non
     for name, ratio in ratios.items():  # of one case: the medians
         assert re.search(rf"(: |, ){name} {ratio}[,.]", line)
     overall = summary(tuned / "1")["overall"]
-    assert f"±{overall['permission_widest_half_ci95']:.2f} " in line
+    assert f"±{overall['permission_widest_half_ci95']:.2f}" in line
     assert overall["permission_median_ratios"].keys() == ratios.keys()
     page = html.unescape((tuned / "1" / "report.html").read_text(encoding="utf-8"))
     assert line in page

@@ -54,9 +54,9 @@ class Overview:
 
     @property
     def widest(self) -> float:
-        """The wider half of the widest 95 % interval of a ratio, rounded up to two digits."""
+        """The wider half of the widest 95 % interval of a ratio, rounded up to two digits; 0 where nothing is told."""
         halves = [half_width(each) for case in self.cases for each in case.results]
-        return math.ceil(100.0 * max(halves)) / 100.0
+        return math.ceil(100.0 * max(halves, default=0.0)) / 100.0
 
 
 def overview_of(found: Iterable[CasePermissions | None]) -> Overview | None:
