@@ -15,5 +15,5 @@ to where its command leaves (R,), m."""
 def pass_times(c: Chain) -> PassTimes:
     """The same as `kernels.sweep.pass_time` takes it."""
     path = c.grid.path_m
-    duration: NDArray[np.float64] = c.landings.samples * c.epochs.clock.sample_period_s
+    duration = np.asarray(c.landings.samples * c.epochs.clock.sample_period_s, dtype=np.float64)
     return np.diff(path), path[-1] - path[:-1], duration, np.array(c.decisions.lead_m)
