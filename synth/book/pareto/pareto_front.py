@@ -13,7 +13,7 @@ PRICES_M2_S3: Final = (0.0, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3)
 """What a second costs, from nothing on."""
 
 NEARLY_FREE: Final = 1.01
-"""A price is nearly free that makes no rms larger than by this factor."""
+"""A price is nearly free that makes no rms larger by more than this factor, beyond its 95 % interval."""
 
 
 @dataclass(frozen=True)
@@ -64,11 +64,11 @@ class ParetoFront:
 
 
 def nearly_free(fronts: Sequence[ParetoFront]) -> float:
-    """The highest price up to which no rms of a front is larger than by `NEARLY_FREE`; the lowest if there is none."""
+    """The highest price up to which each is nearly free; the lowest if none is."""
     free = PRICES_M2_S3[0]
     for price in PRICES_M2_S3:
         found = [point for front in fronts if (point := front.at(price)) is not None]
-        if len(found) < len(fronts) or any(point.ratio > NEARLY_FREE for point in found):
+        if len(found) < len(fronts) or any(point.ratio_ci95[0] > NEARLY_FREE for point in found):
             break
         free = price
     return free
@@ -76,11 +76,13 @@ def nearly_free(fronts: Sequence[ParetoFront]) -> float:
 
 def told(fronts: Sequence[ParetoFront]) -> str:
     """What is nearly free, in a sentence."""
-    price = nearly_free(fronts)
+    price, more = nearly_free(fronts), f"{NEARLY_FREE - 1.0:.0%}"
     if price == PRICES_M2_S3[0]:
-        return f"Every price of a second that was tried makes some rms more than {NEARLY_FREE - 1.0:.0%} larger."
+        return (
+            f"Every price of a second that was tried makes some rms more than {more} larger beyond its 95 % interval."
+        )
     saved = [front.saved_s(point) for front in fronts if (point := front.at(price)) is not None]
     return (
-        f"A price of {price:g} m2/s3 on a second makes no rms more than {NEARLY_FREE - 1.0:.0%} larger, and passes "
-        f"{min(saved):.2f} to {max(saved):.2f} s shorter, than none (criterion.time_price_m2_s3)."
+        f"A price of {price:g} m2/s3 on a second makes no rms more than {more} larger beyond its 95 % interval, and "
+        f"passes {min(saved):.2f} to {max(saved):.2f} s shorter, than none (criterion.time_price_m2_s3)."
     )
