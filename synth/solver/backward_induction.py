@@ -96,12 +96,13 @@ def solve_all(
     readings, noise = c.measurement.readings(c.grid.speed_m_s), c.measurement.std
     smear_start, smear = true_speed_weights(c.grid.speed_m_s, readings, noise)
     costs = (np.stack(exit_costs, axis=1), stall_costs, change_costs, time_prices)
+    terminal, stalled, *prices = (in_packs_of_targets(each, value_type).ravel() for each in costs)
     arguments = (
-        *(in_packs_of_targets(each, value_type).ravel() for each in costs),
+        terminal, stalled, (*prices, *pass_times(c)),
         TIE_M2_S2, ROUNDINGS * float(np.finfo(value_type).eps), readings, (noise, heard), smear_start,
         smear.astype(value_type), hidden_prior(c).astype(value_type), c.decisions.at_nodes(nodes), *sweep_arguments(c),
         c.scenarios.factor, c.scenarios.extra_m_s2,
-        c.grid.path_step_m, c.grid.energy_step_m2_s2, c.epochs.hold_period_s, pass_times(c), len(c.entry),
+        c.grid.path_step_m, c.grid.energy_step_m2_s2, c.epochs.hold_period_s, len(c.entry),
         c.approach_nodes, c.plant.entrance_stage,
         values, lines, gain,
     )  # fmt: skip

@@ -110,12 +110,13 @@ class Evaluation:
         """Backward recursion in scenario `i`, with the gradient if `density`, `band` are its forward ones."""
         c, criterion = self.chain, self.aim.criterion
         by_lines = np.zeros(policy.shape[:3])
+        prices = (np.full(1, each) for each in (criterion.switching_tolerance_m2_s2, criterion.time_price_m2_s3))
         arguments = (
             policy, slopes, c.decisions.at_nodes(len(c.drive_m_s2)),
             *criterion.exit_costs(c.grid.speed_m_s, self.aim.target_speed_m_s),
-            criterion.switching_tolerance_m2_s2, criterion.time_price_m2_s3, c.entry, c.entry_mode,
+            (*prices, *pass_times(c)), c.entry, c.entry_mode,
             *shared_arguments(c), c.scenarios.factor[i],
             c.scenarios.extra_m_s2[i], c.grid.path_step_m, c.grid.energy_step_m2_s2, c.epochs.hold_period_s,
-            pass_times(c), density, band, by_lines,
+            density, band, by_lines,
         )  # fmt: skip
         return backward(*arguments), by_lines

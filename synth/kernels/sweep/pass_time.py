@@ -5,8 +5,9 @@ between two nodes, or in the same quantum, and is met at either with a chance; a
 quantum before it, a wait costs one period in the mean. A change of stage takes its whole samples, and of the quantum in
 which it ends what the place of its next decision is ahead or behind; or the path to the exit over the mean speed.
 
-`times` = (`quantum` (N,) widths, `left` (N,) path from each node to the exit, `duration` (C,) of the transients, `lead`
-(R,) path from a decision to where its command leaves).
+`prices` = (of a command (T,), of a second (T,), `quantum` (N,) widths, `left` (N,) path from each node to the exit,
+`duration` (C,) of the transients, `lead` (R,) path from a decision to where its command leaves). The T targets are one
+or whole packs of eight.
 """
 
 from __future__ import annotations
@@ -31,12 +32,14 @@ from synth.kernels.vector.packs import (
 
 
 @borrowing
-def add_quantum_times(n, times, price, speed, shift, energy_step, first, last, ahead, spent):
-    """Add `price` (T,) times the time over quantum `n` to all rows of `ahead` (M, H, L, E·T) but the first.
+def add_quantum_times(n, prices, speed, shift, energy_step, first, last, ahead, spent):
+    """Add the price of the time over quantum `n` to all rows of `ahead` (M, H, L, E·T) but the first.
 
     Energies first ≤ j < last; `shift` (H, L) in cells of energy; `spent` (E,) is scratch.
     """
-    twice = 2.0 * times[0][n]
+    price, twice = prices[1], 2.0 * prices[2][n]
+    if not is_priced(price):
+        return
     for h in range(shift.shape[0]):
         for q in range(shift.shape[1]):
             gained = 2.0 * shift[h, q] * energy_step
@@ -49,12 +52,15 @@ def add_quantum_times(n, times, price, speed, shift, energy_step, first, last, a
 @borrowing
 def add_change_times(
     n, decision, last, c, q, runs, count, mode, ends, met, slope, least_ahead,
-    extra, path_step, times, price, speed, scratch, out,
+    extra, path_step, prices, speed, scratch, out,
 ):  # fmt: skip
-    """Add `price` (T,) times the expected time of transient `c` to `out` (E·T,), in all energies of the `runs`.
+    """Add the price of the expected time of transient `c` to `out` (E·T,), in all energies of the `runs`.
 
     `speed` (E,); `scratch` (16,); the rest as in `transient_sweep`. What stalls takes no time: the stall has its price.
     """
+    price = prices[1]
+    if not is_priced(price):
+        return
     size, row, points = met.shape[3], ends.shape[4], speed.shape[0]
     at, quanta = (decision * ends.shape[1] + c) * ends.shape[2] * 2 * row, 1.0 / path_step
     for k in range(count):
@@ -68,15 +74,24 @@ def add_change_times(
                     law = law_met(met, c, over, q, m, side)
                     spent = spent + time_of_pack(
                         ends, at + j, row, law, slope[mode, m, n:], last - n, extra, quanta, least_ahead,
-                        times[0][n:], times[1][n], times[2][c], times[3][decision], load8(scratch, EIGHT), speed[1],
+                        prices[2][n:], prices[3][n], prices[4][c], prices[5][decision], load8(scratch, EIGHT), speed[1],
                     ) * law[0]  # fmt: skip
             store(scratch, 0, spent)
             add_priced(scratch, price, -j, j, min(stop, j + EIGHT), out)
 
 
 @borrowing_inline
+def is_priced(price):
+    """Whether a second costs something for any target."""
+    for t in range(price.shape[0]):
+        if price[t] > 0.0:
+            return True
+    return False
+
+
+@borrowing_inline
 def add_priced(spent, price, at, first, last, out):
-    """Add `price` (T,), of one target or of whole packs, times `spent`[`at` + j] to `out` (E·T,), first ≤ j < last."""
+    """Add `price` (T,) times `spent`[`at` + j] to `out` (E·T,), first ≤ j < last."""
     width = price.shape[0]
     if width == 1:
         for j in range(first, last):

@@ -15,22 +15,20 @@ from synth.kernels.sweep.pass_time import add_change_times, add_quantum_times
 from synth.kernels.sweep.policy_density import NEGLIGIBLE_MASS
 from synth.kernels.sweep.transient import change_values
 from synth.kernels.vector.borrowing import borrowing
-from synth.kernels.vector.packs import EIGHT
 
 NEGLIGIBLE_PROBABILITY = 1e-9
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def backward(
-    policy, slopes, decision_at, terminal, stalled, change_cost, time_price, entry, entry_mode, speed, stage, pressure,
+    policy, slopes, decision_at, terminal, stalled, prices, entry, entry_mode, speed, stage, pressure,
     change_chain, chain_mode, ends, factors, probability, mean, std,
-    levels, transition, stationary, drive, brake, factor, extra, path_step, energy_step, period, times,
+    levels, transition, stationary, drive, brake, factor, extra, path_step, energy_step, period,
     density, band, gradient,
 ):  # fmt: skip
     """Expected cost of the policy from the entry; with `density` of the same policy also the gradient.
 
-    `terminal` (E,) cost by exit energy, `stalled` cost of a stall, `change_cost` of each command,
-    `time_price` of a second (`times` as in `pass_time`);
+    `terminal` (E,) cost by exit energy, `stalled` cost of a stall, `prices` as in `pass_time`;
     `policy` as in `forward`; `slopes` (C, R, K + 1, E): derivative by the line of the probability of a command to go
     so far or farther. `density` (R, H, L, E) and `band` (N, 2) from `forward`, or `density` of length 0: then every
     state is valued and no gradient taken. `gradient` (C, R, K + 1) is added to.
@@ -51,10 +49,9 @@ def backward(
         ahead, values, mixed, np.zeros(row), np.full(1, stalled), np.empty(row),
         np.zeros((change_chain.shape[0], row)), np.empty(change_chain.shape[0]),
         np.empty((modes, size)), landing_scratch(row, size, speed.dtype),
-        np.full(1, time_price), np.empty(max(points, 2 * EIGHT)),
-        policy, slopes, decision_at, stalled, change_cost, speed, stage, pressure,
+        policy, slopes, decision_at, stalled, prices, speed, stage, pressure,
         change_chain, chain_mode, ends, factors, met[0], slope[0],
-        levels, transition, drive, brake, factor, extra, path_step, energy_step, period, times,
+        levels, transition, drive, brake, factor, extra, path_step, energy_step, period,
         density, band, gradient,
     )  # fmt: skip
     cost = 0.0
@@ -72,10 +69,10 @@ def backward(
 
 @borrowing
 def follow_back(
-    ahead, values, mixed, scratch, stop, quanta, changed, worth, shift, landing, time_price, spent,
-    policy, slopes, decision_at, stalled, change_cost, speed, stage, pressure,
+    ahead, values, mixed, scratch, stop, quanta, changed, worth, shift, landing,
+    policy, slopes, decision_at, stalled, prices, speed, stage, pressure,
     change_chain, chain_mode, ends, factors, met, slope,
-    levels, transition, drive, brake, factor, extra, path_step, energy_step, period, times,
+    levels, transition, drive, brake, factor, extra, path_step, energy_step, period,
     density, band, gradient,
 ):  # fmt: skip
     """`backward` with its memory: values ahead at held stages, at samples, and before mixing (rings)."""
@@ -93,8 +90,7 @@ def follow_back(
         for r in range(reach - 2, 0, -1):
             pull(ahead[r], points, transition, shift, stop, first, last, ahead[r + 1], scratch)
         pull(values[(n + 1) % ring], points, transition, shift, stop, first, last, ahead[1], scratch)
-        if time_price[0] > 0.0:
-            add_quantum_times(n, times, time_price, speed, shift, energy_step, first, last, ahead, spent)
+        add_quantum_times(n, prices, speed, shift, energy_step, first, last, ahead, scratch)
         for h in range(modes):
             k = stage[h]
             for q in range(size):
@@ -116,11 +112,10 @@ def follow_back(
                         least_ahead, extra, path_step, energy_step, points,
                         values, mixed, stalled, landing, changed[command],
                     )  # fmt: skip
-                    if time_price[0] > 0.0:
-                        add_change_times(
-                            n, decision, nodes, c, q, landing[1], found, chain_mode[c], ends, met, slope, least_ahead,
-                            extra, path_step, times, time_price, speed, spent, changed[command],
-                        )  # fmt: skip
+                    add_change_times(
+                        n, decision, nodes, c, q, landing[1], found, chain_mode[c], ends, met, slope, least_ahead,
+                        extra, path_step, prices, speed, scratch, changed[command],
+                    )  # fmt: skip
                 for j in range(first, last):
                     mass = density[decision, h, q, j] if visited_only else 1.0
                     if abs(mass) < NEGLIGIBLE_MASS:
@@ -130,7 +125,7 @@ def follow_back(
                     for command in range(commands):
                         chance = policy[command, decision, k, j]
                         told = change_chain[command, h] >= 0 and (several or chance > NEGLIGIBLE_PROBABILITY)
-                        worth[command] = change_cost + changed[command, j] if told else np.nan
+                        worth[command] = prices[0][0] + changed[command, j] if told else np.nan
                         by_change += chance * (worth[command] if told else 0.0)
                         hold -= chance
                     step = min(int(quanta[j]), reach - 2)
