@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 from synth.studies.humping.base_trial import Day, with_interval_std
@@ -22,15 +22,48 @@ from synth.studies.humping.frontier import (
 from synth.studies.humping.runs import measured
 from synth.studies.humping.table_positions import table_positions
 from synth.studies.study import Tell
+from synth.yard.humping.hump_position import Arrivals, HumpPosition, Passed
+from synth.yard.humping.trial import HumpTrial
 
 PRICED = "our tables, a second priced"
+EVENLY = "foretold as even braking"
+"""What the plan and the control take passes for; by default of tables that they brake early and hold the speed then."""
+
 EXACT_STD_M_S = 0.03
 """Of the normal positions beside them, which brake evenly."""
 
 
+def evenly(name: str) -> str:
+    """The same positions, otherwise foretold."""
+    return f"{name}, {EVENLY}"
+
+
+PAIRS = (
+    (PRICED, TABLES),
+    (evenly(PRICED), evenly(TABLES)),
+    (evenly(PRICED), TABLES),
+    (TABLES, sigma(EXACT_STD_M_S)),
+    (evenly(PRICED), sigma(EXACT_STD_M_S)),
+)
+"""What is compared with what."""
+
+
+@dataclass(frozen=True)
+class EvenlyForetold:
+    """`position`, of which plan and control think that it brakes evenly."""
+
+    position: HumpPosition
+
+    brakes_early = False
+
+    def passed(self, arrivals: Arrivals) -> Passed:
+        """See `HumpPosition`."""
+        return self.position.passed(arrivals)
+
+
 @dataclass(frozen=True)
 class Humped:
-    """`trains` of `cuts` cuts, with feedback; `gains`: of the priced tables over those without, and of both over exact
+    """`trains` of `cuts` cuts, with feedback; `gains`: of the priced tables over those without, and over exact
     positions; `exits`: what the positions make of their commands."""
 
     trains: int
@@ -39,6 +72,11 @@ class Humped:
     curves: tuple[Curve, ...]
     gains: tuple[Gain, ...]
     exits: tuple[Exits, ...]
+
+
+def evenly_foretold(trial: HumpTrial) -> HumpTrial:
+    """The trial whose plan and control think so of all positions."""
+    return replace(trial, positions=tuple(map(EvenlyForetold, trial.positions)))
 
 
 def humped(
@@ -52,15 +90,13 @@ def humped(
     for name, price in ((TABLES, 0.0), (PRICED, price_m2_s3)):
         made[name] = table_positions(base, partial(Book.priced_tables, time_price_m2_s3=price)).on(base)
         tell(f"books tuned: {name}")
-    regulated = {name: Family(trial, (WITH_FEEDBACK,)) for name, trial in made.items()}
-    exact = {sigma(EXACT_STD_M_S): Family(with_interval_std(base, EXACT_STD_M_S), (WITH_FEEDBACK,))}
-    groups = [group for part in (regulated, exact) for group in frontier_groups(part, least_s)]
-    found = Frontier(measured(groups, trains, workers, tell), lines_of(regulated, exact), least_s, limits, (), seed)
-    priced, plain, best = found.lines[1], found.lines[0], found.lines[2]
+    early = {name: Family(trial, (WITH_FEEDBACK,)) for name, trial in made.items()}
+    even = {evenly(name): Family(evenly_foretold(trial), (WITH_FEEDBACK,)) for name, trial in made.items()}
+    even[sigma(EXACT_STD_M_S)] = Family(with_interval_std(base, EXACT_STD_M_S), (WITH_FEEDBACK,))
+    groups = [group for part in (early, even) for group in frontier_groups(part, least_s)]
+    found = Frontier(measured(groups, trains, workers, tell), lines_of(early, even), least_s, limits, (), seed)
     gains = tuple(
-        found.gain(more_cars, than, limit)
-        for limit in limits
-        for more_cars, than in ((priced, plain), (plain, best), (priced, best))
+        found.gain((one, WITH_FEEDBACK), (other, WITH_FEEDBACK), limit) for limit in limits for one, other in PAIRS
     )
     exits = exits_of(made, min(trains, TRAINS))
     return Humped(trains, cuts, price_m2_s3, found.curves(), gains, exits)
