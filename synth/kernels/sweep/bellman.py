@@ -89,7 +89,7 @@ def sweep(
                         value_change(
                             n, decision, nodes, c, q, runs, found, chain_mode[c], ends, met[i], slope[i], least_ahead,
                             extra[i], path_step, energy_step, prices, speed,
-                            recent[i], mixed[i], stalled, place, weight, scratch, changed,
+                            recent[i], mixed[i], stalled, place, weight, best, changed,
                         )  # fmt: skip
                         add_gains(holds[i, h, q], changed, prior[i, h, q], rounding, width, gains[command, stage[h]])
         for k in range(stages):
@@ -128,7 +128,7 @@ def hold_everywhere(
     for r in range(ahead.shape[0] - 2, 0, -1):
         pull(ahead[r], points, transition, shift, stalled, 1, points, ahead[r + 1], scratch)
     pull(following, points, transition, shift, stalled, 1, points, ahead[1], scratch)
-    add_quantum_times(n, prices, speed, shift, energy_step, 1, points, ahead, scratch)
+    add_quantum_times(n, prices, speed, shift, energy_step, 1, points, ahead, quanta[0, 0])
     for h in range(modes):
         for q in range(size):
             a = shift[h, q] * energy_step / path_step
