@@ -41,6 +41,7 @@ def evenly(name: str) -> str:
 PAIRS = (
     (PRICED, TABLES),
     (evenly(PRICED), evenly(TABLES)),
+    (evenly(TABLES), TABLES),
     (evenly(PRICED), TABLES),
     (TABLES, sigma(EXACT_STD_M_S)),
     (evenly(PRICED), sigma(EXACT_STD_M_S)),
