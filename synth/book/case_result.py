@@ -13,6 +13,7 @@ from plant_models.frozen_arrays import frozen_arrays
 from synth.book.comparison.comparison import Comparison
 from synth.book.feasibility import Feasibility
 from synth.book.grid_check import GridCheck
+from synth.book.pareto.pareto_front import ParetoFront
 from synth.book.permissions.permission import CasePermissions
 from synth.problem.criterion import Criterion
 from synth.problem.problem import Problem
@@ -105,7 +106,8 @@ class CaseResult:
     rest is to be believed; `finding`: what the criterion's requirement took; `estimate`: where an estimator
     is asked for, how its lines were designed. `exit_speeds_m_s` simulated, stalls as 0, and `exit_weight`: how many
     cuts each pass stands for; `brake_power`: what of their error is for want of it; `permissions`: where they are asked
-    for, what those of the hardware would give.
+    for, what those of the hardware would give; `front`: where it is asked for,
+    what less time in the position costs.
     """
 
     label: str
@@ -123,6 +125,7 @@ class CaseResult:
     feasibility: Feasibility
     study: CaseStudy
     permissions: CasePermissions | None
+    front: ParetoFront | None
 
     @property
     def plant(self) -> Plant:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from plant_models import Plant
+from synth.book.command_forecast import CommandForecast, command_forecast
 from synth.book.comparison.limit_cycle import Hunting, hunting_report
 from synth.book.comparison.pressure_cycle import PressureCycle, pressure_hunting
 from synth.simulation.closed_loop import TableController
@@ -32,11 +33,12 @@ TOLERANCE_M_S = 0.001
 
 @dataclass(frozen=True)
 class ControlLoop:
-    """A table in the loop with its plant, no chance in it.
+    """A table in the loop with its plant, no chance in it but in `forecast`.
 
     `response` is python-control's, `trace` the simulator's, of the same pass; `portrait`: responses from other entry
     speeds; `hunting`: where a pair of stages can hunt, and how; `pressure`: (stage, limit cycle) of every stage around
-    which the pressure regulator itself hunts.
+    which the pressure regulator itself hunts; `forecast`: commands of real passes, with the radar's noise and without,
+    None for a table with an estimator.
     """
 
     table: ControllerTable
@@ -48,6 +50,7 @@ class ControlLoop:
     portrait: tuple[NominalResponse, ...]
     hunting: tuple[Hunting, ...]
     pressure: tuple[tuple[int, PressureCycle], ...]
+    forecast: CommandForecast | None
 
     @property
     def stages(self) -> int:
@@ -81,6 +84,7 @@ def control_loop(table: ControllerTable, label: str, plant: Plant) -> ControlLoo
         portrait=tuple(nominal_response(plant, controller, float(speed), phase_s) for speed in speeds),
         hunting=hunting_report(plant, lines_of(table, np.linspace(plant.start_m, plant.exit_m, LINE_NODES))),
         pressure=pressure_hunting(plant),
+        forecast=command_forecast(table, plant),
     )
 
 
@@ -104,6 +108,7 @@ def loop_document(loop: ControlLoop) -> dict[str, Any]:
             "commands": commands_of(trace),
         },
         "difference": {**asdict(loop.difference), "tolerance_m_s": TOLERANCE_M_S, "agrees": loop.agrees},
+        "command_forecast": None if loop.forecast is None else asdict(loop.forecast),
         "limit_cycles": [asdict(each) for each in loop.hunting],
         "pressure_limit_cycles": [{"stage": stage, **asdict(cycle)} for stage, cycle in loop.pressure],
     }

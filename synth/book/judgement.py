@@ -47,6 +47,11 @@ def judgement(
         (found.stalled_ci95, (0.0, limits.p_stall),
          f"stop in the position in {share_text((found.stalled, found.stalled_ci95))} of the cuts, "
          f"allowed {limits.p_stall:.3%}"),
+        (found.time_ci95_s, (0.0, limits.time_s),
+         f"{found.time_s:.2f} {interval_text(found.time_ci95_s, 2)} s in the position, allowed {limits.time_s:g}"),
+        (found.switchings_ci95, (0.0, limits.switchings),
+         f"{found.switchings:.2f} {interval_text(found.switchings_ci95, 2)} commands a cut, allowed "
+         f"{limits.switchings:g}"),
         (honest_ci95, (low, high),
          f"predicted / simulated rms {honest:.3f} {interval_text(honest_ci95, 3)}, allowed {low:g} to {high:g}"),
     )  # fmt: skip

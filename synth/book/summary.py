@@ -134,6 +134,7 @@ def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
         "estimate": None if case.estimate is None else {**estimate_of(case.estimate), "left_out": case.left_out},
         "permissions": None if case.permissions is None else results_document(case.permissions),
         "permissions_failed": {} if case.permissions is None else failed_document(case.permissions),
+        "pareto_front": None if case.front is None else case.front.document,
         "warnings": case.warnings,
         "grid_check": asdict(case.grid),
         "polish": polish_of(case.polish),

@@ -13,6 +13,8 @@ from synth.book.class_setup import TUNING_PASSES, ClassSetup, Origin, class_setu
 from synth.book.creation_time import creation_time
 from synth.book.degree_study import degree_study, tables_by_degree
 from synth.book.failed_case import FailedCase, require_none
+from synth.book.pareto.case_front import pareto_front
+from synth.book.pareto.pareto_front import ParetoFront, told
 from synth.book.permissions.case_permissions import asking
 from synth.book.permissions.overview import HINT, Overview, overview_of
 from synth.book.permissions.refusal import tellable
@@ -63,6 +65,16 @@ class Book:
         return overview_of(case.permissions for case in self.cases)
 
     @property
+    def fronts(self) -> tuple[ParetoFront, ...]:
+        """What less time in the position costs, by case, where that was asked for."""
+        return tuple(case.front for case in self.cases if case.front is not None)
+
+    @property
+    def pareto_line(self) -> str:
+        """The same in one line; nothing where nobody asked."""
+        return told(self.fronts) if self.fronts else ""
+
+    @property
     def permissions_line(self) -> str:
         """The same in one line; how to ask for it, where it was not; nothing where it would be refused."""
         found = self.permissions
@@ -77,7 +89,7 @@ class TuneRun:
 
     `passes`: that every table is validated on; `tuning`: that baselines are tuned on. `watcher` is told a sentence
     whenever a case has ended, `case_done` given its result if it has a table. With `permissions` each case also tells
-    what those of the hardware would give.
+    what those of the hardware would give, with `pareto` what less time costs.
     """
 
     config: ResolvedConfig
@@ -88,6 +100,7 @@ class TuneRun:
     watcher: Watcher
     case_done: CaseDone
     permissions: bool
+    pareto: bool
 
 
 Task = Callable[[], CaseResult | FailedCase | DegreeStudy | None]
@@ -101,13 +114,15 @@ def tune(
     workers: int = 2,
     case_done: CaseDone = no_notice,
     permissions: bool = False,
+    pareto: bool = False,
 ) -> Book:
     """Tune every cut class and target of `config`; each table is handed to `store` as soon as it is made.
 
     Work runs on `workers` threads (the kernels release the interpreter); the result does not depend on how
     many. `watcher` is told a sentence whenever a case has ended, `case_done` given its result. `permissions`: each case
-    also tells what those of the hardware would give; for configurations that `require_tellable` lets pass. A case that
-    no table can be made for is told of in the book, and the others are made.
+    also tells what those of the hardware would give; for configurations that `require_tellable` lets pass; `pareto`:
+    and what less time in the position costs. A case that no table can be made for is told of in the book, and the
+    others are made.
     """
     plants = config.plants()
     for label, plant in plants:
@@ -121,6 +136,7 @@ def tune(
         watcher=watcher,
         case_done=case_done,
         permissions=permissions,
+        pareto=pareto,
     )
     heaviest_first = sorted(range(len(plants)), key=lambda i: -plants[i][1].top_stage * plants[i][1].cut.mass_t)
     starts = [partial(class_tasks, run, *plants[i], studied=i == heaviest_first[-1]) for i in heaviest_first]
@@ -158,9 +174,12 @@ def case_orders(run: TuneRun, label: str, plant: Plant) -> list[CaseOrder]:
     published = solutions(as_published(setup.design, PUBLISHED_LEVELS), aims)
     rehearsal = setup.passes.of_others(run.tuning)
     asks = [asking(config, setup, aim) if run.permissions else None for aim in aims]
+    fronts = [partial(pareto_front, config, setup, aim) if run.pareto else None for aim in aims]
     return [
-        CaseOrder(setup, solution, plain, as_was, config.acceptance.rms_m_s, rehearsal, run.store, ask)
-        for solution, plain, as_was, ask in zip(both[: len(aims)], both[len(aims) :], published, asks, strict=True)
+        CaseOrder(setup, solution, plain, as_was, config.acceptance.rms_m_s, rehearsal, run.store, ask, front)
+        for solution, plain, as_was, ask, front in zip(
+            both[: len(aims)], both[len(aims) :], published, asks, fronts, strict=True
+        )
     ]
 
 

@@ -14,6 +14,7 @@ from synth.book.comparison.friction_bound import friction_bound
 from synth.book.comparison.measured import Measured
 from synth.book.comparison.served_entry import feasibility_of
 from synth.book.estimation.estimated_table import controller_of
+from synth.book.pareto.case_front import Front
 from synth.book.permissions.case_permissions import Ask
 from synth.book.policy_map import policy_map
 from synth.book.rounded_table import rounded
@@ -41,7 +42,8 @@ class CaseOrder:
 
     `solution` on the design chain, `without_tolerance` the same without the switching tolerance, `as_published` in the
     formulation as published; `limit_m_s`: the rms that makes a case feasible; `tuning`: passes that baselines are tuned
-    on; `ask`: where it is wanted, what tells what permissions of the hardware would give.
+    on; `ask`: where it is wanted, what tells what permissions of the hardware would give; `front`: where it is
+    wanted, what makes the curve of accuracy against time.
     """
 
     setup: ClassSetup
@@ -52,6 +54,7 @@ class CaseOrder:
     tuning: CommonPasses
     store: Store
     ask: Ask | None
+    front: Front | None
 
 
 def tune_case(order: CaseOrder) -> CaseResult:
@@ -76,6 +79,7 @@ def tune_case(order: CaseOrder) -> CaseResult:
         feasibility=feasibility_of(setup.passes, solution.aim.target_speed_m_s, order.limit_m_s),
         study=case_study(order, tuned, validated),
         permissions=None if order.ask is None else order.ask(tuned, validated.sample),
+        front=None if order.front is None else order.front(),
     )
 
 

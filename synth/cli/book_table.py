@@ -25,8 +25,8 @@ NO_REGRET = (
 )
 
 
-def print_book(summary: of.Case, directory: Path, permissions: Overview | None, permissions_line: str) -> None:
-    """Print the table of cases, what is infeasible, the verdict, and where everything is."""
+def print_book(summary: of.Case, directory: Path, permissions: Overview | None, lines: Sequence[str]) -> None:
+    """Print the cases, `lines` of what else was asked for, what is infeasible, the verdict, and where everything is."""
     cases = summary["cases"]
     columns, rows = columns_of(cases, permissions), [*cases, *map(of.without_table, summary["failed"])]
     page: list[Exhibit] = [PrintedTable(columns, rows, "summary.json and the report", summary["title"])]
@@ -34,8 +34,7 @@ def print_book(summary: of.Case, directory: Path, permissions: Overview | None, 
         page.append(f"{cases[0]['simulated']['passes']} stratified passes a case. {LEGEND}")
     if any(case.get("simulated") and case["regret"] is None for case in cases):
         page.append(NO_REGRET)
-    if permissions_line:
-        page.append(permissions_line)
+    page += filter(None, lines)
     page += (f"infeasible: {infeasible(case)}" for case in cases if not case["feasible"])
     for case in cases:
         if case["estimate"] and case["estimate"]["left_out"]:
@@ -51,7 +50,7 @@ def columns_of(cases: Sequence[of.Case], permissions: Overview | None) -> tuple[
     asked = permissions.in_column if permissions else ()
     return (
         of.CASE, of.TARGET, of.RMS, of.WITHIN_95, of.WITHIN_99, of.OUT_OF_BRAKE, of.HONESTY,
-        of.AT_REST if at_any_time else of.LOSS, of.REGRET, of.BEST_BASELINE, of.SWITCHINGS,
+        of.AT_REST if at_any_time else of.LOSS, of.REGRET, of.BEST_BASELINE, of.SWITCHINGS, of.TIME,
         *map(of.permission_column, asked), of.VERDICT,
     )  # fmt: skip
 

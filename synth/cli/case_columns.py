@@ -58,6 +58,12 @@ def switchings(case: Case) -> str | None:
     return None if found is None else f"{found['switchings']:.1f}"
 
 
+def time(case: Case) -> str | None:
+    """Mean time in the position."""
+    found = case.get("simulated")
+    return None if found is None else plus_minus(found["time_s"], found["time_ci95_s"])
+
+
 def permission_column(permission: Permission) -> Column[Case]:
     """The rms that a permission gives, over that of the table as configured."""
 
@@ -91,4 +97,5 @@ AT_REST: Final = Column[Case](f"rms{NO_BREAK}/ at{NO_BREAK}rest", ratio("at_rest
 REGRET: Final = Column[Case]("regret", ratio("regret"), spare=5)
 BEST_BASELINE: Final = Column[Case]("best baseline, m/s", best_baseline, spare=6)
 SWITCHINGS: Final = Column[Case]("switchings", switchings, spare=8)
+TIME: Final = Column[Case]("time, s", time, spare=9)
 VERDICT: Final = Column[Case]("verdict", lambda case: case["verdict"], words=True)

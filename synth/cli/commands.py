@@ -84,6 +84,9 @@ def tune(
     permissions: Annotated[
         bool, typer.Option("--permissions", help="Also tell what permissions of the hardware would give; takes long.")
     ] = False,
+    pareto: Annotated[
+        bool, typer.Option("--pareto", help="Also tell what less time in the position costs; takes long.")
+    ] = False,
     as_json: Json = False,
 ) -> int:
     """Make a book of tables, its pictures and report.
@@ -92,7 +95,7 @@ def tune(
     """
     from synth.cli.tune import tune_command
 
-    return tune_command(config, output, workers, permissions, as_json)
+    return tune_command(config, output, workers, permissions, pareto, as_json)
 
 
 add_yard_commands(app)

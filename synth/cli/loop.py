@@ -137,18 +137,29 @@ def print_loops(loops: Sequence[AnyLoop], files: str) -> None:
         Column("exit by the simulator, m/s", lambda loop: f"{loop.trace.exit_speed_m_s:.4f}"),
         Column("largest difference, mm/s", difference),
         Column("commands in a pass", lambda loop: str(len(loop.response.commands)), spare=1),
+        Column("commands in the mean, by noise", forecast, spare=3),
         Column("predicted limit cycle, stages: path, amplitude, period", cycles, words=True, spare=2),
     )
     page: list[Exhibit] = [
         PrintedTable(columns, loops, DOCUMENT),
         "Nominal pass: mean friction and resistance, median entry speed, no noise. Python-control and the simulator "
-        f"agree where the largest difference is {1e3 * TOLERANCE_M_S:g} mm/s or less.",
+        f"agree where the largest difference is {1e3 * TOLERANCE_M_S:g} mm/s or less. "
+        "Commands in the mean: of passes with all that is random, and how many of them the noise of the radar makes.",
     ]
     if any(loop.difference.parted_s is not None for loop in loops):
         page.append(
             "*: up to a decision at a speed on a line. Rounding decides there; from then on these are two passes."
         )
     print_page(*page, files)
+
+
+def forecast(loop: AnyLoop) -> str | None:
+    """Mean commands of real passes, and how many of them the noise of the radar makes."""
+    from synth.book.passage_control_loop import PassageControlLoop
+
+    if isinstance(loop, PassageControlLoop) or loop.forecast is None:
+        return None
+    return f"{loop.forecast.commands:.1f}, {loop.forecast.by_noise:.1f}"
 
 
 def cycles(loop: AnyLoop) -> str:

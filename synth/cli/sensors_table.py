@@ -10,7 +10,7 @@ from synth.cli.printed_page import Verdict, print_page
 from synth.cli.printed_table import PrintedTable
 
 COLUMNS = (
-    of.CASE, of.TARGET, of.RMS, of.UNAVOIDABLE, of.WITHIN_95, of.OUT_OF_BRAKE, of.HONESTY, of.SWITCHINGS,
+    of.CASE, of.TARGET, of.RMS, of.UNAVOIDABLE, of.WITHIN_95, of.OUT_OF_BRAKE, of.HONESTY, of.SWITCHINGS, of.TIME,
     of.VERDICT,
 )  # fmt: skip
 

@@ -20,8 +20,10 @@ if TYPE_CHECKING:
     from synth.frame.results_directory import ResultsDirectory
 
 
-def tune_command(path: Path | None, output: Path, workers: int | None, permissions: bool, as_json: bool) -> int:
-    """Tune the configuration in `path` into the directory `output`, and tell of permissions; the exit code."""
+def tune_command(
+    path: Path | None, output: Path, workers: int | None, permissions: bool, pareto: bool, as_json: bool
+) -> int:
+    """Tune the configuration in `path` into the directory `output`, and tell what else is asked; the exit code."""
     from synth.book.creation_time import require_date
     from synth.configuration.config_file import BUILT_IN, load_config
     from synth.frame.results_directory import results_directory
@@ -37,7 +39,7 @@ def tune_command(path: Path | None, output: Path, workers: int | None, permissio
     with results_directory(output, "tune", filter(None, [path])) as directory:
         for warning in (*config.warnings, *sensors_left_aside(config)):
             say(f"warning: {warning}")
-        return tune_into(directory, config, path, Asked(workers, permissions, as_json))
+        return tune_into(directory, config, path, Asked(workers, permissions, pareto, as_json))
 
 
 def sensors_left_aside(config: ResolvedConfig) -> tuple[str, ...]:
@@ -53,6 +55,7 @@ class Asked:
 
     workers: int
     permissions: bool
+    pareto: bool
     as_json: bool
 
 
@@ -80,7 +83,7 @@ def tune_into(directory: ResultsDirectory, config: ResolvedConfig, path: Path | 
         case_done = studio.case_done if wanted else no_notice
         with tables_refused(str(path or "built-in configuration"), config):
             store = partial(store_table, directory=directory)
-            book = guarded(tune, config, store, progress, asked.workers, case_done, asked.permissions)
+            book = guarded(tune, config, store, progress, asked.workers, case_done, asked.permissions, asked.pareto)
             require_a_table(book.cases, book.failed)
             progress.note(f"{counted(len(book.cases), 'case')} computed in {time.monotonic() - started:.1f} s")
             verdict = judge(book.cases, config.acceptance, book.failed)
@@ -91,7 +94,7 @@ def tune_into(directory: ResultsDirectory, config: ResolvedConfig, path: Path | 
     else:
         from synth.cli.book_table import print_book
 
-        print_book(summary, directory.path, book.permissions, book.permissions_line)
+        print_book(summary, directory.path, book.permissions, (book.permissions_line, book.pareto_line))
     return OK if verdict.accepted else LIMITS_MISSED
 
 

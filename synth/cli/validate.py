@@ -173,6 +173,7 @@ def print_found(found: list[Revalidation], seed: int, log: AskedLog | None) -> N
         Column(WITHIN["p99"], error("p99"), spare=5),
         Column(OUT_OF_BRAKE_IN, out_of_brake, spare=1),
         Column("switchings", lambda each: f"{each.statistics.switchings:.1f}", spare=6),
+        Column("time, s", lambda each: plus_minus(each.statistics.time_s, each.statistics.time_ci95_s), spare=7),
         Column("the file states, m/s", stated, spare=2),
         Column("predicted, m/s", lambda each: speed(each.table.predicted.rms_m_s), spare=3),
         Column(PREDICTED, lambda each: plus_minus(*each.honesty)),

@@ -104,6 +104,9 @@ class CriterionSettings(Section):
     switching_tolerance_m2_s2: float = setting(
         Criterion.switching_tolerance_m2_s2, "m2/s2", 0.0, 1.0, "a change of stage must gain more than this"
     )
+    time_price_m2_s3: float = setting(
+        Criterion.time_price_m2_s3, "m2/s3", 0.0, 1.0, "cost of a second between where the regulator acts and the exit"
+    )
     overspeed_factor: float = setting(
         1.0, "1", 1.0, 1000.0, "asymmetric cost: a squared error above the target weighs this much; 1: as one below"
     )
@@ -141,6 +144,7 @@ class CriterionSettings(Section):
         return Criterion(
             stall_cost_m2_s2=self.stall_cost_m2_s2,
             switching_tolerance_m2_s2=self.switching_tolerance_m2_s2,
+            time_price_m2_s3=self.time_price_m2_s3,
             terminal=SquaredError() if self.overspeed_factor == 1.0 else AsymmetricSquare(self.overspeed_factor),
             requirement=requirement,
         )
@@ -162,6 +166,8 @@ class AcceptanceSettings(Section):
     overspeed_margin_m_s: float = setting(0.3, "m/s", 0.01, 5.0, "an exit is over-speed beyond target + margin")
     p_overspeed: float = setting(0.05, "1", 0.0, 1.0, "highest probability of an over-speed exit")
     p_stall: float = setting(0.01, "1", 0.0, 1.0, "highest probability of a stop in the position")
+    time_s: float = setting(600.0, "s", 0.1, 600.0, "highest mean time from where the regulator acts to the exit")
+    switchings: float = setting(1000.0, "1", 0.0, 1000.0, "highest mean number of commands a cut")
     honesty_low: float = setting(0.9, "1", 0.0, 1.0, "lowest predicted rms / simulated rms")
     honesty_high: float = setting(1.1, "1", 1.0, 100.0, "highest predicted rms / simulated rms")
 

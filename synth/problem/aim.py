@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from plant_models.errors import require_between
 from synth.problem.criterion import SQUARED_ERROR_CRITERION, Criterion
@@ -17,3 +17,13 @@ class Aim:
 
     def __post_init__(self) -> None:
         require_between("targets: target_speed_m_s", self.target_speed_m_s, 0.3, 20.0)
+
+    @property
+    def timeless(self) -> Aim:
+        """The same where a second costs nothing."""
+        return replace(self, criterion=replace(self.criterion, time_price_m2_s3=0.0))
+
+    @property
+    def prices_time(self) -> bool:
+        """Whether a second costs something."""
+        return self.criterion.time_price_m2_s3 > 0.0

@@ -16,7 +16,8 @@ SQUARED_ERROR = SquaredError()
 
 @dataclass(frozen=True)
 class Criterion:
-    """Cost of one pass: `terminal` of its exit speed, plus `stall_cost_m2_s2` for a stall in the position.
+    """Cost of one pass: `terminal` of its exit speed, plus `stall_cost_m2_s2` for a stall in the position,
+    plus `time_price_m2_s3` for each second from where the regulator acts to the exit.
 
     `switching_tolerance_m2_s2`: a change of stage must gain more than this, else hold wins: commands whose
     costs differ by less count as equal, and of these the one with the fewest switchings is taken.
@@ -25,12 +26,14 @@ class Criterion:
 
     stall_cost_m2_s2: float = 1.0
     switching_tolerance_m2_s2: float = 3e-5
+    time_price_m2_s3: float = 0.0
     terminal: TerminalCost = SQUARED_ERROR
     requirement: Requirement | None = None
 
     def __post_init__(self) -> None:
         require_between("criterion: stall_cost_m2_s2", self.stall_cost_m2_s2, 0.0, 1e4)
         require_between("criterion: switching_tolerance_m2_s2", self.switching_tolerance_m2_s2, 0.0, 1.0)
+        require_between("criterion: time_price_m2_s3", self.time_price_m2_s3, 0.0, 1.0)
         require(
             self.requirement is None or self.terminal == SQUARED_ERROR,
             "criterion: a chance constraint or a worst case goes with the squared error only; leave out one of the two",

@@ -23,7 +23,8 @@ class ExitStatistics:
 
     Shares and means are of cuts as they come, whatever the strata the passes were drawn from; every `…_ci95` is the
     95 % interval (low, high) of the figure before it. `p95_m_s`, `p99_m_s`: 95 and 99 % quantiles of |e|; `overspeed`:
-    share with e > 0.3 m/s; `stalled`: share that stops in the position; `switchings`: mean commands of a pass.
+    share with e > 0.3 m/s; `stalled`: share that stops in the position; `switchings`: mean commands of a pass;
+    `time_s`: mean time from where the regulator acts to the exit, or to a stop.
     """
 
     passes: int
@@ -42,6 +43,8 @@ class ExitStatistics:
     stalled_ci95: Interval
     switchings: float
     switchings_ci95: Interval
+    time_s: float
+    time_ci95_s: Interval
 
 
 @dataclass(frozen=True)
@@ -67,6 +70,7 @@ def exit_statistics(sample: ExitSample, target_m_s: float) -> ExitStatistics:
     over, over_ci95 = overspeed_of(sample, target_m_s, OVERSPEED_M_S)
     stalled, stalled_ci95 = share_of(sample.stalled, weight)
     switchings = mean_of(sample.switchings.astype(np.float64), weight)
+    time = mean_of(sample.transit_time_s, weight)
     return ExitStatistics(
         passes=len(sample),
         rms_m_s=rms,
@@ -84,6 +88,8 @@ def exit_statistics(sample: ExitSample, target_m_s: float) -> ExitStatistics:
         stalled_ci95=stalled_ci95,
         switchings=switchings.value,
         switchings_ci95=switchings.ci95,
+        time_s=time.value,
+        time_ci95_s=time.ci95,
     )
 
 

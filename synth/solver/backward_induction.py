@@ -15,6 +15,7 @@ from synth.kernels.sweep.bellman import sweep
 from synth.kernels.vector.packs import EIGHT
 from synth.problem.aim import Aim
 from synth.solver.chain.chain import Chain
+from synth.solver.pass_times import pass_times
 from synth.solver.switching_lines import SwitchingLines
 
 TIE_M2_S2 = 1e-9
@@ -84,6 +85,7 @@ def solve_all(
     priced = [each.criterion.exit_costs(c.grid.speed_m_s, each.target_speed_m_s) for each in aims]
     exit_costs, stall_costs = zip(*priced, strict=True)
     change_costs = [each.criterion.switching_tolerance_m2_s2 for each in aims]
+    time_prices = [each.criterion.time_price_m2_s3 for each in aims]
     nodes, stages, points, width = len(c.drive_m_s2), c.actuator.stages, len(c.grid.speed_m_s), len(aims)
     kept = nodes + 1 if nodes_kept is None else nodes_kept
     states = (len(c.actuator.mode_stage), len(c.path_noise.levels), points)
@@ -93,9 +95,10 @@ def solve_all(
     heard = np.full((len(c.decisions), width), c.epochs.heard) if heard is None else heard
     readings, noise = c.measurement.readings(c.grid.speed_m_s), c.measurement.std
     smear_start, smear = true_speed_weights(c.grid.speed_m_s, readings, noise)
-    costs = (np.stack(exit_costs, axis=1), stall_costs, change_costs)
+    costs = (np.stack(exit_costs, axis=1), stall_costs, change_costs, time_prices)
+    terminal, stalled, *prices = (in_packs_of_targets(each, value_type).ravel() for each in costs)
     arguments = (
-        *(in_packs_of_targets(each, value_type).ravel() for each in costs),
+        terminal, stalled, (*prices, *pass_times(c)),
         TIE_M2_S2, ROUNDINGS * float(np.finfo(value_type).eps), readings, (noise, heard), smear_start,
         smear.astype(value_type), hidden_prior(c).astype(value_type), c.decisions.at_nodes(nodes), *sweep_arguments(c),
         c.scenarios.factor, c.scenarios.extra_m_s2,

@@ -37,7 +37,8 @@ def polish_passages(solution: Solution, max_iterations: int = 40, tolerance: flo
     """Minimise the cost over all finite switching speeds of a solution, keeping their order.
 
     Sequential quadratic programming in units in which being off costs the same for each. It ends when a step changes
-    the cost by less than `tolerance` of the first; the cost of the result is no higher than the start's.
+    the cost by less than `tolerance` of the first without the price of time; the cost of the result is no higher than
+    the start's.
 
     Raises `CoarseGridError` if the cost to start from is not positive.
     """
@@ -49,6 +50,8 @@ def polish_passages(solution: Solution, max_iterations: int = 40, tolerance: flo
     first = evaluation.gradient(start)
     off = np.maximum(being_off(solution, start)[free], 0.0)
     cost = require_positive(first[0], "switching speeds")
+    if solution.aim.prices_time:
+        tolerance *= Evaluation(solution.chain, solution.aim.timeless).gradient(start)[0] / cost
     unit = np.minimum(np.sqrt(cost / (off + 1e-12)), LOOSE_M_S)
 
     def policy(y: NDArray[np.float64]) -> PassageSpeeds:

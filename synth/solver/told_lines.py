@@ -25,8 +25,8 @@ from synth.solver.policy_density import scenario_densities
 from synth.solver.polish import polish
 from synth.solver.polynomial_lines import PolynomialLines
 
-SQUARED_ERROR_ALONE = Criterion(stall_cost_m2_s2=0.0, switching_tolerance_m2_s2=0.0)
-"""What is measured: neither stalls nor switchings cost anything besides."""
+SQUARED_ERROR_ALONE = Criterion(stall_cost_m2_s2=0.0, switching_tolerance_m2_s2=0.0, time_price_m2_s3=0.0)
+"""What is measured: neither stalls nor switchings nor time cost anything besides."""
 
 
 @dataclass(frozen=True)

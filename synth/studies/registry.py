@@ -253,6 +253,14 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "synth.studies.switching_price.picture",
     ),
     Study(
+        "time-price",
+        "What does less time in a position cost in accuracy, and what does it bring a whole hump?",
+        900.0,
+        "time-price.md",
+        "synth.studies.time_price.study",
+        "synth.studies.time_price.picture",
+    ),
+    Study(
         "times",
         "How long does a user wait: start-up, a tune with and without compiled kernels, the closed loop?",
         278.0,

@@ -103,8 +103,28 @@ class BruteForce:
             row = self.after_mixing(i, n + 1, h, u, lambda m: self.wait(i, n + 1, r - 1, h, m))
             row[0] = self.stalled
             shift = self.slope(i, n, h, u) * self.t.grid.path_step_m / self.t.grid.energy_step_m2_s2
-            self.waiting[key] = [self.stalled] + [interpolate(row, j + shift) for j in range(1, self.points)]
+            self.waiting[key] = [self.stalled] + [
+                interpolate(row, j + shift) + self.price(self.quantum_time(n, j, j + shift, 1.0))
+                for j in range(1, self.points)
+            ]
         return self.waiting[key]
+
+    def price(self, time_s: float) -> float:
+        """What so much time costs."""
+        return self.criterion.time_price_m2_s3 * time_s
+
+    def speed(self, position: float) -> float:
+        """Speed of an energy, in cells."""
+        return math.sqrt(max(2.0 * position * self.t.grid.energy_step_m2_s2, 0.0))
+
+    def quantum_time(self, n: int, before: float, after: float, part: float) -> float:
+        """Time over a part of quantum n between two energies, in cells: path over mean speed.
+
+        The mean is that of a cut that stops from the first speed of the grid at least.
+        """
+        path = self.t.grid.path_m
+        mean = 0.5 * max(self.speed(before) + self.speed(after), self.speed(1))
+        return part * float(path[n + 1] - path[n]) / mean
 
     def quanta_to_sample(self, i: int, n: int, h: int, u: int, j: int) -> float:
         """v·T + a·T²/2, or the way to rest, in quanta, at least 0.01."""
@@ -172,7 +192,9 @@ class BruteForce:
             energy += float(t.scenarios.extra_m_s2[i]) * way
             into = int(way / step + 1e-9)
             at, x = n + into, max(way / step - into, 0.0)
+            left_m = float(t.grid.path_m[-1] - t.grid.path_m[n])
             if at >= self.nodes:
+                total += 0.5 * p * self.price(left_m / (0.5 * (self.speed(j) + self.speed(energy / cell_e))))
                 total += 0.5 * p * interpolate(self.value[i, self.nodes, h, m], energy / cell_e)
                 continue
             slope = self.slope(i, at, h, m)
@@ -181,8 +203,11 @@ class BruteForce:
                 return self.value[i, n, h, q]
 
             ahead = self.after_mixing(i, at + 1, h, m, behind)
-            forth = interpolate(ahead, (energy + slope * (1.0 - x) * step) / cell_e)
+            there = (energy + slope * (1.0 - x) * step) / cell_e
+            forth = interpolate(ahead, there)
+            total += 0.5 * p * self.price(float(t.landings.samples[c]) * t.plant.sensor.sample_period_s)
             if at == n:
+                total += 0.5 * p * self.price(self.quantum_time(n, energy / cell_e, there, 1.0 - x))
                 total += 0.5 * p * forth
             else:
                 back = interpolate(self.value[i, at, h, m], (energy - slope * x * step) / cell_e)
@@ -294,11 +319,13 @@ def noisy(plant_with: Callable[..., Plant], stages_kpa: tuple[float, ...], perio
 
 
 @pytest.mark.parametrize(
-    ("stages_kpa", "period_s", "target_m_s", "price", "w_std"),
+    ("stages_kpa", "period_s", "target_m_s", "price", "time_price", "w_std"),
     [
-        ((0.0, 300.0), 0.25, 2.2, 1e-5, 0.0),
-        ((0.0, 200.0, 400.0), 0.1, 2.6, 0.0, 0.0),
-        ((0.0, 150.0, 300.0), 0.3, 1.2, 1e-3, 0.8),
+        ((0.0, 300.0), 0.25, 2.2, 1e-5, 0.0, 0.0),
+        ((0.0, 200.0, 400.0), 0.1, 2.6, 0.0, 0.0, 0.0),
+        ((0.0, 150.0, 300.0), 0.3, 1.2, 1e-3, 0.0, 0.8),
+        ((0.0, 150.0, 300.0), 0.3, 1.2, 1e-3, 0.1, 0.8),
+        ((0.0, 200.0, 400.0), 0.1, 1.0, 0.0, 0.02, 0.0),
     ],
 )
 def test_solve_agrees_with_plain_loops(
@@ -307,12 +334,13 @@ def test_solve_agrees_with_plain_loops(
     period_s: float,
     target_m_s: float,
     price: float,
+    time_price: float,
     w_std: float,
 ) -> None:
     """The same lines and values to 1e-9: only the order of additions differs."""
     resolution = TINY if w_std == 0.0 else replace(TINY, resistance_nodes=2)
     t = persistent_chain(noisy(plant_with, stages_kpa, period_s, w_std), resolution)
-    criterion = Criterion(switching_tolerance_m2_s2=price)
+    criterion = Criterion(switching_tolerance_m2_s2=price, time_price_m2_s3=time_price)
     found = solve(t, Aim(target_m_s, criterion), np.float64)
     expected = BruteForce(t, target_m_s, criterion)
     values = array_of(expected)

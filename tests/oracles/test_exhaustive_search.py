@@ -164,7 +164,7 @@ def test_when_to_brake_if_overspeed_is_dearer(plant_with: Callable[..., Plant], 
     The squared error's cost would be off by far more, so the factor is in force.
     """
     plant = tiny(plant_with, replace(drive, release_delay_s=4.0), stages_kpa=(0.0, 400.0))
-    dearer = Criterion(1.0, 0.0, AsymmetricSquare(6.0))
+    dearer = Criterion(1.0, 0.0, terminal=AsymmetricSquare(6.0))
 
     def pay(v: float) -> float:
         return (6.0 if v > 3.5 else 1.0) * (v - 3.5) ** 2

@@ -33,7 +33,7 @@ SENSORS = PointSensors(
 )
 HEARD = 0.85
 TARGET_M_S = 2.4
-CRITERION = Criterion(stall_cost_m2_s2=0.5, switching_tolerance_m2_s2=1e-4)
+CRITERION = Criterion(stall_cost_m2_s2=0.5, switching_tolerance_m2_s2=1e-4, time_price_m2_s3=0.01)
 ROUNDING = 1e-9
 
 
@@ -91,7 +91,20 @@ class PlainLoops:
         row = self.mixed(n + 1, i, h, u)
         row = [self.stalled, *row[1:]]
         shift = self.slope(i, n, h, u) * self.t.grid.path_step_m / self.t.grid.energy_step_m2_s2
-        return [self.stalled, *(interpolated(row, j + shift) for j in range(1, self.points))]
+        return [
+            self.stalled,
+            *(interpolated(row, j + shift) + self.time_price(n, j, j + shift, 1.0) for j in range(1, self.points)),
+        ]
+
+    def speed(self, position: float) -> float:
+        """Speed of an energy, in cells."""
+        return math.sqrt(max(2.0 * position * self.t.grid.energy_step_m2_s2, 0.0))
+
+    def time_price(self, n: int, before: float, after: float, part: float) -> float:
+        """Price of the time over a part of quantum n between two energies, in cells."""
+        path, speeds = self.t.grid.path_m, self.speed(before) + self.speed(after)
+        way = part * float(path[n + 1] - path[n])
+        return CRITERION.time_price_m2_s3 * way / (0.5 * max(speeds, self.speed(1)))
 
     def landing(self, decision: int, c: int, j: int, f: float) -> tuple[float, float]:
         """Path and energy at the end of a transient: the parabola through the three nearest factors."""
@@ -122,12 +135,20 @@ class PlainLoops:
                 total += p * self.stalled
                 continue
             energy += float(t.scenarios.extra_m_s2[i]) * way
+            cell_e = t.grid.energy_step_m2_s2
             into = int(way / step + 1e-9)
             at, left = n + into, 1.0 - max(way / step - into, 0.0)
             if at >= self.nodes:
-                total += p * interpolated(self.value[self.nodes, i, h, m], energy / t.grid.energy_step_m2_s2)
+                way_m, mean = float(t.grid.path_m[-1] - t.grid.path_m[n]), self.speed(j) + self.speed(energy / cell_e)
+                total += p * CRITERION.time_price_m2_s3 * way_m / (0.5 * mean)
+                total += p * interpolated(self.value[self.nodes, i, h, m], energy / cell_e)
                 continue
+            until = float(t.decisions.lead_m[decision]) / self.speed(j)
+            until += float(t.landings.samples[c]) * t.epochs.clock.sample_period_s
+            total += p * CRITERION.time_price_m2_s3 * until
+            landed = energy / cell_e
             energy += self.slope(i, at, h, m) * left * step
+            total += p * self.time_price(at, landed, energy / cell_e, left)
             total += p * interpolated(self.mixed(at + 1, i, h, m), energy / t.grid.energy_step_m2_s2)
         return total
 
@@ -251,9 +272,10 @@ def test_solve_agrees_with_plain_loops(solved: Solution) -> None:
 
 
 def test_density_and_value_agree(solved: Solution) -> None:
-    """rms² + stall cost + cost of commands by the forward recursion = cost by the backward one; no mass is lost.
+    """rms² + stall cost + cost of commands by the forward recursion = cost by the backward one without time.
 
-    On so coarse a grid cubic weights leave stalls of a little less than nothing, so they are taken unclipped.
+    No mass is lost. On so coarse a grid cubic weights leave stalls of a little less than nothing, so they are taken
+    unclipped.
     """
     c, speeds = solved.chain, passage_speeds(solved.lines_m_s)
     scenarios = len(c.scenarios.weight)
@@ -263,7 +285,8 @@ def test_density_and_value_agree(solved: Solution) -> None:
     forward = probability_of @ (c.grid.speed_m_s - TARGET_M_S) ** 2
     forward += stalled * (TARGET_M_S**2 + CRITERION.stall_cost_m2_s2)
     forward += CRITERION.switching_tolerance_m2_s2 * (down + up)
-    assert Evaluation(c, solved.aim).cost(speeds) == pytest.approx(forward, rel=1e-7)
+    timeless = Aim(TARGET_M_S, replace(CRITERION, time_price_m2_s3=0.0))
+    assert Evaluation(c, timeless).cost(speeds) == pytest.approx(forward, rel=1e-7)
     assert probability_of.sum() + stalled == pytest.approx(1.0, abs=1e-9)
 
 

@@ -101,7 +101,7 @@ def test_a_scenario_leaves_nothing_to_the_next(small: Callable[[], Chain], seed:
 @given(seed=SEEDS, target=st.floats(1.0, 4.0))
 def test_gradient_is_the_slope_of_the_cost(small: Callable[[], Chain], seed: int, target: float) -> None:
     """Along a random direction: central difference over ±1e-4 m/s, 1e-5 of the largest slope (third derivative)."""
-    t, criterion = small(), Criterion(1.0, 1e-4)
+    t, criterion = small(), Criterion(1.0, 1e-4, time_price_m2_s3=0.02)
     lines = random_lines(t, seed)
     rng = np.random.default_rng(seed + 1)
     shape = lines.lower_m_s[:, :-1].shape

@@ -78,6 +78,21 @@ def test_dearer_commands_are_fewer(small: Callable[[], Chain]) -> None:
     assert switchings[0] > 1.5 * switchings[-1]
 
 
+def test_dearer_seconds_are_fewer(small: Callable[[], Chain]) -> None:
+    """The mean time falls with its price, and the mean square hardly gains by it."""
+    t = small()
+    times, squares = [], []
+    for price in (0.0, 1e-4, 1e-3, 1e-2, 1e-1):
+        lines = solve(t, Aim(TARGET_M_S, replace(CRITERION, time_price_m2_s3=price))).lines
+        free, second = (Aim(TARGET_M_S, replace(CRITERION, time_price_m2_s3=each)) for each in (0.0, 1.0))
+        times.append(Evaluation(t, second).cost(lines) - Evaluation(t, free).cost(lines))
+        squares.append(exit_density(t, lines).rms_m_s(TARGET_M_S) ** 2)
+    print("price", times, squares)
+    assert all(b < a for a, b in pairwise(times))
+    assert squares[-1] > 1.1 * squares[0]
+    assert all(b > 0.99 * squares[0] for b in squares)
+
+
 def bytes_of(solution: Solution) -> tuple[bytes, ...]:
     """Everything a solution holds."""
     arrays = (solution.values, solution.lines.lower_m_s, solution.lines.upper_m_s, solution.gain_down, solution.gain_up)

@@ -116,6 +116,7 @@ def make_case(
             trace_factors=(0.8, 1.0, 1.2),
         ),
         permissions=None,
+        front=None,
     )
 
 

@@ -33,7 +33,7 @@ def statistics(**changes: object) -> ExitStatistics:
     nothing, sure = (0.0, 0.0), (9.0, 9.0)
     ideal = ExitStatistics(
         1000, rms, (rms / 1.02, 1.02 * rms), 0.0, nothing, rms, 0.1, nothing, 0.1, nothing, 0.0, nothing, 0.0, nothing,
-        9.0, sure,
+        9.0, sure, 9.0, sure,
     )  # fmt: skip
     return replace(ideal, **changes)  # type: ignore[arg-type]  # fields by name
 
@@ -138,6 +138,20 @@ def test_every_limit(
     said = judgement(found, (0.055, overspeed), predicted, LIMITS)
     assert (said.missed, said.undecided) == (missed, undecided)
     assert said.word == ("missed" if missed else "not decidable" if undecided else "accepted")
+
+
+def test_time_and_commands_are_judged_where_limits_are_set() -> None:
+    """The defaults switch both off."""
+    found = statistics(time_s=9.5, time_ci95_s=(9.4, 9.6), switchings=9.0, switchings_ci95=(8.5, 9.5))
+    predicted = Predicted(found.rms_m_s, 0.0, 0.0, 9.0)
+    slow, busy = LIMITS.model_copy(update={"time_s": 9.0}), LIMITS.model_copy(update={"switchings": 9.0})
+    assert judgement(found, (0.0, (0.0, 0.0)), predicted, LIMITS).word == "accepted"
+    assert judgement(found, (0.0, (0.0, 0.0)), predicted, slow).missed == (
+        "9.50 [9.40, 9.60] s in the position, allowed 9",
+    )
+    assert judgement(found, (0.0, (0.0, 0.0)), predicted, busy).undecided == (
+        "9.00 [8.50, 9.50] commands a cut, allowed 9",
+    )
 
 
 def test_a_simulated_prediction_is_uncertain_too() -> None:

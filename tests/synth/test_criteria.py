@@ -87,7 +87,7 @@ def test_costs_by_hand() -> None:
     limit = np.sqrt(2.0 * 3.2)  # the cell of node 3 reaches from 2.5 to 3.5: 0.3 of it lie above
     penalised = PenalisedOverspeed(10.0, limit - target).at_exit(speed, target)
     assert penalised - error**2 == pytest.approx([0.0, 0.0, 0.0, 3.0, 10.0])
-    assert Criterion(0.5, 0.0, ASYMMETRIC).exit_costs(speed, target)[1] == pytest.approx(target**2 + 0.5)
+    assert Criterion(0.5, 0.0, terminal=ASYMMETRIC).exit_costs(speed, target)[1] == pytest.approx(target**2 + 0.5)
 
 
 def test_a_penalised_overspeed_costs_its_price_times_the_probability(design: Chain, start: PolynomialLines) -> None:
@@ -104,7 +104,7 @@ def test_a_penalised_overspeed_costs_its_price_times_the_probability(design: Cha
 @pytest.mark.parametrize("terminal", [SquaredError(), ASYMMETRIC, PenalisedOverspeed(0.05, 0.05)])
 def test_gradient_is_the_slope_of_the_cost(design: Chain, start: PolynomialLines, terminal: TerminalCost) -> None:
     """Every scenario by itself: central difference over ±3e-5 m/s along a random direction of the line values."""
-    criterion = Criterion(1.0, 3e-5, terminal)
+    criterion = Criterion(1.0, 3e-5, terminal=terminal)
     lines, h = start.at(design.grid.path_m), 3e-5
     direction = np.random.default_rng(1).standard_normal((2, *lines.lower_m_s.shape))
 

@@ -112,7 +112,7 @@ def printed(pages: list[Page], *words: object) -> Page:
 def test_a_tune_prints_the_figures_of_its_summary(tuned: Path, pages: list[Page]) -> None:
     summary = json.loads((tuned / "summary.json").read_bytes())
     failed = {"label": "tank-4-90t", "target_speed_m_s": 2.0, "verdict": "failed", "feasible": True, "estimate": None}
-    print_book({**summary, "cases": [*summary["cases"], failed]}, tuned, None, "")
+    print_book({**summary, "cases": [*summary["cases"], failed]}, tuned, None, ())
     *told, last = table_of(pages[-1])
     cases = summary["cases"]
     require_column(told, "case", [case["label"] for case in cases])
@@ -137,10 +137,10 @@ def test_a_tune_prints_the_figures_of_its_summary(tuned: Path, pages: list[Page]
 
 def test_a_regret_that_is_left_out_is_explained(tuned: Path, pages: list[Page]) -> None:
     summary = json.loads((tuned / "summary.json").read_bytes())
-    print_book(summary, tuned, None, "")
+    print_book(summary, tuned, None, ())
     assert "No regret is told" not in str(pages[-1])
     one, other = summary["cases"]
-    print_book({**summary, "cases": [{**one, "regret": None, "regret_ci95": [None, None]}, other]}, tuned, None, "")
+    print_book({**summary, "cases": [{**one, "regret": None, "regret_ci95": [None, None]}, other]}, tuned, None, ())
     assert "No regret is told" in str(pages[-1])
     assert [row["regret"] == "–" for row in table_of(pages[-1])] == [True, False]
 

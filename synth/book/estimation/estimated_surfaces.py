@@ -61,7 +61,8 @@ def estimated_surfaces(
     error = error_of_estimate(loop, first, draws, LEAST_NOISE * made.error_m_s)
     steps = estimate_resolution(plant, aim.target_speed_m_s, made.error_m_s)
     designed = polished_surfaces(of_any_day, aim, start, steps, error).surfaces
-    trim = Trim(TRIM_TERMS, TRIM_EVALUATIONS, aim.criterion.switching_tolerance_m2_s2)
+    prices = aim.criterion.switching_tolerance_m2_s2, aim.criterion.time_price_m2_s3
+    trim = Trim(TRIM_TERMS, TRIM_EVALUATIONS, *prices)
     design = Design(designed, measured, made.estimator, made.error_m_s, 1, controller, opened, trim)
     return fitted_to_days(problem, design, tuning)
 

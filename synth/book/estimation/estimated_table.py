@@ -63,13 +63,17 @@ Pairs = tuple[tuple[float, float], ...]
 class Trim:
     """How lines are trimmed: how many Legendre polynomials of the path move, in so many evaluations.
 
-    `change_m2_s2`: what a command costs beside the squared error.
+    `change_m2_s2`, `second_m2_s3`: what a command and a second cost beside the squared error.
     """
 
     terms: int
     evaluations: int
     change_m2_s2: float = 0.0
+    second_m2_s3: float = 0.0
 
+
+FREE = Trim(0, 0)
+"""Nothing moves, and nothing has a price beside the squared error."""
 
 SHIFTS = Trim(1, 25)
 """All lower and all upper lines are shifted. Commands at rest are few, and cost nothing here."""
@@ -137,7 +141,8 @@ def estimated_table(
         found = speed_error_m_s(loop, controller, tuning.part(0, min(ERROR_PASSES, len(tuning))))
         settled = abs(found - error) <= SETTLED * error
         error = found
-    design_of_both = Design(lines, measured, estimator, error, rounds, controller_of, opened, SHIFTS)
+    shifts = replace(SHIFTS, second_m2_s3=problem.criterion.time_price_m2_s3)
+    design_of_both = Design(lines, measured, estimator, error, rounds, controller_of, opened, shifts)
     return fitted_to_days(problem, design_of_both, tuning)
 
 
@@ -167,17 +172,18 @@ def fitted_to_days(problem: Problem, design: Design[Lines], tuning: RandomPasses
     """The better of both trimmed on `tuning`, each with the estimator; beside it those measured without."""
     days, target_m_s = tuning_days(problem.plant, tuning), problem.target_speed_m_s
 
-    def squares(lines: Lines, estimator: Estimator | None, change_m2_s2: float = 0.0) -> NDArray[np.float64]:
-        return days.mean_squares(design.controller(lines, estimator), target_m_s, change_m2_s2)
+    def squares(lines: Lines, estimator: Estimator | None, prices: Trim = FREE) -> NDArray[np.float64]:
+        controller = design.controller(lines, estimator)
+        return days.mean_squares(controller, target_m_s, prices.change_m2_s2, prices.second_m2_s3)
 
     plain = np.maximum(squares(design.measured, None), LEAST_SQUARE_M2_S2)
     share = days.weight * plain[len(plain) // 2] / plain
 
-    def rms(lines: Lines, change_m2_s2: float = 0.0) -> float:
-        return float(np.sqrt(share @ squares(lines, design.estimator, change_m2_s2)))
+    def rms(lines: Lines, prices: Trim = FREE) -> float:
+        return float(np.sqrt(share @ squares(lines, design.estimator, prices)))
 
     def trim(lines: Lines) -> Pairs:
-        return trimmed(lambda pairs: rms(design.moved(lines, pairs), design.trim.change_m2_s2), design.trim)[0]
+        return trimmed(lambda pairs: rms(design.moved(lines, pairs), design.trim), design.trim)[0]
 
     lines = design.designed
     shifts = trim(lines)

@@ -42,15 +42,14 @@ class TuningDays:
     weight: NDArray[np.float64]
 
     def mean_squares(
-        self, controller: Regulator, target_speed_m_s: float, change_m2_s2: float = 0.0
+        self, controller: Regulator, target_speed_m_s: float, change_m2_s2: float = 0.0, second_m2_s3: float = 0.0
     ) -> NDArray[np.float64]:
-        """Mean squared error at the exit on each day, (D,) in m²/s²; every command counts as `change_m2_s2` more."""
+        """Mean squared error at the exit on each day, (D,) in m²/s², and what commands and seconds cost."""
         found = []
         for draws in self.draws:
             passed = self.loop(controller.stages).run(controller, draws)
             squares = (passed.exit_speed_m_s - target_speed_m_s) ** 2
-            if change_m2_s2 > 0.0:
-                squares = squares + change_m2_s2 * passed.switchings
+            squares += change_m2_s2 * passed.switchings + second_m2_s3 * passed.transit_time_s
             found.append(np.average(squares, weights=draws.weight))
         return np.array(found)
 

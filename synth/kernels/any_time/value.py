@@ -20,14 +20,15 @@ from synth.kernels.vector.packs import EIGHT, eight, load8, store
 @njit(cache=True, nogil=True, error_model="numpy")
 def value(
     lines, reading, noise, periods, kpa, way, target, share, entry, entry_way, entry_kpa, stationary,
-    mixing, factor, extra, motion, path, rows, values, terminal, stalled, change_cost, records, band, where, way_band,
-    slopes, bends,
+    mixing, factor, extra, motion, path, rows, values, terminal, stalled, change_cost, period_price, records, band,
+    where, way_band, slopes, bends,
 ):  # fmt: skip
     """The expected cost of a pass; arguments up to `path`, and `records` to `way_band`, as of `occupy`.
 
     `rows` (W, L, ring, E') and `values` (M, L, E') are zeros, and are left so.
-    `terminal` (E,) cost by exit energy, `stalled` of a stall, `change_cost` of a command. Outputs (2, N, M):
-    `slopes`, derivatives of the cost by the lines, and `bends`, its second derivatives by each line alone.
+    `terminal` (E,) cost by exit energy, `stalled` of a stall, `change_cost` of a command, `period_price` of the time of
+    a sampling period. Outputs (2, N, M): `slopes`, derivatives of the cost by the lines, and `bends`, its second
+    derivatives by each line alone.
     """
     nodes, modes, levels = lines.shape[1], lines.shape[2], factor.shape[0]
     points, (_, _, ring, row) = terminal.shape[0], rows.shape
@@ -57,6 +58,8 @@ def value(
                         )  # fmt: skip
                 density = where[n, m] + q * whole_packs(last - first) - first
                 decide(commanded, chance, ends, change_cost, records, density, values[m, q], saved, q == 0)
+                if period_price > 0.0:
+                    add_period_times(motion[0], nodes - n, period_price, first, last, values[m, q])
             for side in range(2):
                 by_line(
                     saved[side], lines[side, n, m], reading, 1.0 / noise[n], ends[2 * side], scratch[0],
@@ -70,7 +73,7 @@ def value(
             shift = free[r] - entry_kpa * factor[q] * braking[r]
             pull_row(rows[entry_way, q, r], shift, points, 1, points, scratch[0])
             for j in range(1, points):
-                cost += entry[r, j] * stationary[q] * scratch[0, j]
+                cost += entry[r, j] * stationary[q] * (scratch[0, j] + period_price * r / motion[0][j])
     leave_zeros(band[0], way_band, rows, values)
     return cost
 
@@ -111,6 +114,17 @@ def decide(commanded, chance, ends, change_cost, records, density, out, saved, f
             weighted = load8(records, density + j) * less
             store(saved[side], j, weighted if fresh else load8(saved[side], j) + weighted)
     store(out, last, eight(0.0))
+
+
+@borrowing
+def add_period_times(quanta, left, price, first, last, out):
+    """Add the price of the period that begins at each energy to `out` (E',), `left` quanta before the exit.
+
+    `quanta` (E',) path of a period. Where that is longer than the path left, the part until the exit counts; where it
+    is less than a quantum, the time over that quantum, at whose end `period` puts it.
+    """
+    for j in range(max(first, 1), last):
+        out[j] += price * min(max(1.0, 1.0 / quanta[j]), left / quanta[j])
 
 
 @borrowing

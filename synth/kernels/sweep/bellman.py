@@ -16,6 +16,7 @@ from synth.kernels.sweep.commands import normal_cdf
 from synth.kernels.sweep.flow import in_every_state, mix_values, pull, shifts
 from synth.kernels.sweep.landing_plan import find_runs, landing_scratch, landing_tables
 from synth.kernels.sweep.next_sample import quanta_to_next_sample
+from synth.kernels.sweep.pass_time import add_change_times, add_quantum_times
 from synth.kernels.sweep.thresholds import find_lines
 from synth.kernels.sweep.transient_sweep import add_transient_values
 from synth.kernels.vector.borrowing import borrowing
@@ -24,7 +25,7 @@ from synth.kernels.vector.packs import EIGHT, choose, load8, magnitude, store
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def sweep(
-    terminal, stalled, change_cost, tolerance, rounding, reading, errors, smear_start, smear, prior, decision_at,
+    terminal, stalled, prices, tolerance, rounding, reading, errors, smear_start, smear, prior, decision_at,
     speed, stage, pressure, change_chain, chain_mode,
     ends, factors, probability, mean, std, levels, transition,
     drive, brake, factor, extra, path_step, energy_step, period, reach, approach_nodes, entrance_stage,
@@ -32,8 +33,8 @@ def sweep(
 ):  # fmt: skip
     """One backward sweep over all path quanta.
 
-    `terminal` (E·T',) cost by exit energy and target, `stalled` (T',) cost of a stall, `change_cost` (T',) of a
-    command, where T' ≥ T are whole packs of eight; values are computed in the type of `terminal`. `tolerance`: an
+    `terminal` (E·T',) cost by exit energy and target, `stalled` (T',) cost of a stall, `prices` (T',) as in
+    `pass_time`, where T' ≥ T are whole packs of eight; values are computed in the type of `terminal`. `tolerance`: an
     averaged gain of less is none; `rounding`: so is one of less than this part of the cost. I scenarios: `factor`,
     `extra` (I,); `prior` (I, H, L) weights of what is hidden; `reading` (E,) what is measured of the speeds;
     `errors`: std of a reading, and the probability (R, T) that there is one at a decision, else the stage is held;
@@ -70,7 +71,7 @@ def sweep(
             shifts(n, factor[i], levels, drive, brake, pressure, extra[i], path_step, energy_step, shift[i])
             hold_everywhere(
                 recent[i, (n + 1) % ring], shift[i], transition, stalled, speed, period, path_step, energy_step,
-                ahead[i], quanta[i], holds[i], scratch,
+                n, prices, ahead[i], quanta[i], holds[i], scratch,
             )  # fmt: skip
             for command in range(commands if decision < decisions else 0):
                 side, by = command % 2, command // 2 + 1
@@ -85,11 +86,10 @@ def sweep(
                     )  # fmt: skip
                     for q in range(size):
                         changed = changes[i, h, q, command]
-                        in_every_cell(change_cost, changed)
-                        add_transient_values(
+                        value_change(
                             n, decision, nodes, c, q, runs, found, chain_mode[c], ends, met[i], slope[i], least_ahead,
-                            extra[i], path_step, energy_step,
-                            recent[i], mixed[i], stalled, place, weight, changed,
+                            extra[i], path_step, energy_step, prices, speed,
+                            recent[i], mixed[i], stalled, place, weight, best, changed,
                         )  # fmt: skip
                         add_gains(holds[i, h, q], changed, prior[i, h, q], rounding, width, gains[command, stage[h]])
         for k in range(stages):
@@ -116,8 +116,9 @@ def sweep(
 
 @borrowing
 def hold_everywhere(
-    following, shift, transition, stalled, speed, period, path_step, energy_step, ahead, quanta, holds, scratch
-):
+    following, shift, transition, stalled, speed, period, path_step, energy_step,
+    n, prices, ahead, quanta, holds, scratch,
+):  # fmt: skip
     """Values of one scenario that holds at a node, in all modes and levels, into `holds` (H, L, E·T).
 
     `following` (H, L, E·T): at the next node; `ahead` (M + 1, H, L, E·T) on the way to later samples is brought one
@@ -127,11 +128,29 @@ def hold_everywhere(
     for r in range(ahead.shape[0] - 2, 0, -1):
         pull(ahead[r], points, transition, shift, stalled, 1, points, ahead[r + 1], scratch)
     pull(following, points, transition, shift, stalled, 1, points, ahead[1], scratch)
+    add_quantum_times(n, prices, speed, shift, energy_step, 1, points, ahead, quanta[0, 0])
     for h in range(modes):
         for q in range(size):
             a = shift[h, q] * energy_step / path_step
             quanta_to_next_sample(speed, 0, points, a, period, path_step, quanta[h, q])
             hold_values(ahead, h * size + q, quanta[h, q], stalled.shape[0], holds[h, q])
+
+
+@borrowing
+def value_change(
+    n, decision, last, c, q, runs, found, mode, ends, met, slope, least_ahead,
+    extra, path_step, energy_step, prices, speed, values, mixed, stalled, place, weight, scratch, out,
+):  # fmt: skip
+    """`out` (E·T,) = value of transient `c` with what the command and its time cost; arguments as in their kernels."""
+    in_every_cell(prices[0], out)
+    add_transient_values(
+        n, decision, last, c, q, runs, found, mode, ends, met, slope, least_ahead,
+        extra, path_step, energy_step, values, mixed, stalled, place, weight, out,
+    )  # fmt: skip
+    add_change_times(
+        n, decision, last, c, q, runs, found, mode, ends, met, slope, least_ahead,
+        extra, path_step, prices, speed, scratch, out,
+    )  # fmt: skip
 
 
 @borrowing

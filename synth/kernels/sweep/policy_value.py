@@ -11,6 +11,7 @@ from numba import njit
 from synth.kernels.sweep.flow import in_every_state, mix_values, pull, shifts
 from synth.kernels.sweep.landing_plan import landing_scratch, landing_tables
 from synth.kernels.sweep.next_sample import quanta_to_next_sample
+from synth.kernels.sweep.pass_time import add_change_times, add_quantum_times
 from synth.kernels.sweep.policy_density import NEGLIGIBLE_MASS
 from synth.kernels.sweep.transient import change_values
 from synth.kernels.vector.borrowing import borrowing
@@ -20,14 +21,14 @@ NEGLIGIBLE_PROBABILITY = 1e-9
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def backward(
-    policy, slopes, decision_at, terminal, stalled, change_cost, entry, entry_mode, speed, stage, pressure,
+    policy, slopes, decision_at, terminal, stalled, prices, entry, entry_mode, speed, stage, pressure,
     change_chain, chain_mode, ends, factors, probability, mean, std,
     levels, transition, stationary, drive, brake, factor, extra, path_step, energy_step, period,
     density, band, gradient,
 ):  # fmt: skip
     """Expected cost of the policy from the entry; with `density` of the same policy also the gradient.
 
-    `terminal` (E,) cost by exit energy, `stalled` cost of a stall, `change_cost` of each command;
+    `terminal` (E,) cost by exit energy, `stalled` cost of a stall, `prices` as in `pass_time`;
     `policy` as in `forward`; `slopes` (C, R, K + 1, E): derivative by the line of the probability of a command to go
     so far or farther. `density` (R, H, L, E) and `band` (N, 2) from `forward`, or `density` of length 0: then every
     state is valued and no gradient taken. `gradient` (C, R, K + 1) is added to.
@@ -49,7 +50,7 @@ def backward(
         np.zeros((change_chain.shape[0], row)), np.empty(change_chain.shape[0]),
         np.empty((change_chain.shape[0], 2), np.int64),
         np.empty((modes, size)), landing_scratch(row, size, speed.dtype),
-        policy, slopes, decision_at, stalled, change_cost, speed, stage, pressure,
+        policy, slopes, decision_at, stalled, prices, speed, stage, pressure,
         change_chain, chain_mode, ends, factors, met[0], slope[0],
         levels, transition, drive, brake, factor, extra, path_step, energy_step, period,
         density, band, gradient,
@@ -70,7 +71,7 @@ def backward(
 @borrowing
 def follow_back(
     ahead, values, mixed, scratch, stop, quanta, changed, worth, told, shift, landing,
-    policy, slopes, decision_at, stalled, change_cost, speed, stage, pressure,
+    policy, slopes, decision_at, stalled, prices, speed, stage, pressure,
     change_chain, chain_mode, ends, factors, met, slope,
     levels, transition, drive, brake, factor, extra, path_step, energy_step, period,
     density, band, gradient,
@@ -92,6 +93,7 @@ def follow_back(
         for r in range(reach - 2, 0, -1):
             pull(ahead[r], points, transition, shift, stop, first, last, ahead[r + 1], scratch)
         pull(values[(n + 1) % ring], points, transition, shift, stop, first, last, ahead[1], scratch)
+        add_quantum_times(n, prices, speed, shift, energy_step, first, last, ahead, scratch)
         for h in range(modes):
             k = stage[h]
             for q in range(size):
@@ -109,10 +111,14 @@ def follow_back(
                     told[command, 0], told[command, 1] = begin, end
                     if begin >= end:
                         continue
-                    change_values(
+                    found = change_values(
                         n, decision, nodes, c, q, begin, end, factor, chain_mode[c], ends, factors, met, slope,
                         least_ahead, extra, path_step, energy_step, points,
                         values, mixed, stalled, landing, changed[command],
+                    )  # fmt: skip
+                    add_change_times(
+                        n, decision, nodes, c, q, landing[1], found, chain_mode[c], ends, met, slope, least_ahead,
+                        extra, path_step, prices, speed, scratch, changed[command],
                     )  # fmt: skip
                 for j in range(first, last):
                     mass = density[decision, h, q, j] if visited_only else 1.0
@@ -123,7 +129,7 @@ def follow_back(
                     for command in range(commands):
                         chance = policy[command, decision, k, j]
                         is_told = told[command, 0] <= j < told[command, 1]
-                        worth[command] = change_cost + changed[command, j] if is_told else np.nan
+                        worth[command] = prices[0][0] + changed[command, j] if is_told else np.nan
                         by_change += chance * (worth[command] if is_told else 0.0)
                         hold -= chance
                     step = min(int(quanta[j]), reach - 2)

@@ -94,7 +94,7 @@ def change_values(
 ):  # fmt: skip
     """`out`[begin:end] (E',) = expected value after transient `c`; `values`, `mixed` (ring, H, L, E').
 
-    What follows in `out` within a pack is overwritten too.
+    What follows in `out` within a pack is overwritten too. Returns how many runs of energies `scratch` holds.
     """
     crossed, runs, _, _ = scratch
     ring, modes, size, row = values.shape
@@ -120,3 +120,4 @@ def change_values(
                     f3 = gather(values, at_a + 3) * a[3] + gather(mixed, at_b + 3) * b[3]
                     total = total + choose(stopped, a[0] * stalled, (f0 + f1) + (f2 + f3))
             store(out, j, total)  # beyond the run: overwritten by the next, or out of range
+    return count

@@ -12,6 +12,7 @@ from synth.present.plots.degree_study import degree_study
 from synth.present.plots.exit_density import NARROW_M_S, WIDE_M_S, exit_density, prediction_origin
 from synth.present.plots.feasibility import feasibility
 from synth.present.plots.figure_file import draw
+from synth.present.plots.pareto_fronts import pareto_fronts
 from synth.present.plots.picture import Picture
 from synth.present.plots.policy_map import policy_map
 from synth.present.plots.rms_by_controller import rms_by_controller
@@ -55,6 +56,16 @@ def book_pictures(cases: Sequence[CaseResult], studies: Sequence[DegreeStudy], l
         "Where several commands cost the same within the tolerance, hold is taken: predicted switchings a pass and "
         "rms of the solver's lines with and without this rule.",
     )
+    fronts = [case.front for case in cases if case.front is not None]
+    if fronts:
+        yield picture(
+            pareto_fronts(fronts),
+            "pareto-fronts",
+            "Accuracy against time",
+            "Accuracy against time in the position",
+            "Rms of the exit speed over the mean time in the position, tables for several prices of a second (m²/s³, "
+            "at the marks), the same passes for all, bars: 95 %. Crosses: predicted rms.",
+        )
     if studies:
         yield picture(
             degree_study(studies),

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from plant_models.library import SourcedValue
 from synth.book.case_result import CaseResult, DegreeStudy
 from synth.book.failed_case import FailedCase
+from synth.book.pareto.pareto_front import ParetoFront
 from synth.book.permissions.overview import Overview, overview_of
 from synth.present.plots.picture import Picture
 
@@ -47,6 +48,11 @@ class BookReport:
     def infeasible(self) -> tuple[CaseResult, ...]:
         """The other cases."""
         return tuple(case for case in self.cases if not case.feasibility.feasible)
+
+    @property
+    def fronts(self) -> tuple[ParetoFront, ...]:
+        """What less time in the position costs, where that was asked for."""
+        return tuple(case.front for case in self.cases if case.front is not None)
 
     @property
     def permissions(self) -> Overview | None:

@@ -14,7 +14,8 @@ def criterion_section(book: BookReport) -> Markup:
         element(
             "p",
             f"Minimised: {criterion.sentence}; a stop in the position costs {criterion.stall_cost_m2_s2:g} m2/s2 more, "
-            f"a change of stage {criterion.switching_tolerance_m2_s2:g} m2/s2.",
+            f"a change of stage {criterion.switching_tolerance_m2_s2:g} m2/s2, a second in the position "
+            f"{criterion.time_price_m2_s3:g} m2/s3.",
         )
         for criterion in criteria
     ]

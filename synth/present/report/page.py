@@ -13,6 +13,7 @@ from synth.present.report.honesty_section import honesty_section
 from synth.present.report.limits_of_use import limits_of_use
 from synth.present.report.markup import Markup, element, joined
 from synth.present.report.parameter_table import parameter_section
+from synth.present.report.pareto_section import pareto_section
 from synth.present.report.permissions_section import permissions_section
 from synth.present.report.studies_section import studies_section
 from synth.present.report.verdict import verdict
@@ -43,6 +44,8 @@ def page_sections(book: BookReport) -> Iterator[tuple[str, str, Markup]]:
     yield "results", "Results", joined((case_table(book), element("p", HOW_TO_READ, class_="meta"), *told))
     if book.permissions is not None:
         yield "permissions", "Permissions of the hardware", permissions_section(book.permissions)
+    if book.fronts:
+        yield "pareto", "Accuracy against time", pareto_section(book.fronts)
     yield "criterion", "Criterion", criterion_section(book)
     yield "honesty", "Predicted against simulated", honesty_section(book)
     yield "studies", "Degree of the lines and switchings", studies_section(book)

@@ -12,7 +12,7 @@ from synth.book.printed_numbers import in_ten_thousand, interval, quotient, quot
 from synth.book.sensors.sensor_case import SensorCase
 from synth.book.sensors.sensor_tune import SensorBook
 from synth.present.plots.picture import Picture
-from synth.present.report.case_table import HONEST, failed_row, share_cell, within_power
+from synth.present.report.case_table import HONEST, failed_row, share_cell, time_cell, within_power
 from synth.present.report.document import Stamp, document, file_table, picture_sections
 from synth.present.report.markup import Cell, Markup, element, head_row, joined, table
 from synth.present.report.parameter_table import parameter_section
@@ -21,6 +21,7 @@ COLUMNS = (
     "case", "mass, t", "target, m/s", "verdict", "rms, m/s", "95 % interval", "predicted", "predicted / simulated",
     "95 of 100 within ±, m/s", "99 of 100 within ±, m/s", "unavoidable, m/s", "in 10 000 out of brake",
     "rms of all others, m/s", "over-speed, % [95 %]", "stopped inside, % [95 %]", "switchings a pass",
+    "time, s [95 %]",
 )  # fmt: skip
 
 HOW_TO_READ = (
@@ -128,6 +129,7 @@ def case_row(case: SensorCase, verdict: str, limit_m_s: float) -> list[str | Cel
         share_cell(found.overspeed, found.overspeed_ci95),
         share_cell(found.stalled, found.stalled_ci95),
         f"{found.switchings:.1f}",
+        time_cell(found),
     ]
 
 

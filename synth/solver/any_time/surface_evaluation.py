@@ -142,10 +142,12 @@ class SurfaceEvaluation:
     def _valued(self, policy: tuple[Any, ...], i: int, aim: Aim, memory: WorkingMemory) -> Valued:
         f = self._followed(policy, i, memory, keep=True)
         slopes, bends = np.empty(policy[0].shape), np.empty(policy[0].shape)
+        period_s = self.chain.plant.sensor.sample_period_s
         arguments: tuple[Any, ...] = (
             *policy, *self._shared(i), memory.heading, memory.here,
             *aim.criterion.exit_costs(self.chain.grid.speed_m_s, aim.target_speed_m_s),
-            aim.criterion.switching_tolerance_m2_s2, memory.records, f.band, f.where, f.way_band, slopes, bends,
+            aim.criterion.switching_tolerance_m2_s2, aim.criterion.time_price_m2_s3 * period_s,
+            memory.records, f.band, f.where, f.way_band, slopes, bends,
         )  # fmt: skip
         return value(*arguments), slopes, bends
 

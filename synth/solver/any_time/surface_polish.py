@@ -88,8 +88,8 @@ def polish_surfaces(
 ) -> SurfacePolish:
     """Minimise the cost over all coefficients, keeping V_hi − V_lo ≥ `MINIMUM_GAP_M_S` at all pressures.
 
-    It ends when a step changes the cost by less than `tolerance` of the first cost. The result costs no more than the
-    start, with its gaps opened. Raises `CoarseGridError` if that cost is not positive.
+    It ends when a step changes the cost by less than `tolerance` of the first cost without the price of time. The
+    result costs no more than the start, with its gaps opened. Raises `CoarseGridError` if that cost is not positive.
     """
     modes, nodes_m = evaluation.chain.modes, evaluation.chain.grid.path_m[:-1]
     start = opened(start)
@@ -102,6 +102,9 @@ def polish_surfaces(
     first = at(start)
     require_positive(first.cost_m2_s2, "surfaces", OWN_GRID, keys=())
     coordinates = Coordinates(start, whitening(terms, first))
+    if aim.prices_time:
+        timeless = evaluation.gradient(start.at(nodes_m, modes), aim.timeless)
+        tolerance *= timeless.cost_m2_s2 / first.cost_m2_s2
 
     def by_point(cost: SurfaceCost) -> CostAndSlopes:
         return cost.cost_m2_s2, coordinates.slopes(terms.slopes(cost.slopes))

@@ -28,8 +28,8 @@ class Book:
     entry_m_s: tuple[float, float]
     targets_m_s: tuple[float, ...]
 
-    def config(self, estimator: bool) -> ResolvedConfig:
-        """The configuration that a user would write."""
+    def config(self, estimator: bool, criterion: str = "") -> ResolvedConfig:
+        """The configuration that a user would write; `criterion`: lines of its section."""
         classes = "".join(
             f'[[cut]]\nlabel = "{name}-{count}"\ncar = "gondola-4"\ncars = {count}\nmass_t = {mass * count}\n'
             for name, mass in MASSES_T.items()
@@ -39,13 +39,17 @@ class Book:
         text = (
             f'[position]\nname = "{self.position}"\n[entry]\nlow_m_s = {low}\nhigh_m_s = {high}\n'
             f"[targets]\nexit_speeds_m_s = [{', '.join(map(str, self.targets_m_s))}]\n"
-            f"[regulator]\nestimator = {str(estimator).lower()}\n{classes}"
+            f"[regulator]\nestimator = {str(estimator).lower()}\n[criterion]\n{criterion}{classes}"
         )
         return parse_config(text, f"book of {self.position}")
 
     def tables(self) -> tuple[TableClass, ...]:
         """The classes with their tables, as they are read back."""
         return self.read_back(self.config(estimator=False))
+
+    def priced_tables(self, time_price_m2_s3: float) -> tuple[TableClass, ...]:
+        """The same with tables for which a second has this price."""
+        return self.read_back(self.config(estimator=False, criterion=f"time_price_m2_s3 = {time_price_m2_s3}\n"))
 
     def estimating_tables(self) -> tuple[TableClass, ...]:
         """The same with tables that are designed for an estimator of speed and friction."""

@@ -32,6 +32,7 @@ from tests.synth.any_time.tabled import tabled
 
 TARGET_M_S = 3.0
 AIM = Aim(TARGET_M_S, Criterion())
+PRICED = Aim(TARGET_M_S, Criterion(time_price_m2_s3=0.01))
 KNOWN = Resolution(path_step_m=0.15, speed_step_m_s=0.01, friction_nodes=1, resistance_nodes=1)
 GRID_ERROR = 0.015
 """Of a cost on this grid; halving its steps changes it by less."""
@@ -77,19 +78,20 @@ def test_cost_by_values_is_cost_by_density(plant: Plant, chain: SampledChain) ->
     assert density.escaped < 1e-12
 
 
-def test_slopes_and_bends_are_those_of_differences(plant: Plant, chain: SampledChain) -> None:
+@pytest.mark.parametrize("aim", [AIM, PRICED])
+def test_slopes_and_bends_are_those_of_differences(plant: Plant, chain: SampledChain, aim: Aim) -> None:
     evaluation, surfaces = SurfaceEvaluation(chain), falling(plant)
     lines = at(surfaces, chain)
-    found = evaluation.gradient(lines, AIM)
+    found = evaluation.gradient(lines, aim)
     for side, stage, h in ((0, 1, 1e-4), (1, 0, 1e-4), (1, 1, 1e-4), (0, 2, 1e-4)):
         moved = np.zeros(lines.shape)
         moved[side][:, chain.modes.stage == stage] = 1.0
-        above, below = (evaluation.gradient(lines + sign * h * moved, AIM).cost_m2_s2 for sign in (1.0, -1.0))
-        assert (found.slopes * moved).sum() == pytest.approx((above - below) / (2.0 * h), rel=1e-5)
+        above, below = (evaluation.gradient(lines + sign * h * moved, aim).cost_m2_s2 for sign in (1.0, -1.0))
+        assert (found.slopes * moved).sum() == pytest.approx((above - below) / (2.0 * h), rel=3e-5)
     most = np.unravel_index(np.argmax(np.abs(found.bends)), lines.shape)
     one = np.zeros(lines.shape)
     one[most] = 1e-2
-    above, below = (evaluation.gradient(lines + sign * one, AIM).slopes[most] for sign in (1.0, -1.0))
+    above, below = (evaluation.gradient(lines + sign * one, aim).slopes[most] for sign in (1.0, -1.0))
     assert found.bends[most] == pytest.approx((above - below) / 2e-2, rel=0.02)
 
 
@@ -107,6 +109,9 @@ def test_a_prediction_is_what_passes_find(plant: Plant, ahead_m: float) -> None:
     assert 0.99 * low < density.rms_m_s(TARGET_M_S) < 1.01 * high
     assert density.bias_m_s(TARGET_M_S) == pytest.approx(found.bias_m_s, abs=0.004)
     assert density.switchings == pytest.approx(found.switchings, rel=0.03)
+    free, priced = (SurfaceEvaluation(check, 2).gradient(at(surfaces, check), aim).cost_m2_s2 for aim in (AIM, PRICED))
+    time_s, transit = (priced - free) / PRICED.criterion.time_price_m2_s3, sample.transit_time_s
+    assert time_s == pytest.approx(float(np.average(transit, weights=sample.weight)), rel=2e-3)
 
 
 def test_the_cost_of_solved_surfaces_is_what_simulation_finds(plant: Plant) -> None:

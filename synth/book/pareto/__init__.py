@@ -1,0 +1,1 @@
+"""Accuracy against time in the position: tables for several prices of a second."""

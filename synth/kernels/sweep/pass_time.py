@@ -1,0 +1,125 @@
+"""The price of the time that a cut takes, where the backward recursions count it: by path quanta and changes of stage.
+
+A held quantum takes its width over the mean of the speeds at its ends. The next sample while a stage is held lies
+between two nodes, or in the same quantum, and is met at either with a chance; as every node further on costs the
+quantum before it, a wait costs one period in the mean. A change of stage takes its whole samples, and of the quantum in
+which it ends what the place of its next decision is ahead or behind; or the path to the exit over the mean speed.
+
+`prices` = (of a command (T,), of a second (T,), `quantum` (N,) widths, `left` (N,) path from each node to the exit,
+`duration` (C,) of the transients, `lead` (R,) path from a decision to where its command leaves). The T targets are one
+or whole packs of eight.
+"""
+
+from __future__ import annotations
+
+import math
+
+from synth.kernels.sweep.landing_plan import end_of_transient, law_met
+from synth.kernels.vector.borrowing import borrowing, borrowing_inline
+from synth.kernels.vector.packs import (
+    EIGHT,
+    choose,
+    eight,
+    fraction,
+    gather,
+    greatest,
+    least,
+    load8,
+    root,
+    store,
+    whole,
+)
+
+
+@borrowing
+def add_quantum_times(n, prices, speed, shift, energy_step, first, last, ahead, spent):
+    """Add the price of the time over quantum `n` to all rows of `ahead` (M, H, L, E·T) but the first.
+
+    Energies first ≤ j < last; `shift` (H, L) in cells of energy; `spent` (E,) is scratch.
+    """
+    price, twice = prices[1], 2.0 * prices[2][n]
+    if not is_priced(price):
+        return
+    for h in range(shift.shape[0]):
+        for q in range(shift.shape[1]):
+            gained = 2.0 * shift[h, q] * energy_step
+            for j in range(first, last):
+                spent[j] = twice / (speed[j] + math.sqrt(max(speed[j] * speed[j] + gained, 0.0)))
+            for r in range(1, ahead.shape[0]):
+                add_priced(spent, price, 0, first, last, ahead[r, h, q])
+
+
+@borrowing
+def add_change_times(
+    n, decision, last, c, q, runs, count, mode, ends, met, slope, least_ahead,
+    extra, path_step, prices, speed, scratch, out,
+):  # fmt: skip
+    """Add the price of the expected time of transient `c` to `out` (E·T,), in all energies of the `runs`.
+
+    `speed` (E,); `scratch` (16,); the rest as in `transient_sweep`. What stalls takes no time: the stall has its price.
+    """
+    price = prices[1]
+    if not is_priced(price):
+        return
+    size, row, points = met.shape[3], ends.shape[4], speed.shape[0]
+    at, quanta = (decision * ends.shape[1] + c) * ends.shape[2] * 2 * row, 1.0 / path_step
+    for k in range(count):
+        stop, over = runs[k + 1, 0], runs[k, 1]
+        for j in range(runs[k, 0], stop if over >= 0 else 0, EIGHT):
+            for lane in range(EIGHT):
+                scratch[EIGHT + lane] = speed[min(j + lane, points - 1)]
+            spent = eight(0.0)
+            for m in range(size):
+                for side in range(2):
+                    law = law_met(met, c, over, q, m, side)
+                    spent = spent + time_of_pack(
+                        ends, at + j, row, law, slope[mode, m, n:], last - n, extra, quanta, least_ahead,
+                        prices[2][n:], prices[3][n], prices[4][c], prices[5][decision], load8(scratch, EIGHT), speed[1],
+                    ) * law[0]  # fmt: skip
+            store(scratch, 0, spent)
+            add_priced(scratch, price, -j, j, min(stop, j + EIGHT), out)
+
+
+@borrowing_inline
+def is_priced(price):
+    """Whether a second costs something for any target."""
+    for t in range(price.shape[0]):
+        if price[t] > 0.0:
+            return True
+    return False
+
+
+@borrowing_inline
+def add_priced(spent, price, at, first, last, out):
+    """Add `price` (T,) times `spent`[`at` + j] to `out` (E·T,), first ≤ j < last."""
+    width = price.shape[0]
+    if width == 1:
+        for j in range(first, last):
+            out[j] += price[0] * spent[at + j]
+        return
+    for j in range(first, last):
+        for t in range(0, width, EIGHT):
+            store(out, j * width + t, load8(out, j * width + t) + load8(price, t) * spent[at + j])
+
+
+@borrowing_inline
+def time_of_pack(
+    ends, at, width, law, slope, left, extra, quanta, least_ahead, quantum, left_m, duration, lead, v, slowest
+):
+    """Time from a decision at speeds `v` until the next one after its change of stage, or until the exit.
+
+    Landings as in `landing_plan.landing_of_pack`; `slowest`: no speed on the way to the next decision counts as less.
+    """
+    _, nearest, centre, low, middle, high = law
+    path, e = end_of_transient(ends, at, width, nearest, centre, low, middle, high)
+    e = greatest(e + path * extra, 0.0)
+    ahead = path * quanta
+    crossed = least(greatest(whole(ahead + 1e-9), 0), left)
+    leaves, end = crossed >= left, least(crossed, left - 1)
+    x = greatest(ahead - fraction(crossed), 0.0)
+    part = choose(crossed < 1, 1.0, greatest(x, least_ahead))
+    v_end = root(e * 2.0)
+    v_ahead = root(greatest(e + gather(slope, end) * (1.0 - x), 0.0) * 2.0)
+    wait = (part - x) * gather(quantum, end) * 2.0 / greatest(v_end + v_ahead, slowest)
+    inside = wait + duration + eight(lead) / v
+    return choose(path < 0.0, 0.0, choose(leaves, eight(2.0 * left_m) / (v + v_end), inside))
