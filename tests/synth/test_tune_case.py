@@ -25,8 +25,8 @@ exit_speeds_m_s = [3.0, 4.0]
 [grid]
 path_step_m = 1.0
 speed_step_m_s = 0.05
-friction_scenarios = 3
-resistance_scenarios = 1
+friction_scenarios = 4
+resistance_scenarios = 3
 [validation]
 passes = 4000
 """

@@ -47,8 +47,10 @@ def backward(
     )  # fmt: skip
     follow_back(
         ahead, values, mixed, np.zeros(row), np.full(1, stalled), np.empty(row),
-        np.zeros((change_chain.shape[0], row)), np.empty(change_chain.shape[0]),
-        np.empty((change_chain.shape[0], 2), np.int64),
+        (
+            np.zeros((change_chain.shape[0], row)), np.empty(change_chain.shape[0]),
+            np.empty((change_chain.shape[0], 2), np.int64),
+        ),
         np.empty((modes, size)), landing_scratch(row, size, speed.dtype),
         policy, slopes, decision_at, stalled, prices, speed, stage, pressure,
         change_chain, chain_mode, ends, factors, met[0], slope[0],
@@ -70,7 +72,7 @@ def backward(
 
 @borrowing
 def follow_back(
-    ahead, values, mixed, scratch, stop, quanta, changed, worth, told, shift, landing,
+    ahead, values, mixed, scratch, stop, quanta, commanded, shift, landing,
     policy, slopes, decision_at, stalled, prices, speed, stage, pressure,
     change_chain, chain_mode, ends, factors, met, slope,
     levels, transition, drive, brake, factor, extra, path_step, energy_step, period,
@@ -78,8 +80,10 @@ def follow_back(
 ):  # fmt: skip
     """`backward` with its memory: values ahead at held stages, at samples, and before mixing (rings).
 
-    `told` (C, 2): the energies at which the value of a command counts.
+    `commanded`, by command: (C, E') values after it, (C,) those at one energy with its price, (C, 2) the range of
+    energies at which they count.
     """
+    changed, worth, told = commanded
     nodes, reach, ring = drive.shape[0], ahead.shape[0], values.shape[0]
     modes, size, points = pressure.shape[0], levels.shape[0], speed.shape[0]
     visited_only, least_ahead = density.shape[0] > 0, 0.0 if period > 0.0 else 1.0

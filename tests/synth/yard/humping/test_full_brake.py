@@ -51,6 +51,6 @@ def test_a_brake_closed_before_the_entrance_takes_it_all(name: str, entry_m_s: f
 @pytest.mark.parametrize(("name", "entry_m_s"), [("knp-5-bunch", 7.0), ("rnz-2m-park", 5.5)])
 @pytest.mark.parametrize("cars", [1, 3])
 def test_rising_pressure_costs_a_part_of_it(name: str, entry_m_s: float, cars: int) -> None:
-    """The regulator acts from 4 m ahead of the entrance: 0.966 and 0.974 of it for one car, 0.989 and 0.991 for 3."""
+    """The top stage is commanded 4 m ahead of the entrance: 0.995 of it for one car, 0.998 for 3; at 5.5 m/s all."""
     taken, head = taken_head_m(name, cars, 4.0, False, entry_m_s)
-    assert 0.96 * head < taken < head
+    assert 0.99 * head < taken <= head * (1.0 + 1e-9)
