@@ -17,7 +17,7 @@ COARSE = """\
 exit_speeds_m_s = [2.0, 3.0]
 [grid]
 path_step_m = 1.0
-speed_step_m_s = 0.06
+speed_step_m_s = 0.05
 transient_step_s = 0.1
 friction_scenarios = 2
 resistance_scenarios = 1

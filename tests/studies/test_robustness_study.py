@@ -145,4 +145,4 @@ def test_a_wrong_table_does_what_the_exact_density_predicts(tuned: Trial) -> Non
     check = check_chain(aged.change(tuned.plant), finer_for_check(load_config(None).resolution))
     predicted = predict(check, tuned.table).rms_m_s(3.0)
     assert predicted / tuned.outcome(aged).rms_m_s == pytest.approx(1.0, abs=0.1)
-    assert predicted > 2.0 * tuned.outcome(Perturbation("nominal")).rms_m_s
+    assert predicted > 1.8 * tuned.outcome(Perturbation("nominal")).rms_m_s

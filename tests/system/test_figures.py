@@ -7,12 +7,15 @@ from pathlib import Path
 
 import pytest
 
+from synth.book.rounded_table import with_prediction
 from synth.book.validate_table import Rehearsal, Revalidation, plant_for, revalidate_all
 from synth.configuration.config_file import parse_config
+from synth.problem.resolution import finer_for_check
 from synth.simulation.closed_loop import TableController, simulate_many
 from synth.simulation.controllers import full_brake
 from synth.simulation.exit_statistics import brake_power, exit_statistics
 from synth.simulation.passes import ExitSample
+from synth.solver.chain.chain import check_chain
 from synth.studies.documents import KEPT
 from synth.studies.named_study import study_named
 from synth.studies.result import read_result, run_study
@@ -28,7 +31,14 @@ BLOCKS, PASSES = 400, 1000
 
 
 def tables() -> list[ControllerTable]:
-    return [read_json(path) for path in TABLES]
+    """The kept tables, which were made for commands of one stage, with what the rule as it is makes of them."""
+    return [predicted_anew(read_json(path)) for path in TABLES]
+
+
+def predicted_anew(table: ControllerTable) -> ControllerTable:
+    """The table with its figures on the grid of a prediction of the default book."""
+    _, plant = plant_for(table, DEFAULT_BOOK, "test")
+    return with_prediction(check_chain(plant, finer_for_check(DEFAULT_BOOK.resolution)), table)[0]
 
 
 def interval(found: object, name: str) -> tuple[float, tuple[float, float]]:
