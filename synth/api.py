@@ -223,7 +223,7 @@ def plot_passes(table: ControllerTable, problem: Problem, seed: int = 1) -> Figu
 
 def usual_resolution(problem: Problem) -> Resolution:
     """The grid of the built-in configuration, with the transients of this sensor's sampling period."""
-    return GridSettings().resolution(problem.plant.sensor.sample_period_s).for_pass(problem.plant.pass_m)
+    return GridSettings().resolution_for(problem.plant)
 
 
 def problem_sha256(problem: Problem) -> str:

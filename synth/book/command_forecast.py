@@ -33,8 +33,7 @@ def command_forecast(table: ControllerTable, plant: Plant) -> CommandForecast | 
     """That of a table for the measured speed; None where it has an estimator, of which the recursion knows nothing."""
     if table.estimator is not None:
         return None
-    resolution = GridSettings().resolution(plant.sensor.sample_period_s).for_pass(plant.pass_m)
-    check = check_chain(plant, finer_for_check(resolution))
+    check = check_chain(plant, finer_for_check(GridSettings().resolution_for(plant)))
     radar = replace(plant.sensor, noise_m_s=min(QUIET_M_S, plant.sensor.noise_m_s))
     quiet = replace(check, measurement=quantised_measurement(radar))
     return CommandForecast(predict(check, table).switchings, predict(quiet, table).switchings)

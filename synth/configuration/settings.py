@@ -11,6 +11,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
+from plant_models import Plant
 from plant_models.errors import require
 from plant_models.library import YARD_CATEGORIES, Value
 from synth.configuration.plant_settings import (
@@ -60,6 +61,10 @@ class GridSettings(Section):
             path_levels=self.path_levels,
             resistance_nodes=self.resistance_scenarios,
         )
+
+    def resolution_for(self, plant: Plant) -> Resolution:
+        """The same for one plant, with the transients of its sensor's sampling period and quanta for its pass."""
+        return self.resolution(plant.sensor.sample_period_s).for_pass(plant.pass_m)
 
 
 class FitSettings(Section):

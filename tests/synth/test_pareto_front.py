@@ -41,7 +41,7 @@ def test_the_highest_price_that_is_nearly_free_in_all_cases_is_told() -> None:
 def test_a_price_without_a_table_ends_it() -> None:
     points = tuple(each for each in FIRST.points if each.time_price_m2_s3 != 1e-5)
     assert nearly_free([replace(FIRST, points=points)]) == 0.0
-    assert told([replace(FIRST, points=points)]).startswith("Every price of a second that was tried makes some rms")
+    assert told([replace(FIRST, points=points)]).startswith("Already a price of 1e-05 m2/s3 on a second makes some rms")
 
 
 def test_report_and_pictures_tell_it_where_it_was_asked_for() -> None:

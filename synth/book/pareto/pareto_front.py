@@ -79,7 +79,8 @@ def told(fronts: Sequence[ParetoFront]) -> str:
     price, more = nearly_free(fronts), f"{NEARLY_FREE - 1.0:.0%}"
     if price == PRICES_M2_S3[0]:
         return (
-            f"Every price of a second that was tried makes some rms more than {more} larger beyond its 95 % interval."
+            f"Already a price of {PRICES_M2_S3[1]:g} m2/s3 on a second makes some rms more than {more} larger beyond "
+            "its 95 % interval, or leaves a case without a table (criterion.time_price_m2_s3)."
         )
     saved = [front.saved_s(point) for front in fronts if (point := front.at(price)) is not None]
     return (

@@ -20,7 +20,7 @@ class TimeSamples:
     """The radar `clock` is sampled from where the regulator acts on, its phase uniform; a command may go to any stage.
 
     A sweep compares commands that go one stage far: with decisions so dense its lines are the better ones to begin a
-    polish with, at a third of the time.
+    polish with, in less time.
     """
 
     clock: DopplerSensor
