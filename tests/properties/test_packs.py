@@ -72,6 +72,11 @@ def everything(
     for count in range(9):
         mask = packs.fraction(where) * (count - 4.0) > 0.0
         out[133 + 2 * count], out[134 + 2 * count] = packs.first_lane(mask), packs.last_lane(low, count)
+    first, second, third, fourth = packs.gather_four(numbers, packs.least(where, 36))
+    packs.store(out, 151, first)
+    packs.store(out, 159, second)
+    packs.store(out, 167, third)
+    packs.store(out, 175, fourth)
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -79,7 +84,7 @@ def test_compiled_packs_are_the_plain_ones_to_the_bit(seed: int) -> None:
     rng = np.random.default_rng(seed)
     numbers, places = rng.uniform(-2.0, 2.0, 40), rng.integers(0, 40, 12)
     singles, apart = rng.uniform(-2.0, 2.0, 40).astype(np.float32), rng.permutation(16)
-    compiled, plain, kept, plainly = np.zeros(151), np.zeros(151), np.zeros(9, np.int64), np.zeros(9, np.int64)
+    compiled, plain, kept, plainly = np.zeros(183), np.zeros(183), np.zeros(9, np.int64), np.zeros(9, np.int64)
     rounded, plainly_rounded = np.zeros(18, np.float32), np.zeros(18, np.float32)
     compiled_everything: Any = njit(everything)
     compiled_everything(numbers, singles, places, apart, kept, rounded, compiled)

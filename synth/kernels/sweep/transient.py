@@ -14,7 +14,19 @@ from __future__ import annotations
 from synth.kernels.sweep.flow import widen
 from synth.kernels.sweep.landing_plan import find_runs, landing_of_pack, law_met, planned, store_plan
 from synth.kernels.vector.borrowing import borrowing, borrowing_inline
-from synth.kernels.vector.packs import EIGHT, add_to, choose, eight, gather, greatest, item, least, load8, store, whole
+from synth.kernels.vector.packs import (
+    EIGHT,
+    add_to,
+    choose,
+    eight,
+    gather_four,
+    greatest,
+    item,
+    least,
+    load8,
+    store,
+    whole,
+)
 
 
 @borrowing
@@ -114,10 +126,11 @@ def change_values(
                     )  # fmt: skip
                     stopped = at_a < 0
                     at_a = greatest(at_a, 0)
-                    f0 = gather(values, at_a) * a[0] + gather(mixed, at_b) * b[0]
-                    f1 = gather(values, at_a + 1) * a[1] + gather(mixed, at_b + 1) * b[1]
-                    f2 = gather(values, at_a + 2) * a[2] + gather(mixed, at_b + 2) * b[2]
-                    f3 = gather(values, at_a + 3) * a[3] + gather(mixed, at_b + 3) * b[3]
+                    landed, crossing = gather_four(values, at_a), gather_four(mixed, at_b)
+                    f0 = landed[0] * a[0] + crossing[0] * b[0]
+                    f1 = landed[1] * a[1] + crossing[1] * b[1]
+                    f2 = landed[2] * a[2] + crossing[2] * b[2]
+                    f3 = landed[3] * a[3] + crossing[3] * b[3]
                     total = total + choose(stopped, a[0] * stalled, (f0 + f1) + (f2 + f3))
             store(out, j, total)  # beyond the run: overwritten by the next, or out of range
     return count

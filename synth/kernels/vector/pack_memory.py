@@ -7,6 +7,9 @@ from numba import types
 from synth.kernels.vector.numba_internals import array_data, declared_function, intrinsic, ir
 from synth.kernels.vector.pack_code import Pack, machine_type, suffix
 
+LANE = ir.IntType(32)
+"""The type of a lane's number."""
+
 
 def addresses(context, builder, array_type, array, at):
     """Pointer to element `at` of a contiguous array, in flat order."""
@@ -80,20 +83,21 @@ def store(typing, array, at, pack):
     return types.void(array, types.intp, pack), code
 
 
-def spread(context, builder, array_type, array, where, lanes):
-    """Pointers to the elements of a contiguous array at a pack of flat indices, the machine type of what lies there."""
-    data = array_data(context, builder, array_type, array)
-    element = machine_type(array_type.dtype)
-    places = builder.gep(data, [where], source_etype=element)
-    # llvmlite knows no vector of indices here. By other means the machine would work out every address by itself.
-    places.type = ir.VectorType(data.type, lanes)
-    return places, element
-
-
 def masked(builder, name, result, *arguments):
     """Call LLVM's function `masked.NAME`."""
     kinds = [argument.type for argument in arguments]
     return builder.call(declared_function(builder, f"llvm.masked.{name}", result, kinds), arguments)
+
+
+def lane_addresses(context, builder, array_type, array, where, lanes):
+    """One after the other the pointers to the elements of a contiguous array at a pack of flat indices.
+
+    What they load is put side by side then: a processor's own instruction for it takes as long or longer. On an AMD
+    EPYC (Zen 4) passes of the closed loop take 0.82 to 0.86 of the time that they take with it, and gradients with four
+    neighbours in one load (`gather_four`) 0.87 to 0.95.
+    """
+    data = array_data(context, builder, array_type, array)
+    return [builder.gep(data, [builder.extract_element(where, LANE(lane))]) for lane in range(lanes)]
 
 
 @intrinsic
@@ -101,14 +105,36 @@ def gather(typing, array, where):
     """Read a pack from scattered places."""
 
     def code(context, builder, sig, args):
-        places, element = spread(context, builder, sig.args[0], args[0], args[1], where.lanes)
-        found = ir.VectorType(element, where.lanes)
-        every = ir.Constant(ir.VectorType(ir.IntType(1), where.lanes), [1] * where.lanes)
-        width = ir.IntType(32)(array.dtype.bitwidth // 8)
-        name = f"gather.{suffix(array.dtype, where.lanes)}.v{where.lanes}p0"
-        return masked(builder, name, found, places, width, every, ir.Constant(found, ir.Undefined))
+        found = ir.Constant(ir.VectorType(machine_type(array.dtype), where.lanes), ir.Undefined)
+        for lane, place in enumerate(lane_addresses(context, builder, sig.args[0], *args, where.lanes)):
+            found = builder.insert_element(found, builder.load(place), LANE(lane))
+        return found
 
     return Pack(array.dtype, where.lanes)(array, where), code
+
+
+@intrinsic
+def gather_four(typing, array, where):
+    """Read four neighbours for each of eight lanes: the first ones as a pack, the second ones, and so on."""
+    four = ir.VectorType(machine_type(array.dtype), 4)
+
+    def code(context, builder, sig, args):
+        def joined(a, b, lanes):
+            return builder.shuffle_vector(a, b, ir.Constant(ir.VectorType(LANE, 8), list(lanes)))
+
+        places = lane_addresses(context, builder, sig.args[0], *args, 8)
+        width = array.dtype.bitwidth // 8
+        rows = [builder.load(builder.bitcast(place, four.as_pointer()), align=width) for place in places]
+        # Transposed: two rows in a vector, then of four rows two columns in a vector, then of eight rows one column.
+        twos = [joined(rows[i], rows[i + 1], range(8)) for i in range(0, 8, 2)]
+        columns = []
+        for i in (0, 2):
+            pairs = [(twos[k], twos[k + 1], (i, i + 4, i + 8, i + 12, i + 1, i + 5, i + 9, i + 13)) for k in (0, 2)]
+            upper, lower = (joined(*pair) for pair in pairs)
+            columns += [joined(upper, lower, (*range(k, k + 4), *range(k + 8, k + 12))) for k in (0, 4)]
+        return context.make_tuple(builder, sig.return_type, columns)
+
+    return types.UniTuple(Pack(array.dtype, 8), 4)(array, where), code
 
 
 @intrinsic
@@ -116,7 +142,10 @@ def scatter(typing, array, where, mask, pack):
     """Write the lanes of a mask to scattered places."""
 
     def code(context, builder, sig, args):
-        places, _ = spread(context, builder, sig.args[0], args[0], args[1], where.lanes)
+        data = array_data(context, builder, sig.args[0], args[0])
+        places = builder.gep(data, [args[1]], source_etype=machine_type(array.dtype))
+        # llvmlite knows no vector of indices here. By other means the machine would work out every address by itself.
+        places.type = ir.VectorType(data.type, where.lanes)
         width = ir.IntType(32)(array.dtype.bitwidth // 8)
         name = f"scatter.{suffix(array.dtype, where.lanes)}.v{where.lanes}p0"
         masked(builder, name, ir.VoidType(), args[3], places, width, args[2])

@@ -59,6 +59,11 @@ def gather(array, where):
     return array.reshape(-1)[where]
 
 
+def gather_four(array, where):
+    """Of each flat index in a pack of eight the element there, and its next three: four packs."""
+    return tuple(array.reshape(-1)[where + i] for i in range(4))
+
+
 def scatter(array, where, mask, pack):
     """Write the lanes in which the mask holds to the flat indices of a pack of whole numbers, no two the same."""
     array.reshape(-1)[where[mask]] = pack[mask]
@@ -149,6 +154,7 @@ overload(load16)(lambda array, at: lambda array, at: pack_memory.load16(array, a
 overload(load8)(lambda array, at: lambda array, at: pack_memory.load8(array, at))
 overload(store)(lambda array, at, pack: lambda array, at, pack: pack_memory.store(array, at, pack))
 overload(gather)(lambda array, where: lambda array, where: pack_memory.gather(array, where))
+overload(gather_four)(lambda array, where: lambda array, where: pack_memory.gather_four(array, where))
 overload(choose)(lambda mask, yes, no: lambda mask, yes, no: pack_code.choose(mask, yes, no))
 overload(least)(lambda a, b: lambda a, b: pack_code.choose(b < a, b, a))
 overload(greatest)(lambda a, b: lambda a, b: pack_code.choose(b > a, b, a))
