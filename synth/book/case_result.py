@@ -51,34 +51,6 @@ class PolicyMap:
     ties: float
 
 
-@dataclass(frozen=True)
-class Indifference:
-    """What using the indifferent region saves: the solver's lines with and without the tolerance."""
-
-    tolerance_m2_s2: float
-    switchings_without: float
-    switchings_with: float
-    rms_without_m_s: float
-    rms_with_m_s: float
-
-
-@frozen_arrays
-@dataclass(frozen=True, eq=False)
-class DegreeStudy:
-    """Exit error against the degree of the polynomials; arrays by `degrees`, rms in m/s.
-
-    Predicted on the grid of the tables' own predictions: `fitted_rms_m_s` of tables of lines fitted by weighted least
-    squares, `polished_rms_m_s` after the polish (NaN where no table could be rounded), `lines_rms_m_s` of the
-    solver's lines.
-    """
-
-    label: str
-    degrees: tuple[int, ...]
-    fitted_rms_m_s: NDArray[np.float64]
-    polished_rms_m_s: NDArray[np.float64]
-    lines_rms_m_s: float
-
-
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class CaseStudy:
@@ -91,7 +63,6 @@ class CaseStudy:
     table_lines: SwitchingLines
     solver_lines: SwitchingLines
     policy_map: PolicyMap
-    indifference: Indifference
     traces: tuple[PassTrace, ...]
     trace_factors: tuple[float, ...]
 

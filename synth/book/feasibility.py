@@ -16,9 +16,9 @@ from synth.simulation.unavoidable_error import UnavoidableError
 class Feasibility:
     """Whether the position can keep `limit_m_s`, the rms that is accepted, and from which entry speeds.
 
-    `unavoidable`: of the configured entry speeds. `entry_m_s` (n,) from the target to the position's highest entry
-    speed, and `entry_rms_m_s` (n,): rms of the unavoidable error of cuts that enter with that speed; `served_m_s`:
-    (low, high) where it meets the limit, None if nowhere.
+    `unavoidable`: of the configured entry speeds. `entry_m_s` (n,) up to the position's highest entry speed, and
+    `entry_rms_m_s` (n,): rms of the unavoidable error of cuts that enter with that speed; `served_m_s`: (low, high)
+    where it meets the limit, None if nowhere.
     """
 
     limit_m_s: float

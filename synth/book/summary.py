@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from synth.book.acceptance import CaseVerdict, Verdict
-from synth.book.case_result import CaseResult, DegreeStudy
+from synth.book.case_result import CaseResult
 from synth.book.comparison.limit_cycle import hunting_report
 from synth.book.comparison.measured import Measured
 from synth.book.comparison.pressure_cycle import pressure_hunting
@@ -43,7 +43,6 @@ def summary_of(book: Book, verdict: Verdict, file_hashes: Mapping[str, str]) -> 
         **summary_head((FORMAT, VERSION), book.config, book.created, verdict),
         "overall": overall(book.cases) | permitted(book.permissions),
         "cases": [case_of(case, word) for case, word in zip(book.cases, verdict.cases, strict=True)],
-        "degree_studies": [study_of(study) for study in book.degree_studies],
         "files": dict(file_hashes),
     }
     plain_document: Document = plain(document)
@@ -73,14 +72,12 @@ def overall(cases: tuple[CaseResult, ...]) -> Document:
     found = [case.comparison for case in cases if case.feasibility.feasible]
     figures: Document = {"cases": len(cases), "feasible": len(found)}
     if found:
-        honest, published = [c.table.honesty for c in found], [c.as_published.honesty for c in found]
+        honest = [c.table.honesty for c in found]
         regrets = [c.regret for c in found if c.has_reference]
         figures |= {
             "highest_rms_m_s": max(c.table.statistics.rms_m_s for c in found),
             "median_regret": median(regrets) if regrets else None,
-            "highest_table_loss": max(c.table_loss for c in found),
             "honesty": [min(honest), max(honest)],
-            "as_published_honesty": [min(published), max(published)],
         }
     return figures
 
@@ -120,17 +117,13 @@ def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
         "brake_power": asdict(case.brake_power),
         "honesty": found.table.honesty,
         "honesty_ci95": found.table.honesty_ci95,
-        "table_loss": found.table_loss,
-        "table_loss_ci95": found.full_lines.table_ratio_ci95,
         "regret": found.regret,
         "regret_ci95": found.regret_ci95,
         "at_rest_ratio": None if found.at_rest is None else found.at_rest.table_ratio,
         "at_rest_ratio_ci95": None if found.at_rest is None else found.at_rest.table_ratio_ci95,
         "best_baseline": found.best_baseline.name if found.best_baseline else None,
         "comparison": {entry.name: measured_of(entry) for entry in found.entries},
-        "as_published_honesty": found.as_published.honesty,
         "requirement": None if case.finding is None else requirement_of(case.finding),
-        "indifference": asdict(case.study.indifference),
         "estimate": None if case.estimate is None else {**estimate_of(case.estimate), "left_out": case.left_out},
         "permissions": None if case.permissions is None else results_document(case.permissions),
         "permissions_failed": {} if case.permissions is None else failed_document(case.permissions),
@@ -188,17 +181,6 @@ def estimate_of(made: AnyEstimate) -> Document:
 def requirement_of(finding: Finding) -> Document:
     """What keeping the criterion's requirement took, with its sentence."""
     return {**asdict(finding), "sentence": finding.sentence}
-
-
-def study_of(study: DegreeStudy) -> Document:
-    """A degree study with its arrays as lists."""
-    return {
-        "label": study.label,
-        "degrees": study.degrees,
-        "fitted_rms_m_s": study.fitted_rms_m_s.tolist(),
-        "polished_rms_m_s": study.polished_rms_m_s.tolist(),
-        "lines_rms_m_s": study.lines_rms_m_s,
-    }
 
 
 def plain(value: Any) -> Any:

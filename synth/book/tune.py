@@ -8,10 +8,10 @@ from functools import partial
 
 from plant_models import Plant
 from synth.book.attempted_case import attempted
-from synth.book.case_result import CaseResult, DegreeStudy
-from synth.book.class_setup import TUNING_PASSES, ClassSetup, Origin, class_setup, origin_of, validation_passes
+from synth.book.case_result import CaseResult
+from synth.book.class_setup import TUNING_PASSES, Origin, class_setup, origin_of, validation_passes
+from synth.book.comparison.served_entry import entry_sweep
 from synth.book.creation_time import creation_time
-from synth.book.degree_study import degree_study, tables_by_degree
 from synth.book.failed_case import FailedCase, require_none
 from synth.book.pareto.case_front import pareto_front
 from synth.book.pareto.pareto_front import ParetoFront, told
@@ -25,13 +25,8 @@ from synth.book.work_queue import run_nested
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.simulation.random_passes import RandomPasses, random_passes
-from synth.solver.backward_induction import Solution
-from synth.solver.chain.chain import as_published
 from synth.solver.chain.grid import require_memory
 from synth.solver.one_blas_thread import one_blas_thread
-
-DEGREES = (1, 2, 3, 4, 5, 6)
-PUBLISHED_LEVELS = 3
 
 CaseDone = Callable[[CaseResult], None]
 
@@ -42,7 +37,7 @@ def no_notice(case: CaseResult) -> None:
 
 @dataclass(frozen=True)
 class Book:
-    """Result of a tune: all cases and the degree studies, classes in the order of the configuration.
+    """Result of a tune: all cases, classes in the order of the configuration.
 
     `failed`: cases without a table, which are not among `cases`.
     """
@@ -50,7 +45,6 @@ class Book:
     config: ResolvedConfig
     created: str
     cases: tuple[CaseResult, ...]
-    degree_studies: tuple[DegreeStudy, ...]
     failed: tuple[FailedCase, ...] = ()
 
     @property
@@ -103,7 +97,7 @@ class TuneRun:
     pareto: bool
 
 
-Task = Callable[[], CaseResult | FailedCase | DegreeStudy | None]
+Task = Callable[[], CaseResult | FailedCase]
 
 
 @one_blas_thread()
@@ -139,29 +133,24 @@ def tune(
         pareto=pareto,
     )
     heaviest_first = sorted(range(len(plants)), key=lambda i: -plants[i][1].top_stage * plants[i][1].cut.mass_t)
-    starts = [partial(class_tasks, run, *plants[i], studied=i == heaviest_first[-1]) for i in heaviest_first]
+    starts = [partial(class_tasks, run, *plants[i]) for i in heaviest_first]
     by_class = dict(zip(heaviest_first, run_nested(starts, workers), strict=True))
     results = [result for index in range(len(plants)) for result in by_class[index]]
     return Book(
         config,
         run.origin.created,
         tuple(result for result in results if isinstance(result, CaseResult)),
-        tuple(result for result in results if isinstance(result, DegreeStudy)),
         tuple(result for result in results if isinstance(result, FailedCase)),
     )
 
 
-def class_tasks(run: TuneRun, label: str, plant: Plant, studied: bool) -> list[Task]:
-    """Solve all targets of one cut class together; returns what is left to do for each, as tasks.
-
-    With `studied` the degree study of a target comes first, because it takes longest.
-    """
+def class_tasks(run: TuneRun, label: str, plant: Plant) -> list[Task]:
+    """Solve all targets of one cut class together; returns what is left to do for each, as tasks."""
     targets = run.config.targets_of(label)
     orders = attempted(partial(case_orders, run, label, plant), label, targets[0], run.config)
     if isinstance(orders, FailedCase):
         return [partial(case_failed, run, replace(orders, target_m_s=target)) for target in targets]
-    tasks: list[Task] = [partial(study_task, run, orders)] if studied else []
-    return tasks + [partial(case_task, run, order) for order in orders]
+    return [partial(case_task, run, order) for order in orders]
 
 
 def case_orders(run: TuneRun, label: str, plant: Plant) -> list[CaseOrder]:
@@ -169,38 +158,13 @@ def case_orders(run: TuneRun, label: str, plant: Plant) -> list[CaseOrder]:
     config = run.config
     setup = class_setup(config, label, plant, run.passes, run.origin)
     aims = [Aim(target, config.criterion) for target in config.targets_of(label)]
-    free = [replace(aim, criterion=replace(aim.criterion, switching_tolerance_m2_s2=0.0)) for aim in aims]
-    both = solutions(setup.design, [*aims, *free])
-    published = solutions(as_published(setup.design, PUBLISHED_LEVELS), aims)
-    rehearsal = setup.passes.of_others(run.tuning)
+    entries, rehearsal = entry_sweep(setup.passes), setup.passes.of_others(run.tuning)
     asks = [asking(config, setup, aim) if run.permissions else None for aim in aims]
     fronts = [partial(pareto_front, config, setup, aim) if run.pareto else None for aim in aims]
     return [
-        CaseOrder(setup, solution, plain, as_was, config.acceptance.rms_m_s, rehearsal, run.store, ask, front)
-        for solution, plain, as_was, ask, front in zip(
-            both[: len(aims)], both[len(aims) :], published, asks, fronts, strict=True
-        )
+        CaseOrder(setup, solution, entries, config.acceptance.rms_m_s, rehearsal, run.store, ask, front)
+        for solution, ask, front in zip(solutions(setup.design, aims), asks, fronts, strict=True)
     ]
-
-
-def study_task(run: TuneRun, orders: list[CaseOrder]) -> DegreeStudy | None:
-    """The degree study of the first target of a class that one can be made for, told of."""
-    told = ""
-    for order in orders:
-        label, target = order.setup.label, order.solution.aim.target_speed_m_s
-        found = attempted(partial(study_of, order.setup, order.solution, run.origin), label, target, run.config)
-        if isinstance(found, DegreeStudy):
-            run.watcher.note(f"{label} to {target:g} m/s: degree study done")
-            return found
-        told = told or f"{found.name}: no degree study: {found.reason}"
-    run.watcher.note(told)
-    return None
-
-
-def study_of(setup: ClassSetup, solution: Solution, origin: Origin) -> DegreeStudy:
-    """Tables of all degrees for one solution, predicted."""
-    tables = tuple(tables_by_degree(solution, DEGREES, origin))
-    return degree_study(solution, setup.check, setup.label, tables)
 
 
 def case_task(run: TuneRun, order: CaseOrder) -> CaseResult | FailedCase:

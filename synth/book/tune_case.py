@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from synth.book.case_result import CaseResult, CaseStudy, Indifference
+from synth.book.case_result import CaseResult, CaseStudy
 from synth.book.class_setup import ClassSetup
 from synth.book.comparison.baselines import tune_baselines
 from synth.book.comparison.comparison import Comparison
 from synth.book.comparison.friction_bound import friction_bound
 from synth.book.comparison.measured import Measured
-from synth.book.comparison.served_entry import feasibility_of
+from synth.book.comparison.served_entry import EntrySweep, feasibility_of
 from synth.book.estimation.estimated_table import controller_of
 from synth.book.pareto.case_front import Front
 from synth.book.permissions.case_permissions import Ask
@@ -25,8 +25,6 @@ from synth.simulation.common_passes import CommonPasses
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
 from synth.solver.backward_induction import Solution
-from synth.solver.evaluation import Evaluation
-from synth.solver.policy_density import exit_density
 from synth.solver.tabulate import lines_of
 from tuning_tables import Decisions
 
@@ -40,16 +38,14 @@ INDIFFERENCE_SHOWN_M2_S2 = 1e-4
 class CaseOrder:
     """What to do for one case, and with what.
 
-    `solution` on the design chain, `without_tolerance` the same without the switching tolerance, `as_published` in the
-    formulation as published; `limit_m_s`: the rms that makes a case feasible; `tuning`: passes that baselines are tuned
-    on; `ask`: where it is wanted, what tells what permissions of the hardware would give; `front`: where it is
-    wanted, what makes the curve of accuracy against time.
+    `solution` on the design chain; `entries`: what the position can do by entry speed; `limit_m_s`: the rms that makes
+    a case feasible; `tuning`: passes that baselines are tuned on; `ask`: where it is wanted, what tells what
+    permissions of the hardware would give; `front`: where it is wanted, what makes the curve of accuracy against time.
     """
 
     setup: ClassSetup
     solution: Solution
-    without_tolerance: Solution
-    as_published: Solution
+    entries: EntrySweep
     limit_m_s: float
     tuning: CommonPasses
     store: Store
@@ -76,8 +72,8 @@ def tune_case(order: CaseOrder) -> CaseResult:
         exit_weight=validated.sample.weight,
         brake_power=validated.brake_power,
         comparison=comparison(order, tuned, validated, told),
-        feasibility=feasibility_of(setup.passes, solution.aim.target_speed_m_s, order.limit_m_s),
-        study=case_study(order, tuned, validated),
+        feasibility=feasibility_of(setup.passes, order.entries, solution.aim.target_speed_m_s, order.limit_m_s),
+        study=case_study(order, validated),
         permissions=None if order.ask is None else order.ask(tuned, validated.sample),
         front=None if order.front is None else order.front(),
     )
@@ -89,7 +85,7 @@ def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable, t
     baselines = tune_baselines(order.tuning, target, permitted(tuned))
     by_baselines = {each.name: passes.run(each.controller) for each in baselines}
     best = min(by_baselines, key=lambda name: exit_statistics(by_baselines[name], target).rms_m_s)
-    predicted, published = validated.table.predicted, order.as_published
+    predicted = validated.table.predicted
 
     def measured(name: str, controller: Controller) -> Measured:
         return beside_table(name, passes.run(controller), sample, target)
@@ -108,11 +104,6 @@ def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable, t
 
     return Comparison(
         table=Measured("table", validated.statistics, predicted.rms_m_s, predicted.passes),
-        full_lines=measured("full lines", LineController(order.solution.lines)),
-        as_published=replace(
-            measured("as published", LineController(published.lines, farthest=published.chain.decisions.farthest)),
-            predicted_rms_m_s=Evaluation(published.chain.quantised(), published.aim).rms_m_s(published.lines),
-        ),
         friction_known=beside_table("friction known", told, sample, target),
         baselines=tuple(beside_table(name, each, sample, target) for name, each in by_baselines.items()),
         baseline_ratio_ci95=beside_table(best, by_baselines[best], told, target).table_ratio_ci95,
@@ -135,8 +126,8 @@ def beside_table(name: str, sample: ExitSample, table: ExitSample, target_speed_
     return Measured(name, found, table_ratio=ratio, table_ratio_ci95=ci95)
 
 
-def case_study(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable) -> CaseStudy:
-    """Lines, policy map, what the indifferent region saves, and three passes."""
+def case_study(order: CaseOrder, validated: ValidatedTable) -> CaseStudy:
+    """Lines, policy map, and three passes."""
     passes, controller = order.setup.passes, TableController(validated.table)
     return CaseStudy(
         table_lines=lines_of(
@@ -144,20 +135,6 @@ def case_study(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable) -
         ),
         solver_lines=order.solution.lines,
         policy_map=policy_map(order.solution, INDIFFERENCE_SHOWN_M2_S2),
-        indifference=indifference(order, tuned),
         traces=tuple(passes.trace(controller, i, factor) for i, factor in enumerate(TRACE_FACTORS)),
         trace_factors=TRACE_FACTORS,
-    )
-
-
-def indifference(order: CaseOrder, tuned: TunedTable) -> Indifference:
-    """Predicted switchings and rms of the solver's lines with the tolerance, and of lines solved without it."""
-    aim, with_it = order.solution.aim, exit_density(order.solution.chain, order.solution.lines)
-    without = exit_density(order.solution.chain, order.without_tolerance.lines)
-    return Indifference(
-        tolerance_m2_s2=aim.criterion.switching_tolerance_m2_s2,
-        switchings_without=without.switchings,
-        switchings_with=with_it.switchings,
-        rms_without_m_s=without.rms_m_s(aim.target_speed_m_s),
-        rms_with_m_s=with_it.rms_m_s(aim.target_speed_m_s),
     )

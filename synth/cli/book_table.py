@@ -50,7 +50,7 @@ def columns_of(cases: Sequence[of.Case], permissions: Overview | None) -> tuple[
     asked = permissions.in_column if permissions else ()
     return (
         of.CASE, of.TARGET, of.RMS, of.WITHIN_95, of.WITHIN_99, of.OUT_OF_BRAKE, of.HONESTY,
-        of.AT_REST if at_any_time else of.LOSS, of.REGRET, of.BEST_BASELINE, of.SWITCHINGS, of.TIME,
+        *[of.AT_REST] * at_any_time, of.REGRET, of.BEST_BASELINE, of.SWITCHINGS, of.TIME,
         *map(of.permission_column, asked), of.VERDICT,
     )  # fmt: skip
 

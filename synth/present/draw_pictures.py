@@ -19,7 +19,7 @@ from multiprocessing.connection import Connection
 from types import TracebackType
 
 from synth.book.case_names import by_class
-from synth.book.case_result import CaseResult, DegreeStudy
+from synth.book.case_result import CaseResult
 from synth.present.plots.picture import Picture
 
 Job = tuple[str, tuple[object, ...]]
@@ -65,11 +65,9 @@ class Studio:
         if self._processes > 1:
             self._cases[case.label, case.target_speed_m_s] = self.draw(("case_pictures", (case,)))
 
-    def book(
-        self, cases: Sequence[CaseResult], studies: Sequence[DegreeStudy], limit_m_s: float
-    ) -> tuple[Picture, ...]:
+    def book(self, cases: Sequence[CaseResult], limit_m_s: float) -> tuple[Picture, ...]:
         """All pictures in the order of `picture_book.all_pictures`."""
-        drawn = [self.draw(("book_pictures", (tuple(cases), tuple(studies), limit_m_s)))]
+        drawn = [self.draw(("book_pictures", (tuple(cases), limit_m_s)))]
         drawn += [self.draw(("class_pictures", (group,))) for group in by_class(cases)]
         for case in cases:
             begun = self._cases.pop((case.label, case.target_speed_m_s), None)

@@ -37,7 +37,7 @@ def write_outputs(book: Book, verdict: Verdict, directory: ResultsDirectory, stu
     directory.write_all({f"c/{name}": content for name, content in c_form(tables).items()})
     pictures: tuple[Picture, ...] = ()
     if config.output.plots or config.output.report:
-        pictures = studio.book(book.cases, book.degree_studies, config.acceptance.rms_m_s)
+        pictures = studio.book(book.cases, config.acceptance.rms_m_s)
         say(f"{len(pictures)} pictures drawn")
     if config.output.plots:
         directory.write_all(picture_files(pictures, "plots"))
@@ -59,7 +59,6 @@ def report_of(book: Book, verdict: Verdict, hashes: dict[str, str], pictures: tu
         created=book.created,
         cases=book.cases,
         failed=book.failed,
-        degree_studies=book.degree_studies,
         parameters=config.parameters,
         accepted=verdict.accepted,
         verdict=f"{verdict.sentence}.",

@@ -39,7 +39,7 @@ class Effort:
     that makes less than `least_share` of the mean square error is not worth a polish.
     """
 
-    frictions: int = 13
+    frictions: int = 9
     degree: int = 6
     iterations: tuple[int, int] = (3, 1)
     tolerance: float = 1e-4

@@ -55,7 +55,6 @@ class Row:
     rms_within: Measure
     predicted_rms_m_s: float
     honesty: Measure
-    table_loss: Measure
     regret: Measure | None
     best_baseline: str
     baseline_rms: Measure
@@ -73,7 +72,7 @@ class Results(Findings):
     def tables(self) -> Mapping[str, MarkdownTable]:
         """`results`: a row a case; `summary`: a row a class."""
         heads = ("case", "feasible", "rms", "95 of 100 within ±", "99 of 100 within ±", "out of brake, in 10 000",
-                 "rms of the others", "predicted rms", "predicted / simulated", "table loss", "regret",
+                 "rms of the others", "predicted rms", "predicted / simulated", "regret",
                  "best baseline")  # fmt: skip
         targets = tuple(dict.fromkeys(f"to {row.target_m_s:g} m/s" for row in self.rows))
         short: dict[str, list[str]] = {}
@@ -103,7 +102,7 @@ def cells(row: Row) -> tuple[str, ...]:
     return (
         f"{row.label} to {row.target_m_s:g} m/s", "yes" if row.feasible else "no", row.rms.cell(4), row.p95.cell(3),
         row.p99.cell(3), f"{few(most)} [{few(low)}, {few(high)}]", row.rms_within.cell(4),
-        f"{row.predicted_rms_m_s:.4f}", row.honesty.cell(3), row.table_loss.cell(3),
+        f"{row.predicted_rms_m_s:.4f}", row.honesty.cell(3),
         ABSENT if row.regret is None else row.regret.cell(3),
         f"{row.baseline_rms.cell(4)} ({row.best_baseline})",
     )  # fmt: skip
@@ -134,7 +133,6 @@ def row_of(case: Mapping[str, Any]) -> Row:
         rms_within=measure(power, "rms_within_m_s"),
         predicted_rms_m_s=found["predicted_rms_m_s"],
         honesty=measure(case, "honesty"),
-        table_loss=measure(case, "table_loss"),
         regret=None if case["regret"] is None else measure(case, "regret"),
         best_baseline=best,
         baseline_rms=measure(baseline, "rms_m_s"),

@@ -47,7 +47,7 @@ MOST_BLOCKS = 1000
 STATISTICS = {"rms": "rms_m_s", "bias": "bias_m_s", "95 of 100": "p95_m_s", "99 of 100": "p99_m_s",
               "over-speed": "overspeed", "switchings": "switchings"}  # fmt: skip
 BRAKE_POWER = {"out of brake": "out_of_brake", "rms of others": "rms_within_m_s"}
-TABLE_LOSS, VERIFY = "table loss", "rms of verify"
+RATIO, VERIFY = "rms / rms of the solver's lines", "rms of verify"
 
 ASKED_AT_DEFAULT, ASKED = (0.92, 0.98), (0.90, 1.0)
 """Between these a share must lie, at the default number of passes and at every other one."""
@@ -158,7 +158,7 @@ def intervals(samples: Sequence[ExitSample], target_m_s: float) -> dict[str, tup
     sample, lines, full = samples
     told = vars(exit_statistics(sample, target_m_s)) | vars(brake_power(sample, full, target_m_s))
     found = {name: (told[key], told[interval_of(key)]) for name, key in (STATISTICS | BRAKE_POWER).items()}
-    return {**found, TABLE_LOSS: rms_ratio(sample, lines, target_m_s)}
+    return {**found, RATIO: rms_ratio(sample, lines, target_m_s)}
 
 
 def interval_of(key: str) -> str:

@@ -94,8 +94,8 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "Which degree do the polynomial lines need?",
         46.0,
         "degree.md",
-        "synth.studies.degree",
-        "synth.studies.degree",
+        "synth.studies.degree.study",
+        "synth.studies.degree.picture",
     ),
     Study(
         "estimator",

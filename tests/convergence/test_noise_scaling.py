@@ -12,9 +12,10 @@ from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import solve
-from synth.solver.chain.chain import Chain, as_published, persistent_chain
+from synth.solver.chain.chain import Chain, persistent_chain
 from synth.solver.policy_density import exit_density
 from synth.solver.switching_lines import SwitchingLines
+from tests.oracles.as_published import as_published
 
 STEPS_M = (1.0, 0.5, 0.25)
 

@@ -19,7 +19,8 @@ from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import solve, true_speed_weights
-from synth.solver.chain.chain import Chain, as_published, persistent_chain
+from synth.solver.chain.chain import Chain, persistent_chain
+from tests.oracles.as_published import as_published
 
 Array = NDArray[np.float64]
 

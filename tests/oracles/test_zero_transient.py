@@ -21,8 +21,9 @@ from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.solver.backward_induction import solve
-from synth.solver.chain.chain import Chain, as_published, persistent_chain
+from synth.solver.chain.chain import Chain, persistent_chain
 from synth.solver.evaluation import Evaluation
+from tests.oracles.as_published import as_published
 
 QUANTUM = Resolution(0.5, 0.02, transient_substeps=2, friction_nodes=1, path_levels=1, resistance_nodes=1)
 

@@ -11,7 +11,7 @@ from synth.studies.coverage import (
     CASES,
     COARSE_PASSES,
     DEFAULT_PASSES,
-    TABLE_LOSS,
+    RATIO,
     Coverage,
     Row,
     block,
@@ -39,7 +39,7 @@ def test_independent_normal_errors_are_held_as_often_as_an_interval_of_95_per_ce
     error = np.random.default_rng(5).normal(0.0, 0.05, (3, 400 * 1000))
     samples = [sample(each) for each in error]
     held = shares_held(samples, 3.0, 1000, 400)
-    for name in ("rms", "bias", "95 of 100", "99 of 100", TABLE_LOSS):
+    for name in ("rms", "bias", "95 of 100", "99 of 100", RATIO):
         share = held[name]
         assert share is not None
         assert share == pytest.approx(0.95, abs=0.044), name

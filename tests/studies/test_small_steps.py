@@ -17,7 +17,7 @@ from synth.simulation.closed_loop import TableController
 from synth.studies.book import cells, measure, row_of, short_cell
 from synth.studies.cases import class_cases, named_cases, of_masses
 from synth.studies.criteria.study import BINS_M_S, criteria, density_of
-from synth.studies.degree import CaseRow, Degrees, Row
+from synth.studies.degree.study import CaseRow, Degrees, Row
 from synth.studies.estimator.pair import as_tuned
 from synth.studies.side_by_side import side_by_side
 from tests.synth.case_factory import make_sample
@@ -76,7 +76,7 @@ CASE: dict[str, Any] = {
         "out_of_brake": 0.0182, "out_of_brake_ci95": [0.0172, 0.0193],
         "rms_within_m_s": 0.03, "rms_within_ci95_m_s": [0.02, 0.04],
     },
-    "honesty": 1.01, "honesty_ci95": [0.99, 1.03], "table_loss": 0.99, "table_loss_ci95": [0.98, 1.0],
+    "honesty": 1.01, "honesty_ci95": [0.99, 1.03],
     "regret": None, "regret_ci95": [None, None], "best_baseline": "energy rule",
     "comparison": {"energy rule": {"rms_m_s": 0.114, "rms_ci95_m_s": [0.112, 0.116]}},
 }  # fmt: skip
@@ -87,8 +87,8 @@ def test_a_row_of_the_book_is_that_of_its_summary() -> None:
     assert short_cell(row) == "0.1382 [0.1354, 0.1412]°; 182"
     assert short_cell(replace(row, feasible=True)) == "0.1382 [0.1354, 0.1412]; 182"
     assert (row.honesty.value, row.honesty.ci95) == (1.01, (0.99, 1.03))
-    assert (row.regret, cells(row)[10]) == (None, "–")
-    assert cells(row_of({**CASE, "regret": 1.1, "regret_ci95": [1.0, 1.2]}))[10] == "1.100 [1.000, 1.200]"
+    assert (row.regret, cells(row)[9]) == (None, "–")
+    assert cells(row_of({**CASE, "regret": 1.1, "regret_ci95": [1.0, 1.2]}))[9] == "1.100 [1.000, 1.200]"
     assert row.baseline_rms == measure(CASE["comparison"]["energy rule"], "rms_m_s")
 
 

@@ -74,7 +74,7 @@ def test_figures_of_a_case_agree_with_one_another(shared: tuple[Case, Class]) ->
     assert 0.99 < found.regret < 1.3
     assert 0.99 < found.regret_estimated < 1.2
     assert found.told_estimated.rms_m_s < found.told.rms_m_s
-    assert found.table.rms_m_s < found.lines.rms_m_s < found.baselines["single threshold"].rms_m_s
+    assert found.table.rms_m_s < found.baselines["relay"].rms_m_s
     assert found.best_baseline == "energy rule"
     assert 0.5 < found.table_s < found.estimated_s
 

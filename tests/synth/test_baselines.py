@@ -10,9 +10,8 @@ from synth.book.comparison.baselines import (
     FAMILIES,
     TunedBaseline,
     energy_rule,
-    threshold_with_lead,
+    relay,
     tune_baselines,
-    two_thresholds,
 )
 from synth.kernels.loop.closed_loop import LEFT, advance
 from synth.simulation.closed_loop import close_loop, simulate
@@ -51,12 +50,11 @@ def test_a_cut_on_the_energy_line_leaves_with_the_target(plant_52t: Plant, stage
 
 def test_thresholds_jump_to_their_stage_and_back(plant_52t: Plant) -> None:
     loop = close_loop(plant_52t, 5)
-    lines = two_thresholds(loop, TARGET_M_S, 3, 0.1, 0.2).lines
+    lines = relay(loop, TARGET_M_S, 3, 0.1, 0.2).lines
     assert np.all(lines.upper_m_s[:3] == pytest.approx(3.3))
     assert np.all(np.isposinf(lines.upper_m_s[3:]))
     assert np.all(lines.lower_m_s[1:] == pytest.approx(3.1))
     assert np.all(np.isneginf(lines.lower_m_s[0]))
-    assert threshold_with_lead(loop, TARGET_M_S, 3, 0.1, 0.4).lead_s == 0.4
 
 
 def test_tuning_is_deterministic_and_reports_what_it_reached(
@@ -73,11 +71,8 @@ def test_tuning_is_deterministic_and_reports_what_it_reached(
 
 
 def test_richer_laws_are_no_worse_and_all_are_sensible(tuned: dict[str, TunedBaseline]) -> None:
-    single = tuned["single threshold"].rms_m_s
-    assert single < 0.2
-    assert tuned["two-threshold relay"].rms_m_s <= single + 0.005  # both grids hold the single threshold's
-    assert tuned["threshold with lead"].rms_m_s <= single + 0.005
-    assert tuned["energy rule"].rms_m_s < 0.7 * single
+    assert tuned["relay"].rms_m_s < 0.2
+    assert tuned["energy rule"].rms_m_s < 0.7 * tuned["relay"].rms_m_s
 
 
 def test_tuned_baseline_holds_on_fresh_passes(plant_52t: Plant, tuned: dict[str, TunedBaseline]) -> None:

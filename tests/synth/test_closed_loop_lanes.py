@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from plant_models import Plant, RollingResistance, TrackProfile
-from synth.book.comparison.baselines import energy_rule, threshold_with_lead
+from synth.book.comparison.baselines import energy_rule, relay
 from synth.configuration.config_file import load_config
 from synth.kernels.loop import closed_loop as kernel
 from synth.kernels.loop.lane_places import LANES
@@ -101,7 +101,7 @@ def test_tables(plant_52t: Plant, passes: RandomPasses, target_m_s: float) -> No
 @pytest.mark.parametrize("count", [1, LANES - 1, LANES, LANES + 1])
 def test_any_number_of_passes(plant_52t: Plant, passes: RandomPasses, count: int) -> None:
     loop = close_loop(plant_52t, 5)
-    controller = threshold_with_lead(loop, 3.0, 3, 0.1, 0.2)
+    controller = replace(relay(loop, 3.0, 3, 0.1, 0.0), lead_s=0.2)
     draws = loop.draws(passes.part(0, count))
     few = assert_same(loop, controller, draws)
     many = loop.run(controller, loop.draws(passes))
@@ -183,7 +183,7 @@ def exits_of_a_few_passes() -> str:
     draws = loop.draws(RandomPasses(cut_z, entry_u, phase_u, resistance_u, path_z, noise_z, np.ones(n)))
     table = TableController(wavy_table(plant, 3.0))
     observing = TableController(replace(table.table, estimator=rough_estimator(plant)))
-    lines = threshold_with_lead(loop, 3.0, 3, 0.1, 0.0), energy_rule(loop, 3.0, 4, 0.8, 0.15, 0.3, 0.15)
+    lines = relay(loop, 3.0, 3, 0.1, 0.0), energy_rule(loop, 3.0, 4, 0.8, 0.15, 0.3, 0.15)
     laws: tuple[Controller, ...] = table, observing, *lines
     return "".join(array.tobytes().hex() for law in laws for array in vars(loop.run(law, draws)).values())
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from plant_models import DopplerSensor, Friction, Plant, RollingResistance
-from synth.book.comparison.baselines import energy_rule, threshold_with_lead
+from synth.book.comparison.baselines import energy_rule, relay
 from synth.simulation.closed_loop import Controller, LineController, TableController, close_loop, trace
 from synth.simulation.control_system import drive_system, motion_system, nominal_loop, regulator_system
 from synth.simulation.nominal_response import SOLVER, nominal_response
@@ -67,7 +67,7 @@ def controller_for(plant: Plant, law: str) -> Controller:
         return LineController(lines_of(table_for(plant), np.linspace(0.0, plant.exit_m, 2)), farthest=1)
     if law == "energy rule":
         return energy_rule(loop, 3.0, plant.top_stage, 0.9, 0.1, 0.2, 0.1)
-    return threshold_with_lead(loop, 3.0, 2, 0.1, 0.3)
+    return replace(relay(loop, 3.0, 2, 0.1, 0.0), lead_s=0.3)
 
 
 def commands_of(events: PassTrace) -> list[tuple[float, int]]:
@@ -75,7 +75,7 @@ def commands_of(events: PassTrace) -> list[tuple[float, int]]:
     return [(float(events.time_s[i]), int(events.stage[i])) for i in changed]
 
 
-@pytest.mark.parametrize("law", ["table", "lines, one stage a command", "energy rule", "threshold with lead"])
+@pytest.mark.parametrize("law", ["table", "lines, one stage a command", "energy rule", "relay with lead"])
 def test_passes_are_the_simulators(quiet: Plant, law: str) -> None:
     controller = controller_for(quiet, law)
     passes = random_passes(7, 0, 3)

@@ -10,7 +10,7 @@ import pytest
 from synth.book.forms.table_file import file_stem, is_infeasible
 from synth.book.summary import plain
 from synth.present.draw_pictures import Studio, draw_job
-from tests.synth.case_factory import make_case, make_study
+from tests.synth.case_factory import make_case
 
 
 def test_pictures_do_not_depend_on_the_number_of_processes() -> None:
@@ -27,10 +27,10 @@ def test_a_fault_in_a_drawing_process_is_raised_here() -> None:
 def test_few_pictures_are_drawn_here_in_the_order_of_the_book() -> None:
     with Studio(1) as studio:
         studio.case_done(make_case())
-        names = [picture.name for picture in studio.book([make_case()], [make_study()], 0.1)]
-    assert names[:4] == ["rms-by-controller", "feasibility", "switchings", "degree-study"]
+        names = [picture.name for picture in studio.book([make_case()], 0.1)]
+    assert names[:2] == ["rms-by-controller", "feasibility"]
     assert names[-1] == "policy-map-gondola-36t-target-3-m-s"
-    assert len(names) == 8
+    assert len(names) == 6
 
 
 def test_values_of_the_summary_are_plain() -> None:

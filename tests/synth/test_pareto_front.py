@@ -49,6 +49,6 @@ def test_report_and_pictures_tell_it_where_it_was_asked_for() -> None:
     assert told([FIRST, SECOND]) in section
     assert "gondola-85t to 3 m/s" in section
     case = make_case("gondola-22t", 3.0)
-    names = [[each.name for each in all_pictures([one], [], 0.1)] for one in (case, replace(case, front=FIRST))]
+    names = [[each.name for each in all_pictures([one], 0.1)] for one in (case, replace(case, front=FIRST))]
     assert set(names[1]) - set(names[0]) == {"pareto-fronts"}
     assert len(pareto_fronts([FIRST] * 4).axes) == 6

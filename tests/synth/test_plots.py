@@ -17,7 +17,6 @@ from matplotlib.text import Text
 
 from synth.book.case_names import by_class, file_stem
 from synth.book.case_result import CaseResult
-from synth.present.plots.degree_study import degree_study
 from synth.present.plots.exit_density import bin_edges_m_s, exit_density, predicted_density
 from synth.present.plots.feasibility import feasibility
 from synth.present.plots.figure_file import draw, figure_files
@@ -28,8 +27,7 @@ from synth.present.plots.policy_map import command_image, parts_in_stage, policy
 from synth.present.plots.rms_by_controller import rms_by_controller
 from synth.present.plots.sample_passes import outcome, sample_passes
 from synth.present.plots.surfaces import surfaces
-from synth.present.plots.switchings import switchings
-from tests.synth.case_factory import make_case, make_study
+from tests.synth.case_factory import make_case
 
 ROOT = Path(__file__).parents[2]
 
@@ -52,10 +50,8 @@ FIGURES: dict[str, Callable[[list[CaseResult]], Figure]] = {
     "exit_density": lambda cases: exit_density(cases[:2]),
     "exit_density of an infeasible case": lambda cases: exit_density(cases[2:3]),
     "rms_by_controller": lambda cases: rms_by_controller(cases, 0.1),
-    "degree_study": lambda cases: degree_study([make_study()] * 7),
     "surfaces": lambda cases: surfaces(cases[2]),
     "feasibility": feasibility,
-    "switchings": switchings,
 }
 
 
@@ -121,12 +117,12 @@ def test_hard_cases_are_drawn_too(cases: list[CaseResult]) -> None:
             predicted=replace(cases[0].predicted, probability=np.zeros(400), stalled=1.0),
         ),
     }
-    assert {name: len(list(all_pictures([case], [], 0.1))) for name, case in hard.items()} == dict.fromkeys(hard, 7)
+    assert {name: len(list(all_pictures([case], 0.1))) for name, case in hard.items()} == dict.fromkeys(hard, 6)
 
 
 def test_a_figure_has_files_in_both_forms(cases: list[CaseResult]) -> None:
-    files = figure_files(switchings(cases), "switchings", "plots")
-    assert sorted(files) == ["plots/switchings.png", "plots/switchings.svg"]
+    files = figure_files(feasibility(cases), "feasibility", "plots")
+    assert sorted(files) == ["plots/feasibility.png", "plots/feasibility.svg"]
     assert all(len(content) > 1000 for content in files.values())
 
 
@@ -138,9 +134,9 @@ def test_outer_panels_say_what_is_drawn(cases: list[CaseResult]) -> None:
 
 
 def test_the_picture_book_names_every_picture_once_and_every_case(cases: list[CaseResult]) -> None:
-    pictures = list(all_pictures(cases, [make_study()], 0.1))
+    pictures = list(all_pictures(cases, 0.1))
     names = [picture.name for picture in pictures]
-    assert len(set(names)) == len(names) == 4 + 2 * 3 + 4
+    assert len(set(names)) == len(names) == 2 + 2 * 3 + 4
     assert all(any(case.label in picture.title for picture in pictures) for case in cases)
     assert picture_files(pictures)[f"{names[0]}.svg"] == pictures[0].drawing.svg
 
@@ -194,9 +190,6 @@ def test_roles_and_names(cases: list[CaseResult]) -> None:
     found = cases[0].comparison
     assert found.best_baseline is not None
     assert found.best_baseline.name == "energy rule"
-    assert found.as_published.honesty == pytest.approx(
-        found.as_published.predicted_rms_m_s / found.as_published.statistics.rms_m_s
-    )
     assert [len(group) for group in by_class(cases)] == [2, 2]
     assert cases[2].feasibility.obstacle == "out of brake power"
     assert file_stem("exit-density", "Four tanks, 3.5 m/s") == "exit-density-four-tanks-3.5-m-s"

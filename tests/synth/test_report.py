@@ -27,7 +27,7 @@ from synth.present.report.checks_section import checks_section
 from synth.present.report.markup import VOID, Markup, element
 from synth.present.report.verdict import verdict
 from synth.solver.polynomial_lines import PolynomialLines
-from tests.synth.case_factory import make_case, make_permissions, make_study
+from tests.synth.case_factory import make_case, make_permissions
 from tuning_tables import Estimator
 
 ROOT = Path(__file__).parents[2]
@@ -88,7 +88,6 @@ def book() -> BookReport:
             make_case("gondola-85t", 4.0, stages=5, spread=0.09),
         ),
         failed=(FailedCase("gondola-85t", 1.5, "the grid is too coarse"),),
-        degree_studies=(make_study(),),
         parameters=(
             SourcedValue("friction.common_cv", 0.15, "1", (0.1, 0.25), "engineering judgement: usual", "L"),
             SourcedValue(
@@ -167,21 +166,6 @@ def test_assumed_and_exceeded_parameters_are_marked(page: Page, book: BookReport
     assert "4.5 to 7: exceeded" in page.text
 
 
-def test_the_published_formulation_is_judged_by_the_numbers(page: Page, book: BookReport) -> None:
-    assert "its own prediction is far off" in page.text
-    honest = tuple(
-        replace(case, comparison=replace(case.comparison, as_published=as_honest(case.comparison.as_published)))
-        for case in book.cases
-    )
-    assert "Here its own prediction holds" in report_page(replace(book, cases=honest))
-
-
-def test_the_studies_are_told_in_numbers(page: Page) -> None:
-    assert "saves 2.50 switchings a pass" in page.text
-    assert "multiplies the rms by 1.010" in page.text
-    assert "0.0420 (0.0600)" in page.text
-
-
 def test_tables_without_the_estimator_that_was_asked_for_are_told_and_not_counted(book: BookReport) -> None:
     """One feasible table with it, three quarters of the rms of the lines without; one that it was left out of."""
     made = cast(EstimatedTable[PolynomialLines], SimpleNamespace(rms_after_m_s=0.0352, plain_rms_m_s=0.0351))
@@ -217,11 +201,6 @@ def test_doubts_of_a_case_are_told(page: Page, book: BookReport) -> None:
     told = Page(report_page(replace(book, cases=(doubtful, *book.cases[1:])))).text
     assert "the polish ended before it converged (Iteration limit reached)" in told
     assert "a probability of 2.0e-04 left the top of the speed grid" in told
-
-
-def as_honest(entry: Measured) -> Measured:
-    """The same, but predicted as it was simulated."""
-    return replace(entry, predicted_rms_m_s=entry.statistics.rms_m_s)
 
 
 def with_estimate(case: CaseResult, made: EstimatedTable[PolynomialLines]) -> CaseResult:

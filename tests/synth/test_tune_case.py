@@ -1,4 +1,4 @@
-"""One small case through the whole chain, and the pieces that only it has: bound, map, indifference."""
+"""One small case through the whole chain, and the pieces that only it has: bound, map, feasibility."""
 
 from __future__ import annotations
 
@@ -66,29 +66,16 @@ def test_the_table_on_disk_is_the_one_that_was_validated(book: Book, directory: 
         assert json.loads((directory / f"{case.table.id}.json").read_bytes())["generator"]["name"] == "retarder-synth"
 
 
-def test_the_prediction_is_honest_and_the_cubic_loses_nothing(book: Book) -> None:
+def test_the_prediction_is_honest_and_who_is_told_the_friction_is_no_worse(book: Book) -> None:
     for case in book.cases:
         figures, table = case.comparison, case.comparison.table
         assert table.statistics.rms_m_s < 0.06
         assert 0.85 < table.predicted_rms_m_s / table.statistics.rms_m_s < 1.15
-        assert table.statistics.rms_m_s < 1.1 * figures.full_lines.statistics.rms_m_s
         told = figures.friction_known
         assert told.statistics.rms_m_s * figures.regret == pytest.approx(table.statistics.rms_m_s)
         assert 1.0 < told.table_ratio_ci95[1] < 1.3  # who is told the friction is no worse
         assert told.table_ratio_ci95[1] - told.table_ratio_ci95[0] < 0.1  # on the same passes
-        assert len(figures.entries) == 8
-
-
-def test_published_formulation_promises_more_than_it_keeps(case: CaseResult) -> None:
-    assert case.comparison.as_published.honesty < 0.9
-
-
-def test_the_tolerance_saves_switchings_at_little_cost(book: Book) -> None:
-    for case in book.cases:
-        saved = case.study.indifference
-        assert saved.switchings_with < saved.switchings_without
-        gain = saved.tolerance_m2_s2 * (saved.switchings_without - saved.switchings_with)
-        assert saved.rms_with_m_s**2 <= saved.rms_without_m_s**2 + 2.0 * gain + 1e-4
+        assert len(figures.entries) == 4
 
 
 def test_the_map_agrees_with_the_lines_and_marks_indifference(case: CaseResult) -> None:
@@ -108,7 +95,7 @@ def test_feasibility_falls_with_entry_speed(case: CaseResult) -> None:
     found = case.feasibility
     assert found.feasible
     assert found.served_m_s is not None
-    assert found.served_m_s[0] == pytest.approx(case.target_speed_m_s)
+    assert found.served_m_s[0] < case.target_speed_m_s  # downhill a slower cut reaches it too
     assert found.entry_rms_m_s[-1] > found.entry_rms_m_s[len(found.entry_m_s) // 2]
 
 
@@ -127,13 +114,3 @@ def test_traces_are_passes_of_the_exported_table(case: CaseResult) -> None:
 def test_table_lines_are_the_tables(case: CaseResult) -> None:
     again = lines_of(case.table, case.study.table_lines.nodes_m)
     assert np.array_equal(again.upper_m_s, case.study.table_lines.upper_m_s)
-
-
-def test_degree_study_predicts_the_exported_table_to_the_last_digit(book: Book) -> None:
-    (study,) = book.degree_studies
-    exported = book.cases[0].table
-    assert study.degrees == (1, 2, 3, 4, 5, 6)
-    assert study.polished_rms_m_s[study.degrees.index(exported.degree)] == exported.predicted.rms_m_s
-    few = np.array(study.degrees) <= 4  # more coefficients fit the errors of a grid as coarse as this
-    assert (study.polished_rms_m_s < study.fitted_rms_m_s)[few].all()
-    assert study.polished_rms_m_s[2] < 1.1 * study.polished_rms_m_s.min()

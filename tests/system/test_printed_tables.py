@@ -124,7 +124,7 @@ def test_a_tune_prints_the_figures_of_its_summary(tuned: Path, pages: list[Page]
     ):
         of = [case["simulated"] for case in cases]
         require_column(told, heading, [with_half(s[f"{figure}_m_s"], s[f"{figure}_ci95_m_s"], 4) for s in of])
-    for heading, figure in (("predicted / simulated", "honesty"), ("table loss", "table_loss"), ("regret", "regret")):
+    for heading, figure in (("predicted / simulated", "honesty"), ("regret", "regret")):
         require_column(told, heading, [with_half(case[figure], case[f"{figure}_ci95"]) for case in cases])
     best = [(case["best_baseline"], case["comparison"][case["best_baseline"]]) for case in cases]
     wanted = [f"{with_half(found['rms_m_s'], found['rms_ci95_m_s'], 4)} {name}" for name, found in best]

@@ -1,6 +1,6 @@
 """The laws that a table has to beat, each tuned as a competent engineer would.
 
-All four are switching lines. They are tuned on the rms exit error of simulated passes: a coarse grid, then a simplex
+Both are switching lines. They are tuned on the rms exit error of simulated passes: a coarse grid, then a simplex
 search from its best point.
 """
 
@@ -26,7 +26,7 @@ LINE_NODES = 129
 FIRST_LOOK_PASSES, COARSE_PASSES = 50, 150
 """Passes for the coarse grid: all of its points, then the best of them; far too early or late shows in few.
 
-In the default book (15 cases, 4 laws) the same point wins as with 150 passes for all.
+In the default book (15 cases) the same point wins as with 150 passes for all.
 """
 
 LOOKED_AT_AGAIN = 0.25
@@ -77,33 +77,18 @@ class Family:
         return replace(self, build=build)
 
 
-def single_threshold(loop: ClosedLoop, target_m_s: float, brake_stage: int, offset_m_s: float) -> LineController:
-    """Brake with one stage while V > V_target + offset, else release."""
-    return two_thresholds(loop, target_m_s, brake_stage, offset_m_s, 0.0)
-
-
-def two_thresholds(
+def relay(
     loop: ClosedLoop, target_m_s: float, brake_stage: int, release_m_s: float, width_m_s: float
 ) -> LineController:
-    """Relay: brake above V_target + release + width, release below V_target + release."""
-    return threshold_with_lead(loop, target_m_s, brake_stage, release_m_s, 0.0, width_m_s)
+    """Brake with one stage above V_target + release + width, release below V_target + release.
 
-
-def threshold_with_lead(
-    loop: ClosedLoop,
-    target_m_s: float,
-    brake_stage: int,
-    offset_m_s: float,
-    lead_s: float,
-    width_m_s: float = 0.0,
-) -> LineController:
-    """Single threshold that compares V + a·lead, a being the filtered slope of the measured speed."""
-    stages = loop.stages
-    lower = np.full((stages, LINE_NODES), -np.inf)
-    upper = np.full((stages, LINE_NODES), np.inf)
-    lower[1:] = target_m_s + offset_m_s
-    upper[:brake_stage] = target_m_s + offset_m_s + width_m_s
-    return LineController(SwitchingLines(line_nodes_m(loop), lower, upper), lead_s=lead_s)
+    Without width it is a single threshold.
+    """
+    lower = np.full((loop.stages, LINE_NODES), -np.inf)
+    upper = np.full((loop.stages, LINE_NODES), np.inf)
+    lower[1:] = target_m_s + release_m_s
+    upper[:brake_stage] = target_m_s + release_m_s + width_m_s
+    return LineController(SwitchingLines(line_nodes_m(loop), lower, upper))
 
 
 def energy_rule(
@@ -141,33 +126,16 @@ def line_nodes_m(loop: ClosedLoop) -> NDArray[np.float64]:
     return np.linspace(loop.plant.start_m, loop.plant.exit_m, LINE_NODES)
 
 
-OFFSETS_M_S = (-0.2, 0.0, 0.1, 0.2, 0.4)
 SPEED_BOUNDS, TIME_BOUNDS = (-1.0, 2.0), (0.0, 2.0)
 
 FAMILIES = (
     Family(
-        name="single threshold",
-        build=single_threshold,
-        one_stage=True,
-        names=("offset_m_s",),
-        grids=(OFFSETS_M_S,),
-        bounds=(SPEED_BOUNDS,),
-    ),
-    Family(
-        name="two-threshold relay",
-        build=two_thresholds,
+        name="relay",
+        build=relay,
         one_stage=True,
         names=("release_m_s", "width_m_s"),
-        grids=(OFFSETS_M_S, (0.0, 0.2)),
+        grids=((-0.2, 0.0, 0.1, 0.2, 0.4), (0.0, 0.2)),
         bounds=(SPEED_BOUNDS, (0.0, 2.0)),
-    ),
-    Family(
-        name="threshold with lead",
-        build=threshold_with_lead,
-        one_stage=True,
-        names=("offset_m_s", "lead_s"),
-        grids=(OFFSETS_M_S, (0.0, 0.2, 0.4)),
-        bounds=(SPEED_BOUNDS, TIME_BOUNDS),
     ),
     Family(
         name="energy rule",
@@ -183,7 +151,7 @@ FAMILIES = (
 def tune_baselines(
     passes: CommonPasses, target_m_s: float, decisions: Sequence[Decisions] = (Decisions.AT_REST,)
 ) -> tuple[TunedBaseline, ...]:
-    """The four baselines, tuned for least rms exit error on `passes` (600 are as many as the richest law uses).
+    """Both baselines, tuned for least rms exit error on `passes` (600 are as many as the richest law uses).
 
     Of those that are asked at rest and at any time (at every sample, with the stage commanded last), as `decisions`
     permits, the better of each family.

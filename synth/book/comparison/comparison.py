@@ -13,16 +13,13 @@ from synth.simulation.replicates import Interval
 class Comparison:
     """Our table and what it is compared with, all on the same passes.
 
-    `friction_known`: the same kind of regulator, told the friction of every cut; `full_lines`: the solver's lines, not
-    yet polynomials; `as_published`: lines of the formulation as published, with its own prediction; `baselines`: tuned
-    classical laws; `baseline_ratio_ci95`: of rms of the friction-known regulator / rms of the best of them, paired, NaN
-    without any; `without_estimator`: polished lines or surfaces for the measured speed, where an estimator was asked
-    for; `at_rest`: where commands come at any time, the lines that the same tune makes for commands at rest.
+    `friction_known`: the same kind of regulator, told the friction of every cut; `baselines`: tuned classical laws;
+    `baseline_ratio_ci95`: of rms of the friction-known regulator / rms of the best of them, paired, NaN without any;
+    `without_estimator`: polished lines or surfaces for the measured speed, where an estimator was asked for; `at_rest`:
+    where commands come at any time, the lines that the same tune makes for commands at rest.
     """
 
     table: Measured
-    full_lines: Measured
-    as_published: Measured
     friction_known: Measured
     baselines: tuple[Measured, ...]
     baseline_ratio_ci95: Interval = UNKNOWN
@@ -33,7 +30,7 @@ class Comparison:
     def entries(self) -> tuple[Measured, ...]:
         """All controllers: the table first, the baselines last but for lines without estimator and those at rest."""
         last = (each for each in (self.without_estimator, self.at_rest) if each is not None)
-        return (self.table, self.full_lines, self.as_published, self.friction_known, *self.baselines, *last)
+        return (self.table, self.friction_known, *self.baselines, *last)
 
     @property
     def best_baseline(self) -> Measured | None:
@@ -61,8 +58,3 @@ class Comparison:
     def regret_ci95(self) -> Interval:
         """The 95 % interval of `regret`."""
         return self.friction_known.table_ratio_ci95 if self.has_reference else UNKNOWN
-
-    @property
-    def table_loss(self) -> float:
-        """rms of the table / rms of the full switching lines."""
-        return self.full_lines.table_ratio

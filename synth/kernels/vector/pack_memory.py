@@ -106,7 +106,7 @@ def gather(typing, array, where):
 
     def code(context, builder, sig, args):
         found = ir.Constant(ir.VectorType(machine_type(array.dtype), where.lanes), ir.Undefined)
-        for lane, place in enumerate(lane_addresses(context, builder, sig.args[0], *args, where.lanes)):
+        for lane, place in enumerate(lane_addresses(context, builder, sig.args[0], args[0], args[1], where.lanes)):
             found = builder.insert_element(found, builder.load(place), LANE(lane))
         return found
 
@@ -122,7 +122,7 @@ def gather_four(typing, array, where):
         def joined(a, b, lanes):
             return builder.shuffle_vector(a, b, ir.Constant(ir.VectorType(LANE, 8), list(lanes)))
 
-        places = lane_addresses(context, builder, sig.args[0], *args, 8)
+        places = lane_addresses(context, builder, sig.args[0], args[0], args[1], 8)
         width = array.dtype.bitwidth // 8
         rows = [builder.load(builder.bitcast(place, four.as_pointer()), align=width) for place in places]
         # Transposed: two rows in a vector, then of four rows two columns in a vector, then of eight rows one column.

@@ -7,8 +7,7 @@ from collections.abc import Iterator, Sequence
 from matplotlib.figure import Figure
 
 from synth.book.case_names import by_class, case_name, file_stem
-from synth.book.case_result import CaseResult, DegreeStudy
-from synth.present.plots.degree_study import degree_study
+from synth.book.case_result import CaseResult
 from synth.present.plots.exit_density import NARROW_M_S, WIDE_M_S, exit_density, prediction_origin
 from synth.present.plots.feasibility import feasibility
 from synth.present.plots.figure_file import draw
@@ -18,28 +17,27 @@ from synth.present.plots.policy_map import policy_map
 from synth.present.plots.rms_by_controller import rms_by_controller
 from synth.present.plots.sample_passes import sample_passes
 from synth.present.plots.surfaces import surfaces
-from synth.present.plots.switchings import switchings
 from synth.simulation.exit_statistics import OVERSPEED_M_S
 
 
-def all_pictures(cases: Sequence[CaseResult], studies: Sequence[DegreeStudy], limit_m_s: float) -> Iterator[Picture]:
+def all_pictures(cases: Sequence[CaseResult], limit_m_s: float) -> Iterator[Picture]:
     """Every picture of the book in the order of the report; each is drawn when it is asked for."""
-    yield from book_pictures(cases, studies, limit_m_s)
+    yield from book_pictures(cases, limit_m_s)
     for group in by_class(cases):
         yield from class_pictures(group)
     for case in cases:
         yield from case_pictures(case)
 
 
-def book_pictures(cases: Sequence[CaseResult], studies: Sequence[DegreeStudy], limit_m_s: float) -> Iterator[Picture]:
+def book_pictures(cases: Sequence[CaseResult], limit_m_s: float) -> Iterator[Picture]:
     """The pictures that set all cases side by side; `limit_m_s`: acceptance limit of the rms."""
     yield picture(
         rms_by_controller(cases, limit_m_s),
         "rms-by-controller",
         "Accuracy",
         "Exit-speed error by controller",
-        "Simulated rms with its 95 % interval, the same passes for every controller. Hollow: the rms that the method "
-        "itself predicted. Grey: infeasible, no controller keeps the limit.",
+        "Simulated rms with its 95 % interval, the same passes for every controller. Hollow: the rms that is "
+        "predicted of the table. Grey: infeasible, no controller keeps the limit.",
     )
     yield picture(
         feasibility(cases),
@@ -47,14 +45,6 @@ def book_pictures(cases: Sequence[CaseResult], studies: Sequence[DegreeStudy], l
         "Accuracy",
         "Entry speeds that can be served",
         "Rms of the error that no controller avoids, over entry speed: what the position can do at all.",
-    )
-    yield picture(
-        switchings(cases),
-        "switchings",
-        "Switchings",
-        "Use of the indifferent region",
-        "Where several commands cost the same within the tolerance, hold is taken: predicted switchings a pass and "
-        "rms of the solver's lines with and without this rule.",
     )
     fronts = [case.front for case in cases if case.front is not None]
     if fronts:
@@ -65,16 +55,6 @@ def book_pictures(cases: Sequence[CaseResult], studies: Sequence[DegreeStudy], l
             "Accuracy against time in the position",
             "Rms of the exit speed over the mean time in the position, tables for several prices of a second (m²/s³, "
             "at the marks), the same passes for all, bars: 95 %. Crosses: predicted rms.",
-        )
-    if studies:
-        yield picture(
-            degree_study(studies),
-            "degree-study",
-            "Degree of the lines",
-            "Exit-speed error by degree",
-            "Rms that the forward equation predicts of rounded tables with lines of degree r, on the grid on which the "
-            "exported tables are predicted: fitted to the solver's lines, and polished. Dotted: the solver's lines "
-            "themselves on that grid.",
         )
 
 

@@ -1,4 +1,4 @@
-"""Simulated rms exit error of every controller in every case, and what the formulations promised."""
+"""Simulated rms exit error of every controller in every case, and what was predicted of the table."""
 
 from __future__ import annotations
 
@@ -53,10 +53,10 @@ LOOKS = (
 )
 """By the order of `CaseResult.comparison`; further controllers take them again from the start."""
 
-WITH_PROMISE = (0, 2)
-"""Table and as published: their own predicted rms is drawn too, hollow."""
+TABLE = 0
+"""Place of the table, whose predicted rms is drawn too, hollow."""
 
-MOST_COMMON = 8
+MOST_COMMON = 4
 """Controllers of a case without estimator: their dots stand at the same places in every figure."""
 
 SLOT = 0.78
@@ -98,10 +98,10 @@ def draw_controller(axes: Axes, place_no: int, entries: Sequence[Measured]) -> N
         x, rms, (rms - interval[0], interval[1] - rms), fmt=look.marker, color=look.colour, markersize=6,
         elinewidth=1.0, markeredgewidth=2.0 if look.marker == "_" else 0.5, zorder=3,
     )  # fmt: skip
-    if place_no in WITH_PROMISE:
-        promised = np.array([entry.predicted_rms_m_s for entry in entries])
-        axes.vlines(x, promised, rms, color=look.colour, linewidth=0.8, linestyle=":", zorder=2)
-        axes.plot(x, promised, look.marker, color=look.colour, markersize=6, markerfacecolor="white", zorder=2.5)
+    if place_no == TABLE:
+        predicted = np.array([entry.predicted_rms_m_s for entry in entries])
+        axes.vlines(x, predicted, rms, color=look.colour, linewidth=0.8, linestyle=":", zorder=2)
+        axes.plot(x, predicted, look.marker, color=look.colour, markersize=6, markerfacecolor="white", zorder=2.5)
 
 
 def mark_cases(axes: Axes, cases: Sequence[CaseResult]) -> None:
@@ -131,7 +131,8 @@ def mark_cases(axes: Axes, cases: Sequence[CaseResult]) -> None:
 def values_m_s(cases: Sequence[CaseResult], limit_m_s: float) -> list[float]:
     """Everything that the figure must have room for."""
     entries = [entry for case in cases for entry in case.comparison.entries]
-    return [limit_m_s, *(e.statistics.rms_m_s for e in entries), *(e.predicted_rms_m_s for e in entries)]
+    predicted = [case.comparison.table.predicted_rms_m_s for case in cases]
+    return [limit_m_s, *(entry.statistics.rms_m_s for entry in entries), *predicted]
 
 
 def legend_entries(comparison: Sequence[Measured]) -> list[Line2D]:
@@ -143,6 +144,7 @@ def legend_entries(comparison: Sequence[Measured]) -> list[Line2D]:
         dot = Line2D([], [], color=look.colour, marker=look.marker, linestyle="", markersize=7, markeredgewidth=edge)
         dot.set_label(entry.name)
         entries.append(dot)
-    hollow = Line2D([], [], color=GREY, marker="D", linestyle=":", markersize=6, markerfacecolor="white")
-    hollow.set_label("hollow: what the method itself predicted")
+    look = LOOKS[TABLE]
+    hollow = Line2D([], [], color=look.colour, marker=look.marker, linestyle=":", markersize=6, markerfacecolor="white")
+    hollow.set_label("hollow: predicted of the table")
     return [*entries, hollow]

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from plant_models.library import SourcedValue
-from synth.book.case_result import CaseResult, DegreeStudy
+from synth.book.case_result import CaseResult
 from synth.book.failed_case import FailedCase
 from synth.book.pareto.pareto_front import ParetoFront
 from synth.book.permissions.overview import Overview, overview_of
@@ -30,7 +30,6 @@ class BookReport:
     created: str
     cases: tuple[CaseResult, ...]
     failed: tuple[FailedCase, ...]
-    degree_studies: tuple[DegreeStudy, ...]
     parameters: tuple[SourcedValue, ...]
     accepted: bool
     verdict: str

@@ -14,15 +14,14 @@ HONEST = (0.9, 1.1)
 """Predicted / simulated rms inside this is called honest."""
 
 GROUPS = (
-    ("", 1), ("Cut and target", 3), ("Exported table", 4), ("Of the cuts that leave", 4), ("Full lines", 2),
-    ("Friction known", 2), ("Best baseline", 2), ("As published", 3), ("Table: risk and effort", 4),
+    ("", 1), ("Cut and target", 3), ("Exported table", 4), ("Of the cuts that leave", 4),
+    ("Friction known", 2), ("Best baseline", 2), ("Table: risk and effort", 4),
 )  # fmt: skip
 
 COLUMNS = (
     "case", "mass, t", "target, m/s", "feasible", "rms, m/s", "95 % interval", "predicted", "predicted / simulated",
     "95 of 100 within ±, m/s", "99 of 100 within ±, m/s", "in 10 000 out of brake", "rms of all others, m/s",
-    "rms, m/s", "table loss", "rms, m/s", "regret", "which", "rms, m/s", "predicted", "simulated",
-    "predicted / simulated", "over-speed, % [95 %]", "stopped inside, % [95 %]", "switchings a pass",
+    "rms, m/s", "regret", "which", "rms, m/s", "over-speed, % [95 %]", "stopped inside, % [95 %]", "switchings a pass",
     "time, s [95 %]",
 )  # fmt: skip
 
@@ -68,15 +67,10 @@ def case_row(case: CaseResult, limit_m_s: float) -> list[str | Cell]:
         f"{speed(table.p99_m_s)} {interval(table.p99_ci95_m_s)}",
         in_ten_thousand(power.out_of_brake, power.out_of_brake_ci95),
         within_power(power),
-        speed(found.full_lines.statistics.rms_m_s),
-        f"{quotient(found.table_loss, 3)} {quotient_interval(found.full_lines.table_ratio_ci95, 3)}",
         speed(found.friction_known.statistics.rms_m_s),
         f"{quotient(found.regret, 3)} {quotient_interval(found.regret_ci95, 3)}".rstrip(),
         best.name if best else ABSENT,
         speed(best.statistics.rms_m_s) if best else ABSENT,
-        speed(found.as_published.predicted_rms_m_s),
-        speed(found.as_published.statistics.rms_m_s),
-        f"{quotient(found.as_published.honesty, 3)} {quotient_interval(found.as_published.honesty_ci95, 3)}",
         share_cell(table.overspeed, table.overspeed_ci95),
         share_cell(table.stalled, table.stalled_ci95),
         f"{table.switchings:.1f}",

@@ -1,4 +1,4 @@
-"""How far the predictions can be trusted: the table's own, and that of the formulation as published."""
+"""How far the predictions of the tables can be trusted."""
 
 from __future__ import annotations
 
@@ -14,19 +14,15 @@ from synth.present.report.book_report import BookReport
 from synth.present.report.case_table import HONEST
 from synth.present.report.markup import Markup, element
 
-FAR_OFF = 1.5
-"""From this factor on, between promised and simulated rms, a prediction is called far off."""
-
 
 def honesty_section(book: BookReport) -> Markup:
-    """Two paragraphs, computed over the feasible cases (over all, where none is feasible)."""
+    """Computed over the feasible cases (over all, where none is feasible)."""
     cases = book.feasible or book.cases
     return element(
         "div",
         element("p", own_prediction(cases)),
         at_any_time(cases),
         left_out_estimators(book.cases),
-        element("p", published_prediction(cases)),
     )
 
 
@@ -60,7 +56,7 @@ def at_any_time(cases: Sequence[CaseResult]) -> Markup:
         "p",
         "The regulator commands at any time, also while the pressure is on its way. On the same passes its rms is "
         f"{span(ratios)} times that of the lines that the same tune makes for commands at rest "
-        f"({median(ratios):.2f} in the median). The full lines beside it are for commands at rest.",
+        f"({median(ratios):.2f} in the median).",
     )
 
 
@@ -89,41 +85,3 @@ def left_out_estimators(cases: Sequence[CaseResult]) -> Markup:
 def ratio_to_without(found: Comparison) -> float:
     """rms of the table / rms of the lines without estimator; NaN where there are none."""
     return math.nan if found.without_estimator is None else found.without_estimator.table_ratio
-
-
-def published_prediction(cases: Sequence[CaseResult]) -> str:
-    """What became of the prediction that the formulation as published makes of itself."""
-    found = [case.comparison for case in cases]
-    published = [each.as_published for each in found]
-    ratios = [each.honesty for each in published]
-    lead = (
-        "The formulation as published takes the friction of every path quantum as independent, so that it averages out "
-        f"within a pass. The rms that it promised: {span([each.predicted_rms_m_s for each in published], '.3f')} m/s; "
-        f"simulated, where the friction of a cut persists: "
-        f"{span([each.statistics.rms_m_s for each in published], '.3f')} m/s. "
-    )
-    return lead + judgement(cases, ratios) + " " + comparison(found)
-
-
-def judgement(cases: Sequence[CaseResult], ratios: Sequence[float]) -> str:
-    """Whether its promise holds, in one sentence."""
-    if all(HONEST[0] <= ratio <= HONEST[1] for ratio in ratios):
-        return f"Here its own prediction holds: predicted / simulated is {span(ratios)}."
-    middle = f"Predicted / simulated is {span(ratios)}, {median(ratios):.2f} in the median: "
-    place = min(range(len(ratios)), key=lambda i: -abs(math.log(ratios[i])) if ratios[i] > 0.0 else -math.inf)
-    ratio = ratios[place]
-    factor = (1.0 / ratio if ratio < 1.0 else ratio) if ratio > 0.0 else math.inf
-    direction = "less" if ratio < 1.0 else "more"
-    return (
-        f"{middle}its own prediction is {'far off' if factor > FAR_OFF else 'off'}, most in {case_name(cases[place])}, "
-        f"where it promised {factor:.1f} times {direction} error than there was. Its predictions must not be used."
-    )
-
-
-def comparison(found: Sequence[Comparison]) -> str:
-    """How its lines fare beside the exported tables, on the same passes."""
-    worse = [each.as_published.statistics.rms_m_s / each.table.statistics.rms_m_s for each in found]
-    return (
-        f"On the same passes the rms of its lines is {span(worse)} times that of the exported tables "
-        f"({median(worse):.2f} in the median)."
-    )

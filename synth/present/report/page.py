@@ -15,12 +15,11 @@ from synth.present.report.markup import Markup, element, joined
 from synth.present.report.parameter_table import parameter_section
 from synth.present.report.pareto_section import pareto_section
 from synth.present.report.permissions_section import permissions_section
-from synth.present.report.studies_section import studies_section
 from synth.present.report.verdict import verdict
 
 HOW_TO_READ = (
     "rms: root mean square of exit speed − target; a cut that stops in the position counts with exit speed 0. "
-    "Table loss: rms of the exported polynomial table / rms of the full switching lines. Friction known: a controller "
+    "Friction known: a controller "
     "of the table's kind that is told the friction of each cut, with lines polished for it; regret: rms of the table / "
     "rms of that controller, which is a reference and no lower bound; none where a controller that is not told it does "
     "better. Feasible: the limit is not below the rms that no controller of the position avoids, which is that of what "
@@ -48,7 +47,6 @@ def page_sections(book: BookReport) -> Iterator[tuple[str, str, Markup]]:
         yield "pareto", "Accuracy against time", pareto_section(book.fronts)
     yield "criterion", "Criterion", criterion_section(book)
     yield "honesty", "Predicted against simulated", honesty_section(book)
-    yield "studies", "Degree of the lines and switchings", studies_section(book)
     yield "checks", "Limit cycles and escaped probability", checks_section(book)
     if book.pictures:
         yield "pictures", "Pictures", picture_sections(book.pictures)

@@ -16,13 +16,7 @@ from synth.solver.chain.decisions import Decisions
 from synth.solver.chain.epochs import DecisionEpochs
 from synth.solver.chain.grid import Grid
 from synth.solver.chain.landings import Landings, friction_factors, make_landings
-from synth.solver.chain.path_noise import (
-    PathNoise,
-    TransientNoise,
-    correlated_noise,
-    independent_noise,
-    transient_noise,
-)
+from synth.solver.chain.path_noise import PathNoise, TransientNoise, correlated_noise, transient_noise
 from synth.solver.chain.scenarios import Scenarios, check_scenarios, persistent_scenarios
 from synth.solver.chain.speed_measurement import SpeedMeasurement
 from synth.solver.chain.time_samples import TimeSamples
@@ -120,24 +114,6 @@ def chain_of(
 def with_known_friction(chain: Chain, factor: float) -> Chain:
     """The same plant whose ξ_cut is known to be `factor` (friction-known bound)."""
     return replace(chain, scenarios=Scenarios(np.array([float(factor)]), np.zeros(1), np.ones(1)))
-
-
-def as_published(chain: Chain, levels: int = 5) -> Chain:
-    """The same plant, grid and landings as published (zhukovitsky-2002): friction noise independent in every quantum.
-
-    The whole spread of friction, persistent or not, is drawn anew in every quantum and not scaled to its length.
-    Sampling, delays and measurement noise are those of the plant, so that only the friction is told apart, and that a
-    command goes one stage far. `levels`: Gauss–Hermite nodes of the noise in a quantum.
-    """
-    friction = chain.plant.friction
-    path_noise = independent_noise(math.hypot(chain.plant.friction_cv, friction.path_std), levels)
-    return replace(
-        chain,
-        decisions=replace(chain.decisions, farthest=1),
-        path_noise=path_noise,
-        transient_noise=noise_on_landings(path_noise, chain.landings, chain.grid),
-        scenarios=Scenarios(np.ones(1), np.zeros(1), np.ones(1)),
-    )
 
 
 def noise_on_landings(path_noise: PathNoise, landings: Landings, grid: Grid) -> TransientNoise:

@@ -45,13 +45,6 @@ def correlated_noise(friction: Friction, quantum_m: float, levels: int) -> PathN
     return PathNoise(values, matrix / matrix.sum(axis=1, keepdims=True), stationary)
 
 
-def independent_noise(std: float, levels: int) -> PathNoise:
-    """Independent normal noise of std `std` in every quantum: the formulation as published (zhukovitsky-2002)."""
-    x, weights = np.polynomial.hermite_e.hermegauss(levels)
-    weights = weights / weights.sum()
-    return PathNoise(np.maximum(std * x, -1.0), np.tile(weights, (levels, 1)), weights)
-
-
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class TransientNoise:

@@ -26,7 +26,6 @@ class Figures:
 
     table: Errors
     estimated: Errors
-    lines: Errors
     baselines: dict[str, Errors]
     told: Errors
     told_estimated: Errors

@@ -2,7 +2,7 @@
 
 5 masses × 4 targets × 3 spreads of friction × 2 positions, a cut of three cars and an eight-axle tank car. Of every
 case that is served (who is told the friction keeps the rms limit, or comes too near to it to tell): the exported cubic
-table, the same with the estimator, full lines, tuned baselines, and the references of both tables that are told the
+table, the same with the estimator, tuned baselines, and the references of both tables that are told the
 friction of every cut, all on fresh common passes.
 """
 
@@ -31,7 +31,7 @@ from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.problem.problem import Problem
 from synth.problem.resolution import Resolution, finer_for_check
-from synth.simulation.closed_loop import LineController, TableController
+from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import CommonPasses, common_passes
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
@@ -40,7 +40,6 @@ from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import Chain, check_chain, persistent_chain
 from synth.solver.polynomial_lines import PolynomialLines
-from synth.solver.switching_lines import SwitchingLines
 from synth.solver.told_lines import told_lines
 from synth.solver.tuned_lines import fitted, polished
 from synth.studies.accuracy_grid.figures import Errors, Figures, GridCase
@@ -130,7 +129,6 @@ class Plain:
     table: ControllerTable
     sample: ExitSample
     told: ExitSample
-    solver_lines: SwitchingLines
     predicted_rms_m_s: float
     seconds: float
 
@@ -210,7 +208,7 @@ def plain_table(shared: Class, target: float, design: Chain, resolution: Resolut
     seconds = shared.seconds + time.perf_counter() - started
     sample = fresh.run(TableController(table))
     told = bound_of(fresh, [by_lines(told_lines(design, target, lines, fit.curvature))], sample, target)
-    return Plain(resolution, lines, fit.curvature, table, sample, told, solution.lines, predicted, seconds)
+    return Plain(resolution, lines, fit.curvature, table, sample, told, predicted, seconds)
 
 
 def figures_of(shared: Class, target: float, plain: Plain) -> Figures:
@@ -233,7 +231,6 @@ def figures_of(shared: Class, target: float, plain: Plain) -> Figures:
     return Figures(
         table=errors(plain.sample, target),
         estimated=errors(by_estimated, target),
-        lines=errors(fresh.run(LineController(plain.solver_lines)), target),
         baselines={each.name: errors(fresh.run(each.controller), target) for each in tuned},
         told=errors(plain.told, target),
         told_estimated=errors(told, target),

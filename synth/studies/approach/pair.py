@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from plant_models import Approach, Plant
 from synth.book.comparison.baselines import tune_baselines
-from synth.book.comparison.served_entry import served, unavoidable_by_entry
+from synth.book.comparison.served_entry import entry_sweep, served
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import CommonPasses, common_passes
@@ -90,6 +90,6 @@ def best_rival(table: ExitSample, passes: CommonPasses, target_m_s: float, given
 
 def highest_served_m_s(plant: Plant, target_m_s: float, given: Given) -> float | None:
     """The highest entry speed at which the position does not forbid the limit of the acceptance."""
-    entry, rms = unavoidable_by_entry(common_passes(plant, given.passes), target_m_s, SERVED_PASSES)
-    found = served(entry, rms, given.config.acceptance.rms_m_s)
+    sweep = entry_sweep(common_passes(plant, given.passes), SERVED_PASSES)
+    found = served(sweep.entry_m_s, sweep.unavoidable_rms_m_s(target_m_s), given.config.acceptance.rms_m_s)
     return found and found[1]

@@ -9,14 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from plant_models import Plant
-from synth.book.case_result import DegreeStudy
 from synth.book.class_setup import Origin
-from synth.book.degree_study import TablesOfDegree, degree_study, tables_by_degree
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.problem.resolution import finer_for_check
@@ -25,6 +22,7 @@ from synth.simulation.replicates import Interval, rms_of, rms_quotient, share_of
 from synth.solver.backward_induction import Solution, solve_all
 from synth.solver.chain.chain import check_chain, persistent_chain
 from synth.studies.cases import of_masses
+from synth.studies.degree.tables_by_degree import TableOfDegree, rms_of_solver_lines, tables_by_degree
 from synth.studies.entrance import from_the_entrance
 from synth.studies.markdown_table import MarkdownTable, plus_minus, table
 from synth.studies.near_target import NEAR_M_S
@@ -33,9 +31,6 @@ from synth.studies.side_by_side import side_by_side
 from synth.studies.study import Findings, Method, Tell
 from synth.studies.tuned_table import CREATED
 from tuning_tables import Generator
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 COMPARED = 3
 """Degree that the others are set against: that of the default."""
@@ -60,7 +55,8 @@ class Row:
     """Tables of one degree, or the solver's own lines (degree 0).
 
     `near_...`: of the passes that end near the target by this table and by that of degree `COMPARED`; `near_ratio`:
-    rms / rms of that degree. `fitted_predicted_rms_m_s`: before the polish; None where that makes no table.
+    rms / rms of that degree. `fitted_predicted_rms_m_s`: before the polish; None where that makes no table, and of the
+    solver's own lines.
     """
 
     degree: int
@@ -140,15 +136,6 @@ def polish_cell(row: Row) -> str:
     return "no table" if fitted is None else f"{fitted / row.predicted_rms_m_s:.2f}"
 
 
-def as_study(case: CaseRow) -> DegreeStudy:
-    """The same as the book has it, for its picture."""
-    *rows, lines = case.rows
-    fitted = [np.nan if r.fitted_predicted_rms_m_s is None else r.fitted_predicted_rms_m_s for r in rows]
-    polished = [r.predicted_rms_m_s for r in rows]
-    degrees = tuple(r.degree for r in rows)
-    return DegreeStudy(case.case, degrees, np.array(fitted), np.array(polished), lines.predicted_rms_m_s)
-
-
 def run(options: Options, tell: Tell) -> Degrees:
     """Tables of every degree for every case."""
     config = from_the_entrance(options.config)
@@ -161,9 +148,9 @@ def run(options: Options, tell: Tell) -> Degrees:
         aims = [Aim(target, config.criterion) for target in options.targets_m_s or config.targets_of(label)]
         rows = []
         for solution in solve_all(design, aims):
-            tables = tuple(tables_by_degree(solution, degrees, origin(config)))
-            study = degree_study(solution, check, f"{plant.cut.mass_t:g} t", tables)
-            rows.append(case_row(solution, study, tables, config.validation.seed, options.passes))
+            tables = tuple(tables_by_degree(solution, check, degrees, origin(config)))
+            predicted = rms_of_solver_lines(solution, check)
+            rows.append(case_row(solution, tables, predicted, config.validation.seed, options.passes))
             tell(f"{rows[-1].case}: {len(degrees)} degrees")
         return rows
 
@@ -178,39 +165,30 @@ def origin(config: ResolvedConfig) -> Origin:
 
 
 def case_row(
-    solution: Solution, study: DegreeStudy, tables: tuple[TablesOfDegree, ...], seed: int, passes: int
+    solution: Solution, tables: tuple[TableOfDegree, ...], lines_rms_m_s: float, seed: int, passes: int
 ) -> CaseRow:
-    """Figures of every polished table, the solver's lines last, all on the same passes."""
+    """Figures of every polished table, and of the solver's lines, of which an rms of `lines_rms_m_s` is predicted,
+    last; all on the same passes."""
     plant, target = solution.chain.plant, solution.aim.target_speed_m_s
-    laws: dict[int, Controller] = {
-        each.degree: TableController(each.polished) for each in tables if each.polished is not None
-    }
-    laws[SOLVER_LINES] = LineController(solution.lines)
+    laws: dict[int, Controller] = {each.degree: TableController(each.table) for each in tables}
+    laws[SOLVER_LINES] = LineController(solution.lines, farthest=solution.chain.decisions.swept)
     samples = {degree: simulate_many(plant, law, seed, passes) for degree, law in laws.items()}
     weight = samples[SOLVER_LINES].weight
     errors = {degree: each.exit_speed_m_s - target for degree, each in samples.items()}
-    fitted = dict(zip(study.degrees, study.fitted_rms_m_s, strict=True))
-    predicted = {**dict(zip(study.degrees, study.polished_rms_m_s, strict=True)), SOLVER_LINES: study.lines_rms_m_s}
+    fitted = {each.degree: each.fitted_rms_m_s for each in tables}
+    predicted = {**{each.degree: each.rms_m_s for each in tables}, SOLVER_LINES: lines_rms_m_s}
     rows = []
     for degree, error in errors.items():
         rms, rms_ci95 = rms_of(error, weight)
         both = np.where((np.abs(error) <= NEAR_M_S) & (np.abs(errors[COMPARED]) <= NEAR_M_S), weight, 0.0)
         ratio, ratio_ci95 = rms_quotient(error, errors[COMPARED], both)
-        before = float(fitted.get(degree, np.nan))
         rows.append(
             Row(
-                degree, before if np.isfinite(before) else None, float(predicted[degree]), rms, rms_ci95,
+                degree, fitted.get(degree), predicted[degree], rms, rms_ci95,
                 share_of(np.abs(error) > NEAR_M_S, weight)[0], rms_of(error, both)[0], ratio, ratio_ci95,
             )
         )  # fmt: skip
     return CaseRow(f"{plant.cut.mass_t:g} t to {target:g} m/s", tuple(rows))
-
-
-def figures(found: Degrees) -> Mapping[str, Figure]:
-    """Predicted rms over degree, a panel a case."""
-    from synth.present.plots.degree_study import degree_study as draw
-
-    return {"": draw([as_study(case) for case in found.cases])}
 
 
 METHOD = Method(Options, Options(None, (52.0,), (3.0,), (1, 3), 200), Degrees, run)

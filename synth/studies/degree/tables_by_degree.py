@@ -1,14 +1,11 @@
-"""Which degree the lines need: tables of every degree, rounded and predicted as the exported one is."""
+"""Tables of lines of every degree for one solution, rounded and predicted as an exported one is."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-import numpy as np
-
-from synth.book.case_result import DegreeStudy
+from plant_models import Plant
 from synth.book.class_setup import Origin
 from synth.book.rounded_table import predict
 from synth.solver.backward_induction import Solution
@@ -23,42 +20,49 @@ from tuning_tables import ControllerTable, InvalidTable
 
 
 @dataclass(frozen=True)
-class TablesOfDegree:
-    """Tables of lines of one degree, fitted and polished; None where rounding would let two lines touch."""
+class TableOfDegree:
+    """The table of the polished lines of one degree, and the rms in m/s that the forward density predicts of it.
+
+    `fitted_rms_m_s`: of the table of the lines before the polish; None where rounding would let two lines touch.
+    """
 
     degree: int
-    fitted: ControllerTable | None
-    polished: ControllerTable | None
+    table: ControllerTable
+    rms_m_s: float
+    fitted_rms_m_s: float | None
 
 
-def tables_by_degree(solution: Solution, degrees: tuple[int, ...], origin: Origin) -> Iterator[TablesOfDegree]:
-    """Lines of every degree, fitted and polished as a tune does for a criterion without a requirement."""
-    target_m_s, plant = solution.aim.target_speed_m_s, solution.chain.plant
+def tables_by_degree(
+    solution: Solution, check: Chain, degrees: tuple[int, ...], origin: Origin
+) -> Iterator[TableOfDegree]:
+    """Lines of every degree, polished as a tune does for a criterion without a requirement, predicted on `check`.
+
+    A degree whose polished lines would touch when rounded is left out.
+    """
     _, occupancy = density_and_occupancy(solution.chain, solution.lines)
-
-    def table(lines: PolynomialLines) -> ControllerTable | None:
-        stamp = (origin.generator, f"degree-{lines.degree}", origin.created)
-        try:
-            return tabulate(plant, lines, target_m_s, UNPREDICTED, *stamp)
-        except InvalidTable:
-            return None
-
+    target_m_s, plant = solution.aim.target_speed_m_s, solution.chain.plant
     for degree in degrees:
         fit = fit_lines(solution, occupancy.samples, degree)
-        yield TablesOfDegree(degree, table(fit.lines), table(polished(solution, fit).lines))
+        table = table_of(plant, polished(solution, fit).lines, target_m_s, origin)
+        before = table_of(plant, fit.lines, target_m_s, origin)
+        if table is not None:
+            rms = predict(check, table).rms_m_s(target_m_s)
+            fitted = None if before is None else predict(check, before).rms_m_s(target_m_s)
+            yield TableOfDegree(degree, table, rms, fitted)
 
 
-def degree_study(solution: Solution, check: Chain, label: str, tables: tuple[TablesOfDegree, ...]) -> DegreeStudy:
-    """Rms that the forward density on `check` gives each of `tables`, and the solver's lines; NaN without a table."""
-    target = solution.aim.target_speed_m_s
+def table_of(plant: Plant, lines: PolynomialLines, target_m_s: float, origin: Origin) -> ControllerTable | None:
+    """The rounded table; None where two lines would touch."""
+    try:
+        return tabulate(
+            plant, lines, target_m_s, UNPREDICTED, origin.generator, f"degree-{lines.degree}", origin.created
+        )
+    except InvalidTable:
+        return None
 
-    def rms_m_s(table: ControllerTable | None) -> float:
-        return math.nan if table is None else predict(check, table).rms_m_s(target)
 
-    return DegreeStudy(
-        label=f"{label}, {target:g} m/s",
-        degrees=tuple(each.degree for each in tables),
-        fitted_rms_m_s=np.array([rms_m_s(each.fitted) for each in tables]),
-        polished_rms_m_s=np.array([rms_m_s(each.polished) for each in tables]),
-        lines_rms_m_s=resolved_density(check, solution.lines.at(check.grid.path_m), target).rms_m_s(target),
-    )
+def rms_of_solver_lines(solution: Solution, check: Chain) -> float:
+    """Rms in m/s that the forward density on `check` predicts of the solver's own lines, asked as they were swept."""
+    target_m_s = solution.aim.target_speed_m_s
+    as_swept = replace(check, decisions=replace(check.decisions, farthest=check.decisions.swept))
+    return resolved_density(as_swept, solution.lines.at(check.grid.path_m), target_m_s).rms_m_s(target_m_s)

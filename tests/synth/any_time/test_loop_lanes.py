@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from plant_models import Plant, RollingResistance, TrackProfile
-from synth.book.comparison.baselines import energy_rule, threshold_with_lead
+from synth.book.comparison.baselines import energy_rule, relay
 from synth.configuration.config_file import load_config
 from synth.kernels.any_time.closed_loop import AnyTimeLaw, run_any_time_passes
 from synth.kernels.any_time.closed_loop_lanes import run_any_time_lanes
@@ -134,7 +134,7 @@ def test_an_approach(plant_52t: Plant, passes: RandomPasses, entrance_stage: int
     assert isinstance(table.table, ControllerTable)
     approach, valid = Approach(6.0, entrance_stage), replace(table.table.valid, s_m=(-6.0, plant.exit_m - 2.0))
     gated = replace(table, table=replace(table.table, approach=approach, valid=valid))
-    for controller in (table, gated, unlocked(threshold_with_lead(loop, 3.0, 3, 0.1, 0.2))):
+    for controller in (table, gated, unlocked(replace(relay(loop, 3.0, 3, 0.1, 0.0), lead_s=0.2))):
         assert_same(loop, controller, loop.draws(passes))
 
 
@@ -258,7 +258,7 @@ def exits_of_a_few_passes() -> str:
     path_z, noise_z = (rng.standard_normal((n, 512), dtype=np.float32) for _ in range(2))
     cut_z = rng.standard_normal(n)
     draws = loop.draws(RandomPasses(cut_z, entry_u, phase_u, resistance_u, path_z, noise_z, np.ones(n)))
-    rules = threshold_with_lead(loop, 3.0, 3, 0.1, 0.0), energy_rule(loop, 3.0, 4, 0.8, 0.15, 0.3, 0.15)
+    rules = relay(loop, 3.0, 3, 0.1, 0.0), energy_rule(loop, 3.0, 4, 0.8, 0.15, 0.3, 0.15)
     laws: tuple[Regulator, ...] = sloping(plant, 3.0), observing(plant, 3.0), *map(unlocked, rules)
     return "".join(array.tobytes().hex() for law in laws for array in vars(loop.run(law, draws)).values())
 

@@ -1,0 +1,1 @@
+"""Study: which degree the polynomial lines need (R4)."""
