@@ -255,7 +255,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
     Study(
         "time-price",
         "What does less time in a position cost in accuracy, and what does it bring a whole hump?",
-        900.0,
+        530.0,
         "time-price.md",
         "synth.studies.time_price.study",
         "synth.studies.time_price.picture",

@@ -30,7 +30,7 @@ YARD_STUDIES: tuple[Study, ...] = (
     Study(
         "hump-day",
         "How fast can trains be humped, and at what price in catch-ups, over-speeds and gaps?",
-        1500.0,
+        1150.0,
         "hump-day.md",
         "synth.studies.humping.study",
         "synth.studies.humping.pictures",

@@ -21,8 +21,8 @@ class Legs(NamedTuple):
     position and the free roll behind it: `choices` (q,); `speeds_m_s` (q, m, k); `won_m2_s2` (q, m), gain of v² in the
     pass without brake; `path_m` (q, m) of the pass, of which `share` (q, m, s) is behind the cut at a mark; `roll_s`
     (q, m, k, s), times after the pass; `ends_s`, `ends_m_s` (q, m, k), duration of the roll and speed at its end;
-    `most_entry_m_s`, `least_entry_m_s`, `braked_m2_s2` (q, m), most loss of v² to the brake; `early` (q,): the brake
-    works as hard as that until the exit speed is reached, else evenly. NaN where a mark is not on that stretch.
+    `most_entry_m_s`, `least_entry_m_s`, `braked_m2_s2` (q, m), most loss of v² to the brake. NaN where a mark is not on
+    that stretch.
     """
 
     time_s: Floats
@@ -39,7 +39,6 @@ class Legs(NamedTuple):
     most_entry_m_s: Floats
     least_entry_m_s: Floats
     braked_m2_s2: Floats
-    early: NDArray[np.bool_]
 
 
 class Work(NamedTuple):
@@ -95,16 +94,10 @@ def pass_end(legs, q, i, k, time, speed):
 
 @borrowing_inline
 def time_to(legs, q, i, k, speed, share):
-    """How long a cut takes that comes with `speed` for this share of the path of the pass; v² falls evenly until the
-    exit speed is reached."""
-    path, exit_speed = legs.path_m[q, i], legs.speeds_m_s[q, i, k]
-    braked = 1.0
-    if legs.early[q]:
-        needed = speed * speed + legs.won_m2_s2[q, i] - exit_speed * exit_speed
-        braked = min(max(needed / legs.braked_m2_s2[q, i], 0.05), 1.0)
-    part = min(share / braked, 1.0)
-    between = math.sqrt(max(speed * speed + part * (exit_speed * exit_speed - speed * speed), 0.0))
-    return 2.0 * path * braked * part / (speed + between) + path * max(share - braked, 0.0) / exit_speed
+    """How long a cut takes that comes with `speed` for this share of the path of the pass, on which v² falls evenly."""
+    exit_speed = legs.speeds_m_s[q, i, k]
+    between = math.sqrt(max(speed * speed + share * (exit_speed * exit_speed - speed * speed), 0.0))
+    return 2.0 * legs.path_m[q, i] * share / (speed + between)
 
 
 @borrowing_inline

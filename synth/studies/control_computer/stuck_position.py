@@ -22,8 +22,6 @@ class StuckPosition:
 
     taken_head_m: Callable[[Arrivals], Floats]
 
-    brakes_early = False
-
     def passed(self, arrivals: Arrivals) -> Passed:
         """See `HumpPosition`."""
         taken = 2.0 * arrivals.reduced_gravity_m_s2 * self.taken_head_m(arrivals)

@@ -7,7 +7,16 @@ from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
-from synth.present.plots.house_style import LINE_COLOURS, LINE_MARKERS, LINE_STYLES, dress, new_figure, place
+from synth.present.plots.house_style import (
+    LINE_COLOURS,
+    LINE_MARKERS,
+    LINE_STYLES,
+    dress,
+    logarithmic_x,
+    logarithmic_y,
+    new_figure,
+    place,
+)
 
 if TYPE_CHECKING:
     from synth.studies.convergence.findings import CaseRow, Convergence
@@ -27,8 +36,8 @@ def picture(cases: Sequence[CaseRow]) -> Figure:
             for i, (differences, name) in enumerate(((own, "solver's own lines"), (cubic, "fixed cubic"))):
                 axes.plot([level.share for level in coarser], differences, marker=LINE_MARKERS[i],
                           color=LINE_COLOURS[i], linestyle=LINE_STYLES[i], label=name)  # fmt: skip
-            axes.set_xscale("log", base=2)
-            axes.set_yscale("log")
+            logarithmic_x(axes, [level.share for level in coarser])
+            logarithmic_y(axes, [*own, *cubic])
     panels[0, 0].legend(fontsize=8)
     return figure
 

@@ -17,8 +17,8 @@ UNDECIDED = "not decidable with these trains"
 def answer_table(
     curves: tuple[Curve, ...], couplings: tuple[AimedFigures, ...], regulated: tuple[RegulatedCouplings, ...]
 ) -> MarkdownTable:
-    """A row for each kind of positions and control: normal ones, the least exact first, then regulators. Steps between
-    both are left out."""
+    """A row for each kind of positions and control: normal ones, the least exact first, then regulators. Normal ones
+    that are commanded as tables are left out."""
     limits = [f"cars an hour, catch-ups ≤ {100 * at.limit:g} %" for at in curves[0].at_limits]
     free = [f"gap a cut, tracks free {low:g}–{high:g}, m" for low, high in FREE]
     heads = ("positions", "control", *limits, "over-speeds, %", "above 2 m/s, %", *free)

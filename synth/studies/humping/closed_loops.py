@@ -9,7 +9,6 @@ from synth.studies.humping.books import HIGHEST_M_S, Book, Regulator
 from synth.studies.humping.couplings import FREE
 from synth.studies.humping.day_figures import Pair, PairFigures
 from synth.studies.humping.disturbances import OILED, WEAKER
-from synth.studies.humping.foretold_times import with_foretold_times
 from synth.studies.humping.frontier import OPEN_LOOP, WITH_FEEDBACK, WITH_SLOWING, Families, Family, sigma
 from synth.studies.humping.table_positions import FRICTION, SUPPLY, TablePositions, table_positions
 from synth.studies.study import Tell
@@ -30,9 +29,6 @@ REGULATED = (OPEN_LOOP, WITH_FEEDBACK, WITH_SLOWING)
 
 TABLES_STD_M_S = 0.05
 """Error that the exit speeds of the last position are chosen with where positions work in their closed loop."""
-
-AS_COMMANDED, AS_FORETOLD = "commanded as tables are", "commanded as tables are, passes as foretold of them"
-EXITS_ALONE = "exit speeds of our tables, passes as foretold of them"
 
 
 @dataclass(frozen=True)
@@ -61,29 +57,13 @@ class ClosedLoops:
     @property
     def commanded(self) -> str:
         """These, commanded as tables are: at most `HIGHEST_M_S`, and the last position for `TABLES_STD_M_S`."""
-        return f"{self.best}, {AS_COMMANDED}"
-
-    @property
-    def foretold(self) -> str:
-        """These, with passes as long as the control foretells them of tables."""
-        return f"{self.best}, {AS_FORETOLD}"
+        return f"{self.best}, commanded as tables are"
 
     def families(self) -> Families:
-        """The curves of the regulators, and those with one or the other part of what tables are (`steps`)."""
-        exact = with_interval_std(self.base, min(self.stds_m_s))
+        """The curves of the regulators, and of the most exact normal positions commanded as these are."""
         found = {name: Family(made.on(self.base), REGULATED) for name, made in self.made.items()}
-        found[self.foretold] = Family(with_foretold_times(exact), (WITH_FEEDBACK,))
-        found[EXITS_ALONE] = Family(with_foretold_times(self.made[TABLES].on(self.base)), (WITH_FEEDBACK,))
+        found[self.commanded] = Family(with_interval_std(self.base, min(self.stds_m_s)), (WITH_FEEDBACK,))
         return found
-
-    def beside(self) -> Families:
-        """The normal positions of `steps`, whose programs are others: they do not brake early."""
-        exact = with_interval_std(self.base, min(self.stds_m_s))
-        return {self.commanded: Family(exact, (WITH_FEEDBACK,))}
-
-    def steps(self) -> tuple[str, ...]:
-        """From the most exact normal positions to our tables: each differs from the one before in one thing."""
-        return self.best, self.commanded, self.foretold, EXITS_ALONE, TABLES
 
     def pairs(self) -> list[Pair]:
         """A pair for each regulator beside normal positions, and for tables on plants they were not tuned for."""

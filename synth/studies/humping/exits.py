@@ -12,11 +12,10 @@ from plant_models.frozen_arrays import frozen_arrays
 from synth.studies.aiming.trial import Value
 from synth.studies.humping.base_trial import FEEDBACK
 from synth.studies.humping.day_figures import PERCENT
-from synth.studies.humping.foretold_times import early_s
 from synth.studies.markdown_table import MarkdownTable, plus_minus, table
 from synth.yard.humping.hump_position import Arrivals, Floats, HumpPosition, Ints, Passed, evenly_braked_s
 from synth.yard.humping.train_figures import ratio
-from synth.yard.humping.trial import BrakeHead, HumpTrial
+from synth.yard.humping.trial import HumpTrial
 
 Bools = NDArray[np.bool_]
 
@@ -31,11 +30,6 @@ class RecordedPosition:
     position: HumpPosition
     kept: list[tuple[Arrivals, Passed]] = field(default_factory=list)
 
-    @property
-    def brakes_early(self) -> bool:
-        """See `HumpPosition`."""
-        return self.position.brakes_early
-
     def passed(self, arrivals: Arrivals) -> Passed:
         """See `HumpPosition`."""
         passed = self.position.passed(arrivals)
@@ -47,7 +41,7 @@ class RecordedPosition:
 class Exits:
     """Of one position (1 is the first) under a regulator: `passes`; exit less command, its mean and root mean square,
     all cuts together and those of the lightest and the heaviest category; by how much the time of all passes is more
-    than that of even braking between the same speeds, and than the control foretells of them. Shares of 1."""
+    than that of even braking between the same speeds, which plan and control foretell; a share of 1."""
 
     positions: str
     number: int
@@ -57,7 +51,6 @@ class Exits:
     light_rms_m_s: Value
     heavy_rms_m_s: Value
     longer_than_even: Value
-    longer_than_foretold: Value
 
 
 def exits_of(trials: Mapping[str, HumpTrial], trains: int) -> tuple[Exits, ...]:
@@ -66,8 +59,8 @@ def exits_of(trials: Mapping[str, HumpTrial], trains: int) -> tuple[Exits, ...]:
     for name, trial in trials.items():
         positions = tuple(map(RecordedPosition, trial.positions))
         replace(trial, positions=positions, control=FEEDBACK).humped(0, trains)
-        for number, (position, head_m) in enumerate(zip(positions, trial.usable_heads_m, strict=True), start=1):
-            found.append(braked_passes(position.kept, head_m, trains).exits(name, number))
+        for number, position in enumerate(positions, start=1):
+            found.append(braked_passes(position.kept, trains).exits(name, number))
     return tuple(found)
 
 
@@ -75,7 +68,7 @@ def exits_of(trials: Mapping[str, HumpTrial], trains: int) -> tuple[Exits, ...]:
 @dataclass(frozen=True, eq=False)
 class BrakedPasses:
     """Passes, an entry each, of `trains` trains: whose train and category, exit less command, and the times: as it was,
-    of even braking, and as foretold."""
+    and of even braking."""
 
     trains: int
     train: Ints
@@ -83,7 +76,6 @@ class BrakedPasses:
     error_m_s: Floats
     time_s: Floats
     even_s: Floats
-    foretold_s: Floats
 
     def exits(self, name: str, number: int) -> Exits:
         """Their figures."""
@@ -98,7 +90,6 @@ class BrakedPasses:
             light_rms_m_s=self.rms(lightest),
             heavy_rms_m_s=self.rms(heaviest),
             longer_than_even=self.over_trains(self.time_s - self.even_s, self.even_s),
-            longer_than_foretold=self.over_trains(self.time_s - self.foretold_s, self.foretold_s),
         )
 
     def over_trains(self, of_pass: Floats, base: Floats) -> Value:
@@ -117,16 +108,15 @@ class BrakedPasses:
         return Value(float(np.sqrt(square.value)), (float(low), float(high)))
 
 
-def braked_passes(kept: list[tuple[Arrivals, Passed]], head_m: BrakeHead, trains: int) -> BrakedPasses:
+def braked_passes(kept: list[tuple[Arrivals, Passed]], trains: int) -> BrakedPasses:
     """Of all passes that were `kept` those of cuts that do not stop and would be faster than commanded without brake:
     about the others the position can do nothing."""
     parts = []
     for arrivals, passed in kept:
         exit_m_s = passed.exit_m_s
-        head = head_m(arrivals.mass_t, arrivals.axles, arrivals.category)
         each = (
             arrivals.train, arrivals.category, exit_m_s - arrivals.commanded_m_s, passed.time_s,
-            evenly_braked_s(arrivals, exit_m_s), early_s(arrivals, exit_m_s, head),
+            evenly_braked_s(arrivals, exit_m_s),
         )  # fmt: skip
         which = (exit_m_s > 0.0) & (arrivals.unbraked_exit_m_s > arrivals.commanded_m_s)
         parts.append([values[which] for values in each])
@@ -134,7 +124,7 @@ def braked_passes(kept: list[tuple[Arrivals, Passed]], head_m: BrakeHead, trains
 
 
 HEADS = ("positions", "position", "passes", "exit less command, m/s", "rms, m/s", "rms, light cuts, m/s",
-         "rms, heavy cuts, m/s", "longer than even braking, %", "longer than foretold, %")  # fmt: skip
+         "rms, heavy cuts, m/s", "longer than even braking, %")  # fmt: skip
 
 
 def exits_table(found: tuple[Exits, ...]) -> MarkdownTable:
@@ -144,8 +134,7 @@ def exits_table(found: tuple[Exits, ...]) -> MarkdownTable:
         HEADS,
         (
             (each.positions, str(each.number), str(each.passes), error(each.mean_m_s), error(each.rms_m_s),
-             error(each.light_rms_m_s), error(each.heavy_rms_m_s), percent(each.longer_than_even),
-             percent(each.longer_than_foretold))
+             error(each.light_rms_m_s), error(each.heavy_rms_m_s), percent(each.longer_than_even))
             for each in found
         ),
     )  # fmt: skip

@@ -1,10 +1,8 @@
-"""Which curves are compared: what control, exactness, and regulators bring, and what parts tables from exact exits."""
+"""Which curves are compared: what control, exactness and regulators bring."""
 
 from __future__ import annotations
 
-from itertools import pairwise
-
-from synth.studies.humping.closed_loops import REGULATED, REGULATORS, TABLES
+from synth.studies.humping.closed_loops import REGULATED, REGULATORS, TABLES, ClosedLoops
 from synth.studies.humping.frontier import (
     CONTROLS,
     OPEN_LOOP,
@@ -32,18 +30,15 @@ def normal_gains(frontier: Frontier, stds_m_s: tuple[float, ...]) -> tuple[Gain,
     return gains(frontier, pairs)
 
 
-def table_gains(frontier: Frontier, stds_m_s: tuple[float, ...]) -> tuple[Gain, ...]:
-    """What our tables bring beside normal positions and other regulators, and what feedback brings with them."""
-    others = [*map(sigma, sorted(stds_m_s, reverse=True)), *(name for name in REGULATORS if name != TABLES)]
+def table_gains(frontier: Frontier, loops: ClosedLoops) -> tuple[Gain, ...]:
+    """What our tables bring beside normal positions and other regulators, and what feedback brings with them; what
+    their commands cost exact positions."""
+    others = [*map(sigma, sorted(loops.stds_m_s, reverse=True)), *(name for name in REGULATORS if name != TABLES)]
     pairs = [((TABLES, control), (other, control)) for control in REGULATED for other in others]
+    pairs += [((TABLES, WITH_FEEDBACK), (loops.commanded, WITH_FEEDBACK))]
+    pairs += [((loops.commanded, WITH_FEEDBACK), (loops.best, WITH_FEEDBACK))]
     pairs += [((TABLES, WITH_FEEDBACK), (TABLES, OPEN_LOOP)), ((TABLES, WITH_SLOWING), (TABLES, WITH_FEEDBACK))]
     return gains(frontier, pairs)
-
-
-def step_gains(frontier: Frontier, steps: tuple[str, ...]) -> tuple[Gain, ...]:
-    """What each of `steps` brings beside the one before, with feedback; then the last beside the first."""
-    pairs = [((after, WITH_FEEDBACK), (before, WITH_FEEDBACK)) for before, after in pairwise(steps)]
-    return gains(frontier, [*pairs, ((steps[-1], WITH_FEEDBACK), (steps[0], WITH_FEEDBACK))])
 
 
 def gains(frontier: Frontier, pairs: list[Compared]) -> tuple[Gain, ...]:

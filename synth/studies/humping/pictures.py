@@ -16,6 +16,7 @@ from synth.present.plots.house_style import (
     LINE_STYLES,
     dress,
     legend_below,
+    logarithmic_y,
     new_figure,
     place,
 )
@@ -67,7 +68,7 @@ def curves(found: HumpDay, shown: Mapping[str, Mapping[str, Curve]], title: str)
             line(axes, curve, name, k)
         for at in found.curves[0].at_limits:
             axes.axhline(at.limit, color=GREY, linewidth=0.8, linestyle=":")
-    panels[0].set(yscale="log", ylim=(LEAST_SHARE, 0.5))  # after all are dressed, which share this axis
+    logarithmic_y(panels[0], (LEAST_SHARE, 0.5))  # after all are dressed, which share this axis
     legend_below(figure, panels[0].get_legend_handles_labels()[0], 6)
     return figure
 

@@ -15,11 +15,10 @@ from synth.studies.markdown_table import MarkdownTable
 
 @dataclass(frozen=True)
 class RegulatedDay:
-    """Gains of our tables beside other positions, and step by step from exact ones; variants at one least interval;
-    couplings by regulator; what positions make of their commands."""
+    """Gains of our tables beside other positions; variants at one least interval; couplings by regulator; what
+    positions make of their commands."""
 
     gains: tuple[Gain, ...]
-    steps: tuple[Gain, ...]
     beside: tuple[PairFigures, ...]
     couplings: tuple[RegulatedCouplings, ...]
     exits: tuple[Exits, ...]
@@ -28,7 +27,6 @@ class RegulatedDay:
         """See the titles."""
         return {
             "table-gains": gains_table("our tables: mean hump speed and cars an hour more, same trains", self.gains),
-            "steps": gains_table("from exact positions to our tables, a step a row, same trains", self.steps),
             "tables": pair_table("our tables", "positions", self.beside),
             "exits": exits_table(self.exits),
         }

@@ -19,7 +19,7 @@ from synth.yard.humping.trial import BATCH, HumpTrial
 T = TypeVar("T")
 
 PLANNED_WITH = ("source", "routes", "ways", "planner", "program", "aim", "usable_heads_m", "free")
-"""What a program of hump speeds depends on, besides whether positions brake early."""
+"""What a program of hump speeds depends on."""
 
 
 @dataclass(frozen=True)
@@ -62,9 +62,7 @@ class Group:
         first = next(iter(self.trials.values()))
         for trial in self.trials.values():
             same = all(getattr(trial, name) is getattr(first, name) for name in PLANNED_WITH)
-            early = [[position.brakes_early for position in each.positions] for each in (trial, first)]
             assert same, "trials of a group must share their program"
-            assert early[0] == early[1], "positions of a group must be of one kind"
 
     def batch(self, first: int, count: int, kept: Kept[T]) -> tuple[T, ...]:
         """What is kept of the trains `first` … `first + count − 1` in each of them."""

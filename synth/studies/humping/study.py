@@ -16,7 +16,7 @@ from synth.studies.humping.disturbances import disturbance_pairs
 from synth.studies.humping.exits import TRAINS, exits_of
 from synth.studies.humping.findings import HumpDay, Inputs
 from synth.studies.humping.frontier import Frontier, frontier_groups, lines_of, normal_families
-from synth.studies.humping.gains import normal_gains, step_gains, table_gains
+from synth.studies.humping.gains import normal_gains, table_gains
 from synth.studies.humping.programs import program_pairs
 from synth.studies.humping.regulated_day import RegulatedDay
 from synth.studies.humping.runs import measured
@@ -61,7 +61,7 @@ def run(options: Options, tell: Tell) -> HumpDay:
     families = [normal_families(base, options.stds_m_s)]
     groups = [pair.group for of_part in pairs.values() for pair in of_part]
     if loops is not None:
-        families += [loops.families(), loops.beside()]
+        families.append(loops.families())
         groups += [pair.group for pair in (*loops.pairs(), *loops.couplings().values())]
     groups = [group for each in families for group in frontier_groups(each, options.least_s)] + groups
     outcomes = measured(groups, options.trains, options.workers, tell)
@@ -85,8 +85,7 @@ def run(options: Options, tell: Tell) -> HumpDay:
 def regulated_day(loops: ClosedLoops, frontier: Frontier) -> RegulatedDay:
     """What is found where positions work in their closed loop."""
     return RegulatedDay(
-        gains=table_gains(frontier, loops.stds_m_s),
-        steps=step_gains(frontier, loops.steps()),
+        gains=table_gains(frontier, loops),
         beside=tuple(pair.found(frontier.outcomes) for pair in loops.pairs()),
         couplings=loops.found_couplings(frontier.outcomes),
         exits=exits_of({name: made.on(loops.base) for name, made in loops.made.items()}, TRAINS),

@@ -10,9 +10,18 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FixedLocator, NullLocator
 
-from synth.present.plots.house_style import BLUE, GREEN, SKY, VERMILLION, dress, legend_below, new_figure, place
+from synth.present.plots.house_style import (
+    BLUE,
+    GREEN,
+    SKY,
+    VERMILLION,
+    dress,
+    legend_below,
+    mark_plainly,
+    new_figure,
+    place,
+)
 from synth.studies.rare_events.findings import DENSITY, IMPORTANCE, PLAIN, SUBSET
 
 if TYPE_CHECKING:
@@ -43,8 +52,7 @@ def picture(found: RareEvents) -> Figure:
         by_name = {each.method: each for each in case.methods}
         handles = [curve(axes, found.curve_m_s, by_name[name]) for name in STYLES if name in by_name]
         axes.set(yscale="log", ylim=(1e-9, 1e-1), xlim=(0.0, max(found.curve_m_s)))
-        axes.yaxis.set_major_locator(FixedLocator([10.0**k for k in range(-9, 0)]))
-        axes.yaxis.set_minor_locator(NullLocator())
+        mark_plainly(axes.yaxis, 1e-9, 1e-1)
     for axes in panels[len(found.cases) :]:
         axes.set_visible(False)
     legend_below(figure, handles, len(handles), 0.12)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 from synth.studies.humping.base_trial import Day, with_interval_std
@@ -22,44 +22,15 @@ from synth.studies.humping.frontier import (
 from synth.studies.humping.runs import measured
 from synth.studies.humping.table_positions import table_positions
 from synth.studies.study import Tell
-from synth.yard.humping.hump_position import Arrivals, HumpPosition, Passed
-from synth.yard.humping.trial import HumpTrial
 
 PRICED = "our tables, a second priced"
-EVENLY = "foretold as even braking"
-"""What the plan and the control take passes for; by default of tables that they brake early and hold the speed then."""
 
 EXACT_STD_M_S = 0.03
-"""Of the normal positions beside them, which brake evenly."""
+EXACT = sigma(EXACT_STD_M_S)
+"""Normal positions beside them, commanded as they are."""
 
-
-def evenly(name: str) -> str:
-    """The same positions, otherwise foretold."""
-    return f"{name}, {EVENLY}"
-
-
-PAIRS = (
-    (PRICED, TABLES),
-    (evenly(PRICED), evenly(TABLES)),
-    (evenly(TABLES), TABLES),
-    (evenly(PRICED), TABLES),
-    (TABLES, sigma(EXACT_STD_M_S)),
-    (evenly(PRICED), sigma(EXACT_STD_M_S)),
-)
+PAIRS = ((PRICED, TABLES), (TABLES, EXACT), (PRICED, EXACT))
 """What is compared with what."""
-
-
-@dataclass(frozen=True)
-class EvenlyForetold:
-    """`position`, of which plan and control think that it brakes evenly."""
-
-    position: HumpPosition
-
-    brakes_early = False
-
-    def passed(self, arrivals: Arrivals) -> Passed:
-        """See `HumpPosition`."""
-        return self.position.passed(arrivals)
 
 
 @dataclass(frozen=True)
@@ -75,11 +46,6 @@ class Humped:
     exits: tuple[Exits, ...]
 
 
-def evenly_foretold(trial: HumpTrial) -> HumpTrial:
-    """The trial whose plan and control think so of all positions."""
-    return replace(trial, positions=tuple(map(EvenlyForetold, trial.positions)))
-
-
 def humped(
     seed: int, trains: int, cuts: int, price_m2_s3: float, least_s: tuple[float, ...], limits: tuple[float, ...],
     workers: int, tell: Tell,
@@ -91,13 +57,12 @@ def humped(
     for name, price in ((TABLES, 0.0), (PRICED, price_m2_s3)):
         made[name] = table_positions(base, partial(Book.priced_tables, time_price_m2_s3=price)).on(base)
         tell(f"books tuned: {name}")
-    early = {name: Family(trial, (WITH_FEEDBACK,)) for name, trial in made.items()}
-    even = {evenly(name): Family(evenly_foretold(trial), (WITH_FEEDBACK,)) for name, trial in made.items()}
-    even[sigma(EXACT_STD_M_S)] = Family(with_interval_std(base, EXACT_STD_M_S), (WITH_FEEDBACK,))
-    groups = [group for part in (early, even) for group in frontier_groups(part, least_s)]
-    found = Frontier(measured(groups, trains, workers, tell), lines_of(early, even), least_s, limits, (), seed)
+    exits = exits_of(made, min(trains, TRAINS))
+    made[EXACT] = with_interval_std(base, EXACT_STD_M_S)
+    families = {name: Family(trial, (WITH_FEEDBACK,)) for name, trial in made.items()}
+    outcomes = measured(frontier_groups(families, least_s), trains, workers, tell)
+    found = Frontier(outcomes, lines_of(families), least_s, limits, (), seed)
     gains = tuple(
         found.gain((one, WITH_FEEDBACK), (other, WITH_FEEDBACK), limit) for limit in limits for one, other in PAIRS
     )
-    exits = exits_of(made, min(trains, TRAINS))
     return Humped(trains, cuts, price_m2_s3, found.curves(), gains, exits)

@@ -28,14 +28,12 @@ SLOWEST_M_S = 0.1
 @dataclass(frozen=True, eq=False)
 class Expected:
     """Cuts as a control knows them, (n,): `cars` roll as it expects; first and last axles behind the head;
-    `braked_m2_s2` (n, positions): most loss of v² to the brake of each position; `early` (positions,): it brakes so
-    hard until the exit speed is reached, else evenly."""
+    `braked_m2_s2` (n, positions): most loss of v² to the brake of each position."""
 
     cars: Cars
     first_axle_m: Floats
     last_axle_m: Floats
     braked_m2_s2: Floats
-    early: Bools
 
 
 @frozen_arrays
@@ -181,7 +179,6 @@ def through(
         ends_m_s=ends_speed,
         most_entry_m_s=np.stack([np.broadcast_to(each.most_entry_m_s, count) for each in choices]),
         least_entry_m_s=np.stack([np.broadcast_to(each.least_entry_m_s, count) for each in choices]),
-        early=np.ascontiguousarray(expected.early[position : position + most]),
         braked_m2_s2=np.ascontiguousarray(expected.braked_m2_s2[:, position : position + most].T),
     )
     return Ways(routes, legs)

@@ -85,10 +85,6 @@ class Passed:
 class HumpPosition(Protocol):
     """A position under its controller. What a cut does there does not depend on the others of `arrivals`."""
 
-    @property
-    def brakes_early(self) -> bool:
-        """Whether it brakes hard until the exit speed is reached, and holds it then, or evenly along the path."""
-
     def passed(self, arrivals: Arrivals) -> Passed:
         """How they pass."""
 

@@ -18,17 +18,6 @@ from synth.yard.humping.train_cuts import TrainCuts, expected
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
-
-
-@frozen_arrays
-@dataclass(frozen=True, eq=False)
-class Brakes:
-    """What is known of the brakes of the positions: `braked_m2_s2` (rows, positions), most loss of v² of each cut;
-    `early` (positions,): the position brakes so hard until the exit speed is reached, else evenly."""
-
-    braked_m2_s2: Floats
-    early: Bools
 
 
 @frozen_arrays
@@ -36,7 +25,8 @@ class Brakes:
 class KnownCuts:
     """All cuts of some trains, a row each: `rolls` with mean bends and wind; resistance: `mean_n_per_kn`, and that of
     good and of bad runners, `good_n_per_kn` and `bad_n_per_kn` (rows,). `aim` (rows,): exit speeds of the
-    last position as they are expected before the train, and how fast cuts may come to it; `brakes` of all positions."""
+    last position as they are expected before the train, and how fast cuts may come to it; `braked_m2_s2` (rows,
+    positions): most loss of v² to the brake of each position."""
 
     rolls: Rolls
     trains: int
@@ -49,7 +39,7 @@ class KnownCuts:
     good_n_per_kn: Floats
     bad_n_per_kn: Floats
     aim: Given
-    brakes: Brakes
+    braked_m2_s2: Floats
 
     def of_cut(self, cut: int) -> Ints:
         """Rows of cut number `cut` of every train."""
@@ -59,7 +49,7 @@ class KnownCuts:
         """The cuts `rows` on `routes`, with the resistance (n,) that is expected of them."""
         cars = Cars(self.rolls, rows, routes, resistance_n_per_kn)
         axles = self.first_axle_m[rows], self.last_axle_m[rows]
-        return Expected(cars, *axles, self.brakes.braked_m2_s2[rows], self.brakes.early)
+        return Expected(cars, *axles, self.braked_m2_s2[rows])
 
     def aim_of(self, rows: Ints) -> Given:
         """What the last position is expected to make of the cuts `rows`."""
@@ -72,8 +62,9 @@ GOOD, BAD = 0.023, 0.977
 """Quantiles of runners that are good and bad: two standard deviations from the mean of a normal law."""
 
 
-def known_cuts(trains: TrainCuts, ways: RouteWays, aim: Given, brakes: Brakes, threads: int = 0) -> KnownCuts:
-    """`trains` as they are known before they roll on `ways`; `aim` (rows,): what they will be aimed with."""
+def known_cuts(trains: TrainCuts, ways: RouteWays, aim: Given, braked_m2_s2: Floats, threads: int = 0) -> KnownCuts:
+    """`trains` as they are known before they roll on `ways`; `aim` (rows,): what they will be aimed with;
+    `braked_m2_s2` (rows, positions)."""
     drawn = expected(trains)
     rolls = rolling_on(ways, trains.population, drawn, threads)
     return KnownCuts(
@@ -88,7 +79,7 @@ def known_cuts(trains: TrainCuts, ways: RouteWays, aim: Given, brakes: Brakes, t
         good_n_per_kn=runner_n_per_kn(trains, drawn, GOOD),
         bad_n_per_kn=runner_n_per_kn(trains, drawn, BAD),
         aim=aim,
-        brakes=brakes,
+        braked_m2_s2=braked_m2_s2,
     )
 
 

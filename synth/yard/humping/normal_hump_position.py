@@ -64,8 +64,6 @@ class NormalHumpPosition:
     def __post_init__(self) -> None:
         require_between("position: exit_std_m_s", self.std_m_s, 0.0, 3.0)
 
-    brakes_early = False
-
     def passed(self, arrivals: Arrivals) -> Passed:
         """See `HumpPosition`."""
         z = ndtri(keyed_uniform(arrivals.seed, Purpose.POSITION_ERROR, arrivals.keys, 1)[0])

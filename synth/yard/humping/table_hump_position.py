@@ -36,8 +36,6 @@ class TableHumpPosition:
     choice: ClassChoice
     friction_anew: bool = False
 
-    brakes_early = True
-
     def passed(self, arrivals: Arrivals) -> Passed:
         """See `HumpPosition`; `PlantError` for a cut that has no class."""
         exits, times = np.empty(len(arrivals)), np.empty(len(arrivals))

@@ -21,7 +21,7 @@ from synth.yard.humping.hump_routes import HumpRoutes
 from synth.yard.humping.humping import Hump, humped
 from synth.yard.humping.interval import CentredRule, IntervalRule
 from synth.yard.humping.interval_control import Feedback, FeedbackSpeeds, OpenLoop, ProgramSpeeds
-from synth.yard.humping.known_cuts import BAD, Brakes, KnownCuts, known_cuts, runner_n_per_kn
+from synth.yard.humping.known_cuts import BAD, KnownCuts, known_cuts, runner_n_per_kn
 from synth.yard.humping.outcomes import TrainOutcomes, outcomes
 from synth.yard.humping.rollability import CategoryMean, Rollability, measured_rollability
 from synth.yard.humping.route_rolling import RouteRolling, rolling_on
@@ -186,8 +186,7 @@ class HumpTrial:
         least = np.sqrt(WORST_ENTRY_M_S**2 + 2.0 * gravity * self.worse_head_m(trains))
         last = self.routes.positions_of[trains.route] - 1
         given = Given(aim, np.sqrt(aim**2 + braked[np.arange(len(trains)), last]), least)
-        early = np.array([position.brakes_early for position in self.positions])
-        return known_cuts(trains, self.ways, given, Brakes(braked, early), self.threads)
+        return known_cuts(trains, self.ways, given, braked, self.threads)
 
     def worse_head_m(self, trains: TrainCuts) -> Floats:
         """Energy head (rows,) that bad runners against the wind lose more than expected ahead of the last position."""

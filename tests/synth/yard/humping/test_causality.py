@@ -68,7 +68,6 @@ class Fated:
 
     position: HumpPosition
     fate: Fate
-    brakes_early = False
 
     def passed(self, arrivals: Arrivals) -> Passed:
         """Much slower than commanded, where it is late enough."""

@@ -41,9 +41,7 @@ def test_rows_of_a_cut_are_those_of_its_train() -> None:
     np.testing.assert_array_equal(expected.first_axle_m, trains.first_axle_m[rows])
     np.testing.assert_array_equal(expected.cars.routes, trains.route[rows])
     gravity = reduced_gravity_m_s2(trains)
-    np.testing.assert_allclose(known.brakes.braked_m2_s2, 2.0 * gravity[:, None] * 0.8 * np.array([2.4, 2.4, 1.5]))
+    np.testing.assert_allclose(known.braked_m2_s2, 2.0 * gravity[:, None] * 0.8 * np.array([2.4, 2.4, 1.5]))
     aim = known.aim_of(rows)
     np.testing.assert_allclose(aim.speed_m_s, 1.4, rtol=1e-6)
-    np.testing.assert_allclose(
-        np.asarray(aim.most_entry_m_s) ** 2, aim.speed_m_s**2 + known.brakes.braked_m2_s2[rows, -1]
-    )
+    np.testing.assert_allclose(np.asarray(aim.most_entry_m_s) ** 2, aim.speed_m_s**2 + known.braked_m2_s2[rows, -1])

@@ -65,6 +65,23 @@ def test_without_any_hit_the_interval_is_that_of_independent_cuts() -> None:
     assert found[2] == pytest.approx(1.0 - 0.025 ** (1.0 / worth), rel=1e-9)
 
 
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize(
+    ("hits", "ends"), [((3.0, 4.0), (0.0, 0.8868)), ((6.0, 26.0), (0.0, 1.0)), ((20.0, 20.0), (0.0118, 0.9882))]
+)
+def test_two_trains_tell_no_end_that_is_next_to_nothing(
+    hits: tuple[float, float], ends: tuple[float, float], mirrored: bool
+) -> None:
+    """The exact ends are 1.3e-10 of all cuts, 2.9e-43 and 1 less nothing; those of 20 hits a train are told."""
+    base, few = np.full(2, 40.0), np.array(hits)
+    found = share(base - few if mirrored else few, base)[1:3]
+    assert found == pytest.approx((1.0 - ends[1], 1.0 - ends[0]) if mirrored else ends, abs=1e-4)
+    for told, expected in zip(found, (0.0, 1.0), strict=True):
+        assert told == expected or abs(told - expected) > 1e-3
+    one = np.eye(1, 20)[0]
+    assert 0.0 < share(one, np.full(20, 40.0))[1] < 1e-4, "a single hit of many trains tells that there are some"
+
+
 def test_trains_of_unequal_cuts_weigh_by_them() -> None:
     value, low, high = ratio(np.array([1.0, 6.0, 2.0]), np.array([10.0, 40.0, 10.0]))
     assert value == pytest.approx(0.15)

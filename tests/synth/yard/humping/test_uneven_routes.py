@@ -111,21 +111,20 @@ def two_positions(routes: HumpRoutes) -> HumpRoutes:
     return replace(routes, **cut)
 
 
-@pytest.mark.parametrize("early", [False, True])
 @pytest.mark.parametrize("name", NAMES)
-def test_short_routes_are_compared_as_on_a_hump_that_has_no_others(name: str, early: bool) -> None:
+def test_short_routes_are_compared_as_on_a_hump_that_has_no_others(name: str) -> None:
     """Each combination of choices has the margins of the same one among two positions, repeated."""
     tracks = SHORT_TRACKS if name == "bunch" else (OWN_TRACK,)
     trial = trial_on(name, Day(cuts=1, tracks=dict.fromkeys(tracks, 1.0)))
     routes, random = trial.routes, np.random.default_rng(3)
-    _, own, start, push = single_cuts(trial, early)
+    _, own, start, push = single_cuts(trial)
     ranges = SpeedRange(3.0, 6.0, 3, 6.5, 1.0), SpeedRange(2.5, 5.0, 4)
     aim = Given(np.full(COUNT, 2.6), 6.0, 1.5)
     shape = COUNT, routes.elements
     times = random.uniform(0.0, 60.0, shape), random.uniform(20.0, 90.0, shape)
     pair = two_positions(routes)
     assert pair.even
-    two = replace(own, early=own.early[:2], braked_m2_s2=own.braked_m2_s2[:, :2])
+    two = replace(own, braked_m2_s2=own.braked_m2_s2[:, :2])
     found = from_crest(routes, own, start, push, (*ranges, aim)).compared(*times)
     plain = from_crest(pair, two, start, push, (ranges[0], aim)).compared(*times)
     for field in ("ahead_s", "behind_s", "able", "beyond_m_s", "arrival_s"):
