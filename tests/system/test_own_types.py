@@ -20,6 +20,8 @@ from tuning_tables import TableBook, read_book
 
 EXAMPLE = Path(__file__).parents[2] / "docs" / "examples" / "us-group"
 COARSE = """
+[grid]
+path_step_m = 1.0
 speed_step_m_s = 0.05
 friction_scenarios = 3
 resistance_scenarios = 1
