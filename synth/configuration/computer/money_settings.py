@@ -83,24 +83,24 @@ USUAL_TODAY = FigureSettings(
     gap_m=76.97,
 )
 USUAL_CHANGE = FigureSettings(
-    cars_per_h=121.7,
+    cars_per_h=138.7,
     catch_ups=-0.000625,
     misrouted=-0.000625,
-    on_track=0.004625,
-    over_speeds_to_1_5=0.002875,
-    over_speeds_to_2=0.0004221,
-    over_speeds_above_2=0.002163,
-    gap_m=-14.24,
+    on_track=0.00475,
+    over_speeds_to_1_5=0.004751,
+    over_speeds_to_2=-0.0005895,
+    over_speeds_above_2=0.0005307,
+    gap_m=-14.36,
 )
 MEASURED_CHANGE: dict[str, tuple[float, float]] = {
-    "cars_per_h": (117.1, 126.3),
+    "cars_per_h": (134.9, 142.4),
     "catch_ups": (-0.001699, 0.0004486),
     "misrouted": (-0.001699, 0.0004486),
-    "on_track": (0.002615, 0.006635),
-    "over_speeds_to_1_5": (-0.002018, 0.007768),
-    "over_speeds_to_2": (-0.006099, 0.006943),
-    "over_speeds_above_2": (-0.001331, 0.005656),
-    "gap_m": (-15.19, -13.29),
+    "on_track": (0.002761, 0.006739),
+    "over_speeds_to_1_5": (-0.0003324, 0.009835),
+    "over_speeds_to_2": (-0.006988, 0.005809),
+    "over_speeds_above_2": (-0.00277, 0.003831),
+    "gap_m": (-15.3, -13.42),
 }
 """Their 95 % intervals, paired by train."""
 
