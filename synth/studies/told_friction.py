@@ -19,8 +19,8 @@ from synth.solver.chain.chain import Chain
 from synth.solver.told_lines import SQUARED_ERROR_ALONE, Effort, told_lines
 from synth.solver.tuned_lines import fitted, polished
 
-THOROUGH = Effort(iterations=(40, 40), resistance_nodes=2, least_share=0.0)
-"""Until a step gains nothing; also for the resistance that is not told; at every friction."""
+THOROUGH = Effort(frictions=13, iterations=(40, 40), resistance_nodes=2, least_share=0.0)
+"""At more frictions; until a step gains nothing; also for the resistance that is not told; at every friction."""
 
 
 def thorough(frictions: int, iterations: int) -> Effort:
