@@ -110,7 +110,7 @@ def test_an_infeasible_book_is_not_accepted(command: Command, one_class: Path, t
     hopeless.write_text(CLASS.replace("high_m_s = 4.0", "high_m_s = 5.5").replace("csv = true", "plots = false"))
     ran = command("tune", hopeless, "-o", tmp_path)
     assert ran.code == 1
-    assert "infeasible: gondola-4-22t to 1.5 m/s, out of brake power; entry speeds from 1.50 to" in ran.out
+    assert "infeasible: gondola-4-22t to 1.5 m/s, out of brake power; entry speeds from 1.51 to" in ran.out
     assert "no case is feasible" in ran.out
     again = command("validate", tmp_path / "book.h5", "--config", hopeless)
     assert again.code == 0  # known to be infeasible, from the summary beside it
