@@ -19,6 +19,7 @@ ENTRY_POINTS, ENTRY_PASSES = 24, 500
 """Entry speeds that are looked at, and passes at each of them: the same, but for the speed."""
 
 LOWEST_ENTRY_M_S = 0.5
+"""Slower cuts are not looked at: one that is served from here on may be served from further below."""
 
 
 @frozen_arrays
