@@ -92,9 +92,9 @@ def masked(builder, name, result, *arguments):
 def lane_addresses(context, builder, array_type, array, where, lanes):
     """One after the other the pointers to the elements of a contiguous array at a pack of flat indices.
 
-    What they load is put side by side then: a processor's own instruction for it takes as long or longer. On an AMD
-    EPYC (Zen 4) passes of the closed loop take 0.82 to 0.86 of the time that they take with it, and gradients with four
-    neighbours in one load (`gather_four`) 0.87 to 0.95.
+    What they load is put side by side then. An AMD EPYC (Zen 4) takes longer by its own instruction for that: passes of
+    the closed loop take 0.82 to 0.86 of the time that they take with it, and gradients with four neighbours in one load
+    (`gather_four`) 0.87 to 0.95. No other processor was measured.
     """
     data = array_data(context, builder, array_type, array)
     return [builder.gep(data, [builder.extract_element(where, LANE(lane))]) for lane in range(lanes)]

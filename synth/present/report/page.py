@@ -19,9 +19,9 @@ from synth.present.report.verdict import verdict
 
 HOW_TO_READ = (
     "rms: root mean square of exit speed − target; a cut that stops in the position counts with exit speed 0. "
-    "Friction known: a controller "
-    "of the table's kind that is told the friction of each cut, with lines polished for it; regret: rms of the table / "
-    "rms of that controller, which is a reference and no lower bound; none where a controller that is not told it does "
+    "Friction known: a controller of the table's kind that is told the friction of each cut, with lines polished for "
+    "it; regret: rms of the table / rms of that controller, which is a reference and no lower bound; none where a "
+    "controller that is not told it does "
     "better. Feasible: the limit is not below the rms that no controller of the position avoids, which is that of what "
     "cuts leave too fast by under the hardest braking, and too slow by without any. "
     "Over-speed: more than 0.3 m/s above the target. Out of brake: leaves that fast even where every decision raises "

@@ -46,9 +46,9 @@ def figures(found: Degrees) -> Mapping[str, Figure]:
 def draw_case(axes: Axes, case: CaseRow) -> None:
     """Fitted, polished, and the level of the unsmoothed lines."""
     *rows, lines = case.rows
-    fitted = [(r.degree, r.fitted_predicted_rms_m_s) for r in rows if r.fitted_predicted_rms_m_s is not None]
+    fitted = {r.degree: r.fitted_predicted_rms_m_s for r in rows if r.fitted_predicted_rms_m_s is not None}
     axes.axhline(lines.predicted_rms_m_s, color=INK, linestyle=":", linewidth=1.4)
-    axes.plot(*zip(*fitted, strict=True), "--s", color=ORANGE, markersize=5)
+    axes.plot(list(fitted), list(fitted.values()), "--s", color=ORANGE, markersize=5)
     axes.plot([r.degree for r in rows], [r.predicted_rms_m_s for r in rows], "-o", color=BLUE, markersize=5)
     dress(axes, case.case, "degree")
     axes.set_xticks([r.degree for r in rows])
