@@ -45,6 +45,19 @@ class DopplerSensor:
         """Std of one reading: `measured_speed_std` of noise and quantisation together."""
         return measured_speed_std(self.noise_m_s, self.resolution_m_s)
 
+    @property
+    def repeat_probability(self) -> float:
+        """Probability that two readings of one speed are equal: the mean of max(0, 1 - |d|/resolution), d their noise.
+
+        That is the chance of one cell for both, its place being uniform. 0 without quantisation, 1 without noise.
+        """
+        if self.resolution_m_s == 0.0:
+            return 0.0
+        if self.noise_m_s == 0.0:
+            return 1.0
+        cells = self.resolution_m_s / (2.0 * self.noise_m_s)  # one cell, in √2 standard deviations of the difference
+        return math.erf(cells) - (1.0 - math.exp(-(cells**2))) / (cells * math.sqrt(math.pi))
+
 
 def measured_speed_std(noise_m_s: float, resolution_m_s: float) -> float:
     """Std of the measured speed, m/s: noise and the equivalent of quantisation, resolution/√12; 1e-4 at least."""

@@ -4,19 +4,34 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models import Plant, path_breaks_m, path_coefficients
+from plant_models import DopplerSensor, Plant, path_breaks_m, path_coefficients
 from synth.kernels.loop.closed_loop import Draws
 from synth.simulation.closed_loop import ClosedLoop
 from synth.simulation.controllers import Controller
 from synth.simulation.passes import PassTrace
 from synth.simulation.random_passes import RandomPasses
 from synth.solver.any_time.estimate_error import EstimateError, error_along_path
-from tuning_tables.estimator import MOST_BREAKS, Estimator
+from tuning_tables.estimator import MOST_BREAKS, MOST_READINGS, Estimator
+
+REPEATED_BY_CHANCE = 1e-4
+"""A reading that repeats itself so often that chance does it no oftener, on a cut that neither slows down nor speeds
+up, is not believed."""
+
+DOUBTED_S = 2.0
+"""Readings that leapt away from the estimate, and since then move as a cut does, are believed after so long. A sensor
+whose error lasts is then followed; one that began in error and is good again is not doubted for the rest of the pass."""
+
+LOST_SPEED_STD_M_S = 0.2
+"""A cut whose speed is known no better than this is lost: what is left of the pass could take it beyond 0.3 m/s."""
+
+UNLIKELY_STDS = 3.0
+"""Of the friction of any day: a cut beyond it is not of the table's category."""
 
 SECTIONS = 10
 """Of the path, each with figures of its own for the error of an estimate."""
@@ -41,13 +56,27 @@ def estimator_of(plant: Plant) -> Estimator:
     return Estimator(
         speed_noise_m_s=sensor.reading_std_m_s,
         friction_cv=plant.friction_cv,
+        resistance_std_m_s2=plant.cut.reduced_gravity_m_s2 * 1e-3 * plant.resistance.std_n_per_kn,
         path_std=friction.path_std,
         correlation_length_m=friction.correlation_length_m,
+        frozen_readings=frozen_readings(sensor),
+        doubted_readings=max(1, round(DOUBTED_S / sensor.sample_period_s)),
+        lost_speed_std_m_s=LOST_SPEED_STD_M_S,
+        unlikely_deviation=UNLIKELY_STDS * replace(plant, friction=friction.of_any_day).friction_cv,
         touch_pressure_kpa=plant.position.force.touch_pressure_kpa,
         s_m=tuple(edges.tolist()),
         drive_m2_s2=(0.0, *np.cumsum(drive * length).tolist()),
         brake_m2_s2_per_kpa=(0.0, *np.cumsum(cells.brake_m_s2_per_kpa * length).tolist()),
     )
+
+
+def frozen_readings(sensor: DopplerSensor) -> int:
+    """After how many repetitions of one reading the sensor is taken to have frozen; `MOST_READINGS`: never."""
+    again = sensor.repeat_probability
+    if again == 0.0:
+        return 1
+    needed = math.log(REPEATED_BY_CHANCE) / math.log(again) if again < 1.0 else math.inf
+    return math.ceil(min(needed, MOST_READINGS))
 
 
 def speed_error_m_s(loop: ClosedLoop, controller: Controller, passes: RandomPasses) -> float:

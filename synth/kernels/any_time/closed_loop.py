@@ -166,7 +166,7 @@ def run_any_time_pass(
 ) -> Any:  # fmt: skip
     """One pass from where the regulator acts to the exit; returns (v, time, status, switchings, events).
 
-    `known` (8,) is memory for the estimator, `over` (parts,) for the overpressures of a period.
+    `known` (16,) is memory for the estimator, `over` (parts,) for the overpressures of a period.
     """
     parameters, work = law.rule.estimator_parameters, law.rule.estimator_work
     estimating = work.shape[1] > 0
@@ -212,7 +212,7 @@ def run_any_time_passes(
     path: Path, drive: SampledDrive, sensor: Sensor, law: AnyTimeLaw, draws: Draws, exits: Exits, events: Floats
 ) -> int:
     """Simulate all passes of `draws` into `exits`; returns the number of events of the last pass."""
-    free, known, over = np.empty(path.gravity_m_s2.shape[0]), np.empty(8, np.float32), np.empty(drive.parts)
+    free, known, over = np.empty(path.gravity_m_s2.shape[0]), np.empty(16, np.float32), np.empty(drive.parts)
     count = 0
     for i in range(draws.cut_factor.shape[0]):
         drag = path.drag_m_s2_per_n_kn * draws.resistance_n_kn[i]

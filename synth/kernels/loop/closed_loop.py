@@ -151,7 +151,7 @@ def run_pass(
 ) -> Any:  # fmt: skip
     """One pass from where the regulator acts to the exit; returns (v, time, status, switchings, events).
 
-    A pressure, stage or speed in `events` holds from its time on; the last event is the end of the pass. `known` (8,)
+    A pressure, stage or speed in `events` holds from its time on; the last event is the end of the pass. `known` (16,)
     is memory for the estimator.
     """
     coefficients, has_line, valid, gate, farthest, lower, upper, start_m, spacing_m, lead_s, filter_s = law[:11]
@@ -247,7 +247,7 @@ def brake_rows(path: Path, cut_factor: Floats, path_z: NDArray[np.float32], rows
 def run_passes(path: Path, drive: Drive, sensor: Sensor, law: Rule, draws: Draws, exits: Exits, events: Floats) -> int:
     """Simulate all passes of `draws` into `exits`; returns the number of events of the last pass."""
     gravity, brakes = path.gravity_m_s2, draws.brake_m_s2_per_kpa
-    free, known = np.empty(gravity.shape[0]), np.empty(8, np.float32)
+    free, known = np.empty(gravity.shape[0]), np.empty(16, np.float32)
     count = 0
     for i in range(draws.cut_factor.shape[0]):
         drag = path.drag_m_s2_per_n_kn * draws.resistance_n_kn[i]

@@ -11,14 +11,14 @@ from synth.kernels.loop.lane_places import Floats, Ints
 from synth.kernels.vector import packs
 from synth.kernels.vector.borrowing import borrowing, borrowing_inline
 
-FIELDS = 8
-"""Numbers of a state of the estimator; the last counts samples without a credible speed, and is not followed here."""
+FIELDS = 16
+"""Numbers of a state of the estimator."""
 
 
 class Observed(NamedTuple):
     """What the estimator knows of n passes, 0 where one begins; n = 0 without estimator.
 
-    `state` float32 (n, 8): its own; `reached` float32 (n, 2): work of the grade and of the brake up to the path of the
+    `state` float32 (n, 16): its own; `reached` float32 (n, 2): work of the grade and of the brake up to the path of the
     state; `at_break` (n,): the break before that; `passed_kpa` (n,): mean overpressure since the last sample.
     """
 
@@ -47,53 +47,90 @@ def work_until(work, place, j):
 
 @borrowing
 def estimated(observed, parameters, work, there, i, s_m, v_m_s):
-    """The estimated speeds of the passes `i` of a pack, float64; `there`: the lanes that have a pass.
+    """The speeds to compare of the passes `i` of a pack, float64; `there`: the lanes that have a pass.
 
     What the grade and the brake did up to the last sample is remembered, not worked out anew. Not inlined: laws without
     an estimator would pay for it by 15 %.
     """
     nought, one, two, least_speed = parameters[7], parameters[8], parameters[9], parameters[5]
     state, at = observed.state, i * FIELDS
-    credible = (v_m_s >= 0.0) & (v_m_s <= float(parameters[10]))
-    v = packs.choose(credible, packs.narrow(v_m_s), nought)
+    sensible = (v_m_s >= 0.0) & (v_m_s <= float(parameters[10]))
+    v = packs.choose(sensible, packs.narrow(v_m_s), nought)
     kpa = packs.gather(observed.passed_kpa, i)
     p = packs.choose((kpa >= 0.0) & (kpa <= float(parameters[11])), packs.narrow(kpa), nought)
     begun = packs.gather(state, at) > nought
-    begins = packs.opposite(begun) & credible
     before = packs.choose(begun, packs.gather(state, at + 1), work[0, 0])
     farthest = packs.choose(begun, before + parameters[12], work[0, work.shape[1] - 1])
     s = packs.choose((packs.wide(before) <= s_m) & (s_m <= packs.wide(farthest)), packs.narrow(s_m), before)
+    reading, unseen = packs.gather(state, at + 12), packs.gather(state, at + 11)
+    again = sensible & (v >= reading) & (v <= reading)
+    repeated = packs.choose(again, packs.gather(state, at + 13) + one, nought)
+    packs.scatter(state, at + 12, there, packs.choose(sensible, v, reading))
+    packs.scatter(state, at + 13, there, repeated)
+    fresh = sensible & (repeated < parameters[18])
+    moving = v >= least_speed
     speed, factor = packs.choose(begun, packs.gather(state, at + 2), one), packs.gather(state, at + 3)
-    s4, s5, s6 = packs.gather(state, at + 4), packs.gather(state, at + 5), packs.gather(state, at + 6)
+    excess, c5, c6 = packs.gather(state, at + 4), packs.gather(state, at + 5), packs.gather(state, at + 6)
+    c7, c8, c9 = packs.gather(state, at + 7), packs.gather(state, at + 8), packs.gather(state, at + 9)
+    c10, believings = packs.gather(state, at + 10), packs.gather(state, at + 14)
+    doubts = packs.gather(state, at + 15)
     d, w, j = work_until(work, s, packs.gather(observed.at_break, i))
     drive, brake = d - packs.gather(observed.reached, i * 2), w - packs.gather(observed.reached, i * 2 + 1)
-    work_at_one = p * brake
-    gained = drive - factor * work_at_one
+    step, work_at_one = s - before, p * brake
+    gained = drive - excess * step - factor * work_at_one
     mean = packs.greatest((speed + speed + gained / speed) / two, least_speed)
     predicted = packs.greatest(speed + gained / mean, least_speed)
-    slope, effect = speed / predicted, work_at_one / mean
-    path_variance = parameters[2] / packs.greatest(s - before, parameters[6])
-    p11 = slope * slope * s4 - two * slope * effect * s5 + effect * effect * (s6 + path_variance)
-    p12 = slope * s5 - effect * s6
-    total = p11 + parameters[0]
-    gain, factor_gain, surprise = p11 / total, p12 / total, v - predicted
-    corrected = packs.greatest(predicted + gain * surprise, least_speed)
+    slope, effect, drag = speed / predicted, work_at_one / mean, step / mean
+    path_variance = parameters[2] / packs.greatest(step, parameters[6])
+    p12 = slope * c6 - effect * c8 - drag * c9
+    p13 = slope * c7 - effect * c9 - drag * c10
+    p11 = slope * (slope * c5 - effect * c6 - drag * c7)
+    p11 = packs.greatest(p11 - effect * (p12 - effect * path_variance) - drag * p13, nought)
+    total, surprise = p11 + parameters[0], v - predicted
+    leap, most = (v - reading) - (predicted - speed), parameters[16] + effect
+    leaps = (leap > most) | (leap < nought - most)
+    seen = unseen <= nought
+    strange = (seen & leaps) | (packs.opposite(seen) & packs.opposite(moving))
+    far = surprise * surprise > parameters[15] * total
+    doubted = begun & fresh & far & (strange | (doubts > nought))
+    counted = packs.choose(moving & packs.opposite(leaps), doubts + one, one)
+    few = (believings < parameters[17]) | (counted >= parameters[19])
+    corrects = begun & fresh & packs.opposite(doubted)
+    anew = moving & ((packs.opposite(begun) & fresh) | (doubted & few))
+    gain, factor_gain, excess_gain = p11 / total, p12 / total, p13 / total
+    found = packs.choose(corrects, packs.greatest(predicted + gain * surprise, least_speed), predicted)
+    found = packs.choose(anew, v, found)
     likely = packs.least(packs.greatest(factor + factor_gain * surprise, parameters[3]), parameters[4])
-    less = packs.greatest(s6 - factor_gain * p12, nought)
-    found = packs.choose(credible, corrected, predicted)
-    found = packs.choose(begins, packs.greatest(v, least_speed), found)
+    bound = parameters[14]
+    excessive = packs.least(packs.greatest(excess + excess_gain * surprise, nought - bound), bound)
     ones = packs.narrow(packs.eight(1.0))
-    known = there & (begun | credible)
+    known = there & (begun | anew)
     packs.scatter(state, at, known, ones)
     packs.scatter(state, at + 1, known, s)
     packs.scatter(state, at + 2, known, found)
-    packs.scatter(state, at + 3, known, packs.choose(begins, ones, packs.choose(credible, likely, factor)))
-    p11, p12 = packs.choose(credible, p11 - gain * p11, p11), packs.choose(credible, p12 - gain * p12, p12)
-    packs.scatter(state, at + 4, known, packs.choose(begins, parameters[0], p11))
-    packs.scatter(state, at + 5, known, packs.choose(begins, nought, p12))
-    s6 = packs.choose(credible, less, s6)
-    packs.scatter(state, at + 6, known, packs.choose(begins, parameters[1], s6))
+    packs.scatter(state, at + 3, known, packs.choose(anew, ones, packs.choose(corrects, likely, factor)))
+    packs.scatter(state, at + 4, known, packs.choose(anew, nought, packs.choose(corrects, excessive, excess)))
+    variance = packs.choose(anew, parameters[0], packs.choose(corrects, p11 - gain * p11, p11))
+    packs.scatter(state, at + 5, known, variance)
+    c6 = packs.choose(anew, nought, packs.choose(corrects, p12 - gain * p12, p12))
+    c7 = packs.choose(anew, nought, packs.choose(corrects, p13 - gain * p13, p13))
+    packs.scatter(state, at + 6, known, c6)
+    packs.scatter(state, at + 7, known, c7)
+    c8 = packs.choose(corrects, packs.greatest(c8 - factor_gain * p12, nought), c8)
+    c9 = packs.choose(corrects, c9 - factor_gain * p13, c9)
+    c10 = packs.choose(corrects, packs.greatest(c10 - excess_gain * p13, nought), c10)
+    packs.scatter(state, at + 8, known, packs.choose(anew, parameters[1], c8))
+    packs.scatter(state, at + 9, known, packs.choose(anew, nought, c9))
+    packs.scatter(state, at + 10, known, packs.choose(anew, parameters[13], c10))
+    unseen = packs.choose(corrects | anew, nought, unseen + one)
+    packs.scatter(state, at + 11, there, unseen)
+    believings = packs.choose(anew, one, packs.choose(corrects, believings + one, believings))
+    packs.scatter(state, at + 14, known, believings)
+    doubts = packs.choose(corrects | anew, nought, packs.choose(doubted, counted, doubts))
+    packs.scatter(state, at + 15, known, doubts)
     packs.scatter(observed.reached, i * 2, known, d)
     packs.scatter(observed.reached, i * 2 + 1, known, w)
     packs.scatter(observed.at_break, i, known, j)
-    return packs.wide(packs.choose(begun | credible, found, nought - one))
+    beyond = packs.greatest(variance - parameters[20], nought)
+    answer = packs.greatest(found - parameters[21] * beyond, nought)
+    return packs.wide(packs.choose(begun | anew, answer, nought - one))
