@@ -149,7 +149,9 @@ def fit(solution: Solution, degree: int = DEGREE) -> FittedLines:
     """Polynomial lines of `degree` for a solution: fitted, polished, and made to keep what the criterion requires."""
     problem = Problem(solution.chain.plant, solution.aim)
     check = check_chain(problem.plant, finer_for_check(solution.chain.resolution))
-    kept = checked_design(solution, check, degree, lambda lines: _rounded(problem, lines, "", None)).kept
+    kept = checked_design(
+        solution, check, degree, lambda lines: with_prediction(check, _rounded(problem, lines, "", None))
+    ).kept
     return FittedLines(problem, kept.lines, kept.polish, kept.finding, check)
 
 
@@ -160,7 +162,7 @@ def tabulate(lines: FittedLines, name: str = "", config: Config = None) -> Contr
     `name`: the table's id, by default told from position, mass and target. `config`: the configuration that the problem
     is from, whose hash the table then carries; by default the hash of the problem itself.
     """
-    return with_prediction(lines.check, _rounded(lines.problem, lines.lines, name, config))[0]
+    return with_prediction(lines.check, _rounded(lines.problem, lines.lines, name, config)).table
 
 
 def _rounded(problem: Problem, lines: PolynomialLines, name: str, config: Config) -> ControllerTable:
@@ -182,7 +184,7 @@ def predict(table: ControllerTable, problem: Problem, resolution: Resolution | N
             f"{table.id} has an estimator, so its figures cannot be computed without sampling; simulate it"
         )
     check = check_chain(problem.plant, finer_for_check(resolution or usual_resolution(problem)))
-    return with_prediction(check, table)[0].predicted
+    return with_prediction(check, table).table.predicted
 
 
 @_as_a_command

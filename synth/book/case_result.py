@@ -125,7 +125,7 @@ class CaseResult:
         if not self.grid.is_believed:
             found.append(
                 f"on the grid of its design the rms is {self.grid.design_rms_m_s:.4f} m/s, on a finer one "
-                f"{self.grid.finer_rms_m_s:.4f}: there may be better lines; lower grid.speed_step_m_s"
+                f"{self.grid.independent_rms_m_s:.4f}: there may be better lines; lower grid.speed_step_m_s"
             )
         if self.predicted.escaped > MOST_ESCAPED:
             found.append(
@@ -133,17 +133,3 @@ class CaseResult:
                 f"where {MOST_ESCAPED:g} is allowed: lower grid.speed_step_m_s"
             )
         return tuple(found)
-
-    @property
-    def left_out(self) -> str:
-        """Why the table has no estimator though one was asked for, as a sentence's end; empty otherwise."""
-        made = self.estimate
-        if made is None or self.table.estimator is not None:
-            return ""
-        told = f"rms {made.rms_after_m_s:.4f} m/s with it, {made.plain_rms_m_s:.4f} without"
-        if made.rms_after_m_s < made.plain_rms_m_s:
-            return (
-                f"no estimator: on a day of another mean friction its rms was {made.worst_day:.2f} times that without "
-                f"(over all tuning passes: {told}), so the table is for the measured speed"
-            )
-        return f"no estimator: it gained nothing on the tuning passes ({told}), so the table is for the measured speed"

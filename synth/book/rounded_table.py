@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
+from plant_models.frozen_arrays import frozen_arrays
 from synth.book.any_time.surface_table import surface_density
 from synth.book.class_setup import ClassSetup
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
@@ -22,10 +23,29 @@ def rounded(setup: ClassSetup, lines: PolynomialLines | PolynomialSurfaces, targ
     return tabulate(setup.plant, lines, target_speed_m_s, UNPREDICTED, *origin)
 
 
-def with_prediction(check: Chain, table: ControllerTable) -> tuple[ControllerTable, ExitDensity]:
-    """`table` with the figures of its exit-speed density, and the density; as `predict`."""
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class PredictedTable:
+    """A rounded table with its prediction, and the exit density behind it."""
+
+    table: ControllerTable
+    density: ExitDensity
+
+    @property
+    def rms_m_s(self) -> float:
+        """The predicted rms."""
+        return self.table.predicted.rms_m_s
+
+    @property
+    def most_off(self) -> float:
+        """A grid is not believed where the exact figure differs by more."""
+        return 1.25
+
+
+def with_prediction(check: Chain, table: ControllerTable) -> PredictedTable:
+    """`table` with the figures of its exit-speed density; as `predict`."""
     density = predict(check, table)
-    return replace(table, predicted=prediction_of(density, table.target_speed_m_s)), density
+    return PredictedTable(replace(table, predicted=prediction_of(density, table.target_speed_m_s)), density)
 
 
 def predict(check: Chain, table: ControllerTable) -> ExitDensity:

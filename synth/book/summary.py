@@ -124,7 +124,7 @@ def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
         "best_baseline": found.best_baseline.name if found.best_baseline else None,
         "comparison": {entry.name: measured_of(entry) for entry in found.entries},
         "requirement": None if case.finding is None else requirement_of(case.finding),
-        "estimate": None if case.estimate is None else {**estimate_of(case.estimate), "left_out": case.left_out},
+        "estimate": None if case.estimate is None else estimate_of(case.estimate),
         "permissions": None if case.permissions is None else results_document(case.permissions),
         "permissions_failed": {} if case.permissions is None else failed_document(case.permissions),
         "pareto_front": None if case.front is None else case.front.document,
@@ -168,13 +168,8 @@ def estimate_of(made: AnyEstimate) -> Document:
         "error_m_s": made.error_m_s,
         "trim_m_s": shift,
         **({"trim_along_path_m_s": along_path} if along_path else {}),
-        "rounds": made.rounds,
-        "designed": made.designed,
-        "used": made.gains,
-        "tuning_rms_without_m_s": made.plain_rms_m_s,
         "tuning_rms_before_trim_m_s": made.rms_before_m_s,
         "tuning_rms_m_s": made.rms_after_m_s,
-        "worst_day": made.worst_day,
     }
 
 

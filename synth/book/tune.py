@@ -120,7 +120,7 @@ def tune(
     """
     plants = config.plants()
     for label, plant in plants:
-        require_memory(label, plant, config.design_resolutions(plant), workers)
+        require_memory(label, plant, config.grids(plant), workers)
     run = TuneRun(
         config=config,
         origin=origin_of(config.sha256, creation_time()),
@@ -177,7 +177,7 @@ def case_task(run: TuneRun, order: CaseOrder) -> CaseResult | FailedCase:
     figures = result.comparison.table.statistics
     low, high = figures.rms_ci95_m_s
     rms = f"rms {figures.rms_m_s:.4f} [{low:.4f}, {high:.4f}] m/s in {figures.passes} passes"
-    told = [f"{label} to {target:g} m/s: {rms}", result.left_out, result.permissions.told if result.permissions else ""]
+    told = [f"{label} to {target:g} m/s: {rms}", result.permissions.told if result.permissions else ""]
     run.watcher.done("; ".join(filter(None, told)))
     for warning in result.warnings:
         run.watcher.note(f"warning: {label} to {target:g} m/s: {warning}")

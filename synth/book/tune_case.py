@@ -17,10 +17,9 @@ from synth.book.estimation.estimated_table import controller_of
 from synth.book.pareto.case_front import Front
 from synth.book.permissions.case_permissions import Ask
 from synth.book.policy_map import policy_map
-from synth.book.rounded_table import rounded
 from synth.book.tuned_table import Store, TunedTable, ValidatedTable, tuned_table, validated_table
 from synth.problem.problem import Problem
-from synth.simulation.closed_loop import Controller, LineController, TableController
+from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import CommonPasses
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
@@ -67,7 +66,7 @@ def tune_case(order: CaseOrder) -> CaseResult:
         polish=tuned.design.kept.polish if tuned.surfaces is None else tuned.surfaces.polish,
         grid=tuned.design.grid,
         finding=tuned.design.kept.finding,
-        estimate=tuned.estimate if tuned.surfaces is None else tuned.surfaces.estimate,
+        estimate=tuned.trimmed,
         exit_speeds_m_s=validated.sample.exit_speed_m_s.astype(np.float32),
         exit_weight=validated.sample.weight,
         brake_power=validated.brake_power,
@@ -87,27 +86,15 @@ def comparison(order: CaseOrder, tuned: TunedTable, validated: ValidatedTable, t
     best = min(by_baselines, key=lambda name: exit_statistics(by_baselines[name], target).rms_m_s)
     predicted = validated.table.predicted
 
-    def measured(name: str, controller: Controller) -> Measured:
-        return beside_table(name, passes.run(controller), sample, target)
-
-    def without_estimator() -> Measured:
-        lines = LineController(tuned.design.kept.lines.at(tuned.design.kept.lines.nodes_m(LINE_NODES)))
-        if tuned.surfaces is None:
-            return measured("without estimator", lines)
-        surfaces = rounded(order.setup, tuned.surfaces.polish.surfaces, target)
-        return measured("without estimator", TableController(surfaces))
-
     def at_rest() -> Measured:
-        made = tuned.estimate if tuned.estimate is not None and tuned.estimate.gains else None
-        kept, estimator = (tuned.design.kept.lines, None) if made is None else (made.lines, made.estimator)
-        return measured("commands at rest", controller_of(kept, estimator))
+        controller = controller_of(tuned.lines, validated.table.estimator)
+        return beside_table("commands at rest", passes.run(controller), sample, target)
 
     return Comparison(
         table=Measured("table", validated.statistics, predicted.rms_m_s, predicted.passes),
         friction_known=beside_table("friction known", told, sample, target),
         baselines=tuple(beside_table(name, each, sample, target) for name, each in by_baselines.items()),
         baseline_ratio_ci95=beside_table(best, by_baselines[best], told, target).table_ratio_ci95,
-        without_estimator=None if tuned.estimate is None else without_estimator(),
         at_rest=None if tuned.surfaces is None else at_rest(),
     )
 

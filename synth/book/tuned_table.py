@@ -12,13 +12,13 @@ from plant_models.frozen_arrays import frozen_arrays
 from synth.book.any_time.surface_table import polished_surfaces, starting_surfaces
 from synth.book.checked_design import NODES_KEPT, CheckedDesign, checked_design
 from synth.book.class_setup import ClassSetup, EstimatorSetup
+from synth.book.estimation.estimated_lines import SimulatedRms, estimated_lines
 from synth.book.estimation.estimated_surfaces import estimated_surfaces
-from synth.book.estimation.estimated_table import EstimatedTable, estimated_table
+from synth.book.estimation.estimated_table import EstimatedTable, trimmed_on
 from synth.book.estimation.simulated_prediction import density_of, simulated_prediction
-from synth.book.rounded_table import rounded, with_prediction
+from synth.book.rounded_table import PredictedTable, rounded, with_prediction
 from synth.problem.aim import Aim
 from synth.problem.any_time_resolution import design_resolution
-from synth.problem.problem import Problem
 from synth.simulation.closed_loop import TableController
 from synth.simulation.exit_statistics import BrakePower, ExitStatistics, brake_power, exit_statistics
 from synth.simulation.passes import ExitSample
@@ -37,9 +37,12 @@ Store = Callable[[ControllerTable], ControllerTable]
 """Keeps a table, and gives it back as a controller will read it."""
 
 
+AnyDesign = CheckedDesign[PredictedTable] | CheckedDesign[SimulatedRms]
+
+
 @dataclass(frozen=True)
 class SurfaceDesign:
-    """How surfaces were polished for the measured speed, and where an estimator is asked for, how those for it."""
+    """How surfaces were polished, and with an estimator how they were trimmed."""
 
     polish: SurfacePolish
     estimate: EstimatedTable[PolynomialSurfaces] | None
@@ -50,16 +53,26 @@ class SurfaceDesign:
 class TunedTable:
     """The rounded table with its prediction, not yet simulated.
 
-    `predicted`: the exit density behind the prediction; `design`: of lines for the measured speed and commands at rest;
-    `estimate`: where an estimator is asked for, how its lines were designed; `surfaces`: those of a regulator that
-    commands at any time.
+    `predicted`: the exit density behind the prediction; `design`: of lines for commands at rest, and for the speed that
+    the regulator compares with them; `estimate`: with an estimator, how these were trimmed; `surfaces`: those of a
+    regulator that commands at any time.
     """
 
     table: ControllerTable
     predicted: ExitDensity
-    design: CheckedDesign
+    design: AnyDesign
     estimate: EstimatedTable[PolynomialLines] | None
     surfaces: SurfaceDesign | None
+
+    @property
+    def lines(self) -> PolynomialLines:
+        """The lines for commands at rest."""
+        return self.design.kept.lines if self.estimate is None else self.estimate.lines
+
+    @property
+    def trimmed(self) -> AnyEstimate | None:
+        """With an estimator, how the table's lines or surfaces were trimmed."""
+        return self.estimate if self.surfaces is None else self.surfaces.estimate
 
 
 @dataclass(frozen=True)
@@ -78,36 +91,48 @@ def solutions(chain: Chain, aims: Sequence[Aim]) -> tuple[Solution, ...]:
 
 
 def tuned_table(setup: ClassSetup, solution: Solution) -> TunedTable:
-    """The table of one solution on `setup.design`: fitted, polished, rounded, and predicted.
+    """The table of one solution on `setup.design`: fitted, polished, trimmed where it has an estimator, rounded, and
+    predicted.
 
     Raises `PlantError` where the grid is too coarse for lines, `InvalidTable` where rounding would let lines touch.
     """
-    problem, target_m_s = Problem(setup.plant, solution.aim), solution.aim.target_speed_m_s
-    design = checked_design(solution, setup.check, setup.degree, lambda lines: rounded(setup, lines, target_m_s))
-    lines, made = design.kept.lines, None
-    if setup.estimator is not None:
-        made = estimated_table(problem, setup.estimator.design, lines, setup.estimator.tuning)
-    surfaces = surface_design(setup, solution.aim, lines, made) if setup.regulator.at_any_time else None
-    estimate: AnyEstimate | None = made if surfaces is None else surfaces.estimate
-    table, predicted = design.table, design.predicted
-    if setup.estimator is not None and estimate is not None and estimate.gains:
-        table, predicted = predicted_by_passes(setup, estimate, setup.estimator, target_m_s)
-    elif surfaces is not None:
-        table = rounded(setup, surfaces.polish.surfaces, target_m_s)
-        table, predicted = with_prediction(setup.check, table)
-    return TunedTable(table, predicted, design, made, surfaces)
+    if setup.estimator is None:
+        at_rest = measuring_table(setup, solution)
+    else:
+        at_rest = estimating_table(setup, setup.estimator, solution)
+    return at_any_time(setup, solution.aim, at_rest) if setup.regulator.at_any_time else at_rest
 
 
-def surface_design(
-    setup: ClassSetup, aim: Aim, lines: PolynomialLines, made: EstimatedTable[PolynomialLines] | None
-) -> SurfaceDesign:
-    """Surfaces for commands at any time from `lines`; with an estimator also from those that were `made` for it."""
-    plant, gauge = setup.plant, setup.regulator.has_gauge
-    steps = design_resolution(plant, aim.target_speed_m_s)
-    polish = polished_surfaces(plant, aim, starting_surfaces(plant, lines, gauge), steps)
-    if made is None or setup.estimator is None:
-        return SurfaceDesign(polish, None)
-    return SurfaceDesign(polish, estimated_surfaces(Problem(plant, aim), made, polish.surfaces, setup.estimator.tuning))
+def measuring_table(setup: ClassSetup, solution: Solution) -> TunedTable:
+    """The table of lines for the measured speed, predicted without sampling."""
+
+    def judge(lines: PolynomialLines) -> PredictedTable:
+        return with_prediction(setup.check, rounded(setup, lines, solution.aim.target_speed_m_s))
+
+    design = checked_design(solution, setup.check, setup.degree, judge)
+    return TunedTable(design.verdict.table, design.verdict.density, design, None, None)
+
+
+def estimating_table(setup: ClassSetup, estimator: EstimatorSetup, solution: Solution) -> TunedTable:
+    """The table of lines for the estimated speed: trimmed on days of another mean friction, predicted by passes."""
+    design, made = estimated_lines(setup.plant, solution, setup.degree, estimator.tuning, estimator.days)
+    target_m_s = solution.aim.target_speed_m_s
+    return TunedTable(*predicted_by_passes(setup, made, estimator, target_m_s), design, made, None)
+
+
+def at_any_time(setup: ClassSetup, aim: Aim, at_rest: TunedTable) -> TunedTable:
+    """The table of surfaces for commands at any time, polished from the lines of a table `at_rest`."""
+    plant, target_m_s, gauge = setup.plant, aim.target_speed_m_s, setup.regulator.has_gauge
+    if setup.estimator is None or at_rest.estimate is None:
+        steps = design_resolution(plant, target_m_s)
+        polish = polished_surfaces(plant, aim, starting_surfaces(plant, at_rest.lines, gauge), steps)
+        told = with_prediction(setup.check, rounded(setup, polish.surfaces, target_m_s))
+        made, predicted = None, (told.table, told.density)
+    else:
+        polish, untrimmed = estimated_surfaces(plant, aim, at_rest.estimate, gauge, setup.estimator.tuning)
+        made = trimmed_on(setup.estimator.days, target_m_s, untrimmed)
+        predicted = predicted_by_passes(setup, made, setup.estimator, target_m_s)
+    return TunedTable(*predicted, at_rest.design, at_rest.estimate, SurfaceDesign(polish, made))
 
 
 def read_back(table: ControllerTable) -> ControllerTable:
@@ -132,5 +157,5 @@ def predicted_by_passes(
     origin = (setup.origin.generator, setup.table_id(target_speed_m_s), setup.origin.created)
     table = tabulate(setup.plant, made.lines, target_speed_m_s, UNPREDICTED, *origin, made.estimator)
     sample = estimator.prediction.run(TableController(table))
-    density = density_of(sample, estimator.design.grid.speed_m_s)
+    density = density_of(sample, setup.design.grid.speed_m_s)
     return replace(table, predicted=simulated_prediction(sample, target_speed_m_s)), density

@@ -54,16 +54,11 @@ class Summary:
             return DEFAULT_HONESTY
         return Honesty(low, high)
 
-    def estimating(self, table: Table) -> bool:
-        """Whether `table` is to have an estimator: it is asked for, and the tune did not find it useless.
-
-        Configurations from before that have no such key.
-        """
+    @property
+    def estimating(self) -> bool:
+        """Whether the tables are to have an estimator."""
         regulator = self.config.get("regulator")
-        if not (isinstance(regulator, dict) and regulator.get("estimator") is True):
-            return False
-        estimate = self.cases.get(table.id, {}).get("estimate")
-        return not (isinstance(estimate, dict) and estimate.get("used") is False)
+        return isinstance(regulator, dict) and regulator.get("estimator") is True
 
     def command_faults(self, table: Table) -> Iterator[str]:
         """Where the regulator of the configuration commands at other times than `table`, or has another gauge.

@@ -159,7 +159,7 @@ def judge_figures(
         try:
             plant = summary.plant(table)
             if isinstance(table, Table):
-                disagreements += estimator_faults(table.estimator, plant, summary.estimating(table))
+                disagreements += estimator_faults(table.estimator, plant, summary.estimating)
                 disagreements += summary.command_faults(table)
                 coarse = simulate(plant, table, passes, seed)
             else:

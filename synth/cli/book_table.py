@@ -36,9 +36,6 @@ def print_book(summary: of.Case, directory: Path, permissions: Overview | None, 
         page.append(NO_REGRET)
     page += filter(None, lines)
     page += (f"infeasible: {infeasible(case)}" for case in cases if not case["feasible"])
-    for case in cases:
-        if case["estimate"] and case["estimate"]["left_out"]:
-            page.append(f"{case['label']} to {case['target_speed_m_s']:g} m/s: {case['estimate']['left_out']}")
     page.append(Verdict(summary["accepted"], summary["verdict"]))
     tables = (f"tables in {directory / 'tables'}", f"book {directory / 'book.h5'}")
     print_page(*page, places(tables, summary, directory))

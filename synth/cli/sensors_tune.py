@@ -46,8 +46,6 @@ def read_configuration(path: Path | None) -> tuple[str, ResolvedConfig, Resolved
             f"{place}: the section [sensors] is missing; 'retarder-synth init --sensors' prints one to start from, and "
             "'retarder-synth tune' makes tables for the radar"
         )
-    if config.regulator.estimator:
-        raise InputError(f"{place}: regulator.estimator is true, but tables for point sensors have none; leave it out")
     if config.criterion.requirement is not None:
         raise InputError(
             f"{place}: criterion.p_overspeed and criterion.worst_friction_* can be kept only by tables for a radar; "

@@ -105,7 +105,7 @@ def require_room(config: ResolvedConfig, path: Path | None, workers: int) -> Non
 
     for label, plant in config.plants():
         try:
-            require_memory(label, plant, config.design_resolutions(plant), workers)
+            require_memory(label, plant, config.grids(plant), workers)
         except PlantError as error:
             sentence = str(error).replace("grid: ", "grid.", 1)
             raise InputError(f"{path or 'built-in configuration'}: {sentence}") from None

@@ -43,7 +43,7 @@ from synth.problem.any_time_resolution import design_resolution
 from synth.problem.criterion import Criterion
 from synth.problem.estimator_resolution import estimator_resolution
 from synth.problem.problem import Problem
-from synth.problem.resolution import Resolution
+from synth.problem.resolution import Resolution, finer_for_check
 from tuning_tables.canonical import canonical_json
 from tuning_tables.excerpt import excerpt
 
@@ -119,12 +119,12 @@ class ResolvedConfig:
         """The grid that lines of a class are designed on."""
         return self.resolution.for_pass(plant.pass_m)
 
-    def design_resolutions(self, plant: Plant) -> tuple[Resolution, ...]:
-        """Every grid that lines of a class are designed on: one more where the regulator has an estimator."""
+    def grids(self, plant: Plant) -> tuple[Resolution, ...]:
+        """The grid that lines of a class are designed on, and that on which their tables are predicted, if any is."""
         measured = self.resolution_of(plant)
-        if not self.regulator.estimator:
-            return (measured,)
-        return measured, estimator_resolution(measured, self.retarder.sensor, self.lowest_target_m_s)
+        if self.regulator.estimator:
+            return (estimator_resolution(measured, self.retarder.sensor, self.lowest_target_m_s),)
+        return measured, finer_for_check(measured)
 
     def canonical_json(self) -> str:
         """What the results depend on, in the canonical form of RFC 8785.
@@ -261,8 +261,6 @@ def with_grid_warnings(config: ResolvedConfig, file: str) -> ResolvedConfig:
         for _, problem in config.problems():
             problem.plant.drive_at_any_time()  # refuses what is not modelled
             design_resolution(problem.plant, problem.target_speed_m_s)
-    if config.regulator.estimator:
-        estimator_resolution(config.resolution, config.retarder.sensor, lowest)
     return replace(config, warnings=config.warnings + coarse)
 
 
@@ -271,13 +269,13 @@ def require_plain_criterion(config: ResolvedConfig, file: str) -> None:
     if config.criterion.requirement is None:
         return
     for asked, said, kept in (
-        (config.regulator.estimator, "estimator is true", "without an estimator"),
-        (config.regulator.at_any_time, 'commands is "any_time"', 'with commands = "at_rest"'),
+        (config.regulator.estimator, "estimator is true", "estimator = false"),
+        (config.regulator.at_any_time, 'commands is "any_time"', 'commands = "at_rest"'),
     ):
         if asked:
             raise InputError(
                 f"{file}: regulator.{said}, but criterion.p_overspeed and criterion.worst_friction_* can be kept only "
-                f"{kept}; leave one of the two out"
+                f"with {kept}; set that, or leave the requirement out"
             )
 
 

@@ -81,7 +81,9 @@ class RegulatorSettings(Section):
 
     approach_m: float | None = None
     initial_stage: int | None = None
-    estimator: bool = Field(False, description="compare an estimated speed with the lines")
+    estimator: bool = Field(
+        True, description="compare an estimated speed with the lines; false for the smallest controllers"
+    )
     commands: Literal["at_rest", "any_time"] = Field(
         "at_rest", description='"at_rest": a command only when the last one is carried out; "any_time": at every sample'
     )

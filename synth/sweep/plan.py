@@ -121,7 +121,7 @@ def unit_memory_bytes(plant: Plant, config: ResolvedConfig) -> int:
     nodes, points, stages = len(grid.path_m), len(grid.speed_m_s), plant.top_stage + 1
     width = min(len(config.problems()), TARGETS_AT_ONCE)
     solved = 8 * width * nodes * points * 4 * stages
-    return PROCESS_BYTES + memory_estimate_bytes(plant, config.design_resolutions(plant)) + solved
+    return PROCESS_BYTES + memory_estimate_bytes(plant, config.grids(plant)) + solved
 
 
 def unit_work(plant: Plant, config: ResolvedConfig) -> float:

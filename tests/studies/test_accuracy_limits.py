@@ -27,7 +27,6 @@ GOOD = Figures(
     told_estimated=errors(RMS),
     predicted_rms_m_s=RMS,
     estimated_predicted_rms_m_s=RMS,
-    estimator_used=True,
     ratio=0.8,
     ratio_ci95=(0.7, 0.9),
     table_s=1.0,

@@ -18,7 +18,7 @@ from synth.studies.estimator.wrong import braking_otherwise
 from tests.synth.conftest import pilot_plant
 
 FIRST = Row(
-    mean_cv=0.0, used=True, rms_m_s=0.02, price=1.0, ratio=0.8, worst_plant="friction × 0.7", worst_ratio=1.2,
+    mean_cv=0.0, rms_m_s=0.02, price=1.0, ratio=0.8, worst_plant="friction × 0.7", worst_ratio=1.2,
     worst_ci95=(1.19, 1.21), outside=(0.001, 0.002), most=Excess("friction × 0.7", (0.01, 0.02), 0.01, 0.001),
 )  # fmt: skip
 KEPT = replace(

@@ -45,7 +45,7 @@ def test_a_design_that_both_grids_agree_on_is_taken(problem: Problem) -> None:
     found = checked_design.checked_design(*designs(problem, ENOUGH), 3, rounding)
     assert found.grid.is_believed
     assert not found.grid.again
-    assert found.grid.finer_rms_m_s == found.table.predicted.rms_m_s
+    assert found.grid.independent_rms_m_s == found.table.predicted.rms_m_s
 
 
 def test_lines_that_live_on_their_scenarios_are_designed_again(problem: Problem) -> None:

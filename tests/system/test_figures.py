@@ -38,7 +38,7 @@ def tables() -> list[ControllerTable]:
 def predicted_anew(table: ControllerTable) -> ControllerTable:
     """The table with its figures on the grid of a prediction of the default book."""
     _, plant = plant_for(table, DEFAULT_BOOK, "test")
-    return with_prediction(check_chain(plant, finer_for_check(DEFAULT_BOOK.resolution)), table)[0]
+    return with_prediction(check_chain(plant, finer_for_check(DEFAULT_BOOK.resolution)), table).table
 
 
 def interval(found: object, name: str) -> tuple[float, tuple[float, float]]:

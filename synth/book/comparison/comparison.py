@@ -15,22 +15,20 @@ class Comparison:
 
     `friction_known`: the same kind of regulator, told the friction of every cut; `baselines`: tuned classical laws;
     `baseline_ratio_ci95`: of rms of the friction-known regulator / rms of the best of them, paired, NaN without any;
-    `without_estimator`: polished lines or surfaces for the measured speed, where an estimator was asked for; `at_rest`:
-    where commands come at any time, the lines that the same tune makes for commands at rest.
+    `at_rest`: where commands come at any time, the lines that the same tune makes for commands at rest.
     """
 
     table: Measured
     friction_known: Measured
     baselines: tuple[Measured, ...]
     baseline_ratio_ci95: Interval = UNKNOWN
-    without_estimator: Measured | None = None
     at_rest: Measured | None = None
 
     @property
     def entries(self) -> tuple[Measured, ...]:
-        """All controllers: the table first, the baselines last but for lines without estimator and those at rest."""
-        last = (each for each in (self.without_estimator, self.at_rest) if each is not None)
-        return (self.table, self.friction_known, *self.baselines, *last)
+        """All controllers: the table first, the baselines last but for lines at rest."""
+        at_rest = () if self.at_rest is None else (self.at_rest,)
+        return (self.table, self.friction_known, *self.baselines, *at_rest)
 
     @property
     def best_baseline(self) -> Measured | None:

@@ -3,8 +3,9 @@
 The reference has what the table has: the same readings of the speed, made into an estimate where the table has an
 estimator, one stage a command, no command before a transient has ended unless the table may give one, the same path. It
 is told ξ_cut besides. It is a regulator that could be built, and it passes the cuts that the table passes; so no figure
-of it rests on a grid. Its lines begin at the table's and are polished for each friction. Where the table does better
-all the same, the reference is the table: who is told the friction need not use it.
+of it rests on a grid. Its lines begin at the table's and are polished for each friction; with an estimator, which
+learns the friction, they are the table's. Where the table does better all the same, the reference is the table: who is
+told the friction need not use it.
 """
 
 from __future__ import annotations
@@ -40,19 +41,15 @@ def bound_of(passes: CommonPasses, regulators: Sequence[Told], sample: ExitSampl
 
 def told_regulators(setup: ClassSetup, tuned: TunedTable, target_m_s: float) -> Sequence[Told]:
     """Regulators of the table's kind that are told the friction; where that commands at any time, and one at rest."""
-    told: list[Told]
-    curvature = tuned.design.fit.curvature
-    if tuned.estimate is not None and tuned.table.estimator is not None and setup.estimator is not None:
-        tuning = setup.passes.of_others(setup.estimator.tuning)
-        told = [*told_with_estimator(tuned.estimate, setup.estimator.design, curvature, tuning, target_m_s)]
-    else:
-        told = [by_lines(told_lines(setup.design, target_m_s, tuned.design.kept.lines, curvature))]
-    if tuned.surfaces is None:
-        return told
-    if tuned.surfaces.estimate is not None and tuned.table.estimator is not None and setup.estimator is not None:
-        tuning = setup.passes.of_others(setup.estimator.tuning)
-        return [*told_with_estimator_at_any_time(setup.plant, tuned.surfaces.estimate, tuning, target_m_s), *told]
-    return [by_surfaces(setup.plant, target_m_s, tuned.surfaces.polish.surfaces), *told]
+    told: list[Told] = []
+    if setup.estimator is None or tuned.estimate is None:
+        if tuned.surfaces is not None:
+            told.append(by_surfaces(setup.plant, target_m_s, tuned.surfaces.polish.surfaces))
+        return [*told, by_lines(told_lines(setup.design, target_m_s, tuned.lines, tuned.design.fit.curvature))]
+    tuning = setup.passes.of_others(setup.estimator.tuning)
+    if tuned.surfaces is not None and tuned.surfaces.estimate is not None:
+        told.append(told_with_estimator_at_any_time(setup.plant, tuned.surfaces.estimate, tuning, target_m_s))
+    return [*told, told_with_estimator(tuned.estimate, tuning, target_m_s)]
 
 
 def by_surfaces(plant: Plant, target_m_s: float, common: PolynomialSurfaces) -> Told:

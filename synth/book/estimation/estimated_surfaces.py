@@ -11,15 +11,16 @@ from dataclasses import replace
 
 from plant_models import Plant
 from synth.book.any_time.surface_table import polished_surfaces, starting_surfaces, trial_table
-from synth.book.estimation.estimated_table import RESERVE_NODES, Design, EstimatedTable, Trim, fitted_to_days
+from synth.book.estimation.estimate_chain import RESERVE_NODES, on_any_day
+from synth.book.estimation.estimated_table import EstimatedTable, Trim, Untrimmed
 from synth.book.estimation.estimator_design import error_of_estimate
+from synth.problem.aim import Aim
 from synth.problem.any_time_resolution import design_resolution
-from synth.problem.problem import Problem
 from synth.problem.resolution import Resolution
 from synth.simulation.closed_loop import TableController, close_loop
 from synth.simulation.random_passes import RandomPasses
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
-from synth.solver.any_time.surface_polish import opened
+from synth.solver.any_time.surface_polish import SurfacePolish, opened
 from synth.solver.polynomial_lines import PolynomialLines
 from tuning_tables.estimator import Estimator
 
@@ -35,36 +36,30 @@ TRIM_TERMS, TRIM_EVALUATIONS = 3, 100
 alike: with two shifts 22 t to 2 m/s has 0.89 of the rms of the default table, with parabolas of the path 0.77."""
 
 RESISTANCES = 2
-"""Values of the running resistance, at least: an estimator does not learn it."""
+"""Values of the running resistance, at least."""
 
 
 def estimated_surfaces(
-    problem: Problem,
-    made: EstimatedTable[PolynomialLines],
-    measured: PolynomialSurfaces,
-    tuning: RandomPasses,
-) -> EstimatedTable[PolynomialSurfaces]:
-    """Surfaces from the lines that were `made` for the estimator and commands at rest.
-
-    `measured`: surfaces for the measured speed; kept where the design goes wrong. `tuning`: passes for the trim.
+    plant: Plant, aim: Aim, made: EstimatedTable[PolynomialLines], has_gauge: bool, tuning: RandomPasses
+) -> tuple[SurfacePolish, Untrimmed[PolynomialSurfaces]]:
+    """How surfaces were polished from the lines that were `made` for the estimator and commands at rest; and these, to
+    be trimmed. `tuning`: passes on which the error of the estimate is found.
     """
-    plant, aim = problem.plant, problem.aim
-    of_any_day = replace(plant, friction=plant.friction.of_any_day)
-    start = starting_surfaces(plant, made.lines, measured.has_slopes)
+    target_m_s = aim.target_speed_m_s
+    start = starting_surfaces(plant, made.lines, has_gauge)
 
-    def controller(surfaces: PolynomialSurfaces, estimator: Estimator | None) -> TableController:
-        return TableController(trial_table(plant, surfaces, aim.target_speed_m_s, estimator))
+    def controller(surfaces: PolynomialSurfaces, estimator: Estimator) -> TableController:
+        return TableController(trial_table(plant, surfaces, target_m_s, estimator))
 
     first = controller(start, made.estimator)
     loop = close_loop(plant, first.stages)
     draws = loop.draws(tuning.part(0, min(ERROR_PASSES, len(tuning))))
     error = error_of_estimate(loop, first, draws, LEAST_NOISE * made.error_m_s)
-    steps = estimate_resolution(plant, aim.target_speed_m_s, made.error_m_s)
-    designed = polished_surfaces(of_any_day, aim, start, steps, error).surfaces
+    steps = estimate_resolution(plant, target_m_s, made.error_m_s)
+    polish = polished_surfaces(on_any_day(plant), aim, start, steps, error)
     prices = aim.criterion.switching_tolerance_m2_s2, aim.criterion.time_price_m2_s3
     trim = Trim(TRIM_TERMS, TRIM_EVALUATIONS, *prices)
-    design = Design(designed, measured, made.estimator, made.error_m_s, 1, controller, opened, trim)
-    return fitted_to_days(problem, design, tuning)
+    return polish, Untrimmed(polish.surfaces, made.estimator, made.error_m_s, controller, opened, trim)
 
 
 def estimate_resolution(plant: Plant, target_m_s: float, error_m_s: float) -> Resolution:

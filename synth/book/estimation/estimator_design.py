@@ -25,7 +25,7 @@ up, is not believed."""
 
 DOUBTED_S = 2.0
 """Readings that leapt away from the estimate, and since then move as a cut does, are believed after so long. A sensor
-whose error lasts is then followed; one that began in error and is good again is not doubted for the rest of the pass."""
+whose error lasts is then followed; one that began in error and is good again is not doubted to the end of the pass."""
 
 LOST_SPEED_STD_M_S = 0.2
 """A cut whose speed is known no better than this is lost: what is left of the pass could take it beyond 0.3 m/s."""

@@ -1,30 +1,25 @@
-"""A regulator with an estimator that is told the friction of every cut."""
+"""A regulator with an estimator that is told the friction of every cut.
+
+Its lines are the table's: an estimator that knows the friction is all that it has more. Lines polished for each
+friction were no better in any case of the default book, as the table's meet a friction that the estimator has learnt.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Generic
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant
-from plant_models.speed_sensor import measured_speed_std
 from synth.book.any_time.surface_table import trial_table
 from synth.book.comparison.told_regulator import run_told
-from synth.book.estimation.estimated_surfaces import ERROR_PASSES, LEAST_NOISE, estimate_resolution
-from synth.book.estimation.estimated_table import EstimatedTable, Lines, controller_of, moved
-from synth.book.estimation.estimator_design import error_of_estimate
+from synth.book.estimation.estimated_table import EstimatedTable, controller_of, moved
 from synth.simulation.closed_loop import Controller, TableController
 from synth.simulation.common_passes import CommonPasses
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
-from synth.solver.any_time.sampled_chain import sampled_chain
-from synth.solver.any_time.told_surfaces import told_surfaces
-from synth.solver.chain.chain import Chain
-from synth.solver.chain.speed_measurement import SmoothMeasurement
 from synth.solver.polynomial_lines import PolynomialLines
-from synth.solver.told_lines import told_lines
 from tuning_tables.estimator import Estimator
 
 LEVELLINGS = 2
@@ -56,59 +51,41 @@ class Bias:
 
 
 @dataclass(frozen=True)
-class ToldWithEstimator(Generic[Lines]):
-    """Lines and an estimator for each friction; all lines are moved by the mean error at the exit.
+class ToldWithEstimator:
+    """The table's lines and an estimator that knows the friction; all lines are moved by the mean error at the exit.
 
-    `controller`: the regulator that compares the speed of an estimator with lines.
+    `controller`: (what the lines are moved by, m/s; the estimator) → the regulator.
     """
 
-    lines: Callable[[float], Lines]
     estimator: Estimator
-    controller: Callable[[Lines, Estimator], Controller]
+    controller: Callable[[float, Estimator], Controller]
     bias: Bias
 
     def __call__(self, factor: float) -> Controller:
-        shift = -self.bias.at(factor)
-        return self.controller(moved(self.lines(factor), ((shift, shift),)), knowing(self.estimator, factor))
+        return self.controller(-self.bias.at(factor), knowing(self.estimator, factor))
 
 
 def told_with_estimator(
-    made: EstimatedTable[PolynomialLines],
-    design: Chain,
-    curvature: NDArray[np.float64],
-    tuning: CommonPasses,
-    target_m_s: float,
-) -> Sequence[ToldWithEstimator[PolynomialLines]]:
-    """Two regulators with the table's estimator, told the friction: with lines polished for it, and with the table's.
+    made: EstimatedTable[PolynomialLines], tuning: CommonPasses, target_m_s: float
+) -> ToldWithEstimator:
+    """The regulator of a table at rest, told the friction; `tuning`: passes on which its lines are levelled."""
 
-    `design`: the grid for estimated speeds; `tuning`: passes on which the lines are levelled.
-    """
-    seen = replace(design, measurement=SmoothMeasurement(measured_speed_std(made.error_m_s, 0.0)))
-    polished = told_lines(seen, target_m_s, made.lines, curvature)
-    return [
-        levelled(ToldWithEstimator(lines, made.estimator, controller_of, no_bias(tuning)), tuning, target_m_s)
-        for lines in (polished.at, lambda _: made.lines)
-    ]
+    def controller(shift: float, estimator: Estimator) -> Controller:
+        return controller_of(moved(made.lines, ((shift, shift),)), estimator)
+
+    return levelled(ToldWithEstimator(made.estimator, controller, no_bias(tuning)), tuning, target_m_s)
 
 
 def told_with_estimator_at_any_time(
     plant: Plant, made: EstimatedTable[PolynomialSurfaces], tuning: CommonPasses, target_m_s: float
-) -> Sequence[ToldWithEstimator[PolynomialSurfaces]]:
-    """The same two with surfaces, polished for the error that the estimator has where it knows the friction."""
+) -> ToldWithEstimator:
+    """The same with surfaces, for a table that commands at any time."""
 
-    def controller(surfaces: PolynomialSurfaces, estimator: Estimator) -> TableController:
+    def controller(shift: float, estimator: Estimator) -> Controller:
+        surfaces = moved(made.lines, ((shift, shift),))
         return TableController(trial_table(plant, surfaces, target_m_s, estimator))
 
-    first = controller(made.lines, knowing(made.estimator, 1.0))
-    loop, passes = tuning.loop(first.stages), tuning.passes
-    draws = loop.draws(passes.part(0, min(ERROR_PASSES, len(passes))), cut_factor=1.0)
-    error = error_of_estimate(loop, first, draws, LEAST_NOISE * made.error_m_s)
-    design = sampled_chain(plant, estimate_resolution(plant, target_m_s, made.error_m_s))
-    polished = told_surfaces(replace(design, estimate=error), target_m_s, made.lines)
-    return [
-        levelled(ToldWithEstimator(lines, made.estimator, controller, no_bias(tuning)), tuning, target_m_s)
-        for lines in (polished.at, lambda _: made.lines)
-    ]
+    return levelled(ToldWithEstimator(made.estimator, controller, no_bias(tuning)), tuning, target_m_s)
 
 
 def knowing(estimator: Estimator, factor: float) -> Estimator:
@@ -126,7 +103,7 @@ def no_bias(tuning: CommonPasses) -> Bias:
     return Bias(low, high)
 
 
-def levelled(told: ToldWithEstimator[Lines], tuning: CommonPasses, target_m_s: float) -> ToldWithEstimator[Lines]:
+def levelled(told: ToldWithEstimator, tuning: CommonPasses, target_m_s: float) -> ToldWithEstimator:
     """The regulator with its mean error at each friction taken out on the passes `tuning`."""
     factor = tuning.draws.cut_factor
     for _ in range(LEVELLINGS):

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Literal, TypeVar
+from typing import TypeVar
 
-from plant_models import Plant, PlantError
+from plant_models import Plant
 from plant_models.approach import Approach
-from synth.book.any_time.surface_table import polished_surfaces, starting_surfaces
 from synth.book.attempted_case import attempted
 from synth.book.class_setup import ClassSetup, class_setup, origin_of, validation_passes
 from synth.book.failed_case import FailedCase, parted
@@ -20,17 +19,15 @@ from synth.book.permissions.permission import (
     Permission,
     PermissionResult,
 )
-from synth.book.rounded_table import rounded, with_prediction
-from synth.book.tuned_table import TunedTable, predicted_by_passes, solutions, tuned_table
+from synth.book.tuned_table import TunedTable, at_any_time, solutions, tuned_table
 from synth.book.watcher import Watcher
 from synth.book.work_queue import run_nested
 from synth.configuration.resolved_config import ResolvedConfig
+from synth.configuration.settings import RegulatorSettings
 from synth.problem.aim import Aim
-from synth.problem.any_time_resolution import design_resolution
 from synth.simulation.closed_loop import TableController
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
-from synth.solver.any_time.surface_polish import SurfacePolish
 from synth.solver.backward_induction import Solution
 from synth.solver.one_blas_thread import one_blas_thread
 
@@ -147,71 +144,28 @@ def case_permissions(case: CaseTuned) -> CasePermissions:
 
 def designs(case: CaseTuned) -> Iterator[tuple[Permission, Design]]:
     """Every permission that can be asked for, with its design."""
-    config, plant = case.config, case.setup.plant
-    both: CaseTuned | FailedCase | None = None
-    if not config.regulator.estimator and config.criterion.requirement is None:
-        both = case.attempt(partial(other_case, case, estimating(config, "any_time"), plant))
-        yield Permission.ESTIMATOR, partial(estimator_alone, case, both)
-        yield Permission.ANY_TIME_ESTIMATOR, partial(at_any_time_estimating, case, both)
-    yield Permission.ANY_TIME, partial(at_any_time, case, Permission.ANY_TIME, both)
-    yield Permission.WITHOUT_GAUGE, partial(at_any_time, case, Permission.WITHOUT_GAUGE, None)
+    regulator, plant = case.config.regulator, case.setup.plant
+    kind = Permission.NO_ESTIMATOR if regulator.estimator else Permission.ESTIMATOR
+    other = regulator.model_copy(update={"estimator": not regulator.estimator})
+    yield kind, partial(tuned_anew, case, kind, replace(case.config, regulator=other), plant)
+    for kind, pressure in ((Permission.ANY_TIME, "gauge"), (Permission.WITHOUT_GAUGE, "none")):
+        sampled = regulator.model_copy(update={"commands": "any_time", "pressure": pressure})
+        yield kind, partial(with_surfaces, case, kind, sampled)
     ahead = plant.approach.length_m > 0.0
     kind = Permission.NO_APPROACH if ahead else Permission.APPROACH
     approach = Approach() if ahead else Approach(APPROACH_M, plant.approach.entrance_stage)
-    yield kind, partial(from_elsewhere, case, kind, approach)
+    yield kind, partial(tuned_anew, case, kind, case.config, replace(plant, approach=approach))
 
 
-def estimating(config: ResolvedConfig, commands: Literal["at_rest", "any_time"]) -> ResolvedConfig:
-    """`config` with an estimator and such commands."""
-    regulator = config.regulator.model_copy(update={"estimator": True, "commands": commands})
-    return replace(config, regulator=regulator)
-
-
-def other_case(case: CaseTuned, config: ResolvedConfig, plant: Plant) -> CaseTuned:
+def tuned_anew(case: CaseTuned, permission: Permission, config: ResolvedConfig, plant: Plant) -> PermissionResult:
     """The same case tuned with another configuration or plant, on the same passes."""
     setup = class_setup(config, case.setup.label, plant, case.setup.passes.passes, case.setup.origin)
     (solution,) = solutions(setup.design, [case.aim])
-    return case_tuned(config, setup, solution)
-
-
-def estimator_alone(case: CaseTuned, both: CaseTuned | FailedCase) -> PermissionResult:
-    """With an estimator and commands at rest. A tune for `both` permissions designs that, too."""
-    if isinstance(both, FailedCase):
-        other = other_case(case, estimating(case.config, "at_rest"), case.setup.plant)
-        return case.result(Permission.ESTIMATOR, other.sample, other.tuned.table.predicted.rms_m_s)
-    made, setup = both.tuned.estimate, both.setup
-    alone, sample = case.tuned.table, case.sample
-    if made is not None and made.gains and setup.estimator is not None:
-        alone, _ = predicted_by_passes(setup, made, setup.estimator, case.target_m_s)
-        sample = setup.passes.run(TableController(alone))
-    return case.result(Permission.ESTIMATOR, sample, alone.predicted.rms_m_s)
-
-
-def at_any_time_estimating(case: CaseTuned, both: CaseTuned | FailedCase) -> PermissionResult:
-    """With an estimator and commands at any time."""
-    if isinstance(both, FailedCase):
-        raise PlantError(both.reason)
-    return case.result(Permission.ANY_TIME_ESTIMATOR, both.sample, both.tuned.table.predicted.rms_m_s)
-
-
-def at_any_time(case: CaseTuned, permission: Permission, both: CaseTuned | FailedCase | None) -> PermissionResult:
-    """The table of polished surfaces for the measured speed, predicted and simulated; of `both`, if these have them."""
-    if isinstance(both, CaseTuned) and both.tuned.surfaces is not None:
-        polish = both.tuned.surfaces.polish
-    else:
-        polish = polished(case, has_gauge=permission is not Permission.WITHOUT_GAUGE)
-    table, _ = with_prediction(case.setup.check, rounded(case.setup, polish.surfaces, case.target_m_s))
-    return case.result(permission, case.setup.passes.run(TableController(table)), table.predicted.rms_m_s)
-
-
-def polished(case: CaseTuned, has_gauge: bool) -> SurfacePolish:
-    """Surfaces polished from the lines of the table."""
-    plant = case.setup.plant
-    start = starting_surfaces(plant, case.tuned.design.kept.lines, has_gauge)
-    return polished_surfaces(plant, case.aim, start, design_resolution(plant, case.target_m_s))
-
-
-def from_elsewhere(case: CaseTuned, permission: Permission, approach: Approach) -> PermissionResult:
-    """With another approach."""
-    other = other_case(case, case.config, replace(case.setup.plant, approach=approach))
+    other = case_tuned(config, setup, solution)
     return case.result(permission, other.sample, other.tuned.table.predicted.rms_m_s)
+
+
+def with_surfaces(case: CaseTuned, permission: Permission, regulator: RegulatorSettings) -> PermissionResult:
+    """The table for commands at any time, polished from the lines of the table."""
+    table = at_any_time(replace(case.setup, regulator=regulator), case.aim, case.tuned).table
+    return case.result(permission, case.setup.passes.run(TableController(table)), table.predicted.rms_m_s)

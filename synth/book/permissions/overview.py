@@ -13,15 +13,12 @@ from synth.book.permissions.permission import CasePermissions, Permission, Permi
 SHORT: Final[Mapping[Permission, str]] = {
     Permission.ANY_TIME: "any time",
     Permission.ESTIMATOR: "estimator",
-    Permission.ANY_TIME_ESTIMATOR: "both",
+    Permission.NO_ESTIMATOR: "no estimator",
     Permission.APPROACH: "approach",
     Permission.NO_APPROACH: "no approach",
 }
 """What permissions are called above their figures, in the order of those. Without a gauge commands at any time are
 rarely asked for: only the line and the report tell of them."""
-
-BOTH: Final = " (both: any time and estimator)"
-"""What the short names of a column do not say."""
 
 HINT: Final = (
     "What commands at any time, an estimator and other permissions of the hardware would give: tune --permissions."
@@ -45,10 +42,9 @@ class Overview:
         """The medians in a sentence, with what bounds the intervals of all figures."""
         if not any(case.results for case in self.cases):
             return f"rms × if permitted: none can be told.{missing(self.cases)}"
-        both = BOTH if Permission.ANY_TIME_ESTIMATOR in self.in_column else ""
         return (
             f"rms × if permitted: rms over that of the table as configured, on the same {self.cases[0].table.passes} "
-            f"passes, no 95 % interval wider than ±{self.widest:.2f}{both}. Medians: {medians(self.cases)}."
+            f"passes, no 95 % interval wider than ±{self.widest:.2f}. Medians: {medians(self.cases)}."
             f"{missing(self.cases)}"
         )
 

@@ -16,7 +16,7 @@ class Permission(Enum):
     ANY_TIME = "commands at any time"
     WITHOUT_GAUGE = "commands at any time, no pressure gauge"
     ESTIMATOR = "estimator"
-    ANY_TIME_ESTIMATOR = "commands at any time, estimator"
+    NO_ESTIMATOR = "without the estimator"
     APPROACH = "approach of 4 m"
     NO_APPROACH = "without the approach"
 

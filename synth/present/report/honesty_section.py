@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from statistics import median
 
-from synth.book.case_names import case_name
 from synth.book.case_result import CaseResult
-from synth.book.comparison.comparison import Comparison
 from synth.book.printed_numbers import counted, span
 from synth.present.report.book_report import BookReport
 from synth.present.report.case_table import HONEST
@@ -18,12 +15,7 @@ from synth.present.report.markup import Markup, element
 def honesty_section(book: BookReport) -> Markup:
     """Computed over the feasible cases (over all, where none is feasible)."""
     cases = book.feasible or book.cases
-    return element(
-        "div",
-        element("p", own_prediction(cases)),
-        at_any_time(cases),
-        left_out_estimators(book.cases),
-    )
+    return element("div", element("p", own_prediction(cases)), at_any_time(cases))
 
 
 def own_prediction(cases: Sequence[CaseResult]) -> str:
@@ -37,12 +29,9 @@ def own_prediction(cases: Sequence[CaseResult]) -> str:
             "with valves, sensor and sampling) are two independent computations of one quantity. " + ratios_of(exact)
         )
     if estimated:
-        gains = [ratio_to_without(case.comparison) for case in estimated]
         sentences.append(
             "With an estimator the prediction is itself simulated, on stratified passes that neither "
-            f"design nor validation use: it tests the sample, not the model. {ratios_of(estimated)} On the same passes "
-            f"the rms with the estimator is {span(gains)} times that of lines polished for the measured speed "
-            f"({median(gains):.2f} in the median)."
+            f"design nor validation use: it tests the sample, not the model. {ratios_of(estimated)}"
         )
     return " ".join(sentences)
 
@@ -68,20 +57,3 @@ def ratios_of(cases: Sequence[CaseResult]) -> str:
         f"Predicted / simulated rms is {span(ratios)} over {counted(len(cases), 'case')}; {inside} of them within "
         f"{HONEST[0]:g} to {HONEST[1]:g}."
     )
-
-
-def left_out_estimators(cases: Sequence[CaseResult]) -> Markup:
-    """Which tables have no estimator though the configuration asks for one; nothing if there is none."""
-    rows = [element("li", f"{case_name(case)}: {case.left_out}.") for case in cases if case.left_out]
-    if not rows:
-        return Markup("")
-    lead = (
-        f"The configuration asks for an estimator. {counted(len(rows), 'table')} of {len(cases)} "
-        f"{'has' if len(rows) == 1 else 'have'} none, and the lines are for the measured speed:"
-    )
-    return element("div", element("p", lead), element("ul", *rows))
-
-
-def ratio_to_without(found: Comparison) -> float:
-    """rms of the table / rms of the lines without estimator; NaN where there are none."""
-    return math.nan if found.without_estimator is None else found.without_estimator.table_ratio

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from plant_models import Plant
 from plant_models.errors import require
 from plant_models.frozen_arrays import frozen_arrays
-from synth.problem.resolution import Resolution, finer_for_check
+from synth.problem.resolution import Resolution
 
 MARGIN_CELLS = 10
 """Cells of the energy grid above the fastest pass: interpolation there must not ripple into it."""
@@ -67,27 +67,28 @@ def make_grid(plant: Plant, resolution: Resolution) -> Grid:
     return Grid(path, float(path[1] - path[0]), energy, np.sqrt(2.0 * energy))
 
 
-def memory_estimate_bytes(plant: Plant, designs: Sequence[Resolution]) -> int:
-    """What solves of `plant` on the `designs` and a check of the first will hold at most, from their largest arrays."""
+def memory_estimate_bytes(plant: Plant, grids: Sequence[Resolution]) -> int:
+    """What a solve of `plant` on the first of `grids`, and predictions on the others, hold at most, from their largest
+    arrays."""
     total = 0
-    for r in (*designs, finer_for_check(designs[0])):
+    for r in grids:
         quanta = max(4, round(plant.pass_m / r.path_step_m))
         points = 0.5 * plant.entry.high_m_s**2 / (r.speed_step_m_s * r.reference_speed_m_s) * 1.2
         modes, chains = 2 * plant.top_stage, 4 * plant.top_stage
         landings = quanta * chains * 7 * points * 2
-        scenarios = r.friction_nodes * r.resistance_nodes if r in designs else 2
+        scenarios = r.friction_nodes * r.resistance_nodes if r is grids[0] else 2
         values = 3 * scenarios * quanta * modes * r.path_levels * points
         total += int(8 * (landings + values + 6 * quanta * (plant.top_stage + 1) * points))
     return total
 
 
-def require_memory(label: str, plant: Plant, designs: Sequence[Resolution], workers: int) -> None:
+def require_memory(label: str, plant: Plant, grids: Sequence[Resolution], workers: int) -> None:
     """Raise `PlantError` if `workers` solves at once would not fit into this machine's memory."""
-    needed = workers * memory_estimate_bytes(plant, designs)
+    needed = workers * memory_estimate_bytes(plant, grids)
     available = available_memory_bytes()
     require(
         needed <= 0.8 * available,
-        f"grid: path_step_m is {designs[0].path_step_m:g} and speed_step_m_s {designs[-1].speed_step_m_s:g}; solving "
+        f"grid: path_step_m is {grids[0].path_step_m:g} and speed_step_m_s {grids[0].speed_step_m_s:g}; solving "
         f"{label} would take about {needed / 1e9:.1f} GB and {available / 1e9:.1f} GB are free: make a step larger",
     )
 

@@ -31,7 +31,6 @@ class Figures:
     told_estimated: Errors
     predicted_rms_m_s: float
     estimated_predicted_rms_m_s: float
-    estimator_used: bool
     ratio: float
     ratio_ci95: Interval
     table_s: float

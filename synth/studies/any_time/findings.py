@@ -179,7 +179,7 @@ class AnyTime(Findings):
         heads = ("valves", "case", *GAINING, *rules, f"{POLISHED} / {CUBIC}",
                  *(f"{POLISHED} / {rule}" for rule in rules), "the same near the target")  # fmt: skip
         every = ("valves", "case", *NAMES)
-        names = (Permission.ANY_TIME, Permission.WITHOUT_GAUGE, Permission.ESTIMATOR, Permission.ANY_TIME_ESTIMATOR)
+        names = (Permission.ANY_TIME, Permission.WITHOUT_GAUGE, Permission.NO_ESTIMATOR)
         granted = ("case", "rms, m/s / switchings", *(each.value for each in names), "predicted / simulated, any time")
         told = (permission_cells(row, [each.value for each in names]) for row in self.permissions)
         wrong = ("valves", "case", *(f"shows × {factor}" for factor in self.rows[0].gauge))

@@ -8,15 +8,19 @@ import numpy as np
 
 from plant_models import Plant
 from synth.book.class_setup import TRIM_PASSES, trim_passes
-from synth.book.estimation.estimated_table import controller_of, estimated_table, estimator_design
-from synth.book.estimation.tuning_days import tuning_row
+from synth.book.estimation.estimate_chain import estimate_chain
+from synth.book.estimation.estimated_lines import estimated_lines
+from synth.book.estimation.estimated_table import controller_of
+from synth.book.estimation.estimator_design import speed_error_m_s
+from synth.book.estimation.tuning_days import tuning_days, tuning_row
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.problem import Problem
-from synth.simulation.closed_loop import Controller, TableController, simulate
+from synth.simulation.closed_loop import Controller, TableController, close_loop, simulate
 from synth.simulation.exit_statistics import OVERSPEED_M_S, exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import PATH_CELLS, RandomPasses
 from synth.simulation.replicates import Interval, share_of
+from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.tuned_lines import tuned_lines
@@ -26,6 +30,9 @@ from tuning_tables import Estimator
 FRESH, TUNING = 15485863, 32452843
 """Added to the configured seed: passes for figures, and for the trim of lines without a price on switchings."""
 
+ERROR_PASSES = 100
+"""Passes on which the error of the estimate is found."""
+
 Both = tuple[float, float]
 """Without estimator, with it."""
 
@@ -34,16 +41,13 @@ Both = tuple[float, float]
 class Pair:
     """Two controllers for one case and plant, for the measured speed and for the estimated one.
 
-    `estimator` is that of the second; `error_m_s`: std of its error in the closed loop; `tuning_ratio`: rms of the
-    second / of the first, on the passes by which `tune` keeps an estimator or leaves it out; `gains`: whether it does.
+    `estimator` is that of the second; `error_m_s`: std of the error of its speed where it decides, in the closed loop.
     """
 
     plain: Controller
     estimated: Controller
     estimator: Estimator
     error_m_s: float
-    tuning_ratio: float
-    gains: bool
 
     def misled(self, gauge: float) -> Controller:
         """The second, whose pressure gauge shows `gauge` times the overpressure."""
@@ -96,11 +100,13 @@ def designed(
     """(both, lines for the measured speed, lines for the estimated one)."""
     design = persistent_chain(problem.plant, config.resolution)
     lines = tuned_lines(design, problem.aim, config.fit.degree).lines
-    estimator = estimator_design(problem.plant, config.resolution, lowest_target_m_s)
-    made = estimated_table(problem, estimator, lines, tuning)
-    ratio = made.rms_after_m_s / made.plain_rms_m_s
-    controllers = controller_of(lines, None), controller_of(made.lines, made.estimator)
-    return Pair(*controllers, made.estimator, made.error_m_s, ratio, made.gains), lines, made.lines
+    solution = solve(estimate_chain(problem.plant, config.resolution, lowest_target_m_s), problem.aim)
+    days = tuning_days(problem.plant, tuning)
+    _, made = estimated_lines(problem.plant, solution, config.fit.degree, tuning, days)
+    plain, estimated = controller_of(lines, None), controller_of(made.lines, made.estimator)
+    loop = close_loop(problem.plant, estimated.stages)
+    error_m_s = speed_error_m_s(loop, estimated, tuning.part(0, min(ERROR_PASSES, len(tuning))))
+    return Pair(plain, estimated, made.estimator, error_m_s), lines, made.lines
 
 
 def compared(target_m_s: float, plain: ExitSample, estimated: ExitSample) -> Compared:

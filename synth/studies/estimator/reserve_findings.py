@@ -37,12 +37,11 @@ class Excess:
 class Row:
     """One uncertainty of the mean.
 
-    `used`: whether `tune` keeps the estimator; `rms_m_s`, `ratio`, `outside`: on the plant that the table was made for;
+    `rms_m_s`, `ratio`, `outside`: on the plant that the table was made for;
     `price`: rms / that of the first row; `worst_…`: the largest ratio to the rms without estimator, and on which plant.
     """
 
     mean_cv: float
-    used: bool
     rms_m_s: float
     price: float
     ratio: float
@@ -74,7 +73,7 @@ class Reserves(Findings):
     def tables(self) -> Mapping[str, MarkdownTable]:
         """`curve`: a row an uncertainty, all cases together; `cases`: a row a case, none and the assumed one."""
         heads = (
-            "mean_cv", "with estimator", "rms / that at 0: median, largest", "rms / without estimator: median",
+            "mean_cv", "rms / that at 0: median, largest", "rms / without estimator: median",
             "largest, over all plants", f"cases above {HIGHEST_RATIO:g}", "cases with more outside 0.3 m/s",
             "most more",
         )  # fmt: skip
@@ -127,7 +126,7 @@ def curve_cells(rows: Sequence[Row], names: Sequence[str]) -> tuple[str, ...]:
     most = max(range(len(rows)), key=lambda i: rows[i].most.more)
     excess = rows[most].most
     return (
-        f"{rows[0].mean_cv:g}", f"{sum(row.used for row in rows)} of {len(rows)}",
+        f"{rows[0].mean_cv:g}",
         f"{median(prices):.3f}, {max(prices):.3f}", f"{median(row.ratio for row in rows):.3f}",
         f"{rows[worst].worst_ratio:.3f} ({names[worst]}, {rows[worst].worst_plant})",
         f"{sum(row.worst_ratio > HIGHEST_RATIO for row in rows)}", f"{sum(row.most.sure for row in rows)}",
@@ -137,9 +136,8 @@ def curve_cells(rows: Sequence[Row], names: Sequence[str]) -> tuple[str, ...]:
 
 def case_cells(name: str, first: Row, row: Row) -> tuple[str, ...]:
     """One case without reserve and with it."""
-    left_out = "" if row.used else " (no estimator)"
     return (
-        name, f"{first.rms_m_s:.4f} → {row.rms_m_s:.4f}{left_out}", f"{row.price:.3f}",
+        name, f"{first.rms_m_s:.4f} → {row.rms_m_s:.4f}", f"{row.price:.3f}",
         f"{first.worst_ratio:.3f} ({first.worst_plant})",
         f"{row.worst_ratio:.3f} {span(row.worst_ci95, 3)} ({row.worst_plant})",
         f"{100 * row.outside[0]:.3f}: {100 * first.outside[1]:.3f} → {100 * row.outside[1]:.3f}",

@@ -77,7 +77,7 @@ def before_and_after(axes: Axes, found: Reserves) -> None:
         axes.plot((before, row.worst_ratio), (y, y), color=PALE_GREY, linewidth=3, solid_capstyle="round")
         axes.plot(before, y, "o", color=VERMILLION, markersize=5, fillstyle="none")
         axes.plot(row.worst_ci95, (y, y), color=BLUE, linewidth=1.4)
-        axes.plot(row.worst_ratio, y, "o" if row.used else "x", color=BLUE, markersize=5)
+        axes.plot(row.worst_ratio, y, "o", color=BLUE, markersize=5)
     axes.axvline(1.0, color=GREY, linewidth=0.8)
     axes.axvline(HIGHEST_RATIO, color=GREEN, linewidth=1.0, linestyle="--")
     axes.set_yticks(range(len(rows)), [name for name, _, _ in rows], fontsize=8)

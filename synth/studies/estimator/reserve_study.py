@@ -85,8 +85,7 @@ def reserve_rows(config: ResolvedConfig, case: Case, passes: RandomPasses, mean_
         problem = Problem(replace(case.plant, friction=friction), Aim(case.target_m_s, config.criterion))
         pair = as_tuned(problem, config, case.label)
         without = without or {name: simulate(plant, pair.plain, passes) for name, plant in plants.items()}
-        kept = pair.gains
-        with_it = {name: simulate(plant, pair.estimated, passes) for name, plant in plants.items()} if kept else without
+        with_it = {name: simulate(plant, pair.estimated, passes) for name, plant in plants.items()}
         found = {name: compared(case.target_m_s, without[name], with_it[name]) for name in plants}
         rms = found[nominal].rms_m_s[1]
         first = first or rms
@@ -95,7 +94,6 @@ def reserve_rows(config: ResolvedConfig, case: Case, passes: RandomPasses, mean_
         most = max(excess, key=lambda name: excess[name][0])
         yield Row(
             mean_cv=mean_cv,
-            used=kept,
             rms_m_s=rms,
             price=rms / first,
             ratio=found[nominal].ratio,

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from synth.book.class_setup import TRIM_PASSES
 from synth.configuration.config_file import load_config
 from synth.problem.aim import Aim
 from synth.problem.problem import Problem
@@ -39,14 +38,12 @@ class Options:
 
 @dataclass(frozen=True)
 class CaseRow:
-    """One case: figures by what is wrong, and the ratio on the passes by which `tune` keeps an estimator or not.
+    """One case: figures by what is wrong.
 
     `without_reserve`: the same for lines that are designed for a mean friction that is known, `friction.mean_cv` = 0.
     """
 
     case: str
-    tuning_ratio: float
-    gains: bool
     by_wrong: dict[str, Compared]
     without_reserve: dict[str, Compared]
 
@@ -76,13 +73,8 @@ class Misled(Findings):
         }  # fmt: skip
 
     def sentences(self) -> tuple[str, ...]:
-        """How much was simulated, and what `tune` would do."""
-        kept = [
-            f"{case.case}: ratio {case.tuning_ratio:.3f} on the {TRIM_PASSES} tuning passes"
-            + ("" if case.gains else ": tune leaves the estimator out")
-            for case in self.cases
-        ]
-        return (f"{self.passes} fresh stratified passes each, seed {self.seed}", *kept)
+        """How much was simulated."""
+        return (f"{self.passes} fresh stratified passes each, seed {self.seed}",)
 
 
 def ratio_cell(before: Compared, found: Compared) -> str:
@@ -122,7 +114,7 @@ def run(options: Options, tell: Tell) -> Misled:
                 estimated = simulated(wrong, each.misled(wrong.gauge), passes, transit_s)
                 figures[wrong.name] = compared(case.target_m_s, plain, estimated)
         tell(f"{case.name}: {len(found[0])} plants and faults")
-        return CaseRow(case.name, pair.tuning_ratio, pair.gains, found[1], found[0])
+        return CaseRow(case.name, found[1], found[0])
 
     rows = side_by_side(row_of, class_cases(config, options.masses_t, options.targets_m_s))
     return Misled(config.sha256, seed, options.passes, rows)

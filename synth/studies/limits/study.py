@@ -12,17 +12,20 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from synth.book.checked_design import finer
-from synth.book.estimation.estimated_table import controller_of, estimated_table, estimator_design
+from synth.book.estimation.estimate_chain import estimate_chain
+from synth.book.estimation.estimated_lines import estimated_lines
+from synth.book.estimation.estimated_table import controller_of
+from synth.book.estimation.tuning_days import tuning_days
 from synth.configuration.config_file import load_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
-from synth.problem.problem import Problem
 from synth.simulation.closed_loop import LineController, simulate
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.simulation.replicates import rms_of
 from synth.simulation.stratified_passes import stratified_passes
+from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.told_lines import Effort
@@ -150,10 +153,10 @@ def told(case: Case, config: ResolvedConfig, passes: RandomPasses, effort: Effor
 def estimated(case: Case, config: ResolvedConfig, passes: RandomPasses) -> Row:
     """Lines for the estimated speed, with the estimator."""
     tuning = random_passes(config.validation.seed + TUNING, 0, TUNING_PASSES)
-    aim = Aim(case.target_m_s, free(config))
-    lines = tuned_lines(persistent_chain(case.plant, config.resolution), aim, config.fit.degree).lines
-    design = estimator_design(case.plant, config.resolution, case.target_m_s)
-    made = estimated_table(Problem(case.plant, aim), design, lines, tuning)
+    chain = estimate_chain(case.plant, config.resolution, case.target_m_s)
+    solution = solve(chain, Aim(case.target_m_s, free(config)))
+    days = tuning_days(case.plant, tuning)
+    _, made = estimated_lines(case.plant, solution, config.fit.degree, tuning, days)
     change = Change("with the estimator", case.plant, config.fit.degree)
     return simulated(case, change, controller_of(made.lines, made.estimator), passes)
 

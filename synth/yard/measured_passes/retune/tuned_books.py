@@ -95,7 +95,7 @@ def restated(setup: ClassSetup, table: ControllerTable) -> ControllerTable:
         retarder=replace(table.retarder, dead_band_kpa=band_kpa),
     )  # fmt: skip
     if told.estimator is None:
-        return with_prediction(setup.check, told)[0]
+        return with_prediction(setup.check, told).table
     sample = setup.passes.run(TableController(told))
     return replace(told, predicted=simulated_prediction(sample, told.target_speed_m_s))
 
