@@ -132,6 +132,12 @@ class CaseResult:
                 f"a probability of {self.predicted.escaped:.1e} left the top of the speed grid in the prediction, "
                 f"where {MOST_ESCAPED:g} is allowed: lower grid.speed_step_m_s"
             )
+        sensor = self.plant.sensor
+        if sensor.missed_share > 0.0 and self.table.predicted.passes is None:
+            found.append(
+                f"the prediction of the table counts on every reading, but {100.0 * sensor.missed_share:g} % are lost "
+                "(sensor.missed_share): the simulation knows it, and regulator.estimator = true predicts with it"
+            )
         return tuple(found)
 
     @property
