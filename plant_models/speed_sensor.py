@@ -10,19 +10,29 @@ from plant_models.errors import require, require_between
 FINEST_RESOLUTION_M_S = 1e-6
 """A thousand times finer than any Doppler sensor."""
 
+MOST_MISSED = 0.5
+"""Share of lost readings: with more, bursts of one reading would leave no room between them."""
+
+LONGEST_BURST_S = 10.0
+"""Mean burst of lost readings; a sensor that is silent for longer than a pass has failed."""
+
 
 @dataclass(frozen=True)
 class DopplerSensor:
     """Measured speed = round((v + noise)/resolution)·resolution, once every `sample_period_s`.
 
     `noise_m_s`: std of white Gaussian noise; `resolution_m_s`: 0 means not quantised, else 1e-6 or more, for the
-    quotient must be a number; `computing_delay_s`: from the sample to the command on the valves' wires.
+    quotient must be a number; `computing_delay_s`: from the sample to the command on the valves' wires. `missed_share`
+    of the readings are lost, in bursts of `missed_burst_s` on average, of at least one reading each: a Markov chain of
+    two states, stationary, one step a sample.
     """
 
     noise_m_s: float
     resolution_m_s: float
     sample_period_s: float
     computing_delay_s: float
+    missed_share: float = 0.0
+    missed_burst_s: float = 0.6
 
     def __post_init__(self) -> None:
         require_between("sensor: noise_m_s", self.noise_m_s, 0.0, 1.0)
@@ -34,6 +44,18 @@ class DopplerSensor:
         )
         require_between("sensor: sample_period_s", self.sample_period_s, 0.005, 2.0)
         require_between("sensor: computing_delay_s", self.computing_delay_s, 0.0, 2.0)
+        require_between("sensor: missed_share", self.missed_share, 0.0, MOST_MISSED)
+        require_between("sensor: missed_burst_s", self.missed_burst_s, 0.0, LONGEST_BURST_S)
+        require(
+            self.missed_share == 0.0 or self.missed_burst_s >= self.sample_period_s,
+            f"sensor: missed_burst_s is {self.missed_burst_s!r}; it must be from {self.sample_period_s!r}, one reading "
+            f"(sample_period_s), to {LONGEST_BURST_S:g} where readings are lost (missed_share)",
+        )
+
+    @property
+    def missed_readings(self) -> float:
+        """Mean number of readings in a burst of lost ones."""
+        return self.missed_burst_s / self.sample_period_s
 
     @property
     def exact(self) -> bool:

@@ -15,6 +15,8 @@ SENSOR_SCHEMA: Mapping[str, Quantity] = {
     "resolution_m_s": Quantity("m/s", number),
     "sample_period_s": Quantity("s", number),
     "computing_delay_s": Quantity("s", number),
+    "missed_share": Quantity("1", number),
+    "missed_burst_s": Quantity("s", number),
 }
 """Every key of a sensor file."""
 

@@ -34,6 +34,8 @@ class Purpose(IntEnum):
     SPEED_READING = 21
     STANDING = 22
     SENSOR_FAULT = 23
+    PASS_LOSS = 24
+    LOST_READING = 25
 
 
 def uniform_numbers(seed: int, purpose: Purpose, first: int, count: int, columns: int) -> NDArray[np.float64]:

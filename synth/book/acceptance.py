@@ -9,6 +9,7 @@ from synth.book.case_names import case_name
 from synth.book.case_result import CaseResult
 from synth.book.failed_case import FailedCase, told_together
 from synth.book.judgement import Judgement, interval_text, judgement
+from synth.book.off_nominal.worst import worst_of
 from synth.book.printed_numbers import counted
 from synth.configuration.settings import AcceptanceSettings
 from synth.simulation.exit_statistics import ExitStatistics
@@ -62,9 +63,14 @@ class Verdict:
 
 
 def judge(cases: Sequence[CaseResult], limits: AcceptanceSettings, failed: tuple[FailedCase, ...] = ()) -> Verdict:
-    """The verdict on the simulated passes of `cases`, where other cases have `failed`."""
+    """The verdict on the simulated passes of `cases`, where other cases have `failed`.
+
+    Its sentence ends with the worst of the feasible ones off nominal, which the verdict does not depend on.
+    """
     judged = tuple(judge_case(case, limits) for case in cases)
-    return verdict_on(judged, [case.comparison.table.statistics for case in cases], limits, failed)
+    verdict = verdict_on(judged, [case.comparison.table.statistics for case in cases], limits, failed)
+    worst = worst_of([case for case, each in zip(cases, judged, strict=True) if each.feasible])
+    return verdict if worst is None else replace(verdict, sentence=f"{verdict.sentence}; {worst.told}")
 
 
 def verdict_on(

@@ -13,6 +13,7 @@ from plant_models.frozen_arrays import frozen_arrays
 from synth.book.comparison.comparison import Comparison
 from synth.book.feasibility import Feasibility
 from synth.book.grid_check import GridCheck
+from synth.book.off_nominal.outcome import OffNominal
 from synth.book.pareto.pareto_front import ParetoFront
 from synth.book.permissions.permission import CasePermissions
 from synth.problem.criterion import Criterion
@@ -78,7 +79,7 @@ class CaseResult:
     is asked for, how its lines were designed. `exit_speeds_m_s` simulated, stalls as 0, and `exit_weight`: how many
     cuts each pass stands for; `brake_power`: what of their error is for want of it; `permissions`: where they are asked
     for, what those of the hardware would give; `front`: where it is asked for,
-    what less time in the position costs.
+    what less time in the position costs; `off_nominal`: what the table does on other plants than its own.
     """
 
     label: str
@@ -97,6 +98,7 @@ class CaseResult:
     study: CaseStudy
     permissions: CasePermissions | None
     front: ParetoFront | None
+    off_nominal: tuple[OffNominal, ...]
 
     @property
     def plant(self) -> Plant:
@@ -131,5 +133,11 @@ class CaseResult:
             found.append(
                 f"a probability of {self.predicted.escaped:.1e} left the top of the speed grid in the prediction, "
                 f"where {MOST_ESCAPED:g} is allowed: lower grid.speed_step_m_s"
+            )
+        sensor = self.plant.sensor
+        if sensor.missed_share > 0.0 and self.table.predicted.passes is None:
+            found.append(
+                f"the prediction of the table counts on every reading, but {100.0 * sensor.missed_share:g} % are lost "
+                "(sensor.missed_share): the simulation knows it, and regulator.estimator = true predicts with it"
             )
         return tuple(found)

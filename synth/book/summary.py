@@ -20,6 +20,7 @@ from synth.book.case_result import CaseResult
 from synth.book.comparison.limit_cycle import hunting_report
 from synth.book.comparison.measured import Measured
 from synth.book.comparison.pressure_cycle import pressure_hunting
+from synth.book.off_nominal.outcome import OffNominal
 from synth.book.permissions.case_document import failed_document, results_document
 from synth.book.permissions.overview import Overview, median_ratios
 from synth.book.tune import Book
@@ -128,6 +129,7 @@ def case_of(case: CaseResult, verdict: CaseVerdict) -> Document:
         "permissions": None if case.permissions is None else results_document(case.permissions),
         "permissions_failed": {} if case.permissions is None else failed_document(case.permissions),
         "pareto_front": None if case.front is None else case.front.document,
+        "off_nominal": {each.key: off_nominal_of(each) for each in case.off_nominal},
         "warnings": case.warnings,
         "grid_check": asdict(case.grid),
         "polish": polish_of(case.polish),
@@ -148,6 +150,13 @@ def measured_of(entry: Measured) -> Document:
         "table_ratio": entry.table_ratio,
         "table_ratio_ci95": entry.table_ratio_ci95,
     }
+
+
+def off_nominal_of(found: OffNominal) -> Document:
+    """What became of the table in one condition, or why no plant can be so."""
+    if found.outcome is None:
+        return {"name": found.name, "impossible": found.impossible}
+    return {"name": found.name, **asdict(found.outcome)}
 
 
 def polish_of(polish: Polish | SurfacePolish) -> Document:

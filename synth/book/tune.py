@@ -13,6 +13,7 @@ from synth.book.class_setup import TUNING_PASSES, Origin, class_setup, origin_of
 from synth.book.comparison.served_entry import entry_sweep
 from synth.book.creation_time import creation_time
 from synth.book.failed_case import FailedCase, require_none
+from synth.book.off_nominal.trial import trials
 from synth.book.pareto.case_front import pareto_front
 from synth.book.pareto.pareto_front import ParetoFront, told
 from synth.book.permissions.case_permissions import asking
@@ -159,10 +160,11 @@ def case_orders(run: TuneRun, label: str, plant: Plant) -> list[CaseOrder]:
     setup = class_setup(config, label, plant, run.passes, run.origin)
     aims = [Aim(target, config.criterion) for target in config.targets_of(label)]
     entries, rehearsal = entry_sweep(setup.passes), setup.passes.of_others(run.tuning)
+    off_nominal = trials(setup.passes)
     asks = [asking(config, setup, aim) if run.permissions else None for aim in aims]
     fronts = [partial(pareto_front, config, setup, aim) if run.pareto else None for aim in aims]
     return [
-        CaseOrder(setup, solution, entries, config.acceptance.rms_m_s, rehearsal, run.store, ask, front)
+        CaseOrder(setup, solution, entries, config.acceptance.rms_m_s, rehearsal, off_nominal, run.store, ask, front)
         for solution, ask, front in zip(solutions(setup.design, aims), asks, fronts, strict=True)
     ]
 

@@ -16,7 +16,9 @@ comes, the others low friction (`low_friction`), and each pass counts by its wei
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import repeat
 from random import Random
 from typing import Final
 
@@ -163,7 +165,7 @@ def one_pass(
     steps = max(STEPS_A_PERIOD, math.ceil(period / LONGEST_STEP_S))
     # The first sample comes at a random time after the beginning: until then one short row of steps.
     dt, time, end_m = random.random() * period / steps, 0.0, plant.exit_m
-    held = drive.overpressure_kpa
+    held, losses = drive.overpressure_kpa, lost_readings(plant, random)
     while time < LONGEST_PASS_S:
         pressed = 0.0
         for _ in range(steps):
@@ -184,10 +186,10 @@ def one_pass(
                 return 0.0, True, switchings
         time += dt * steps
         dt = period / steps
-        asked = table.at_any_time or drive.resting
+        asked, lost = table.at_any_time or drive.resting, next(losses)
         if observer is None and not asked:
             continue  # nobody looks
-        seen = measured(plant, v, random)
+        seen = math.nan if lost else measured(plant, v, random)
         if observer is not None:
             seen = observer.observe(s, seen, pressed / steps)
         if asked:
@@ -213,6 +215,19 @@ def measured(plant: Plant, v: float, random: Random) -> float:
     if plant.resolution_m_s > 0.0:
         seen = round(seen / plant.resolution_m_s) * plant.resolution_m_s
     return max(0.0, seen)
+
+
+def lost_readings(plant: Plant, random: Random) -> Iterator[bool]:
+    """Whether the radar loses a reading, sample by sample: bursts of geometric length, and as long between them."""
+    if plant.missed_share == 0.0:
+        yield from repeat(False)
+    burst = max(1.0, plant.missed_burst_s / plant.period_s)
+    between = burst * (1.0 - plant.missed_share) / plant.missed_share
+    lost = random.random() < plant.missed_share
+    while True:
+        yield lost
+        if random.random() < 1.0 / (burst if lost else between):
+            lost = not lost
 
 
 def decision(table: Table, stage: int, s: float, v: float, kpa: float = math.nan) -> int:

@@ -65,6 +65,8 @@ class Plant:
     resolution_m_s: float
     period_s: float
     computing_s: float
+    missed_share: float
+    missed_burst_s: float
     entry: Entry
     approach_m: float
     initial_stage: int
@@ -185,6 +187,8 @@ def plant_of(config: Mapping[str, Any], cut: Mapping[str, Any]) -> Plant:
         resolution_m_s=at.number("sensor.resolution_m_s", 0.0, 10.0),
         period_s=at.number("sensor.sample_period_s", 1e-3, 10.0),
         computing_s=at.number("sensor.computing_delay_s", 0.0, 10.0),
+        missed_share=at.number("sensor.missed_share", 0.0, 0.5),
+        missed_burst_s=at.number("sensor.missed_burst_s", 0.0, 100.0),
         entry=entry_speeds(of if "entry" in cut else at),
         **approach_of(at, of),
     )

@@ -15,6 +15,7 @@ from synth.checker.finding import DamagedError, shown
 from synth.checker.passages.reading import PassageTable
 from synth.checker.plant import Plant, Reader, UnusableConfigError, config_sha256, plant_of
 from synth.checker.source_file import content_of
+from synth.checker.stated_off_nominal import off_nominal_faults
 from synth.checker.stated_permissions import permission_faults
 from synth.checker.table_reading import Table
 
@@ -27,13 +28,17 @@ FIGURES: Final = ("rms_m_s", "bias_m_s", "p_overspeed", "switchings", "p_stall",
 
 @dataclass(frozen=True)
 class Summary:
-    """What the file holds; `config_sha256` is what it says of its configuration."""
+    """What the file holds; `config_sha256` is what it says of its configuration.
+
+    `tells_off_nominal`: its cases must say what their tables do off nominal, as those of a tune with radar do.
+    """
 
     path: Path
     config: Mapping[str, Any]
     config_sha256: str
     cases: Mapping[str, Mapping[str, Any]]
     files: Mapping[str, str]
+    tells_off_nominal: bool
 
     def config_fault(self) -> str | None:
         """Why the configuration is not the one that the tables were made from, if it is not."""
@@ -109,6 +114,8 @@ class Summary:
             if of.get(name) != validated[name]:
                 yield f"its validated {name} is {shown(validated[name])}, but summary.json says {shown(of.get(name))}"
         yield from permission_faults(case)
+        if self.tells_off_nominal:
+            yield from off_nominal_faults(case)
 
     def file_faults(self) -> Iterator[tuple[str, str]]:
         """(file, sentence) for each file with tables that is not what the summary lists."""
@@ -157,7 +164,8 @@ def read_summary(path: Path) -> Summary:
             canonical_form(document)  # nothing in it that JSON cannot hold faithfully
             named = {case["id"]: case for case in cases if isinstance(case, dict) and isinstance(case.get("id"), str)}
             hashes = {name: sha for name, sha in files.items() if isinstance(sha, str) and is_inside(name)}
-            return Summary(path, config, sha256, named, hashes)
+            tells = document["format"] == "retarder-summary" and document.get("made_by") != "sweep"
+            return Summary(path, config, sha256, named, hashes, tells)
     raise DamagedError("it is no summary of a tune")
 
 

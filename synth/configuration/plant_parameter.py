@@ -34,6 +34,8 @@ LEFT_OUT: Final = {
     "cut.car.axle_offsets_m": "drawing of the car; a table is refused for other axles",
     "cut.allowed_stage": "a rule of the yard; a table is refused for another",
     "cut.entrance_stage": "a rule of the yard; a table is refused for another",
+    "sensor.missed_share": "none is lost; what a third would do stands in the report of a tune",
+    "sensor.missed_burst_s": "without effect while no reading is lost",
     "friction.mean_cv": "no property of a pass: what lines with an estimator are designed for",
     "regulator.approach_m": "where the regulator acts; a table is refused for another (study approach)",
 }

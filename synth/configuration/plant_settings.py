@@ -91,6 +91,8 @@ class SensorSettings(Section):
     resolution_m_s: float | None = None
     sample_period_s: float | None = None
     computing_delay_s: float | None = None
+    missed_share: float | None = None
+    missed_burst_s: float | None = None
 
 
 class TargetSettings(Section):

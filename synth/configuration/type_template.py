@@ -67,7 +67,8 @@ FORM: Final = {
 # far before the entrance the regulator acts, and initial_stage, the stage left from the cut ahead; 0 if left out.
 # [friction]: mean_cv, how uncertain the mean friction itself is, may be left out, too: then it is taken as known.""",
     SENSORS: """\
-# resolution_m_s: 0 means not quantised.""",
+# resolution_m_s: 0 means not quantised. missed_share: share of the readings that are lost, 0 to 0.5; missed_burst_s:
+# for how long they are lost at a time on average, at least sample_period_s.""",
     WHEEL_SENSORS: """\
 # base_m: distance of the coils; base_tolerance: standard deviation of its relative error, lasting for each sensor and
 # unknown to the regulator. timer_noise_s: standard deviation of a measured time. timer_resolution_s: times are whole

@@ -23,6 +23,7 @@ from synth.kernels.loop import regulator
 from synth.kernels.loop.lane_estimator import FIELDS, Observed
 from synth.simulation.controllers import Controller, Law, LineController, Regulator, TableController, fixed
 from synth.simulation.drive_pieces import drive_pieces, empty_periods
+from synth.simulation.lost_readings import readings_z
 from synth.simulation.passes import ExitSample, PassTrace
 from synth.simulation.path_cells import path_cells
 from synth.simulation.random_passes import PassRow, RandomPasses
@@ -82,7 +83,7 @@ class ClosedLoop:
             fixed(plant.start_speed_m_s(plant.entry.speed_m_s(passes.entry_u), resistance), np.float64),
             fixed(passes.phase_u * plant.sensor.sample_period_s, np.float64),
             path_z,
-            fixed(passes.noise_z, np.float32),
+            fixed(readings_z(passes, plant.sensor), np.float32),
             pad_slopes(self.path, factor, path_z),
             fixed(weight, np.float64),
         )

@@ -6,10 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
 
+import numpy as np
+
 from plant_models import Plant
 from synth.kernels.loop.closed_loop import Draws
 from synth.simulation.closed_loop import ClosedLoop, close_loop
-from synth.simulation.controllers import Regulator, full_brake
+from synth.simulation.controllers import Regulator, fixed, full_brake
 from synth.simulation.exit_range import ExitRange, exit_range
 from synth.simulation.passes import ExitSample, PassTrace
 from synth.simulation.random_passes import RandomPasses
@@ -36,9 +38,14 @@ class CommonPasses:
 
     @cached_property
     def at_full_brake(self) -> ExitSample:
-        """All passes under a regulator that raises at every decision: what a table can brake at most."""
+        """All passes under a regulator that raises at every decision: what a table can brake at most.
+
+        It hears every reading: an estimator decides beside a lost one, too.
+        """
         plant = self.plant
-        return self.run(full_brake(plant.top_stage + 1, plant.start_m, plant.exit_m))
+        hardest = full_brake(plant.top_stage + 1, plant.start_m, plant.exit_m)
+        heard = self.draws._replace(noise_z=fixed(self.passes.noise_z, np.float32))
+        return self.loop(hardest.stages).run(hardest, heard)
 
     @cached_property
     def exit_range(self) -> ExitRange:

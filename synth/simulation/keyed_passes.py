@@ -26,6 +26,7 @@ def keyed_passes(seed: int, keys: tuple[Ints, ...], friction_keys: tuple[Ints, .
         resistance_u=resistance,
         path_z=keyed_normal(seed, Purpose.PASS_PATH, keys, path_cells),
         noise_z=keyed_normal(seed, Purpose.PASS_NOISE, keys, NOISE_SAMPLES),
+        loss_key=(keyed_words(seed, Purpose.PASS_LOSS, keys, 1)[0] >> np.uint64(1)).astype(np.int64),
         weight=np.ones(len(phase)),
     )
 

@@ -13,12 +13,12 @@ from synth.simulation.random_passes import NOISE_SAMPLES, PATH_CELLS, RandomPass
 
 
 def nominal_plant(plant: Plant) -> Plant:
-    """`plant` without chance: every cut has the mean friction and resistance, and the sensor only quantises."""
+    """`plant` without chance: every cut has the mean friction and resistance, the sensor only quantises."""
     return replace(
         plant,
         friction=replace(plant.friction, common_cv=0.0, axle_cv=0.0, path_std=0.0),
         resistance=RollingResistance(plant.resistance.mean_n_per_kn, 0.0),
-        sensor=replace(plant.sensor, noise_m_s=0.0),
+        sensor=replace(plant.sensor, noise_m_s=0.0, missed_share=0.0),
     )
 
 
@@ -42,5 +42,6 @@ def one_pass(entry_u: float, phase_u: float) -> RandomPasses:
         resistance_u=0.5 * one,
         path_z=np.zeros((1, PATH_CELLS), dtype=np.float32),
         noise_z=np.zeros((1, NOISE_SAMPLES), dtype=np.float32),
+        loss_key=np.zeros(1, dtype=np.int64),
         weight=one,
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -146,7 +146,7 @@ def close_passage_loop(plant: Plant, sensors: PointSensors, stages: int, substep
     deciding = deciding_pulses(pulses)
     if not len(deciding.path_m):
         raise ValueError("passage loop: no axle at which is decided passes a sensor before the exit")
-    radar = close_loop(plant, stages)
+    radar = close_loop(replace(plant, sensor=replace(plant.sensor, missed_share=0.0)), stages)
     if substeps is None:
         substeps = math.ceil(sensors.scan_period_s / SUBSTEP_S - 1e-9)
     actuator = stage_locked_actuator(plant.position, sensors, stages - 1, substeps)

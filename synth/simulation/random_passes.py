@@ -24,6 +24,11 @@ NOISE_SAMPLES = 256
 """Random numbers of the speed sensor in one pass; after that many samples they come again (25 s at 0.1 s)."""
 
 
+LOSSES = 3
+"""Number of the child stream of a block that the keys of lost readings come from; 0 and 1 are those of path and sensor,
+2 that of strata."""
+
+
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class RandomPasses:
@@ -32,6 +37,7 @@ class RandomPasses:
     `cut_z` (n,) standard normal for ξ_cut; `entry_u`, `phase_u`, `resistance_u` (n,) uniform in [0, 1) for
     the entry speed, the phase of the sampling and the rolling resistance; `path_z` (n, cells) and `noise_z`
     (n, 256) standard normal float32 for η along the path and the sensor. A NaN in `noise_z` is a missing reading.
+    `loss_key` (n,), not negative, begins the numbers that readings of the pass are lost by (`lost_readings`).
     `weight` (n,): how many cuts each pass stands for; 1 where passes are drawn as cuts come.
     """
 
@@ -41,6 +47,7 @@ class RandomPasses:
     resistance_u: NDArray[np.float64]
     path_z: NDArray[np.float32]
     noise_z: NDArray[np.float32]
+    loss_key: NDArray[np.int64]
     weight: NDArray[np.float64]
 
     def __post_init__(self) -> None:
@@ -107,8 +114,15 @@ def block_of_passes(seed: int, block: int, path_cells: int) -> RandomPasses:
         resistance_u=rng.random(BLOCK_PASSES),
         noise_z=normal_columns(noise, NOISE_SAMPLES),
         path_z=normal_columns(path, path_cells),
+        loss_key=loss_keys(seed, block),
         weight=np.ones(BLOCK_PASSES),
     )
+
+
+def loss_keys(seed: int, block: int) -> NDArray[np.int64]:
+    """Keys of one block, (1000,), of a stream of their own: they move none of its other numbers."""
+    stream = np.random.SFC64(np.random.SeedSequence(seed, spawn_key=(block, LOSSES)))
+    return (stream.random_raw(BLOCK_PASSES) >> np.uint64(1)).astype(np.int64)
 
 
 def normal_columns(sequence: np.random.SeedSequence, columns: int) -> NDArray[np.float32]:

@@ -20,6 +20,7 @@ from synth.configuration.resolved_config import ResolvedConfig
 from synth.kernels.loop import closed_loop as kernel
 from synth.simulation.closed_loop import ClosedLoop, close_loop
 from synth.simulation.controllers import Controller, TableController, fixed
+from synth.simulation.lost_readings import readings_z
 from synth.simulation.random_passes import RandomPasses
 from tuning_tables import ControllerTable
 
@@ -89,7 +90,7 @@ def draws(
         fixed(start, np.float64),
         fixed(passes.phase_u * loop.plant.sensor.sample_period_s, np.float64),
         fixed(passes.path_z, np.float32),
-        fixed(passes.noise_z, np.float32),
+        fixed(readings_z(passes, loop.plant.sensor), np.float32),
         fixed(brakes.rows_m_s2_per_kpa, np.float64),
         fixed(passes.weight, np.float64),
     )

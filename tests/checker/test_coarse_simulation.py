@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from itertools import pairwise
 from pathlib import Path
 from random import Random
 
@@ -17,6 +18,7 @@ from synth.checker.coarse_simulation import (
     decision,
     friction_row,
     ground_of,
+    lost_readings,
     simulate,
     start_speed_m_s,
 )
@@ -26,6 +28,7 @@ from synth.checker.plant import Drive, Plant, config_sha256
 from synth.checker.statistics import FALSE_ALARM, binomial_tail, figures_of
 from synth.checker.summary import Summary, read_summary
 from synth.checker.table_reading import Table, read_table
+from tests.checker.conftest import CONFIG, FROM_THE_ENTRANCE
 
 DRIVE = Drive(700.0, 0.0, 0.1, 0.2, 0.1, 0.3, 0.25, 15.0, 0.0, 50.0)
 
@@ -69,6 +72,47 @@ def test_pressure_moves_as_the_documented_drive(start: float, goal: float, closi
     before = 0.02 * max(0.0, start - 50.0)
     exact = before + float(history.overpressure_integral(np.array([time - 0.02]), 50.0)[0])
     assert area == pytest.approx(exact, rel=2e-3, abs=0.02)
+
+
+@pytest.mark.parametrize(("share", "burst_s"), [(1.0 / 3.0, 0.6), (0.5, 0.1), (0.1, 2.0)])
+def test_lost_readings_come_in_bursts_as_stated(plant: Plant, share: float, burst_s: float) -> None:
+    lossy = dataclasses.replace(plant, missed_share=share, missed_burst_s=burst_s)
+    losses = lost_readings(lossy, Random(5))
+    lost = [next(losses) for _ in range(200_000)]
+    mean = burst_s / plant.period_s
+    bursts = sum(here and not after for here, after in pairwise([*lost, False]))
+    cycles = len(lost) * share / mean
+    assert sum(lost) / len(lost) == pytest.approx(share, rel=5.0 / math.sqrt(cycles))
+    assert sum(lost) / bursts == pytest.approx(mean, rel=5.0 / math.sqrt(cycles))
+    nothing = lost_readings(dataclasses.replace(plant, missed_share=0.0), Random(5))
+    assert not any(next(nothing) for _ in range(100))
+
+
+def test_lost_readings_cost_here_what_they_cost_in_the_simulator(summary: Summary, table: Table, plant: Plant) -> None:
+    """Two simulators that know nothing of one another, without and with a third of the readings lost."""
+    from synth.book.validate_table import plant_for
+    from synth.configuration.config_file import parse_config
+    from synth.configuration.plant_values import with_values
+    from synth.simulation.closed_loop import TableController
+    from synth.simulation.closed_loop import simulate as simulate_passes
+    from synth.simulation.exit_statistics import exit_statistics
+    from synth.simulation.stratified_passes import stratified_passes
+    from tuning_tables import read_json
+
+    exported = read_json(summary.path.parent / "tables" / f"{table.id}.json")
+    losses = {"sensor.missed_share": 1.0 / 3.0, "sensor.missed_burst_s": 0.6}
+    figures = figures_of(
+        simulate(dataclasses.replace(plant, missed_share=1.0 / 3.0, missed_burst_s=0.6), table, 1500, 3),
+        table.target_m_s,
+    )
+    config = parse_config(f"{CONFIG}[regulator]\n{FROM_THE_ENTRANCE}", "x.toml")
+    true = with_values(plant_for(exported, config, "x.toml")[1], losses)
+    sample = simulate_passes(true, TableController(exported), stratified_passes(3, 0, 4000))
+    found = exit_statistics(sample, table.target_m_s)
+    assert found.rms_ci95_m_s[0] < figures.rms_ci95_m_s[1]
+    assert figures.rms_ci95_m_s[0] < found.rms_ci95_m_s[1]
+    without = figures_of(simulate(plant, table, 1500, 3), table.target_m_s)
+    assert without.rms_ci95_m_s[1] < figures.rms_m_s
 
 
 def deterministic(plant: Plant) -> Plant:

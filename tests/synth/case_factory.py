@@ -24,6 +24,8 @@ from synth.book.comparison.comparison import Comparison
 from synth.book.comparison.measured import Measured
 from synth.book.feasibility import Feasibility
 from synth.book.grid_check import GridCheck
+from synth.book.off_nominal.condition import CONDITIONS
+from synth.book.off_nominal.outcome import OffNominal, Outcome
 from synth.book.permissions.permission import CasePermissions, Permission, PermissionResult
 from synth.problem.aim import Aim
 from synth.problem.problem import Problem
@@ -111,7 +113,27 @@ def make_case(
         ),
         permissions=None,
         front=None,
+        off_nominal=make_off_nominal(spread),
     )
+
+
+def make_off_nominal(spread: float) -> tuple[OffNominal, ...]:
+    """Every condition of a tune but the last, each worse than the one before it; the last cannot be."""
+    return tuple(
+        OffNominal(each.key, each.name, None, "cut: mass_t is too much")
+        if each is CONDITIONS[-1]
+        else OffNominal(
+            each.key, each.name, make_outcome(next(iter(each.changes)), (1.2 + 0.3 * place) * spread, spread)
+        )
+        for place, each in enumerate(CONDITIONS)
+    )
+
+
+def make_outcome(change: str, rms: float, nominal: float) -> Outcome:
+    """With intervals of 5 % to either side."""
+    ratio, few = rms / nominal, (0.0, 0.001)
+    rms_ci95, ratio_ci95 = ((0.95 * each, 1.05 * each) for each in (rms, ratio))
+    return Outcome(change, PASSES, rms, rms_ci95, ratio, ratio_ci95, 0.012, (0.01, 0.015), 0.0, few)
 
 
 def make_feasibility(feasible: bool) -> Feasibility:

@@ -11,12 +11,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from plant_models import Plant, RollingResistance, TrackProfile
+from plant_models import EntrySpeed, Plant, RollingResistance, TrackProfile
 from synth.book.comparison.baselines import energy_rule, relay
 from synth.configuration.config_file import load_config
 from synth.kernels.loop import closed_loop as kernel
 from synth.kernels.loop.lane_places import LANES
 from synth.simulation.closed_loop import ClosedLoop, Controller, LineController, TableController, close_loop
+from synth.simulation.controllers import fixed
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.solver.switching_lines import SwitchingLines
@@ -173,6 +174,23 @@ def test_estimators(plant_52t: Plant, passes: RandomPasses, gaps: bool, period_s
         assert_same(loop, replace(lines, farthest=farthest, estimator=estimator), draws)
 
 
+@pytest.mark.parametrize("estimating", [False, True])
+def test_a_radar_that_loses_readings(plant_22t: Plant, passes: RandomPasses, estimating: bool) -> None:
+    """Also in passes that are longer than their noise, and with bursts that need more numbers than these."""
+    for share, burst_s in ((1.0 / 3.0, 0.6), (0.5, 9.0)):
+        sensor = replace(plant_22t.sensor, missed_share=share, missed_burst_s=burst_s)
+        slow = replace(plant_22t, sensor=sensor, entry=EntrySpeed(0.4, 3.0), profile=TrackProfile.uniform(1.7))
+        table = wavy_table(slow, 1.0)
+        loop = close_loop(slow, len(table.stages))
+        draws = loop.draws(passes)
+        assert draws.noise_z.shape[1] == (256 if burst_s < 1.0 else 768)
+        controller = TableController(replace(table, estimator=rough_estimator(slow)) if estimating else table)
+        sample = assert_same(loop, controller, draws)
+        assert sample.transit_time_s.max() > 26.0
+        heard = loop.run(controller, draws._replace(noise_z=fixed(passes.noise_z, np.float32)))
+        assert np.mean(heard.transit_time_s != sample.transit_time_s) > 0.3
+
+
 def exits_of_a_few_passes() -> str:
     """Bytes of what twelve passes of the default book do under four laws."""
     _, plant = load_config(None).plants()[-1]  # all five stages
@@ -180,7 +198,7 @@ def exits_of_a_few_passes() -> str:
     entry_u, phase_u, resistance_u = (rng.random(n) for _ in range(3))
     path_z, noise_z = (rng.standard_normal((n, 512), dtype=np.float32) for _ in range(2))
     cut_z = rng.standard_normal(n)
-    draws = loop.draws(RandomPasses(cut_z, entry_u, phase_u, resistance_u, path_z, noise_z, np.ones(n)))
+    draws = loop.draws(RandomPasses(cut_z, entry_u, phase_u, resistance_u, path_z, noise_z, np.arange(n), np.ones(n)))
     table = TableController(wavy_table(plant, 3.0))
     observing = TableController(replace(table.table, estimator=rough_estimator(plant)))
     lines = relay(loop, 3.0, 3, 0.1, 0.0), energy_rule(loop, 3.0, 4, 0.8, 0.15, 0.3, 0.15)

@@ -19,6 +19,7 @@ from synth.book.comparison.limit_cycle import hunting_report
 from synth.book.comparison.measured import Measured
 from synth.book.estimation.estimated_table import EstimatedTable
 from synth.book.failed_case import FailedCase
+from synth.book.off_nominal.condition import CONDITIONS
 from synth.book.permissions.permission import Permission
 from synth.book.printed_numbers import counted, percent, quotient, span
 from synth.present.plots.picture import Drawing, Picture
@@ -209,6 +210,24 @@ def with_estimate(case: CaseResult, made: EstimatedTable[PolynomialLines]) -> Ca
     worse = replace(statistics, rms_m_s=statistics.rms_m_s / 0.75)
     without = Measured("without estimator", worse, table_ratio=0.75, table_ratio_ci95=(0.74, 0.76))
     return replace(case, estimate=made, comparison=replace(case.comparison, without_estimator=without))
+
+
+def test_off_nominal_figures_stand_behind_a_fold(page: Page, book: BookReport) -> None:
+    html = report_page(book)
+    (fold,) = re.findall(r"<details>(.*?)</details>", html, re.DOTALL)
+    assert fold.startswith("<summary>Off nominal: the same tables on other plants (4000 passes each)</summary>")
+    rows = re.findall(r"<tr[^>]*>.*?</tr>", fold)
+    assert len(rows) == 1 + len(book.cases)
+    for condition in CONDITIONS:
+        assert f'<th scope="col">{condition.name}</th>' in rows[0]
+    found = book.cases[2].off_nominal[0].outcome
+    assert found is not None
+    assert "0.1080 [0.1026, 0.1134] × 1.20 [1.14, 1.26]; too fast 1.2 %, stopped 0 %" in rows[3]
+    assert 'title="friction × 0.7; too fast [1, 1.5] %, stopped [0, 0.1] %"' in rows[3]
+    assert 'title="cut: mass_t is too much">–</td>' in rows[3]
+    without = replace(book, cases=tuple(replace(case, off_nominal=()) for case in book.cases))
+    assert "<details>" not in report_page(without)
+    assert "Off nominal" in page.text
 
 
 def test_pictures_of_a_section_stand_together(page: Page) -> None:

@@ -12,6 +12,7 @@ from synth.present.report.document import Stamp, document, file_table, picture_s
 from synth.present.report.honesty_section import honesty_section
 from synth.present.report.limits_of_use import limits_of_use
 from synth.present.report.markup import Markup, element, joined
+from synth.present.report.off_nominal_section import off_nominal_section
 from synth.present.report.parameter_table import parameter_section
 from synth.present.report.pareto_section import pareto_section
 from synth.present.report.permissions_section import permissions_section
@@ -40,7 +41,8 @@ def report_page(book: BookReport) -> str:
 def page_sections(book: BookReport) -> Iterator[tuple[str, str, Markup]]:
     """(anchor, heading, content) in the order of the page."""
     told = (element("p", book.permissions_line),) if book.permissions_line else ()
-    yield "results", "Results", joined((case_table(book), element("p", HOW_TO_READ, class_="meta"), *told))
+    how = element("p", HOW_TO_READ, class_="meta")
+    yield "results", "Results", joined((case_table(book), how, off_nominal_section(book), *told))
     if book.permissions is not None:
         yield "permissions", "Permissions of the hardware", permissions_section(book.permissions)
     if book.fronts:

@@ -61,6 +61,7 @@ class PassCoordinates:
             resistance_u=np.minimum(ndtr(there[:, 3]), BELOW_ONE),
             path_z=path,
             noise_z=passes.noise_z,
+            loss_key=passes.loss_key,
             weight=passes.weight,
         )
 

@@ -113,7 +113,9 @@ class Swarm:
         entry, resistance, phase = (np.minimum(ndtr(self.scalars[:, i]), BELOW_ONE) for i in (1, 2, 3))
         # Copies: passes freeze their arrays, and a swarm's belong to the swarm.
         first = self.scalars[:, 0].copy()
-        return RandomPasses(first, entry, phase, resistance, self.path.copy(), self.noise.copy(), np.ones(len(first)))
+        noise, one = self.noise.copy(), np.ones(len(first))
+        losses = np.ascontiguousarray(noise[:, -2:]).view(np.int64)[:, 0] & np.int64(2**63 - 1)  # told by the noise
+        return RandomPasses(first, entry, phase, resistance, self.path.copy(), noise, losses, one)
 
     def chosen(self, rows: NDArray[np.int64]) -> Swarm:
         """Copies of the particles `rows`."""

@@ -257,7 +257,7 @@ def exits_of_a_few_passes() -> str:
     entry_u, phase_u, resistance_u = (rng.random(n) for _ in range(3))
     path_z, noise_z = (rng.standard_normal((n, 512), dtype=np.float32) for _ in range(2))
     cut_z = rng.standard_normal(n)
-    draws = loop.draws(RandomPasses(cut_z, entry_u, phase_u, resistance_u, path_z, noise_z, np.ones(n)))
+    draws = loop.draws(RandomPasses(cut_z, entry_u, phase_u, resistance_u, path_z, noise_z, np.arange(n), np.ones(n)))
     rules = relay(loop, 3.0, 3, 0.1, 0.0), energy_rule(loop, 3.0, 4, 0.8, 0.15, 0.3, 0.15)
     laws: tuple[Regulator, ...] = sloping(plant, 3.0), observing(plant, 3.0), *map(unlocked, rules)
     return "".join(array.tobytes().hex() for law in laws for array in vars(loop.run(law, draws)).values())

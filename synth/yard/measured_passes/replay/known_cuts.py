@@ -15,6 +15,7 @@ from synth.kernels.loop import closed_loop as kernel
 from synth.kernels.measured.pass_filter import SLOWEST_M_S
 from synth.simulation.closed_loop import ClosedLoop
 from synth.simulation.controllers import fixed
+from synth.simulation.lost_readings import readings_z
 from synth.simulation.random_passes import RandomPasses
 from synth.yard.measured_passes import unknowns as asked
 from synth.yard.measured_passes.likelihood import Likelihood, Surprises
@@ -108,7 +109,7 @@ def draws_of(loop: ClosedLoop, cuts: KnownCuts, passes: RandomPasses, fresh: boo
     start, first = begin(loop, cuts, resistance, passes.entry_u)
     return kernel.Draws(
         factor, fixed(resistance, np.float64), fixed(start, np.float64), fixed(first, np.float64), path_z,
-        fixed(passes.noise_z, np.float32), fixed(rows, np.float64), fixed(passes.weight, np.float64),
+        fixed(readings_z(passes, plant.sensor), np.float32), fixed(rows, np.float64), fixed(passes.weight, np.float64),
     )  # fmt: skip
 
 
