@@ -6,7 +6,8 @@ out here once, as pieces of exponentials, for the solver and the simulator alike
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -41,6 +42,8 @@ class Pneumatics:
     """[ε] half dead band of the stage regulator"""
     closing_delay_s: float = 0.0
     """time for which a valve stays open after the pressure has reached the band"""
+    day_spread: float = 0.0
+    """standard deviation of the logarithm of all delays and time constants from day to day: cold, long pipes, wear"""
 
     def __post_init__(self) -> None:
         require_between("pneumatics: supply_pressure_kpa", self.supply_pressure_kpa, 1.0, 2000.0)
@@ -52,6 +55,21 @@ class Pneumatics:
         for name in ("fill_time_constant_s", "exhaust_time_constant_s"):
             require_between(f"pneumatics: {name}", getattr(self, name), 1e-3, 10.0)
         require_between("pneumatics: dead_band_kpa", self.dead_band_kpa, 0.1, 200.0)
+        require_between("pneumatics: day_spread", self.day_spread, 0.0, 1.0)
+
+    def on_day(self, z: float) -> Pneumatics:
+        """The drive of a day that is `z` standard deviations slower than usual; on that day nothing is uncertain."""
+        factor = math.exp(self.day_spread * z)
+        return replace(
+            self,
+            brake_delay_s=factor * self.brake_delay_s,
+            touch_delay_s=factor * self.touch_delay_s,
+            release_delay_s=factor * self.release_delay_s,
+            fill_time_constant_s=factor * self.fill_time_constant_s,
+            exhaust_time_constant_s=factor * self.exhaust_time_constant_s,
+            closing_delay_s=factor * self.closing_delay_s,
+            day_spread=0.0,
+        )
 
     def require_reachable(self, stage_pressures_kpa: tuple[float, ...]) -> None:
         """Raise unless every stage pressure can be reached and the dead bands do not overlap."""

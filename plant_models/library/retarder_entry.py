@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Final
 
 from plant_models.errors import require
 from plant_models.library.data_file import (
@@ -25,6 +26,9 @@ from plant_models.retarder import ForceLaw, PressingForce, RetarderPosition, Wei
 
 FORCE = "force."
 PNEUMATICS = "pneumatics."
+
+DAY_SPREAD: Final = "retarder." + PNEUMATICS + "day_spread"
+"""Where a configuration has the spread of the valves from day to day."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +68,7 @@ def drive_schema(law: str) -> dict[str, Quantity]:
         PNEUMATICS + "exhaust_time_constant_s": Quantity("s", number),
         PNEUMATICS + "dead_band_kpa": Quantity("kPa", number),
         PNEUMATICS + "closing_delay_s": Quantity("s", number),
+        PNEUMATICS + "day_spread": Quantity("1", number),
     }
 
 

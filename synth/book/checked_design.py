@@ -8,7 +8,7 @@ grid, once.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, Generic, Protocol, TypeVar
 
 from plant_models.frozen_arrays import frozen_arrays
@@ -97,4 +97,5 @@ def design_of(
 def finer(design: Chain) -> Chain:
     """The chain of a second design: the same path nodes, finer speeds, more scenarios."""
     scenarios = persistent_scenarios(design.plant, FINER_FRICTIONS, FINER_RESISTANCES)
-    return finer_in_speed(design, FINER_SPEED, scenarios)
+    days = ((share, finer_in_speed(day, FINER_SPEED, day.scenarios)) for share, day in design.other_days)
+    return replace(finer_in_speed(design, FINER_SPEED, scenarios), other_days=tuple(days))

@@ -37,6 +37,7 @@ LEFT_OUT: Final = {
     "sensor.missed_share": "none is lost; what a third would do stands in the report of a tune",
     "sensor.missed_burst_s": "without effect while no reading is lost",
     "friction.mean_cv": "no property of a pass: what lines with an estimator are designed for",
+    "retarder.pneumatics.day_spread": "no property of a pass: what lines with an estimator are designed for",
     "regulator.approach_m": "where the regulator acts; a table is refused for another (study approach)",
 }
 """Assumed values that are not changed, and why."""

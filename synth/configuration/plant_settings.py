@@ -35,6 +35,7 @@ class PneumaticsSettings(Section):
     exhaust_time_constant_s: float | None = None
     dead_band_kpa: float | None = None
     closing_delay_s: float | None = None
+    day_spread: float | None = None
 
 
 class PositionSettings(Section):

@@ -18,6 +18,7 @@ from plant_models.library import (
 )
 from plant_models.library.near_miss import near_miss
 from plant_models.library.position_entry import MEAN_CV, REGULATOR
+from plant_models.library.retarder_entry import DAY_SPREAD
 from plant_models.library.sourced_value import SET_BY_USER
 from synth.configuration.cut_class import CutClass, Surroundings, category_warnings, resolve_cut
 from synth.configuration.grid_warnings import grid_warnings
@@ -130,15 +131,16 @@ class ResolvedConfig:
         """What the results depend on, in the canonical form of RFC 8785.
 
         Left out are title and [output]; what an approach and commands at any time add, where there are none; and the
-        uncertainty of the mean friction where nothing is designed for it.
+        spreads from day to day where nothing is designed for them.
         """
-        left_out_at_0 = {*REGULATOR, MEAN_CV}
+        of_days = {MEAN_CV, DAY_SPREAD}
+        left_out_at_0 = {*REGULATOR, *of_days}
         tree: dict[str, Any] = {"format": "retarder-config", "version": 1}
         tree["retarder"] = {"name": self.retarder.name, "law": self.retarder.law}
         for parameter in self.retarder.provenance:
             if parameter.key in left_out_at_0 and parameter.value == 0.0:
                 continue
-            if parameter.key == MEAN_CV and not self.regulator.estimator:
+            if parameter.key in of_days and not self.regulator.estimator:
                 continue
             *path, name = parameter.key.split(".")
             table = tree

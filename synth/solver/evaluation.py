@@ -83,8 +83,14 @@ class Evaluation:
         return float(sum(weight * self._backward(policy, slopes, i, nothing, no_band)[0] for i, weight in weights))
 
     def gradient(self, lines: Policy) -> Gradient:
-        """Cost, and its exact derivatives by every line value; what `polish.polish` minimises."""
-        return self.scenario_costs(lines).weighted(self.chain.scenarios.weight)
+        """Mean cost over all days of the chain, and its exact derivatives by every line value; `polish` minimises it."""
+        cost, by_lines = self.scenario_costs(lines).weighted(self.chain.scenarios.weight)
+        usual = 1.0 - sum(share for share, _ in self.chain.other_days)
+        cost, by_lines = usual * cost, usual * by_lines
+        for share, day in self.chain.other_days:
+            its_cost, its_slopes = Evaluation(day, self.aim).gradient(lines)
+            cost, by_lines = cost + share * its_cost, by_lines + share * its_slopes
+        return cost, by_lines
 
     def scenario_costs(self, lines: Policy) -> ScenarioCosts:
         """Cost and exact gradient in every scenario; their weights play no part."""

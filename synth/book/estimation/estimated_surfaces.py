@@ -27,7 +27,7 @@ from tuning_tables.estimator import Estimator
 ERROR_PASSES = 300
 """Passes on which the error of the estimate is found."""
 
-LEAST_NOISE = 0.7
+LEAST_NOISE = 0.5
 """The noise is taken for no less than this share of the whole error: a smaller one would ask for a finer grid. With
 0.5, and a grid for it, the rms of 22, 36 and 52 t to 3 m/s is the same within 2 %."""
 

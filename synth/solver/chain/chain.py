@@ -33,7 +33,8 @@ class Chain:
     `epochs`: when the regulator decides, and `decisions` where that is on the grid. `measurement`: the measured speed
     as command probabilities take it. `drive_m_s2`, `brake_m_s2_per_kpa` (N,): cell means, times the cell's width over
     ΔS. `entry` (M + 1, E): probability of entry energy j with the first decision at path node r. `entry_mode`: the
-    resting mode that the regulator finds.
+    resting mode that the regulator finds. `other_days`: the plant on days on which it is another one, with the share of
+    all days that each stands for; lines are polished for all of them, solved and predicted for this one.
     """
 
     plant: Plant
@@ -51,6 +52,7 @@ class Chain:
     scenarios: Scenarios
     entry: NDArray[np.float64]
     entry_mode: int
+    other_days: tuple[tuple[float, Chain], ...] = ()
 
     @property
     def approach_nodes(self) -> int:
