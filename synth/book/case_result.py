@@ -126,7 +126,7 @@ class CaseResult:
             )
         if not self.grid.is_believed:
             found.append(
-                f"on the grid of its design the rms is {self.grid.design_rms_m_s:.4f} m/s, on a finer one "
+                f"on the grid of its design the rms is {self.grid.design_rms_m_s:.4f} m/s, without it "
                 f"{self.grid.independent_rms_m_s:.4f}: there may be better lines; lower grid.speed_step_m_s"
             )
         if self.predicted.escaped > MOST_ESCAPED:

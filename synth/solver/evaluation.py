@@ -83,7 +83,7 @@ class Evaluation:
         return float(sum(weight * self._backward(policy, slopes, i, nothing, no_band)[0] for i, weight in weights))
 
     def gradient(self, lines: Policy) -> Gradient:
-        """Mean cost over all days of the chain, and its exact derivatives by every line value; `polish` minimises it."""
+        """Mean cost over all days of the chain, and its exact derivatives by every line value; a polish lowers it."""
         cost, by_lines = self.scenario_costs(lines).weighted(self.chain.scenarios.weight)
         usual = 1.0 - sum(share for share, _ in self.chain.other_days)
         cost, by_lines = usual * cost, usual * by_lines

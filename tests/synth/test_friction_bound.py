@@ -11,7 +11,7 @@ import pytest
 from plant_models import Friction, Plant
 from synth.book.comparison.friction_bound import bound_of
 from synth.book.comparison.told_regulator import Told, best_by_others, by_lines, run_told
-from synth.book.estimation.estimated_table import controller_of
+from synth.book.estimation.estimated_table import controller_of, moved
 from synth.book.estimation.estimator_design import estimator_of
 from synth.book.estimation.told_estimator import Bias, ToldWithEstimator, knowing, levelled, no_bias
 from synth.simulation.closed_loop import Controller, LineController, TableController, close_loop, trace
@@ -187,7 +187,11 @@ def test_levelled_lines_leave_no_mean_error(passes: CommonPasses) -> None:
     plant = passes.plant
     tuning = passes.of_others(random_passes(9, 0, 1500))
     lines = constant_lines(plant, 3.7)
-    told = ToldWithEstimator(lambda _: lines, estimator_of(plant), one_stage_a_command, no_bias(tuning))
+
+    def controller(shift: float, estimator: Estimator) -> LineController:
+        return one_stage_a_command(moved(lines, ((shift, shift),)), estimator)
+
+    told = ToldWithEstimator(estimator_of(plant), controller, no_bias(tuning))
     found = levelled(told, tuning, TARGET_M_S)
     plain = exit_statistics(run_told(tuning.loop, tuning.draws, replace(found, bias=Bias(0.5, 1.5))), TARGET_M_S)
     level = exit_statistics(run_told(tuning.loop, tuning.draws, found), TARGET_M_S)

@@ -19,7 +19,7 @@ from synth.present.report.permissions_section import column_cell, column_head, p
 from tests.synth.case_factory import make_case, make_permissions
 
 LIGHT = (Permission.ANY_TIME, Permission.WITHOUT_GAUGE, Permission.APPROACH)
-HEAVY = (Permission.ANY_TIME, Permission.ESTIMATOR, Permission.ANY_TIME_ESTIMATOR, Permission.NO_APPROACH)
+HEAVY = (Permission.ANY_TIME, Permission.ESTIMATOR, Permission.NO_ESTIMATOR, Permission.NO_APPROACH)
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from plant_models import Friction, Plant
-from synth.book.estimation.estimated_table import EstimatedTable
 from synth.book.estimation.tuning_days import tuning_days, tuning_row
 from synth.simulation.closed_loop import LineController, close_loop, simulate
 from synth.simulation.random_passes import PATH_CELLS, random_passes
@@ -70,13 +69,3 @@ def test_rare_cuts_of_low_friction_count_where_the_mean_is_uncertain(plant_52t: 
     assert (plain.weight == 1.0).all()
     assert (strata.cut_z < -2.0).mean() > 0.2
     assert strata.weight @ (strata.cut_z < -2.0) / 200 == pytest.approx(0.0228, abs=0.02)
-
-
-@pytest.mark.parametrize(
-    ("after", "worst_day", "kept"), [(0.9, 0.95, True), (0.9, 1.02, True), (0.9, 1.04, False), (1.0, 1.0, False)]
-)
-def test_an_estimator_that_fails_on_one_day_is_left_out(after: float, worst_day: float, kept: bool) -> None:
-    made = object.__new__(EstimatedTable)
-    for name, value in (("rms_after_m_s", after), ("plain_rms_m_s", 1.0), ("worst_day", worst_day)):
-        object.__setattr__(made, name, value)
-    assert made.gains is kept
