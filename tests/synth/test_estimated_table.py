@@ -147,10 +147,8 @@ def test_the_cost_of_several_days_is_their_mean(plant_of: Callable[[float], Plan
     chain, aim = estimate_chain(plant, COARSE, 3.0), Aim(3.0)
     ((share, slow),) = chain.other_days
     usual = replace(chain, other_days=())
-    lines = climbing(plant)
-    lines = SwitchingLines(
-        chain.grid.path_m, *(on_nodes(each, lines, chain.grid.path_m) for each in ("lower", "upper"))
-    )
+    some, nodes_m = climbing(plant), chain.grid.path_m
+    lines = SwitchingLines(nodes_m, on_nodes(nodes_m, some, some.lower_m_s), on_nodes(nodes_m, some, some.upper_m_s))
     found, each = Evaluation(chain, aim).gradient(lines), [Evaluation(c, aim).gradient(lines) for c in (usual, slow)]
     assert share == SLOW_DAY_SHARE
     for k in range(2):
@@ -160,12 +158,10 @@ def test_the_cost_of_several_days_is_their_mean(plant_of: Callable[[float], Plan
     assert (always.day_spread, always.dead_band_kpa) == (0.0, drive.dead_band_kpa)
 
 
-def on_nodes(side: str, lines: SwitchingLines, nodes_m: np.ndarray) -> np.ndarray:
-    """Lines at other nodes, infinite where they are."""
-    rows = lines.lower_m_s if side == "lower" else lines.upper_m_s
-    finite = [np.interp(nodes_m, lines.nodes_m, row) if np.isfinite(row).all() else np.full(len(nodes_m), row[0])
-              for row in rows]  # fmt: skip
-    return np.array(finite)
+def on_nodes(nodes_m: np.ndarray, lines: SwitchingLines, rows: np.ndarray) -> np.ndarray:
+    """`rows` of lines at other nodes, infinite where they are."""
+    inside = [np.interp(nodes_m, lines.nodes_m, np.nan_to_num(row, posinf=0.0, neginf=0.0)) for row in rows]
+    return np.where(np.isfinite(rows[:, :1]), np.array(inside), rows[:, :1])
 
 
 @pytest.mark.slow
