@@ -64,9 +64,6 @@ def test_the_line_tells_medians_and_bounds_every_interval(overview: Overview) ->
     assert f"on the same {overview.cases[0].table.passes} passes" in overview.line
     any_time = [each.ratio for each in results if each.permission is Permission.ANY_TIME]
     assert f"Medians: commands at any time {median(any_time):.2f}, commands at any time, no" in overview.line
-    few = Overview((replace(overview.cases[0], results=overview.cases[0].results[:1]),))
-    assert "both: any time and estimator" in overview.line
-    assert "both:" not in few.line
 
 
 def test_a_book_in_which_no_permission_can_be_told_says_so(overview: Overview) -> None:
