@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from synth.book.acceptance import judge
-from synth.book.printed_numbers import ABSENT, few
+from synth.book.printed_numbers import ABSENT, few, percent
 from synth.book.summary import summary_of
 from synth.book.tune import tune
 from synth.book.tuned_table import read_back
@@ -42,6 +42,21 @@ class Measure:
 
 
 @dataclass(frozen=True)
+class Changed:
+    """What became of a table in the condition `name`: rms, and shares of cuts."""
+
+    name: str
+    rms: Measure
+    overspeed: float
+    stalled: float
+
+    @property
+    def cell(self) -> str:
+        """'0.0440 [0.0432, 0.0449]; 0.04, 0'."""
+        return f"{self.rms.cell(4)}; {percent(self.overspeed)}, {percent(self.stalled)}"
+
+
+@dataclass(frozen=True)
 class Row:
     """One case of the book, in m/s and as shares; what the figures mean: docs/results.md."""
 
@@ -58,6 +73,7 @@ class Row:
     regret: Measure | None
     best_baseline: str
     baseline_rms: Measure
+    off_nominal: tuple[Changed, ...]
 
 
 @dataclass(frozen=True)
@@ -70,16 +86,21 @@ class Results(Findings):
     rows: tuple[Row, ...]
 
     def tables(self) -> Mapping[str, MarkdownTable]:
-        """`results`: a row a case; `summary`: a row a class."""
+        """`results` and `off-nominal`: a row a case; `summary`: a row a class."""
         heads = ("case", "feasible", "rms", "95 of 100 within ±", "99 of 100 within ±", "out of brake, in 10 000",
                  "rms of the others", "predicted rms", "predicted / simulated", "regret",
                  "best baseline")  # fmt: skip
+        conditions = dict.fromkeys(each.name for row in self.rows for each in row.off_nominal)
         targets = tuple(dict.fromkeys(f"to {row.target_m_s:g} m/s" for row in self.rows))
         short: dict[str, list[str]] = {}
         for row in self.rows:
             short.setdefault(row.label, []).append(short_cell(row))
         return {
             "results": table("The default book, m/s", heads, map(cells, self.rows)),
+            "off-nominal": table(
+                "rms off nominal, m/s [95 %]; too fast, stopped inside, %",
+                ("case", *conditions), (changed_cells(row, tuple(conditions)) for row in self.rows),
+            ),
             "summary": table(
                 "rms, m/s [95 %]; cuts in 10 000 that leave too fast whatever a table does; ° infeasible",
                 ("class", *targets), ((label, *found) for label, found in short.items()),
@@ -94,6 +115,12 @@ class Results(Findings):
 def short_cell(row: Row) -> str:
     """'0.1382 [0.1354, 0.1412]°; 182'."""
     return f"{row.rms.cell(4)}{'' if row.feasible else '°'}; {few(1e4 * row.out_of_brake.value)}"
+
+
+def changed_cells(row: Row, conditions: tuple[str, ...]) -> tuple[str, ...]:
+    """The cells of one case off nominal."""
+    found = {each.name: each.cell for each in row.off_nominal}
+    return (f"{row.label} to {row.target_m_s:g} m/s", *(found.get(name, ABSENT) for name in conditions))
 
 
 def cells(row: Row) -> tuple[str, ...]:
@@ -136,7 +163,18 @@ def row_of(case: Mapping[str, Any]) -> Row:
         regret=None if case["regret"] is None else measure(case, "regret"),
         best_baseline=best,
         baseline_rms=measure(baseline, "rms_m_s"),
+        off_nominal=tuple(map(changed, filter(is_possible, case["off_nominal"].values()))),
     )
+
+
+def is_possible(found: Mapping[str, Any]) -> bool:
+    """Whether there are figures of a condition of a summary."""
+    return "impossible" not in found
+
+
+def changed(found: Mapping[str, Any]) -> Changed:
+    """One condition of a summary."""
+    return Changed(found["name"], measure(found, "rms_m_s"), found["overspeed"], found["stalled"])
 
 
 def measure(found: Mapping[str, Any], name: str) -> Measure:

@@ -8,6 +8,8 @@ import pytest
 from plant_models.library import SourcedValue, load_position, load_retarder, position_names
 from plant_models.library.position_entry import MEAN_CV, REGULATOR
 
+LOSSES = ("sensor.missed_share", "sensor.missed_burst_s")
+
 BEFORE = {
     "knp-5-bunch": "136d4aeecccac776d56d325a8124c26c0d9205dd269f3c914c4c9197ac97b699",
     "kv-3-bunch": "3a88034f78f0c3d5e1b828d425e3f537afc313e6fbd166a77f66b6bd43c7a328",
@@ -22,8 +24,8 @@ Who changes a number, its source or its range on purpose takes the position out 
 
 
 def before(name: str) -> list[SourcedValue]:
-    """The numbers of a position, but for its approach and the uncertainty of its mean friction: those came later."""
-    return [value for value in load_position(name).provenance if value.key not in {*REGULATOR, MEAN_CV}]
+    """The numbers of a position, but for approach, uncertainty of the mean friction, and losses, which came later."""
+    return [value for value in load_position(name).provenance if value.key not in {*REGULATOR, MEAN_CV, *LOSSES}]
 
 
 @pytest.mark.parametrize("name", BEFORE)
