@@ -127,7 +127,9 @@ def test_what_is_told_of_a_class_is_counted() -> None:
     assert [rows[name][1] for name in ("below 60 m", "60 to 100 m", "from 100 m", "all")] == ["0", "1", "1", "2"]
     assert rows["limit cannot be met"] == class_cells("limit cannot be met", [bad])
     assert rows["all"][2].startswith("50.0 [1.3, 98.7] (1)")
-    assert rows["all"][3:] == ("1.050 –", "0.800, 1.000", "1.000, 1.250", "0")
+    assert rows["all"][3] == "1.050 –"
+    assert rows["all"][4] == "0.0 [0.0, 84.2] (0)"
+    assert rows["all"][5:] == ("0.800, 0.800", "0.900, 0.900", "0.800, 1.000", "1.000, 1.250", "0")
     assert told.tables()["worst"].rows[0][0] == bad.case.name
     assert len(told.faults()) == 2
     assert any("the grid is too coarse" in sentence for sentence in told.sentences())
