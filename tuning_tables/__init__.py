@@ -19,7 +19,7 @@ from tuning_tables.errors import (
     TableError,
     UnknownFormat,
 )
-from tuning_tables.estimator import Estimator, begin, unseen_samples
+from tuning_tables.estimator import CATEGORY_ALARM, LOST_ALARM, SENSOR_ALARM, Estimator, begin, unseen_samples
 from tuning_tables.figures import Predicted, Validated, ValidRange
 from tuning_tables.hdf5_file import read_any_book, read_book, write_book
 from tuning_tables.json_file import from_json, read_json, to_json, write_json
@@ -34,13 +34,16 @@ from tuning_tables.passages.schema import passage_schema, write_passage_schema
 from tuning_tables.passages.sensor_layout import DecidesOn, SensorLayout
 from tuning_tables.passages.tracker import begin_cut, believed_passage
 from tuning_tables.provenance import CutId, Generator, RetarderId
-from tuning_tables.rule import decide, decide_for, decide_many, speed_for
+from tuning_tables.rule import alarms_for, decide, decide_for, decide_many, speed_for
 from tuning_tables.schema import table_schema, write_schema
 from tuning_tables.stage import Stage, round_coefficients
 from tuning_tables.table import ControllerTable
 from tuning_tables.table_book import Choice, Status, TableBook
 
 __all__ = [
+    "CATEGORY_ALARM",
+    "LOST_ALARM",
+    "SENSOR_ALARM",
     "ActiveTable",
     "AnyTable",
     "Approach",
@@ -72,6 +75,7 @@ __all__ = [
     "UnknownFormat",
     "ValidRange",
     "Validated",
+    "alarms_for",
     "at_pulse",
     "begin",
     "begin_cut",

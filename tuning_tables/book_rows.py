@@ -70,8 +70,13 @@ def _estimator(row: Row) -> Estimator | None:
     return Estimator(
         float(row["estimator_speed_noise_m_s"]),
         float(row["estimator_friction_cv"]),
+        float(row["estimator_resistance_std_m_s2"]),
         float(row["estimator_path_std"]),
         float(row["estimator_correlation_length_m"]),
+        int(row["estimator_frozen_readings"]),
+        int(row["estimator_doubted_readings"]),
+        float(row["estimator_lost_speed_std_m_s"]),
+        float(row["estimator_unlikely_deviation"]),
         float(row["estimator_touch_pressure_kpa"]),
         s_m,
         drive,

@@ -71,8 +71,13 @@ _APPROACH_KEYS: Final = ("length_m", "entrance_stage", "interlock")
 _ESTIMATOR_KEYS: Final = (
     "speed_noise_m_s",
     "friction_cv",
+    "resistance_std_m_s2",
     "path_std",
     "correlation_length_m",
+    "frozen_readings",
+    "doubted_readings",
+    "lost_speed_std_m_s",
+    "unlikely_deviation",
     "touch_pressure_kpa",
     "s_m",
     "drive_m2_s2",
@@ -177,7 +182,14 @@ def _has_gauge(top: Section, source: str) -> bool:
 
 def _estimator_document(estimator: Estimator) -> dict[str, object]:
     values = {key: getattr(estimator, key) for key in _ESTIMATOR_KEYS}
-    return {key: floats(value) if isinstance(value, tuple) else float(value) for key, value in values.items()}
+    return {key: _as_written(value) for key, value in values.items()}
+
+
+def _as_written(value: float | int | tuple[float, ...]) -> object:
+    """Rows and numbers with a decimal point, counts without."""
+    if isinstance(value, tuple):
+        return floats(value)
+    return value if isinstance(value, int) else float(value)
 
 
 def _approach_document(approach: Approach) -> dict[str, object]:
@@ -202,8 +214,13 @@ def _estimator(section: Section) -> Estimator:
     return Estimator(
         section.number("speed_noise_m_s"),
         section.number("friction_cv"),
+        section.number("resistance_std_m_s2"),
         section.number("path_std"),
         section.number("correlation_length_m"),
+        section.count("frozen_readings"),
+        section.count("doubted_readings"),
+        section.number("lost_speed_std_m_s"),
+        section.number("unlikely_deviation"),
         section.number("touch_pressure_kpa"),
         section.numbers("s_m"),
         section.numbers("drive_m2_s2"),

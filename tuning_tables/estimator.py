@@ -5,7 +5,7 @@ known, save for its friction and its running resistance. The estimator carries t
 the excess resistance a of the cut, with their covariance, from sample to sample (extended Kalman filter), and the lines
 of a table that was tuned for it are compared with its speed:
 
-    predict   Δe = ΔD - a Δs - ξ p ΔW      the work of grade and mean resistance, of the excess, and of the brake under p
+    predict   Δe = ΔD - a Δs - ξ p ΔW      the work of grade and mean resistance, excess, and brake under p
               v' = v + 2 Δe / (v + v + Δe/v)
     doubt     a reading far from v' that leapt there; one that repeats itself
     correct   v, ξ, a by the measured speed, weighted by the covariance

@@ -18,11 +18,12 @@ from tuning_tables.estimator import (
     LARGEST_OVERPRESSURE_KPA,
     LARGEST_SPEED_M_S,
     LARGEST_STEP_M,
+    LEAST_SPEED_M_S,
     Estimator,
     begin,
     unseen_samples,
 )
-from tuning_tables.rule import speed_for
+from tuning_tables.rule import alarms_for, speed_for
 from tuning_tables.table import ControllerTable
 from tuning_tables.table_book import TableBook
 
@@ -45,7 +46,8 @@ STAGE_KPA: Final = (0.0, 0.0, 180.0, 390.0, 390.0, 240.0, 90.0, 0.0)
 class GoldenTrack:
     """n samples of one cut from its first on, for table `number`, and the estimates: all float32 (n,), m, m/s, kPa.
 
-    `unseen`: samples since the last credible speed. `number` is that of the first table with this estimator.
+    `unseen`: samples since the last reading that was believed; `alarms`: the alarm word. `number` is that of the first
+    table with this estimator.
     """
 
     number: int
@@ -54,15 +56,16 @@ class GoldenTrack:
     overpressure_kpa: Floats
     estimate_m_s: Floats
     unseen: Floats
+    alarms: Floats
 
     def __post_init__(self) -> None:
         for array in self.samples:
             array.setflags(write=False)
 
     @property
-    def samples(self) -> tuple[Floats, Floats, Floats, Floats, Floats]:
-        """Path, speed, overpressure, estimate, samples since the last credible speed."""
-        return self.s_m, self.v_m_s, self.overpressure_kpa, self.estimate_m_s, self.unseen
+    def samples(self) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
+        """Path, speed, overpressure, estimate, samples since the last reading that was believed, alarms."""
+        return self.s_m, self.v_m_s, self.overpressure_kpa, self.estimate_m_s, self.unseen, self.alarms
 
     def __len__(self) -> int:
         return len(self.s_m)
@@ -86,11 +89,11 @@ def _estimated(number: int, table: ControllerTable, readings: Iterable[Reading])
     # Numbers that fit into the format may be absurd; what they give is infinite then, and no reason to warn.
     with np.errstate(all="ignore"):
         answers = [
-            (speed_for(table, state, *map(float, reading)), unseen_samples(state))
+            (speed_for(table, state, *map(float, reading)), unseen_samples(state), alarms_for(table, state))
             for reading in zip(s, v, p, strict=True)
         ]
-    estimates, unseen = np.array(answers, dtype=np.float32).T
-    return GoldenTrack(number, s.copy(), v.copy(), p.copy(), estimates.copy(), unseen.copy())
+    columns = np.array(answers, dtype=np.float32).T
+    return GoldenTrack(number, *(column.copy() for column in (s, v, p, *columns)))
 
 
 def _unchanged() -> Iterator[list[Reading]]:
@@ -101,13 +104,19 @@ def _unchanged() -> Iterator[list[Reading]]:
 
 
 def _tracks(estimator: Estimator) -> Iterator[list[Reading]]:
-    """Two cuts, the breaks, leaps, what cannot be true, and what has no literal."""
+    """Two cuts, the breaks, leaps, what cannot be true, faults of the radar, two cuts of another category, and what has
+    no literal."""
     yield list(_cut(estimator, 1, 1.25, 6.0, 0.0))
     yield list(_cut(estimator, 2, 0.6, 4.0, 0.2))
     yield _at_breaks(estimator)
     yield _leaping(estimator)
     yield _begun_at_the_end(estimator)
     yield _incredible(estimator)
+    yield list(_faulty_radar(estimator))
+    yield list(_wrong_at_first(estimator))
+    yield list(_rising_while_braked(estimator))
+    yield list(_cut(estimator, 3, 2.6, 6.0, 0.0))
+    yield list(_cut(estimator, 4, 0.2, 6.0, 0.0))
     yield _not_portable(estimator)
 
 
@@ -185,7 +194,7 @@ def _begun_at_the_end(estimator: Estimator) -> list[Reading]:
     """First seen at the last break: what is read from before it is no movement."""
     first, last = float(estimator.work[0, 0]), float(estimator.work[0, -1])
     inside = first + min(0.5 * (last - first), 0.5 * LARGEST_STEP_M)
-    return [(last, 0.0, 0.0), (inside, 3.0, 400.0), (last, 3.0, 400.0), (last + 1.0, 3.0, 400.0)]
+    return [(last, 3.0, 0.0), (inside, 3.0, 400.0), (last, 3.0, 400.0), (last + 1.0, 3.0, 400.0)]
 
 
 def _incredible(estimator: Estimator) -> list[Reading]:
@@ -205,6 +214,55 @@ def _incredible(estimator: Estimator) -> list[Reading]:
     ]  # fmt: skip
     readings = [*begins, (first, 4.5, 0.0), *((s, 4.5, 200.0) for s in approach)]
     return readings + [(base + (step if step == 0.0005 else step * unit), v, kpa) for step, v, kpa in steps]
+
+
+def _faulty_radar(estimator: Estimator) -> Iterator[Reading]:
+    """A cut in front of a radar that shows 0, leaps away and back, repeats itself, leaps and stays, and is lost."""
+    first, last = float(estimator.work[0, 0]), float(estimator.work[0, -1])
+    frozen, doubted = (min(number, 40) for number in (estimator.frozen_readings, estimator.doubted_readings))
+    far = 4.0 + 12.0 * estimator.speed_noise_m_s + 1.0
+    speeds = [4.0, 4.05, 3.95, 4.0, 0.0, 4.05, far, 3.95, far, far, 4.0, MISSING_M_S, 0.0, 4.05, MISSING_M_S, far, 4.0]
+    speeds += [3.95] * (frozen + 2) + [4.0, *(far + 0.05 * (i % 2) for i in range(doubted + 3))]
+    speeds += [MISSING_M_S] * 12
+    step = (last - first) / (len(speeds) + 1)
+    for sample, speed in enumerate(speeds):
+        yield first + sample * step, speed, 300.0 if sample % 3 else 0.0
+
+
+def _wrong_at_first(estimator: Estimator) -> Iterator[Reading]:
+    """The first readings are the false ones: the estimate begins with each, and anew with the right one."""
+    first, last = float(estimator.work[0, 0]), float(estimator.work[0, -1])
+    far, least = 4.0 + 12.0 * estimator.speed_noise_m_s + 1.0, float(np.float32(LEAST_SPEED_M_S))
+    speeds = (
+        0.0,
+        0.1,
+        least,
+        far,
+        least,
+        4.0,
+        4.05,
+        far + 2.0,
+        4.0,
+        3.95,
+        4.05,
+        far + 2.0,
+        4.0,
+        4.05,
+        MISSING_M_S,
+        least,
+    )
+    step = min((last - first) / len(speeds), 0.4)
+    for sample, speed in enumerate(speeds):
+        yield first + sample * step, speed, 0.0
+
+
+def _rising_while_braked(estimator: Estimator) -> Iterator[Reading]:
+    """Single readings that are the higher the later, while the brake works hard: what leaps depends on its work."""
+    base, unit = _hardest(estimator)
+    yield float(estimator.work[0, 0]), 6.0, 0.0
+    for sample in range(30):
+        rises = sample % 3 == 2
+        yield base + sample * unit / 4.0, 6.0 - 0.05 * sample + (0.06 * sample if rises else 0.0), 600.0
 
 
 def _hardest(estimator: Estimator) -> tuple[float, float]:

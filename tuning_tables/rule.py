@@ -42,7 +42,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuning_tables.active_table import ActiveTable
-from tuning_tables.estimator import hand_on, observe
+from tuning_tables.estimator import alarms, hand_on, observe
 from tuning_tables.table import ControllerTable
 
 LARGEST_READING: Final = 3.4028234663852886e38  # the largest float32 number
@@ -153,11 +153,16 @@ def speed_for(
 
     To be called once at every sample, also during a change of stage; `state` is the cut's own (`estimator.begin`), the
     overpressure the mean of max(0, P - P0) since the sample before. See `estimator.observe`; with either kind of table
-    `estimator.unseen_samples` says for how long no credible speed was seen.
+    `estimator.unseen_samples` says for how long no reading was believed.
     """
     if table.estimator is None:
         return hand_on(state, v_m_s)
     return float(observe(table.estimator.parameters, table.estimator.work, state, s_m, v_m_s, overpressure_kpa))
+
+
+def alarms_for(table: ControllerTable | ActiveTable, state: npt.NDArray[np.float32]) -> int:
+    """The alarm word of a cut after `speed_for`, see `estimator.alarms`; 0 for a table without estimator."""
+    return 0 if table.estimator is None else alarms(table.estimator.parameters, state)
 
 
 def decide_many(

@@ -22,7 +22,7 @@ from tuning_tables.document import (
     VARIABLE,
     VERSION,
 )
-from tuning_tables.estimator import FARTHEST_M, LARGEST_OVERPRESSURE_KPA, LARGEST_WORK, MOST_BREAKS
+from tuning_tables.estimator import FARTHEST_M, LARGEST_OVERPRESSURE_KPA, LARGEST_WORK, MOST_BREAKS, MOST_READINGS
 from tuning_tables.requirement import UTC_INSTANT
 from tuning_tables.schema_parts import DIALECT, above_zero, array_of, number, object_of, pair_of, text, whole
 from tuning_tables.schema_sections import (
@@ -103,8 +103,13 @@ def _estimator() -> dict[str, dict[str, object]]:
     return object_of(
         speed_noise_m_s=number(1e-4, 10.0),
         friction_cv=number(0, 1),
+        resistance_std_m_s2=number(0, 1),
         path_std=number(0, 1),
         correlation_length_m=number(1e-3, 1e4),
+        frozen_readings=whole(1, MOST_READINGS),
+        doubted_readings=whole(1, MOST_READINGS),
+        lost_speed_std_m_s=number(1e-3, 10),
+        unlikely_deviation=number(0, 10),
         touch_pressure_kpa=number(0, LARGEST_OVERPRESSURE_KPA),
         s_m=array_of(number(-FARTHEST_M, FARTHEST_M), 2, MOST_BREAKS),
         drive_m2_s2=array_of(number(-LARGEST_WORK, LARGEST_WORK), 2, MOST_BREAKS),

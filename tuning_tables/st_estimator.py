@@ -10,9 +10,10 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from tuning_tables.c_estimator import estimator_limits
+from tuning_tables.c_estimator import alarm_bits, estimator_limits
 from tuning_tables.distinct_estimators import distinct_estimators
 from tuning_tables.estimator import Estimator
+from tuning_tables.held_numbers import HELD_NUMBERS, held_numbers
 from tuning_tables.st_literals import int_array, real, real_array
 from tuning_tables.st_observe import BEGIN, HAND_ON, OBSERVE, OBSERVE_INTERFACE, TABLE_MEMBERS, WORK
 from tuning_tables.table_block import BlockSize
@@ -20,27 +21,33 @@ from tuning_tables.table_book import TableBook
 
 ROWS: Final = ("BreakPath", "Drive", "Brake")
 
+ST_NUMBERS: Final = tuple(each for each in HELD_NUMBERS if each.place is not None)
+"""What an estimator holds beside the touch pressure, which every table has."""
+
 
 def estimator_blanks(book: TableBook, size: BlockSize) -> Mapping[str, str]:
     """What the templates ask for about estimators; nothing much if no table has one."""
     limits = estimator_limits()
     blanks = {f"{name}_REAL": real(value) for name, value in limits.items()}
     blanks |= {name: f"{value:g}" for name, value in limits.items()}
+    blanks |= {name: str(value) for name, value in alarm_bits().items()}
     blanks |= {"BREAKS": str(size.breaks), "LAST_BREAK": str(size.breaks - 1)}
     if not size.breaks:
         return {
             **blanks, "ESTIMATOR_MEMBERS": "", "SAME_ESTIMATOR": "", "LOAD_VARIABLES": "",
             "LOAD_ESTIMATOR": "    Table.Touch_kpa := 0.0;",
         }  # fmt: skip
+    members = "\n".join(f"        {each.st} : REAL; (* {each.meaning} *)" for each in ST_NUMBERS)
+    numbers = "\n".join(f"        Table.{each.st} := {each.st}Of[Estimator];" for each in ST_NUMBERS)
     cases = "\n".join(
         Template(_CASE).substitute(blanks, NUMBER=number) for number in range(len(distinct_estimators(book).estimators))
     )
     return {
         **blanks,
-        "ESTIMATOR_MEMBERS": TABLE_MEMBERS,
+        "ESTIMATOR_MEMBERS": TABLE_MEMBERS.replace("$NUMBER_MEMBERS", members),
         "SAME_ESTIMATOR": "\n                AND (Table.Estimator = Faster.Estimator)",
         "LOAD_VARIABLES": "\n    Estimator : INT;",
-        "LOAD_ESTIMATOR": Template(_LOAD).substitute(CASES=textwrap.indent(cases, " " * 4)),
+        "LOAD_ESTIMATOR": Template(_LOAD).substitute(NUMBERS=numbers, CASES=textwrap.indent(cases, " " * 4)),
     }
 
 
@@ -49,14 +56,16 @@ def estimator_constants(book: TableBook, size: BlockSize) -> list[str]:
     if not size.breaks:
         return []
     found = distinct_estimators(book)
-    variances = np.array([estimator.parameters[:3] for estimator in found.estimators])
+    numbers = np.array([held_numbers(estimator) for estimator in found.estimators])
     declarations = [
         int_array("EstimatorOf", found.of_table),
         real_array("TouchOf", [touch_kpa(book, number) for number in range(len(book.tables))]),
         int_array("BreaksOf", [len(estimator.s_m) for estimator in found.estimators]),
-        real_array("SpeedVarianceOf", variances[:, 0]),
-        real_array("FactorVarianceOf", variances[:, 1]),
-        real_array("PathVarianceOf", variances[:, 2]),
+    ]
+    declarations += [
+        real_array(f"{each.st}Of", numbers[:, place])
+        for place, each in enumerate(HELD_NUMBERS)
+        if each.place is not None  # the touch pressure stands by table
     ]
     for number, estimator in enumerate(found.estimators):
         for name, row in zip(ROWS, padded_work(estimator, size), strict=True):
@@ -92,9 +101,7 @@ _LOAD: Final = """\
     Table.Breaks := 0;
     IF Estimator >= 0 THEN
         Table.Breaks := BreaksOf[Estimator];
-        Table.SpeedVariance := SpeedVarianceOf[Estimator];
-        Table.FactorVariance := FactorVarianceOf[Estimator];
-        Table.PathVariance := PathVarianceOf[Estimator];
+$NUMBERS
     END_IF;
     CASE Estimator OF
 $CASES

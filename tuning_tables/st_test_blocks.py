@@ -138,16 +138,15 @@ END_VAR
 """
 
 ESTIMATOR_CONSTANTS: Final = """\
-IF (Table.Breaks <> $BREAKS) OR (Table.SpeedVariance <> Expected[0]) OR (Table.FactorVariance <> Expected[1])
-    OR (Table.PathVariance <> Expected[2]) THEN
+IF (Table.Breaks <> $BREAKS)$DIFFERS THEN
     Failed := Failed + 1;
     FirstFailed := 0;
 END_IF;
 FOR Index := 0 TO $LAST_BREAK DO
-    IF (Table.BreakPath_m[Index] <> Expected[Index + 3]) OR (Table.Drive[Index] <> Expected[Index + $DRIVE])
+    IF (Table.BreakPath_m[Index] <> Expected[Index + $PATH]) OR (Table.Drive[Index] <> Expected[Index + $DRIVE])
         OR (Table.Brake[Index] <> Expected[Index + $BRAKE]) THEN
         IF Failed = 0 THEN
-            FirstFailed := Index + 3;
+            FirstFailed := Index + $PATH;
         END_IF;
         Failed := Failed + 1;
     END_IF;
@@ -161,7 +160,8 @@ FOR Index := 0 TO $LAST DO
     END_IF;
     Observer(Path_m := Path[Index], Speed_m_s := Speed[Index], Overpressure_kpa := Pressure[Index], Table := Table,
         Estimate := Estimate);
-    IF (Observer.Observed_m_s <> Observed[Index]) OR (Observer.Unseen <> Unseen[Index]) THEN
+    IF (Observer.Observed_m_s <> Observed[Index]) OR (Observer.Unseen <> Unseen[Index])
+        OR (Observer.Alarms <> Alarms[Index]) THEN
         IF Failed = 0 THEN
             FirstFailed := Index + $FIRST;
         END_IF;

@@ -9,8 +9,9 @@ import numpy as np
 from tuning_tables.category_names import comment_text
 from tuning_tables.estimator import Estimator
 from tuning_tables.golden_tracks import Floats, GoldenTrack, table_tracks
-from tuning_tables.st_estimator import padded_work, touch_kpa
-from tuning_tables.st_literals import bool_array, is_portable, real, real_array
+from tuning_tables.held_numbers import TOUCH_PLACE, held_numbers
+from tuning_tables.st_estimator import ST_NUMBERS, padded_work, touch_kpa
+from tuning_tables.st_literals import bool_array, int_array, is_portable, real, real_array
 from tuning_tables.st_tables import constants
 from tuning_tables.st_test_blocks import (
     ESTIMATOR_CHECK,
@@ -40,8 +41,10 @@ def estimator_test(book: TableBook, place: int, number: int) -> str:
         statements.append(_constants_check(table.estimator, size))
         count = len(expected)
     declarations.append(bool_array("Begins", begins))
-    for name, values in zip(("Path", "Speed", "Pressure", "Observed", "Unseen"), samples, strict=True):
+    *numbers, alarms = samples
+    for name, values in zip(("Path", "Speed", "Pressure", "Observed", "Unseen"), numbers, strict=True):
         declarations.append(real_array(name, values))
+    declarations.append(int_array("Alarms", alarms.astype(np.int64)))
     statements.append(Template(TRACK_LOOP).substitute(LAST=len(begins) - 1, FIRST=count))
     name = "no estimator" if table.estimator is None else f"the estimator of {comment_text(table.id)}"
     head = Template(ESTIMATOR_HEAD).substitute(
@@ -51,13 +54,17 @@ def estimator_test(book: TableBook, place: int, number: int) -> str:
 
 
 def _expected(estimator: Estimator, size: BlockSize) -> Floats:
-    return np.concatenate([estimator.parameters[:3], padded_work(estimator, size).ravel()])
+    numbers = np.delete(held_numbers(estimator), TOUCH_PLACE)
+    return np.concatenate([numbers, padded_work(estimator, size).ravel()])
 
 
 def _constants_check(estimator: Estimator, size: BlockSize) -> str:
+    first = len(ST_NUMBERS)
+    differs = (f"\n    OR (Table.{each.st} <> Expected[{place}])" for place, each in enumerate(ST_NUMBERS))
     return Template(ESTIMATOR_CONSTANTS).substitute(
-        BREAKS=len(estimator.s_m), LAST_BREAK=size.breaks - 1, DRIVE=3 + size.breaks, BRAKE=3 + 2 * size.breaks
-    )
+        BREAKS=len(estimator.s_m), LAST_BREAK=size.breaks - 1, DIFFERS="".join(differs), PATH=first,
+        DRIVE=first + size.breaks, BRAKE=first + 2 * size.breaks,
+    )  # fmt: skip
 
 
 def _portable_samples(tracks: tuple[GoldenTrack, ...]) -> tuple[list[bool], tuple[Floats, ...]]:

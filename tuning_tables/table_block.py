@@ -3,13 +3,12 @@
 Words, each from its lowest byte to its highest: category number, axles, stages, powers (degree + 1); for each stage its
 lines (1 lower, 2 upper, 3 both); as binary32 mass_t, target speed in m/s, s_min and s_max in m; the coefficients by
 stage, line (lower, upper) and power; if any table of the book has an estimator, its number of breaks (0: none), and as
-binary32 the variance of a measured speed, of the factor, and of the path, the touch pressure in kPa, and of all breaks
-first s, then D, then W; if any table of the book has an approach, its length in m as binary32 (0: none) and the
-entrance stage; if any table of the book decides at any time, 1 for at any time or 0 for at rest; if any table of the
-book has a gauge, as binary32 the pressure of the highest stage raised to and those of all stages in kPa, and the slopes
-by stage and line in m/s per kPa; and the CRC-32 of all words before it. All tables of a book have blocks of one size,
-that of its table with most stages, powers and breaks; what a table has not is 0, save the entrance stage, which is then
-its highest.
+binary32 the numbers of `held_numbers` in their order, and of all breaks first s, then D, then W; if any table of the
+book has an approach, its length in m as binary32 (0: none) and the entrance stage; if any table of the book decides at
+any time, 1 for at any time or 0 for at rest; if any table of the book has a gauge, as binary32 the pressure of the
+highest stage raised to and those of all stages in kPa, and the slopes by stage and line in m/s per kPa; and the CRC-32
+of all words before it. All tables of a book have blocks of one size, that of its table with most stages, powers and
+breaks; what a table has not is 0, save the entrance stage, which is then its highest.
 """
 
 from __future__ import annotations
@@ -24,6 +23,7 @@ import numpy.typing as npt
 from tuning_tables.active_table import ActiveTable, active
 from tuning_tables.decisions import Decisions
 from tuning_tables.estimator import Estimator
+from tuning_tables.held_numbers import HELD_NUMBERS, held_numbers
 from tuning_tables.table_book import TableBook
 
 LAYOUT: Final = 2
@@ -31,8 +31,8 @@ LAYOUT: Final = 2
 
 HAS_LOWER, HAS_UPPER = 1, 2
 
-ESTIMATOR_HEAD = 5
-"""Words of an estimator before its breaks: their number, three variances, the touch pressure."""
+ESTIMATOR_HEAD = 1 + len(HELD_NUMBERS)
+"""Words of an estimator before its breaks: their number, and its own."""
 
 APPROACH_WORDS = 2
 """Its length and the entrance stage."""
@@ -155,8 +155,7 @@ def estimator_words(estimator: Estimator | None, size: BlockSize) -> npt.NDArray
     words = np.zeros(size.estimator.stop - size.estimator.start, dtype=np.uint32)
     if estimator is not None:
         breaks = len(estimator.s_m)
-        numbers = np.array([*estimator.parameters[:3], estimator.touch_pressure_kpa], dtype=np.float32)
-        words[0], words[1:ESTIMATOR_HEAD] = breaks, numbers.view(np.uint32)
+        words[0], words[1:ESTIMATOR_HEAD] = breaks, held_numbers(estimator).view(np.uint32)
         words[ESTIMATOR_HEAD:].reshape(3, size.breaks)[:, :breaks] = estimator.work.view(np.uint32)
     return words
 

@@ -62,7 +62,9 @@ def estimating_book() -> TableBook:
         "light-2.0": usual, "light-3.3": usual, "shadow-1.5": replace(usual, touch_pressure_kpa=75.0),
         "light-4.0": replace(usual, friction_cv=0.1500001), "medium-4.0": odd, "medium-2.0": odd,
         "other-degree": odd, "many-stages": estimator_of(2, 3.0, -4.0, 1.0), "constant": replace(odd, path_std=0.0),
-        "odd": Estimator(1e-4, 0.0, 1.0, 1e3, 0.0, (0.0, 1e-3, 2.5), (0.0, -1.0, 5.0), (0.0, 0.02, 0.02)),
+        "odd": Estimator(
+            1e-4, 0.0, 1.0, 1.0, 1e3, 1, 1, 1e-3, 0.0, 0.0, (0.0, 1e-3, 2.5), (0.0, -1.0, 5.0), (0.0, 0.02, 0.02)
+        ),
     }  # fmt: skip
     return TableBook(tuple(replace(table, estimator=given.get(table.id)) for table in sample_book().tables))
 
@@ -152,7 +154,9 @@ def estimator_of(breaks: int, end_m: float, begin_m: float = 0.0, noise_m_s: flo
     """
     s = [begin_m + (end_m - begin_m) * (index / (breaks - 1)) ** 1.1 for index in range(breaks)]
     brake = [0.0007 * (x - begin_m) + 0.004 * max(0.0, min(x, 0.75 * end_m) - 0.25 * end_m) for x in s]
-    return Estimator(noise_m_s, 0.15, 0.1, 2.0, 50.0, tuple(s), tuple(0.06 * x for x in s), tuple(brake))
+    return Estimator(
+        noise_m_s, 0.15, 0.006, 0.1, 2.0, 7, 20, 0.2, 0.5, 50.0, tuple(s), tuple(0.06 * x for x in s), tuple(brake)
+    )
 
 
 def braking_lines(target: float, stages: int, degree: int) -> tuple[Stage, ...]:

@@ -204,10 +204,16 @@ def test_json_book_and_c_hold_the_same_bits(book: TableBook, tmp_path: Path, too
         if size.breaks:
             estimator, words = table.estimator, held[size.estimator]
             assert words[0] == (0 if estimator is None else len(estimator.s_m))
-            work = words[5:].view(np.float32).reshape(3, size.breaks)[:, : words[0]]
+            work = words[12:].view(np.float32).reshape(3, size.breaks)[:, : words[0]]
             if estimator is not None:
-                assert np.array_equal(words[1:4], estimator.parameters[:3].view(np.uint32))
-                assert words[4:5].view(np.float32)[0] == np.float32(estimator.touch_pressure_kpa)
+                noise, cv, along, touch, excess, _, frozen, doubted, lost, _, unlikely = words[1:12].view(np.float32)
+                assert (noise, cv) == (np.float32(estimator.speed_noise_m_s**2), np.float32(estimator.friction_cv**2))
+                assert along == np.float32(2.0 * estimator.path_std**2 * estimator.correlation_length_m)
+                assert touch == np.float32(estimator.touch_pressure_kpa)
+                assert excess == np.float32(estimator.resistance_std_m_s2**2)
+                assert (frozen, doubted) == (estimator.frozen_readings, estimator.doubted_readings)
+                assert lost == np.float32(estimator.lost_speed_std_m_s**2)
+                assert unlikely == np.float32(estimator.unlikely_deviation)
                 assert np.array_equal(work, estimator.work)
 
 

@@ -18,7 +18,7 @@ from synth.studies.in_the_loop.controller_process import CONTRACT, build_control
 from synth.studies.in_the_loop.hard_samples import hard_samples
 from tests.controller_code.conftest import Tool
 from tests.controller_code.sample_book import estimating_book, sample_book, table_of
-from tuning_tables import speed_for, unseen_samples
+from tuning_tables import alarms_for, speed_for, unseen_samples
 from tuning_tables.c_source import c_files
 from tuning_tables.estimator import begin
 from tuning_tables.golden_tracks import golden_tracks
@@ -33,11 +33,17 @@ SAME = {
     ("least > value", " > "), ("most < value", " < "),  # of two equal numbers one is as good as the other
     ("j + 1u < last", " < "),  # no place is beyond the last break
     ("overpressure_kpa >= 0.0f", " >= "), ("s_m >= before", " >= "),  # what replaces it is equal
+    ("surprise) > bound", " > "), ("leap > most", " > "), ("leap < -most", " < "),  # equal in no track
+    ("variance > table->lost", " > "), ("off > table->unlikely", " > "), ("off < -table->unl", " < "),  # nor these
+    ("LEAST_SPEED_M_S && !leaps", " && "), ("doubted = v_m_s", " >= "),  # told later, or not at all
 }  # fmt: skip
 """Changes that change nothing."""
 
-HARDLY = ("LEAST_STEP_M", "LEAST_FACTOR", "LARGEST_FACTOR")
-"""Constants of which a last bit is lost when it comes to speeds: these are changed by 1 %."""
+HARDLY = {
+    ("LEAST_STEP_M", "LEAST_FACTOR", "LARGEST_FACTOR", "LARGEST_EXCESS_M_S2"): "1.01f",
+    ("GATE_SQUARED", "FEW_READINGS"): "1.5f",
+}
+"""Constants of which a last bit is lost when it comes to speeds, and what they are changed by."""
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +65,7 @@ def changed_code(code: str) -> list[tuple[str, str]]:
         if not any(place in around and operator == match[0] for place, operator in SAME):
             found.append((f"{match[0]}in {line}", code[: match.start()] + SWAPPED[match[0]] + code[match.end() :]))
     for match in re.finditer(r"(#define (\w+) )(0x1\S+f)", code):
-        factor = "1.01f" if match[2] in HARDLY else "1.0000002f"
+        factor = next((factor for names, factor in HARDLY.items() if match[2] in names), "1.0000002f")
         found.append((match[2], code[: match.start()] + f"{match[1]}({match[3]} * {factor})" + code[match.end() :]))
     return found
 
@@ -67,7 +73,7 @@ def changed_code(code: str) -> list[tuple[str, str]]:
 @pytest.mark.slow
 def test_the_self_test_finds_every_wrong_operation(estimating: TableBook, tmp_path: Path, tool: Tool) -> None:
     gcc = tool("gcc")
-    wanted = ("light-2.0", "light-3.3", "odd", "shadow-1.5")
+    wanted = ("light-2.0", "light-3.3", "odd", "shadow-1.5", "shadow-3.0")
     write_sources(TableBook(tuple(table for table in estimating.tables if table.id in wanted)), tmp_path)
     others = [str(tmp_path / f"{name}.o") for name in ("retarder_self_test", "controller_process")]
     for made in others:
@@ -85,7 +91,7 @@ def test_the_self_test_finds_every_wrong_operation(estimating: TableBook, tmp_pa
 
     assert self_test(code) == "fault 0 at 0"
     changes = changed_code(code)
-    assert len(changes) > 70
+    assert len(changes) > 100
     answers = {change: self_test(changed) for change, changed in changes}
     assert [change for change, answer in answers.items() if not answer.startswith(("fault 5", "signal"))] == []
 
@@ -93,8 +99,8 @@ def test_the_self_test_finds_every_wrong_operation(estimating: TableBook, tmp_pa
 @pytest.mark.parametrize(
     ("before", "after", "fault"),
     [
-        ("rounded(rounded(slope * p12) - rounded(effect * p22))", "(float)((double)slope * (double)p12 - "
-         "(double)effect * (double)p22)", "fault 5 at"),
+        ("rounded(rounded(slope * c7) - rounded(effect * estimate->cross_covariance))",
+         "(float)((double)slope * (double)c7 - (double)effect * (double)estimate->cross_covariance)", "fault 5 at"),
         ("rounded(work[j] + rounded(part * rounded(work[j + 1u] - work[j])))",
          "(float)((double)work[j] + (double)part * (double)rounded(work[j + 1u] - work[j]))", "fault 5 at"),
         ("table->touch_kpa;", "table->touch_kpa + 1.0f;", "fault 5 at 0"),
@@ -137,7 +143,8 @@ int main(void)
     unsigned long count = 0u;
     memset(&estimate, 0xff, sizeof estimate);
     retarder_begin(0);
-    if (retarder_unseen(0) != 16777216.0f || retarder_unseen(&estimate) == 0.0f) {
+    if (retarder_unseen(0) != 16777216.0f || retarder_unseen(&estimate) == 0.0f || retarder_alarms(0, &estimate) != 0u
+        || retarder_alarms(&retarder_tables[0], 0) != 0u) {
         return 1;
     }
     retarder_begin(&estimate);
@@ -149,6 +156,7 @@ int main(void)
            && fread(readings, sizeof readings, 1, stdin) == 1) {
         const float speed = retarder_observe(&table, &estimate, readings[0], readings[1], readings[2]);
         count += retarder_decide(&table, 1, readings[0], speed) != 1;
+        count += retarder_alarms(&table, &estimate) > 7u;
     }
     printf("%lu\n", count);
     return 0;
@@ -172,13 +180,13 @@ def test_spoilt_tables_and_estimates_and_null_pointers_do_no_harm(
     words = np.where(rng.random(words.shape) < rng.choice([0.0, 0.01, 0.3], (calls, 1)), wild, words)
     near = rng.choice([0, 1, 2, size.breaks, size.breaks + 1, 2**31, 2**32 - 1], calls)
     words[:, size.estimator.start] = np.where(rng.random(calls) < 0.5, near, words[:, size.estimator.start])
-    estimates = rng.integers(0, 2**32, (calls, 8), dtype=np.uint32)
+    estimates = rng.integers(0, 2**32, (calls, 16), dtype=np.uint32)
     samples = hard_samples(estimating, calls, 9)[:calls]
     readings = np.stack([samples[name] for name in ("s_m", "v_m_s", "overpressure_kpa")], axis=1).view(np.uint32)
     given = np.concatenate([words, estimates, readings], axis=1).astype(np.uint32).tobytes()
     ran = subprocess.run([program], input=given, capture_output=True, timeout=60, check=False)
     assert (ran.returncode, ran.stderr) == (0, b"")
-    assert int(ran.stdout) > 100  # some of them did decide
+    assert int(ran.stdout) > 50  # some of them did decide
 
 
 def test_a_table_without_estimator_hands_every_bit_on(estimating: TableBook, tmp_path: Path, tool: Tool) -> None:
@@ -224,6 +232,7 @@ def test_golden_tracks_as_csv_are_estimated_as_they_say(estimating: TableBook) -
         assert f"{int(estimate.view(np.uint32)):08x}" == row["estimate_bits"]
         assert np.float32(row["estimate_m_s"]) == estimate
         assert int(row["unseen_samples"]) == unseen_samples(state)
+        assert int(row["alarms"]) == alarms_for(table, state)
     assert len(tracks) == len(golden_tracks(estimating))
 
 
@@ -239,7 +248,7 @@ def test_the_tracks_of_a_large_book_are_few() -> None:
             tables.append(replace(table, estimator=estimator))
     tracks = golden_tracks(TableBook(tuple(tables)))
     assert len({track.number for track in tracks}) == 330
-    assert sum(map(len, tracks)) < 330 * 250
+    assert sum(map(len, tracks)) < 330 * 350
 
 
 def test_the_checksum_covers_the_estimator(estimating: TableBook) -> None:

@@ -86,7 +86,7 @@ def approached_table(table: ControllerTable) -> ControllerTable:
 def estimated_table(linear_table: ControllerTable) -> ControllerTable:
     """The linear table for the estimated speed, so of version 2; the retarder stands between 2 and 7 m."""
     breaks, drive, brake = (0.0, 2.0, 5.0, 7.0, 9.5), (0.0, 0.132, 0.33, 0.4, 0.55), (0.0, 0.0, 0.008, 0.02, 0.02)
-    estimator = Estimator(0.05, 0.15, 0.1, 2.0, 60.0, breaks, drive, brake)
+    estimator = Estimator(0.05, 0.15, 0.006, 0.1, 2.0, 7, 20, 0.2, 0.5, 60.0, breaks, drive, brake)
     predicted = Predicted(0.1, 0.0, 0.0, 2.0, 0.25, passes=5000)
     return replace(linear_table, id="estimated", estimator=estimator, predicted=predicted)
 

@@ -41,7 +41,10 @@ def sealed(document: dict[str, Any]) -> bytes:
 
 
 def with_estimator(table: ControllerTable, *breaks: float) -> ControllerTable:
-    return replace(table, estimator=Estimator(0.05, 0.15, 0.1, 2.0, 60.0, breaks, (0.0,) * 3, (0.0, 0.0, 0.01)))
+    return replace(
+        table,
+        estimator=Estimator(0.05, 0.15, 0.006, 0.1, 2.0, 7, 20, 0.2, 0.5, 60.0, breaks, (0.0,) * 3, (0.0, 0.0, 0.01)),
+    )
 
 
 @pytest.mark.parametrize(

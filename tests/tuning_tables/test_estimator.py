@@ -22,7 +22,7 @@ BRAKE = (0.0, 0.0008, 0.008, 0.018, 0.031, 0.031)
 
 @pytest.fixture(scope="module")
 def estimator() -> Estimator:
-    return Estimator(0.05, 0.15, 0.1, 2.0, 60.0, BREAKS, DRIVE, BRAKE)
+    return Estimator(0.05, 0.15, 0.006, 0.1, 2.0, 7, 20, 0.2, 0.5, 60.0, BREAKS, DRIVE, BRAKE)
 
 
 def passes_of(seed: int, factor: float, noise_m_s: float, kpa: float = 250.0) -> np.ndarray:

@@ -33,7 +33,7 @@ class Questions:
 @frozen_arrays
 @dataclass(frozen=True, eq=False)
 class Tracks:
-    """Samples, dtype SAMPLE, (n,), and the bits of speed and estimate after each by the Python estimator, (n, 9)."""
+    """Samples, dtype SAMPLE, (n,), and what the Python estimator answers to each: speed, estimate, alarms, (n, 18)."""
 
     samples: NDArray[np.void]
     estimates: NDArray[np.uint32]

@@ -3,7 +3,7 @@
  *   decide          for {uint32 table, int32 stage, float s_m, float v_m_s, float pressure_kpa}: int32 stage to command;
  *                   all of a stream
  *   observe         for {uint32 table, uint32 start, float s_m, float v_m_s, float overpressure_kpa, 8 words}: the
- *                   estimated speed and the 8 words of the estimate; all of a stream. start 0: the estimate goes on,
+ *                   estimated speed, the 16 words of the estimate and the alarms; all of a stream. start 0: the estimate goes on,
  *                   1: it begins, 2: it is the 8 words, whatever they are
  *   serve N         for {int32 what, float s_m, float v_m_s, float kpa}, at once: what OBSERVE, or BEGIN and observe:
  *                   float estimated speed of table N, kpa being the overpressure; else the int32 stage that it
@@ -46,7 +46,7 @@ typedef struct sample {
     retarder_estimate given;
 } sample;
 
-typedef char estimate_has_eight_words[(sizeof(retarder_estimate) == 32u) ? 1 : -1];
+typedef char estimate_has_sixteen_words[(sizeof(retarder_estimate) == 64u) ? 1 : -1];
 
 static void answer(int value)
 {
@@ -87,6 +87,7 @@ static void answer_float(float value)
 static int observe(void)
 {
     sample now;
+    uint32_t alarms;
     retarder_estimate estimate;
     retarder_begin(&estimate);
     while (fread(&now, sizeof now, 1, stdin) == 1) {
@@ -95,9 +96,10 @@ static int observe(void)
         } else if (now.start == 2u) {
             estimate = now.given;
         }
-        answer_float(retarder_observe(now.table < retarder_table_count ? &retarder_tables[now.table] : 0, &estimate,
-                                      now.s_m, now.v_m_s, now.overpressure_kpa));
-        if (fwrite(&estimate, sizeof estimate, 1, stdout) != 1) {
+        const retarder_table *table = now.table < retarder_table_count ? &retarder_tables[now.table] : 0;
+        answer_float(retarder_observe(table, &estimate, now.s_m, now.v_m_s, now.overpressure_kpa));
+        alarms = retarder_alarms(table, &estimate);
+        if (fwrite(&estimate, sizeof estimate, 1, stdout) != 1 || fwrite(&alarms, sizeof alarms, 1, stdout) != 1) {
             return 9;
         }
     }

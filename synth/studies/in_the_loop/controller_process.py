@@ -25,7 +25,10 @@ TIMEOUT_S = 300.0
 READING = np.dtype([("table", "u4"), ("stage", "i4"), ("s_m", "f4"), ("v_m_s", "f4"), ("pressure_kpa", "f4")])
 """The pressure is looked at where the table has slopes."""
 
-ESTIMATE_WORDS = 8
+ESTIMATE_WORDS = 16
+ANSWER_WORDS = 1 + ESTIMATE_WORDS + 1
+"""To a sample: the estimated speed, the estimate after it, the alarm word."""
+
 SAMPLE = np.dtype(
     [("table", "u4"), ("start", "u4"), ("s_m", "f4"), ("v_m_s", "f4"), ("overpressure_kpa", "f4"),
      ("given", "u4", ESTIMATE_WORDS)]
@@ -56,9 +59,9 @@ class Controller:
         return np.frombuffer(self._answer(("decide",), readings), f"{self.order}i4").astype(np.int32)
 
     def observe(self, samples: NDArray[np.void]) -> NDArray[np.uint32]:
-        """For `samples`, dtype SAMPLE, (n,): the bits of the estimated speed and of the estimate after it, (n, 9)."""
+        """For `samples`, dtype SAMPLE, (n,): bits of the estimated speed, of the estimate, alarm word, (n, 18)."""
         words = np.frombuffer(self._answer(("observe",), samples), f"{self.order}u4")
-        return words.reshape(len(samples), 1 + ESTIMATE_WORDS).astype(np.uint32)
+        return words.reshape(len(samples), ANSWER_WORDS).astype(np.uint32)
 
     def select(self, commands: NDArray[np.void]) -> tuple[NDArray[np.int32], NDArray[np.uint32]]:
         """For commands, dtype COMMAND, (n,): statuses (n,), and the words of the chosen tables (n, words)."""

@@ -1,4 +1,4 @@
-"""Samples of cuts where a wrong implementation of the estimator shows: tracks with readings that cannot be true."""
+"""Samples of cuts where a wrong implementation of the estimator shows: readings that cannot be true, a faulty radar."""
 
 from __future__ import annotations
 
@@ -66,6 +66,7 @@ def _tracks_of(number: int, estimator: Estimator | None, tracks: int, rng: np.ra
     path = np.cumsum(speed, axis=1) * (rng.uniform(0.3, 1.2, (tracks, 1)) * length_m / (entry * TRACK_SAMPLES))
     leaps = np.where(rng.random(shape) < LEAP_SHARE, rng.uniform(-30.0, 30.0, shape), 0.0)
     measured = np.maximum(speed + rng.uniform(0.0, 0.2, (tracks, 1)) * rng.standard_normal(shape), 0.0)
+    measured = _with_faults(measured, rng)
     pressure = np.repeat(rng.uniform(0.0, 600.0, (tracks, 10)), TRACK_SAMPLES // 10, axis=1)
     found["s_m"] = _with_hard((first_m + path + leaps).astype(np.float32), _edges(estimator, rng, shape), rng)
     found["v_m_s"] = _with_hard(measured.astype(np.float32), _near(LARGEST_SPEED_M_S, rng, shape), rng)
@@ -73,6 +74,22 @@ def _tracks_of(number: int, estimator: Estimator | None, tracks: int, rng: np.ra
         pressure.astype(np.float32), _near(LARGEST_OVERPRESSURE_KPA, rng, shape), rng
     )
     return found
+
+
+def _with_faults(measured: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.float64]:
+    """`measured` (tracks, samples), most tracks with a fault of the radar over some samples from any moment on.
+
+    No reading, 0, the last one again and again, spikes, or a bias; for a few samples, many, or all that follow.
+    """
+    tracks, samples = measured.shape
+    since = np.arange(samples) - rng.integers(1, samples, (tracks, 1))
+    during = (since >= 0) & (since < rng.choice([3, 10, 30, samples], (tracks, 1)))
+    last = np.take_along_axis(measured, np.argmax(since >= 0, axis=1)[:, None] - 1, axis=1)
+    spikes = measured + np.where(rng.random(measured.shape) < 0.3, rng.uniform(-3.0, 3.0, measured.shape), 0.0)
+    biased = measured + rng.uniform(-0.8, 0.8, (tracks, 1))
+    faults = [measured, np.full_like(measured, np.nan), np.zeros_like(measured), last + 0.0 * measured, spikes, biased]
+    kind = rng.integers(0, len(faults), (tracks, 1))
+    return np.where(during, np.choose(kind, faults), measured)
 
 
 def _with_hard(usual: NDArray[np.float32], edges: NDArray[np.float32], rng: np.random.Generator) -> Any:
@@ -105,9 +122,10 @@ def _stepped(values: NDArray[np.float32], rng: np.random.Generator) -> NDArray[n
 
 
 def _any_words(rng: np.random.Generator, count: int) -> NDArray[np.uint32]:
-    """(count, 8) words: half any bits at all, half numbers as they stand in an estimate, each word for itself."""
+    """(count, 16) words: half any bits at all, half numbers as they stand in an estimate, each word for itself."""
     wild = rng.integers(0, 2**32, (count, ESTIMATE_WORDS), dtype=np.uint32)
-    low, high = np.array([[0.0, -5.0, 0.0, 0.0, 0.0, -0.01, 0.0, 0.0], [1.0, 45.0, 9.0, 2.0, 0.1, 0.01, 0.03, 2e7]])
+    low = np.array([0, -5, 0, 0, -0.5, 0, -0.01, -0.01, 0, -0.01, 0, 0, 0, 0, 0, 0])
+    high = np.array([1, 45, 9, 2, 0.5, 0.1, 0.01, 0.01, 0.03, 0.01, 1e-3, 2e7, 9, 12, 5, 30])
     usual = rng.uniform(low, high, wild.shape).astype(np.float32).view(np.uint32)
     return np.where(rng.random(wild.shape) < 0.5, wild, usual).astype(np.uint32)
 

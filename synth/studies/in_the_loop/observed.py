@@ -9,19 +9,20 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from synth.studies.in_the_loop.controller_process import BEGIN, ESTIMATE_WORDS, GIVEN
-from tuning_tables.estimator import hand_on, observe
+from synth.studies.in_the_loop.controller_process import ANSWER_WORDS, BEGIN, ESTIMATE_WORDS, GIVEN
+from tuning_tables.estimator import alarms, hand_on, observe
 from tuning_tables.table_book import TableBook
 
 ONE_NAN: Final = np.uint32(0x7FC00000)
 
 
 def observed(book: TableBook, samples: NDArray[np.void]) -> NDArray[np.uint32]:
-    """For `samples`, dtype SAMPLE, (n,): the bits of the estimated speed and of the estimate after it, (n, 9).
+    """For `samples`, dtype SAMPLE, (n,): the bits of the estimated speed and of the estimate after it, and the alarm
+    word, (n, 18).
 
     Every track, which a sample with start BEGIN begins, must be of one table. NaN has the bits that it comes with.
     """
-    answers = np.zeros((len(samples), 1 + ESTIMATE_WORDS), np.uint32)
+    answers = np.zeros((len(samples), ANSWER_WORDS), np.uint32)
     follow, pass_on = _following(), _passing_on()
     begins = np.flatnonzero(samples["start"] == BEGIN)
     for first, end in zip(begins, [*begins[1:], len(samples)], strict=True):
@@ -49,6 +50,7 @@ def _following() -> Any:
     Words are copied one by one: numba takes seconds to compile the message for arrays that do not fit.
     """
     estimated_speed = njit(error_model="numpy")(observe)
+    alarm_word = njit(error_model="numpy")(alarms)
 
     @njit(error_model="numpy")
     def follow(parameters, work, start, s_m, v_m_s, kpa, given, answers):  # type: ignore[no-untyped-def]  # numba infers the types
@@ -65,6 +67,7 @@ def _following() -> Any:
             answers[i, 0] = speed.view(np.uint32)[0]
             for k in range(ESTIMATE_WORDS):
                 answers[i, 1 + k] = words[k]
+            answers[i, 1 + ESTIMATE_WORDS] = alarm_word(parameters, state)
 
     return follow
 

@@ -9,12 +9,14 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from synth.studies.in_the_loop.controller_process import ANSWER_WORDS
 from synth.studies.in_the_loop.hard_samples import TRACK_SAMPLES, hard_samples
 from synth.studies.in_the_loop.observed import observed
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Real
 from tests.tuning_tables.st.test_decide import loaded
 from tuning_tables.golden_tracks import golden_tracks
+from tuning_tables.held_numbers import HELD_NUMBERS, held_numbers
 from tuning_tables.st_source import TABLE_FILE, st_files
 from tuning_tables.table_book import TableBook
 
@@ -22,22 +24,25 @@ Followed: TypeAlias = tuple[npt.NDArray[np.void], npt.NDArray[np.uint32]]
 """Samples in tracks, and the bits of speed and estimate after each."""
 
 SAMPLES = 200_000
-MEMBERS = ("PATH_M", "SPEED_M_S", "FACTOR", "SPEEDVARIANCE", "COVARIANCE", "FACTORVARIANCE", "UNSEEN")
+MEMBERS = (
+    "PATH_M", "SPEED_M_S", "FACTOR", "EXCESS", "SPEEDVARIANCE", "FACTORCOVARIANCE", "EXCESSCOVARIANCE",
+    "FACTORVARIANCE", "CROSSCOVARIANCE", "EXCESSVARIANCE", "UNSEEN", "READING_M_S", "REPEATED", "BELIEVED", "DOUBTED",
+)  # fmt: skip
 
 
 @pytest.fixture(scope="module")
 def tracks(estimating_book: TableBook) -> Followed:
-    """Samples in tracks of 100, (tracks, 100), and the bits of speed and estimate after each, (tracks, 100, 9)."""
+    """Samples in tracks of 100, (tracks, 100), and the bits of speed and estimate after each, (tracks, 100, 18)."""
     samples = hard_samples(estimating_book, SAMPLES, 20261123)
     samples["start"] = np.where(samples["start"] == 2, 0, samples["start"])
     # The golden tracks come first, and are of other lengths.
     samples = samples[sum(map(len, golden_tracks(estimating_book))) :]
     answers = observed(estimating_book, samples)
-    return samples.reshape(-1, TRACK_SAMPLES), answers.reshape(-1, TRACK_SAMPLES, 9)
+    return samples.reshape(-1, TRACK_SAMPLES), answers.reshape(-1, TRACK_SAMPLES, ANSWER_WORDS)
 
 
 def follow(program: Program, number: int, samples: npt.NDArray[np.void]) -> npt.NDArray[np.float32]:
-    """Speeds and estimates after every sample of tracks of table `number`, a lane a track: float32 (9, tracks, n)."""
+    """Speeds, estimates and alarms after each sample of tracks of table `number`: float32 (18, tracks, samples)."""
     table, estimate = loaded(program, number), program.new("RETARDER_ESTIMATE")
     observer, beginner = program.new("RETARDER_OBSERVE"), program.new("RETARDER_BEGIN")
     found = []
@@ -48,6 +53,7 @@ def follow(program: Program, number: int, samples: npt.NDArray[np.void]) -> npt.
             Overpressure_kpa=now["overpressure_kpa"], Table=table, Estimate=estimate,
         )  # fmt: skip
         values = [observer["OBSERVED_M_S"].value, estimate["BEGUN"].value, *(estimate[name].value for name in MEMBERS)]
+        values.append(observer["ALARMS"].value)
         assert np.array_equal(observer["UNSEEN"].value, estimate["UNSEEN"].value)
         found.append([np.broadcast_to(value, now.shape).astype(np.float32) for value in values])
     return np.moveaxis(np.array(found), 0, 2)
@@ -59,7 +65,8 @@ def differing(program: Program, tracks: Followed, numbers: Iterable[int]) -> int
     count = 0
     for number in numbers:
         here = samples["table"][:, 0] == number
-        right = np.moveaxis(answers[here].view(np.float32), 2, 0)
+        right = np.moveaxis(answers[here].view(np.float32), 2, 0).copy()
+        right[-1] = np.moveaxis(answers[here], 2, 0)[-1]  # the alarm word is no float
         found = follow(program, number, samples[here])
         count += int(np.count_nonzero(~((found == right) | (np.isnan(found) & np.isnan(right))).all(axis=0)))
     return count
@@ -83,8 +90,13 @@ def test_hard_samples_are_estimated_alike(estimating_book: TableBook, tracks: Fo
         ("Overpressure_kpa <= LargestPressure_kpa", "Overpressure_kpa < LargestPressure_kpa"),
         ("Path_m >= Before", "Path_m >= -1.0E6"),
         ("Place > Table.BreakPath_m[Index]", "Place > Table.BreakPath_m[Index + 1]"),
-        ("PathPart := Estimate.FactorVariance + PathPart;", ""),
-        ("CrossPart := 2.0 * Slope", "CrossPart := 1.0 * Slope"),
+        ("Change := Drag * Estimate.CrossCovariance;", "Change := Effect * Estimate.CrossCovariance;"),
+        ("Change := Effect * PathPart;", "Change := PathPart;"),
+        ("Bound := GateSquared * Total;", "Bound := Total;"),
+        ("Estimate.Doubted >= Table.Doubted", "Estimate.Doubted > Table.Doubted"),
+        ("Estimate.Repeated < Table.Frozen", "Estimate.Repeated <= Table.Frozen"),
+        ("Change := Table.Caution * Change;", ""),
+        ("Alarms := Alarms + 2;", "Alarms := Alarms + 4;"),
         ("IF Estimate.FactorVariance < 0.0", "IF Estimate.FactorVariance < 0.01"),
         ("Change := Gain * CrossPart", "Change := Gain * SpeedPart"),
         ("Unseen := Estimate.Unseen + 1.0;", "Unseen := 1.0;"),
@@ -104,7 +116,8 @@ def test_every_golden_track_is_estimated(estimating_book: TableBook) -> None:
         samples["s_m"], samples["v_m_s"], samples["overpressure_kpa"] = track.samples[:3]
         found = follow(program, track.number, samples)[:, 0]
         assert np.array_equal(found[0], track.estimate_m_s)
-        assert np.array_equal(found[-1], track.unseen)
+        assert np.array_equal(found[2 + MEMBERS.index("UNSEEN")], track.unseen)
+        assert np.array_equal(found[-1], track.alarms)
 
 
 def test_a_book_without_estimators_hands_the_speed_on(small_book: TableBook, estimating_book: TableBook) -> None:
@@ -133,9 +146,7 @@ def test_every_table_is_loaded_with_its_estimator(estimating_book: TableBook) ->
             assert (held["ESTIMATOR"].value, breaks, held["TOUCH_KPA"].value) == (-1, 0, 0.0)
             continue
         assert held["TOUCH_KPA"].value == np.float32(estimator.touch_pressure_kpa)
-        assert [held[name].value for name in ("SPEEDVARIANCE", "FACTORVARIANCE", "PATHVARIANCE")] == list(
-            estimator.parameters[:3]
-        )
+        assert [held[each.st.upper()].value for each in HELD_NUMBERS] == list(held_numbers(estimator))
         for name, row in zip(("BREAKPATH_M", "DRIVE", "BRAKE"), estimator.work, strict=True):
             assert np.array_equal(held[name].data[:breaks], row)
 

@@ -212,6 +212,9 @@ SAME = {
     ("Factor < Least", " < "), ("Factor > Largest", " > "), ("FactorVariance < 0.0", " < "),
     ("Table.Breaks < 2", " < "), ("Table.Breaks > 40", " > "), ("Table.Breaks > 16", " > "),  # no such table
     ("Table.Breaks >= 2", " >= "), ("Table.Breaks <= 16", " <= "),
+    ("SpeedPart < 0.0", " < "), ("Change < 0.0", " < "), ("Observed_m_s < 0.0", " < "), ("ExcessVariance < 0.0", " < "),
+    ("Leap > Most", " > "), ("Leap < Change", " < "), ("Square > Bound", " > "), ("Excess < Change", " < "),
+    ("Excess > Largest", " > "), ("SpeedVariance > Table", " > "), ("Change > Table", " > "),
 }  # fmt: skip
 """Comparisons where what happens to equal numbers changes nothing, or which only a spoilt table can fail."""
 
@@ -255,7 +258,8 @@ def test_every_wrong_operation_of_the_estimator_is_found(estimating_book: TableB
 @pytest.mark.parametrize(
     ("array", "place"),
     [("TouchOf", 0), ("EstimatorOf", 1), ("BreaksOf", 0), ("SpeedVarianceOf", 0), ("FactorVarianceOf", 1),
-     ("PathVarianceOf", 0), ("BreakPath_0", 3), ("Drive_0", 15), ("Brake_1", 2)],
+     ("PathVarianceOf", 0), ("ExcessVarianceOf", 1), ("LeapOf", 0), ("FrozenOf", 0), ("DoubtedOf", 1),
+     ("LostVarianceOf", 0), ("CautionOf", 1), ("UnlikelyOf", 0), ("BreakPath_0", 3), ("Drive_0", 15), ("Brake_1", 2)],
 )  # fmt: skip
 def test_one_changed_constant_of_an_estimator_is_found(estimating_book: TableBook, array: str, place: int) -> None:
     tables = estimating_book.tables[:3]  # the third has the second estimator

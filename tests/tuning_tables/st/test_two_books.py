@@ -83,13 +83,13 @@ def test_both_answer_their_golden_vectors_and_tracks(text: bytes) -> None:
         for track in golden_tracks(book):
             program.call(f"{name}_LOAD", program.new(f"{name}_LOAD"), TableNo=track.number, Table=table)
             program.call(f"{name}_BEGIN", program.new(f"{name}_BEGIN"), Estimate=estimate)
-            for s, v, kpa, right, unseen in zip(*track.samples, strict=True):
+            for s, v, kpa, right, unseen, alarms in zip(*track.samples, strict=True):
                 program.call(
                     f"{name}_OBSERVE", observer, Path_m=s, Speed_m_s=v, Overpressure_kpa=kpa, Table=table,
                     Estimate=estimate,
                 )  # fmt: skip
                 assert not is_portable(np.array([right]))[0] or observer["OBSERVED_M_S"].value == right
-                assert observer["UNSEEN"].value == unseen
+                assert (observer["UNSEEN"].value, observer["ALARMS"].value) == (unseen, alarms)
 
 
 def test_split_files_in_the_order_of_their_names_are_the_same_program() -> None:
