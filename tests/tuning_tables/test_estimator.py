@@ -12,7 +12,18 @@ from numba import njit
 
 from tuning_tables import ControllerTable, InvalidTable, Predicted, Status, TableBook, speed_for, unseen_samples
 from tuning_tables.active_table import active
-from tuning_tables.estimator import LEAST_SPEED_M_S, Estimator, begin, observe
+from tuning_tables.estimator import (
+    CATEGORY_ALARM,
+    CAUTION,
+    FACTOR_RANGE,
+    LOST_ALARM,
+    SENSOR_ALARM,
+    UNSEEN,
+    Estimator,
+    alarms,
+    begin,
+    observe,
+)
 
 PERIOD_S = 0.1
 BREAKS = (0.0, 1.85, 8.0, 12.5, 20.0, 30.0)
@@ -25,15 +36,15 @@ def estimator() -> Estimator:
     return Estimator(0.05, 0.15, 0.006, 0.1, 2.0, 7, 20, 0.2, 0.5, 60.0, BREAKS, DRIVE, BRAKE)
 
 
-def passes_of(seed: int, factor: float, noise_m_s: float, kpa: float = 250.0) -> np.ndarray:
-    """Samples (s, true v, measured v, overpressure) of a cut with constant friction, exact in energy."""
+def passes_of(seed: int, factor: float, noise_m_s: float, kpa: float = 250.0, excess: float = 0.0) -> np.ndarray:
+    """Samples (s, true v, measured v, overpressure) of a cut with constant friction and excess resistance, m/s²."""
     rng = np.random.default_rng(seed)
     s, v, rows = 0.0, 6.0, []
     while s < 30.0:
         rows.append((s, v, v + noise_m_s * rng.standard_normal(), kpa))
         for _ in range(20):
             ahead = s + v * PERIOD_S / 20
-            gained = np.interp(ahead, BREAKS, DRIVE) - np.interp(s, BREAKS, DRIVE)
+            gained = np.interp(ahead, BREAKS, DRIVE) - np.interp(s, BREAKS, DRIVE) - excess * (ahead - s)
             lost = factor * kpa * (np.interp(ahead, BREAKS, BRAKE) - np.interp(s, BREAKS, BRAKE))
             s, v = ahead, np.sqrt(max(v * v + 2.0 * (gained - lost), 0.04))
     return np.array(rows)
@@ -52,32 +63,43 @@ def run(
 
 def test_it_is_the_kalman_filter(estimator: Estimator) -> None:
     """The same recursion in double precision, with matrices and the exact square root."""
-    samples = passes_of(1, 1.15, 0.05)
+    samples = passes_of(1, 1.15, 0.05, excess=0.01)
     speeds, states = run(estimator, samples)
-    x, P = np.array([samples[0, 2], 1.0]), np.diag([0.05**2, 0.15**2])
+    x, P = np.array([samples[0, 2], 1.0, 0.0]), np.diag([0.05**2, 0.15**2, 0.006**2])
     for (s0, *_), (s, _, v, p), speed, state in zip(samples, samples[1:], speeds[1:], states[1:], strict=False):
         w = p * (np.interp(s, BREAKS, BRAKE) - np.interp(s0, BREAKS, BRAKE))
-        de = np.interp(s, BREAKS, DRIVE) - np.interp(s0, BREAKS, DRIVE) - x[1] * w
+        de = np.interp(s, BREAKS, DRIVE) - np.interp(s0, BREAKS, DRIVE) - x[1] * w - x[2] * (s - s0)
         ahead = np.sqrt(x[0] ** 2 + 2.0 * de)
-        g = w / (0.5 * (x[0] + ahead))
-        F = np.array([[x[0] / ahead, -g], [0.0, 1.0]])
-        P = F @ P @ F.T + np.diag([g**2 * 2.0 * 0.1**2 * 2.0 / (s - s0), 0.0])
+        mean = 0.5 * (x[0] + ahead)
+        F = np.array([[x[0] / ahead, -w / mean, -(s - s0) / mean], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+        P = F @ P @ F.T + np.diag([(w / mean) ** 2 * 2.0 * 0.1**2 * 2.0 / (s - s0), 0.0, 0.0])
         K = P[:, 0] / (P[0, 0] + 0.05**2)
-        x = np.array([ahead, x[1]]) + K * (v - ahead)
+        x = np.array([ahead, x[1], x[2]]) + K * (v - ahead)
         P = P - np.outer(K, P[0])
         assert speed == pytest.approx(x[0], abs=2e-4)
-        assert state[3] == pytest.approx(x[1], abs=2e-3)
-        assert [state[4], state[5], state[6]] == pytest.approx([P[0, 0], P[0, 1], P[1, 1]], rel=2e-2, abs=1e-6)
+        assert state[3:5] == pytest.approx(x[1:], abs=2e-3)
+        assert state[5:11] == pytest.approx(P[np.triu_indices(3)], rel=3e-2, abs=1e-6)
+
+
+def test_it_learns_the_resistance_of_a_cut(estimator: Estimator) -> None:
+    """Without the brake nothing else slows a cut down otherwise than the mean one."""
+    exact = replace(estimator, path_std=0.0, resistance_std_m_s2=0.03)
+    samples = passes_of(2, 1.0, 1e-3, 0.0, excess=0.02)
+    _, states = run(exact, samples)
+    left = states[-1, 10] / 0.03**2
+    assert left < 0.7
+    assert states[-1, 4] == pytest.approx(0.02 * (1.0 - left), abs=4e-3)
+    assert states[-1, 3] == pytest.approx(1.0, abs=1e-4)
 
 
 @pytest.mark.parametrize("factor", [0.7, 1.0, 1.3])
 def test_it_finds_the_friction_of_a_cut(estimator: Estimator, factor: float) -> None:
-    exact = replace(estimator, path_std=0.0)
+    exact = replace(estimator, path_std=0.0, resistance_std_m_s2=0.0)
     samples = passes_of(2, factor, 1e-6)
     speeds, states = run(exact, samples)
     assert np.abs(speeds[-10:] - samples[-10:, 1]).max() < 0.005
     # Shrunk towards 1 by what it does not know yet: the variance that is left of that before.
-    left = states[-1, 6] / 0.15**2
+    left = states[-1, 8] / 0.15**2
     assert left < 0.1
     assert states[-1, 3] == pytest.approx(factor + left * (1.0 - factor), abs=0.01)
 
@@ -90,7 +112,7 @@ def test_its_errors_are_as_large_as_it_says(estimator: Estimator) -> None:
         samples = passes_of(seed, 1.0 + 0.15 * rng.standard_normal(), 0.05)[:40]
         speeds, states = run(exact, samples)
         errors.append([speeds[-1] - samples[-1, 1], states[-1, 3]])
-        stated.append(np.sqrt(states[-1, 4]))
+        stated.append(np.sqrt(states[-1, 5]))
     spread = np.array(errors)[:, 0].std()
     assert spread < 0.03  # of 0.05 measured
     # 200 samples: the standard deviation is known to 5 %, so 20 % is four standard errors.
@@ -112,42 +134,115 @@ def test_nothing_is_estimated_before_a_speed_was_measured(estimator: Estimator) 
     state = begin()
     for v in (np.nan, np.inf, -1.0):
         assert observe(estimator.parameters, estimator.work, state, 0.1, v, 0.0) == -1.0
-        assert np.array_equal(state[:7], begin()[:7])
+        assert np.array_equal(state[:11], begin()[:11])
     assert unseen_samples(state) == 3
     assert observe(estimator.parameters, estimator.work, state, 0.2, 5.5, 0.0) == np.float32(5.5)
 
 
-def test_samples_without_a_credible_speed_are_counted(estimator: Estimator, estimated_table: ControllerTable) -> None:
-    """The same with an estimator and without: 0 after a credible one, before the first from the beginning on."""
-    plain = replace(estimated_table, estimator=None, predicted=Predicted(0, 0, 0, 0))
-    fastest = float(np.float32(40.0))
-    speeds = [np.nan, -1.0, 5.0, 5.0, np.inf, -0.5, 40.1, fastest, 0.0, np.nan]
-    for table in (estimated_table, plain):
-        state, counts = begin(), []
-        for sample, v in enumerate(speeds):
-            speed_for(table, state, 0.1 * sample, v, 0.0)
-            counts.append(unseen_samples(state))
-        assert counts == [1, 2, 0, 0, 1, 2, 3, 0, 0, 1]
+@pytest.mark.parametrize("estimating", [True, False])
+def test_samples_without_a_reading_that_is_believed_are_counted(
+    estimated_table: ControllerTable, estimating: bool
+) -> None:
+    """0 after one that is, before the first from the beginning on; a leap is believed where nothing is estimated."""
+    table = estimated_table
+    if not estimating:
+        table = replace(table, estimator=None, predicted=Predicted(0, 0, 0, 0))
+    state, counts = begin(), []
+    for sample, v in enumerate((np.nan, -1.0, 5.0, 5.02, 5.01, np.inf, -0.5, 40.1, 5.0, 5.01, 9.0, np.nan)):
+        speed_for(table, state, 0.1 * sample, v, 0.0)
+        counts.append(unseen_samples(state))
+    assert counts == [1, 2, 0, 0, 0, 1, 2, 3, 0, 0, *((1, 2) if estimating else (0, 1))]
 
 
 def test_the_count_of_unseen_samples_stays_at_its_end(estimator: Estimator) -> None:
     state = begin()
     observe(estimator.parameters, estimator.work, state, 0.0, 5.0, 0.0)
-    state[7] = 2**24 - 1
+    state[UNSEEN] = 2**24 - 1
     for _ in range(3):
         observe(estimator.parameters, estimator.work, state, 0.0, np.nan, 0.0)
         assert unseen_samples(state) == 2**24
 
 
-def test_the_count_changes_no_estimate(estimator: Estimator) -> None:
-    samples = passes_of(5, 1.1, 0.05)
-    samples[10:30:3, 2] = np.nan
-    _, states = run(estimator, samples)
-    for (_, counted), (s, _, v, p), after in zip(enumerate(states), samples[1:], states[1:], strict=False):
-        other = counted.copy()
-        other[7] = 12345.0
-        observe(estimator.parameters, estimator.work, other, s, v, p)
-        assert np.array_equal(other[:7], after[:7])
+def seen_cut(estimator: Estimator, samples: int = 12, speed: float = 5.0) -> np.ndarray:
+    """The state after some sound readings of a cut before the brake."""
+    state = begin()
+    for sample in range(samples):
+        observe(estimator.parameters, estimator.work, state, 0.1 * sample, speed + 0.01 * (-1) ** sample, 0.0)
+    return state
+
+
+def test_a_leap_is_doubted_and_corrects_nothing(estimator: Estimator) -> None:
+    """As if it were missing, but that the alarm says so; doubt ends with a reading near the estimate."""
+    doubted, missing = seen_cut(estimator), seen_cut(estimator)
+    for sample, v in enumerate((9.0, 0.0, 9.0)):
+        told = [
+            observe(estimator.parameters, estimator.work, state, 1.2 + 0.1 * sample, reading, 0.0)
+            for state, reading in ((doubted, v), (missing, np.nan))
+        ]
+        assert told[0] == told[1]
+        assert np.array_equal(doubted[:12], missing[:12])
+        assert alarms(estimator.parameters, doubted) == SENSOR_ALARM
+        assert alarms(estimator.parameters, missing) == 0
+    observe(estimator.parameters, estimator.work, doubted, 1.5, 5.0, 0.0)
+    assert (unseen_samples(doubted), alarms(estimator.parameters, doubted)) == (0, 0)
+
+
+def test_what_the_brake_or_noise_can_do_is_no_leap(estimator: Estimator) -> None:
+    """A brake that fails is followed: the readings are far from the estimate, but they did not leap there."""
+    state = seen_cut(estimator)
+    s, v = 1.2, 5.0
+    for sample in range(40):
+        s, v = s + 0.1 * v, v + 0.01 * (-1) ** sample
+        observe(estimator.parameters, estimator.work, state, s, v, 500.0)
+        assert unseen_samples(state) == 0
+    assert state[3] == np.float32(FACTOR_RANGE[0])
+    assert alarms(estimator.parameters, state) & CATEGORY_ALARM
+
+
+def test_false_first_readings_are_left_behind(estimator: Estimator) -> None:
+    """The estimate begins anew as long as few readings were believed, so that a false one does not rule the pass."""
+    state = begin()
+    for v in (0.0, 0.1):
+        assert observe(estimator.parameters, estimator.work, state, 0.0, v, 0.0) == -1.0
+    for sample, v in enumerate((9.0, 5.0, 8.0, 5.0, 5.01, 5.0)):
+        found = observe(estimator.parameters, estimator.work, state, 0.1 * sample, v, 0.0)
+    assert found == pytest.approx(5.0, abs=0.02)
+    observe(estimator.parameters, estimator.work, state, 0.6, 9.0, 0.0)
+    assert alarms(estimator.parameters, state) == SENSOR_ALARM  # now it knows better
+
+
+def test_a_sensor_whose_error_lasts_is_followed_after_a_while(estimator: Estimator) -> None:
+    state = seen_cut(estimator)
+    for sample in range(estimator.doubted_readings):
+        assert unseen_samples(state) == sample
+        observe(estimator.parameters, estimator.work, state, 1.2 + 0.1 * sample, 6.0 + 0.01 * (-1) ** sample, 0.0)
+    assert state[2] == pytest.approx(6.0, abs=0.011)
+    assert (unseen_samples(state), alarms(estimator.parameters, state)) == (0, 0)
+
+
+def test_a_reading_that_repeats_itself_is_not_believed(estimator: Estimator) -> None:
+    state = seen_cut(estimator)
+    for sample in range(20):
+        observe(estimator.parameters, estimator.work, state, 1.2 + 0.1 * sample, 5.0, 0.0)
+        frozen = sample >= estimator.frozen_readings
+        assert (unseen_samples(state) > 0) is frozen
+        assert alarms(estimator.parameters, state) == (SENSOR_ALARM if frozen else 0)
+
+
+def test_a_lost_cut_is_taken_for_slower_than_it_seems(estimator: Estimator) -> None:
+    """By half the limit at twice the variance; never below 0; the alarm says when."""
+    state, limit = seen_cut(estimator), estimator.lost_speed_std_m_s
+    for times in (0.5, 1.0, 2.0, 400.0):
+        state[5] = times * limit**2
+        now = state.copy()
+        found = observe(estimator.parameters, estimator.work, now, float(state[1]), np.nan, 0.0)
+        caution = CAUTION * limit * max(now[5] / limit**2 - 1.0, 0.0)
+        assert found == pytest.approx(max(now[2] - caution, 0.0), abs=1e-5)
+        assert (alarms(estimator.parameters, now) == LOST_ALARM) == (now[5] > np.float32(limit**2))
+
+
+def test_there_is_no_alarm_before_a_cut_was_seen(estimator: Estimator) -> None:
+    assert alarms(estimator.parameters, begin()) == 0
 
 
 def test_compiled_it_gives_the_same_bits(estimator: Estimator) -> None:
@@ -164,7 +259,7 @@ def test_compiled_it_gives_the_same_bits(estimator: Estimator) -> None:
         assert np.array_equal(plain.astype(np.float32).view(np.uint32), fast.astype(np.float32).view(np.uint32))
         assert np.array_equal(states.view(np.uint32), fast_states.view(np.uint32))
         assert np.isfinite(states).all()
-        assert ((plain == -1.0) | (plain >= np.float32(LEAST_SPEED_M_S))).all()
+        assert ((plain == -1.0) | (plain >= 0.0)).all()
 
 
 @pytest.mark.parametrize(
@@ -173,6 +268,11 @@ def test_compiled_it_gives_the_same_bits(estimator: Estimator) -> None:
         ({"speed_noise_m_s": 0.0}, "estimator.speed_noise_m_s is 0.0"),
         ({"friction_cv": -0.1}, "estimator.friction_cv"),
         ({"path_std": np.nan}, "estimator.path_std"),
+        ({"resistance_std_m_s2": -0.1}, "estimator.resistance_std_m_s2"),
+        ({"frozen_readings": 0}, "estimator.frozen_readings is 0"),
+        ({"doubted_readings": 1001}, "estimator.doubted_readings is 1001"),
+        ({"lost_speed_std_m_s": 0.0}, "estimator.lost_speed_std_m_s"),
+        ({"unlikely_deviation": np.inf}, "estimator.unlikely_deviation"),
         ({"correlation_length_m": 0.0}, "estimator.correlation_length_m"),
         ({"s_m": (0.0,)}, "1 breaks"),
         ({"s_m": (0.0, 1.0, 1.0, 3.0, 4.0, 5.0)}, "must rise by 0.001 m"),
