@@ -123,8 +123,8 @@ def estimator_of(section: Mapping[str, Any]) -> Estimator:
         apart = rounded(rounded(b) - rounded(a)) >= SHORTEST_STEP_M
         refuse_unless(apart, [a, b], "estimator.s_m", "rising by a millimetre at least")
         refuse_unless(before <= after, [before, after], "estimator.brake_m2_s2_per_kpa", "without a fall")
-    numbers: dict[str, Any] = {key: float(section[key]) for key in ESTIMATOR_NUMBERS}
-    return Estimator(**numbers, **{key: section[key] for key in ESTIMATOR_COUNTS}, **rows)
+    parts: dict[str, Any] = {key: float(section[key]) for key in ESTIMATOR_NUMBERS}
+    return Estimator(**(parts | {key: section[key] for key in ESTIMATOR_COUNTS} | rows))
 
 
 def is_credible(v_m_s: float) -> bool:
