@@ -7,7 +7,7 @@ from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from typing import Any, Final
 
-from synth.checker.document_shape import ESTIMATOR_NUMBERS, ESTIMATOR_ROWS, SLOPES
+from synth.checker.document_shape import ESTIMATOR_COUNTS, ESTIMATOR_NUMBERS, ESTIMATOR_ROWS, SLOPES
 from synth.checker.finding import DamagedError, shown
 
 CHECKSUM_BYTES: Final = 4
@@ -49,8 +49,11 @@ WITH_ESTIMATORS: Final[Mapping[str, Stored]] = {
     **DATASETS,
     "predicted_passes": Stored("<i8", TABLE, "1"),
     "estimator_breaks": Stored("<i4", TABLE, "1"),
-    "estimator_speed_noise_m_s": Stored("<f8", TABLE, "m/s"),
+    **dict.fromkeys(("estimator_speed_noise_m_s", "estimator_lost_speed_std_m_s"), Stored("<f8", TABLE, "m/s")),
     **dict.fromkeys(("estimator_friction_cv", "estimator_path_std"), Stored("<f8", TABLE, "1")),
+    "estimator_unlikely_deviation": Stored("<f8", TABLE, "1"),
+    "estimator_resistance_std_m_s2": Stored("<f8", TABLE, "m/s2"),
+    **dict.fromkeys(("estimator_frozen_readings", "estimator_doubted_readings"), Stored("<i4", TABLE, "1")),
     "estimator_correlation_length_m": Stored("<f8", TABLE, "m"),
     "estimator_touch_pressure_kpa": Stored("<f8", TABLE, "kPa"),
     "estimator_s_m": Stored("<f8", ("table", "break"), "m"),
@@ -72,6 +75,8 @@ BEYOND_FIRST: Final[Mapping[int, Mapping[str, Stored]]] = {
     5: {**APPROACH, **AT_ANY_TIME},
 }
 """By schema version, what a book holds beside `DATASETS`: 2 has estimators, and from 3 on they may be there or not."""
+FILLED_UP_WITH_0: Final = frozenset({"has_line", *(f"estimator_{name}" for name in ESTIMATOR_COUNTS)})
+"""Of the arrays that can be shorter than those of the book; the others are filled up with NaN."""
 NUMBER: Final = "category_number"
 """In books whose tables state it, of any version; 0: not stated."""
 
@@ -128,7 +133,7 @@ def require_filled_up(columns: Mapping[str, list[Any]], documents: list[dict[str
     """
     rows = [short_arrays(document) for document in documents]
     for name in rows[0].keys() & columns.keys():
-        filler: float = 0 if name == "has_line" else math.nan
+        filler: float = 0 if name in FILLED_UP_WITH_0 else math.nan
         found = columns[name]
         # As text, in which two NaN are alike and the zeros are not.
         if any(repr(padded(row[name], cell, filler)) != repr(cell) for row, cell in zip(rows, found, strict=True)):
@@ -151,7 +156,7 @@ def short_arrays(document: Mapping[str, Any]) -> dict[str, Any]:
         "approach_length_m": document.get("approach", {}).get("length_m"),
         "validated_rms_m_s": validated["rms_m_s"] if validated else None,
         "validated_rms_ci95_m_s": validated["rms_ci95_m_s"] if validated else [None, None],
-        **{f"estimator_{name}": estimator.get(name) for name in ESTIMATOR_NUMBERS},
+        **{f"estimator_{name}": estimator.get(name) for name in (*ESTIMATOR_NUMBERS, *ESTIMATOR_COUNTS)},
         **{f"estimator_{name}": estimator.get(name, []) for name in ESTIMATOR_ROWS},
     }
 

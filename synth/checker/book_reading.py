@@ -18,7 +18,16 @@ from synth.checker.book_layout import (
     require_stored,
 )
 from synth.checker.canonical import canonical_form
-from synth.checker.document_shape import ESTIMATOR_NUMBERS, ESTIMATOR_ROWS, GAUGE, NO_GAUGE, SLOPES, TEXT, is_a
+from synth.checker.document_shape import (
+    ESTIMATOR_COUNTS,
+    ESTIMATOR_NUMBERS,
+    ESTIMATOR_ROWS,
+    GAUGE,
+    NO_GAUGE,
+    SLOPES,
+    TEXT,
+    is_a,
+)
 from synth.checker.finding import DamagedError, shown
 from synth.checker.source_file import LARGEST_BYTES
 
@@ -186,12 +195,14 @@ def estimator_section(row: Row) -> dict[str, Any] | None:
     """The estimator of one table, None where it has none; `DamagedError` where its rows are not that long."""
     breaks = row.get("estimator_breaks", 0)
     numbers = {name: row.get(f"estimator_{name}", math.nan) for name in ESTIMATOR_NUMBERS}
+    counts = {name: row.get(f"estimator_{name}", 0) for name in ESTIMATOR_COUNTS}
     rows = {name: row.get(f"estimator_{name}", []) for name in ESTIMATOR_ROWS}
     filled = {breaks if not math.isnan(value) else 0 for value in numbers.values()}
+    filled |= {breaks if value else 0 for value in counts.values()}
     filled |= {sum(not math.isnan(x) for x in values) for values in rows.values()}
     if filled != {breaks} or any(math.isnan(x) for values in rows.values() for x in values[:breaks]):
         raise DamagedError(f"the estimator of {text(row['id'])!r} has {breaks} breaks, but not as many values")
-    return numbers | {name: values[:breaks] for name, values in rows.items()} if breaks else None
+    return numbers | counts | {name: values[:breaks] for name, values in rows.items()} if breaks else None
 
 
 def stage_of(row: Row, k: int) -> dict[str, Any]:

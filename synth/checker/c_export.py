@@ -8,7 +8,7 @@ from typing import Final
 
 from synth.checker.canonical import crc32
 from synth.checker.category_number import YARD
-from synth.checker.estimator import Estimator
+from synth.checker.estimator import Estimator, Held
 from synth.checker.finding import DamagedError
 from synth.checker.float32 import FLOAT, WORD, bits, is_float32
 from synth.checker.table_reading import Table
@@ -167,13 +167,12 @@ def gauge_words(table: Table, stages: int) -> list[int]:
 
 
 def estimator_words(estimator: Estimator | None, breaks: int) -> list[int]:
-    """Number of breaks, three variances, touch pressure; then all s, all D, all W."""
+    """Number of breaks, the numbers of `Held`; then all s, all D, all W."""
     if estimator is None:
-        return [0] * (5 + 3 * breaks)
-    numbers = bits(estimator.noise), bits(estimator.spread), bits(estimator.along), bits(estimator.touch_pressure_kpa)
-    rows = (estimator.s_m, estimator.drive_m2_s2, estimator.brake_m2_s2_per_kpa)
+        return [0] * (1 + len(Held._fields) + 3 * breaks)
+    numbers, *rows = estimator.held
     padded = [word for row in rows for word in [*map(bits, row), *[0] * (breaks - len(row))]]
-    return [len(estimator.s_m), *numbers, *padded]
+    return [len(estimator.s_m), *map(bits, numbers), *padded]
 
 
 def word_difference(number: int, block: Words, wanted: Words) -> str:

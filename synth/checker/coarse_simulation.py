@@ -231,7 +231,12 @@ def lost_readings(plant: Plant, random: Random) -> Iterator[bool]:
 
 
 def decision(table: Table, stage: int, s: float, v: float, kpa: float = math.nan) -> int:
-    """The stage to command, in double precision; `kpa`: what the gauge shows, NaN for none."""
+    """The stage to command, in double precision: the present one where no speed is known, `v` being NaN or below 0.
+
+    `kpa`: what the gauge shows, NaN for none.
+    """
+    if not v >= 0.0:
+        return stage
     s = min(max(s, table.path_m[0]), table.path_m[1])
     added = added_m_s(table, stage, kpa)
     raised = lowered = stage

@@ -71,13 +71,19 @@ SHAPE: Final[Mapping[str, Any]] = {
 """Version 1. A dict: exactly these members; a list: an array of what it holds."""
 
 ESTIMATOR_NUMBERS: Final = (
-    "speed_noise_m_s", "friction_cv", "path_std", "correlation_length_m", "touch_pressure_kpa",
+    "speed_noise_m_s", "friction_cv", "resistance_std_m_s2", "path_std", "correlation_length_m", "lost_speed_std_m_s",
+    "unlikely_deviation", "touch_pressure_kpa",
 )  # fmt: skip
+ESTIMATOR_COUNTS: Final = ("frozen_readings", "doubted_readings")
 ESTIMATOR_ROWS: Final = ("s_m", "drive_m2_s2", "brake_m2_s2_per_kpa")
 SHAPE_WITH_ESTIMATOR: Final[Mapping[str, Any]] = {
     **SHAPE,
     "predicted": {**PREDICTED, "passes": Optional(COUNT)},
-    "estimator": {**dict.fromkeys(ESTIMATOR_NUMBERS, NUMBER), **dict.fromkeys(ESTIMATOR_ROWS, NUMBERS)},
+    "estimator": {
+        **dict.fromkeys(ESTIMATOR_NUMBERS, NUMBER),
+        **dict.fromkeys(ESTIMATOR_COUNTS, COUNT),
+        **dict.fromkeys(ESTIMATOR_ROWS, NUMBERS),
+    },
 }
 """Version 2: its lines are for the speed that the estimator gives."""
 

@@ -58,6 +58,7 @@ class Plant:
     resistance_n_kn: tuple[float, float]
     friction_cv: float
     axle_cv: float
+    mean_cv: float
     friction_floor: float
     path_std: float
     correlation_m: float
@@ -180,6 +181,8 @@ def plant_of(config: Mapping[str, Any], cut: Mapping[str, Any]) -> Plant:
         ),
         friction_cv=at.number("friction.common_cv", 0.0, 1.0),
         axle_cv=at.number("friction.axle_cv", 0.0, 1.0),
+        # Older configurations took the mean friction as known.
+        mean_cv=at.number("friction.mean_cv", 0.0, 1.0) if "mean_cv" in at.value("friction") else 0.0,
         friction_floor=at.number("friction.floor", 0.0, 1.0),
         path_std=at.number("friction.path_std", 0.0, 1.0),
         correlation_m=at.number("friction.correlation_length_m", 1e-3),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from synth.checker.finding import DamagedError, shown
@@ -14,7 +14,19 @@ ARRAY: Final = re.compile(r"\b(\w+) : ARRAY\[0\.\.(\d{1,6})\] OF (REAL|INT|BOOL)
 COMMENT: Final = re.compile(r"\(\*.*?\*\)", re.DOTALL)
 LAYOUT: Final = r"\bIF Layout <> (\d{1,6}) THEN"
 OWN_ARRAYS: Final = ("Lower", "Upper", "Coefficient")
-ESTIMATOR_COLUMNS: Final = ("BreaksOf", "SpeedVarianceOf", "FactorVarianceOf", "PathVarianceOf")
+HELD_COLUMNS: Final[Mapping[str, str]] = {
+    "SpeedVarianceOf": "speed_variance",
+    "FactorVarianceOf": "factor_variance",
+    "PathVarianceOf": "path_variance",
+    "ExcessVarianceOf": "excess_variance",
+    "LeapOf": "leap",
+    "FrozenOf": "frozen_readings",
+    "DoubtedOf": "doubted_readings",
+    "LostVarianceOf": "lost_variance",
+    "CautionOf": "caution",
+    "UnlikelyOf": "unlikely_deviation",
+}
+"""By estimator, what each holds of the numbers of `Held`: all but the touch pressure, which stands there by table."""
 APPROACH_COLUMNS: Final = {"ApproachOf", "EntranceStageOf"}
 GAUGE_ARRAYS: Final = ("Pressure", "Slope")
 ESTIMATOR_ROWS: Final = ("BreakPath", "Drive", "Brake")
@@ -117,9 +129,9 @@ def estimator_differences(arrays: Arrays, tables: Sequence[Table]) -> Iterator[t
         return
     of = [each.index(table.estimator.held) if table.estimator else -1 for table in tables]
     touch = [rounded(table.estimator.touch_pressure_kpa) if table.estimator else 0.0 for table in tables]
-    columns = zip(*((float(len(row)), *numbers[:3]) for numbers, row, _, _ in each), strict=True)
     wanted: dict[str, list[Any]] = {"EstimatorOf": of, "TouchOf": touch}
-    wanted |= zip(ESTIMATOR_COLUMNS, map(list, columns), strict=True)
+    wanted["BreaksOf"] = [len(row) for _, row, _, _ in each]
+    wanted |= {name: [getattr(numbers, field) for numbers, *_ in each] for name, field in HELD_COLUMNS.items()}
     most = max(len(row) for _, row, _, _ in each)
     for number, (_, *rows) in enumerate(each):
         padded = ([*row, *[0.0] * (most - len(row))] for row in rows)

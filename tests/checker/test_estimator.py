@@ -5,6 +5,8 @@ from __future__ import annotations
 import dataclasses
 import json
 import math
+from collections import Counter
+from collections.abc import Iterator
 from random import Random
 
 import numpy as np
@@ -19,9 +21,15 @@ from synth.checker.float32 import bits
 from synth.checker.plant import Plant, plant_of
 from synth.configuration.config_file import parse_config
 from tests.checker.planted_fault import Document
-from tuning_tables.estimator import Estimator, begin, observe
+from tuning_tables.estimator import Estimator, alarms, begin, observe
 
+Sample = tuple[float, float, float]
 HONESTY = Honesty(0.8, 1.25)
+STATE = (
+    "begun", "s", "v", "x", "a", "vv", "vx", "va", "xx", "xa", "aa", "unseen", "reading", "repeated", "believed",
+    "doubted",
+)  # fmt: skip
+"""What the numbers of the controller's state are called in the checker."""
 
 
 def section_of(estimator: Estimator) -> Document:
@@ -40,11 +48,24 @@ def random_estimator(chance: Random) -> Estimator:
     brake = np.cumsum([0.0, *(a * b for a, b in zip(slopes, steps, strict=True))])
     drive = np.cumsum([0.0, *(chance.uniform(-0.3, 0.3) * 10.0 ** max(0.0, absurd) * step for step in steps)])
     rows = (tuple(row.tolist()) for row in (places, drive, brake))
-    numbers = (10.0 ** chance.uniform(-4.0, 0.0), chance.random(), chance.random(), 10.0 ** chance.uniform(-3.0, 2.0))
-    return Estimator(*numbers, chance.uniform(0.0, 100.0), *rows)
+    return Estimator(
+        10.0 ** chance.uniform(-4.0, 0.0), chance.random(), chance.choice([0.0, 10.0 ** chance.uniform(-4.0, 0.0)]),
+        chance.random(), 10.0 ** chance.uniform(-3.0, 2.0), chance.choice([1, 2, 5, 1000]), chance.choice([1, 4, 20]),
+        10.0 ** chance.uniform(-2.0, 1.0), chance.uniform(0.0, 0.8), chance.uniform(0.0, 100.0), *rows,
+    )  # fmt: skip
 
 
-def random_samples(chance: Random, length_m: float) -> list[tuple[float, float, float]]:
+def likely_estimator(chance: Random) -> Estimator:
+    """One for a heavy cut on 20 m, its numbers near those of a plant."""
+    places = (-4.0, 0.0, 5.0, 12.0, 20.0)
+    return Estimator(
+        chance.uniform(0.01, 0.1), 0.15, chance.choice([0.0, 0.006, 0.05]), 0.1, 2.0, chance.choice([1, 3, 7]),
+        chance.choice([3, 8, 20]), chance.choice([0.05, 0.2]), chance.choice([0.05, 0.5]), 50.0,
+        places, (0.0, 0.3, 0.6, 0.9, 1.5), (0.0, 0.0, 0.006, 0.02, 0.03),
+    )  # fmt: skip
+
+
+def random_samples(chance: Random, length_m: float) -> list[Sample]:
     """Path, speed and overpressure of a cut, some of them impossible."""
     odd = [math.nan, math.inf, -math.inf, -0.0, -1.0, 5e-324, 1e-40, 39.99, 40.0, 40.01, 2000.5, 1e39, 1e300]
     wild, s, v, samples = chance.choice([0.0, 0.05, 0.4]), chance.choice([0.0, -2.0]), chance.uniform(0.0, 9.0), []
@@ -56,26 +77,82 @@ def random_samples(chance: Random, length_m: float) -> list[tuple[float, float, 
     return samples
 
 
+def faulty_samples(chance: Random, estimator: Estimator) -> list[Sample]:
+    """A cut as the estimator knows it, give or take its friction, seen by a sensor that fails in every way.
+
+    Spells of missing, zero and frozen readings, of a speed that is off by so much or by a factor, and single spikes;
+    half of the cuts are watched well for the first five samples.
+    """
+    work, steps = np.array(estimator.work, dtype=np.float64), chance.choice([40, 120])
+    factor, speed, s, kpa, v = chance.uniform(0.4, 1.8), chance.uniform(1.5, 7.0), -4.0, 0.0, 0.0
+    kind, left, bias, samples = "good", 5 * chance.randint(0, 1), 0.0, []
+    for _ in range(steps):
+        if left <= 0:
+            kind = chance.choice(["good", "good", "missing", "zero", "frozen", "bias", "scale", "spike"])
+            left = 1 if kind == "spike" else chance.choice([1, 3, 10, 40])
+            bias = chance.choice([-3.0, -0.7, 0.7, 3.0])
+        left -= 1
+        good = max(0.0, speed + chance.gauss(0.0, estimator.speed_noise_m_s))
+        shown = {"missing": math.nan, "zero": 0.0, "frozen": v, "bias": good + bias, "spike": good + bias}
+        seen = shown.get(kind, good * (1.3 if kind == "scale" else 1.0))
+        v = v if math.isnan(seen) else seen
+        samples.append((s, seen, kpa))
+        kpa = chance.choice([0.0, 100.0, 300.0])
+        ahead = s + 24.0 / steps
+        gained, lost = (float(np.interp(ahead, work[0], row) - np.interp(s, work[0], row)) for row in work[1:])
+        s, speed = ahead, math.sqrt(max(0.04, speed**2 + 2.0 * (gained - factor * kpa * lost)))
+    return samples
+
+
 def word_of(x: float) -> int | None:
     """The bits of a number, one word for all NaN."""
     return None if math.isnan(x) else bits(x)
 
 
+def assert_the_same(estimator: Estimator, samples: list[Sample]) -> Iterator[tuple[Observer, int, float]]:
+    """Estimate, state and alarms bit for bit after each sample; then the checker's observer, alarms and answer."""
+    own, state = Observer(read_estimator(section_of(estimator))), begin()
+    for sample in samples:
+        with np.errstate(all="ignore"):
+            expected = float(np.float32(observe(estimator.parameters, estimator.work, state, *sample)))
+            alarmed = alarms(estimator.parameters, state)
+        answer = own.observe(*sample)
+        numbers = [answer, *(float(getattr(own, name)) for name in STATE)]
+        assert [word_of(x) for x in numbers] == [word_of(float(x)) for x in (expected, *state)]
+        assert own.alarms == alarmed
+        yield own, alarmed, answer
+
+
 def test_it_is_that_of_the_controller_bit_for_bit() -> None:
-    """Estimate and all eight numbers of the state, after each of 30 000 samples of 300 cuts."""
+    """After each of 30 000 samples of 300 cuts, many of them impossible, of estimators of every kind."""
     chance, clamped = Random(7), 0
     for _ in range(300):
         estimator = random_estimator(chance)
-        own, state = Observer(read_estimator(section_of(estimator))), begin()
-        for s, v, p in random_samples(chance, estimator.s_m[-1]):
-            with np.errstate(all="ignore"):
-                expected = observe(estimator.parameters, estimator.work, state, s, v, p)
-            numbers = [own.observe(s, v, p), float(own.begun), own.s, own.v, own.factor]
-            numbers += [own.speed_variance, own.covariance, own.factor_variance, own.unseen]
-            wanted = [np.float32(expected), *state]
-            assert [word_of(x) for x in numbers] == [word_of(float(x)) for x in wanted]
-            clamped += own.factor in (float(np.float32(0.3)), float(np.float32(1.9)))
+        for own, _, _ in assert_the_same(estimator, random_samples(chance, estimator.s_m[-1])):
+            clamped += own.x in (float(np.float32(0.3)), float(np.float32(1.9))) or abs(own.a) == 0.5
     assert clamped > 100  # the samples are wild enough to reach the limits
+
+
+def test_it_doubts_what_the_controller_doubts() -> None:
+    """Missing, zero, frozen, spiky, shifted readings and long losses: every way of the recursion is gone often."""
+    chance, gone = Random(8), Counter[str]()
+    for _ in range(300):
+        estimator = likely_estimator(chance)
+        before = (0.0, 0.0, 0.0)  # believed, doubted, unseen
+        for own, alarmed, answer in assert_the_same(estimator, faulty_samples(chance, estimator)):
+            anew = own.believed == 1.0 and own.unseen == 0.0 and before[0] > 0.0
+            gone["begun anew early"] += anew and before[0] < 3.0
+            gone["begun anew late"] += anew and before[0] >= 3.0
+            gone["doubt goes on"] += own.doubted > 1.0
+            gone["doubt ends"] += before[1] > 0.0 and own.doubted == 0.0 and not anew
+            gone["doubt after a loss"] += own.doubted == 1.0 and before[1] == 0.0 and before[2] > 0.0
+            gone["frozen"] += own.repeated >= estimator.frozen_readings
+            gone["cautious"] += answer < own.v
+            gone["stands still for all we know"] += answer == 0.0
+            gone.update(f"alarm {bit}" for bit in (1, 2, 4) if alarmed & bit)
+            before = own.believed, own.doubted, own.unseen
+    assert min(gone.values()) > 30, gone
+    assert len(gone) == 11
 
 
 def test_a_new_cut_begins_anew() -> None:

@@ -148,7 +148,7 @@ def rough_estimator(plant: Plant) -> Estimator:
     s = np.linspace(2.0, plant.exit_m - 3.0, 9)
     work = (0.1 * s + 0.01 * np.sin(s), 0.0016 * s)
     breaks, drive, brake = (tuple(float(each) for each in row) for row in (s, *work))
-    return Estimator(0.05, 0.15, 0.1, 2.0, 60.0, breaks, drive, brake)
+    return Estimator(0.05, 0.15, 0.006, 0.1, 2.0, 7, 20, 0.2, 0.5, 60.0, breaks, drive, brake)
 
 
 def with_gaps(passes: RandomPasses) -> RandomPasses:
@@ -172,6 +172,34 @@ def test_estimators(plant_52t: Plant, passes: RandomPasses, gaps: bool, period_s
     for lead_s, farthest in ((0.0, 4), (0.2, 1)):
         lines = energy_rule(loop, 3.0, 4, 0.8, 0.15, lead_s, 0.15)
         assert_same(loop, replace(lines, farthest=farthest, estimator=estimator), draws)
+
+
+def with_faults(passes: RandomPasses, noise_m_s: float) -> RandomPasses:
+    """`passes` with missing, zero, spiky and shifted readings, alone and in spells, some from the first sample on."""
+    rng = np.random.default_rng(6)
+    noise_z = passes.noise_z.copy()
+    errors = np.array([np.nan, -1e6, 3.0 / noise_m_s, -1.0 / noise_m_s, 0.5 / noise_m_s], dtype=np.float32)
+    for row in noise_z:
+        for start in rng.integers(0, 200, 8):
+            spell = slice(start, start + rng.choice([1, 1, 4, 25]))
+            row[spell] += rng.choice(errors)
+    noise_z[::5, :3], noise_z[1::5, :3] = np.nan, -1e6
+    return replace(passes, noise_z=noise_z)
+
+
+@pytest.mark.parametrize("readings", [(7, 20), (1, 3), (1000, 1)], ids=["as tuned", "hasty", "trusting"])
+def test_a_sensor_that_fails_in_every_way(plant_52t: Plant, passes: RandomPasses, readings: tuple[int, int]) -> None:
+    loop, (frozen, doubted) = close_loop(plant_52t, 5), readings
+    rough = replace(rough_estimator(plant_52t), frozen_readings=frozen, doubted_readings=doubted)
+    cautious = replace(rough, lost_speed_std_m_s=0.05)
+    good = loop.draws(passes)
+    draws = loop.draws(with_faults(passes, plant_52t.sensor.noise_m_s))
+    for estimator in (rough, cautious):
+        table = TableController(replace(wavy_table(plant_52t, 3.0), estimator=estimator))
+        sample = assert_same(loop, table, draws)
+        assert np.mean(sample.exit_speed_m_s != loop.run(table, good).exit_speed_m_s) > 0.8
+        lines = energy_rule(loop, 3.0, 4, 0.8, 0.15, 0.2, 0.15)
+        assert_same(loop, replace(lines, estimator=estimator), draws)
 
 
 @pytest.mark.parametrize("estimating", [False, True])

@@ -125,7 +125,8 @@ def test_a_fault_is_one_sentence(table: ControllerTable, problem: synth.Problem,
 def test_a_table_with_estimator_is_simulated_and_not_predicted(table: ControllerTable, problem: synth.Problem) -> None:
     from tuning_tables import Estimator
 
-    estimator = Estimator(0.05, 0.15, 0.1, 2.0, 50.0, (-4.0, 5.0), (0.0, 1.0), (0.0, 0.01))
+    work = (-4.0, 5.0), (0.0, 1.0), (0.0, 0.01)
+    estimator = Estimator(0.05, 0.15, 0.006, 0.1, 2.0, 7, 20, 0.2, 0.5, 50.0, *work)
     with pytest.raises(InputError, match="simulate it"):
         synth.predict(dataclasses.replace(table, estimator=estimator), problem)
 
