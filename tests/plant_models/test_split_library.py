@@ -7,6 +7,7 @@ import pytest
 
 from plant_models.library import SourcedValue, load_position, load_retarder, position_names
 from plant_models.library.position_entry import MEAN_CV, REGULATOR
+from plant_models.library.retarder_entry import DAY_SPREAD
 
 LOSSES = ("sensor.missed_share", "sensor.missed_burst_s")
 
@@ -24,8 +25,9 @@ Who changes a number, its source or its range on purpose takes the position out 
 
 
 def before(name: str) -> list[SourcedValue]:
-    """The numbers of a position, but for approach, uncertainty of the mean friction, and losses, which came later."""
-    return [value for value in load_position(name).provenance if value.key not in {*REGULATOR, MEAN_CV, *LOSSES}]
+    """The numbers of a position, but for approach, spreads from day to day, and losses, which came later."""
+    later = {*REGULATOR, MEAN_CV, DAY_SPREAD, *LOSSES}
+    return [value for value in load_position(name).provenance if value.key not in later]
 
 
 @pytest.mark.parametrize("name", BEFORE)

@@ -104,7 +104,7 @@ def test_known_shifts_are_found_again() -> None:
 
 
 def test_other_passes_err_as_was_found(plant_of: Callable[[float], Plant]) -> None:
-    """Cuts that roll easily are thought too slow at the end: an estimator does not learn their resistance."""
+    """Cuts that roll easily are thought too slow at the end: an estimator learns their resistance by and by."""
     plant = plant_of(36.0)
     stages = plant.top_stage + 1
     coefficients, has_line = np.zeros((stages, 2, 5)), np.ones((stages, 2), dtype=bool)
@@ -124,5 +124,5 @@ def test_other_passes_err_as_was_found(plant_of: Callable[[float], Plant]) -> No
             last.append((extra, float((passed.measured_m_s - passed.speed_m_s)[late].mean())))
     extra, mean_error = np.array(last).T
     slope = float(np.polyfit(extra, mean_error, 1)[0])
-    assert found.per_acceleration_s[-1] < -0.5
+    assert found.per_acceleration_s[-1] < -0.2
     assert slope == pytest.approx(found.per_acceleration_s[-1], rel=0.25)
