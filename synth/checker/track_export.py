@@ -16,9 +16,10 @@ from synth.checker.float32 import bits, from_bits
 from synth.checker.table_reading import Table
 
 WORDS: Final = ("s_bits", "v_bits", "overpressure_bits", "estimate_bits")
-HEAD: Final = ["track", "table", "id", *WORDS, "s_m", "v_m_s", "overpressure_kpa", "estimate_m_s", "unseen_samples"]
+VALUES: Final = ("s_m", "v_m_s", "overpressure_kpa", "estimate_m_s", "unseen_samples", "alarms")
+HEAD: Final = ["track", "table", "id", *WORDS, *VALUES]
 
-Sample = tuple[int, int, int, int, float]
+Sample = tuple[int, int, int, int, float, float]
 
 
 def differences(content: bytes, tables: Sequence[Table], numbered: bool) -> Iterator[tuple[str, str]]:
@@ -50,24 +51,27 @@ def differences(content: bytes, tables: Sequence[Table], numbered: bool) -> Iter
 
 
 def sample_of(row: Sequence[str]) -> Sample:
-    """The words of one row, and the samples since the last speed that was believed."""
+    """The words of one row, the samples since the last speed that was believed, and the alarms."""
     try:
         words = [int(cell, 16) for cell in row[3:7]]
         for word in words:
             from_bits(word)
-        unseen = float(row[-1])
+        unseen, alarms = float(row[-2]), float(row[-1])
     except (ValueError, struct.error) as fault:
         raise DamagedError(f"{shown(row)} is no sample: {fault}") from None
-    return words[0], words[1], words[2], words[3], unseen
+    return words[0], words[1], words[2], words[3], unseen, alarms
 
 
 def first_fault(estimator: Estimator | None, samples: Sequence[Sample]) -> int | None:
-    """The first sample with another estimate or count; without estimator the measured speed is due, bit for bit."""
+    """The first sample with another estimate, count or alarm.
+
+    Without estimator the measured speed is due, bit for bit, and no alarm.
+    """
     observer, unseen = Observer(estimator) if estimator is not None else None, 0.0
-    for at, (s, v, kpa, estimate, counted) in enumerate(samples):
+    for at, (s, v, kpa, estimate, counted, alarmed) in enumerate(samples):
         right = v if observer is None else bits(observer.observe(from_bits(s), from_bits(v), from_bits(kpa)))
         unseen = next_unseen(unseen, from_bits(v)) if observer is None else observer.unseen
-        if counted != unseen:
+        if counted != unseen or alarmed != (0 if observer is None else observer.alarms):
             return at
         both = math.isnan(from_bits(right)) and math.isnan(from_bits(estimate))  # of absurd work; there are many NaN
         if right != estimate and not both:
