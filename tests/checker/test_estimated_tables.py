@@ -207,7 +207,12 @@ def change_text(file: Path, pattern: str, replacement: str) -> None:
         ("c/golden_tracks.csv", r'\n(0,0,"[^"]*"),\w+,', r"\n\1,x,", "is no sample"),
         ("st/retarder_table.st", r"(\bBreaksOf : .*\[)24", r"\g<1>23", r"BreaksOf\[0\] is 23"),
         *(
-            ("st/retarder_table.st", rf"(\b{name}Of : ARRAY\[0..0\] OF REAL := \[)", r"\g<1>9", rf"{name}Of\[0\] is [0.]*9")
+            (
+                "st/retarder_table.st",
+                rf"(\b{name}Of : ARRAY\[0..0\] OF REAL := \[)",
+                r"\g<1>9",
+                rf"{name}Of\[0\] is [0.]*9",
+            )
             for name in (
                 "SpeedVariance",
                 "FactorVariance",
