@@ -16,8 +16,8 @@ from synth.checker.float32 import bits, from_bits
 from synth.checker.table_reading import Table
 
 WORDS: Final = ("s_bits", "v_bits", "overpressure_bits", "estimate_bits")
-UNITS: Final = ("s_m", "v_m_s", "overpressure_kpa", "estimate_m_s", "unseen_samples", "alarms")
-HEAD: Final = ["track", "table", "id", *WORDS, *UNITS]
+VALUES: Final = ("s_m", "v_m_s", "overpressure_kpa", "estimate_m_s", "unseen_samples", "alarms")
+HEAD: Final = ["track", "table", "id", *WORDS, *VALUES]
 
 Sample = tuple[int, int, int, int, float, float]
 
@@ -51,7 +51,7 @@ def differences(content: bytes, tables: Sequence[Table], numbered: bool) -> Iter
 
 
 def sample_of(row: Sequence[str]) -> Sample:
-    """The words of one row, the samples since the last reading that was believed, and the alarm word."""
+    """The words of one row, the samples since the last speed that was believed, and the alarms."""
     try:
         words = [int(cell, 16) for cell in row[3:7]]
         for word in words:
@@ -63,7 +63,10 @@ def sample_of(row: Sequence[str]) -> Sample:
 
 
 def first_fault(estimator: Estimator | None, samples: Sequence[Sample]) -> int | None:
-    """The first sample with another estimate, count or alarm; without estimator the measured speed is due, bit for bit."""
+    """The first sample with another estimate, count or alarm.
+
+    Without estimator the measured speed is due, bit for bit, and no alarm.
+    """
     observer, unseen = Observer(estimator) if estimator is not None else None, 0.0
     for at, (s, v, kpa, estimate, counted, alarmed) in enumerate(samples):
         right = v if observer is None else bits(observer.observe(from_bits(s), from_bits(v), from_bits(kpa)))

@@ -71,7 +71,7 @@ def with_stage_out_of_use(table: ControllerTable, slope: float = -0.00390625) ->
 def estimated(table: ControllerTable) -> ControllerTable:
     """The table for an estimated speed."""
     breaks, drive, brake = (-4.0, 0.0, 10.0, 20.5), (0.0, 0.03, 0.1, 0.2), (0.0, 0.0, 0.02, 0.03)
-    estimator = Estimator(0.05, 0.15, 0.1, 2.0, 50.0, breaks, drive, brake)
+    estimator = Estimator(0.05, 0.15, 0.006, 0.1, 2.0, 7, 20, 0.2, 0.5, 50.0, breaks, drive, brake)
     predicted = replace(table.predicted, passes=1000)
     return replace(table, id=f"{table.id}-estimated", estimator=estimator, predicted=predicted)
 

@@ -39,7 +39,7 @@ mass_t = 22
 """
 """A park retarder, one light class and two targets, on a coarse grid."""
 
-FROM_THE_ENTRANCE = "approach_m = 0.0\n"
+FROM_THE_ENTRANCE = "approach_m = 0.0\nestimator = false\n"
 
 APPROACHED = f"{CONFIG}entrance_stage = 1\n[regulator]\napproach_m = 4.0\n"
 """The class may be given stage 1 before the entrance."""
@@ -75,7 +75,7 @@ def tuned_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def estimated_once(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The directory of the same tune with an estimator, version 2; not to be changed."""
     folder = tmp_path_factory.mktemp("estimated")
-    return tune(folder, f"{CONFIG}[regulator]\n{FROM_THE_ENTRANCE}estimator = true\n")
+    return tune(folder, f"{CONFIG}[regulator]\napproach_m = 0.0\nestimator = true\n")
 
 
 @pytest.fixture(scope="session", params=[False, True], ids=["measured", "estimated"])

@@ -266,5 +266,13 @@ def test_before_the_entrance_no_stage_above_the_entrance_stage_is_commanded(far_
     assert [decision(at_any_time, stage, 0.0, 3.0) for stage in (0, 1, 2)] == [1, 2, 3]
 
 
+@pytest.mark.parametrize("unknown_m_s", [-1.0, math.nan])
+def test_without_a_speed_the_stage_stays(table: Table, unknown_m_s: float) -> None:
+    """As the estimator answers before the first reading that it believes, and as a lost reading is."""
+    every = range(len(table.lines))
+    assert [decision(table, stage, 1.0, unknown_m_s) for stage in every] == [*every]
+    assert decision(table, 1, 1.0, 0.0) == 0
+
+
 def test_agrees_with_the_production_simulator_from_before_the_entrance(far_plant: Plant, far_table: Table) -> None:
     test_agrees_with_the_production_simulator(simulate(far_plant, far_table, 4000, 9), far_table)

@@ -49,6 +49,10 @@ def times(key: str, factor: float) -> Callable[[Document], None]:
     return change
 
 
+def to(key: str, value: object) -> Callable[[Document], None]:
+    return lambda document: document["estimator"].update({key: value})
+
+
 def no_estimator(document: Document) -> None:
     del document["estimator"], document["predicted"]["passes"]
     document["version"] = 1
@@ -62,8 +66,13 @@ def no_estimator(document: Document) -> None:
         (late_break, r"estimator's [DW] is .* but the plant gives"),
         (times("speed_noise_m_s", 2.0), "estimator's speed noise is"),
         (times("friction_cv", 1.01), "estimator's friction_cv is"),
+        (times("resistance_std_m_s2", 0.5), "estimator's resistance_std is"),
         (times("path_std", 0.99), "estimator's path_std is"),
         (times("correlation_length_m", 2.0), "estimator's correlation length is"),
+        (to("frozen_readings", 1000), r"calls 1000 repetitions frozen, but its configuration gives \d\b"),
+        (to("doubted_readings", 19), "doubts 19 readings, but 20 are 2 s"),
+        (to("lost_speed_std_m_s", 0.3), "estimator's limit of a lost speed is 0.3, but its configuration gives 0.2"),
+        (times("unlikely_deviation", 0.9), "estimator's unlikely deviation is"),
         (times("touch_pressure_kpa", 1.1), "estimator's touch pressure is"),
         (no_estimator, "asks for an estimator, it has none"),
     ],
@@ -106,6 +115,12 @@ def unknown_key(document: Document) -> None:
     document["estimator"]["delay_s"] = 0.1
 
 
+def as_before(document: Document) -> None:
+    """With the keys of the recursion that knew no resistance."""
+    for key in ("resistance_std_m_s2", "frozen_readings", "doubted_readings", "lost_speed_std_m_s"):
+        del document["estimator"][key]
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -114,6 +129,14 @@ def unknown_key(document: Document) -> None:
         (short_row, "lengths of the estimator's rows"),
         (no_passes, "predicted.passes"),
         (times("speed_noise_m_s", 1e-9), "estimator.speed_noise_m_s is .* from 0.0001 to 10"),
+        (times("resistance_std_m_s2", 1e3), "estimator.resistance_std_m_s2 is .* from 0 to 1"),
+        (to("frozen_readings", 0), "estimator.frozen_readings is 0, but it must be from 1 to 1000"),
+        (to("frozen_readings", 4.5), "estimator.frozen_readings is 4.5, but it must be a whole number"),
+        (to("doubted_readings", 1001), "estimator.doubted_readings is 1001, but it must be from 1 to 1000"),
+        (to("doubted_readings", True), "estimator.doubted_readings is True, but it must be a whole number"),
+        (to("lost_speed_std_m_s", 0), "estimator.lost_speed_std_m_s is 0, but it must be from 0.001 to 10"),
+        (to("unlikely_deviation", -0.1), "estimator.unlikely_deviation is -0.1, but it must be from 0 to 10"),
+        (as_before, "missing or unknown keys"),
         (old_version, "unknown keys"),
         (next_version, "versions 1, 2, 3 and 5 only"),
         (unknown_key, "delay_s"),
@@ -155,7 +178,16 @@ def change_text(file: Path, pattern: str, replacement: str) -> None:
     ("name", "pattern", "replacement", "words"),
     [
         ("c/retarder_table.c", r"24u, /\* breaks", "23u, /* breaks", "word 43 of table 0"),
-        ("c/retarder_table.c", r"(touch pressure, .*\n\s*\{\s*\{\S+ 0x1\.)d", r"\g<1>e", "word 49 of table 0"),
+        ("c/retarder_table.c", r"(?s)(24u, /\* breaks.*?\{\s*\{\S+ 0x1\.)d", r"\g<1>e", "word 56 of table 0"),
+        *(
+            (
+                "c/retarder_table.c",
+                rf"(24u, /\* breaks.*\n(?:.*\n){{{place}}}\s*0x1)\.?\w*(p)",
+                r"\g<1>.8\2",
+                f"word {44 + place} of table 0",
+            )
+            for place in range(11)
+        ),
         (
             "c/retarder_table.h",
             r"RETARDER_BREAKS 24u",
@@ -168,11 +200,32 @@ def change_text(file: Path, pattern: str, replacement: str) -> None:
             r"\n\1,40000000,",
             r"the estimate at sample \d+ of track '0'",
         ),
-        ("c/golden_tracks.csv", r",0(\r\n)", r",1\1", r"the estimate at sample \d+ of track '0'"),
+        ("c/golden_tracks.csv", r",0,(\d\r\n)", r",1,\1", r"the estimate at sample \d+ of track '0'"),
+        ("c/golden_tracks.csv", r",0(\r\n)", r",2\1", r"the estimate at sample \d+ of track '0'"),
         ("c/golden_tracks.csv", r"\n1,0,", "\n1,7,", "track '1' is of table '7'"),
         ("c/golden_tracks.csv", r"(?s)\n.*", "\n", "its estimator has no golden track"),
         ("c/golden_tracks.csv", r'\n(0,0,"[^"]*"),\w+,', r"\n\1,x,", "is no sample"),
         ("st/retarder_table.st", r"(\bBreaksOf : .*\[)24", r"\g<1>23", r"BreaksOf\[0\] is 23"),
+        *(
+            (
+                "st/retarder_table.st",
+                rf"(\b{name}Of : ARRAY\[0..0\] OF REAL := \[)",
+                r"\g<1>9",
+                rf"{name}Of\[0\] is [0.]*9",
+            )
+            for name in (
+                "SpeedVariance",
+                "FactorVariance",
+                "PathVariance",
+                "ExcessVariance",
+                "Leap",
+                "Frozen",
+                "Doubted",
+                "LostVariance",
+                "Caution",
+                "Unlikely",
+            )
+        ),
         ("st/retarder_table.st", r"(\bTouchOf : .*\[)5", r"\g<1>6", r"TouchOf\[0\] is 60"),
         ("st/retarder_table.st", r"(\bDrive_0 : [^,]*, -\d\.)\d", r"\g<1>9", r"Drive_0\[1\] is"),
         ("st/retarder_table.st", r"\bBrake_0 : ", "Brake_1 : ", "the array Brake_0 is missing"),

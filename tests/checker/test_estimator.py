@@ -12,11 +12,12 @@ from random import Random
 import numpy as np
 import pytest
 
-from synth.book.estimation.estimator_design import estimator_of
+from plant_models import DopplerSensor
+from synth.book.estimation.estimator_design import estimator_of, frozen_readings
 from synth.checker.claims import Honesty
 from synth.checker.estimator import Observer
 from synth.checker.estimator import estimator_of as read_estimator
-from synth.checker.estimator_sense import estimator_faults, work_of
+from synth.checker.estimator_sense import chance_of_equals, estimator_faults, frozen_after, work_of
 from synth.checker.float32 import bits
 from synth.checker.plant import Plant, plant_of
 from synth.configuration.config_file import parse_config
@@ -189,6 +190,23 @@ def test_the_production_estimator_is_that_of_the_plant(config: str) -> None:
         if len(estimator.s_m) < 256:
             for name in ("s_m", "drive_m2_s2", "brake_m2_s2_per_kpa"):
                 assert section[name] == pytest.approx(getattr(work, name), rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("noise_m_s", [0.001, 0.02, 0.1, 1.0])
+@pytest.mark.parametrize("resolution_m_s", [0.003, 0.05, 0.3])
+def test_chance_of_equal_readings(noise_m_s: float, resolution_m_s: float) -> None:
+    """Against the closed form of the plant, and against 10 000 pairs of readings within five standard errors."""
+    chance = chance_of_equals(noise_m_s, resolution_m_s)
+    sensor = DopplerSensor(noise_m_s, resolution_m_s, 0.1, 0.0)
+    assert chance == pytest.approx(sensor.repeat_probability, rel=1e-8)
+    rng = np.random.default_rng(3)
+    speed = rng.random(10_000) * resolution_m_s
+    one, other = (np.rint((speed + noise_m_s * rng.standard_normal(10_000)) / resolution_m_s) for _ in range(2))
+    assert np.mean(one == other) == pytest.approx(chance, abs=5.0 * math.sqrt(chance * (1.0 - chance) / 10_000))
+    count = frozen_after(chance)
+    assert chance**count <= 1e-4 or count == 1000
+    assert count == 1 or chance ** (count - 1) > 1e-4
+    assert count == frozen_readings(sensor)
 
 
 def test_work_is_the_integral_along_the_path() -> None:

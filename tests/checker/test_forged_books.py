@@ -107,7 +107,8 @@ def test_arrays_longer_than_the_longest_table(mixed: Path, tmp_path: Path, axis:
     ("name", "index"),
     [("axle_offsets_m", (0, 1)), ("pressure_kpa", (1, -1)), ("coefficients", (1, -1, 0, 0)),
      ("coefficients", (0, 0, 0, 0)), ("has_line", (1, -1, 0)), ("validated_rms_m_s", (1,)),
-     ("validated_rms_ci95_m_s", (1, 0)), ("estimator_s_m", (1, 0)), ("estimator_path_std", (1,))],
+     ("validated_rms_ci95_m_s", (1, 0)), ("estimator_s_m", (1, 0)), ("estimator_path_std", (1,)),
+     ("estimator_frozen_readings", (1,)), ("estimator_unlikely_deviation", (1,))],
 )  # fmt: skip
 def test_nothing_stands_beside_the_tables(mixed: Path, tmp_path: Path, name: str, index: tuple[int, ...]) -> None:
     def edit(file: Any) -> None:
