@@ -180,6 +180,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
         420.0,
         "peers.md",
         "synth.studies.peers.study",
+        "synth.studies.peers.picture",
     ),
     Study(
         "point-sensors",

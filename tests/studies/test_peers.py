@@ -264,7 +264,7 @@ def figures(name: str, ratio: float, **numbers: float) -> Figures:
 def contest(*ratios: float, kept: bool = True) -> Contest:
     names = [PREDICTIVE, "PI"]
     rivals = [figures(name, ratio, gain=1.0) for name, ratio in zip(names, ratios, strict=True)]
-    return Contest("a case", "at rest", "free", kept, (figures(TABLE, 1.0), *rivals))
+    return Contest("a case", "at rest", "priced", 1e-4, kept, (figures(TABLE, 1.0), *rivals))
 
 
 def test_who_is_better() -> None:

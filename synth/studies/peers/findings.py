@@ -19,7 +19,7 @@ AS_GOOD = 1.05
 
 HEADS = (
     "case", "controller", "rms, mm/s [95 %]", "/ table [95 %]", "99 % of \\|error\\|, mm/s", "commands", "time, s",
-    "stalled, %",
+    "stalled, %", "criterion / table",
 )  # fmt: skip
 
 
@@ -43,17 +43,30 @@ class Figures:
 
 
 @dataclass(frozen=True)
+class Day:
+    """A day with this much of the friction: rms of the table with estimator, rms of the predictive one / that."""
+
+    factor: float
+    table_rms_m_s: float
+    ratio: float
+    ratio_ci95: Interval
+
+
+@dataclass(frozen=True)
 class Contest:
     """Controllers of one case with one permission, a command priced as in the table or free; the table comes first.
 
-    `estimator_kept`: False where a tune leaves the estimator out of the table, which then counts without it.
+    `price_m2_s2`: of a command, for the peers; `estimator_kept`: False where a tune leaves the estimator out of the
+    table, which then counts without it; `days`: both as they are, on other days than they were made for.
     """
 
     case: str
     permission: str
     price: str
+    price_m2_s2: float
     estimator_kept: bool
     figures: tuple[Figures, ...]
+    days: tuple[Day, ...] = ()
 
     @property
     def table(self) -> Figures:
@@ -70,10 +83,15 @@ class Contest:
         """All that are no tables."""
         return tuple(each for each in self.figures if each.parameters)
 
+    def criterion(self, each: Figures) -> float:
+        """What `each` costs: mean square of the error, and price of its commands; over that of the table."""
+        cost, of_table = (figures.rms_m_s**2 + self.price_m2_s2 * figures.commands for figures in (each, self.table))
+        return cost / of_table
+
 
 @dataclass(frozen=True)
 class Peers(Findings):
-    """All cases. `price_m2_s2`, `free_m2_s2`: of a command in the criterion of tables; free peers pay nothing.
+    """All cases. `free_m2_s2`: what a command costs the tables for which it is free; free peers pay nothing.
 
     `evaluations`: the most that tuning a peer took.
     """
@@ -83,17 +101,21 @@ class Peers(Findings):
     passes: int
     tuning_passes: int
     evaluations: int
-    price_m2_s2: float
     free_m2_s2: float
     contests: tuple[Contest, ...]
 
     def tables(self) -> Mapping[str, MarkdownTable]:
-        """`PERMISSION PRICE`: a row a controller; `summary`: a row for each of these; `numbers`: what tuning found."""
+        """`PERMISSION PRICE`: a row a controller; `summary`: a row for each of these; `days`: a row for each friction;
+        `numbers`: what tuning found.
+        """
         found = {}
         for permission, price in self.kinds():
             title = f"commands {permission}, {price}"
             found[f"{permission} {price}"] = table(title, HEADS, rows_of(self.of(permission, price)))
         found["summary"] = table("rms of the table / rms of its peers", SUMMARY, map(self.summary, self.kinds()))
+        found["days"] = table(
+            "rms of the predictive controller / rms of the table on other days", DAYS, day_rows(self.contests)
+        )
         found["numbers"] = table("what tuning found", NUMBERS, number_rows(self.contests))
         return found
 
@@ -109,11 +131,12 @@ class Peers(Findings):
         """The cells of one kind."""
         contests = self.of(*kind)
         ratios = sorted(1.0 / each.predictive.ratio for each in contests)
+        costs = sorted(1.0 / each.criterion(each.predictive) for each in contests)
         commands = sorted(each.table.commands / each.predictive.commands for each in contests)
         longer = sorted(each.table.time_s - each.predictive.time_s for each in contests)
+        counts = (f"{count(contests)} of {len(contests)}" for count in (as_good, better, beaten))
         return (
-            *kind, f"{ratios[0]:.2f} to {ratios[-1]:.2f}", f"{as_good(contests)} of {len(contests)}",
-            f"{better(contests)} of {len(contests)}", f"{beaten(contests)} of {len(contests)}",
+            *kind, f"{ratios[0]:.2f} to {ratios[-1]:.2f}", f"{costs[0]:.2f} to {costs[-1]:.2f}", *counts,
             f"{commands[0]:.2f} to {commands[-1]:.2f}", f"{longer[0]:+.1f} to {longer[-1]:+.1f}",
         )  # fmt: skip
 
@@ -135,8 +158,9 @@ class Peers(Findings):
 
 
 SUMMARY = (
-    "commands", "a command is", "rms of the table / predictive", f"at most {AS_GOOD:g}", "less beyond the interval",
-    "less than every peer", "commands of the table / predictive", "longer in the position, s",
+    "commands", "a command is", "rms of the table / predictive", "criterion of the table / predictive",
+    f"at most {AS_GOOD:g}", "less beyond the interval", "less than every peer", "commands of the table / predictive",
+    "longer in the position, s",
 )  # fmt: skip
 
 
@@ -165,6 +189,7 @@ def rows_of(contests: Sequence[Contest]) -> Iterator[tuple[str, ...]]:
                 contest.case, f"{each.name} (left out)" if left_out else each.name,
                 around(each.rms_m_s, each.rms_ci95_m_s, 1, 1e3), ratio, f"{1e3 * each.p99_m_s:.0f}",
                 f"{each.commands:.1f}", f"{each.time_s:.1f}", f"{100.0 * each.stalled:.2f}",
+                ABSENT if each is contest.table else f"{contest.criterion(each):.2f}",
             )  # fmt: skip
 
 
@@ -177,3 +202,16 @@ def number_rows(contests: Sequence[Contest]) -> Iterator[tuple[str, ...]]:
         for rival in contest.rivals:
             numbers = ", ".join(f"{name} {value:.3g}" for name, value in rival.parameters.items())
             yield contest.case, contest.permission, contest.price, rival.name, numbers
+
+
+DAYS = ("case", "commands", "a command is", "friction ×", "rms of the table, mm/s", "predictive / table [95 %]")
+
+
+def day_rows(contests: Sequence[Contest]) -> Iterator[tuple[str, ...]]:
+    """A row for each day of each contest."""
+    for contest in contests:
+        for day in contest.days:
+            yield (
+                contest.case, contest.permission, contest.price, f"{day.factor:g}", f"{1e3 * day.table_rms_m_s:.1f}",
+                f"{day.ratio:.2f} {span(day.ratio_ci95, 2)}",
+            )  # fmt: skip

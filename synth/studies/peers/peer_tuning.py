@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -16,13 +16,21 @@ from synth.studies.peers.peer_loop import PeerLoop
 from synth.studies.peers.regulators import PeerRegulator, PredictiveController, PulseController
 from tuning_tables import Decisions, Estimator
 
+Floats = NDArray[np.float64]
+
+
+STEP = 0.02
+"""Of the bounds of a number, where its grid has one point."""
+
+HELD = "held_share"
+"""The number that says most about how a peer brakes, early or late: searches begin at different values of it."""
+
 
 @dataclass(frozen=True)
 class PeerFamily:
     """A peer with free numbers; `build(target, decisions, estimator, *values)` makes one of it.
 
-    `names`, `grids` and `bounds` belong to the values; a simplex begins half a step of the grid wide, or `STEP` of the
-    bounds where the grid has one point.
+    `names`, `grids` and `bounds` belong to the values; a simplex begins half a step of the grid wide, or `STEP`.
     """
 
     name: str
@@ -36,9 +44,6 @@ class PeerFamily:
         """How wide a simplex begins."""
         pairs = zip(self.grids, self.bounds, strict=True)
         return tuple(0.5 * (g[1] - g[0]) if len(g) > 1 else STEP * (high - low) for g, (low, high) in pairs)
-
-
-STEP = 0.02
 
 
 @dataclass(frozen=True)
@@ -81,15 +86,15 @@ def without_estimator(
 PREDICTIVE = PeerFamily(
     name="predictive",
     build=PredictiveController,
-    names=("horizon_s", "held_share", "shift_m_s", "price_m2_s2"),
-    grids=((0.6, 0.9, 1.2), (0.05, 0.15, 0.25, 0.4), (0.0,), (0.0, 0.1, 0.3)),
-    bounds=((0.2, 2.0), (0.02, 1.0), (-0.5, 0.5), (0.0, 3.0)),
+    names=("horizon_s", HELD, "shift_m_s", "price_m2_s2"),
+    grids=((0.6, 0.9, 1.2), (0.03, 0.12, 0.24, 0.4), (0.0,), (0.0, 0.07, 0.2)),
+    bounds=((0.2, 2.0), (0.0, 1.0), (-0.5, 0.5), (0.0, 3.0)),
 )
 
 PULSE_NUMBERS = (
-    ("held_share", "gain_per_m_s", "integral_s", "period_s"),
+    (HELD, "gain_per_m_s", "integral_s", "period_s"),
     ((0.05, 0.15, 0.25, 0.4), (1.0, 2.0, 4.0), (1.0, 3.0, 10.0), (0.15, 0.3, 0.6)),
-    ((0.02, 1.0), (0.01, 20.0), (0.1, 1000.0), (0.1, 4.0)),
+    ((0.0, 1.0), (0.01, 20.0), (0.1, 1000.0), (0.1, 4.0)),
 )
 
 PULSES_MEASURED = PeerFamily("PI, measured speed", without_estimator, *PULSE_NUMBERS)
@@ -108,11 +113,11 @@ def tuned_peer(family: PeerFamily, loop: PeerLoop, passes: CommonPasses, aimed: 
     low, high = np.transpose(family.bounds)
     count = 0
 
-    def regulator(values: NDArray[np.float64]) -> PeerRegulator:
+    def regulator(values: Floats) -> PeerRegulator:
         numbers = np.clip(values, low, high).tolist()
         return family.build(aimed.target_m_s, aimed.decisions, aimed.estimator, *numbers)
 
-    def cost(values: NDArray[np.float64], on: CommonPasses) -> float:
+    def cost(values: Floats, on: CommonPasses) -> float:
         nonlocal count
         count += 1
         return cost_of(loop.run(regulator(values), on.draws), aimed)
@@ -122,9 +127,9 @@ def tuned_peer(family: PeerFamily, loop: PeerLoop, passes: CommonPasses, aimed: 
 
     few = passes.first(search.look)
     points = [np.array(point) for point in product(*family.grids)]
-    order = sorted(range(len(points)), key=[cost(point, few) for point in points].__getitem__)
+    costs = [cost(point, few) for point in points]
     found = []
-    for start in (points[i] for i in order[: search.starts]):
+    for start in apart(points, costs, family.names.index(HELD), search.starts):
         simplex = np.vstack([start, start + np.diag(family.steps)])
         limits: Any = {"initial_simplex": simplex, "maxfev": search.evaluations, "xatol": 1e-4, "fatol": 1e-8}
         found.append(minimize(by_all, start, method="Nelder-Mead", options=limits))
@@ -132,6 +137,15 @@ def tuned_peer(family: PeerFamily, loop: PeerLoop, passes: CommonPasses, aimed: 
     values = np.clip(best.x, low, high)
     parameters = dict(zip(family.names, values.tolist(), strict=True))
     return TunedPeer(regulator(values), parameters, float(best.fun), count)
+
+
+def apart(points: Sequence[Floats], costs: Sequence[float], number: int, count: int) -> list[Floats]:
+    """The `count` best points that differ in `number`: neighbours of the best would find the same valley."""
+    found: list[Floats] = []
+    for i in sorted(range(len(points)), key=costs.__getitem__):
+        if all(points[i][number] != each[number] for each in found):
+            found.append(points[i])
+    return found[:count]
 
 
 def cost_of(sample: ExitSample, aimed: Aimed) -> float:

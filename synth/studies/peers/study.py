@@ -10,11 +10,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from synth.book.estimation.estimator_design import estimator_of
 from synth.configuration.config_file import load_config, parse_config
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.simulation.closed_loop import TableController
 from synth.simulation.common_passes import CommonPasses, common_passes
+from synth.simulation.controllers import fixed
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses
@@ -25,19 +28,22 @@ from synth.studies.peers.findings import (
     AT_ANY_TIME,
     AT_REST,
     FREE,
+    PREDICTIVE,
     PRICED,
     TABLE,
     TABLE_WITHOUT,
     Contest,
+    Day,
     Figures,
     Peers,
 )
 from synth.studies.peers.peer_loop import PeerLoop, peer_loop
-from synth.studies.peers.peer_tuning import FAMILIES, Aimed, Search, tuned_peer
+from synth.studies.peers.peer_tuning import FAMILIES, Aimed, Search, TunedPeer, tuned_peer
+from synth.studies.peers.regulators import PeerRegulator
 from synth.studies.peers.tables import TablePair, tables_of
 from synth.studies.side_by_side import side_by_side
 from synth.studies.study import Method, Tell
-from tuning_tables import Decisions
+from tuning_tables import ControllerTable, Decisions
 
 FRESH, TUNING = 15485863, 15487469
 """Added to the configured seed: passes that neither tables nor anything else have seen, and those of the peers."""
@@ -52,6 +58,9 @@ OTHERS = (
 )  # fmt: skip
 """Plants besides those of the configuration: name, text, case."""
 
+DAY_FACTORS = (0.8, 1.2)
+"""Friction of other days. Tables are designed for any day; peers are tuned on the mean day, and estimate friction."""
+
 PERMISSIONS = {Decisions.AT_REST: AT_REST, Decisions.AT_ANY_TIME: AT_ANY_TIME}
 
 
@@ -65,9 +74,10 @@ class Options:
     others: int = option(len(OTHERS), "how many other plants: a cut of three cars, the park", (0, len(OTHERS)))
     passes: int = option(10_000, "fresh passes of each controller", (200, 10**6))
     tuning: int = option(500, "passes that peers are tuned on", (100, 10**5))
-    look: int = option(100, "of these, passes for a first look at a grid of their numbers", (20, 10**5))
+    look: int = option(150, "of these, passes for a first look at a grid of their numbers", (20, 10**5))
     starts: int = option(3, "simplex searches from the best points of the grid", (1, 20))
     evaluations: int = option(40, "of each search", (1, 1000))
+    day_passes: int = option(4000, "of the fresh passes, those repeated with other friction", (200, 10**6))
 
 
 @dataclass(frozen=True)
@@ -81,6 +91,7 @@ class Order:
     passes: RandomPasses
     tuning: RandomPasses
     search: Search
+    day_passes: int
 
 
 def run(options: Options, tell: Tell) -> Peers:
@@ -98,7 +109,7 @@ def run(options: Options, tell: Tell) -> Peers:
                for each in case if (each.permission, each.price) == (permission, price)]  # fmt: skip
     return Peers(
         config.sha256, config.validation.seed + FRESH, options.passes, options.tuning, max(count for _, count in found),
-        config.criterion.switching_tolerance_m2_s2, FREE_M2_S2, tuple(ordered),
+        FREE_M2_S2, tuple(ordered),
     )  # fmt: skip
 
 
@@ -114,7 +125,10 @@ def orders_of(options: Options) -> list[Order]:
         other = parse_config(text, f"study peers: {name}")
         (case,) = named_cases(other, [word])
         named.append((other, case, f"{name}, {case.name}", word))
-    return [Order(of, case, name, word in options.any_time, *passes, search) for of, case, name, word in named]
+    return [
+        Order(of, case, name, word in options.any_time, *passes, search, options.day_passes)
+        for of, case, name, word in named
+    ]
 
 
 def contests(order: Order) -> tuple[list[Contest], int]:
@@ -128,11 +142,13 @@ def contests(order: Order) -> tuple[list[Contest], int]:
         for decisions, pair in tables.items():
             aimed = Aimed(order.case.target_m_s, of_peers, decisions, estimator_of(order.case.plant))
             samples = samples_of_tables(pair, passes)
-            rivals, count = samples_of_peers(order, loop, passes, aimed)
+            tuned = tuned_peers(order, loop, passes, aimed)
+            rivals = {each: (loop.run(peer.regulator, passes.draws), peer.parameters) for each, peer in tuned.items()}
             figures = figures_of({**samples, **rivals}, order.case.target_m_s)
+            days = days_of(pair.best, tuned[PREDICTIVE].regulator, loop, passes.first(order.day_passes))
             kept = pair.with_estimator is not None
-            found.append(Contest(order.name, PERMISSIONS[decisions], name, kept, figures))
-            most = max(most, count)
+            found.append(Contest(order.name, PERMISSIONS[decisions], name, of_peers, kept, figures, days))
+            most = max(most, *(each.evaluations for each in tuned.values()))
     return found, most
 
 
@@ -146,12 +162,22 @@ def samples_of_tables(pair: TablePair, passes: CommonPasses) -> Sampled:
     return {name: (passes.run(TableController(each)), {}) for name, each in tables.items()}
 
 
-def samples_of_peers(order: Order, loop: PeerLoop, passes: CommonPasses, aimed: Aimed) -> tuple[Sampled, int]:
-    """Every peer, tuned, and the most evaluations."""
+def tuned_peers(order: Order, loop: PeerLoop, passes: CommonPasses, aimed: Aimed) -> Mapping[str, TunedPeer]:
+    """Every peer by its name."""
     tuning = passes.of_others(order.tuning)
-    tuned = {family.name: tuned_peer(family, loop, tuning, aimed, order.search) for family in FAMILIES}
-    samples = {name: (loop.run(each.regulator, passes.draws), each.parameters) for name, each in tuned.items()}
-    return samples, max(each.evaluations for each in tuned.values())
+    return {family.name: tuned_peer(family, loop, tuning, aimed, order.search) for family in FAMILIES}
+
+
+def days_of(table: ControllerTable, regulator: PeerRegulator, loop: PeerLoop, passes: CommonPasses) -> tuple[Day, ...]:
+    """A table and a peer, as they are, on days of other friction, which neither is told."""
+    target, found = table.target_speed_m_s, []
+    controller, draws = TableController(table), passes.draws
+    for factor in DAY_FACTORS:
+        of_day = draws._replace(brake_m_s2_per_kpa=fixed(factor * draws.brake_m_s2_per_kpa, np.float64))
+        mine = passes.loop(controller.stages).run(controller, of_day)
+        ratio, ratio_ci95 = rms_ratio(loop.run(regulator, of_day), mine, target)
+        found.append(Day(factor, exit_statistics(mine, target).rms_m_s, ratio, ratio_ci95))
+    return tuple(found)
 
 
 def figures_of(sampled: Sampled, target_m_s: float) -> tuple[Figures, ...]:
@@ -170,5 +196,5 @@ def figures_of(sampled: Sampled, target_m_s: float) -> tuple[Figures, ...]:
     return tuple(found)
 
 
-SMALLEST = Options(None, ("52:3",), (), 0, 200, 100, 20, 1, 8)
+SMALLEST = Options(None, ("52:3",), (), 0, 200, 100, 20, 1, 8, 200)
 METHOD = Method(Options, SMALLEST, Peers, run)
