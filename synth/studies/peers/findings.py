@@ -105,18 +105,16 @@ class Peers(Findings):
     contests: tuple[Contest, ...]
 
     def tables(self) -> Mapping[str, MarkdownTable]:
-        """`PERMISSION PRICE`: a row a controller; `summary`: a row for each of these; `days`: a row for each friction;
-        `numbers`: what tuning found.
-        """
+        """`at-rest-priced` and so on: a row a controller; `summary`: a row for each of these; `days`; `numbers`."""
         found = {}
         for permission, price in self.kinds():
             title = f"commands {permission}, {price}"
-            found[f"{permission} {price}"] = table(title, HEADS, rows_of(self.of(permission, price)))
+            found[f"{permission} {price}".replace(" ", "-")] = table(title, HEADS, rows_of(self.of(permission, price)))
         found["summary"] = table("rms of the table / rms of its peers", SUMMARY, map(self.summary, self.kinds()))
         found["days"] = table(
             "rms of the predictive controller / rms of the table on other days", DAYS, day_rows(self.contests)
         )
-        found["numbers"] = table("what tuning found", NUMBERS, number_rows(self.contests))
+        found["numbers"] = table("what tuning found for the predictive controller", NUMBERS, number_rows(self.contests))
         return found
 
     def kinds(self) -> tuple[tuple[str, str], ...]:
@@ -193,15 +191,17 @@ def rows_of(contests: Sequence[Contest]) -> Iterator[tuple[str, ...]]:
             )  # fmt: skip
 
 
-NUMBERS = ("case", "commands", "a command is", "controller", "numbers")
+NUMBERS = ("case", "commands", "a command is", "horizon, s", "p̂ / highest", "shift, mm/s", "price, m²/s²")
 
 
 def number_rows(contests: Sequence[Contest]) -> Iterator[tuple[str, ...]]:
-    """A row for each peer."""
+    """A row for each predictive controller."""
     for contest in contests:
-        for rival in contest.rivals:
-            numbers = ", ".join(f"{name} {value:.3g}" for name, value in rival.parameters.items())
-            yield contest.case, contest.permission, contest.price, rival.name, numbers
+        found = contest.predictive.parameters
+        yield (
+            contest.case, contest.permission, contest.price, f"{found['horizon_s']:.2f}", f"{found['held_share']:.3f}",
+            f"{1e3 * found['shift_m_s']:+.1f}", f"{found['price_m2_s2']:.3f}",
+        )  # fmt: skip
 
 
 DAYS = ("case", "commands", "a command is", "friction ×", "rms of the table, mm/s", "predictive / table [95 %]")

@@ -40,6 +40,7 @@ def figures(found: Peers) -> Mapping[str, Figure]:
     for axes, (permission, price) in zip(panels, kinds, strict=False):
         dress(axes, f"commands {permission}, {price}", "rms / rms of the table")
         draw(axes, found.of(permission, price))
+        logarithmic_x(axes, [each.ratio for contest in found.contests for each in contest.figures])
     for axes in panels[len(kinds) :]:
         axes.set_visible(False)
     names = [each.name for each in found.contests[0].figures[1:]]
@@ -61,6 +62,5 @@ def draw(axes: Axes, contests: Sequence[Contest]) -> None:
                 markersize=4.5, capsize=2, linewidth=1.0,
             )  # fmt: skip
     axes.axvline(1.0, color=INK, linewidth=1.0, linestyle="--")
-    logarithmic_x(axes, [each.ratio for contest in contests for each in contest.figures])
     axes.set_yticks(range(len(contests)), [contest.case for contest in contests])
     axes.set_ylim(len(contests) - 0.5, -0.5)
