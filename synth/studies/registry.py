@@ -177,7 +177,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
     Study(
         "peers",
         "Do tables keep up with a predictive controller and a PI with pulse width that may do what they may?",
-        420.0,
+        720.0,
         "peers.md",
         "synth.studies.peers.study",
         "synth.studies.peers.picture",
