@@ -175,6 +175,14 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "synth.studies.limits.picture",
     ),
     Study(
+        "peers",
+        "Do tables keep up with a predictive controller and a PI with pulse width that may do what they may?",
+        720.0,
+        "peers.md",
+        "synth.studies.peers.study",
+        "synth.studies.peers.picture",
+    ),
+    Study(
         "point-sensors",
         "What are point sensors worth beside a radar: by number, places and axles, and what do their faults cost?",
         700.0,

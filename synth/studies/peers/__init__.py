@@ -1,0 +1,1 @@
+"""Study: the controllers that a manufacturer with a modern computer would build, beside tables."""
