@@ -56,15 +56,13 @@ class Day:
 class Contest:
     """Controllers of one case with one permission, a command priced as in the table or free; the table comes first.
 
-    `price_m2_s2`: of a command, for the peers; `estimator_kept`: False where a tune leaves the estimator out of the
-    table, which then counts without it; `days`: both as they are, on other days than they were made for.
+    `price_m2_s2`: of a command, for the peers; `days`: both as they are, on other days than they were made for.
     """
 
     case: str
     permission: str
     price: str
     price_m2_s2: float
-    estimator_kept: bool
     figures: tuple[Figures, ...]
     days: tuple[Day, ...] = ()
 
@@ -181,10 +179,9 @@ def rows_of(contests: Sequence[Contest]) -> Iterator[tuple[str, ...]]:
     """A row for each controller of each case."""
     for contest in contests:
         for each in contest.figures:
-            left_out = each.name == TABLE and not contest.estimator_kept
             ratio = ABSENT if each is contest.table else f"{each.ratio:.2f} {span(each.ratio_ci95, 2)}"
             yield (
-                contest.case, f"{each.name} (left out)" if left_out else each.name,
+                contest.case, each.name,
                 around(each.rms_m_s, each.rms_ci95_m_s, 1, 1e3), ratio, f"{1e3 * each.p99_m_s:.0f}",
                 f"{each.commands:.1f}", f"{each.time_s:.1f}", f"{100.0 * each.stalled:.2f}",
                 ABSENT if each is contest.table else f"{contest.criterion(each):.2f}",

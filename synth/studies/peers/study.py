@@ -145,9 +145,8 @@ def contests(order: Order) -> tuple[list[Contest], int]:
             tuned = tuned_peers(order, loop, passes, aimed)
             rivals = {each: (loop.run(peer.regulator, passes.draws), peer.parameters) for each, peer in tuned.items()}
             figures = figures_of({**samples, **rivals}, order.case.target_m_s)
-            days = days_of(pair.best, tuned[PREDICTIVE].regulator, loop, passes.first(order.day_passes))
-            kept = pair.with_estimator is not None
-            found.append(Contest(order.name, PERMISSIONS[decisions], name, of_peers, kept, figures, days))
+            days = days_of(pair.with_estimator, tuned[PREDICTIVE].regulator, loop, passes.first(order.day_passes))
+            found.append(Contest(order.name, PERMISSIONS[decisions], name, of_peers, figures, days))
             most = max(most, *(each.evaluations for each in tuned.values()))
     return found, most
 
@@ -158,7 +157,7 @@ Sampled = Mapping[str, tuple[ExitSample, Mapping[str, float]]]
 
 def samples_of_tables(pair: TablePair, passes: CommonPasses) -> Sampled:
     """The table with estimator first."""
-    tables = {TABLE: pair.best, TABLE_WITHOUT: pair.without}
+    tables = {TABLE: pair.with_estimator, TABLE_WITHOUT: pair.without}
     return {name: (passes.run(TableController(each)), {}) for name, each in tables.items()}
 
 

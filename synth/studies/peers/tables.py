@@ -1,4 +1,4 @@
-"""The tables of a case, as a tune writes them: at rest and at any time, with and without estimator."""
+"""The tables of a case, as tunes write them: at rest and at any time, with and without estimator."""
 
 from __future__ import annotations
 
@@ -19,15 +19,10 @@ from tuning_tables import ControllerTable, Decisions, Estimator, Generator
 
 @dataclass(frozen=True)
 class TablePair:
-    """`without` and `with_estimator`, which is None where a tune leaves the estimator out because it does not gain."""
+    """Without estimator and with it."""
 
     without: ControllerTable
-    with_estimator: ControllerTable | None
-
-    @property
-    def best(self) -> ControllerTable:
-        """What a tune writes where it is asked for an estimator."""
-        return self.with_estimator or self.without
+    with_estimator: ControllerTable
 
 
 def tables_of(
@@ -37,26 +32,29 @@ def tables_of(
 
     `price_m2_s2`: of a command, in the criterion.
     """
-    commands = "any_time" if at_any_time else "at_rest"
-    asked = replace(config, regulator=config.regulator.model_copy(update={"estimator": True, "commands": commands}))
     origin = Origin(Generator("retarder-synth study", "0", config.sha256), CREATED)
-    setup = class_setup(asked, case.label, case.plant, passes, origin)
     criterion = replace(config.criterion, switching_tolerance_m2_s2=price_m2_s2)
-    (solution,) = solutions(setup.design, [Aim(case.target_m_s, criterion)])
-    return pairs_of(config, case, tuned_table(setup, solution))
+
+    def tuned(estimator: bool) -> Mapping[Decisions, ControllerTable]:
+        changes = {"estimator": estimator, "commands": "any_time" if at_any_time else "at_rest"}
+        asked = replace(config, regulator=config.regulator.model_copy(update=changes))
+        setup = class_setup(asked, case.label, case.plant, passes, origin)
+        (solution,) = solutions(setup.design, [Aim(case.target_m_s, criterion)])
+        return tables_from(config, case, tuned_table(setup, solution))
+
+    without, with_estimator = tuned(False), tuned(True)
+    return {decisions: TablePair(without[decisions], with_estimator[decisions]) for decisions in without}
 
 
-def pairs_of(config: ResolvedConfig, case: Case, tuned: TunedTable) -> dict[Decisions, TablePair]:
+def tables_from(config: ResolvedConfig, case: Case, tuned: TunedTable) -> dict[Decisions, ControllerTable]:
     """Every table that one tune has made on its way."""
+    estimator = tuned.table.estimator
 
-    def stored(lines: PolynomialLines | PolynomialSurfaces, estimator: Estimator | None = None) -> ControllerTable:
-        return read_back(rounded(config, case.plant, lines, case.target_m_s, estimator))
+    def stored(lines: PolynomialLines | PolynomialSurfaces, of: Estimator | None) -> ControllerTable:
+        return read_back(rounded(config, case.plant, lines, case.target_m_s, of))
 
-    made = tuned.estimate
-    gains = made is not None and made.gains
-    rest = TablePair(stored(tuned.design.kept.lines), stored(made.lines, made.estimator) if made and gains else None)
-    if tuned.surfaces is None:
-        return {Decisions.AT_REST: rest}
-    free = tuned.surfaces.estimate
-    kept = stored(free.lines, free.estimator) if free is not None and free.gains else None
-    return {Decisions.AT_REST: rest, Decisions.AT_ANY_TIME: TablePair(stored(tuned.surfaces.polish.surfaces), kept)}
+    made = {Decisions.AT_REST: stored(tuned.lines, estimator)}
+    if tuned.surfaces is not None:
+        kept = tuned.surfaces.polish.surfaces if tuned.surfaces.estimate is None else tuned.surfaces.estimate.lines
+        made[Decisions.AT_ANY_TIME] = stored(kept, estimator)
+    return made
