@@ -21,7 +21,7 @@ from synth.simulation.random_passes import random_passes
 from synth.simulation.stratified_passes import stratified_passes
 from synth.solver.any_time.polynomial_surfaces import CUBIC_AND_SLOPE, PolynomialSurfaces
 from synth.solver.switching_lines import SwitchingLines
-from synth.studies.peers.findings import PREDICTIVE, TABLE, Contest, Figures, as_good, beaten, better, rows_of
+from synth.studies.peers.findings import PREDICTIVE, TABLE, Contest, Figures, as_good, beaten, better
 from synth.studies.peers.kernels.prediction import Prediction, held, line_square, stage_by_prediction
 from synth.studies.peers.kernels.pulses import STATE, Pulses, begin_pulses, stage_by_pulses
 from synth.studies.peers.peer_loop import PeerLoop, peer_loop
@@ -261,10 +261,10 @@ def figures(name: str, ratio: float, **numbers: float) -> Figures:
     return Figures(name, 0.02 * ratio, (0.0, 0.0), ratio, ends, 0.05, 8.0, 11.0, 0.0, numbers)
 
 
-def contest(*ratios: float, kept: bool = True) -> Contest:
+def contest(*ratios: float) -> Contest:
     names = [PREDICTIVE, "PI"]
     rivals = [figures(name, ratio, gain=1.0) for name, ratio in zip(names, ratios, strict=True)]
-    return Contest("a case", "at rest", "priced", 1e-4, kept, (figures(TABLE, 1.0), *rivals))
+    return Contest("a case", "at rest", "priced", 1e-4, (figures(TABLE, 1.0), *rivals))
 
 
 def test_who_is_better() -> None:
@@ -272,11 +272,6 @@ def test_who_is_better() -> None:
     assert as_good(contests) == 3
     assert better(contests) == 1  # 1.01 is within its interval
     assert beaten(contests) == 1
-
-
-def test_a_table_without_its_estimator_says_so() -> None:
-    ((_, name, *_), *_) = rows_of([contest(0.9, 2.0, kept=False)])
-    assert name == f"{TABLE} (left out)"
 
 
 def test_a_sensor_without_readings_moves_nothing(passes: CommonPasses, loop: PeerLoop) -> None:
