@@ -191,6 +191,13 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "synth.studies.point_sensors.pictures",
     ),
     Study(
+        "radar-faults",
+        "What does a controller do in faults of the radar, and does it notice a wrong weight category?",
+        160.0,
+        "radar-faults.md",
+        "synth.studies.radar_faults.study",
+    ),
+    Study(
         "rare-events",
         "How often does a cut leave far too fast, down to one in a million and below?",
         126.0,

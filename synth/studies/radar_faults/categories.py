@@ -1,0 +1,70 @@
+"""Cuts under the tables of their own class and of others: how often CATEGORY is told at the end of the pass."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from plant_models import Plant
+from synth.simulation.closed_loop import TableController, close_loop
+from synth.simulation.random_passes import RandomPasses
+from synth.simulation.replicates import share_of
+from synth.studies.book import Measure
+from synth.studies.estimator.wrong import braking, weighing
+from synth.studies.radar_faults.figures import rms_measure
+from synth.studies.radar_faults.findings import CategoryRow
+from synth.studies.radar_faults.watched_passes import watched_passes
+from tuning_tables.estimator import CATEGORY_ALARM
+
+
+@dataclass(frozen=True)
+class CutClass:
+    """A class of cuts and its table with estimator."""
+
+    plant: Plant
+    controller: TableController
+
+    @property
+    def name(self) -> str:
+        """'52 t'."""
+        return f"{self.plant.cut.mass_t:g} t"
+
+
+def mistaken_for(cut: Plant, other: Plant) -> Plant:
+    """What rolls is the cut of `cut`; the rest, with what may be commanded on the approach, is that of `other`."""
+    return replace(other, cut=cut.cut, resistance=cut.resistance)
+
+
+def mistaken_rows(classes: Sequence[CutClass], target_m_s: float, passes: RandomPasses) -> tuple[CategoryRow, ...]:
+    """Every cut under the table of every class."""
+    return tuple(
+        row_of(cut.name, told, "as it is", mistaken_for(cut.plant, told.plant), target_m_s, passes)
+        for cut in classes for told in classes
+    )  # fmt: skip
+
+
+def own_rows(classes: Sequence[CutClass], target_m_s: float, passes: RandomPasses) -> tuple[CategoryRow, ...]:
+    """Every cut under its own table: what is flagged there is a false alarm."""
+    return tuple(
+        row_of(each.name, each, name, plant, target_m_s, passes)
+        for each in classes for name, plant in variants(each.plant)
+    )  # fmt: skip
+
+
+def variants(plant: Plant) -> tuple[tuple[str, Plant], ...]:
+    """The plant as it is, and others that the same table must serve."""
+    return (
+        ("as it is", plant),
+        ("friction × 0.8", braking(plant, 0.8)),
+        ("friction × 1.2", braking(plant, 1.2)),
+        ("mass − 10 %", weighing(plant, 0.9)),
+        ("mass + 10 %", weighing(plant, 1.1)),
+    )
+
+
+def row_of(cut: str, told: CutClass, name: str, plant: Plant, target_m_s: float, passes: RandomPasses) -> CategoryRow:
+    """One cut under one table."""
+    loop = close_loop(plant, told.controller.stages)
+    found = watched_passes(loop, told.controller, loop.draws(passes))
+    flagged = share_of((found.at_end & CATEGORY_ALARM) != 0, found.sample.weight)
+    return CategoryRow(cut, told.name, name, Measure(*flagged), rms_measure(found.sample, target_m_s))
