@@ -18,24 +18,27 @@ from tuning_tables.estimator import (
     LARGEST_OVERPRESSURE_KPA,
     LARGEST_SPEED_M_S,
     LARGEST_STEP_M,
-    LEAST_SPEED_M_S,
     Estimator,
     begin,
     unseen_samples,
+)
+from tuning_tables.golden_faults import (
+    MISSING_M_S,
+    Reading,
+    faulty_radar,
+    hardest,
+    rising_while_braked,
+    wrong_at_first,
 )
 from tuning_tables.rule import alarms_for, speed_for
 from tuning_tables.table import ControllerTable
 from tuning_tables.table_book import TableBook
 
 Floats = npt.NDArray[np.float32]
-Reading = tuple[float, float, float]
 
 LARGEST: Final = float(np.finfo(np.float32).max)
 LEAST_NORMAL: Final = np.finfo(np.float32).smallest_normal
 SMALLEST: Final = float(np.finfo(np.float32).smallest_subnormal)
-MISSING_M_S: Final = -1.0
-"""A speed that cannot be true, with a literal in every language."""
-
 CUT_SAMPLES: Final = 36
 MOST_EDGES: Final = 4
 STAGE_KPA: Final = (0.0, 0.0, 180.0, 390.0, 390.0, 240.0, 90.0, 0.0)
@@ -112,9 +115,9 @@ def _tracks(estimator: Estimator) -> Iterator[list[Reading]]:
     yield _leaping(estimator)
     yield _begun_at_the_end(estimator)
     yield _incredible(estimator)
-    yield list(_faulty_radar(estimator))
-    yield list(_wrong_at_first(estimator))
-    yield list(_rising_while_braked(estimator))
+    yield list(faulty_radar(estimator))
+    yield list(wrong_at_first(estimator))
+    yield list(rising_while_braked(estimator))
     yield list(_cut(estimator, 3, 2.6, 6.0, 0.0))
     yield list(_cut(estimator, 4, 0.2, 6.0, 0.0))
     yield _not_portable(estimator)
@@ -200,7 +203,7 @@ def _begun_at_the_end(estimator: Estimator) -> list[Reading]:
 def _incredible(estimator: Estimator) -> list[Reading]:
     """Speeds and overpressures at, beside and beyond what is believed, where the brake works hardest."""
     first = float(estimator.work[0, 0])
-    base, unit = _hardest(estimator)
+    base, unit = hardest(estimator)
     _, speed, over_speed = _beside(np.float32(LARGEST_SPEED_M_S))
     _, pressure, over_pressure = _beside(np.float32(LARGEST_OVERPRESSURE_KPA))
     approach = [first + (base - first) * part / 4 for part in range(1, 5)]
@@ -214,66 +217,6 @@ def _incredible(estimator: Estimator) -> list[Reading]:
     ]  # fmt: skip
     readings = [*begins, (first, 4.5, 0.0), *((s, 4.5, 200.0) for s in approach)]
     return readings + [(base + (step if step == 0.0005 else step * unit), v, kpa) for step, v, kpa in steps]
-
-
-def _faulty_radar(estimator: Estimator) -> Iterator[Reading]:
-    """A cut in front of a radar that shows 0, leaps away and back, repeats itself, leaps and stays, and is lost."""
-    first, last = float(estimator.work[0, 0]), float(estimator.work[0, -1])
-    frozen, doubted = (min(number, 40) for number in (estimator.frozen_readings, estimator.doubted_readings))
-    far = 4.0 + 12.0 * estimator.speed_noise_m_s + 1.0
-    speeds = [4.0, 4.05, 3.95, 4.0, 0.0, 4.05, far, 3.95, far, far, 4.0, MISSING_M_S, 0.0, 4.05, MISSING_M_S, far, 4.0]
-    speeds += [3.95] * (frozen + 2) + [4.0, *(far + 0.05 * (i % 2) for i in range(doubted + 3))]
-    speeds += [MISSING_M_S] * 12
-    step = (last - first) / (len(speeds) + 1)
-    for sample, speed in enumerate(speeds):
-        yield first + sample * step, speed, 300.0 if sample % 3 else 0.0
-
-
-def _wrong_at_first(estimator: Estimator) -> Iterator[Reading]:
-    """The first readings are the false ones: the estimate begins with each, and anew with the right one."""
-    first, last = float(estimator.work[0, 0]), float(estimator.work[0, -1])
-    far, least = 4.0 + 12.0 * estimator.speed_noise_m_s + 1.0, float(np.float32(LEAST_SPEED_M_S))
-    speeds = (
-        0.0,
-        0.1,
-        least,
-        far,
-        least,
-        4.0,
-        4.05,
-        far + 2.0,
-        4.0,
-        3.95,
-        4.05,
-        far + 2.0,
-        4.0,
-        4.05,
-        MISSING_M_S,
-        least,
-    )
-    step = min((last - first) / len(speeds), 0.4)
-    for sample, speed in enumerate(speeds):
-        yield first + sample * step, speed, 0.0
-
-
-def _rising_while_braked(estimator: Estimator) -> Iterator[Reading]:
-    """Single readings that are the higher the later, while the brake works hard: what leaps depends on its work."""
-    base, unit = _hardest(estimator)
-    yield float(estimator.work[0, 0]), 6.0, 0.0
-    for sample in range(30):
-        rises = sample % 3 == 2
-        yield base + sample * unit / 4.0, 6.0 - 0.05 * sample + (0.06 * sample if rises else 0.0), 600.0
-
-
-def _hardest(estimator: Estimator) -> tuple[float, float]:
-    """Where the line begins on which the brake works hardest, m, among those that few steps reach; and an eighth of it.
-
-    The eighth is 1 m at most.
-    """
-    s_m, _, brake = np.array(estimator.work, dtype=np.float64)
-    within = np.flatnonzero(s_m[:-1] <= s_m[0] + 3.5 * LARGEST_STEP_M)
-    place = within[np.argmax((np.diff(brake) / np.diff(s_m))[within])]
-    return float(s_m[place]), min(float(s_m[place + 1] - s_m[place]) / 8.0, 1.0)
 
 
 def _not_portable(estimator: Estimator) -> list[Reading]:

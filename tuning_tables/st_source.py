@@ -1,7 +1,7 @@
 """Tables as IEC 61131-3 Structured Text: the types, the rule, the estimator, the choice, the data, and a self-test.
 
-What is fixed in the text stands in `st_blocks`, `st_decide`, `st_observe` and `st_test_blocks`; how it is used, in
-docs/structured-text.md.
+What is fixed in the text stands in `st_blocks`, `st_decide`, `st_estimate`, `st_observe` and `st_test_blocks`; how it is
+used, in docs/structured-text.md.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from tuning_tables.st_any_time import any_time_blanks
 from tuning_tables.st_approach import approach_blanks
 from tuning_tables.st_blocks import CATEGORIES, HEAD, TABLE_TYPE
 from tuning_tables.st_decide import DECIDE
+from tuning_tables.st_estimate import ESTIMATE_TYPE
 from tuning_tables.st_estimator import observe_blocks
-from tuning_tables.st_observe import ESTIMATE_TYPE
 from tuning_tables.st_self_test import self_test_blocks
 from tuning_tables.st_tables import blanks_of, load_block, select_block
 from tuning_tables.st_units import unit_files

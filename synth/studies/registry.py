@@ -114,13 +114,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "synth.studies.estimator.reserve_picture",
     ),
     Study(
-        "estimator-spreads",
-        "What does the estimator gain at other spreads of friction, and at another position?",
-        104.0,
-        "estimator.md#what-it-gains",
-        "synth.studies.estimator.spreads",
-    ),
-    Study(
         "estimator-wrong",
         "What does the estimator cost where it is wrong: another friction, mass or gauge, a lost sensor?",
         18.0,

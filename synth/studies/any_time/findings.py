@@ -179,9 +179,10 @@ class AnyTime(Findings):
         heads = ("valves", "case", *GAINING, *rules, f"{POLISHED} / {CUBIC}",
                  *(f"{POLISHED} / {rule}" for rule in rules), "the same near the target")  # fmt: skip
         every = ("valves", "case", *NAMES)
-        names = (Permission.ANY_TIME, Permission.WITHOUT_GAUGE, Permission.NO_ESTIMATOR)
-        granted = ("case", "rms, m/s / switchings", *(each.value for each in names), "predicted / simulated, any time")
-        told = (permission_cells(row, [each.value for each in names]) for row in self.permissions)
+        asked_for = {name for row in self.permissions for name in row.ratios}
+        names = [each.value for each in Permission if each.value in asked_for]
+        granted = ("case", "rms, m/s / switchings", *names, "predicted / simulated, any time")
+        told = (permission_cells(row, names) for row in self.permissions)
         wrong = ("valves", "case", *(f"shows × {factor}" for factor in self.rows[0].gauge))
         honesty = ("valves", "case", "predicted / simulated", "evaluations", "ended well")
         asked = {"permissions": table("rms of the table as configured; ratios to it [95 %]", granted, told)}
