@@ -14,9 +14,9 @@ from tuning_tables.c_estimator import alarm_bits, estimator_limits
 from tuning_tables.distinct_estimators import distinct_estimators
 from tuning_tables.estimator import Estimator
 from tuning_tables.held_numbers import HELD_NUMBERS, held_numbers
-from tuning_tables.st_estimate import BEGIN, TABLE_MEMBERS, WORK
+from tuning_tables.st_estimate import BEGIN, HAND_ON, OBSERVE_INTERFACE, TABLE_MEMBERS, WORK
 from tuning_tables.st_literals import int_array, real, real_array
-from tuning_tables.st_observe import HAND_ON, OBSERVE, OBSERVE_INTERFACE
+from tuning_tables.st_observe import OBSERVE
 from tuning_tables.table_block import BlockSize
 from tuning_tables.table_book import TableBook
 

@@ -1,7 +1,7 @@
 """Tables as IEC 61131-3 Structured Text: the types, the rule, the estimator, the choice, the data, and a self-test.
 
-What is fixed in the text stands in `st_blocks`, `st_decide`, `st_estimate`, `st_observe` and `st_test_blocks`; how it is
-used, in docs/structured-text.md.
+What is fixed in the text stands in `st_blocks`, `st_decide`, `st_estimate`, `st_observe` and `st_test_blocks`; how it
+is used, in docs/structured-text.md.
 """
 
 from __future__ import annotations
