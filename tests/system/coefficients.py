@@ -25,18 +25,24 @@ GONDOLA = '[[cut]]\ncar = "gondola-4"\nmass_t = 36\n'
 KNOWN_MEAN = "[friction]\nmean_cv = 0.0\n"
 ENTRANCE = "[regulator]\napproach_m = 0.0\n"
 AHEAD = "[regulator]\napproach_m = 4.0\n"
+MEASURED = "estimator = false\n"
 CONFIGURATIONS = {
     **{name: f'{FEW}{ENTRANCE}[retarder]\nname = "{name}"\n' for name in position_names()},
     "estimator": f"{FEW}{ENTRANCE}estimator = true\n{KNOWN_MEAN}{GONDOLA}",
     "approach": f"{FEW}{AHEAD}",
+    "approach, measured speed": f"{FEW}{AHEAD}{MEASURED}",
+    "at any time, measured speed": f'{FEW}{AHEAD}{MEASURED}commands = "any_time"\n{GONDOLA}',
     "example of the README": (
         f'{FEW}{AHEAD}[targets]\nexit_speeds_m_s = [3.0]\n[[cut]]\ncar = "gondola-4"\nmass_t = 52\n'
     ),
     "approach, estimator": f"{FEW}{AHEAD}estimator = true\n{KNOWN_MEAN}{GONDOLA}",
     "approach, estimator, reserve": f"{FEW}{AHEAD}estimator = true\n[friction]\nmean_cv = 0.15\n{GONDOLA}",
-    "p_overspeed": f"{FEW}{ENTRANCE}[criterion]\np_overspeed = 0.02\n[targets]\nexit_speeds_m_s = [2.0]\n{GONDOLA}",
+    "p_overspeed": (
+        f"{FEW}{ENTRANCE}{MEASURED}[criterion]\np_overspeed = 0.02\n"
+        f"[targets]\nexit_speeds_m_s = [2.0]\n{GONDOLA}"
+    ),
     "worst_friction": (
-        f"{FEW}{ENTRANCE}[criterion]\nworst_friction_low = 0.8\nworst_friction_high = 1.2\n"
+        f"{FEW}{ENTRANCE}{MEASURED}[criterion]\nworst_friction_low = 0.8\nworst_friction_high = 1.2\n"
         f"[targets]\nexit_speeds_m_s = [3.0]\n{GONDOLA}"
     ),
 }

@@ -54,7 +54,8 @@ class CutFigures:
     """The table of a case, simulated; `length_m`: path of a pass, from where the regulator acts to the exit.
 
     `design_rms_m_s`: of its lines on the grid that they were polished on, in a second design if `designed_again`.
-    `feasible`: the position does not forbid the limit on the rms. `best`: of all rules. `without`: no estimator.
+    `feasible`: the position does not forbid the limit on the rms. `best`: of all rules. `without`: no estimator,
+    None where it was not asked for.
     """
 
     case: RandomCase
@@ -67,7 +68,7 @@ class CutFigures:
     switchings: float
     feasible: bool
     best: Beside
-    without: BesideWithout
+    without: BesideWithout | None = None
 
     @property
     def design_share(self) -> float:

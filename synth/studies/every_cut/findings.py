@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from statistics import median
 
 from synth.simulation.exit_statistics import clopper_pearson
-from synth.studies.every_cut.cut_figures import HONEST, Beside, CutFigures, Outcome, Untuned
+from synth.studies.every_cut.cut_figures import HONEST, Beside, BesideWithout, CutFigures, Outcome, Untuned
 from synth.studies.every_cut.order_statistics import median_interval
 from synth.studies.markdown_table import ABSENT, MarkdownTable, around, span, table
 from synth.studies.study import Findings
@@ -70,8 +70,8 @@ def faults_of(found: CutFigures) -> Iterator[str]:
     rule = found.best
     if rule.beaten_by:
         yield f"{found.case.name}: rms {around(rule.ratio, rule.ratio_ci95, 3)} times that of the {rule.rule}"
-    if found.without.worse:
-        beside = found.without
+    beside = found.without
+    if beside is not None and beside.worse:
         yield (
             f"{found.case.name}: rms {around(beside.ratio, beside.ratio_ci95, 3)} times that without estimator, "
             f"{around(beside.weak_ratio, beside.weak_ratio_ci95, 3)} at 0.8 of the friction"
@@ -97,9 +97,7 @@ def class_cells(name: str, cases: Sequence[CutFigures]) -> tuple[str, ...]:
     return (
         name, str(len(cases)), share_cell([each.best.beaten_by for each in cases]),
         median_cell([each.best.ratio for each in cases]),
-        share_cell([each.without.worse for each in cases]),
-        largest_cell([each.without.ratio for each in cases]),
-        largest_cell([each.without.weak_ratio for each in cases]),
+        *without_cells([each.without for each in cases if each.without is not None]),
         f"{min(honesty):.3f}, {max(honesty):.3f}", f"{min(shares):.3f}, {max(shares):.3f}",
         str(sum(each.designed_again for each in cases)),
     )  # fmt: skip
@@ -116,6 +114,17 @@ def share_cell(hits: Sequence[bool]) -> str:
     """'1.2 [0.4, 2.8] (6)': per cent with its exact interval, and how many."""
     found = sum(hits)
     return f"{around(found / len(hits), clopper_pearson(found, len(hits)), 1, 100.0)} ({found})"
+
+
+def without_cells(beside: Sequence[BesideWithout]) -> tuple[str, ...]:
+    """The cells about tables without estimator, of the cases for which these were asked."""
+    if not beside:
+        return (ABSENT, ABSENT, ABSENT)
+    return (
+        share_cell([each.worse for each in beside]),
+        largest_cell([each.ratio for each in beside]),
+        largest_cell([each.weak_ratio for each in beside]),
+    )
 
 
 def largest_cell(values: Sequence[float]) -> str:

@@ -27,15 +27,18 @@ WEAK = 0.8
 """Share of the friction on a day that brakes badly."""
 
 
-def measured(case: RandomCase, config: ResolvedConfig) -> Outcome:
-    """The figures of `case`, of which `config` is the configuration; the case as untuned where a tune refuses it."""
+def measured(case: RandomCase, config: ResolvedConfig, beside_plain: bool = False) -> Outcome:
+    """The figures of `case`, of which `config` is the configuration; the case as untuned where a tune refuses it.
+
+    `beside_plain`: also beside the table without estimator.
+    """
     ((label, _),) = config.plants()
     (target,) = config.targets_m_s
-    found = attempted(partial(figures_of, case, config), label, target, config)
+    found = attempted(partial(figures_of, case, config, beside_plain), label, target, config)
     return Untuned(case, found.reason) if isinstance(found, FailedCase) else found
 
 
-def figures_of(case: RandomCase, config: ResolvedConfig) -> CutFigures:
+def figures_of(case: RandomCase, config: ResolvedConfig, beside_plain: bool) -> CutFigures:
     """The figures of `case`; raises `PlantError` and `InvalidTable` as a tune's parts do."""
     ((label, plant),) = config.plants()
     (target,) = config.targets_m_s
@@ -59,7 +62,7 @@ def figures_of(case: RandomCase, config: ResolvedConfig) -> CutFigures:
         switchings=figures.switchings,
         feasible=not unavoidable.forbids(config.acceptance.rms_m_s),
         best=best,
-        without=beside_without(replace(config, regulator=plain), setup, validated),
+        without=beside_without(replace(config, regulator=plain), setup, validated) if beside_plain else None,
     )
 
 
