@@ -138,7 +138,7 @@ def no_surfaces(monkeypatch: pytest.MonkeyPatch) -> None:
     def too_coarse(*_: object) -> None:
         raise CoarseGridError("no surfaces on this grid")
 
-    monkeypatch.setattr("synth.book.permissions.case_permissions.polished_surfaces", too_coarse)
+    monkeypatch.setattr("synth.book.permissions.case_permissions.at_any_time", too_coarse)
 
 
 WITHOUT_SURFACES = ("commands at any time", "commands at any time, no pressure gauge")

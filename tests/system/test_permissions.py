@@ -54,6 +54,8 @@ resistance_scenarios = 1
 degree = 2
 [validation]
 passes = 1000
+[acceptance]
+honesty_low = 0.8
 [regulator]
 approach_m = 0.0
 [output]
