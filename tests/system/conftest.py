@@ -29,6 +29,7 @@ degree = 2
 [validation]
 passes = 1000
 [acceptance]
+honesty_low = 0.8
 honesty_high = 1.35
 [output]
 csv = true
@@ -46,6 +47,9 @@ def changed(text: str, *swaps: tuple[str, str]) -> str:
         text = text.replace(old, new)
     return text
 
+
+MEASURED = "[regulator]\nestimator = false\n"
+"""Tables for the measured speed."""
 
 SECOND_CLASS = '[[cut]]\ncar = "gondola-4"\nmass_t = 30\nallowed_stage = 2\n'
 EPOCH = "1700000000"
@@ -100,13 +104,32 @@ def two_classes(one_class: Path) -> Path:
 
 
 @pytest.fixture(scope="session")
-def tuned_once(two_classes: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, int]:
-    """(directory, exit code) of a tune of two classes by two workers; not to be changed."""
-    directory = tmp_path_factory.mktemp("tuned") / "out"
+def measured_classes(one_class: Path) -> Path:
+    """Configuration of the same two classes, for the measured speed."""
+    path = one_class.with_name("measured.toml")
+    path.write_text(CLASS + MEASURED + SECOND_CLASS)
+    return path
+
+
+def tuned_into(config: Path, directory: Path) -> tuple[Path, int]:
+    """(directory, exit code) of a tune by two workers."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SOURCE_DATE_EPOCH", EPOCH)
-        code = main(["tune", str(two_classes), "-o", str(directory), "--workers", "2"])
-    return directory, code
+        return directory, main(["tune", str(config), "-o", str(directory), "--workers", "2"])
+
+
+@pytest.fixture(scope="session")
+def tuned_once(two_classes: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, int]:
+    """(directory, exit code) of a tune of two classes by two workers; not to be changed."""
+    return tuned_into(two_classes, tmp_path_factory.mktemp("tuned") / "out")
+
+
+@pytest.fixture(scope="session")
+def measured_once(measured_classes: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Directory of a tune of the same classes for the measured speed; not to be changed."""
+    directory, code = tuned_into(measured_classes, tmp_path_factory.mktemp("measured") / "out")
+    assert code == 0
+    return directory
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.system.conftest import CLASS, Command, changed
+from tests.system.conftest import CLASS, MEASURED, Command, changed
 
 DIGITS = "9" * 400
 LONG = "x" * 100_000
@@ -160,7 +160,7 @@ def test_a_number_of_the_command_line_tells_what_is_allowed(
 def test_a_target_that_the_grid_is_too_coarse_for_is_named(command: Command, tmp_path: Path) -> None:
     config = tmp_path / "coarse.toml"
     swaps = ("csv = true", "plots = false"), ("speed_step_m_s = 0.04", "speed_step_m_s = 0.2"), ("[1.5]", "[2.5]")
-    config.write_text(changed(CLASS, *swaps) + "[criterion]\noverspeed_factor = 1000\n")
+    config.write_text(changed(CLASS, *swaps) + MEASURED + "[criterion]\noverspeed_factor = 1000\n")
     ran = command("tune", config, "-o", tmp_path / "out")
     assert (ran.code, ran.out) == (2, "")
     told = ran.err.splitlines()[-1]

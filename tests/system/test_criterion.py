@@ -8,22 +8,22 @@ from typing import Any
 
 import pytest
 
-from tests.system.conftest import CLASS, EPOCH, Command
+from tests.system.conftest import CLASS, EPOCH, MEASURED, Command
 
 
 @pytest.fixture
-def default_case(tuned_once: tuple[Path, int]) -> Any:
+def default_case(measured_once: Path) -> Any:
     """The case of the default criterion in its summary."""
-    summary = json.loads((tuned_once[0] / "summary.json").read_text())
+    summary = json.loads((measured_once / "summary.json").read_text())
     assert summary["criterion"] == "mean squared exit-speed error"
     assert summary["cases"][0]["requirement"] is None
     return summary["cases"][0]
 
 
 def tuned_by(command: Command, criterion: str, out: Path) -> tuple[Any, str]:
-    """(summary, report) of a tune with that [criterion]."""
+    """(summary, report) of a tune for the measured speed with that [criterion]."""
     config = out.with_suffix(".toml")
-    config.write_text(CLASS.replace("csv = true", "plots = false") + f"[criterion]\n{criterion}\n")
+    config.write_text(CLASS.replace("csv = true", "plots = false") + MEASURED + f"[criterion]\n{criterion}\n")
     assert command("tune", config, "-o", out, "--workers", "1").code in (0, 1)
     return json.loads((out / "summary.json").read_text()), (out / "report.html").read_text()
 
@@ -39,7 +39,7 @@ def test_dearer_overspeed_makes_slower_exits(command: Command, default_case: Any
 def test_a_limit_that_is_kept_anyway_changes_no_line(
     command: Command,
     default_case: Any,
-    tuned_once: tuple[Path, int],
+    measured_once: Path,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -49,6 +49,6 @@ def test_a_limit_that_is_kept_anyway_changes_no_line(
     assert case["requirement"]["multiplier_m2_s2"] == 0.0
     assert case["requirement"]["sentence"].replace(">", "&gt;") in report
     assert case["predicted"] == default_case["predicted"]
-    tables = [json.loads((at / case["table"]).read_text()) for at in (tmp_path / "out", tuned_once[0])]
+    tables = [json.loads((at / case["table"]).read_text()) for at in (tmp_path / "out", measured_once)]
     assert tables[0]["stages"] == tables[1]["stages"]
     assert tables[0]["generator"]["config_sha256"] != tables[1]["generator"]["config_sha256"]

@@ -20,7 +20,7 @@ from synth.cli import main
 from synth.configuration.config_file import parse_config
 from synth.solver.coarse_grid import CoarseGridError
 from tests.frame.results import results_in
-from tests.system.conftest import CLASS, SECOND_CLASS, Command, changed
+from tests.system.conftest import CLASS, MEASURED, SECOND_CLASS, Command, changed
 from tests.system.test_permissions import COARSE
 from tests.system.test_sensors_tune import CONFIG as POINTS
 from tuning_tables import InvalidTable, read_book
@@ -30,7 +30,9 @@ WIDE = ("speed_step_m_s = 0.04", "speed_step_m_s = 0.2")
 """A cost that so wide cells cannot hold at 2.5 m/s, nor half as wide ones; 1.5 m/s is well."""
 
 KEPT = ("honesty_high = 1.35", "honesty_high = 2.0\nrms_m_s = 0.3")
-ONE_BAD = changed(CLASS, WIDE, KEPT, ("[1.5]", "[1.5, 2.5]")) + STEEP + SECOND_CLASS + "targets_m_s = [1.5]\n"
+ONE_BAD = (
+    changed(CLASS, WIDE, KEPT, ("[1.5]", "[1.5, 2.5]")) + MEASURED + STEEP + SECOND_CLASS + "targets_m_s = [1.5]\n"
+)
 BAD = "gondola-4-22t to 2.5 m/s"
 REASON = "the grid is too coarse for these lines (an expected square came out negative): make grid.speed_step_m_s"
 KEYS = "; now grid.speed_step_m_s is 0.2 and grid.path_step_m is 1"
@@ -136,7 +138,7 @@ def no_surfaces(monkeypatch: pytest.MonkeyPatch) -> None:
     def too_coarse(*_: object) -> None:
         raise CoarseGridError("no surfaces on this grid")
 
-    monkeypatch.setattr("synth.book.permissions.case_permissions.polished_surfaces", too_coarse)
+    monkeypatch.setattr("synth.book.permissions.case_permissions.at_any_time", too_coarse)
 
 
 WITHOUT_SURFACES = ("commands at any time", "commands at any time, no pressure gauge")
@@ -149,7 +151,7 @@ def test_a_permission_without_a_design_is_missing_alone(command: Command, tmp_pa
     ran = command("tune", config, "-o", out, "--permissions")
     assert ran.code == 0  # the table is there, and keeps its limits
     (case,) = json.loads((out / "summary.json").read_bytes())["cases"]
-    assert set(case["permissions"]) == {"approach of 4 m"}
+    assert set(case["permissions"]) == {"without the estimator", "approach of 4 m"}
     assert case["permissions_failed"] == dict.fromkeys(WITHOUT_SURFACES, "no surfaces on this grid")
     for permission in WITHOUT_SURFACES:
         assert f"gondola-4-22t to 2.5 m/s, {permission}: no surfaces on this grid" in ran.out
@@ -159,7 +161,7 @@ def test_a_permission_without_a_design_is_missing_alone(command: Command, tmp_pa
 @pytest.mark.usefixtures("no_surfaces")
 def test_permissions_of_the_other_cases_are_told(command: Command, tmp_path: Path) -> None:
     config, out = tmp_path / "c.toml", tmp_path / "out"
-    swaps = ("[2.5]", "[2.5, 1.5]"), ("speed_step_m_s = 0.05", WIDE[1])
+    swaps = ("[2.5]", "[2.5, 1.5]"), ("speed_step_m_s = 0.05", WIDE[1]), ("[regulator]\n", MEASURED)
     config.write_text(changed(COARSE, *swaps) + STEEP, encoding="utf-8")
     ran = command("permissions", config, "-o", out)
     assert ran.code == 1
@@ -174,7 +176,7 @@ def test_permissions_of_the_other_cases_are_told(command: Command, tmp_path: Pat
 
 def test_all_cases_bad_are_one_sentence(command: Command, tmp_path: Path) -> None:
     config = tmp_path / "c.toml"
-    config.write_text(changed(CLASS, WIDE, ("[1.5]", "[2.5]")) + STEEP + SECOND_CLASS, encoding="utf-8")
+    config.write_text(changed(CLASS, WIDE, ("[1.5]", "[2.5]")) + MEASURED + STEEP + SECOND_CLASS, encoding="utf-8")
     ran = command("tune", config, "-o", tmp_path / "out")
     assert (ran.code, ran.out) == (2, "")
     told = ran.err.splitlines()[-1]

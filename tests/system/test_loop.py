@@ -30,10 +30,10 @@ TABLE = "gondola-4-22t-to-1.5-m-s"
 
 
 def test_a_directory_gives_pictures_figures_and_a_table(
-    command: Command, tuned: Path, two_classes: Path, tmp_path: Path, pages: list[Page]
+    command: Command, measured_once: Path, measured_classes: Path, tmp_path: Path, pages: list[Page]
 ) -> None:
     out = tmp_path / "loops"
-    ran = command("loop", tuned, "-o", out, "--config", two_classes)
+    ran = command("loop", measured_once, "-o", out, "--config", measured_classes)
     assert ran.code == 0
     told = table_of(pages[-1])
     document = json.loads((out / "loops.json").read_bytes())

@@ -22,6 +22,7 @@ from synth.checker.verdict import verify
 from synth.cli import main
 from synth.configuration.config_file import parse_config
 from tests.printed_page import Page, page_about, table_of, with_half
+from tests.system.conftest import MEASURED
 
 SMALL = """\
 [position]
@@ -53,22 +54,22 @@ resistance_scenarios = 1
 degree = 2
 [validation]
 passes = 1000
+[acceptance]
+honesty_low = 0.8
 [regulator]
 approach_m = 0.0
-estimator = true
 [output]
 plots = false
 [[cut]]
 car = "gondola-4"
 mass_t = 22
 """
-"""From the entrance and with an estimator, so that few permissions are left to ask for."""
+"""From the entrance, so that an approach can be asked for."""
 
 ASKED = {
     "commands at any time",
     "commands at any time, no pressure gauge",
-    "estimator",
-    "commands at any time, estimator",
+    "without the estimator",
     "without the approach",
 }
 
@@ -145,10 +146,9 @@ def test_commands_at_any_time_gain_and_no_approach_loses(ran: Path) -> None:
     assert permissions["without the approach"]["ratio_ci95"][0] > 1.0
 
 
-def test_an_estimator_gains_at_any_time_too(ran: Path) -> None:
+def test_lines_for_the_measured_speed_lose(ran: Path) -> None:
     permissions = summary(ran / "one")["cases"][0]["permissions"]
-    both = permissions["commands at any time, estimator"]
-    assert both["ratio_ci95"][1] < permissions["commands at any time"]["ratio"]
+    assert permissions["without the estimator"]["ratio_ci95"][0] > 1.0
 
 
 def test_all_files_are_named_with_their_hashes(ran: Path) -> None:
@@ -169,8 +169,7 @@ def test_the_same_bytes_with_two_workers_and_as_json(
         assert capsys.readouterr().out == written[-1]
     assert written[0] == written[1]
     (case,), (of_tune,) = json.loads(written[0])["cases"], summary(tuned / "1")["cases"]
-    left_out = {"estimator", "commands at any time, estimator", "without the approach"}
-    assert set(case["permissions"]) == {*ASKED, "approach of 4 m"} - left_out
+    assert set(case["permissions"]) == {*ASKED, "approach of 4 m"} - {"without the approach"}
     assert of_tune["permissions"] == case["permissions"]
     assert of_tune["simulated"].items() >= case["as_configured"].items()
 
@@ -188,7 +187,7 @@ def test_a_tune_tells_permissions_in_one_column_and_one_line(tuned: Path) -> Non
     (case,) = summary(tuned / "1")["cases"]
     ratios = {name: f"{each['ratio']:.2f}" for name, each in case["permissions"].items()}
     (row,) = (line for line in printed.splitlines() if line.lstrip().startswith("gondola-4-22t"))
-    column = [ratios[name] for name in ("commands at any time", "approach of 4 m")]
+    column = [ratios[name] for name in ("commands at any time", "without the estimator", "approach of 4 m")]
     assert " ".join(row.split()).endswith(f"{' '.join(column)} {case['verdict']}")
     halves = [max(high - e["ratio"], e["ratio"] - low) for e in case["permissions"].values()
               for low, high in [e["ratio_ci95"]]]  # fmt: skip
@@ -257,7 +256,10 @@ def test_the_checker_tells_what_is_wrong_with_a_permission(change: dict[str, obj
 @pytest.mark.parametrize(
     ("lines", "says"),
     [
-        ("[criterion]\np_overspeed = 0.01\n", "commands at any time are designed for the mean square error alone"),
+        (
+            MEASURED + "[criterion]\np_overspeed = 0.01\n",
+            "commands at any time are designed for the mean square error alone",
+        ),
         ("[sensor]\ncomputing_delay_s = 0.3\n", "computing_delay_s is 0.3"),
         ('[regulator]\ncommands = "any_time"\n', "what to ask the hardware for beyond commands at rest"),
     ],

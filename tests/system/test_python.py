@@ -27,23 +27,23 @@ LABEL, TARGET = "gondola-4-22t", 1.5
 
 
 @pytest.fixture(scope="module")
-def problem(two_classes: Path) -> synth.Problem:
-    """One of the cases that `tuned` holds."""
-    return synth.load_problem(LABEL, TARGET, two_classes)
+def problem(measured_classes: Path) -> synth.Problem:
+    """One of the cases that `measured_once` holds."""
+    return synth.load_problem(LABEL, TARGET, measured_classes)
 
 
 @pytest.fixture(scope="module")
-def table(problem: synth.Problem, two_classes: Path) -> ControllerTable:
+def table(problem: synth.Problem, measured_classes: Path) -> ControllerTable:
     """Its table, step by step from Python."""
-    config = synth.load_config(two_classes)
+    config = synth.load_config(measured_classes)
     lines = synth.fit(synth.solve(problem, config.resolution), config.fit.degree)
     return synth.tabulate(lines, f"{LABEL}-to-{TARGET:g}-m-s", config)
 
 
 @pytest.fixture
-def tuned_table(tuned: Path) -> ControllerTable:
+def tuned_table(measured_once: Path) -> ControllerTable:
     """The same table as the command `tune` has left it."""
-    return read_json(tuned / "tables" / f"{LABEL}-to-{TARGET:g}-m-s.json")
+    return read_json(measured_once / "tables" / f"{LABEL}-to-{TARGET:g}-m-s.json")
 
 
 def test_a_table_is_that_of_the_command(table: ControllerTable, tuned_table: ControllerTable) -> None:
@@ -53,9 +53,9 @@ def test_a_table_is_that_of_the_command(table: ControllerTable, tuned_table: Con
 
 
 def test_a_simulation_is_that_of_the_command(
-    table: ControllerTable, tuned_table: ControllerTable, problem: synth.Problem, two_classes: Path
+    table: ControllerTable, tuned_table: ControllerTable, problem: synth.Problem, measured_classes: Path
 ) -> None:
-    validation = synth.load_config(two_classes).validation
+    validation = synth.load_config(measured_classes).validation
     found = synth.simulate(table, problem, validation.passes, validation.seed)
     assert tuned_table.validated is not None
     assert found.statistics.passes == tuned_table.validated.passes
@@ -63,8 +63,10 @@ def test_a_simulation_is_that_of_the_command(
     assert found.statistics.rms_ci95_m_s == tuned_table.validated.rms_ci95_m_s
 
 
-def test_a_prediction_is_that_of_the_table(table: ControllerTable, problem: synth.Problem, two_classes: Path) -> None:
-    assert synth.predict(table, problem, synth.load_config(two_classes).resolution) == table.predicted
+def test_a_prediction_is_that_of_the_table(
+    table: ControllerTable, problem: synth.Problem, measured_classes: Path
+) -> None:
+    assert synth.predict(table, problem, synth.load_config(measured_classes).resolution) == table.predicted
 
 
 def test_columns_and_trace_are_of_the_same_passes(table: ControllerTable, problem: synth.Problem) -> None:

@@ -17,7 +17,7 @@ from synth.cli import main
 from tests.checker.planted_fault import rewrite
 from tests.frame.results import results_in
 from tests.printed_page import Page, page_about, require_column, table_of, with_half
-from tests.system.conftest import EPOCH, Command, changed
+from tests.system.conftest import EPOCH, MEASURED, Command, changed
 from tuning_tables.passages.json_file import read_passage_json
 
 CONFIG = """\
@@ -221,8 +221,7 @@ def test_what_needs_lines_refuses_the_table_in_one_sentence(
 REFUSED = {
     "no sensors": (("[sensors]\npath_m = [-4.5, 0.0, 4.0, 8.0, 12.0, 16.0, 22.5]\n", ""),
                    "the section [sensors] is missing; 'retarder-synth init --sensors' prints one"),
-    "estimator": (("[grid]", "[regulator]\nestimator = true\n[grid]"), "regulator.estimator is true"),
-    "chance constraint": (("[grid]", "[criterion]\np_overspeed = 0.1\n[grid]"), "criterion.p_overspeed and"),
+    "chance constraint": (("[grid]", f"[criterion]\np_overspeed = 0.1\n{MEASURED}[grid]"), "criterion.p_overspeed and"),
     "first sensor": (("[-4.5, 0.0", "[0.5, 1.0"), "sensors.path_m begins at 0.5; the first sensor must stand at"),
 }  # fmt: skip
 
