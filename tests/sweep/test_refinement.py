@@ -74,7 +74,9 @@ def test_only_where_it_is_needed() -> None:
 
 
 def test_lines_between_are_those_that_a_controller_takes() -> None:
-    text = PLANT + MEASURED + SWEEP.replace("to = 30", "to = 22").replace("to = 2.0, step = 0.5", "to = 2.5, step = 1.0")
+    text = (
+        PLANT + MEASURED + SWEEP.replace("to = 30", "to = 22").replace("to = 2.0, step = 0.5", "to = 2.5, step = 1.0")
+    )
     text = text.replace(
         "path_step_m = 1.0\nspeed_step_m_s = 0.05\nfriction_scenarios = 3\nresistance_scenarios = 1\n", ""
     )  # the default grid instead: a coarse one predicts too much
