@@ -36,6 +36,7 @@ resistance_scenarios = 1
 [fit]
 degree = 2
 """
+MEASURED = "[regulator]\nestimator = false\n"
 SWEEP = """\
 [sweep]
 exit_speeds_m_s = { from = 1.5, to = 2.0, step = 0.5 }

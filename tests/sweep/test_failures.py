@@ -59,6 +59,7 @@ def test_a_poisoned_class_is_told_and_stops_no_other(
 TOO_COARSE = """\
 [regulator]
 approach_m = 0.0
+estimator = false
 [grid]
 path_step_m = 2.0
 speed_step_m_s = 0.2

@@ -16,7 +16,7 @@ from synth.sweep.refinement import Bench, Gap, refined
 from synth.sweep.sweep_file import parse_sweep
 from synth.sweep.tune_unit import between_rms_m_s, setup_of, tune_unit, tuned_tables
 from synth.sweep.work import InThisProcess
-from tests.sweep.conftest import PLANT, SWEEP, run
+from tests.sweep.conftest import MEASURED, PLANT, SWEEP, run
 from tuning_tables import TableBook, read_book
 
 OWN = 0.03
@@ -74,7 +74,9 @@ def test_only_where_it_is_needed() -> None:
 
 
 def test_lines_between_are_those_that_a_controller_takes() -> None:
-    text = PLANT + SWEEP.replace("to = 30", "to = 22").replace("to = 2.0, step = 0.5", "to = 2.5, step = 1.0")
+    text = (
+        PLANT + MEASURED + SWEEP.replace("to = 30", "to = 22").replace("to = 2.0, step = 0.5", "to = 2.5, step = 1.0")
+    )
     text = text.replace(
         "path_step_m = 1.0\nspeed_step_m_s = 0.05\nfriction_scenarios = 3\nresistance_scenarios = 1\n", ""
     )  # the default grid instead: a coarse one predicts too much
@@ -101,7 +103,7 @@ def test_a_refined_book_keeps_its_loss(tmp_path: Path) -> None:
     coarse = SWEEP.replace("{ from = 1.5, to = 2.0, step = 0.5 }", "[1.0, 3.0]").replace("to = 30", "to = 22")
     loss = 0.002
     wanted = f"interpolation_loss_m_s = {loss}\nsmallest_step_m_s = 0.05\npasses"
-    config.write_text(PLANT + coarse.replace("passes", wanted), encoding="utf-8")
+    config.write_text(PLANT + MEASURED + coarse.replace("passes", wanted), encoding="utf-8")
     outcome = run(config, tmp_path / "out", InThisProcess())
     targets = [table.target_speed_m_s for table in read_book(tmp_path / "out" / "book.h5")]
     assert len(targets) > 2

@@ -9,7 +9,7 @@ import pytest
 
 from synth.sweep.local_workers import LocalWorkers
 from synth.sweep.work import InThisProcess
-from tests.sweep.conftest import PLANT, SWEEP, Ran, Silence, contents, run
+from tests.sweep.conftest import MEASURED, PLANT, SWEEP, Ran, Silence, contents, run
 from tuning_tables import read_book
 
 TUNED = """\
@@ -47,19 +47,19 @@ def test_tables_are_those_of_a_tune(command: Callable[..., Ran], serial: Path, t
     assert code in (0, 1), said
     tuned, swept = (read_book(directory / "book.h5") for directory in (tmp_path / "out", serial))
     assert len(tuned) == 6
+    assert any(table.estimator is not None for table in tuned)
     assert all(one == other for one, other in zip(swept, tuned, strict=True))
 
 
-def test_tables_with_an_estimator_are_those_of_a_tune(command: Callable[..., Ran], tmp_path: Path) -> None:
-    estimator = "[regulator]\nestimator = true\n"
-    (tmp_path / "tune.toml").write_text(PLANT + estimator + TUNED, encoding="utf-8")
-    (tmp_path / "sweep.toml").write_text(PLANT + estimator + SWEEP, encoding="utf-8")
+def test_tables_for_the_measured_speed_are_those_of_a_tune(command: Callable[..., Ran], tmp_path: Path) -> None:
+    (tmp_path / "tune.toml").write_text(PLANT + MEASURED + TUNED, encoding="utf-8")
+    (tmp_path / "sweep.toml").write_text(PLANT + MEASURED + SWEEP, encoding="utf-8")
     code, _, said = command("tune", tmp_path / "tune.toml", "-o", tmp_path / "out", "--workers", "2")
     assert code in (0, 1), said
     assert run(tmp_path / "sweep.toml", tmp_path / "swept", LocalWorkers(2)).failures == ()
     tuned, swept = (read_book(tmp_path / name / "book.h5") for name in ("out", "swept"))
     assert len(tuned) == 6
-    assert any(table.estimator is not None for table in tuned)
+    assert all(table.estimator is None for table in tuned)
     assert all(one == other for one, other in zip(swept, tuned, strict=True))
 
 

@@ -16,7 +16,7 @@ from synth.configuration.config_file import parse_config
 from synth.configuration.toml_text import toml_text
 from synth.sweep.plan import plan_of
 from synth.sweep.sweep_file import parse_sweep
-from tests.sweep.conftest import PLANT, SWEEP, Ran
+from tests.sweep.conftest import MEASURED, PLANT, SWEEP, Ran
 
 CONDITIONS = """\
 [[sweep.condition]]
@@ -130,7 +130,10 @@ def test_a_key_tells_of_everything_but_the_date_and_the_other_classes() -> None:
     assert keys(PLANT + SWEEP.replace("to = 30", "to = 34"))[:3] == base
     for old, new in (("passes = 1000", "passes = 1200"), ("2.0", "2.5"), ("degree = 2", "degree = 3")):
         assert set(keys((PLANT + SWEEP).replace(old, new))).isdisjoint(base)
-    assert set(keys(PLANT + SWEEP.replace("[sweep]", "[sweep]\ninterpolation_loss_m_s = 0.01"))).isdisjoint(base)
+    measured = keys(PLANT + MEASURED + SWEEP)
+    assert set(measured).isdisjoint(base)
+    refined = keys(PLANT + MEASURED + SWEEP.replace("[sweep]", "[sweep]\ninterpolation_loss_m_s = 0.01"))
+    assert set(refined).isdisjoint({*base, *measured})
 
 
 def test_a_condition_is_an_ordinary_configuration() -> None:

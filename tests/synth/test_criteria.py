@@ -257,7 +257,7 @@ def test_each_fault_is_one_sentence(text: str, sentence: str) -> None:
 
 def test_the_file_chooses_the_criterion() -> None:
     def chosen(text: str) -> Criterion:
-        return parse_config(f"[criterion]\n{text}\n", "my.toml").criterion
+        return parse_config(f"[regulator]\nestimator = false\n[criterion]\n{text}\n", "my.toml").criterion
 
     assert chosen("") == Criterion()
     assert chosen("overspeed_factor = 4").terminal == AsymmetricSquare(4.0)

@@ -76,7 +76,7 @@ def test_canonical_json_is_sorted_and_ignores_spelling_title_and_output() -> Non
 
 def test_how_uncertain_the_mean_friction_is_counts_only_where_lines_are_designed_for_it() -> None:
     known, thought = "[friction]\nmean_cv = 0.0\n", "[friction]\nmean_cv = 0.12\n"
-    plain, estimator = "", "[regulator]\nestimator = true\n"
+    plain, estimator = "[regulator]\nestimator = false\n", "[regulator]\nestimator = true\n"
     by_mean = [[parse_config(mean + text, "x.toml") for mean in (known, thought)] for text in (plain, estimator)]
     assert by_mean[0][0].sha256 == by_mean[0][1].sha256
     assert by_mean[1][0].sha256 != by_mean[1][1].sha256

@@ -73,21 +73,26 @@ def test_the_prediction_is_honest_and_who_is_told_the_friction_is_no_worse(book:
         assert 0.85 < table.predicted_rms_m_s / table.statistics.rms_m_s < 1.15
         told = figures.friction_known
         assert told.statistics.rms_m_s * figures.regret == pytest.approx(table.statistics.rms_m_s)
-        assert 1.0 < told.table_ratio_ci95[1] < 1.3  # who is told the friction is no worse
+        assert told.table_ratio >= 1.0  # who is told the friction is no worse, and need not use it
+        assert told.table_ratio_ci95[1] < 1.3
         assert told.table_ratio_ci95[1] - told.table_ratio_ci95[0] < 0.1  # on the same passes
         assert len(figures.entries) == 4
 
 
 def test_the_map_agrees_with_the_lines_and_marks_indifference(case: CaseResult) -> None:
-    """Far above its line a stage goes up, far below down; where lines are infinite nothing is gained."""
+    """Far above its line a stage goes up, far below down, wherever that counts."""
     chart, lines = case.study.policy_map, case.study.solver_lines
     assert chart.command.shape == chart.indifferent.shape == (5, len(chart.path_m), len(chart.speed_m_s))
     assert not (chart.command[0] == -1).any()
     assert not (chart.command[-1] == 1).any()
-    middle = len(chart.path_m) // 2
-    above = chart.speed_m_s > lines.upper_m_s[1, middle] + 0.1
-    near = above & (chart.speed_m_s < lines.upper_m_s[1, middle] + 0.5)
-    assert (chart.command[1, middle, near] == 1).all()
+    upper, lower = (each[:, : len(chart.path_m), None] for each in (lines.upper_m_s, lines.lower_m_s))
+    above = (chart.speed_m_s > upper + 0.1) & (chart.speed_m_s < upper + 0.5)
+    below = (chart.speed_m_s < lower - 0.1) & (chart.speed_m_s > lower - 0.5)
+    for near, command in ((above, 1), (below, -1)):
+        counts = near & ~chart.indifferent
+        assert counts.sum() > 0.1 * near.sum() > 100
+        assert (chart.command[counts] == command).all()
+        assert (chart.command[near] == command).mean() > 0.8
     assert 0.0 < chart.indifferent.mean() < 1.0
 
 

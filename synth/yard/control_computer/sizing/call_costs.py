@@ -64,14 +64,14 @@ def c_costs() -> CallCosts:
 def st_costs() -> CallCosts:
     """Operations of the exported Structured Text, counted in its parse tree (docs/structured-text.md).
 
-    `select`: 882 between two tables in a book of 6, 6 for each of 9 tables more, and 127 to copy an estimator of 16
+    `select`: 882 between two tables in a book of 6, 6 for each of 9 tables more, and 141 to copy an estimator of 16
     breaks, the difference of the two loads: put together, not counted in one. `aim` with its choice of the table, 382
     and 117, was counted like the others, for the same questions as in C. There is no checksum.
     """
     return CallCosts(
-        observe=332,
+        observe=444,
         decide=326,
-        select=882 + 9 * 6 + 127,
+        select=882 + 9 * 6 + 141,
         aim=382 + 117,
         intact=None,
         source="operations of Structured Text as executed: docs/structured-text.md; aim counted apart",

@@ -75,7 +75,7 @@ def test_the_memory_of_our_controller_is_the_sum_of_its_parts() -> None:
     )  # fmt: skip
     memory = controller_memory(counts)
     fixed = 2652 + 2 * 15 * 448 + 6 * 1024 + 31 * 32 * 2 / 8
-    working = 38 * 448 + 38 * 32 + 60 * 53 / 8 + 60
+    working = 38 * 448 + 38 * 64 + 60 * 53 / 8 + 60
     assert memory.kibibytes(Memory.FIXED) == pytest.approx(fixed / 1024)
     assert memory.kibibytes(Memory.WORKING) == pytest.approx(working / 1024)
 

@@ -63,10 +63,21 @@ def assumed() -> Yard:
 @pytest.fixture(scope="session")
 def worn(assumed: Yard) -> Yard:
     """Friction -30 %, exhaust constant +50 %, and tables tuned with that."""
+    return worn_yard(assumed, 0.7)
+
+
+@pytest.fixture(scope="session")
+def worse(assumed: Yard) -> Yard:
+    """The same with friction -40 %."""
+    return worn_yard(assumed, 0.6)
+
+
+def worn_yard(assumed: Yard, friction: float) -> Yard:
+    """So much of the friction, exhaust constant +50 %, and tables tuned with that."""
     known = {each.key: each.value for each in assumed.config.parameters}
     slope, exhaust = "retarder.force.slope_kn_per_kpa", "retarder.pneumatics.exhaust_time_constant_s"
     old = known[slope], known[exhaust]
     assert isinstance(old[0], float)
     assert isinstance(old[1], float)
-    worse = {slope: 0.7 * old[0], exhaust: 1.5 * old[1]}
+    worse = {slope: friction * old[0], exhaust: 1.5 * old[1]}
     return yard_of(with_numbers(assumed.source, worse, "truth", lambda _: "truth"))

@@ -35,24 +35,25 @@ def log_of(yard: Yard, tables: Yard, seed: int) -> PassLog:
 
 
 @pytest.fixture(scope="module")
-def retuned(assumed: Yard, worn: Yard) -> Retuned:
-    passes = fitting_passes(log_of(worn, assumed, 3), assumed.config.plants(), "test")
+def retuned(assumed: Yard, worse: Yard) -> Retuned:
+    passes = fitting_passes(log_of(worse, assumed, 3), assumed.config.plants(), "test")
     return retune(passes, assumed.source, RetuneOrder(assumed.tables, CREATED, threads=2), Teller(lambda _: None))
 
 
-def test_the_retuned_tables_recover_what_can_be_recovered(retuned: Retuned, assumed: Yard, worn: Yard) -> None:
+def test_the_retuned_tables_recover_what_can_be_recovered(retuned: Retuned, assumed: Yard, worse: Yard) -> None:
     """20 000 passes of the true plant: at least 80 % of what the tables tuned with the truth gain.
 
-    The gain is an eighth of the rms, and polishes for two nearly equal plants end within 1 to 2 % of it.
+    The gain is a sixteenth of the rms: an estimator learns much of the wear by itself. Designs for two nearly equal
+    plants end within 1 to 3 % of the rms; with friction -30 % that would hide a part of the gain, which is 3 mm/s then.
     """
-    passes, plants = stratified_passes(99, 0, 20_000), dict(worn.config.plants())
+    passes, plants = stratified_passes(99, 0, 20_000), dict(worse.config.plants())
 
     def rms(case: tuple[str, float], table: ControllerTable) -> float:
         sample = simulate(plants[case[0]], TableController(table), passes)
         return float(np.sqrt(sample.weight @ (sample.exit_speed_m_s - case[1]) ** 2 / sample.weight.sum()))
 
     for case, gain in zip(CASES, retuned.gains, strict=True):
-        old, new, best = (rms(case, yard[case]) for yard in (assumed.tables, retuned.new, worn.tables))
+        old, new, best = (rms(case, yard[case]) for yard in (assumed.tables, retuned.new, worse.tables))
         assert old - best > 0.003
         assert (old - new) / (old - best) >= 0.8
         assert gain in retuned.changed
