@@ -86,7 +86,7 @@ class Estimator:
     friction_cv            standard deviation of the friction factor of cuts around 1
     resistance_std_m_s2    standard deviation of the deceleration by running resistance around the mean of cuts
     path_std, correlation_length_m   σ_η and ℓ of the friction along the path, ℓ in m
-    frozen_readings        so many repetitions of one reading are not believed; `MOST_READINGS`: any number is
+    frozen_readings        so many repetitions of one reading are not believed; `MOST_READINGS`: more than a pass has
     doubted_readings       after so many doubted readings in a row that move as a cut does, the estimate begins anew
     lost_speed_std_m_s     limit of the standard deviation of the speed, beyond which answers are cautious
     unlikely_deviation     of the friction factor from 1, beyond which the cut is not of the table's category
@@ -95,7 +95,7 @@ class Estimator:
                            the first break to s, and lost for each kPa of overpressure at ξ = 1; W never falls, breaks
                            are a millimetre apart at least
 
-    Derived, for `observe` (read-only): parameters float32 (24,), work float32 (3, B). Raises `InvalidTable`.
+    Derived, for `observe` (read-only): parameters float32 (23,), work float32 (3, B). Raises `InvalidTable`.
     """
 
     speed_noise_m_s: float
