@@ -257,7 +257,9 @@ def with_grid_warnings(config: ResolvedConfig, file: str) -> ResolvedConfig:
     """`config` with a warning where its grid is too coarse; refused where problems or regulator make no sense."""
     config.problems()  # refuses what makes no sense
     lowest = config.lowest_target_m_s
-    coarse = tuple(grid_warnings(config.resolution, config.retarder.sensor, (lowest,)))
+    designed = estimator_resolution(config.resolution, config.retarder.sensor, lowest)
+    resolution = designed if config.regulator.estimator else config.resolution
+    coarse = tuple(grid_warnings(resolution, config.retarder.sensor, (lowest,)))
     require_plain_criterion(config, file)
     if config.regulator.at_any_time:
         for _, problem in config.problems():

@@ -38,8 +38,7 @@ CONFIGURATIONS = {
     "approach, estimator": f"{FEW}{AHEAD}estimator = true\n{KNOWN_MEAN}{GONDOLA}",
     "approach, estimator, reserve": f"{FEW}{AHEAD}estimator = true\n[friction]\nmean_cv = 0.15\n{GONDOLA}",
     "p_overspeed": (
-        f"{FEW}{ENTRANCE}{MEASURED}[criterion]\np_overspeed = 0.02\n"
-        f"[targets]\nexit_speeds_m_s = [2.0]\n{GONDOLA}"
+        f"{FEW}{ENTRANCE}{MEASURED}[criterion]\np_overspeed = 0.02\n[targets]\nexit_speeds_m_s = [2.0]\n{GONDOLA}"
     ),
     "worst_friction": (
         f"{FEW}{ENTRANCE}{MEASURED}[criterion]\nworst_friction_low = 0.8\nworst_friction_high = 1.2\n"

@@ -41,5 +41,5 @@ def estimated_lines(
 
     design = checked_design(solution, solution.chain, degree, judge)
     estimator, error_m_s = estimator_of(plant), design_error_m_s(plant.sensor)
-    untrimmed = lines_for_estimate(design.kept.lines, estimator, error_m_s, aim.criterion.time_price_m2_s3)
+    untrimmed = lines_for_estimate(design.kept.lines, estimator, error_m_s, aim.criterion)
     return design, trimmed_on(days, aim.target_speed_m_s, untrimmed)

@@ -57,7 +57,8 @@ def estimated_surfaces(
     error = error_of_estimate(loop, first, draws, LEAST_NOISE * made.error_m_s)
     steps = estimate_resolution(plant, target_m_s, made.error_m_s)
     polish = polished_surfaces(on_any_day(plant), aim, start, steps, error)
-    prices = aim.criterion.switching_tolerance_m2_s2, aim.criterion.time_price_m2_s3
+    criterion = aim.criterion
+    prices = criterion.switching_tolerance_m2_s2, criterion.time_price_m2_s3, criterion.terminal
     trim = Trim(TRIM_TERMS, TRIM_EVALUATIONS, *prices)
     return polish, Untrimmed(polish.surfaces, made.estimator, made.error_m_s, controller, opened, trim)
 

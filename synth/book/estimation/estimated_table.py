@@ -19,6 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from synth.book.estimation.tuning_days import TuningDays
+from synth.problem.criterion import SQUARED_ERROR, Criterion
+from synth.problem.terminal_cost import TerminalCost
 from synth.simulation.closed_loop import Controller, LineController
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
 from synth.solver.polynomial_lines import PolynomialLines, opened
@@ -37,13 +39,15 @@ Pairs = tuple[tuple[float, float], ...]
 class Trim:
     """How lines are trimmed: how many Legendre polynomials of the path move, in so many evaluations.
 
-    `change_m2_s2`, `second_m2_s3`: what a command and a second cost beside the squared error.
+    `change_m2_s2`, `second_m2_s3`: what a command and a second cost beside the squared error, or what else an
+    exit speed costs by `terminal`.
     """
 
     terms: int
     evaluations: int
     change_m2_s2: float = 0.0
     second_m2_s3: float = 0.0
+    terminal: TerminalCost = SQUARED_ERROR
 
 
 SHIFTS = Trim(1, 14)
@@ -94,7 +98,7 @@ def trimmed_on(days: TuningDays, target_m_s: float, design: Untrimmed[Lines]) ->
 
     def squares(by_m_s: Pairs) -> NDArray[np.float64]:
         controller = design.controller(design.moved(by_m_s), design.estimator)
-        prices = design.trim.change_m2_s2, design.trim.second_m2_s3
+        prices = design.trim.change_m2_s2, design.trim.second_m2_s3, design.trim.terminal
         return days.mean_squares(controller, target_m_s, *prices)
 
     as_designed = np.maximum(squares(no_shift(design.trim)), LEAST_SQUARE_M2_S2)
@@ -108,10 +112,11 @@ def trimmed_on(days: TuningDays, target_m_s: float, design: Untrimmed[Lines]) ->
 
 
 def lines_for_estimate(
-    lines: PolynomialLines, estimator: Estimator, error_m_s: float, second_m2_s3: float
+    lines: PolynomialLines, estimator: Estimator, error_m_s: float, criterion: Criterion
 ) -> Untrimmed[PolynomialLines]:
-    """Lines for commands at rest, to be trimmed; `second_m2_s3`: what a second costs."""
-    return Untrimmed(lines, estimator, error_m_s, controller_of, opened, replace(SHIFTS, second_m2_s3=second_m2_s3))
+    """Lines for commands at rest, to be trimmed for `criterion`."""
+    shifts = replace(SHIFTS, second_m2_s3=criterion.time_price_m2_s3, terminal=criterion.terminal)
+    return Untrimmed(lines, estimator, error_m_s, controller_of, opened, shifts)
 
 
 def controller_of(lines: PolynomialLines, estimator: Estimator | None) -> LineController:

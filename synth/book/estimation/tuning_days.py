@@ -19,6 +19,8 @@ from plant_models import Plant
 from plant_models.friction import Friction
 from plant_models.frozen_arrays import frozen_arrays
 from synth.kernels.loop.closed_loop import Draws
+from synth.problem.criterion import SQUARED_ERROR
+from synth.problem.terminal_cost import TerminalCost
 from synth.simulation.closed_loop import ClosedLoop, close_loop
 from synth.simulation.controllers import Regulator
 from synth.simulation.random_passes import PassRow, RandomPasses, random_passes
@@ -42,14 +44,20 @@ class TuningDays:
     weight: NDArray[np.float64]
 
     def mean_squares(
-        self, controller: Regulator, target_speed_m_s: float, change_m2_s2: float = 0.0, second_m2_s3: float = 0.0
+        self,
+        controller: Regulator,
+        target_speed_m_s: float,
+        change_m2_s2: float = 0.0,
+        second_m2_s3: float = 0.0,
+        terminal: TerminalCost = SQUARED_ERROR,
     ) -> NDArray[np.float64]:
-        """Mean squared error at the exit on each day, (D,) in m²/s², and what commands and seconds cost."""
+        """Mean cost of the exit speed on each day, (D,) in m²/s², by default the squared error, and what commands and
+        seconds cost."""
         found = []
         for draws in self.draws:
             passed = self.loop(controller.stages).run(controller, draws)
-            squares = (passed.exit_speed_m_s - target_speed_m_s) ** 2
-            squares += change_m2_s2 * passed.switchings + second_m2_s3 * passed.transit_time_s
+            squares = terminal.at_exit(passed.exit_speed_m_s, target_speed_m_s)
+            squares = squares + change_m2_s2 * passed.switchings + second_m2_s3 * passed.transit_time_s
             found.append(np.average(squares, weights=draws.weight))
         return np.array(found)
 

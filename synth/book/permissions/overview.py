@@ -20,9 +20,7 @@ SHORT: Final[Mapping[Permission, str]] = {
 """What permissions are called above their figures, in the order of those. Without a gauge commands at any time are
 rarely asked for: only the line and the report tell of them."""
 
-HINT: Final = (
-    "What commands at any time, an estimator and other permissions of the hardware would give: tune --permissions."
-)
+HINT: Final = "What commands at any time and other permissions of the hardware would give: tune --permissions."
 """Where nobody has asked."""
 
 
