@@ -134,11 +134,10 @@ class ResolvedConfig:
         spreads from day to day where nothing is designed for them.
         """
         of_days = {MEAN_CV, DAY_SPREAD}
-        left_out_at_0 = {*REGULATOR, *of_days}
         tree: dict[str, Any] = {"format": "retarder-config", "version": 1}
         tree["retarder"] = {"name": self.retarder.name, "law": self.retarder.law}
         for parameter in self.retarder.provenance:
-            if parameter.key in left_out_at_0 and parameter.value == 0.0:
+            if parameter.key in {*REGULATOR, *of_days} and parameter.value == 0.0:
                 continue
             if parameter.key in of_days and not self.regulator.estimator:
                 continue
