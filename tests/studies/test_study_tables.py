@@ -9,7 +9,7 @@ from synth.book.class_setup import class_setup, origin_of
 from synth.book.comparison.told_regulator import by_lines, run_told
 from synth.book.tuned_table import solutions
 from synth.book.tuned_table import tuned_table as tuned_table_of_a_tune
-from synth.configuration.config_file import load_config
+from synth.configuration.config_file import load_config, parse_config
 from synth.problem.aim import Aim
 from synth.problem.resolution import finer_for_check
 from synth.simulation.common_passes import common_passes
@@ -29,7 +29,7 @@ from synth.studies.tuned_table import CREATED, tuned_table
 
 @one_blas_thread()
 def test_the_table_of_a_study_is_that_of_a_tune() -> None:
-    config = load_config(None)
+    config = parse_config("[regulator]\nestimator = false\n", "measured speed")
     cases = named_cases(config, ("52:2", "52:3", "52:4"))
     setup = class_setup(config, cases[0].label, cases[0].plant, random_passes(1, 0, 100), origin_of("0" * 64, CREATED))
     for case, solution in zip(

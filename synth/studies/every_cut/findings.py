@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from statistics import median
 
 from synth.simulation.exit_statistics import clopper_pearson
-from synth.studies.every_cut.cut_figures import HONEST, Beside, BesideWithout, CutFigures, Outcome, Untuned
+from synth.studies.every_cut.cut_figures import HONEST, Beside, CutFigures, Outcome, Untuned
 from synth.studies.every_cut.order_statistics import median_interval
 from synth.studies.markdown_table import ABSENT, MarkdownTable, around, span, table
 from synth.studies.study import Findings
@@ -70,12 +70,6 @@ def faults_of(found: CutFigures) -> Iterator[str]:
     rule = found.best
     if rule.beaten_by:
         yield f"{found.case.name}: rms {around(rule.ratio, rule.ratio_ci95, 3)} times that of the {rule.rule}"
-    beside = found.without
-    if beside is not None and beside.worse:
-        yield (
-            f"{found.case.name}: rms {around(beside.ratio, beside.ratio_ci95, 3)} times that without estimator, "
-            f"{around(beside.weak_ratio, beside.weak_ratio_ci95, 3)} at 0.8 of the friction"
-        )
     if not found.honest:
         told = around(found.honesty, found.honesty_ci95, 3)
         yield f"{found.case.name}: predicted / simulated rms {told}, allowed {HONEST[0]:g} to {HONEST[1]:g}"
@@ -83,8 +77,6 @@ def faults_of(found: CutFigures) -> Iterator[str]:
 
 CLASS_HEADS = (
     "path of a pass", "cases", "worse than the best rule, % of the cases", "rms / best rule: median",
-    "worse than without estimator, % of the cases", "rms / without estimator: median, largest",
-    "at 0.8 of the friction: median, largest",
     "predicted / simulated: least, greatest", "design / predicted: least, greatest", "designed again",
 )  # fmt: skip
 
@@ -97,7 +89,6 @@ def class_cells(name: str, cases: Sequence[CutFigures]) -> tuple[str, ...]:
     return (
         name, str(len(cases)), share_cell([each.best.beaten_by for each in cases]),
         median_cell([each.best.ratio for each in cases]),
-        *without_cells([each.without for each in cases if each.without is not None]),
         f"{min(honesty):.3f}, {max(honesty):.3f}", f"{min(shares):.3f}, {max(shares):.3f}",
         str(sum(each.designed_again for each in cases)),
     )  # fmt: skip
@@ -114,22 +105,6 @@ def share_cell(hits: Sequence[bool]) -> str:
     """'1.2 [0.4, 2.8] (6)': per cent with its exact interval, and how many."""
     found = sum(hits)
     return f"{around(found / len(hits), clopper_pearson(found, len(hits)), 1, 100.0)} ({found})"
-
-
-def without_cells(beside: Sequence[BesideWithout]) -> tuple[str, ...]:
-    """The cells about tables without estimator, of the cases for which these were asked."""
-    if not beside:
-        return (ABSENT, ABSENT, ABSENT)
-    return (
-        share_cell([each.worse for each in beside]),
-        largest_cell([each.ratio for each in beside]),
-        largest_cell([each.weak_ratio for each in beside]),
-    )
-
-
-def largest_cell(values: Sequence[float]) -> str:
-    """'0.710, 1.012'."""
-    return f"{median(values):.3f}, {max(values):.3f}"
 
 
 def median_cell(values: Sequence[float]) -> str:

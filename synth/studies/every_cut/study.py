@@ -47,7 +47,6 @@ class Options:
     workers: int = option(THREADS, "cases at a time; no figure depends on it", (1, 256))
     coarse: bool = option(False, "on a coarse grid, whose figures mean nothing: to try the study")
     texts: bool = option(False, "tell the configuration of each case too, to tune it by hand")
-    without: bool = option(False, "beside its table without estimator too, which takes about twice as long")
     afresh: bool = option(False, "do every case, also those that a run which was stopped has finished; keep none")
 
 
@@ -58,8 +57,7 @@ def run(options: Options, tell: Tell) -> EveryCut:
 
     def outcome_of(case: RandomCase) -> Outcome:
         text = configuration(case, options)
-        config = parse_config(text, f"study every-cut, case {case.number}")
-        found = remember(f"{text}# {options.without}", partial(measured, case, config, options.without))
+        found = remember(text, partial(measured, case, parse_config(text, f"study every-cut, case {case.number}")))
         told = f"{next(finished)} of {options.cases}: {case.name}: {summary(found)}"
         tell(f"{told}\n\n{text}" if options.texts else told)
         return found
@@ -89,5 +87,5 @@ def summary(found: Outcome) -> str:
     )
 
 
-SMALLEST = Options(first=0, cases=3, passes=1000, coarse=True, without=True, afresh=True)
+SMALLEST = Options(first=0, cases=3, passes=1000, coarse=True, afresh=True)
 METHOD = Method(Options, SMALLEST, EveryCut, run)
