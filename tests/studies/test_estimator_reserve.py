@@ -51,8 +51,8 @@ def test_more_outside_is_counted_pass_by_pass_with_its_weight() -> None:
 def test_a_reserve_that_keeps_its_limits_is_no_fault() -> None:
     assert found(KEPT).faults() == ()
     (curve,) = [t for name, t in found(KEPT).tables().items() if name == "curve"]
+    assert [row[4] for row in curve.rows] == ["1", "0"]
     assert [row[5] for row in curve.rows] == ["1", "0"]
-    assert [row[6] for row in curve.rows] == ["1", "0"]
 
 
 def test_a_table_and_a_picture_name_the_uncertainty_that_they_show() -> None:

@@ -33,7 +33,7 @@ CONFIGURATIONS = {
     "approach, measured speed": f"{FEW}{AHEAD}{MEASURED}",
     "at any time, measured speed": f'{FEW}{AHEAD}{MEASURED}commands = "any_time"\n{GONDOLA}',
     "example of the README": (
-        f'{FEW}{AHEAD}[targets]\nexit_speeds_m_s = [3.0]\n[[cut]]\ncar = "gondola-4"\nmass_t = 52\n'
+        f'{FEW}{AHEAD}{MEASURED}[targets]\nexit_speeds_m_s = [3.0]\n[[cut]]\ncar = "gondola-4"\nmass_t = 52\n'
     ),
     "approach, estimator": f"{FEW}{AHEAD}estimator = true\n{KNOWN_MEAN}{GONDOLA}",
     "approach, estimator, reserve": f"{FEW}{AHEAD}estimator = true\n[friction]\nmean_cv = 0.15\n{GONDOLA}",

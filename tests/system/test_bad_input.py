@@ -32,7 +32,8 @@ CONFIGURATIONS = {
             ("path_step_m = 1.0\nspeed_step_m_s = 0.04", "path_step_m = 0.02\nspeed_step_m_s = 0.002"),
             ("friction_scenarios = 3", "friction_scenarios = 15\npath_levels = 9"),
             ("resistance_scenarios = 1", "resistance_scenarios = 15"),
-        ),
+        )
+        + "[regulator]\nestimator = false\n",
         "would take about",
     ),
 }  # fmt: skip
