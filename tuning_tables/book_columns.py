@@ -63,7 +63,7 @@ ESTIMATOR_COLUMNS: Final[tuple[Column, ...]] = (
            of_estimator("path_std", np.nan)),
     Column("estimator_correlation_length_m", ("table",), "<f8", "m", "its correlation length",
            of_estimator("correlation_length_m", np.nan)),
-    Column("estimator_frozen_readings", ("table",), "<i4", "1", "repetitions of a reading that are not believed",
+    Column("estimator_frozen_readings", ("table",), "<i4", "1", "repetitions of a reading of a frozen sensor",
            of_estimator("frozen_readings", 0)),
     Column("estimator_doubted_readings", ("table",), "<i4", "1", "doubted readings after which it begins anew",
            of_estimator("doubted_readings", 0)),

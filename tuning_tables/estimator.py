@@ -7,7 +7,7 @@ of a table that was tuned for it are compared with its speed:
 
     predict   Δe = ΔD - a Δs - ξ p ΔW      the work of grade and mean resistance, excess, and brake under p
               v' = v + 2 Δe / (v + v + Δe/v)
-    doubt     a reading far from v' that leapt there; one that repeats itself
+    doubt     a reading far from v' that leapt there; one that repeats itself a third as often as a frozen sensor
     correct   v, ξ, a by the measured speed, weighted by the covariance
 
 D(s) and W(s) are given as broken lines. The path's own friction noise (standard deviation σ_η, correlation length ℓ)
@@ -61,7 +61,7 @@ LARGEST_EXCESS_M_S2: Final = 0.5
 CAUTION: Final = 0.5
 """The answer is lower than the speed by so many limits, times (variance / limit² - 1)."""
 
-MOST_READINGS: Final = 1000
+MOST_READINGS: Final = 10_000
 
 LEAST_SPEED_M_S: Final = 0.2
 LEAST_STEP_M: Final = 0.001
@@ -86,7 +86,8 @@ class Estimator:
     friction_cv            standard deviation of the friction factor of cuts around 1
     resistance_std_m_s2    standard deviation of the deceleration by running resistance around the mean of cuts
     path_std, correlation_length_m   σ_η and ℓ of the friction along the path, ℓ in m
-    frozen_readings        so many repetitions of one reading are not believed; `MOST_READINGS`: more than a pass has
+    frozen_readings        after so many repetitions of one reading the sensor is frozen; from a third of them on the
+                           reading is not believed; `MOST_READINGS`: more than a pass has
     doubted_readings       after so many doubted readings in a row that move as a cut does, the estimate begins anew
     lost_speed_std_m_s     limit of the standard deviation of the speed, beyond which answers are cautious
     unlikely_deviation     of the friction factor from 1, beyond which the cut is not of the table's category
@@ -214,7 +215,7 @@ def observe(parameters: Floats, work: Floats, state: Floats, s_m: float, v_m_s: 
     reading = state[12]
     state[13] = state[13] + one if sensible and v == reading else nought
     state[12] = v if sensible else reading
-    believed = sensible and state[13] < parameters[18]
+    believed = sensible and state[13] + state[13] + state[13] < parameters[18]
     anew = not begun
     if anew:
         believed = believed and v >= least_speed

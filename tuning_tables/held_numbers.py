@@ -30,7 +30,7 @@ HELD_NUMBERS: Final = (
     HeldNumber("touch_kpa", "Touch_kpa", "touch pressure, at which the beams touch the wheels, kPa", None),
     HeldNumber("excess_variance", "ExcessVariance", "variance of the excess resistance of cuts, m2/s4", 13),
     HeldNumber("leap_m_s", "Leap", "between two readings, what noise cannot explain, m/s", 16),
-    HeldNumber("frozen", "Frozen", "repetitions of a reading that are not believed", 18),
+    HeldNumber("frozen", "Frozen", "repetitions of a reading of a frozen sensor", 18),
     HeldNumber("doubted", "Doubted", "doubted readings after which the estimate begins anew", 19),
     HeldNumber("lost_variance", "LostVariance", "variance of the speed beyond which the cut is lost, m2/s2", 20),
     HeldNumber("caution", "Caution", "of the answer for a lost cut, s/m", 21),

@@ -82,7 +82,7 @@ ELSE
     IF Sensible THEN
         Estimate.Reading_m_s := Speed_m_s;
     END_IF;
-    Fresh := Sensible AND (Estimate.Repeated < Table.Frozen);
+    Fresh := Sensible AND (Estimate.Repeated + Estimate.Repeated + Estimate.Repeated < Table.Frozen);
     Moves := Speed_m_s >= LeastSpeed_m_s;
     IF NOT Estimate.Begun THEN
         Path := Table.BreakPath_m[0];

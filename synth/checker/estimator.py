@@ -25,8 +25,8 @@ LIMITS: Final[Mapping[str, tuple[float, float]]] = {
     "resistance_std_m_s2": (0.0, 1.0),
     "path_std": (0.0, 1.0),
     "correlation_length_m": (1e-3, 1e4),
-    "frozen_readings": (1, 1000),
-    "doubted_readings": (1, 1000),
+    "frozen_readings": (1, 10_000),
+    "doubted_readings": (1, 10_000),
     "lost_speed_std_m_s": (1e-3, 10.0),
     "unlikely_deviation": (0.0, 10.0),
     "touch_pressure_kpa": (0.0, 2000.0),
@@ -199,7 +199,7 @@ class Observer:
         v = rounded(v_m_s)
         self.repeated = rounded(self.repeated + 1.0) if v == self.reading else 0.0
         self.reading = v
-        return v if self.repeated < self._held.frozen_readings else None
+        return v if 3.0 * self.repeated < self._held.frozen_readings else None
 
     def _first(self, s: float, measured: float) -> None:
         """Begin, or begin anew, with this reading."""

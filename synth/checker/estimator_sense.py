@@ -17,7 +17,7 @@ LEAST_NOISE_M_S: Final = 1e-4
 NUMBER_TOLERANCE: Final = 1e-6
 """Relative."""
 REPEATED_BY_CHANCE: Final = 1e-4
-NEVER_FROZEN: Final = 1000
+NEVER_FROZEN: Final = 10_000
 DOUBTED_S: Final = 2.0
 LOST_SPEED_STD_M_S: Final = 0.2
 UNLIKELY_STDS: Final = 3.0

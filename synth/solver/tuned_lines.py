@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+
+import numpy as np
 
 from synth.problem.aim import Aim
 from synth.solver.backward_induction import Solution, solve
 from synth.solver.chain.chain import Chain
 from synth.solver.evaluation import Evaluation, Gradient
-from synth.solver.policy_density import density_and_occupancy
+from synth.solver.policy_density import density_and_occupancy, exit_density
 from synth.solver.polish import Evaluate, Polish, polish
 from synth.solver.polynomial_fit import Fit, fit_lines
+from synth.solver.polynomial_lines import PolynomialLines
 from synth.solver.switching_lines import SwitchingLines
 
 POLISH_ITERATIONS, POLISH_TOLERANCE = 25, 5e-3
 
 FAR_SHARE, MOST_ROUNDS = 0.25, 4
-"""A polish ends when a step gains little of the cost that it began with. If it has brought the cost down to less than
-this share, that was too early: it is begun anew from its end, so often at most in all."""
+"""A polish ends when a step gains little of the avoidable cost that it began with. If it has brought that down to less
+than this share, that was too early: it is begun anew from its end, so often at most in all."""
 
 PRICED_TOLERANCE = 0.1
 """Part of the tolerance where a second has a price: rms and time change little against each other along wide valleys.
@@ -25,11 +29,7 @@ PRICED_TOLERANCE = 0.1
 it, the pass 6 % shorter in all."""
 
 LEAST_SHARE = 0.01
-"""Of a cost, however dear time is."""
-
-LEAST_ROUNDS_AHEAD = 2
-"""With an approach; a single round that ends early has cost up to 3 % of the rms. From the entrance there is one, so
-that the tables of before keep every bit."""
+"""Of a cost, however dear time is, and however many cuts run out of brake."""
 
 
 def tuned_lines(design: Chain, aim: Aim, degree: int, tolerance: float = POLISH_TOLERANCE) -> Polish:
@@ -47,25 +47,41 @@ def fitted(solution: Solution, degree: int) -> Fit:
 def polished(solution: Solution, fit: Fit, tolerance: float = POLISH_TOLERANCE) -> Polish:
     """The fitted lines after the polish; several rounds are told as one.
 
-    `tolerance` as of `polish`; a part of it, of the cost without the price of time, where time has one.
+    `tolerance` is of the cost that lines can avoid, a part of that where time has a price: not of what cuts cost that
+    run out of brake. Where these rule the mean, the others would be left unpolished.
     """
-    evaluate, nodes = remembering(Evaluation(solution.chain, solution.aim).gradient), solution.chain.grid.path_m
-    if solution.aim.prices_time:
-        tolerance *= PRICED_TOLERANCE * error_share(evaluate, solution, fit.lines.at(nodes))
-    rounds = [polish(fit.lines, fit.curvature, nodes, evaluate, POLISH_ITERATIONS, tolerance)]
-    least = LEAST_ROUNDS_AHEAD if solution.chain.approach_nodes else 1
-    while len(rounds) < least or (
-        len(rounds) < MOST_ROUNDS and rounds[-1].cost_after < FAR_SHARE * rounds[-1].cost_before
-    ):
-        rounds.append(polish(rounds[-1].lines, fit.curvature, nodes, evaluate, POLISH_ITERATIONS, tolerance))
+    chain, aim = solution.chain, solution.aim
+    evaluate, nodes = remembering(Evaluation(chain, aim).gradient), chain.grid.path_m
+    unavoidable = cost_at_full_brake(chain, aim)
+
+    def avoidable(lines: PolynomialLines) -> float:
+        at = lines.at(nodes)
+        error = (Evaluation(chain, aim.timeless).gradient if aim.prices_time else evaluate)(at)[0]
+        return max(error - unavoidable, LEAST_SHARE * evaluate(at)[0])
+
+    wanted = tolerance * (PRICED_TOLERANCE if aim.prices_time else 1.0)
+    rounds: list[Polish] = []
+    lines, left = fit.lines, avoidable(fit.lines)
+    before = math.inf
+    while len(rounds) < MOST_ROUNDS and left < FAR_SHARE * before:
+        before, cost = left, evaluate(lines.at(nodes))[0]
+        rounds.append(polish(lines, fit.curvature, nodes, evaluate, POLISH_ITERATIONS, wanted * before / cost))
+        lines = rounds[-1].lines
+        left = avoidable(lines)
     evaluations = sum(each.evaluations for each in rounds)
     return replace(rounds[-1], cost_before=rounds[0].cost_before, evaluations=evaluations)
 
 
-def error_share(evaluate: Evaluate, solution: Solution, lines: SwitchingLines) -> float:
-    """How much of the cost of `lines` is not the price of time, of which no polish saves more than a part."""
-    timeless = Evaluation(solution.chain, solution.aim.timeless).gradient(lines)[0]
-    return max(timeless / evaluate(lines)[0], LEAST_SHARE)
+def cost_at_full_brake(chain: Chain, aim: Aim) -> float:
+    """What cuts cost that leave too fast with the highest stage all the way: no lines avoid it."""
+    shape = chain.plant.top_stage + 1, len(chain.grid.path_m)
+    always_up = np.zeros(shape)
+    always_up[-1] = np.inf
+    density = exit_density(chain, SwitchingLines(chain.grid.path_m, np.full(shape, -np.inf), always_up))
+    too_fast = density.speed_m_s > aim.target_speed_m_s
+    cost = aim.criterion.terminal.at_exit(density.speed_m_s, aim.target_speed_m_s)
+    found = (1.0 - sum(share for share, _ in chain.other_days)) * float(density.probability[too_fast] @ cost[too_fast])
+    return found + sum(share * cost_at_full_brake(day, aim) for share, day in chain.other_days)
 
 
 def remembering(evaluate: Evaluate) -> Evaluate:

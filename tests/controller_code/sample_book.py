@@ -155,7 +155,7 @@ def estimator_of(breaks: int, end_m: float, begin_m: float = 0.0, noise_m_s: flo
     s = [begin_m + (end_m - begin_m) * (index / (breaks - 1)) ** 1.1 for index in range(breaks)]
     brake = [0.0007 * (x - begin_m) + 0.004 * max(0.0, min(x, 0.75 * end_m) - 0.25 * end_m) for x in s]
     return Estimator(
-        noise_m_s, 0.15, 0.006, 0.1, 2.0, 7, 20, 0.2, 0.5, 50.0, tuple(s), tuple(0.06 * x for x in s), tuple(brake)
+        noise_m_s, 0.15, 0.006, 0.1, 2.0, 6, 20, 0.2, 0.5, 50.0, tuple(s), tuple(0.06 * x for x in s), tuple(brake)
     )
 
 

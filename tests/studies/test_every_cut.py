@@ -12,7 +12,7 @@ from plant_models.library import car_names, load_car, load_position, position_na
 from synth.configuration.config_file import parse_config
 from synth.solver.one_blas_thread import one_blas_thread
 from synth.studies.document_pictures import is_stale, write_picture
-from synth.studies.every_cut.cut_figures import Beside, CutFigures, Outcome, Untuned
+from synth.studies.every_cut.cut_figures import Beside, BesideWithout, CutFigures, Outcome, Untuned
 from synth.studies.every_cut.findings import EveryCut, class_cells, faults_of, findings_of, length_name
 from synth.studies.every_cut.kept_cases import KeptCases
 from synth.studies.every_cut.measured_case import measured
@@ -83,7 +83,8 @@ def test_the_configuration_of_a_case_is_that_of_a_user() -> None:
 
 
 RULE = Beside("energy rule", 0.1, 5.0, 1.0, (0.99, 1.01))
-SOUND = CutFigures(MANY[0], 76.0, 0.1, (0.095, 0.105), 0.1, 0.1, False, 6.0, True, RULE)
+WITHOUT = BesideWithout(0.8, (0.79, 0.81), 0.9, (0.89, 0.91))
+SOUND = CutFigures(MANY[0], 76.0, 0.1, (0.095, 0.105), 0.1, 0.1, False, 6.0, True, RULE, WITHOUT)
 
 
 @pytest.mark.parametrize(
@@ -97,6 +98,17 @@ def test_a_rule_is_better_beyond_2_per_cent_and_the_interval(
     assert rule.beaten_by is worse
     faults = list(faults_of(replace(SOUND, best=rule)))
     assert [fault.rpartition(": ")[0] for fault in faults] == ([MANY[0].name] if worse else [])
+
+
+@pytest.mark.parametrize(
+    ("plain", "weak", "worse"), [(0.8, 0.9, False), (1.03, 0.9, True), (0.8, 1.03, True), (1.015, 1.015, False)]
+)
+def test_a_table_worse_than_without_estimator_is_a_fault(plain: float, weak: float, worse: bool) -> None:
+    beside = BesideWithout(plain, (plain - 0.01, plain + 0.01), weak, (weak - 0.01, weak + 0.01))
+    assert beside.worse is worse
+    faults = list(faults_of(replace(SOUND, without=beside)))
+    assert len(faults) == worse
+    assert not worse or "times that without estimator" in faults[0]
 
 
 @pytest.mark.parametrize(("predicted", "honest"), [(0.1, True), (0.086, True), (0.085, False), (0.12, False)])
@@ -115,7 +127,9 @@ def test_what_is_told_of_a_class_is_counted() -> None:
     assert [rows[name][1] for name in ("below 60 m", "60 to 100 m", "from 100 m", "all")] == ["0", "1", "1", "2"]
     assert rows["limit cannot be met"] == class_cells("limit cannot be met", [bad])
     assert rows["all"][2].startswith("50.0 [1.3, 98.7] (1)")
-    assert rows["all"][3:] == ("1.050 –", "0.800, 1.000", "1.000, 1.250", "0")
+    assert rows["all"][3] == "1.050 –"
+    assert rows["all"][4] == "0.0 [0.0, 84.2] (0)"
+    assert rows["all"][5:] == ("0.800, 0.800", "0.900, 0.900", "0.800, 1.000", "1.000, 1.250", "0")
     assert told.tables()["worst"].rows[0][0] == bad.case.name
     assert len(told.faults()) == 2
     assert any("the grid is too coarse" in sentence for sentence in told.sentences())

@@ -14,7 +14,7 @@ from synth.problem.aim import Aim
 from synth.problem.criterion import SQUARED_ERROR_CRITERION
 from synth.problem.problem import Problem
 from synth.simulation.closed_loop import TableController
-from synth.studies.book import cells, measure, row_of, short_cell
+from synth.studies.book import Measure, cells, measure, row_of, short_cell
 from synth.studies.cases import class_cases, named_cases, of_masses
 from synth.studies.criteria.study import BINS_M_S, criteria, density_of
 from synth.studies.degree.study import CaseRow, Degrees, Row
@@ -79,6 +79,12 @@ CASE: dict[str, Any] = {
     "honesty": 1.01, "honesty_ci95": [0.99, 1.03],
     "regret": None, "regret_ci95": [None, None], "best_baseline": "energy rule",
     "comparison": {"energy rule": {"rms_m_s": 0.114, "rms_ci95_m_s": [0.112, 0.116]}},
+    "off_nominal": {
+        "friction_low": {
+            "name": "friction × 0.7", "rms_m_s": 0.4, "rms_ci95_m_s": [0.39, 0.41], "overspeed": 0.2, "stalled": 0.0,
+        },
+        "readings_lost": {"name": "a third lost", "impossible": "no"},
+    },
 }  # fmt: skip
 
 
@@ -89,6 +95,8 @@ def test_a_row_of_the_book_is_that_of_its_summary() -> None:
     assert (row.honesty.value, row.honesty.ci95) == (1.01, (0.99, 1.03))
     assert (row.regret, cells(row)[9]) == (None, "–")
     assert cells(row_of({**CASE, "regret": 1.1, "regret_ci95": [1.0, 1.2]}))[9] == "1.100 [1.000, 1.200]"
+    assert [each.name for each in row.off_nominal] == ["friction × 0.7"]
+    assert row.off_nominal[0].rms == Measure(0.4, (0.39, 0.41))
     assert row.baseline_rms == measure(CASE["comparison"]["energy rule"], "rms_m_s")
 
 

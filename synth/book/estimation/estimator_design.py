@@ -20,8 +20,8 @@ from synth.solver.any_time.estimate_error import EstimateError, error_along_path
 from tuning_tables.estimator import MOST_BREAKS, MOST_READINGS, Estimator
 
 REPEATED_BY_CHANCE = 1e-4
-"""A reading that repeats itself so often that chance does it no oftener, on a cut that neither slows down nor speeds
-up, is not believed."""
+"""A sensor is frozen that repeats a reading so often as chance does no oftener, on a cut that neither slows down nor
+speeds up. From a third as many on, by chance one in twenty, a reading is not believed: few are lost that are true."""
 
 DOUBTED_S = 2.0
 """Readings that leapt away from the estimate, and since then move as a cut does, are believed after so long. A sensor

@@ -67,7 +67,7 @@ def estimated(observed, parameters, work, there, i, s_m, v_m_s):
     repeated = packs.choose(again, packs.gather(state, at + 13) + one, nought)
     packs.scatter(state, at + 12, there, packs.choose(sensible, v, reading))
     packs.scatter(state, at + 13, there, repeated)
-    fresh = sensible & (repeated < parameters[18])
+    fresh = sensible & (repeated + repeated + repeated < parameters[18])
     moving = v >= least_speed
     speed, factor = packs.choose(begun, packs.gather(state, at + 2), one), packs.gather(state, at + 3)
     excess, c5, c6 = packs.gather(state, at + 4), packs.gather(state, at + 5), packs.gather(state, at + 6)

@@ -31,11 +31,30 @@ class Beside:
 
 
 @dataclass(frozen=True)
+class BesideWithout:
+    """The table beside that of the same tune without estimator: rms / its rms, paired, with the 95 % interval.
+
+    `ratio`: on the plant of the tables; `weak_ratio`: where all friction is 0.8 of it.
+    """
+
+    ratio: float
+    ratio_ci95: Interval
+    weak_ratio: float
+    weak_ratio_ci95: Interval
+
+    @property
+    def worse(self) -> bool:
+        """Whether the table is worse on one of the plants."""
+        pairs = (self.ratio, self.ratio_ci95), (self.weak_ratio, self.weak_ratio_ci95)
+        return any(ratio > ALLOWED_LOSS and ci95[0] > 1.0 for ratio, ci95 in pairs)
+
+
+@dataclass(frozen=True)
 class CutFigures:
     """The table of a case, simulated; `length_m`: path of a pass, from where the regulator acts to the exit.
 
     `design_rms_m_s`: of its lines on the grid that they were polished on, in a second design if `designed_again`.
-    `feasible`: the position does not forbid the limit on the rms. `best`: of all rules.
+    `feasible`: the position does not forbid the limit on the rms. `best`: of all rules. `without`: no estimator.
     """
 
     case: RandomCase
@@ -48,6 +67,7 @@ class CutFigures:
     switchings: float
     feasible: bool
     best: Beside
+    without: BesideWithout
 
     @property
     def design_share(self) -> float:

@@ -70,6 +70,12 @@ def faults_of(found: CutFigures) -> Iterator[str]:
     rule = found.best
     if rule.beaten_by:
         yield f"{found.case.name}: rms {around(rule.ratio, rule.ratio_ci95, 3)} times that of the {rule.rule}"
+    if found.without.worse:
+        beside = found.without
+        yield (
+            f"{found.case.name}: rms {around(beside.ratio, beside.ratio_ci95, 3)} times that without estimator, "
+            f"{around(beside.weak_ratio, beside.weak_ratio_ci95, 3)} at 0.8 of the friction"
+        )
     if not found.honest:
         told = around(found.honesty, found.honesty_ci95, 3)
         yield f"{found.case.name}: predicted / simulated rms {told}, allowed {HONEST[0]:g} to {HONEST[1]:g}"
@@ -77,6 +83,8 @@ def faults_of(found: CutFigures) -> Iterator[str]:
 
 CLASS_HEADS = (
     "path of a pass", "cases", "worse than the best rule, % of the cases", "rms / best rule: median",
+    "worse than without estimator, % of the cases", "rms / without estimator: median, largest",
+    "at 0.8 of the friction: median, largest",
     "predicted / simulated: least, greatest", "design / predicted: least, greatest", "designed again",
 )  # fmt: skip
 
@@ -89,6 +97,9 @@ def class_cells(name: str, cases: Sequence[CutFigures]) -> tuple[str, ...]:
     return (
         name, str(len(cases)), share_cell([each.best.beaten_by for each in cases]),
         median_cell([each.best.ratio for each in cases]),
+        share_cell([each.without.worse for each in cases]),
+        largest_cell([each.without.ratio for each in cases]),
+        largest_cell([each.without.weak_ratio for each in cases]),
         f"{min(honesty):.3f}, {max(honesty):.3f}", f"{min(shares):.3f}, {max(shares):.3f}",
         str(sum(each.designed_again for each in cases)),
     )  # fmt: skip
@@ -105,6 +116,11 @@ def share_cell(hits: Sequence[bool]) -> str:
     """'1.2 [0.4, 2.8] (6)': per cent with its exact interval, and how many."""
     found = sum(hits)
     return f"{around(found / len(hits), clopper_pearson(found, len(hits)), 1, 100.0)} ({found})"
+
+
+def largest_cell(values: Sequence[float]) -> str:
+    """'0.710, 1.012'."""
+    return f"{median(values):.3f}, {max(values):.3f}"
 
 
 def median_cell(values: Sequence[float]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 
 from synth.book.attempted_case import attempted
@@ -12,12 +13,18 @@ from synth.book.failed_case import FailedCase
 from synth.book.tuned_table import ValidatedTable, read_back, solutions, tuned_table, validated_table
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.problem.aim import Aim
+from synth.simulation.closed_loop import TableController
+from synth.simulation.common_passes import common_passes
 from synth.simulation.exit_statistics import exit_statistics, rms_ratio
 from synth.simulation.random_passes import random_passes
 from synth.simulation.unavoidable_error import unavoidable_error
-from synth.studies.every_cut.cut_figures import Beside, CutFigures, Outcome, Untuned
+from synth.studies.every_cut.cut_figures import Beside, BesideWithout, CutFigures, Outcome, Untuned
 from synth.studies.every_cut.random_case import RandomCase
+from synth.studies.robustness.condition import friction
 from synth.studies.tuned_table import CREATED
+
+WEAK = 0.8
+"""Share of the friction on a day that brakes badly."""
 
 
 def measured(case: RandomCase, config: ResolvedConfig) -> Outcome:
@@ -40,7 +47,7 @@ def figures_of(case: RandomCase, config: ResolvedConfig) -> CutFigures:
     unavoidable = unavoidable_error(ends.slowest, ends.fastest, target)
     tuning = setup.passes.of_others(random_passes(config.validation.seed + 1, 0, TUNING_PASSES))
     best = best_of(tune_baselines(tuning, target), setup, validated)
-    figures = validated.statistics
+    figures, plain = validated.statistics, config.regulator.model_copy(update={"estimator": False})
     return CutFigures(
         case=case,
         length_m=plant.pass_m,
@@ -52,6 +59,21 @@ def figures_of(case: RandomCase, config: ResolvedConfig) -> CutFigures:
         switchings=figures.switchings,
         feasible=not unavoidable.forbids(config.acceptance.rms_m_s),
         best=best,
+        without=beside_without(replace(config, regulator=plain), setup, validated),
+    )
+
+
+def beside_without(config: ResolvedConfig, setup: ClassSetup, validated: ValidatedTable) -> BesideWithout:
+    """The table beside that of `config`, without estimator, on its plant and where friction is weak."""
+    ((label, plant),) = config.plants()
+    target, passes = validated.table.target_speed_m_s, setup.passes.passes
+    other = class_setup(config, label, plant, passes, setup.origin)
+    (solution,) = solutions(other.design, [Aim(target, config.criterion)])
+    table, plain = TableController(validated.table), TableController(tuned_table(other, solution).table)
+    weak = common_passes(friction(WEAK, 1.0)(plant), passes)
+    return BesideWithout(
+        *rms_ratio(validated.sample, setup.passes.run(plain), target),
+        *rms_ratio(weak.run(table), weak.run(plain), target),
     )
 
 

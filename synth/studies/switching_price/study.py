@@ -112,7 +112,7 @@ def run(options: Options, tell: Tell) -> SwitchingPrice:
     curves = []
     for case in named_cases(config, options.cases):
         setups = {
-            words: class_setup(commanding(config, commands), case.name, case.plant, fresh, origin)
+            words: class_setup(commanding(config, commands), case.label, case.plant, fresh, origin)
             for words, commands in ((AT_REST, "at_rest"), (AT_ANY_TIME, "any_time"))
         }
         rest, free = (points(setup, config, case.target_m_s, options) for setup in setups.values())
