@@ -20,7 +20,7 @@ REPEATED_BY_CHANCE: Final = 1e-4
 NEVER_FROZEN: Final = 10_000
 DOUBTED_S: Final = 2.0
 LOST_SPEED_STD_M_S: Final = 0.2
-UNLIKELY_STDS: Final = 3.0
+UNLIKELY_STDS: Final = 2.4
 HIGHEST_CV: Final = 0.6
 """Of cuts at a known N: the spread of the mean friction widens it to this at most."""
 CHANCE_TOLERANCE: Final = 1e-9

@@ -30,7 +30,7 @@ whose error lasts is then followed; one that began in error and is good again is
 LOST_SPEED_STD_M_S = 0.2
 """A cut whose speed is known no better than this is lost: what is left of the pass could take it beyond 0.3 m/s."""
 
-UNLIKELY_STDS = 3.0
+UNLIKELY_STDS = 2.4
 """Of the friction of any day: a cut beyond it is not of the table's category."""
 
 SECTIONS = 10
