@@ -19,7 +19,7 @@ from synth.solver.switching_lines import SwitchingLines
 
 POLISH_ITERATIONS, POLISH_TOLERANCE = 25, 5e-3
 
-FAR_SHARE, MOST_ROUNDS = 0.25, 4
+FAR_SHARE, MOST_ROUNDS = 0.5, 6
 """A polish ends when a step gains little of the avoidable cost that it began with. If it has brought that down to less
 than this share, that was too early: it is begun anew from its end, so often at most in all."""
 
