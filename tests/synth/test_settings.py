@@ -123,7 +123,7 @@ def test_unusual_values_are_warned_of_not_refused() -> None:
     assert warnings[0] == "retarder.pneumatics.brake_delay_s is 0.5; its sensible range is 0.05 to 0.2 s"
     assert warnings[1] == "cut[0].category is Т; by its axle load the cut is Л"
     (shares,) = parse_config("friction.mean_cv = 0.3\n", "x.toml").warnings
-    assert shares == "friction.mean_cv is 0.3; its sensible range is 0 to 0.2"
+    assert shares == "friction.mean_cv is 0.3; its sensible range is 0 to 0.25"
 
 
 @pytest.mark.parametrize(
