@@ -20,9 +20,9 @@ scatters about the same one. Scenarios of resistance are not saved: with two ins
 cuts run between them, with 10 to 20 % more rms in the park."""
 
 STEP_SHARE = 1.0
-"""Largest speed step of the grid, in standard deviations of the error. With 0.65 the mean rms is 1 % more. With 1.3 a tune
-takes a tenth less, but the cubic interpolation leaves negative probabilities, and some polishes descend into them: three
-of 223 random cuts had 1.06 to 1.16 of the rms without estimator."""
+"""Largest speed step of the grid, in standard deviations of the error. With 0.65 the mean rms is 1 % more. With 1.3 a
+tune takes a tenth less, but the cubic interpolation leaves negative probabilities, and some polishes descend into
+them: three of 223 random cuts had 1.06 to 1.16 of the rms without estimator."""
 
 
 def design_error_m_s(sensor: DopplerSensor) -> float:
