@@ -84,7 +84,7 @@ def test_the_configuration_of_a_case_is_that_of_a_user() -> None:
 
 RULE = Beside("energy rule", 0.1, 5.0, 1.0, (0.99, 1.01))
 WITHOUT = BesideWithout(0.8, (0.79, 0.81), 0.9, (0.89, 0.91))
-SOUND = CutFigures(MANY[0], 76.0, 0.1, (0.095, 0.105), 0.1, 0.1, False, 6.0, True, RULE, WITHOUT)
+SOUND = CutFigures(MANY[0], 76.0, 0.1, (0.095, 0.105), 0.1, False, 6.0, True, RULE, WITHOUT)
 
 
 @pytest.mark.parametrize(
@@ -129,7 +129,7 @@ def test_what_is_told_of_a_class_is_counted() -> None:
     assert rows["all"][2].startswith("50.0 [1.3, 98.7] (1)")
     assert rows["all"][3] == "1.050 –"
     assert rows["all"][4] == "0.0 [0.0, 84.2] (0)"
-    assert rows["all"][5:] == ("0.800, 0.800", "0.900, 0.900", "0.800, 1.000", "1.000, 1.250", "0")
+    assert rows["all"][5:] == ("0.800, 0.800", "0.900, 0.900", "0.800, 1.000", "0")
     assert told.tables()["worst"].rows[0][0] == bad.case.name
     assert len(told.faults()) == 2
     assert any("the grid is too coarse" in sentence for sentence in told.sentences())

@@ -53,7 +53,7 @@ class BesideWithout:
 class CutFigures:
     """The table of a case, simulated; `length_m`: path of a pass, from where the regulator acts to the exit.
 
-    `design_rms_m_s`: of its lines on the grid that they were polished on, in a second design if `designed_again`.
+    `designed_again`: the grid of the first design was not believed.
     `feasible`: the position does not forbid the limit on the rms. `best`: of all rules. `without`: no estimator.
     """
 
@@ -62,17 +62,11 @@ class CutFigures:
     rms_m_s: float
     rms_ci95_m_s: Interval
     predicted_rms_m_s: float
-    design_rms_m_s: float
     designed_again: bool
     switchings: float
     feasible: bool
     best: Beside
     without: BesideWithout
-
-    @property
-    def design_share(self) -> float:
-        """rms on the grid of the design / predicted rms."""
-        return self.design_rms_m_s / self.predicted_rms_m_s
 
     @property
     def honesty(self) -> float:

@@ -85,7 +85,7 @@ CLASS_HEADS = (
     "path of a pass", "cases", "worse than the best rule, % of the cases", "rms / best rule: median",
     "worse than without estimator, % of the cases", "rms / without estimator: median, largest",
     "at 0.8 of the friction: median, largest",
-    "predicted / simulated: least, greatest", "design / predicted: least, greatest", "designed again",
+    "predicted / simulated: least, greatest", "designed again",
 )  # fmt: skip
 
 
@@ -93,15 +93,14 @@ def class_cells(name: str, cases: Sequence[CutFigures]) -> tuple[str, ...]:
     """The cells of one class."""
     if not cases:
         return (name, "0", *(ABSENT for _ in CLASS_HEADS[2:]))
-    honesty, shares = [each.honesty for each in cases], [each.design_share for each in cases]
+    honesty = [each.honesty for each in cases]
     return (
         name, str(len(cases)), share_cell([each.best.beaten_by for each in cases]),
         median_cell([each.best.ratio for each in cases]),
         share_cell([each.without.worse for each in cases]),
         largest_cell([each.without.ratio for each in cases]),
         largest_cell([each.without.weak_ratio for each in cases]),
-        f"{min(honesty):.3f}, {max(honesty):.3f}", f"{min(shares):.3f}, {max(shares):.3f}",
-        str(sum(each.designed_again for each in cases)),
+        f"{min(honesty):.3f}, {max(honesty):.3f}", str(sum(each.designed_again for each in cases)),
     )  # fmt: skip
 
 

@@ -54,7 +54,6 @@ def figures_of(case: RandomCase, config: ResolvedConfig) -> CutFigures:
         rms_m_s=figures.rms_m_s,
         rms_ci95_m_s=figures.rms_ci95_m_s,
         predicted_rms_m_s=validated.table.predicted.rms_m_s,
-        design_rms_m_s=tuned.design.grid.design_rms_m_s,
         designed_again=tuned.design.grid.again,
         switchings=figures.switchings,
         feasible=not unavoidable.forbids(config.acceptance.rms_m_s),
