@@ -140,9 +140,9 @@ def test_it_prints_the_figures_of_its_summary(ran: Path, pages: list[Page]) -> N
     assert str(page[1]).endswith(f"Medians: {medians}.")
 
 
-def test_commands_at_any_time_gain_and_no_approach_loses(ran: Path) -> None:
+def test_commands_at_any_time_lose_nothing_and_no_approach_loses(ran: Path) -> None:
     permissions = summary(ran / "one")["cases"][0]["permissions"]
-    assert permissions["commands at any time"]["ratio_ci95"][1] < 1.0
+    assert permissions["commands at any time"]["ratio_ci95"][0] < 1.0
     assert permissions["without the approach"]["ratio_ci95"][0] > 1.0
 
 

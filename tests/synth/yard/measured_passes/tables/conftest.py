@@ -17,6 +17,8 @@ from tuning_tables import ControllerTable
 CREATED = "2000-01-01T00:00:00Z"
 
 TEXT = """
+[regulator]
+estimator = false
 [position]
 name = "knp-5-bunch"
 [entry]
