@@ -32,7 +32,7 @@ exit_speeds_m_s = [2.5]
 [grid]
 path_step_m = 0.5
 [validation]
-passes = 2000
+passes = 8000
 [[cut]]
 car = "gondola-4"
 mass_t = 36
@@ -116,7 +116,7 @@ def test_every_permission_is_told_with_its_interval(ran: Path) -> None:
     for each in case["permissions"].values():
         low, high = each["ratio_ci95"]
         assert low < each["ratio"] < high
-        assert each["passes"] == case["as_configured"]["passes"] == 2000
+        assert each["passes"] == case["as_configured"]["passes"] == 8000
         assert each["ratio"] == pytest.approx(each["rms_m_s"] / case["as_configured"]["rms_m_s"])
         assert 0.85 < each["predicted_rms_m_s"] / each["rms_m_s"] < 1.15
 
@@ -140,9 +140,9 @@ def test_it_prints_the_figures_of_its_summary(ran: Path, pages: list[Page]) -> N
     assert str(page[1]).endswith(f"Medians: {medians}.")
 
 
-def test_commands_at_any_time_lose_nothing_and_no_approach_loses(ran: Path) -> None:
+def test_commands_at_any_time_gain_and_no_approach_loses(ran: Path) -> None:
     permissions = summary(ran / "one")["cases"][0]["permissions"]
-    assert permissions["commands at any time"]["ratio_ci95"][0] < 1.0
+    assert permissions["commands at any time"]["ratio_ci95"][1] < 1.0
     assert permissions["without the approach"]["ratio_ci95"][0] > 1.0
 
 

@@ -17,8 +17,6 @@ from tuning_tables import ControllerTable
 CREATED = "2000-01-01T00:00:00Z"
 
 TEXT = """
-[regulator]
-estimator = false
 [position]
 name = "knp-5-bunch"
 [entry]
@@ -69,9 +67,15 @@ def worn(assumed: Yard) -> Yard:
 
 
 @pytest.fixture(scope="session")
-def worse(assumed: Yard) -> Yard:
-    """The same with friction -40 %."""
-    return worn_yard(assumed, 0.6)
+def known() -> Yard:
+    """What the library says, with a mean friction that is taken as known: tables keep no reserve for another."""
+    return yard_of(source_of_text(f"[friction]\nmean_cv = 0.0\n{TEXT}", "test"))
+
+
+@pytest.fixture(scope="session")
+def worse(known: Yard) -> Yard:
+    """Friction -40 %, exhaust constant +50 %, and tables tuned with that."""
+    return worn_yard(known, 0.6)
 
 
 def worn_yard(assumed: Yard, friction: float) -> Yard:

@@ -35,16 +35,16 @@ def log_of(yard: Yard, tables: Yard, seed: int) -> PassLog:
 
 
 @pytest.fixture(scope="module")
-def retuned(assumed: Yard, worse: Yard) -> Retuned:
-    passes = fitting_passes(log_of(worse, assumed, 3), assumed.config.plants(), "test")
-    return retune(passes, assumed.source, RetuneOrder(assumed.tables, CREATED, threads=2), Teller(lambda _: None))
+def retuned(known: Yard, worse: Yard) -> Retuned:
+    passes = fitting_passes(log_of(worse, known, 3), known.config.plants(), "test")
+    return retune(passes, known.source, RetuneOrder(known.tables, CREATED, threads=2), Teller(lambda _: None))
 
 
-def test_the_retuned_tables_recover_what_can_be_recovered(retuned: Retuned, assumed: Yard, worse: Yard) -> None:
+def test_the_retuned_tables_recover_what_can_be_recovered(retuned: Retuned, known: Yard, worse: Yard) -> None:
     """20 000 passes of the true plant: at least 80 % of what the tables tuned with the truth gain.
 
-    Tables for the measured speed: an estimator and its reserve for days of other friction leave 2 mm/s to gain, which
-    is no more than what the designs for two nearly equal plants differ by.
+    The gain is 0.4 of the rms. The reserve of the library's `mean_cv` leaves 2 %, which is what designs for two nearly
+    equal plants differ by, so the mean friction is taken as known here.
     """
     passes, plants = stratified_passes(99, 0, 20_000), dict(worse.config.plants())
 
@@ -53,8 +53,8 @@ def test_the_retuned_tables_recover_what_can_be_recovered(retuned: Retuned, assu
         return float(np.sqrt(sample.weight @ (sample.exit_speed_m_s - case[1]) ** 2 / sample.weight.sum()))
 
     for case, gain in zip(CASES, retuned.gains, strict=True):
-        old, new, best = (rms(case, yard[case]) for yard in (assumed.tables, retuned.new, worse.tables))
-        assert old - best > 0.003
+        old, new, best = (rms(case, yard[case]) for yard in (known.tables, retuned.new, worse.tables))
+        assert old - best > 0.05
         assert (old - new) / (old - best) >= 0.8
         assert gain in retuned.changed
         assert new / old == pytest.approx(gain.ratio, abs=0.05)
@@ -91,17 +91,17 @@ def test_a_log_of_the_unchanged_plant_is_refused(
     assert main(["replay", str(tmp_path / "nothing.h5"), *words]) == 2
 
 
-def test_a_case_without_a_new_table_keeps_its_old_one_and_is_told(retuned: Retuned, assumed: Yard) -> None:
+def test_a_case_without_a_new_table_keeps_its_old_one_and_is_told(retuned: Retuned, known: Yard) -> None:
     from synth.yard.measured_passes.retune.retune import book_of
     from synth.yard.measured_passes.retune.retune_summary import retune_sentences, retune_summary
 
     first, second = CASES
     new = {first: retuned.new[first]}
-    tables, kept = book_of(CASES, assumed.tables, new, {first})
+    tables, kept = book_of(CASES, known.tables, new, {first})
     assert list(tables) == CASES
     assert kept == {second}
-    assert tables[second] is assumed.tables[second]
-    assert list(book_of(CASES, {first: assumed.tables[first]}, new, {first})[0]) == [first]  # nowhere a second one
+    assert tables[second] is known.tables[second]
+    assert list(book_of(CASES, {first: known.tables[first]}, new, {first})[0]) == [first]  # nowhere a second one
     found = replace(retuned, failed=(FailedCase(*second, "the grid is too coarse"),))
     told = "S-1 to 3 m/s: no new table, the old one is kept: the grid is too coarse"
     assert retune_sentences(found)[-1] == told
@@ -110,15 +110,15 @@ def test_a_case_without_a_new_table_keeps_its_old_one_and_is_told(retuned: Retun
     ]
 
 
-def test_a_mixed_book_keeps_lines_without_a_proven_gain(retuned: Retuned, assumed: Yard, tmp_path: Path) -> None:
+def test_a_mixed_book_keeps_lines_without_a_proven_gain(retuned: Retuned, known: Yard, tmp_path: Path) -> None:
     from synth.yard.measured_passes.retune.retune import book_of
     from synth.yard.measured_passes.retune.tuned_books import class_setups, finished
 
-    tables, kept = book_of(CASES, assumed.tables, retuned.new, {CASES[0]})
+    tables, kept = book_of(CASES, known.tables, retuned.new, {CASES[0]})
     assert kept == {CASES[1]}
     made = finished(class_setups(retuned.identified, CREATED), tables, kept)
     assert made[0].stages == retuned.new[CASES[0]].stages
-    assert made[1].stages == assumed.tables[CASES[1]].stages
-    assert made[1].predicted != assumed.tables[CASES[1]].predicted
+    assert made[1].stages == known.tables[CASES[1]].stages
+    assert made[1].predicted != known.tables[CASES[1]].predicted
     write_book(made, tmp_path / "b.h5")
     assert len(read_book(tmp_path / "b.h5")) == 2
