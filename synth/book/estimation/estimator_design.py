@@ -21,7 +21,7 @@ from tuning_tables.estimator import MOST_BREAKS, MOST_READINGS, Estimator
 
 REPEATED_BY_CHANCE = 1e-4
 """A sensor is frozen that repeats a reading so often as chance does no oftener, on a cut that neither slows down nor
-speeds up. From a third as many on, by chance one in twenty, a reading is not believed: few are lost that are true."""
+speeds up. From a third as many on, by chance at most one in twenty, a reading is not believed."""
 
 DOUBTED_S = 2.0
 """Readings that leapt away from the estimate, and since then move as a cut does, are believed after so long. A sensor
@@ -31,7 +31,8 @@ LOST_SPEED_STD_M_S = 0.2
 """A cut whose speed is known no better than this is lost: what is left of the pass could take it beyond 0.3 m/s."""
 
 UNLIKELY_STDS = 2.4
-"""Of the friction of any day: a cut beyond it is not of the table's category."""
+"""Of the friction of any day: a cut beyond it is not of the table's category. How often that is said
+wrongly stands in docs/radar-faults.md."""
 
 SECTIONS = 10
 """Of the path, each with figures of its own for the error of an estimate."""

@@ -29,8 +29,9 @@ class EveryCut(Findings):
     untuned: tuple[Untuned, ...]
 
     def tables(self) -> Mapping[str, MarkdownTable]:
-        """`classes`: a row a class of length; `worst`: a row a case."""
-        return {"classes": table("Tables beside tuned rules", CLASS_HEADS, self.class_rows()), "worst": self.worst()}
+        """`classes`: a row a class of length; `worst`, `without`: a row a case."""
+        classes = table("Tables beside tuned rules", CLASS_HEADS, self.class_rows())
+        return {"classes": classes, "worst": self.worst(), "without": self.beside_without()}
 
     def class_rows(self) -> Iterator[tuple[str, ...]]:
         """The rows by length, then those of all cases and of those where the limit can be met, or not."""
@@ -44,6 +45,11 @@ class EveryCut(Findings):
         """The cases of the highest rms beside the best rule."""
         ordered = sorted(self.cases, key=lambda each: -each.best.ratio)[:WORST]
         return table("The worst cases beside the best rule", WORST_HEADS, [case_cells(each) for each in ordered])
+
+    def beside_without(self) -> MarkdownTable:
+        """The cases of the highest rms beside the table without estimator, on either plant."""
+        ordered = sorted(self.cases, key=lambda each: -max(each.without.ratio, each.without.weak_ratio))[:WORST]
+        return table("The worst cases beside the table without estimator", WITHOUT_HEADS, map(without_cells, ordered))
 
     def sentences(self) -> tuple[str, ...]:
         """How much was done, and the cases without a table."""
@@ -71,11 +77,8 @@ def faults_of(found: CutFigures) -> Iterator[str]:
     if rule.beaten_by:
         yield f"{found.case.name}: rms {around(rule.ratio, rule.ratio_ci95, 3)} times that of the {rule.rule}"
     if found.without.worse:
-        beside = found.without
-        yield (
-            f"{found.case.name}: rms {around(beside.ratio, beside.ratio_ci95, 3)} times that without estimator, "
-            f"{around(beside.weak_ratio, beside.weak_ratio_ci95, 3)} at 0.8 of the friction"
-        )
+        _, plain, weak = without_cells(found)
+        yield f"{found.case.name}: rms {plain} times that without estimator, {weak} at 0.8 of the friction"
     if not found.honest:
         told = around(found.honesty, found.honesty_ci95, 3)
         yield f"{found.case.name}: predicted / simulated rms {told}, allowed {HONEST[0]:g} to {HONEST[1]:g}"
@@ -139,6 +142,16 @@ def case_cells(found: CutFigures) -> tuple[str, ...]:
         found.case.name, f"{found.length_m:.0f}", "yes" if found.feasible else "no",
         around(found.rms_m_s, found.rms_ci95_m_s), f"{found.honesty:.3f}", rule_cell(found.best),
     )  # fmt: skip
+
+
+WITHOUT_HEADS = ("case", "rms / without estimator", "at 0.8 of the friction")
+
+
+def without_cells(found: CutFigures) -> tuple[str, str, str]:
+    """The cells of one case beside its table without estimator."""
+    beside = found.without
+    plain, weak = (beside.ratio, beside.ratio_ci95), (beside.weak_ratio, beside.weak_ratio_ci95)
+    return found.case.name, around(*plain, 3), around(*weak, 3)
 
 
 def rule_cell(beside: Beside) -> str:
