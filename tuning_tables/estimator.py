@@ -212,7 +212,7 @@ def observe(parameters: Floats, work: Floats, state: Floats, s_m: float, v_m_s: 
     before = state[1] if begun else work[0, 0]
     farthest = before + parameters[12] if begun else work[0, last]
     s = np.float32(s_m) if float(before) <= s_m <= float(farthest) else before
-    reading = state[12]
+    reading, heard = state[12], state[11] == nought or state[13] > nought
     state[13] = state[13] + one if sensible and v == reading else nought
     state[12] = v if sensible else reading
     believed = sensible and state[13] + state[13] + state[13] < parameters[18]
@@ -247,7 +247,7 @@ def observe(parameters: Floats, work: Floats, state: Floats, s_m: float, v_m_s: 
             total, surprise = p11 + parameters[0], v - predicted
             leap, most = (v - reading) - (predicted - speed), parameters[16] + effect
             leaps = leap > most or leap < nought - most
-            strange = leaps if state[11] == nought else v < least_speed
+            strange = leaps if heard else v < least_speed
             if surprise * surprise > parameters[15] * total and (strange or state[15] > nought):
                 moves = v >= least_speed and not leaps
                 state[15] = state[15] + one if moves else one

@@ -17,12 +17,12 @@ MISSING_M_S: Final = -1.0
 
 
 def faulty_radar(estimator: Estimator) -> Iterator[Reading]:
-    """A cut in front of a radar that shows 0, leaps away and back, repeats itself, leaps and stays, and is lost."""
+    """A cut in front of a radar that shows 0, leaps away and back, repeats itself, leaps twice, stays, and is lost."""
     first, last = float(estimator.work[0, 0]), float(estimator.work[0, -1])
     frozen, doubted = (min(number, 40) for number in (estimator.frozen_readings, estimator.doubted_readings))
     far = 4.0 + 12.0 * estimator.speed_noise_m_s + 1.0
     speeds = [4.0, 4.05, 3.95, 4.0, 0.0, 4.05, far, 3.95, far, far, 4.0, MISSING_M_S, 0.0, 4.05, MISSING_M_S, far, 4.0]
-    speeds += [3.95] * (frozen + 2) + [4.0, *(far + 0.05 * (i % 2) for i in range(doubted + 3))]
+    speeds += [3.95] * (frozen + 1) + [far, 4.0, *(far + 0.05 * (i % 2) for i in range(doubted + 3))]
     speeds += [MISSING_M_S] * 12
     step = (last - first) / (len(speeds) + 1)
     for sample, speed in enumerate(speeds):

@@ -15,6 +15,7 @@ VAR
     Moves : BOOL;
     Leaps : BOOL;
     Strange : BOOL;
+    Heard : BOOL;
     Anew : BOOL;
     Seen : BOOL; (* this reading is believed *)
     Path : REAL;
@@ -74,6 +75,7 @@ ELSIF (Table.Breaks < 2) OR (Table.Breaks > $BREAKS) THEN
     Observed_m_s := -1.0;
 ELSE
     Reading := Estimate.Reading_m_s;
+    Heard := (Estimate.Unseen = 0.0) OR (Estimate.Repeated > 0.0);
     IF Sensible AND (Speed_m_s = Reading) THEN
         Estimate.Repeated := Estimate.Repeated + 1.0;
     ELSE
@@ -174,7 +176,7 @@ ELSE
             Change := 0.0 - Most;
             Leaps := (Leap > Most) OR (Leap < Change);
             Strange := NOT Moves;
-            IF Estimate.Unseen = 0.0 THEN
+            IF Heard THEN
                 Strange := Leaps;
             END_IF;
             Square := Surprise * Surprise;

@@ -162,12 +162,14 @@ class Observer:
         before = self.s if self.begun else self._places[0]
         farthest = rounded(before + LONGEST_STEP_M) if self.begun else self._places[-1]
         s = rounded(s_m) if before <= s_m <= farthest else before
-        last, measured = self.reading, self._heard(v_m_s)
+        last, heard = self.reading, self.unseen == 0.0 or self.repeated > 0.0
+        measured = self._heard(v_m_s)
         if self.begun:
             kpa = rounded(overpressure_kpa) if 0.0 <= overpressure_kpa <= HIGHEST_KPA else 0.0
             then = self.v
             effect = self._predict(s, kpa)
-            found = measured is not None and self._weighed(measured, rounded(measured - last), then, effect)
+            leaps = measured is not None and self._leaps(rounded(measured - last), then, effect)
+            found = measured is not None and self._weighed(measured, heard, leaps)
         else:
             found = measured is not None and measured >= SLOWEST_M_S
             if measured is not None and found:
@@ -225,13 +227,16 @@ class Observer:
         self.vv = max(r(r(vv - r(of_x * r(self.vx - r(of_x * along)))) - r(of_a * self.va)), 0.0)
         return of_x
 
-    def _weighed(self, measured: float, change: float, then: float, effect: float) -> bool:
-        """Take a reading that changed by `change`, the speed before being `then`; whether it is believed."""
+    def _leaps(self, change: float, then: float, effect: float) -> bool:
+        """Whether a reading that changed by `change` did so by more than the cut, the speed before being `then`."""
+        leap, most = rounded(change - rounded(self.v - then)), rounded(self._held.leap + effect)
+        return leap > most or leap < -most
+
+    def _weighed(self, measured: float, heard: bool, leaps: bool) -> bool:
+        """Take a reading; whether it is believed. `heard`: so that there was one at the sample before to leap from."""
         r = rounded
         total, surprise = r(self.vv + self._held.speed_variance), r(measured - self.v)
-        leap, most = r(change - r(self.v - then)), r(self._held.leap + effect)
-        leaps = leap > most or leap < -most
-        strange = leaps if self.unseen == 0.0 else measured < SLOWEST_M_S
+        strange = leaps if heard else measured < SLOWEST_M_S
         if (strange or self.doubted > 0.0) and r(surprise * surprise) > r(GATE**2 * total):
             return self._doubt(measured, leaps)
         self._correct(total, surprise)

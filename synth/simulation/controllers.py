@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from synth.kernels.any_time.closed_loop import AnyTimeLaw, NodeSurfaces
 from synth.kernels.loop import regulator
-from synth.solver.switching_lines import SwitchingLines
+from synth.solver.switching_lines import SwitchingLines, always_up
 from tuning_tables.active_table import ActiveTable
 from tuning_tables.decisions import Decisions
 from tuning_tables.estimator import Estimator
@@ -124,9 +124,7 @@ class LineController:
 
 def full_brake(stages: int, start_m: float, exit_m: float) -> LineController:
     """A regulator of so many stages that raises at every decision, as far as there is a stage and it may."""
-    lower, upper = np.full((stages, 2), -np.inf), np.full((stages, 2), -1.0)  # below every speed
-    upper[-1] = np.inf
-    return LineController(SwitchingLines(np.array([start_m, exit_m]), lower, upper))
+    return LineController(always_up(np.array([start_m, exit_m]), stages))
 
 
 Controller = TableController | LineController

@@ -73,3 +73,10 @@ class SwitchingLines:
             for side in (self.lower_m_s, self.upper_m_s)
         )
         return SwitchingLines(np.array(nodes_m), lower, upper)
+
+
+def always_up(nodes_m: NDArray[np.float64], stages: int) -> SwitchingLines:
+    """Lines of so many stages below every speed: each decision raises, as far as there is a stage and it may."""
+    lower, upper = np.full((stages, len(nodes_m)), -np.inf), np.full((stages, len(nodes_m)), -1.0)
+    upper[-1] = np.inf
+    return SwitchingLines(nodes_m, lower, upper)

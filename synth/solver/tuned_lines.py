@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-import numpy as np
-
 from synth.problem.aim import Aim
 from synth.solver.backward_induction import Solution, solve
 from synth.solver.chain.chain import Chain
@@ -15,7 +13,7 @@ from synth.solver.policy_density import density_and_occupancy, exit_density
 from synth.solver.polish import Evaluate, Polish, polish
 from synth.solver.polynomial_fit import Fit, fit_lines
 from synth.solver.polynomial_lines import PolynomialLines
-from synth.solver.switching_lines import SwitchingLines
+from synth.solver.switching_lines import SwitchingLines, always_up
 
 POLISH_ITERATIONS, POLISH_TOLERANCE = 25, 5e-3
 
@@ -74,10 +72,7 @@ def polished(solution: Solution, fit: Fit, tolerance: float = POLISH_TOLERANCE) 
 
 def cost_at_full_brake(chain: Chain, aim: Aim) -> float:
     """What cuts cost that leave too fast with the highest stage all the way: no lines avoid it."""
-    shape = chain.plant.top_stage + 1, len(chain.grid.path_m)
-    always_up = np.zeros(shape)
-    always_up[-1] = np.inf
-    density = exit_density(chain, SwitchingLines(chain.grid.path_m, np.full(shape, -np.inf), always_up))
+    density = exit_density(chain, always_up(chain.grid.path_m, chain.plant.top_stage + 1))
     too_fast = density.speed_m_s > aim.target_speed_m_s
     cost = aim.criterion.terminal.at_exit(density.speed_m_s, aim.target_speed_m_s)
     found = (1.0 - sum(share for share, _ in chain.other_days)) * float(density.probability[too_fast] @ cost[too_fast])

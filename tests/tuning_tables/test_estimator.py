@@ -317,3 +317,13 @@ def test_lines_are_taken_between_tables_of_one_estimator_only(estimated_table: C
     touching = replace(faster, estimator=replace(estimated_table.estimator, touch_pressure_kpa=75.0))
     for unlike in (other, plain, touching):
         assert TableBook((estimated_table, unlike)).choose(*asked).status is Status.SLOWER
+
+
+def test_a_spike_after_a_repeated_reading_is_doubted_and_one_after_a_missing_reading_is_not(
+    estimator: Estimator,
+) -> None:
+    for readings, believed in (([5.0] * estimator.frozen_readings, False), ([-1.0], True)):
+        state = seen_cut(estimator)
+        for sample, v in enumerate((*readings, 8.0)):
+            observe(estimator.parameters, estimator.work, state, 1.2 + 0.05 * sample, v, 0.0)
+        assert (unseen_samples(state) == 0) is believed

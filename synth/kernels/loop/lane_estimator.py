@@ -62,9 +62,10 @@ def estimated(observed, parameters, work, there, i, s_m, v_m_s):
     before = packs.choose(begun, packs.gather(state, at + 1), work[0, 0])
     farthest = packs.choose(begun, before + parameters[12], work[0, work.shape[1] - 1])
     s = packs.choose((packs.wide(before) <= s_m) & (s_m <= packs.wide(farthest)), packs.narrow(s_m), before)
-    reading, unseen = packs.gather(state, at + 12), packs.gather(state, at + 11)
+    reading, unseen, repeats = packs.gather(state, at + 12), packs.gather(state, at + 11), packs.gather(state, at + 13)
     again = sensible & (v >= reading) & (v <= reading)
-    repeated = packs.choose(again, packs.gather(state, at + 13) + one, nought)
+    heard = (unseen <= nought) | (repeats > nought)
+    repeated = packs.choose(again, repeats + one, nought)
     packs.scatter(state, at + 12, there, packs.choose(sensible, v, reading))
     packs.scatter(state, at + 13, there, repeated)
     fresh = sensible & (repeated + repeated + repeated < parameters[18])
@@ -89,8 +90,7 @@ def estimated(observed, parameters, work, there, i, s_m, v_m_s):
     total, surprise = p11 + parameters[0], v - predicted
     leap, most = (v - reading) - (predicted - speed), parameters[16] + effect
     leaps = (leap > most) | (leap < nought - most)
-    seen = unseen <= nought
-    strange = (seen & leaps) | (packs.opposite(seen) & packs.opposite(moving))
+    strange = (heard & leaps) | (packs.opposite(heard) & packs.opposite(moving))
     far = surprise * surprise > parameters[15] * total
     doubted = begun & fresh & far & (strange | (doubts > nought))
     counted = packs.choose(moving & packs.opposite(leaps), doubts + one, one)
