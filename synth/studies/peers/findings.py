@@ -57,7 +57,6 @@ class Contest:
     """Controllers of one case with one permission, a command priced as in the table or free; the table comes first.
 
     `price_m2_s2`: of a command, for the peers; `days`: both as they are, on other days than they were made for.
-    `estimator_kept`: False only in results of tunes that could still leave the estimator out of a table.
     """
 
     case: str
@@ -66,7 +65,6 @@ class Contest:
     price_m2_s2: float
     figures: tuple[Figures, ...]
     days: tuple[Day, ...] = ()
-    estimator_kept: bool = True
 
     @property
     def table(self) -> Figures:
@@ -181,10 +179,9 @@ def rows_of(contests: Sequence[Contest]) -> Iterator[tuple[str, ...]]:
     """A row for each controller of each case."""
     for contest in contests:
         for each in contest.figures:
-            left_out = each is contest.table and not contest.estimator_kept
             ratio = ABSENT if each is contest.table else f"{each.ratio:.2f} {span(each.ratio_ci95, 2)}"
             yield (
-                contest.case, f"{each.name} (left out)" if left_out else each.name,
+                contest.case, each.name,
                 around(each.rms_m_s, each.rms_ci95_m_s, 1, 1e3), ratio, f"{1e3 * each.p99_m_s:.0f}",
                 f"{each.commands:.1f}", f"{each.time_s:.1f}", f"{100.0 * each.stalled:.2f}",
                 ABSENT if each is contest.table else f"{contest.criterion(each):.2f}",
