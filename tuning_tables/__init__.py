@@ -19,7 +19,16 @@ from tuning_tables.errors import (
     TableError,
     UnknownFormat,
 )
-from tuning_tables.estimator import CATEGORY_ALARM, LOST_ALARM, SENSOR_ALARM, Estimator, begin, unseen_samples
+from tuning_tables.estimator import (
+    HEAVIER_ALARM,
+    LIGHTER_ALARM,
+    LOST_ALARM,
+    SENSOR_ALARM,
+    Estimator,
+    begin,
+    table_after,
+    unseen_samples,
+)
 from tuning_tables.figures import Predicted, Validated, ValidRange
 from tuning_tables.hdf5_file import read_any_book, read_book, write_book
 from tuning_tables.json_file import from_json, read_json, to_json, write_json
@@ -41,7 +50,8 @@ from tuning_tables.table import ControllerTable
 from tuning_tables.table_book import Choice, Status, TableBook
 
 __all__ = [
-    "CATEGORY_ALARM",
+    "HEAVIER_ALARM",
+    "LIGHTER_ALARM",
     "LOST_ALARM",
     "SENSOR_ALARM",
     "ActiveTable",
@@ -94,6 +104,7 @@ __all__ = [
     "round_coefficients",
     "rule_of",
     "speed_for",
+    "table_after",
     "table_schema",
     "to_csv",
     "to_json",

@@ -9,16 +9,17 @@ import numpy as np
 
 from tuning_tables.c_literals import hex_float
 from tuning_tables.estimator import (
-    CATEGORY_ALARM,
     FACTOR_RANGE,
     FEW_READINGS,
     GATE,
+    HEAVIER_ALARM,
     LARGEST_EXCESS_M_S2,
     LARGEST_OVERPRESSURE_KPA,
     LARGEST_SPEED_M_S,
     LARGEST_STEP_M,
     LEAST_SPEED_M_S,
     LEAST_STEP_M,
+    LIGHTER_ALARM,
     LOST_ALARM,
     SENSOR_ALARM,
 )
@@ -46,7 +47,12 @@ def estimator_limits() -> Mapping[str, float]:
 
 def alarm_bits() -> Mapping[str, int]:
     """The bits of the alarm word, by their names in the templates."""
-    return {"LOST_ALARM": LOST_ALARM, "SENSOR_ALARM": SENSOR_ALARM, "CATEGORY_ALARM": CATEGORY_ALARM}
+    return {
+        "LOST_ALARM": LOST_ALARM,
+        "SENSOR_ALARM": SENSOR_ALARM,
+        "LIGHTER_ALARM": LIGHTER_ALARM,
+        "HEAVIER_ALARM": HEAVIER_ALARM,
+    }
 
 
 def estimator_blanks() -> Mapping[str, str]:

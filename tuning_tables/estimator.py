@@ -46,10 +46,11 @@ DOUBTED: Final = 15
 
 LOST_ALARM: Final = 1
 SENSOR_ALARM: Final = 2
-CATEGORY_ALARM: Final = 4
+LIGHTER_ALARM: Final = 4
+HEAVIER_ALARM: Final = 8
 """Bits of the alarm word. Lost: the standard deviation of the speed is beyond its limit, answers are cautious. Sensor:
-readings are doubted, or one repeats itself. Category: the brake works on this cut as it does on no cut of the table's
-category; its weight may be wrong."""
+readings are doubted, or one repeats itself. Lighter, heavier: the brake works more, or less, on this cut than on any
+of the table's category; its weight may be wrong."""
 
 GATE: Final = 5.0
 """Standard deviations of a surprise, beyond which a reading that leapt is doubted."""
@@ -181,14 +182,29 @@ def hand_on(state: Floats, v_m_s: float) -> float:
 
 
 def alarms(parameters: Floats, state: Floats) -> int:
-    """The alarm word of a cut's state: the sum of `LOST_ALARM`, `SENSOR_ALARM`, `CATEGORY_ALARM`, 0 for none."""
+    """The alarm word of a cut's state: a sum of the bits `LOST_ALARM` to `HEAVIER_ALARM`, 0 for none."""
     if state[0] == parameters[7]:
         return 0
     lost = state[5] > parameters[20]
     sensor = state[DOUBTED] > parameters[7] or state[REPEATED] >= parameters[18]
     off = state[3] - parameters[8]
-    category = off > parameters[22] or off < parameters[7] - parameters[22]
-    return LOST_ALARM * int(lost) + SENSOR_ALARM * int(sensor) + CATEGORY_ALARM * int(category)
+    lighter, heavier = off > parameters[22], off < parameters[7] - parameters[22]
+    word = LOST_ALARM * int(lost) + SENSOR_ALARM * int(sensor)
+    return word + LIGHTER_ALARM * int(lighter) + HEAVIER_ALARM * int(heavier)
+
+
+def table_after(word: int, present: int, last: int) -> int:
+    """Which of the tables 0 … `last`, from the lightest category to the heaviest, brakes a cut from now on.
+
+    `word`: what `alarms` says of the cut by table `present`, which brakes it. Each table's own estimator observes every
+    sample. A neighbour takes over where the weight alone is in doubt: a radar that is doubted may be what is wrong.
+    `numba.njit(table_after)` compiles this text.
+    """
+    if word == LIGHTER_ALARM and present > 0:
+        return present - 1
+    if word == HEAVIER_ALARM and present < last:
+        return present + 1
+    return present
 
 
 def observe(parameters: Floats, work: Floats, state: Floats, s_m: float, v_m_s: float, overpressure_kpa: float) -> Any:

@@ -142,7 +142,8 @@ VAR_OUTPUT
     Alarms : INT; (* 0: none, or no estimator; else a sum of
         $LOST_ALARM: the speed is known too badly, so that Observed_m_s is lower than the estimate;
         $SENSOR_ALARM: readings of the radar are doubted, or one repeats itself;
-        $CATEGORY_ALARM: the brake works on this cut as on none of its category. *)
+        $LIGHTER_ALARM: the brake works more on this cut than on any of its category;
+        $HEAVIER_ALARM: it works less. *)
 END_VAR
 """
 

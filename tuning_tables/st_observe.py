@@ -276,11 +276,12 @@ ELSE
             Alarms := Alarms + $SENSOR_ALARM;
         END_IF;
         Change := Estimate.Factor - 1.0;
-        IF Change < 0.0 THEN
-            Change := 0.0 - Change;
-        END_IF;
         IF Change > Table.Unlikely THEN
-            Alarms := Alarms + $CATEGORY_ALARM;
+            Alarms := Alarms + $LIGHTER_ALARM;
+        END_IF;
+        Change := 0.0 - Change;
+        IF Change > Table.Unlikely THEN
+            Alarms := Alarms + $HEAVIER_ALARM;
         END_IF;
     END_IF;
 END_IF;

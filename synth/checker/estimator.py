@@ -53,7 +53,8 @@ CAUTION: Final = 0.5
 
 LOST_ALARM: Final = 1
 SENSOR_ALARM: Final = 2
-CATEGORY_ALARM: Final = 4
+LIGHTER_ALARM: Final = 4
+HEAVIER_ALARM: Final = 8
 
 
 class Held(NamedTuple):
@@ -185,8 +186,8 @@ class Observer:
         held, off = self._held, rounded(self.x - 1.0)
         lost = self.vv > held.lost_variance
         sensor = self.doubted > 0.0 or self.repeated >= held.frozen_readings
-        category = abs(off) > held.unlikely_deviation
-        return LOST_ALARM * lost + SENSOR_ALARM * sensor + CATEGORY_ALARM * category
+        lighter, heavier = off > held.unlikely_deviation, off < -held.unlikely_deviation
+        return LOST_ALARM * lost + SENSOR_ALARM * sensor + LIGHTER_ALARM * lighter + HEAVIER_ALARM * heavier
 
     def _answer(self) -> float:
         """The estimate, and less where little is known of it."""

@@ -26,7 +26,7 @@ from synth.studies.radar_faults.faults import (
 from synth.studies.radar_faults.study import chance, joined, moments_s
 from synth.studies.radar_faults.watched_passes import watched_passes
 from tests.synth.case_factory import make_plant, make_table
-from tuning_tables.estimator import CATEGORY_ALARM, LOST_ALARM, SENSOR_ALARM
+from tuning_tables.estimator import HEAVIER_ALARM, LOST_ALARM, SENSOR_ALARM
 
 
 @pytest.fixture(scope="module")
@@ -135,7 +135,7 @@ def test_alarms_are_those_of_the_fault(plant: Plant, loop: ClosedLoop, passes: R
     assert ((stuck.seen & SENSOR_ALARM) != 0).all()
     assert ((stuck.at_end & SENSOR_ALARM) != 0).mean() < 0.1
     weak = watched_passes(loop, controller, loop.draws(passes, cut_factor=0.4))
-    assert ((weak.at_end & CATEGORY_ALARM) != 0).all()
+    assert ((weak.at_end & HEAVIER_ALARM) != 0).all()
 
 
 # --------------------------------------------------------------------------------------- the faults

@@ -13,9 +13,9 @@ from numba import njit
 from tuning_tables import ControllerTable, InvalidTable, Predicted, Status, TableBook, speed_for, unseen_samples
 from tuning_tables.active_table import active
 from tuning_tables.estimator import (
-    CATEGORY_ALARM,
     CAUTION,
     FACTOR_RANGE,
+    HEAVIER_ALARM,
     LOST_ALARM,
     SENSOR_ALARM,
     UNSEEN,
@@ -196,7 +196,7 @@ def test_what_the_brake_or_noise_can_do_is_no_leap(estimator: Estimator) -> None
         observe(estimator.parameters, estimator.work, state, s, v, 500.0)
         assert unseen_samples(state) == 0
     assert state[3] == np.float32(FACTOR_RANGE[0])
-    assert alarms(estimator.parameters, state) & CATEGORY_ALARM
+    assert alarms(estimator.parameters, state) & HEAVIER_ALARM
 
 
 def test_false_first_readings_are_left_behind(estimator: Estimator) -> None:

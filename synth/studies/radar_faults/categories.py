@@ -1,4 +1,4 @@
-"""Cuts under the tables of their own class and of others: how often CATEGORY is told at the end of the pass."""
+"""Cuts that are told to be of their own class and of others: how often that is noticed, and what it brings."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from synth.simulation.random_passes import RandomPasses
 from synth.simulation.replicates import share_of
 from synth.studies.book import Measure
 from synth.studies.estimator.wrong import braking, weighing
-from synth.studies.radar_faults.figures import rms_measure
+from synth.studies.radar_faults.figures import rms_measure, too_fast
 from synth.studies.radar_faults.findings import CategoryRow
-from synth.studies.radar_faults.watched_passes import watched_passes
-from tuning_tables.estimator import CATEGORY_ALARM
+from synth.studies.radar_faults.watched_passes import passes_by_weight, watched_passes
+from tuning_tables.estimator import HEAVIER_ALARM, LIGHTER_ALARM
 
 
 @dataclass(frozen=True)
@@ -38,15 +38,15 @@ def mistaken_for(cut: Plant, other: Plant) -> Plant:
 def mistaken_rows(classes: Sequence[CutClass], target_m_s: float, passes: RandomPasses) -> tuple[CategoryRow, ...]:
     """Every cut under the table of every class."""
     return tuple(
-        row_of(cut.name, told, "as it is", mistaken_for(cut.plant, told.plant), target_m_s, passes)
+        row_of(cut, classes, told, "as it is", mistaken_for(cut.plant, told.plant), target_m_s, passes)
         for cut in classes for told in classes
     )  # fmt: skip
 
 
 def own_rows(classes: Sequence[CutClass], target_m_s: float, passes: RandomPasses) -> tuple[CategoryRow, ...]:
-    """Every cut under its own table: what is flagged there is a false alarm."""
+    """Every cut told to be of its own class: what other tables take over there, they take over wrongly."""
     return tuple(
-        row_of(each.name, each, name, plant, target_m_s, passes)
+        row_of(each, classes, each, name, plant, target_m_s, passes)
         for each in classes for name, plant in variants(each.plant)
     )  # fmt: skip
 
@@ -62,9 +62,20 @@ def variants(plant: Plant) -> tuple[tuple[str, Plant], ...]:
     )
 
 
-def row_of(cut: str, told: CutClass, name: str, plant: Plant, target_m_s: float, passes: RandomPasses) -> CategoryRow:
-    """One cut under one table."""
+def row_of(
+    cut: CutClass, classes: Sequence[CutClass], told: CutClass, name: str, plant: Plant, target_m_s: float,
+    passes: RandomPasses,
+) -> CategoryRow:  # fmt: skip
+    """One cut told to be of one class, under its table alone and where tables of `classes` may take over."""
     loop = close_loop(plant, told.controller.stages)
-    found = watched_passes(loop, told.controller, loop.draws(passes))
-    flagged = share_of((found.at_end & CATEGORY_ALARM) != 0, found.sample.weight)
-    return CategoryRow(cut, told.name, name, Measure(*flagged), rms_measure(found.sample, target_m_s))
+    draws, number = loop.draws(passes), classes.index(told)
+    alone = watched_passes(loop, told.controller, draws)
+    by_weight = passes_by_weight(loop, [each.controller for each in classes], number, draws)
+    weight = draws.weight
+    return CategoryRow(
+        f"{cut.name} to {target_m_s:g} m/s", told.name, name,
+        Measure(*share_of((alone.at_end & (LIGHTER_ALARM | HEAVIER_ALARM)) != 0, weight)),
+        rms_measure(alone.sample, target_m_s), Measure(*share_of(too_fast(alone.sample, target_m_s), weight)),
+        Measure(*share_of(by_weight.table != number, weight)),
+        rms_measure(by_weight.sample, target_m_s), Measure(*share_of(too_fast(by_weight.sample, target_m_s), weight)),
+    )  # fmt: skip

@@ -10,7 +10,7 @@ from synth.simulation.replicates import Mean, mean_of, rms_of, rms_quotient, sha
 from synth.studies.book import Measure
 from synth.studies.radar_faults.findings import Exits, FaultRow
 from synth.studies.radar_faults.watched_passes import WatchedPasses
-from tuning_tables.estimator import CATEGORY_ALARM, LOST_ALARM, SENSOR_ALARM
+from tuning_tables.estimator import HEAVIER_ALARM, LIGHTER_ALARM, LOST_ALARM, SENSOR_ALARM
 
 
 def fault_row(fault: str, target_m_s: float, before: WatchedPasses, after: WatchedPasses) -> FaultRow:
@@ -42,7 +42,7 @@ def exits_of(passes: WatchedPasses, target_m_s: float, watches: bool) -> Exits:
         rms=rms_measure(sample, target_m_s),
         lost=alarm(LOST_ALARM),
         sensor=alarm(SENSOR_ALARM),
-        category=alarm(CATEGORY_ALARM),
+        category=alarm(LIGHTER_ALARM | HEAVIER_ALARM),
     )
 
 

@@ -1,8 +1,8 @@
-"""What faults of the radar do to both controllers, and how often CATEGORY is told, as values and as tables."""
+"""What faults of the radar do to both controllers, and what becomes of wrong weights, as values and as tables."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from statistics import median
 
@@ -65,13 +65,21 @@ class CaseRow:
 
 @dataclass(frozen=True)
 class CategoryRow:
-    """A cut under the table of a class: share of cuts with the alarm CATEGORY at the end of the pass, and rms, m/s."""
+    """A cut to an exit speed, told to be of the class of a table: what becomes of it where that table stays, or not.
+
+    `flagged`: share of cuts with the alarm LIGHTER or HEAVIER at the end of the pass under that table; `left`: share
+    that other tables have taken over, where they may. rms in m/s, `too_fast` above the limit.
+    """
 
     cut: str
     table: str
     plant: str
     flagged: Measure
     rms: Measure
+    too_fast: Measure
+    left: Measure
+    rms_by_weight: Measure
+    too_fast_by_weight: Measure
 
 
 @dataclass(frozen=True)
@@ -82,28 +90,32 @@ class RadarFaults(Findings):
     seed: int
     passes: int
     cases: tuple[CaseRow, ...]
-    category_target_m_s: float
     categories: tuple[CategoryRow, ...]
     own: tuple[CategoryRow, ...]
 
     def tables(self) -> Mapping[str, MarkdownTable]:
-        """`summary`: a row a fault; `cases`, `alarms`, `worse`; `category`, `category-rms`, `own`."""
+        """`summary`: a row a fault; `cases`, `alarms`, `worse`; `category`, `category-rms`, `category-fast`, `own`."""
         tables, cuts = (tuple(dict.fromkeys(of(row) for row in self.categories)) for of in (table_name, cut_name))
         found = {(row.cut, row.table): row for row in self.categories}
         plants = tuple(dict.fromkeys(row.plant for row in self.own))
         owned = {(row.cut, row.plant): row for row in self.own}
         under = ("cut", *(f"table of {name}" for name in tables))
-        flagged = ((cut, *(share(found[cut, name].flagged) for name in tables)) for cut in cuts)
-        rms = ((cut, *(found[cut, name].rms.cell(3) for name in tables)) for cut in cuts)
-        false = ((cut, *(share(owned[cut, name].flagged) for name in plants)) for cut in cuts)
+
+        def cells(text: Callable[[CategoryRow], str]) -> Iterator[tuple[str, ...]]:
+            return ((cut, *(text(found[cut, name]) for name in tables)) for cut in cuts)
+
+        false = ((cut, *(share(owned[cut, name].left) for name in plants)) for cut in cuts)
         return {
             "summary": self.summary(),
             "cases": self.by_case(),
             "alarms": self.alarms(),
             "worse": table("Where the estimator makes it worse", ("case", "fault", "what"), self.worse() or NOWHERE),
-            "category": table("Cuts with the alarm CATEGORY at the end, % [95 %]", under, flagged),
-            "category-rms": table("rms of the exit, m/s [95 %]", under, rms),
-            "own": table("False alarms: the same under the own table, % [95 %]", ("cut", *plants), false),
+            "category": table(
+                "Cuts with the alarm LIGHTER or HEAVIER at the end, % [95 %]", under, cells(lambda x: share(x.flagged))
+            ),
+            "category-rms": table("rms of the exit, m/s: the table stays → others take over", under, cells(both_rms)),
+            "category-fast": table("Above the limit, %: the table stays → others take over", under, cells(both_fast)),
+            "own": table("Cuts of the table's own class that others take over, % [95 %]", ("cut", *plants), false),
         }
 
     def summary(self) -> MarkdownTable:
@@ -151,7 +163,17 @@ class RadarFaults(Findings):
 
 
 NOWHERE = ((ABSENT, ABSENT, ABSENT),)
-ALARM_HEADS = ("fault", "LOST", "SENSOR", "CATEGORY")
+ALARM_HEADS = ("fault", "LOST", "SENSOR", "LIGHTER or HEAVIER")
+
+
+def both_rms(row: CategoryRow) -> str:
+    """'0.483 → 0.070 [0.068, 0.073]'."""
+    return f"{row.rms.value:.3f} → {row.rms_by_weight.cell(3)}"
+
+
+def both_fast(row: CategoryRow) -> str:
+    """'25.5 → 1.20 [1.12, 1.29]'."""
+    return f"{percent(row.too_fast)} → {share(row.too_fast_by_weight)}"
 
 
 def value(measure: Measure) -> float:

@@ -1,13 +1,14 @@
-"""The closed loop that can freeze its radar, and that tells the alarms and the last state of every estimator.
+"""The closed loop that can freeze its radar and go over to another table, and that tells the alarms of every pass.
 
-It is the kernel of the simulator, the same text compiled with other functions in the place of two of its own: the
-sensor's, which remembers its last reading, and the estimator's, which notes the alarms. So the product's kernels know
-nothing of either, and without fault every pass is the simulator's to the last bit.
+It is the kernel of the simulator, the same text compiled with other functions in the place of three of its own: the
+sensor's, which remembers its last reading; the estimator's, which runs one for each table, notes the alarms and chooses
+the table; the rule's, which takes that table. So the product's kernels know nothing of them, and with one table and
+without fault every pass is the simulator's to the last bit.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from threading import Lock
@@ -23,7 +24,7 @@ from synth.kernels.loop import closed_loop as kernel
 from synth.kernels.loop import regulator
 from synth.simulation.closed_loop import ClosedLoop, TableController, empty_exits, sample_of
 from synth.simulation.passes import ExitSample
-from tuning_tables.estimator import STATE_SIZE, alarms
+from tuning_tables.estimator import STATE_SIZE, alarms, table_after
 
 
 class FreezingSensor(NamedTuple):
@@ -40,12 +41,13 @@ class FreezingSensor(NamedTuple):
 class WatchedPasses:
     """`seen` (n,): bits of all alarms that a pass had at any sample; `at_end` (n,): those of its last sample.
 
-    Both are 0 for a table without estimator.
+    Both are 0 for a table without estimator. `table` (n,): which table braked the cut at the end.
     """
 
     sample: ExitSample
     seen: NDArray[np.int64]
     at_end: NDArray[np.int64]
+    table: NDArray[np.int64]
 
 
 def watched_passes(loop: ClosedLoop, controller: TableController, draws: kernel.Draws) -> WatchedPasses:
@@ -53,18 +55,43 @@ def watched_passes(loop: ClosedLoop, controller: TableController, draws: kernel.
 
     Raises `ValueError` for a table that is asked at any time.
     """
-    law = controller.law()
-    if not isinstance(law, regulator.Rule):
+    return passes_by_weight(loop, (controller,), 0, draws)
+
+
+def passes_by_weight(
+    loop: ClosedLoop, controllers: Sequence[TableController], told: int, draws: kernel.Draws
+) -> WatchedPasses:
+    """The same, each cut told to be of table `told`; by `table_after` it goes over to others of `controllers`.
+
+    They are for one position and one exit speed, from the lightest category to the heaviest. Raises `ValueError` for
+    tables that are asked at any time.
+    """
+    rules = [each.law() for each in controllers]
+    if not all(isinstance(each, regulator.Rule) for each in rules):
         raise ValueError("watched passes: only tables that decide at rest can be watched")
-    # With a lead the radar reads at every sample, also during a change of stage; the rule of a table knows no lead.
-    law = law._replace(lead_s=1.0)
-    passes = len(draws.cut_factor)
-    exits, seen, at_end = empty_exits(passes), np.zeros(passes, np.int64), np.zeros(passes, np.int64)
+    passes, now = len(draws.cut_factor), np.array([told])
+    exits = empty_exits(passes)
+    seen, at_end, table = (np.zeros(passes, np.int64) for _ in range(3))
     sensor = FreezingSensor(*loop.sensor, np.empty(1))
     with _COMPILING:
         run = _watching()
-    run(loop.path, loop.drive, sensor, law, draws, exits, seen, at_end)
-    return WatchedPasses(sample_of(exits, draws), seen, at_end)
+    run(loop.path, loop.drive, sensor, together([each.rule for each in controllers], now), draws, exits, now, told,
+        seen, at_end, table)  # fmt: skip
+    return WatchedPasses(sample_of(exits, draws), seen, at_end, table)
+
+
+def together(rules: Sequence[regulator.Rule], now: NDArray[np.int64]) -> Any:
+    """One law of all `rules`, for `_watching`: arrays have an axis more, and number `now` (1,) of them is in force."""
+    stacked: dict[str, Any] = {
+        name: np.stack([getattr(each, name) for each in rules])
+        for name in ("coefficients", "has_line", "valid", "entrance_stage", "estimator_parameters")
+    }
+    stacked["entrance_stage"] = stacked["entrance_stage"], now
+    stacked["estimator_parameters"] = stacked["estimator_parameters"], now
+    # Breaks second: the kernel asks there whether a table has an estimator.
+    stacked["estimator_work"] = np.stack([each.estimator_work.T for each in rules])
+    # With a lead the radar reads at every sample, also during a change of stage; the rule of a table knows no lead.
+    return rules[0]._replace(**stacked, lead_s=1.0)
 
 
 _COMPILING = Lock()
@@ -75,7 +102,8 @@ _COMPILING = Lock()
 def _watching() -> Callable[..., None]:
     """The loop over passes; compiled anew in a process, so that no stale cache is asked."""
     compiled = njit(nogil=True, error_model="numpy")
-    read, observe, told = regulator.measure, regulator.estimated_speed, compiled(alarms)
+    read, observe, decide = regulator.measure, regulator.estimated_speed, regulator.stage_by_table
+    word_of, after = compiled(alarms), compiled(table_after)
     size, left = STATE_SIZE, kernel.LEFT
 
     @compiled
@@ -85,24 +113,37 @@ def _watching() -> Callable[..., None]:
         return sensor.last_m_s[0]
 
     @compiled
-    def estimated_speed(parameters, work, known, s, v, kpa):  # type: ignore[no-untyped-def]  # as above
-        speed = observe(parameters, work, known[:size], s, v, kpa)
-        now = told(parameters, known[:size])
-        known[size], known[size + 1] = int(known[size]) | now, now
-        return speed
+    def estimated_speed(estimators, works, known, s, v, kpa):  # type: ignore[no-untyped-def]  # as above
+        (parameters, now), count = estimators, works.shape[0]
+        speeds, words = known[count * size : count * size + count], known[count * size + count :]
+        for i in range(count):
+            speeds[i] = observe(parameters[i], works[i].T, known[i * size : (i + 1) * size], s, v, kpa)
+        word = word_of(parameters[now[0]], known[now[0] * size : (now[0] + 1) * size])
+        words[0], words[1] = int(words[0]) | word, word
+        now[0] = after(word, now[0], count - 1)
+        return speeds[now[0]]
 
-    scope: dict[str, Any] = {**vars(kernel), "measure": measure, "estimated_speed": estimated_speed}
+    @compiled
+    def stage_by_table(coefficients, has_line, valid, limits, stage, s, v):  # type: ignore[no-untyped-def]  # as above
+        (gates, now), farthest = limits
+        limits = gates[now[0]], farthest
+        return decide(coefficients[now[0]], has_line[now[0]], valid[now[0]], limits, stage, s, v)
+
+    scope: dict[str, Any] = {
+        **vars(kernel), "measure": measure, "estimated_speed": estimated_speed, "stage_by_table": stage_by_table
+    }  # fmt: skip
     run_pass = compiled(FunctionType(kernel.run_pass.py_func.__code__, scope))
 
     @compiled
-    def run(path, drive, sensor, law, draws, exits, seen, at_end):  # type: ignore[no-untyped-def]  # as above
-        free, known = np.empty(path.gravity_m_s2.shape[0]), np.empty(size + 2, np.float32)
+    def run(path, drive, sensor, law, draws, exits, now, told, seen, at_end, table):  # type: ignore[no-untyped-def]
+        count = law.coefficients.shape[0]
+        free, known = np.empty(path.gravity_m_s2.shape[0]), np.empty(count * (size + 1) + 2, np.float32)
         events = np.empty((0, 6))
         for i in range(draws.cut_factor.shape[0]):
             drag = path.drag_m_s2_per_n_kn * draws.resistance_n_kn[i]
             for j in range(free.shape[0]):
                 free[j] = path.gravity_m_s2[j] - drag
-            sensor.last_m_s[0] = np.nan
+            sensor.last_m_s[0], now[0] = np.nan, told
             v, time, status, switchings, _ = run_pass(
                 path.edges_m, free, draws.brake_m_s2_per_kpa[i], drive, sensor, law,
                 draws.entry_m_s[i], draws.first_sample_s[i], draws.noise_z[i], events, known,
@@ -110,7 +151,7 @@ def _watching() -> Callable[..., None]:
             exits.stalled[i] = status != left
             exits.speed_m_s[i] = v if status == left else 0.0
             exits.time_s[i], exits.switchings[i] = time, switchings
-            seen[i], at_end[i] = int(known[size]), int(known[size + 1])
+            seen[i], at_end[i], table[i] = int(known[-2]), int(known[-1]), now[0]
 
     watching: Callable[..., None] = run
     return watching
