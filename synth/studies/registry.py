@@ -199,14 +199,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "synth.studies.rare_events.picture",
     ),
     Study(
-        "reference-problem",
-        "How fast is a neutral, published problem solved, beside scipy, QuantEcon, plain numba and numpy?",
-        56.0,
-        "benchmark.md",
-        "synth.studies.reference_problem.study",
-        "synth.studies.reference_problem.picture",
-    ),
-    Study(
         "retuning",
         "How much of what can be recovered do tables recover that are tuned for measured passes?",
         75.0,
