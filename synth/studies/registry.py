@@ -221,14 +221,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "synth.studies.in_the_loop.loop_study",
     ),
     Study(
-        "solver-scaling",
-        "What does a solve cost against each size of the problem, on more threads and in float32; what a prediction?",
-        44.0,
-        "speed.md#solving-and-predicting",
-        "synth.studies.solver_scaling.study",
-        "synth.studies.solver_scaling.picture",
-    ),
-    Study(
         "structure",
         "Do the named parts of the loop, run one by one as they are wired, give the simulator's pass?",
         20.0,
