@@ -229,14 +229,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "synth.studies.structure.picture",
     ),
     Study(
-        "sweep-speed",
-        "How fast does a sweep make tables, what memory does it take, and what would 10 000 tables need?",
-        104.0,
-        "sweep.md#measured",
-        "synth.studies.sweep_speed.study",
-        "synth.studies.sweep_speed.picture",
-    ),
-    Study(
         "switching-price",
         "What do fewer switchings cost in accuracy, with commands at rest and at any time?",
         130.0,
