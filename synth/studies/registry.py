@@ -245,14 +245,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "synth.studies.time_price.picture",
     ),
     Study(
-        "times",
-        "How long does a user wait: start-up, a tune with and without compiled kernels, the closed loop?",
-        278.0,
-        "speed.md",
-        "synth.studies.times.study",
-        "synth.studies.times.picture",
-    ),
-    Study(
         "verification",
         "What does `verify` doubt: tables whose claims are true, and tables that state another rms than theirs?",
         120.0,
