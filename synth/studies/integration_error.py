@@ -14,13 +14,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.simulation.closed_loop import SUBSTEP_S, close_loop
+from plant_models import Plant
+from synth.configuration.config_file import load_config
+from synth.problem.aim import Aim
+from synth.simulation.closed_loop import SUBSTEP_S, LineController, close_loop
 from synth.simulation.passes import PassTrace
 from synth.simulation.random_passes import random_passes
+from synth.solver.backward_induction import solve
+from synth.solver.chain.chain import persistent_chain
 from synth.studies.markdown_table import MarkdownTable, table
 from synth.studies.options import option
 from synth.studies.study import Findings, Method, Tell
-from synth.studies.times.cases import LoopCase, middle_case
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -75,6 +79,25 @@ class IntegrationError(Findings):
             f"{self.case}, {self.passes} passes, seed {self.seed}; the simulation itself takes {self.used} sub-steps "
             f"of a period of {self.period_s:g} s",
         )
+
+
+@dataclass(frozen=True)
+class LoopCase:
+    """A plant under lines; `name` is its label and target."""
+
+    name: str
+    config_sha256: str
+    plant: Plant
+    controller: LineController
+
+
+def middle_case() -> LoopCase:
+    """The middle class of the default book under the solver's lines for its middle target."""
+    config = load_config(None)
+    label, plant = config.plants()[len(config.plants()) // 2]
+    target = config.targets_m_s[len(config.targets_m_s) // 2]
+    lines = solve(persistent_chain(plant, config.resolution), Aim(target, config.criterion)).lines
+    return LoopCase(f"{label} to {target:g} m/s", config.sha256, plant, LineController(lines))
 
 
 def run(options: Options, tell: Tell) -> IntegrationError:

@@ -199,14 +199,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "synth.studies.rare_events.picture",
     ),
     Study(
-        "reference-problem",
-        "How fast is a neutral, published problem solved, beside scipy, QuantEcon, plain numba and numpy?",
-        56.0,
-        "benchmark.md",
-        "synth.studies.reference_problem.study",
-        "synth.studies.reference_problem.picture",
-    ),
-    Study(
         "retuning",
         "How much of what can be recovered do tables recover that are tuned for measured passes?",
         75.0,
@@ -229,28 +221,12 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "synth.studies.in_the_loop.loop_study",
     ),
     Study(
-        "solver-scaling",
-        "What does a solve cost against each size of the problem, on more threads and in float32; what a prediction?",
-        44.0,
-        "speed.md#solving-and-predicting",
-        "synth.studies.solver_scaling.study",
-        "synth.studies.solver_scaling.picture",
-    ),
-    Study(
         "structure",
         "Do the named parts of the loop, run one by one as they are wired, give the simulator's pass?",
         20.0,
         "structure.md",
         "synth.studies.structure.study",
         "synth.studies.structure.picture",
-    ),
-    Study(
-        "sweep-speed",
-        "How fast does a sweep make tables, what memory does it take, and what would 10 000 tables need?",
-        104.0,
-        "sweep.md#measured",
-        "synth.studies.sweep_speed.study",
-        "synth.studies.sweep_speed.picture",
     ),
     Study(
         "switching-price",
@@ -267,14 +243,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "time-price.md",
         "synth.studies.time_price.study",
         "synth.studies.time_price.picture",
-    ),
-    Study(
-        "times",
-        "How long does a user wait: start-up, a tune with and without compiled kernels, the closed loop?",
-        278.0,
-        "speed.md",
-        "synth.studies.times.study",
-        "synth.studies.times.picture",
     ),
     Study(
         "verification",

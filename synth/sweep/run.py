@@ -147,7 +147,7 @@ def computed(task: Task, directory: HeldSweep, engine: Engine, watcher: Watcher,
             directory.store(answer.result)
             rows = answer.result.rows
             refused = [asdict(each) for each in answer.result.refused]
-            ledger.write(DONE, {**facts, "tables": len(rows), "refused": refused, "peak_bytes": answer.peak_bytes})
+            ledger.write(DONE, {**facts, "tables": len(rows), "refused": refused})
             worst = max(rows, key=lambda row: row.table.predicted.rms_m_s).table
             watcher.done(
                 unit,

@@ -6,8 +6,6 @@ Engines take any orders: units of a sweep, batches of trains.
 from __future__ import annotations
 
 import os
-import resource
-import sys
 import time
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
@@ -29,13 +27,12 @@ class Order(Protocol):
 
 @dataclass(frozen=True)
 class Answer:
-    """`result`, or None and the `reason` in one sentence; `seconds` it took, `peak_bytes` of the worker, its name."""
+    """`result`, or None and the `reason` in one sentence; the `seconds` it took, the worker's name."""
 
     key: str
     result: Any
     reason: str = ""
     seconds: float = 0.0
-    peak_bytes: int = 0
     worker: str = ""
 
 
@@ -67,7 +64,7 @@ def answered(order: OrderOfKind, compute: Callable[[OrderOfKind], object]) -> An
         result, reason = compute(order), ""
     except Exception as fault:
         result, reason = None, sentence_of(fault)
-    return Answer(order.key, result, reason, time.monotonic() - started, peak_bytes(), worker_name())
+    return Answer(order.key, result, reason, time.monotonic() - started, worker_name())
 
 
 def require_software(sha256: str) -> None:
@@ -96,17 +93,6 @@ def sentence_of(fault: Exception) -> str:
     if isinstance(fault, PlantError | TableError) or type(fault) is ValueError:
         return " ".join(str(fault).split()) or "no words"
     return unforeseen(fault)
-
-
-def peak_bytes() -> int:
-    """Highest memory that this process has held, that of the one it was started by left out where Linux tells."""
-    try:
-        with open("/proc/self/status", encoding="ascii", errors="replace") as lines:
-            return next(1024 * int(line.split()[1]) for line in lines if line.startswith("VmHWM"))
-    except (OSError, StopIteration):
-        pass
-    unit = 1 if sys.platform == "darwin" else 1024
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
 
 
 def worker_name() -> str:

@@ -15,10 +15,10 @@ from synth.solver.backward_induction import solve_all
 from synth.solver.chain.chain import Chain, persistent_chain
 from synth.studies.benchmark.by_numpy import sweep_by_numpy
 from synth.studies.benchmark.findings import Limit
+from synth.studies.benchmark.kernels.roofline import loads, loads_a_turn, multiply_adds
+from synth.studies.benchmark.machine_rates import CACHE_LINE_BYTES, SUMS_A_TURN, filled, load_loop, multiply_add_loop
 from synth.studies.benchmark.study import apart, line_difference, value_difference, vectors_needed
 from synth.studies.benchmark.work import SweepWork, sweep_work
-from synth.studies.reference_problem.kernels.roofline import loads_a_turn
-from synth.studies.reference_problem.machine_rates import load_loop, multiply_add_loop
 from synth.studies.timing.turns import Times
 from tests.oracles.conftest import plant_with
 
@@ -80,13 +80,20 @@ def test_a_limit_scales_with_what_is_needed() -> None:
 
 def test_loops_of_the_machine_do_what_they_count() -> None:
     """Ones are loaded: the sum in each lane is the number of loads over all lanes' turns."""
-    from synth.studies.reference_problem.kernels.roofline import loads
-    from synth.studies.reference_problem.scratch import Scratch
+    data, result = filled(1024, 1.0), filled(16, 0.0)
+    loads(3, data, result)
+    assert result.tolist() == [3.0 * loads_a_turn(1024)] * 16
+    assert loads_a_turn(1024) == 56
+    assert load_loop(1024).operations % loads_a_turn(1024) == 0
 
-    data, result = Scratch().singles("data", 1024), Scratch().singles("result", 16)
-    data[:] = 1.0
-    loads(3, 5, data, result)
-    assert result.tolist() == [3.0 * loads_a_turn(1024, 5)] * 16
-    assert loads_a_turn(1024, 5) == 56
-    assert load_loop(1024).operations % loads_a_turn(1024, 0) == 0
-    assert multiply_add_loop(2).operations == 2 * multiply_add_loop(1).operations
+
+def test_chains_of_products_end_at_their_fixed_point() -> None:
+    """x·½ + ½ tends to 1, whatever it begins with: twelve chains sum up to twelve."""
+    result = filled(16, 0.0)
+    multiply_adds(100, filled(16, 0.5), result)
+    assert result.tolist() == [12.0] * 16
+    assert multiply_add_loop().operations % SUMS_A_TURN == 0
+
+
+def test_loads_do_not_straddle_two_cache_lines() -> None:
+    assert {filled(floats, 1.0).ctypes.data % CACHE_LINE_BYTES for floats in (16, 100, 4096)} == {0}

@@ -20,11 +20,11 @@ from synth.solver.backward_induction import Solution, solve_all
 from synth.solver.chain.chain import Chain, persistent_chain
 from synth.studies.benchmark.by_numpy import Swept, sweep_by_numpy
 from synth.studies.benchmark.findings import LANES, Benchmark, Limit, Way
+from synth.studies.benchmark.machine_rates import load_loop, multiply_add_loop
 from synth.studies.benchmark.work import SweepWork, sweep_work
 from synth.studies.cases import of_masses
 from synth.studies.entrance import from_the_entrance
 from synth.studies.options import option
-from synth.studies.reference_problem.machine_rates import calls_of, load_loop, multiply_add_loop
 from synth.studies.study import Method, Tell
 from synth.studies.timing.machine import this_machine
 from synth.studies.timing.turns import Call, in_turns
@@ -72,7 +72,7 @@ def run(options: Options, tell: Tell) -> Benchmark:
     }
     slow = list(calls)[-1]
     times = in_turns(
-        {**{name: call for name, (_, call) in calls.items()}, **calls_of(loops)},
+        {name: call for name, (_, call) in calls.items()} | {name: loop.call for name, loop in loops.items()},
         options.rounds,
         {slow: options.slow_rounds},
     )

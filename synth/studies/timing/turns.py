@@ -59,17 +59,15 @@ class Ratio:
         )
 
 
-def in_turns(
-    calls: Mapping[str, Call], rounds: int, fewer: Mapping[str, int] | None = None, warm_up: bool = True
-) -> dict[str, Times]:
-    """Every call once a round, with `warm_up` after one that counts for nothing; `fewer` names calls with fewer rounds.
+def in_turns(calls: Mapping[str, Call], rounds: int, fewer: Mapping[str, int] | None = None) -> dict[str, Times]:
+    """Every call once a round, after one round that counts for nothing; `fewer` names calls with fewer rounds.
 
     Calls with fewer rounds run in the first of them.
     """
     wanted = {name: min(rounds, (fewer or {}).get(name, rounds)) for name in calls}
     walls: dict[str, list[float]] = {name: [] for name in calls}
     processors: dict[str, list[float]] = {name: [] for name in calls}
-    for call in calls.values() if warm_up else ():
+    for call in calls.values():
         call()
     for turn in range(rounds):
         for name, call in calls.items():

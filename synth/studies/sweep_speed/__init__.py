@@ -1,1 +1,0 @@
-"""How fast a sweep makes tables, and in what memory."""

@@ -1,1 +1,0 @@
-"""How long a user waits, and for what."""
