@@ -69,19 +69,21 @@ def passes_by_weight(
     rules = [each.law() for each in controllers]
     if not all(isinstance(each, regulator.Rule) for each in rules):
         raise ValueError("watched passes: only tables that decide at rest can be watched")
-    passes, now = len(draws.cut_factor), np.array([told])
-    exits = empty_exits(passes)
-    seen, at_end, table = (np.zeros(passes, np.int64) for _ in range(3))
+    passes, now = len(draws.cut_factor), np.array([told, told])
+    exits, found = empty_exits(passes), np.zeros((3, passes), np.int64)
     sensor = FreezingSensor(*loop.sensor, np.empty(1))
     with _COMPILING:
         run = _watching()
-    run(loop.path, loop.drive, sensor, together([each.rule for each in controllers], now), draws, exits, now, told,
-        seen, at_end, table)  # fmt: skip
-    return WatchedPasses(sample_of(exits, draws), seen, at_end, table)
+    law = together([each.rule for each in controllers], now)
+    run(loop.path, loop.drive, sensor, law, draws, exits, now, found)
+    return WatchedPasses(sample_of(exits, draws), *found)
 
 
 def together(rules: Sequence[regulator.Rule], now: NDArray[np.int64]) -> Any:
-    """One law of all `rules`, for `_watching`: arrays have an axis more, and number `now` (1,) of them is in force."""
+    """One law of all `rules`, for `_watching`, whose arrays have an axis more.
+
+    Number `now`[0] of them is in force, at the beginning of a pass number `now`[1].
+    """
     stacked: dict[str, Any] = {
         name: np.stack([getattr(each, name) for each in rules])
         for name in ("coefficients", "has_line", "valid", "entrance_stage", "estimator_parameters")
@@ -135,7 +137,7 @@ def _watching() -> Callable[..., None]:
     run_pass = compiled(FunctionType(kernel.run_pass.py_func.__code__, scope))
 
     @compiled
-    def run(path, drive, sensor, law, draws, exits, now, told, seen, at_end, table):  # type: ignore[no-untyped-def]
+    def run(path, drive, sensor, law, draws, exits, now, found):  # type: ignore[no-untyped-def]  # as above
         count = law.coefficients.shape[0]
         free, known = np.empty(path.gravity_m_s2.shape[0]), np.empty(count * (size + 1) + 2, np.float32)
         events = np.empty((0, 6))
@@ -143,7 +145,7 @@ def _watching() -> Callable[..., None]:
             drag = path.drag_m_s2_per_n_kn * draws.resistance_n_kn[i]
             for j in range(free.shape[0]):
                 free[j] = path.gravity_m_s2[j] - drag
-            sensor.last_m_s[0], now[0] = np.nan, told
+            sensor.last_m_s[0], now[0] = np.nan, now[1]
             v, time, status, switchings, _ = run_pass(
                 path.edges_m, free, draws.brake_m_s2_per_kpa[i], drive, sensor, law,
                 draws.entry_m_s[i], draws.first_sample_s[i], draws.noise_z[i], events, known,
@@ -151,7 +153,7 @@ def _watching() -> Callable[..., None]:
             exits.stalled[i] = status != left
             exits.speed_m_s[i] = v if status == left else 0.0
             exits.time_s[i], exits.switchings[i] = time, switchings
-            seen[i], at_end[i], table[i] = int(known[-2]), int(known[-1]), now[0]
+            found[0, i], found[1, i], found[2, i] = int(known[-2]), int(known[-1]), now[0]
 
     watching: Callable[..., None] = run
     return watching

@@ -1,0 +1,125 @@
+"""Every command in its smallest form, in the order in which one needs the results of another."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from tests.sweep.conftest import MEASURED as MEASURED_SPEED
+from tests.sweep.conftest import PLANT, SWEEP
+from tests.system.conftest import CLASS, SECOND_CLASS
+
+SENSORS = """\
+[sensors]
+path_m = [-4.5, 0.0, 4.0, 8.0, 12.0, 16.0, 22.5]
+"""
+DUMPER = CLASS.replace("rnz-2m-park", "rnz-2m-dumper").replace("[1.5]", "[2.0]").replace("high_m_s = 4.0", "")
+AIM = """\
+[cuts]
+categories = ["L", "T"]
+cars = [1, 3]
+[aim]
+free_distances_m = [50.0, 100.0, 200.0]
+[simulation]
+passes = 2000
+"""
+TRIAL = """\
+hump = "medium"
+[trains]
+number = 12
+cuts = 6
+most_cars = 3
+[exit_speeds]
+choices = 4
+[aim]
+design_cuts = 200
+"""
+COMPUTER = """\
+[service]
+simulated_requests = 3000
+[uncertainty]
+draws = 200
+sobol_points = 16
+"""
+
+INPUTS: Mapping[str, str] = {
+    "park.toml": CLASS + SECOND_CLASS,
+    "measured.toml": CLASS + MEASURED_SPEED,
+    "any-time.toml": f'{CLASS}{MEASURED_SPEED}commands = "any_time"\n',
+    "dumper.toml": DUMPER,
+    "sensors.toml": DUMPER + SENSORS,
+    "sweep.toml": PLANT + SWEEP,
+    "aim.toml": AIM,
+    "trial.toml": TRIAL,
+    "computer.toml": COMPUTER,
+}
+"""The configurations, by the names of their files."""
+
+
+@dataclass(frozen=True)
+class Order:
+    """`words` after the name of the program; `output`: the folder or file that it writes, "" for none."""
+
+    words: str
+    output: str = ""
+
+    @property
+    def line(self) -> str:
+        """As it is typed."""
+        return f"{self.words} -o {self.output}" if self.output else self.words
+
+
+KINDS = (
+    "retarder",
+    "position",
+    "car",
+    "sensor",
+    "wheel-sensor",
+    "sensors",
+    "weight-categories",
+    "aim",
+    "hump",
+    "computer",
+)
+BOOK, PARK = "park/book.h5", "--config park.toml"
+LOG = "log.h5 --config park.toml"
+
+ORDERS: tuple[Order, ...] = (
+    Order("init"),
+    *(Order(f"init --{kind}") for kind in KINDS),
+    Order("init --list"),
+    Order("tune park.toml --workers 1", "park"),
+    Order("tune measured.toml --workers 1", "measured"),
+    Order("tune any-time.toml --workers 1", "any-time"),
+    Order(f"validate {BOOK} {PARK} --log log.h5 --log-passes 150"),
+    Order(f"verify {BOOK}"),
+    Order(f"inspect {BOOK}"),
+    Order(f"plot {BOOK} {PARK}", "plots"),
+    Order(f"loop {BOOK} {PARK}", "loops"),
+    *(Order(f"export {BOOK} --format {form}", f"export-{form}") for form in ("json", "c", "st", "csv")),
+    Order(f"export {BOOK} --format st --split --self-test small --correction 0.2 --prefix PARK", "export-split"),
+    Order("export any-time/book.h5 --format c", "export-any-time"),
+    Order(f"identify {LOG}", "identified"),
+    Order(f"watch {LOG}", "watched"),
+    Order(f"replay {LOG} --table measured/book.h5 --own {BOOK}", "replayed"),
+    Order(f"retune {LOG} --table {BOOK}", "retuned"),
+    Order("permissions measured.toml --workers 1", "permissions"),
+    Order("sensitivity measured.toml --points 65 --passes 100", "sensitivity"),
+    Order("sweep sweep.toml --workers 1", "swept"),
+    Order("sweep status swept"),
+    Order("sensors tune sensors.toml --workers 1", "passages"),
+    Order("inspect passages/book.h5"),
+    Order("export passages/book.h5 --format c", "export-passages-c"),
+    Order("export passages/book.h5 --format st", "export-passages-st"),
+    Order("sensors plan dumper.toml --sensors 4-5 --workers 1", "planned"),
+    Order("aim aim.toml", "aimed"),
+    Order("hump check medium"),
+    Order("hump routes medium"),
+    Order("hump draw medium", "drawn"),
+    Order("hump export medium", "medium.railml"),
+    Order("hump schema"),
+    Order("hump simulate trial.toml", "humped"),
+    Order("hump report humped"),
+    Order("hump speed trial.toml", "speed"),
+    Order("computer computer.toml", "computed"),
+)
