@@ -191,14 +191,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "synth.studies.radar_faults.study",
     ),
     Study(
-        "rare-events",
-        "How often does a cut leave far too fast, down to one in a million and below?",
-        126.0,
-        "rare-events.md",
-        "synth.studies.rare_events.study",
-        "synth.studies.rare_events.picture",
-    ),
-    Study(
         "reference-problem",
         "How fast is a neutral, published problem solved, beside scipy, QuantEcon, plain numba and numpy?",
         56.0,
