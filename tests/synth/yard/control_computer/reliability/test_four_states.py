@@ -121,12 +121,6 @@ def test_without_checks_or_without_detection_a_chain_still_works() -> None:
         np.testing.assert_allclose(astuple(p) @ chain.generator_per_h(), 0.0, atol=1e-14)
 
 
-def test_hours_of_a_year() -> None:
-    hours = PRINTED.stationary().hours_per_year
-    assert sum(hours) == pytest.approx(8760.0)
-    assert hours[State.FAILED_UNNOTICED] == pytest.approx(8760.0 * 0.0148148, rel=1e-5)
-
-
 def test_impossible_values_are_refused() -> None:
     for key in ("failure_per_h", "maintenance_per_h", "repair_per_h"):
         for value in (0.0, -1.0, float("nan"), float("inf")):
