@@ -12,8 +12,8 @@ from scipy.integrate import solve_ivp
 
 from plant_models import PlantError
 from synth.studies.control_computer.lives import chain_cycles
+from synth.studies.control_computer.stationary import null_space_shares, stationary_shares
 from synth.yard.control_computer.reliability.four_states import FourStates, State, StateShares
-from synth.yard.control_computer.reliability.stationary import null_space_shares, stationary_shares
 
 PRINTED = FourStates(0.01, 0.2, 0.4, 4.0, 0.5)
 TO_REPAIR = replace(PRINTED, failed_check_to=State.REPAIR)
