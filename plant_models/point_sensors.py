@@ -100,22 +100,6 @@ class PointSensors:
         v = np.asarray(speed_m_s, dtype=np.float64)
         return np.hypot(v * v * self.timing_std_s / self.base_m, v * self.base_tolerance)
 
-    def standard_reading(self, speed_m_s: NDArray[np.float64]) -> NDArray[np.float64]:
-        """∫ dv/σ(v) from infinity, −∞ at standstill: it rises with the speed, and in it every reading has std 1."""
-        v = np.asarray(speed_m_s, dtype=np.float64)
-        with np.errstate(divide="ignore"):
-            time_in_stds = self.base_m / (np.maximum(v, 0.0) * self.timing_std_s)
-        if self.base_tolerance == 0.0:
-            return -time_in_stds
-        return -np.arcsinh(self.base_tolerance * time_in_stds) / self.base_tolerance
-
-    def speed_at_reading(self, standard: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Inverse of `standard_reading`; ∞ at 0 and above."""
-        below = np.maximum(-np.asarray(standard, dtype=np.float64), 0.0)
-        grown = np.sinh(self.base_tolerance * below) / self.base_tolerance if self.base_tolerance else below
-        with np.errstate(divide="ignore"):
-            return self.base_m / (grown * self.timing_std_s)
-
 
 @dataclass(frozen=True)
 class Passage:

@@ -39,12 +39,12 @@ from tuning_tables.passages.passage_table import PassageTable
 from tuning_tables.passages.plausible_motion import PlausibleMotion
 from tuning_tables.passages.regulator import PassageRule, at_pulse, rule_of
 from tuning_tables.passages.rule import wanted_stage
-from tuning_tables.passages.schema import passage_schema, write_passage_schema
+from tuning_tables.passages.schema import passage_schema
 from tuning_tables.passages.sensor_layout import DecidesOn, SensorLayout
 from tuning_tables.passages.tracker import begin_cut, believed_passage
 from tuning_tables.provenance import CutId, Generator, RetarderId
 from tuning_tables.rule import alarms_for, decide, decide_for, decide_many, speed_for
-from tuning_tables.schema import table_schema, write_schema
+from tuning_tables.schema import table_schema
 from tuning_tables.stage import Stage, round_coefficients
 from tuning_tables.table import ControllerTable
 from tuning_tables.table_book import Choice, Status, TableBook
@@ -117,7 +117,5 @@ __all__ = [
     "write_csv",
     "write_json",
     "write_passage_csv",
-    "write_passage_schema",
-    "write_schema",
     "write_table",
 ]

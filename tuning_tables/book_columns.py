@@ -12,7 +12,6 @@ from collections.abc import Callable, Mapping, Sequence, Set
 from typing import Any, Final
 
 import numpy as np
-import numpy.typing as npt
 
 from tuning_tables.book_layout import FIGURES, NUMBER, ORIGIN, Column, Layout
 from tuning_tables.decisions import Decisions
@@ -141,8 +140,3 @@ def layout_stored(version: int, names: Set[str]) -> Layout:
     elif approaching:
         layout = with_approaches(layout)
     return layout.numbered() if NUMBER.name in names else layout
-
-
-def columns_of(tables: Sequence[ControllerTable]) -> dict[str, npt.NDArray[Any]]:
-    """The arrays of a book in the layout of `layout_of`, by name; raises as `Layout.arrays_of`."""
-    return layout_of(tables).arrays_of(tables)

@@ -102,11 +102,6 @@ def begin_correction() -> Floats:
     return np.zeros(STATE_SIZE, dtype=np.float32)
 
 
-def learnt_passes(state: Floats) -> int:
-    """From how many passes the state was learnt; it stays at 2**24."""
-    return int(state[2])
-
-
 def usable_exit(
     parameters: Floats,
     samples: int,

@@ -26,7 +26,6 @@ from tuning_tables.correction import (
     usable_exit,
 )
 
-Floats: TypeAlias = npt.NDArray[np.float32]
 Exit: TypeAlias = tuple[float, bool, float]
 """Error, whether it is credible, and a speed to correct."""
 

@@ -6,12 +6,9 @@ and lines, coefficients that float32 can hold, and that no key is given twice.
 
 from __future__ import annotations
 
-import json
-import os
 from typing import Final
 
 from tuning_tables.approach import INTERLOCK, LENGTH_RANGE_M
-from tuning_tables.atomic_file import write_atomically
 from tuning_tables.decisions import Decisions
 from tuning_tables.document import (
     APPROACH_VERSION,
@@ -115,8 +112,3 @@ def _estimator() -> dict[str, dict[str, object]]:
         drive_m2_s2=array_of(number(-LARGEST_WORK, LARGEST_WORK), 2, MOST_BREAKS),
         brake_m2_s2_per_kpa=array_of(number(-LARGEST_WORK, LARGEST_WORK), 2, MOST_BREAKS),
     )
-
-
-def write_schema(path: str | os.PathLike[str]) -> None:
-    """Write the schema to the file at `path`, complete or not at all; raises `OSError`."""
-    write_atomically(path, (json.dumps(table_schema(), indent=1) + "\n").encode("utf-8"))

@@ -6,13 +6,10 @@ from plant_models.library.catalogue import (
     car_names,
     load_car,
     load_position,
-    load_retarder,
-    load_sensor,
     load_track,
     load_weight_categories,
     load_wheel_sensor,
     position_names,
-    retarder_names,
 )
 from plant_models.library.hump_entry import HumpEntry, hump_names, load_hump
 from plant_models.library.library import BUILT_IN, Library
@@ -72,13 +69,10 @@ __all__ = [
     "load_car",
     "load_hump",
     "load_position",
-    "load_retarder",
-    "load_sensor",
     "load_track",
     "load_weight_categories",
     "load_wheel_sensor",
     "position_names",
-    "retarder_names",
     "sources",
     "sources_cited_in",
 ]

@@ -5,14 +5,10 @@ from __future__ import annotations
 from plant_models.library.car_entry import CarEntry, car_from
 from plant_models.library.library import BUILT_IN, Library
 from plant_models.library.position_entry import PositionEntry, position_with_types
-from plant_models.library.retarder_entry import RetarderEntry, retarder_from
-from plant_models.library.sensor_entry import SensorEntry, sensor_from
 from plant_models.library.track_entry import TrackEntry, track_from
 from plant_models.library.type_file import (
     CARS,
     POSITIONS,
-    RETARDERS,
-    SENSORS,
     TRACKS,
     WEIGHT_CATEGORIES,
     WHEEL_SENSORS,
@@ -34,16 +30,6 @@ def load_position(name: str, library: Library = BUILT_IN) -> PositionEntry:
     return position_with_types(name, library)
 
 
-def retarder_names(library: Library = BUILT_IN) -> tuple[str, ...]:
-    """Names of the retarder types, sorted."""
-    return library.names(RETARDERS)
-
-
-def load_retarder(name: str, library: Library = BUILT_IN) -> RetarderEntry:
-    """The retarder type `name`; `PlantError` as `load_position`."""
-    return retarder_from(library.file(RETARDERS, name))
-
-
 def car_names(library: Library = BUILT_IN) -> tuple[str, ...]:
     """Names of the car types, sorted."""
     return library.names(CARS)
@@ -52,11 +38,6 @@ def car_names(library: Library = BUILT_IN) -> tuple[str, ...]:
 def load_car(name: str, library: Library = BUILT_IN) -> CarEntry:
     """The car type `name`; `PlantError` as `load_position`."""
     return car_from(library.file(CARS, name))
-
-
-def load_sensor(name: str, library: Library = BUILT_IN) -> SensorEntry:
-    """The sensor `name`; `PlantError` as `load_position`."""
-    return sensor_from(library.file(SENSORS, name))
 
 
 def load_wheel_sensor(name: str, library: Library = BUILT_IN) -> WheelSensorEntry:

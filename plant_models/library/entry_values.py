@@ -19,8 +19,6 @@ NORMAL: Final[Mapping[str, Quantity]] = {
     "std_m_s": Quantity("m/s", number),
 }
 HISTOGRAM: Final[Mapping[str, Quantity]] = {"edges_m_s": Quantity("m/s", numbers), "shares": Quantity("1", numbers)}
-ENTRY_KEYS: Final = frozenset({*NORMAL, *HISTOGRAM})
-
 ALTERNATIVES: Final = (
     "low_m_s and high_m_s (uniform), these with mean_m_s and std_m_s (normal), or edges_m_s and shares (histogram)"
 )

@@ -41,8 +41,6 @@ BY_MASS = {"mass_above_t": Quantity("t", number), **OF_CATEGORY}
 BY_AXLE_LOAD = {"axle_load_above_t": Quantity("t", number), **OF_CATEGORY}
 """Every key of a category: its limit is the mass of a 4-axle car, or the load of an axle."""
 
-LIMITS: Final = ("mass_above_t", "axle_load_above_t")
-
 YARD_NUMBERS: Final = MappingProxyType({"Л": 1, "ЛС": 2, "С": 3, "СТ": 4, "Т": 5})
 OWN_NUMBERS: Final = range(16, 256)
 """Of the five categories of the yard, and of a user's own."""

@@ -145,11 +145,6 @@ def range_of(line: Sequence[float], path_m: tuple[float, float], pieces: int = 1
     return min(values), max(values)
 
 
-def error_bound(line: Sequence[float], begin: float, end: float) -> float:
-    """What float32 Horner evaluation can be wrong by anywhere on [begin, end]; infinite where it might overflow."""
-    return reach_and_error(line, begin, end)[1]
-
-
 def surface_error_bound(line: Sequence[float], slope: float, tilt: Tilt, begin: float, end: float) -> float:
     """The same for a line that rises by `slope` with the pressure, for all pressures of `tilt`."""
     largest, error = reach_and_error(line, begin, end)

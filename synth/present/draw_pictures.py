@@ -66,7 +66,7 @@ class Studio:
             self._cases[case.label, case.target_speed_m_s] = self.draw(("case_pictures", (case,)))
 
     def book(self, cases: Sequence[CaseResult], limit_m_s: float) -> tuple[Picture, ...]:
-        """All pictures in the order of `picture_book.all_pictures`."""
+        """All pictures in the order of the report: of the book, of each class, of each case."""
         drawn = [self.draw(("book_pictures", (tuple(cases), limit_m_s)))]
         drawn += [self.draw(("class_pictures", (group,))) for group in by_class(cases)]
         for case in cases:

@@ -26,7 +26,7 @@ from synth.simulation.drive_pieces import drive_pieces, empty_periods
 from synth.simulation.lost_readings import readings_z
 from synth.simulation.passes import ExitSample, PassTrace
 from synth.simulation.path_cells import path_cells
-from synth.simulation.random_passes import PassRow, RandomPasses
+from synth.simulation.random_passes import RandomPasses
 from synth.simulation.stratified_passes import stratified_passes
 
 __all__ = [
@@ -260,9 +260,8 @@ def simulate_many(
     count: int,
     first_pass: int = 0,
     threads: int = 1,
-    row: PassRow = stratified_passes,
 ) -> ExitSample:
-    """Passes `first_pass` … `first_pass + count − 1` of `seed`, in bounded memory; `row` draws them.
+    """Stratified passes `first_pass` … `first_pass + count − 1` of `seed`, in bounded memory.
 
     The result does not depend on `threads` nor on how the passes are split.
     """
@@ -270,7 +269,7 @@ def simulate_many(
     cells = len(loop.path.gravity_m_s2) - loop.path.approach_cells
 
     def chunk(start: int, stop: int) -> ExitSample:
-        return loop.run(controller, loop.draws(row(seed, start, stop - start, cells)))
+        return loop.run(controller, loop.draws(stratified_passes(seed, start, stop - start, cells)))
 
     with ThreadPoolExecutor(max_workers=threads) as pool:
         samples = list(pool.map(chunk, *chunk_bounds(first_pass, count)))

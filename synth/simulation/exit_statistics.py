@@ -114,18 +114,6 @@ def rms_ratio(sample: ExitSample, other: ExitSample, target_m_s: float) -> tuple
     return rms_quotient(a, b, sample.weight)
 
 
-def rms_interval(mean_square: float, standard_error: float) -> Interval:
-    """95 % interval of a root mean square, from the mean square and its standard error.
-
-    Normal limits of log(mean square) (delta method: its standard error is the relative one), mapped back.
-    """
-    if mean_square == 0.0:
-        return 0.0, 0.0
-    spread = math.exp(0.5 * NORMAL_95 * standard_error / mean_square)
-    rms = math.sqrt(mean_square)
-    return rms / spread, rms * spread
-
-
 def clopper_pearson(hits: int, n: int, confidence: float = 0.95) -> Interval:
     """Exact interval of a probability after `hits` in `n` independent trials (Clopper and Pearson 1934)."""
     from scipy.special import betaincinv  # start-up: scipy only where it is needed

@@ -30,9 +30,6 @@ LOW_MEAN, LOW_STD = -2.0, 1.5
 So chosen that the variance of the mean square is small for cases of the default book with and without a heavy tail.
 """
 
-LARGEST_WEIGHT = REPLICATE_PASSES / AS_THEY_COME
-"""No pass stands for more cuts than this."""
-
 PERMUTATIONS = 2
 """Number of the child stream of a block that orders the strata; 0 and 1 are those of path and sensor."""
 

@@ -191,14 +191,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         "synth.studies.radar_faults.study",
     ),
     Study(
-        "rare-events",
-        "How often does a cut leave far too fast, down to one in a million and below?",
-        126.0,
-        "rare-events.md",
-        "synth.studies.rare_events.study",
-        "synth.studies.rare_events.picture",
-    ),
-    Study(
         "retuning",
         "How much of what can be recovered do tables recover that are tuned for measured passes?",
         75.0,

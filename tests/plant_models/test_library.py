@@ -18,7 +18,6 @@ from plant_models.library import (
     load_position,
     load_weight_categories,
     position_names,
-    retarder_names,
 )
 from plant_models.library.car_entry import car_from
 from plant_models.library.position_entry import INITIAL_STAGE
@@ -44,8 +43,9 @@ def categories_in(text: str) -> WeightCategories:
 def test_holds_the_promised_types() -> None:
     assert {"knp-5-bunch", "vzpg-5-bunch", "rnz-2m-park", "t-50-bunch", "kv-3-bunch"} <= set(position_names())
     assert {"rnz-2m-dumper"} <= set(position_names())
-    assert {"knp-5", "vzpg-5", "rnz-2m", "rnz-2m-oiled", "t-50", "kv-3"} <= set(retarder_names())
-    assert not set(position_names()) & set(retarder_names())  # init --retarder takes both
+    retarders = set(BUILT_IN.names(RETARDERS))
+    assert {"knp-5", "vzpg-5", "rnz-2m", "rnz-2m-oiled", "t-50", "kv-3"} <= retarders
+    assert not set(position_names()) & retarders  # init --retarder takes both
     assert {"gondola-4", "box-4", "flat-4", "tank-4", "hopper-4", "tank-8", "gondola-6"} <= set(car_names())
 
 

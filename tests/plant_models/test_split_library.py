@@ -5,9 +5,9 @@ import json
 
 import pytest
 
-from plant_models.library import SourcedValue, load_position, load_retarder, position_names
+from plant_models.library import BUILT_IN, RETARDERS, SourcedValue, load_position, position_names
 from plant_models.library.position_entry import MEAN_CV, REGULATOR
-from plant_models.library.retarder_entry import DAY_SPREAD
+from plant_models.library.retarder_entry import DAY_SPREAD, retarder_from
 
 LOSSES = ("sensor.missed_share", "sensor.missed_burst_s")
 
@@ -42,4 +42,4 @@ def test_zones_follow_from_places_and_length_to_the_bit() -> None:
     assert zones["knp-5-bunch"] == zones["kv-3-bunch"] == ((0.0, 12.475), (14.475, 26.95))
     assert zones["vzpg-5-bunch"] == zones["t-50-bunch"] == ((0.0, 12.5), (14.5, 27.0))
     assert zones["rnz-2m-park"] == ((0.0, 3.0), (4.0, 7.0), (8.0, 11.0))
-    assert load_retarder("rnz-2m").length_m == 3.0
+    assert retarder_from(BUILT_IN.file(RETARDERS, "rnz-2m")).length_m == 3.0

@@ -9,18 +9,23 @@ import pytest
 
 from plant_models.library import CAR_MIXES, TRACKS, Kind
 from plant_models.rolling.resistance_law import LARGEST_ERLANG_ORDER, HumpNormLaw, Tb10062Law
-from synth.configuration.aim.aim_file import parse_aim_file
+from synth.configuration.aim.aim_file import parse_aim_file, read_aim_file
 from synth.configuration.aim.settings import ResistanceSettings
 from synth.configuration.aim.template import default_aim_toml
 from synth.configuration.section import setting_limits
 from synth.configuration.type_template import type_toml
 from synth.frame.input_error import InputError
-from synth.yard.aim.resolved_aim import ResolvedAim, load_aim, resolve_aim
+from synth.yard.aim.resolved_aim import ResolvedAim, resolve_aim
 
 
 def resolved(text: str, place: str = "aim.toml") -> ResolvedAim:
     """The aim that `text` asks for."""
     return resolve_aim(parse_aim_file(text, place))
+
+
+def built_in_aim() -> ResolvedAim:
+    """What is asked for where no file is given."""
+    return resolve_aim(read_aim_file(None))
 
 
 def sentence(text: str, place: str = "aim.toml") -> str:
@@ -34,7 +39,7 @@ def sentence(text: str, place: str = "aim.toml") -> str:
 
 def test_the_template_is_the_built_in_configuration_to_the_last_origin() -> None:
     text = default_aim_toml()
-    told, built_in = resolved(text), load_aim(None)
+    told, built_in = resolved(text), built_in_aim()
     assert told.parameters == built_in.parameters
     assert told.sha256 == built_in.sha256
     assert told.scene == built_in.scene
@@ -45,11 +50,11 @@ def test_elements_and_bends_of_the_template_are_those_of_its_track() -> None:
     lists = re.sub(r"^# (elements|bends|    \{|\])", r"\1", default_aim_toml(), flags=re.MULTILINE)
     assert "\nelements = [" in lists
     assert "\nbends = [" in lists
-    assert resolved(lists).parameters == load_aim(None).parameters
+    assert resolved(lists).parameters == built_in_aim().parameters
 
 
 def test_every_assumed_number_is_marked_and_the_chosen_ones_claim_nothing() -> None:
-    parameters = {value.key: value for value in load_aim(None).parameters}
+    parameters = {value.key: value for value in built_in_aim().parameters}
     for key in ("weather.head_wind_std_m_s", "resistance.erlang_order", "cuts.cars.tank-4.share", "track.end_m"):
         assert parameters[key].assumed, key
     for key in ("L.rolling_resistance.mean_n_per_kn", "aim.coupling_speed_m_s", "simulation.seed", "cuts.cars"):
@@ -61,7 +66,7 @@ def test_every_assumed_number_is_marked_and_the_chosen_ones_claim_nothing() -> N
 
 def test_what_changes_no_table_changes_no_hash() -> None:
     same = resolved('title = "x"\n[simulation]\nthreads = 3\n[output]\nplots = false\nreport = false\n')
-    assert same.sha256 == load_aim(None).sha256
+    assert same.sha256 == built_in_aim().sha256
     for other in ("[simulation]\nseed = 1\n", '[resistance]\nlaw = "tb-10062"\n', "[position]\nexit_m = 337.0\n",
                   '[cuts]\ncategories = ["L"]\n', "[aim]\nspeed_std_m_s = 0.1\n"):  # fmt: skip
         assert resolved(other).sha256 != same.sha256, other
@@ -101,7 +106,7 @@ def test_own_types_by_name_and_by_path(kind: Kind, text: str, tmp_path: Path) ->
     by_name = resolved('library = ["my/"]\n' + text.format("mine"), place)
     by_path = resolved(text.format(f"my/{kind.folder}/mine.toml"), place)
     assert by_name.parameters == by_path.parameters
-    assert by_name.scene == load_aim(None).scene
+    assert by_name.scene == built_in_aim().scene
     traced = [v.key for v in by_name.parameters if v.source.endswith(f"(my/{kind.folder}/mine.toml)")]
     assert len(traced) > 5
     file.write_text(file.read_text(encoding="utf-8").replace("value = ", "valve = ", 1), encoding="utf-8")

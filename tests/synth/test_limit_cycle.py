@@ -24,12 +24,12 @@ from synth.book.comparison.limit_cycle import (
     StagePair,
     first_harmonic,
     hunting_report,
-    limit_cycle,
     relay_cycle,
 )
 from synth.simulation.closed_loop import LineController, trace
 from synth.simulation.random_passes import random_passes
 from synth.solver.switching_lines import SwitchingLines
+from tests.synth.hunting import limit_cycle
 
 
 def long_plant(plant: Plant, grade_permille: float, period_s: float, computing_s: float) -> Plant:

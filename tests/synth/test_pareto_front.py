@@ -6,9 +6,9 @@ from dataclasses import replace
 
 from synth.book.pareto.pareto_front import PRICES_M2_S3, ParetoFront, ParetoPoint, nearly_free, told
 from synth.present.plots.pareto_fronts import pareto_fronts
-from synth.present.plots.picture_book import all_pictures
 from synth.present.report.pareto_section import pareto_section
 from synth.simulation.exit_statistics import exit_statistics
+from tests.synth.all_pictures import all_pictures
 from tests.synth.case_factory import make_case, make_sample
 
 

@@ -22,11 +22,11 @@ from synth.present.plots.feasibility import feasibility
 from synth.present.plots.figure_file import draw, figure_files
 from synth.present.plots.house_style import MATHEMATICS, logarithmic_y, new_figure
 from synth.present.plots.picture import picture_files
-from synth.present.plots.picture_book import all_pictures
 from synth.present.plots.policy_map import command_image, parts_in_stage, policy_map
 from synth.present.plots.rms_by_controller import rms_by_controller
 from synth.present.plots.sample_passes import outcome, sample_passes
 from synth.present.plots.surfaces import surfaces
+from tests.synth.all_pictures import all_pictures
 from tests.synth.case_factory import make_case
 
 ROOT = Path(__file__).parents[2]

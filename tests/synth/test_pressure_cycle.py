@@ -1,4 +1,4 @@
-"""Predicted limit cycles of the stage pressure regulator against a relay stepped in time, and python-control's."""
+"""Predicted limit cycles of the stage pressure regulator against a relay stepped in time."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from plant_models import Plant, PlantError, Pneumatics
-from synth.book.comparison.limit_cycle import limit_cycle
-from synth.book.comparison.pressure_cycle import harmonic_pressure_cycle, pressure_hunting, pressure_limit_cycle
+from synth.book.comparison.pressure_cycle import pressure_hunting, pressure_limit_cycle
+from tests.synth.hunting import limit_cycle
 
 TOUCH_KPA = 50.0
 
@@ -74,8 +74,8 @@ def test_pressure_hunts_exactly_where_the_drive_finds_no_rest() -> None:
     assert hunting == {True, False}
 
 
-def test_pressure_threshold_is_two_dead_bands_and_the_harmonic_one_a_quarter_more() -> None:
-    """Equal rates r = 1000 kPa/s and a narrow band: exact at rτ = 2ε, describing function at π²ε/4."""
+def test_pressure_threshold_is_two_dead_bands() -> None:
+    """Equal rates r = 1000 kPa/s and a narrow band: it hunts from rτ = 2ε on."""
 
     def air(reach: float) -> Pneumatics:
         return Pneumatics(600.0, 0.0, 0.1, 0.2, 0.1, 0.3, 0.3, 0.5, reach * 0.5 / 1000.0)
@@ -84,29 +84,6 @@ def test_pressure_threshold_is_two_dead_bands_and_the_harmonic_one_a_quarter_mor
     exact = pressure_limit_cycle(air(2.01), 300.0, TOUCH_KPA)
     assert exact is not None
     assert exact.top_kpa - exact.bottom_kpa == pytest.approx(2 * 0.5 * (2.01 - 1.0), rel=0.01)
-    assert harmonic_pressure_cycle(air(2.46), 300.0) is None
-    assert harmonic_pressure_cycle(air(2.48), 300.0) is not None
-    assert harmonic_pressure_cycle(air(50.0), 0.0) is None  # nothing to exhaust
-
-
-def test_pressure_harmonic_balances_in_python_control() -> None:
-    import control
-
-    air, target = drive(0.08), 300.0
-    cycle = harmonic_pressure_cycle(air, target)
-    exact = pressure_limit_cycle(air, target, TOUCH_KPA)
-    assert cycle is not None
-    assert exact is not None
-    rate = math.sqrt((700.0 - target) / 0.4 * (target / 0.3))
-    amplitude, omega = cycle.top_kpa - target, math.pi / (2 * 0.08)
-
-    def relay(error: float) -> float:
-        return rate * float(np.sign(error)) * (abs(error) > 15.0)
-
-    gain = control.describing_function(relay, amplitude, num_points=20_000)
-    assert gain * np.exp(-1j * omega * 0.08) / (1j * omega) == pytest.approx(-1.0, abs=1e-3)
-    assert cycle.top_kpa - cycle.bottom_kpa == pytest.approx(exact.top_kpa - exact.bottom_kpa, rel=0.25)
-    assert cycle.period_s == pytest.approx(exact.period_s, rel=0.25)
 
 
 def test_pilot_plant_hunts_in_pressure_only_with_late_valves(plant_52t: Plant) -> None:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from SALib.analyze import rbd_fast
 
 from synth.book.sensitivity.hypercube import unit_hypercube
 from synth.book.sensitivity.outputs import OUTPUTS
 from synth.book.sensitivity.ranking import UNDECIDABLE, measure_first
 from synth.book.sensitivity.sensitivity import OutputShares, mean_of_cases, output_shares
-from synth.book.sensitivity.shares import FEWEST_POINTS, first_order, noise_share
+from synth.book.sensitivity.shares import FEWEST_POINTS, GROUPS, HARMONICS, first_order, noise_share
 from synth.simulation.exit_statistics import exit_statistics
 from synth.simulation.passes import ExitSample
 
@@ -77,6 +78,37 @@ def test_a_bend_counts_as_well_as_a_slope() -> None:
     unit = unit_hypercube(INPUTS, 1000, 2)
     found = first_order(unit, (unit[:, 3] - 0.5) ** 2)
     assert found.share(3).value == pytest.approx(1.0, abs=0.03)
+
+
+def ishigami(unit: Floats) -> Floats:
+    """sin x + 7 sin² y + 0.1 z⁴ sin x, all within ±π."""
+    x, y, z = (2.0 * np.pi * (unit - 0.5)).T
+    return np.asarray(np.sin(x) * (1.0 + 0.1 * z**4) + 7.0 * np.sin(y) ** 2)
+
+
+@pytest.mark.parametrize("points", [200, 801, 4000])
+def test_estimates_are_those_of_salib(points: int) -> None:
+    """On the points of a hypercube, all of them and those that the jackknife keeps."""
+    unit = unit_hypercube(3, points, 7)
+    output, place = ishigami(unit), np.arange(points) % GROUPS
+    found = first_order(unit, output)
+    problem = {"num_vars": 3, "names": ["x", "y", "z"], "bounds": [[0.0, 1.0]] * 3}
+    for ours, kept in ((found.whole, place >= 0), (found.without[4], place != 4)):
+        theirs = rbd_fast.analyze(problem, unit[kept], output[kept], M=HARMONICS, num_resamples=2)
+        np.testing.assert_allclose(ours, theirs["S1"], rtol=0.0, atol=1e-12)
+
+
+def test_shares_of_the_function_of_ishigami_are_those_of_its_formula() -> None:
+    """V(E(Y | x)) = (1 + 0.1 π⁴/5)²/2, V(E(Y | y)) = 49/8, V(E(Y | z)) = 0; V(Y) has 0.1² π⁸ (1/18 − 1/50) beside."""
+    of_x, of_y = 0.5 * (1.0 + 0.1 * np.pi**4 / 5.0) ** 2, 49.0 / 8.0
+    total = of_x + of_y + 0.01 * np.pi**8 * (1.0 / 18.0 - 1.0 / 50.0)
+    true = np.array([of_x, of_y, 0.0]) / total
+    found = np.array(
+        [first_order(unit, ishigami(unit)).whole for unit in (unit_hypercube(3, 2000, s) for s in range(20))]
+    )
+    error = found.std(axis=0, ddof=1) / np.sqrt(len(found))
+    assert error.max() < 0.005
+    assert (np.abs(found.mean(axis=0) - true) < 4.0 * error + 0.002).all()  # what the harmonics leave out
 
 
 def test_noise_of_the_passes_is_told_apart() -> None:

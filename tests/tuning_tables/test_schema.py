@@ -3,7 +3,6 @@
 import copy
 import json
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import jsonschema
@@ -11,7 +10,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from tests.tuning_tables.random_tables import tables
-from tuning_tables import ControllerTable, DamagedTable, OtherDecisions, from_json, table_schema, to_json, write_schema
+from tuning_tables import ControllerTable, DamagedTable, OtherDecisions, from_json, table_schema, to_json
 from tuning_tables.canonical import canonical_json, document_checksum
 
 Document = dict[str, Any]
@@ -101,11 +100,6 @@ def value_at(document: Document, path: JsonPath) -> Any:
     for key in path:
         value = value[key]
     return value
-
-
-def test_the_schema_file_is_the_schema(tmp_path: Path) -> None:
-    write_schema(tmp_path / "schema.json")
-    assert json.loads((tmp_path / "schema.json").read_bytes()) == table_schema()
 
 
 def test_an_estimator_and_its_version_belong_together(

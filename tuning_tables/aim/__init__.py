@@ -18,7 +18,7 @@ from tuning_tables.aim.purpose import (
     Required,
 )
 from tuning_tables.aim.reported import Reported
-from tuning_tables.aim.schema import aim_schema, write_aim_schema
+from tuning_tables.aim.schema import aim_schema
 
 __all__ = [
     "AimAxes",
@@ -40,5 +40,4 @@ __all__ = [
     "to_aim_json",
     "write_aim_csv",
     "write_aim_json",
-    "write_aim_schema",
 ]

@@ -6,9 +6,6 @@ shape of the axes, that speeds lie within their bounds and do not fall, what is 
 
 from __future__ import annotations
 
-import json
-import os
-
 from tuning_tables.aim.aim_table import LOWEST_M_S
 from tuning_tables.aim.axes import (
     LARGEST_RESISTANCE_N_PER_KN,
@@ -19,7 +16,6 @@ from tuning_tables.aim.axes import (
 )
 from tuning_tables.aim.document import AIM_FORMAT, AIM_VERSION, CATEGORY_KIND, MEASURED_KIND
 from tuning_tables.aim.purpose import FARTHEST_M, FASTEST_M_S
-from tuning_tables.atomic_file import write_atomically
 from tuning_tables.category_number import KNOWN_NUMBERS, LARGEST_OWN, LEAST_OWN
 from tuning_tables.requirement import SHA256_HEX, UTC_INSTANT
 from tuning_tables.schema_parts import DIALECT, array_of, number, object_of, pair_of, text, whole
@@ -57,11 +53,6 @@ def aim_schema() -> dict[str, object]:
         crc32={"type": "string", "pattern": "^[0-9a-f]{8}$"},
     )
     return {"$schema": DIALECT, "title": f"{AIM_FORMAT} {AIM_VERSION}", **top, "oneOf": _kinds()}
-
-
-def write_aim_schema(path: str | os.PathLike[str]) -> None:
-    """Write the schema to the file at `path`, complete or not at all; raises `OSError`."""
-    write_atomically(path, (json.dumps(aim_schema(), indent=1) + "\n").encode("utf-8"))
 
 
 def _nodes(leaf: dict[str, object]) -> dict[str, object]:

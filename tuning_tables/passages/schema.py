@@ -6,12 +6,9 @@ passages and switching speeds, that the passages are those of sensors and axles,
 
 from __future__ import annotations
 
-import json
-import os
 from typing import Final
 
 from tuning_tables.approach import INTERLOCK, LENGTH_RANGE_M
-from tuning_tables.atomic_file import write_atomically
 from tuning_tables.document import FORMAT, PASSAGES_VERSION
 from tuning_tables.line_order import LARGEST_FLOAT32
 from tuning_tables.passages.document import DECISIONS
@@ -75,11 +72,6 @@ def passage_schema() -> dict[str, object]:
         crc32={"type": "string", "pattern": "^[0-9a-f]{8}$"},
     )
     return {"$schema": DIALECT, "title": f"{FORMAT} {PASSAGES_VERSION}", **top}
-
-
-def write_passage_schema(path: str | os.PathLike[str]) -> None:
-    """Write the schema to the file at `path`, complete or not at all; raises `OSError`."""
-    write_atomically(path, (json.dumps(passage_schema(), indent=1) + "\n").encode("utf-8"))
 
 
 def _sensors() -> dict[str, object]:

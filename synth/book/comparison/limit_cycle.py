@@ -95,24 +95,6 @@ class Hunting:
     cycle: LimitCycle
 
 
-def limit_cycle(
-    plant: Plant,
-    lower_stage: int,
-    gap_m_s: float,
-    stretch_m: tuple[float, float] | None = None,
-    line_rate_m_s2: float = 0.0,
-) -> LimitCycle | None:
-    """Hunting between `lower_stage` and the next, or None if both stages leave the lines to one side.
-
-    `gap_m_s`: raising line minus lowering line; `stretch_m`: part of the path whose mean grade and mean
-    number of braked axles count (None: all of it); `line_rate_m_s2`: dV/ds·v, at which the lines themselves
-    rise. Mean friction and resistance, no noise. A negative gap is possible: the lock alone then sets the
-    period, and there is no harmonic prediction. `PlantError` if the pressure regulator itself hunts.
-    """
-    free, brake = accelerations(plant, np.array(stretch_m or (0.0, plant.exit_m)))
-    return relay_cycle(stage_pair(plant, lower_stage), gap_m_s, float(free[0]) - line_rate_m_s2, float(brake[0]))
-
-
 def hunting_report(plant: Plant, lines: SwitchingLines) -> tuple[Hunting, ...]:
     """For each pair of stages the stretches of path on which it can hunt for one period or more.
 

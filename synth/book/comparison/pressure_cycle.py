@@ -36,23 +36,6 @@ def pressure_limit_cycle(air: Pneumatics, target_kpa: float, touch_kpa: float) -
     return PressureCycle(bottom, top, exhausting + filling + opening)
 
 
-def harmonic_pressure_cycle(air: Pneumatics, target_kpa: float) -> PressureCycle | None:
-    """The same by the describing function of a relay with dead zone, N(A) = 4r/(πA)·sqrt(1 − (ε/A)²).
-
-    Loop: relay ±r outside ±ε, dead time τ = closing delay, integrator; r is the geometric mean of filling
-    and exhausting rate. The phase gives ω = π/2τ, and an amplitude exists if rτ > π²ε/4 ≈ 2.47ε: stricter
-    than the exact 2ε. Opening delays, during which the pressure rests, are added to the period.
-    """
-    filling = (air.supply_pressure_kpa - target_kpa) / air.fill_time_constant_s
-    exhausting = (target_kpa - air.exhaust_pressure_kpa) / air.exhaust_time_constant_s
-    reach = 8.0 * math.sqrt(max(0.0, filling * exhausting)) * air.closing_delay_s / math.pi**2
-    if reach <= 2.0 * air.dead_band_kpa:
-        return None
-    amplitude = math.sqrt(0.5 * reach * (reach + math.sqrt(reach**2 - 4.0 * air.dead_band_kpa**2)))
-    period = 4.0 * air.closing_delay_s + air.brake_delay_s + air.release_delay_s
-    return PressureCycle(target_kpa - amplitude, target_kpa + amplitude, period)
-
-
 def pressure_hunting(plant: Plant) -> tuple[tuple[int, PressureCycle], ...]:
     """(stage, limit cycle) of every allowed stage around which the pressure regulator hunts."""
     air, touch = plant.position.pneumatics, plant.position.force.touch_pressure_kpa

@@ -19,7 +19,7 @@ DIGITS = 6
 """Decimals of shares; intervals are hundredths wide."""
 
 METHOD: Final = (
-    "first-order shares by random balance designs (SALib rbd_fast, bias corrected) on a Latin hypercube; 95 % "
+    "first-order shares by random balance designs (RBD-FAST, bias corrected) on a Latin hypercube; 95 % "
     "intervals by a jackknife of groups"
 )
 HEAD: Final = ("label", "target_m_s", "output", "key", "share", "ci95_low", "ci95_high", "decided")

@@ -3,8 +3,8 @@
 First-order shares V(E(Y | X_i)) / V(Y) answer which input to measure first: the share is the part of the variance that
 is expected to go once X_i is known (Saltelli et al. 2004, *factor prioritisation*). They are estimated from given
 points by random balance designs (Tarantola, Gatelli and Mara 2006; Plischke 2010) with the correction of Tissot and
-Prieur (2012), in the implementation of SALib. Its bootstrap draws points twice, which this method sees as noise; the
-intervals here come from leaving out a tenth of the points at a time (jackknife), and hold for sums and means too.
+Prieur (2012). A bootstrap would draw points twice, which this method sees as noise; the intervals here come from
+leaving out a tenth of the points at a time (jackknife), and hold for sums and means too.
 """
 
 from __future__ import annotations
@@ -89,12 +89,37 @@ def first_order(unit: Floats, output: Floats) -> Estimates:
 
 def balanced(unit: Floats, output: Floats) -> Floats:
     """Shares (d,) by random balance designs."""
-    from SALib.analyze import rbd_fast  # start-up: SALib brings pandas
-
     if np.ptp(output) == 0.0:
         return np.zeros(unit.shape[1])
-    raw = [rbd_fast.compute_first_order(rbd_fast.permute_outputs(x, output), HARMONICS) for x in unit.T]
-    return np.array([rbd_fast.unskew_S1(each, HARMONICS, len(output)) for each in raw])
+    return without_bias(np.array([low_harmonics(output[there_and_back(x)]) for x in unit.T]), len(output))
+
+
+def there_and_back(x: Floats) -> NDArray[np.intp]:
+    """The order in which one input rises over every second point and falls back over the others.
+
+    Along it a response to the input is one period of a function without a jump; what the others do is noise.
+    """
+    rising = np.argsort(x)
+    return np.concatenate([rising[::2], rising[1::2][::-1]])
+
+
+def low_harmonics(y: Floats) -> float:
+    """What part of the variance of `y` (n,) its `HARMONICS` slowest harmonics make, by Parseval's theorem.
+
+    Each of them counts twice, for its negative frequency too: n is at least 2 · `HARMONICS` + 1.
+    """
+    apart = y - y.mean()
+    power = np.square(np.abs(np.fft.rfft(apart)[1 : HARMONICS + 1]))
+    return float(2.0 * power.sum() / (len(y) * np.square(apart).sum()))
+
+
+def without_bias(raw: Floats, points: int) -> Floats:
+    """Shares less the bias that Tissot and Prieur (2012) derive.
+
+    Noise is alike in all frequencies, so the harmonics hold λ = 2·`HARMONICS` / `points` of it: raw = S + λ(1 − S).
+    """
+    of_noise = 2.0 * HARMONICS / points
+    return (raw - of_noise) / (1.0 - of_noise)
 
 
 def noise_share(output: Floats, again: Floats) -> Estimates:

@@ -17,7 +17,7 @@ from matplotlib.typing import LineStyleType
 from synth.book.case_result import CaseResult
 
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
-YELLOW, BLUE, VERMILLION, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
+BLUE, VERMILLION, PURPLE = "#0072B2", "#D55E00", "#CC79A7"
 GREY, PALE_GREY, INK = "#767676", "#e6e6e6", "#222222"
 
 DOTS_PER_INCH = 110

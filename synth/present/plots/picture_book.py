@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from matplotlib.figure import Figure
 
-from synth.book.case_names import by_class, case_name, file_stem
+from synth.book.case_names import case_name, file_stem
 from synth.book.case_result import CaseResult
 from synth.present.plots.exit_density import NARROW_M_S, WIDE_M_S, exit_density, prediction_origin
 from synth.present.plots.feasibility import feasibility
@@ -18,15 +18,6 @@ from synth.present.plots.rms_by_controller import rms_by_controller
 from synth.present.plots.sample_passes import sample_passes
 from synth.present.plots.surfaces import surfaces
 from synth.simulation.exit_statistics import OVERSPEED_M_S
-
-
-def all_pictures(cases: Sequence[CaseResult], limit_m_s: float) -> Iterator[Picture]:
-    """Every picture of the book in the order of the report; each is drawn when it is asked for."""
-    yield from book_pictures(cases, limit_m_s)
-    for group in by_class(cases):
-        yield from class_pictures(group)
-    for case in cases:
-        yield from case_pictures(case)
 
 
 def book_pictures(cases: Sequence[CaseResult], limit_m_s: float) -> Iterator[Picture]:

@@ -32,7 +32,7 @@ class DriveModes:
     `stage`, `node`, `wait` (M,): commanded stage, index into `grid.nodes_kpa` and into `waits_s`; `rests` (M,): the
     pressure is within the stage's dead band. `allowed` (M, 3) commands; `target`, `weight` (M, 3, 4): modes and weights
     that stand for where the drive is at the next sample; `overpressure_kpa` (M, 3, parts): means over equal parts of
-    the period; `end_overpressure_kpa` (M, 3) at its end.
+    the period.
     """
 
     drive: ValveDrive
@@ -46,7 +46,6 @@ class DriveModes:
     target: NDArray[np.int64]
     weight: NDArray[np.float64]
     overpressure_kpa: NDArray[np.float64]
-    end_overpressure_kpa: NDArray[np.float64]
 
     @property
     def stages(self) -> int:
@@ -90,10 +89,10 @@ def drive_modes(plant: Plant, step_kpa: float, parts: int) -> DriveModes:
     stages = position.stage_pressures_kpa
     start = resting_modes(position, top)[0][1]
     found = Found({(0, int(np.abs(grid.nodes_kpa - start).argmin()), 0): 0}, [0.0])
-    rows: list[tuple[list[bool], list[list[int]], list[list[float]], list[NDArray[np.float64]], list[float]]] = []
+    rows: list[tuple[list[bool], list[list[int]], list[list[float]], list[NDArray[np.float64]]]] = []
     while len(rows) < len(found.modes):
         stage, node, wait = list(found.modes)[len(rows)]
-        allowed, targets, weights, overs, ends = [], [], [], [], []
+        allowed, targets, weights, overs = [], [], [], []
         for command in COMMANDS:
             allowed.append(0 <= stage + command <= top)
             wanted = stage + command if allowed[-1] else stage
@@ -109,9 +108,8 @@ def drive_modes(plant: Plant, step_kpa: float, parts: int) -> DriveModes:
             targets.append(modes + [modes[0]] * (STENCIL - len(modes)))
             weights.append([*share, *[0.0] * (STENCIL - len(modes))])
             overs.append(over)
-            ends.append(max(0.0, pressure - drive.touch_kpa))
-        rows.append((allowed, targets, weights, overs, ends))
-    allowed_rows, targets_rows, weight_rows, over_rows, end_rows = zip(*rows, strict=True)
+        rows.append((allowed, targets, weights, overs))
+    allowed_rows, targets_rows, weight_rows, over_rows = zip(*rows, strict=True)
     stage_of, node_of, wait_of = np.array(list(found.modes)).T
     away = np.abs(np.asarray(stages)[stage_of] - grid.nodes_kpa[node_of])
     return DriveModes(
@@ -126,5 +124,4 @@ def drive_modes(plant: Plant, step_kpa: float, parts: int) -> DriveModes:
         target=np.array(targets_rows),
         weight=np.array(weight_rows),
         overpressure_kpa=np.array(over_rows),
-        end_overpressure_kpa=np.array(end_rows),
     )

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
 from synth.solver.any_time.drive_modes import DriveModes
-from synth.solver.switching_lines import SwitchingLines
 
 
 @frozen_arrays
@@ -31,10 +30,6 @@ class SwitchingSurfaces:
         if self.lower_m_s.shape != shape or self.upper_m_s.shape != shape:
             raise ValueError(f"switching surfaces: shape {self.lower_m_s.shape} does not fit {shape} modes and nodes")
 
-    def at_quanta(self) -> NDArray[np.float64]:
-        """The lines by side, start of a path quantum and mode, (2, N, M)."""
-        return np.stack([self.lower_m_s[:, :-1].T, self.upper_m_s[:, :-1].T])
-
     def of_stage(self, stage: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         """(pressures (·,), their modes (·,)) of one commanded stage, by rising pressure.
 
@@ -51,11 +46,3 @@ def surfaces_at(modes: DriveModes, nodes_m: NDArray[np.float64], lines_m_s: NDAr
     """Surfaces of the lines (2, N, M) at the starts of the quanta between `nodes_m` (N + 1,); the last one holds on."""
     lower, upper = (np.concatenate([each, each[-1:]]).T.copy() for each in lines_m_s)
     return SwitchingSurfaces(modes, np.array(nodes_m), lower, upper)
-
-
-def at_rest_only(lines: SwitchingLines, modes: DriveModes) -> SwitchingSurfaces:
-    """Stage-locked `lines` as surfaces: no command but at rest, there that of the stage's lines."""
-    rests = modes.rests[:, None]
-    lower = np.where(rests, lines.lower_m_s[modes.stage], -np.inf)
-    upper = np.where(rests, lines.upper_m_s[modes.stage], np.inf)
-    return SwitchingSurfaces(modes, np.array(lines.nodes_m), lower, upper)

@@ -8,9 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.errors import require, require_between
-from synth.yard.control_computer.reliability.failure_losses import CutRisks
-from synth.yard.control_computer.reliability.rates import require_not_negative
+from plant_models.errors import require
 from synth.yard.humping.outcomes import TrainOutcomes
 from synth.yard.humping.train_cuts import TrainCuts
 from synth.yard.humping.train_figures import FEWEST_TRAINS, ratio, share
@@ -99,72 +97,6 @@ def difference_of_counts(without: Floats, with_it: Floats, cuts: Floats) -> Inte
     value = more - fewer
     below, above = np.hypot(more - low_more, high_fewer - fewer), np.hypot(high_more - more, fewer - low_fewer)
     return value, value - float(below), value + float(above)
-
-
-@dataclass(frozen=True)
-class EventPrices:
-    """What each event costs, in any currency, all by judgement of the yard: no source was found.
-
-    `overspeed_to_2`, `overspeed_above_2`: the mean damage of a coupling above the limit and of one above 2 m/s;
-    `catch_up`: a cut that was misrouted or in contact ahead of the last position, and must be sorted again; `stopped`:
-    a cut that stands on the way, with the pause that it makes; `gap_per_m`: of free track behind a cut.
-    """
-
-    overspeed_to_2: float
-    overspeed_above_2: float
-    catch_up: float
-    stopped: float
-    gap_per_m: float
-
-    def __post_init__(self) -> None:
-        for key, value in vars(self).items():
-            require_not_negative(f"event prices: {key}", value)
-
-    def loss(self, found: TrainOutcomes) -> Floats:
-        """Loss of each train, (n,)."""
-        above = found.overspeed[:, 2]
-        return np.asarray(
-            self.overspeed_to_2 * (found.overspeed.sum(axis=1) - above)
-            + self.overspeed_above_2 * above
-            + self.catch_up * found.caught
-            + self.stopped * found.stopped
-            + self.gap_per_m * found.gap_m
-        )
-
-
-def extra_loss_per_cut(sound: TrainOutcomes, failed: TrainOutcomes, prices: EventPrices) -> Interval:
-    """What the failure costs for each humped cut, paired by train; negative where it does some good."""
-    require_same(sound, failed)
-    return paired_difference(prices.loss(sound), prices.loss(failed), sound.cuts.astype(float))
-
-
-def extra_loss_per_h(
-    sound: TrainOutcomes, failed: TrainOutcomes, prices: EventPrices, humping_share: float = 1.0
-) -> Interval:
-    """The same for each hour; `humping_share` of the time cuts go over the crest. Su of the yearly losses.
-
-    Cuts an hour are those of the run with the failure; their own error is small beside that of the loss and left out.
-    """
-    require_between("failure costs: humping_share", humping_share, 0.0, 1.0)
-    rate = humping_share * cuts_per_h(failed)[0]
-    value, low, high = extra_loss_per_cut(sound, failed, prices)
-    return rate * value, rate * low, rate * high
-
-
-def cuts_per_h(found: TrainOutcomes) -> Interval:
-    """Cuts over the crest for each hour of humping, pauses between trains left out."""
-    value, low, high = ratio(3600.0 * (found.cuts.astype(float) - 1.0), found.span_s)
-    return float(value), float(low), float(high)
-
-
-def measured_risks(failed: TrainOutcomes) -> CutRisks:
-    """P1 and P2 of [hump-computer-1970s] as they come out of humped trains with a failure.
-
-    P1: over-speeds for each humped cut. P2: catch-ups ahead of the last position; such a cut follows the one ahead, and
-    most of them go to another track than their own.
-    """
-    cuts = float(failed.cuts.sum())
-    return CutRisks(float(failed.overspeed.sum()) / cuts, float(failed.caught.sum()) / cuts)
 
 
 def cuts_before_stop(memory: TrainMemory) -> Ints:

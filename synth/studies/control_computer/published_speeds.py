@@ -19,7 +19,6 @@ CYCLE = Cycle(cycle_s=1.0, check_share=1.0)
 """(1 − δ)/(1 + α) = 0.5, however it is divided."""
 
 OPERATIONS_A_CYCLE = {"open loop": 10_000.0, "feedback": 500_000.0}
-PUBLISHED_OP_S = {"open loop": 20_000.0, "feedback": 1_000_000.0}
 USES = (0.07, 0.08)
 SLOW_OP_S, FAST_OP_S, FAST_OPERATIONS = 1500.0, 120_000.0, 8000.0
 MEAN_S, LONG_S, LONG_SHARE = 0.01, 0.1, 0.001

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from synth.studies.control_computer.comparison import Comparison, judged
 from synth.studies.control_computer.lives import Interval, chain_shares, duplex_ready
+from synth.studies.control_computer.stationary import null_space_shares, stationary_shares
 from synth.studies.markdown_table import MarkdownTable, table
 from synth.studies.study import Tell
 from synth.yard.control_computer.reliability.duplex import Duplex, single_availability
@@ -22,7 +23,6 @@ from synth.yard.control_computer.reliability.maintenance_interval import (
     WorkingHours,
     small_rate_interval_h,
 )
-from synth.yard.control_computer.reliability.stationary import null_space_shares, stationary_shares
 
 Floats = NDArray[np.float64]
 

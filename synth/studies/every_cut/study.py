@@ -33,8 +33,6 @@ transient_step_s = 0.1
 friction_scenarios = 2
 """
 
-Remember = Callable[[str, Callable[[], Outcome]], Outcome]
-
 
 @dataclass(frozen=True)
 class Options:

@@ -8,10 +8,10 @@ from typing import Protocol
 import numpy as np
 
 from synth.kernels.any_time.closed_loop import AnyTimeLaw
-from synth.simulation.closed_loop import ClosedLoop, LineController, TableController
+from synth.simulation.closed_loop import ClosedLoop, LineController
 from synth.simulation.controllers import NO_SURFACES, estimator_arrays, fixed
 from synth.solver.switching_lines import SwitchingLines
-from synth.studies.peers.kernels.peer_loop import BY_PREDICTION, BY_PULSES, BY_TABLE, Peer
+from synth.studies.peers.kernels.peer_loop import BY_PREDICTION, BY_PULSES, Peer
 from synth.studies.peers.kernels.prediction import Prediction
 from synth.studies.peers.kernels.pulses import Pulses
 from tuning_tables import Decisions, Estimator
@@ -83,22 +83,6 @@ class PulseController:
         )
         at_rest = self.decisions is Decisions.AT_REST
         return Peer(BY_PULSES, no_table(), NO_PREDICTION, law, at_rest, *estimator_arrays(self.estimator))
-
-
-@dataclass(frozen=True)
-class TableAsPeer:
-    """A table or lines in the loop of the peers: there it must do what it does in the simulator's own."""
-
-    controller: TableController | LineController
-
-    def peer(self, loop: ClosedLoop) -> Peer:
-        """The regulator as the kernel takes it; `ValueError` for a lead, which this loop does not know."""
-        rule, law = self.controller.rule, self.controller.law()
-        if rule.lead_s != 0.0:
-            raise ValueError("peers: the loop of the peers runs no lines with a lead")
-        at_rest = not isinstance(law, AnyTimeLaw)
-        table = law if isinstance(law, AnyTimeLaw) else no_table()._replace(rule=rule)
-        return Peer(BY_TABLE, table, NO_PREDICTION, NO_PULSES, at_rest, rule.estimator_parameters, rule.estimator_work)
 
 
 def no_table() -> AnyTimeLaw:

@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import beta, chi2
 
 from synth.configuration.config_file import load_config
@@ -24,8 +23,6 @@ from synth.yard.measured_passes.drift.charts import charts_of, kinds_of, limit_o
 from synth.yard.measured_passes.drift.diagnosis import diagnosed
 from synth.yard.measured_passes.drift.evidence import Evidence
 from synth.yard.measured_passes.fitting_passes import fitting_passes
-
-Floats = NDArray[np.float64]
 
 BESIDE = 200
 """Sequences that false alarms are counted on, side by side."""

@@ -25,7 +25,7 @@ from plant_models.library.data_file import keyed
 from plant_models.rolling.random_cuts import CutPopulation
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
 from plant_models.rolling.weather import Weather
-from synth.configuration.aim.aim_file import AimFile, read_aim_file
+from synth.configuration.aim.aim_file import AimFile
 from synth.configuration.aim.asked_cuts import members_of, require_cars
 from synth.configuration.aim.parameters import exit_std_of, numbers_of
 from synth.configuration.aim.settings import (
@@ -108,11 +108,6 @@ class ResolvedAim:
     def sha256(self) -> str:
         """SHA-256 of `canonical_json` in UTF-8, hexadecimal."""
         return hashlib.sha256(self.canonical_json.encode()).hexdigest()
-
-
-def load_aim(path: Path | None) -> ResolvedAim:
-    """The aim configuration in the file `path`, or the built-in default; `InputError` on any fault."""
-    return resolve_aim(read_aim_file(path))
 
 
 def resolve_aim(file: AimFile) -> ResolvedAim:

@@ -40,7 +40,6 @@ class ResolvedComputer:
     place: str
     title: str
     hump: HumpGraph
-    hump_title: str
     mix: TaskMix
     service: Service
     cycle: Cycle
@@ -88,7 +87,6 @@ def resolve_computer(file: ComputerFile) -> ResolvedComputer:
         place=place,
         title=settings.title or f"Control computer of: {file.hump.title}",
         hump=file.hump.graph,
-        hump_title=file.hump.title,
         mix=mix,
         service=service,
         cycle=cycle,

@@ -51,23 +51,6 @@ def load_sorting_list(path: str | os.PathLike[str], categories: WeightCategories
     return sorting_list_of_csv(text, file, load_weight_categories() if categories is None else categories)
 
 
-def to_sorting_csv(cuts: SortingList, categories: WeightCategories) -> str:
-    """The text of the file; equal lists give equal text, and it reads back as the same list."""
-    names = {category.number: category.latin for category in categories.members}
-    text = io.StringIO(newline="")
-    writer = csv.writer(text, lineterminator="\r\n")
-    writer.writerow(COLUMNS)
-    for cut in cuts.cuts:
-        if cut.category not in names:
-            raise PlantError(f"cut {cut.serial}: category {cut.category} is none of {categories.name}")
-        marks = " ".join(sorted(mark.value for mark in cut.marks))
-        numbers = [cut.serial, cut.cars, cut.axles, repr(cut.mass_t), names[cut.category], cut.track]
-        writer.writerow(
-            [*numbers, repr(cut.length_m), cut.rolling.name.lower(), cut.lead, repr(cut.hump_speed_m_s), marks]
-        )
-    return text.getvalue()
-
-
 def sorting_list_of_csv(text: str, file: str, categories: WeightCategories) -> SortingList:
     """The list in `text`; `file` is what messages call it. `InputError`: one sentence for each row at fault."""
     rows = csv_rows(text, file)

@@ -38,10 +38,6 @@ class CutTrace:
         """Where the head is at `time_s`; before the first sample and behind the last one as in these."""
         return np.interp(time_s, self.time_s, self.head_m)
 
-    def time_at(self, head_m: Floats) -> Floats:
-        """When the head is at `head_m`, NaN where it never is."""
-        return np.interp(head_m, self.head_m, self.time_s, left=np.nan, right=np.nan)
-
     def behind(self, leader: CutTrace, length_m: float, by_s: float) -> tuple[CutTrace, float]:
         """This way as far as it is clear of the cut `leader`, which is `length_m` long, then coupled to its tail; and
         when they touch.

@@ -107,14 +107,6 @@ class HumpRoutes:
         begins = np.array([route.yard_from_m for route in self.routes])
         return read_only(clear.max(axis=1, initial=0.0, where=self.points >= 0).clip(begins, self.length_m))
 
-    def of_tracks(self, tracks: Ints) -> Ints:
-        """Rows of the routes to `tracks`; each must be reached."""
-        own = self.tracks
-        rows = np.minimum(np.searchsorted(own, tracks), len(own) - 1)
-        if np.any(own[rows] != tracks):
-            raise ValueError(f"routes: track {int(tracks[own[rows] != tracks][0])} is not reached from {self.lead}")
-        return rows
-
     def shared(self, one: Ints, other: Ints) -> Ints:
         """How many of their first elements the routes `one` and `other` (n,) share: up to the switch that parts them.
 

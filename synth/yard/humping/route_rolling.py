@@ -7,12 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from plant_models.hump import Route
 from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts
 from synth.kernels.roll.felt_track import LANES, Cuts
 from synth.kernels.roll.lane_cuts import CutRows, lay_in_lanes
 from synth.yard.free_roll import STEP_M, Rolled, in_lanes, long_steps, roll_lanes
-from synth.yard.humping.route_ways import RouteWays, route_ways
+from synth.yard.humping.route_ways import RouteWays
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -20,7 +19,7 @@ Ints = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class RouteRolling:
-    """`cuts` made ready for the kernel on any of the routes of `ways`; from `route_rolling`.
+    """`cuts` made ready for the kernel on any of the routes of `ways`; from `rolling_on`.
 
     The bends of `cuts` are draws (`DrawnCuts.on_bends`): draw b is that of bend b of whichever route a cut takes. So a
     cut meets the bends ahead of a parting in the same way on both routes. Each cut is worked out alone, and threads
@@ -106,16 +105,11 @@ class RouteRolling:
         )
 
 
-def route_rolling(
-    population: CutPopulation, routes: tuple[Route, ...], cuts: DrawnCuts, threads: int = 0
-) -> RouteRolling:
-    """`cuts` on `routes`, by the law of resistance and the weather of `population`, rolled by `threads`, 0: one a
-    processor. Behind the yard's beginning of its route a cut rolls in the yard."""
-    return rolling_on(route_ways(population, routes, cuts.mix), population, cuts, threads)
-
-
 def rolling_on(ways: RouteWays, population: CutPopulation, cuts: DrawnCuts, threads: int = 0) -> RouteRolling:
-    """The same on routes that are made ready already: for one batch of cuts after another."""
+    """`cuts` on `ways`, by the law of resistance and the weather of `population`.
+
+    Behind the yard's beginning of its route a cut rolls in the yard. `threads` roll them, 0: one a processor.
+    """
     if cuts.mix != ways.mix or cuts.bend_v2_m_s2.shape[1] < ways.bends:
         raise ValueError(f"roll: the cuts must be of the mix of the routes, and have draws for {ways.bends} bends")
     fronts, lengths = cuts.car_fronts_m, cuts.car_lengths_m

@@ -17,7 +17,6 @@ from synth.yard.humping.free_stretch import StretchSpeeds
 from synth.yard.humping.hump_routes import HumpRoutes
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 SLOWEST_M_S = 0.05
 """No reading is less."""

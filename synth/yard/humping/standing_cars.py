@@ -10,7 +10,6 @@ from synth.yard.humping.motion import Cars, Moving
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 
 class StandingCars:

@@ -41,8 +41,3 @@ def one_train(trial: HumpTrial, number: int) -> OneTrain:
     """The train `number`, from 0, of `trial`: the same as in every batch."""
     trains, _, memory = trial.humped(number, 1)
     return OneTrain(trial, trains, memory)
-
-
-def traced_train(trial: HumpTrial, number: int) -> TrainTrace:
-    """Its cuts on their ways."""
-    return one_train(trial, number).traced()

@@ -3,12 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from synth.yard.humping.hump_routes import HumpRoutes, Mark
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class TrainMemory:

@@ -22,7 +22,6 @@ from synth.yard.humping.position_choice import PositionChoice
 OF_POPULATION: Final = ("cuts", "cars_mean", "most_cars")
 """What a sorting list tells in its place."""
 
-FREE_OF_TRACKS: Final = ("tracks.free_low", "tracks.free_high")
 CHANGES_NO_TRAIN: Final = ("trains.number", "acceptance.")
 """Keys, or their beginnings, that change no train, only how many are humped and how they are judged."""
 

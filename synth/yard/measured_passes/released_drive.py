@@ -15,8 +15,6 @@ from numpy.typing import NDArray
 from plant_models.pneumatics import Pneumatics
 from tuning_tables.pass_log.pass_log import PassLog
 
-Floats = NDArray[np.float64]
-
 REST_S: Final = 2.0
 """So long after a command the pressure is near where it stays: four usual time constants, and the delays."""
 

@@ -19,15 +19,10 @@ from synth.studies.control_computer.failed_hump import (
     failed_trial,
 )
 from synth.studies.control_computer.failure_costs_of_hump import (
-    EventPrices,
     ExtraFigure,
     cuts_before_stop,
-    cuts_per_h,
     difference_of_counts,
-    extra_loss_per_cut,
-    extra_loss_per_h,
     failure_figures,
-    measured_risks,
     other_track_with_frozen_points,
     paired_difference,
 )
@@ -43,7 +38,6 @@ BRAKES = tuple(
     LibraryBrake(load_position(name).position, CATEGORIES, CAR)
     for name in ("knp-5-bunch", "knp-5-bunch", "rnz-2m-park")
 )
-PRICES = EventPrices(overspeed_to_2=2.0, overspeed_above_2=30.0, catch_up=7.0, stopped=20.0, gap_per_m=0.01)
 
 
 @cache
@@ -87,7 +81,6 @@ def test_no_failure_adds_nothing() -> None:
         assert value == 0.0
         assert low <= 0.0 <= high
         assert (figure.trains, figure.cuts) == (TRAINS, 8 * TRAINS)
-    assert extra_loss_per_cut(sound(), humped(), PRICES)[0] == 0.0
 
 
 def test_a_last_position_that_is_stuck_released_makes_cuts_couple_fast() -> None:
@@ -95,8 +88,6 @@ def test_a_last_position_that_is_stuck_released_makes_cuts_couple_fast() -> None
     for name in ("overspeed", "overspeed_above_2"):
         assert figures[name].extra[1] > 0.2, name
     assert figures["gap_per_cut"].extra[2] < 0.0
-    lost = extra_loss_per_cut(sound(), humped(FailedPosition(3, StuckReleased())), PRICES)
-    assert lost[1] > 0.0
 
 
 def test_a_first_position_that_is_stuck_closed_stops_trains() -> None:
@@ -129,26 +120,16 @@ def test_a_weak_supply_lies_between_the_sound_brake_and_none() -> None:
         WeakSupply(1.5, 0.15)
 
 
-def test_extra_is_the_difference_and_losses_are_the_priced_events() -> None:
-    """An independent sum over all trains."""
+def test_extra_is_the_difference() -> None:
+    """Also by an independent sum over all trains."""
     with_it = humped(FailedPosition(2, StuckReleased()))
     cuts = sound().cuts.sum()
     for figure in failure_figures(sound(), with_it):
         assert figure.extra[0] == pytest.approx(figure.failed[0] - figure.sound[0], abs=1e-12)
-    expected = 0.0
-    for sign, found in ((1.0, with_it), (-1.0, sound())):
-        slow, fast = found.overspeed[:, :2].sum(), found.overspeed[:, 2].sum()
-        events = 2.0 * slow + 30.0 * fast + 7.0 * found.caught.sum() + 20.0 * found.stopped.sum()
-        expected += sign * (events + 0.01 * found.gap_m.sum()) / cuts
-    per_cut = extra_loss_per_cut(sound(), with_it, PRICES)
-    assert per_cut[0] == pytest.approx(expected)
-    per_h = extra_loss_per_h(sound(), with_it, PRICES, 0.6)
-    rate = 3600.0 * (with_it.cuts - 1).sum() / with_it.span_s.sum()
-    assert cuts_per_h(with_it)[0] == pytest.approx(rate)
-    np.testing.assert_allclose(per_h, 0.6 * rate * np.array(per_cut))
-    risks = measured_risks(with_it)
-    assert risks.overspeed == pytest.approx(with_it.overspeed.sum() / cuts)
-    assert risks.other_track == pytest.approx(with_it.caught.sum() / cuts)
+    above = with_it.overspeed[:, 2].sum() - sound().overspeed[:, 2].sum()
+    assert told(with_it)["overspeed_above_2"].extra[0] == pytest.approx(above / cuts)
+    caught = with_it.caught.sum() - sound().caught.sum()
+    assert told(with_it)["catch_ups"].extra[0] == pytest.approx(caught / cuts)
 
 
 def test_frozen_points_send_cuts_of_even_tracks_elsewhere() -> None:
@@ -189,7 +170,3 @@ def test_other_trains_cannot_be_compared() -> None:
     other = sound_trial().batch(1, TRAINS)
     with pytest.raises(PlantError, match="both runs must have the same trains"):
         failure_figures(sound(), other)
-    with pytest.raises(PlantError, match="event prices: catch_up is -1"):
-        replace(PRICES, catch_up=-1.0)
-    with pytest.raises(PlantError, match=r"humping_share is 1\.5"):
-        extra_loss_per_h(sound(), sound(), PRICES, 1.5)

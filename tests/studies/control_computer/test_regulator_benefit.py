@@ -17,6 +17,7 @@ from tests.synth.yard.control_computer.economics.made_cases import (
     PRICES,
     TODAY,
     TRAFFIC,
+    half95,
     made_outcomes,
 )
 
@@ -52,7 +53,7 @@ def test_intervals_are_those_of_paired_differences() -> None:
     found = {each.name: each.less for each in regulator_benefit(today, new, YARD, replicates=1000)}
     linear = change_of_trains(today, new).over_speeds_above_2
     on_track = 4000.0 / 1.8 * BEFORE.on_track
-    assert found["couplings above 2 m/s"].half95 == pytest.approx(on_track * linear.half95, rel=0.12)
+    assert half95(found["couplings above 2 m/s"]) == pytest.approx(on_track * half95(linear), rel=0.12)
 
 
 def test_intervals_cover_the_truth() -> None:
@@ -65,7 +66,7 @@ def test_intervals_cover_the_truth() -> None:
     ]
     assert min(covered) > 0.86, covered
     assert max(covered) <= 1.0
-    widths = [each[1].half95 for each in sets]
+    widths = [half95(each[1]) for each in sets]
     assert 0.0 < np.mean(widths) < truth[1], "the shorter wait is told from nothing"
 
 

@@ -21,6 +21,7 @@ from synth.solver.any_time.sampled_chain import SampledChain, sampled_chain
 from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
 from synth.solver.backward_induction import true_speed_weights
 from synth.studies.any_time.surface_induction import solve_surfaces
+from tests.synth.any_time.locked_surfaces import at_quanta
 
 Row = list[float]
 AIM = Aim(2.5, Criterion())
@@ -177,13 +178,13 @@ def tiny(plant: Plant) -> SampledChain:
 
 
 def test_lines_are_those_of_plain_loops(tiny: SampledChain) -> None:
-    solved = solve_surfaces(tiny, AIM, rough=0.0).at_quanta()
+    solved = at_quanta(solve_surfaces(tiny, AIM, rough=0.0))
     brute = BruteForce(tiny, None)
     assert np.isfinite(brute.lines).sum(axis=(1, 2)).min() > 50
     assert solved == pytest.approx(brute.lines, abs=1e-9)
 
 
 def test_cost_of_given_surfaces_is_that_of_plain_loops(tiny: SampledChain) -> None:
-    lines = solve_surfaces(tiny, AIM).at_quanta()
+    lines = at_quanta(solve_surfaces(tiny, AIM))
     cost = SurfaceEvaluation(tiny).gradient(lines, AIM).cost_m2_s2
     assert cost == pytest.approx(BruteForce(tiny, lines).cost(), abs=1e-9)

@@ -14,7 +14,7 @@ from synth.solver.any_time.drive_modes import drive_modes
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
 from synth.solver.switching_lines import SwitchingLines
 from synth.studies.any_time.surface_controller import SurfaceController
-from synth.studies.any_time.switching_surfaces import at_rest_only
+from tests.synth.any_time.locked_surfaces import at_rest_only
 from tests.synth.any_time.tabled import tabled
 
 

@@ -36,7 +36,7 @@ from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.solver.any_time.drive_modes import drive_modes
 from synth.solver.switching_lines import SwitchingLines
 from synth.studies.any_time.surface_controller import SurfaceController
-from synth.studies.any_time.switching_surfaces import at_rest_only
+from tests.synth.any_time.locked_surfaces import at_rest_only
 from tests.synth.any_time.test_loop import falling_lines
 from tests.synth.simulation.passage_cases import with_approach
 from tests.synth.test_closed_loop_lanes import rough_estimator, wavy_table, with_gaps

@@ -26,8 +26,8 @@ from synth.solver.chain.chain import Chain, persistent_chain
 from synth.solver.policy_density import exit_density
 from synth.studies.any_time.surface_controller import SurfaceController
 from synth.studies.any_time.surface_induction import solve_surfaces
-from synth.studies.any_time.switching_surfaces import at_rest_only
 from tests.synth.any_time.conftest import short_plant
+from tests.synth.any_time.locked_surfaces import at_quanta, at_rest_only
 from tests.synth.any_time.tabled import tabled
 
 TARGET_M_S = 3.0
@@ -122,7 +122,7 @@ def test_the_cost_of_solved_surfaces_is_what_simulation_finds(plant: Plant) -> N
     price = (sample.exit_speed_m_s - TARGET_M_S) ** 2 + AIM.criterion.switching_tolerance_m2_s2 * sample.switchings
     half = 1.96 * float(price.std(ddof=1)) / np.sqrt(len(price))
     assert not sample.stalled.any()
-    cost = SurfaceEvaluation(known).gradient(solved.at_quanta(), AIM).cost_m2_s2
+    cost = SurfaceEvaluation(known).gradient(at_quanta(solved), AIM).cost_m2_s2
     assert cost == pytest.approx(price.mean(), abs=half + 0.03 * price.mean())
 
 
@@ -138,7 +138,7 @@ def test_stage_locked_lines_cost_what_the_locked_solver_says(plant: Plant) -> No
     density = exit_density(transitions, lines)
     theirs = density.rms_m_s(TARGET_M_S) ** 2 + AIM.criterion.switching_tolerance_m2_s2 * density.switchings
     here = sampled_chain(plant, resolution, pressure_step_kpa=15.0)
-    locked = at_rest_only(lines, here.modes).at_quanta()
+    locked = at_quanta(at_rest_only(lines, here.modes))
     assert SurfaceEvaluation(here).gradient(locked, AIM).cost_m2_s2 == pytest.approx(theirs, rel=GRID_ERROR)
 
 
@@ -152,9 +152,9 @@ def test_without_transients_surfaces_are_the_locked_lines(plant: Plant) -> None:
     locked = one_stage_a_command(persistent_chain(quick, resolution))
     solution = solve(locked, AIM)
     theirs = exit_density(locked, solution.lines)
-    ours = SurfaceEvaluation(here).density(solve_surfaces(here, AIM).at_quanta())
+    ours = SurfaceEvaluation(here).density(at_quanta(solve_surfaces(here, AIM)))
     assert ours.rms_m_s(TARGET_M_S) == pytest.approx(theirs.rms_m_s(TARGET_M_S), rel=0.02)
-    same = SurfaceEvaluation(here).density(at_rest_only(solution.lines, here.modes).at_quanta())
+    same = SurfaceEvaluation(here).density(at_quanta(at_rest_only(solution.lines, here.modes)))
     assert same.rms_m_s(TARGET_M_S) == pytest.approx(theirs.rms_m_s(TARGET_M_S), rel=0.02)
 
 

@@ -163,8 +163,3 @@ def names_of(value: object) -> tuple[str, ...]:
     if not is_dataclass(value):
         raise PlantError(f"{type(value).__name__} has no named inputs")
     return tuple(field.name for field in fields(value))
-
-
-def case_figures(case: EconomicCase, inputs: Mapping[str, float]) -> dict[str, float]:
-    """Named inputs to named outputs: the figures of `case` with some of its inputs changed."""
-    return evaluated(with_inputs(case, inputs)).figures()

@@ -30,13 +30,3 @@ class Estimate:
             "both ends must be finite and hold the figure",
         )
         require(self.n >= 1, f"n is {self.n!r}; a figure is told from 1 or more")
-
-    @property
-    def half95(self) -> float:
-        """Half the width of the interval."""
-        return 0.5 * (self.high95 - self.low95)
-
-
-def exactly(value: float) -> Estimate:
-    """A figure without error, as it stands in a source that tells no interval."""
-    return Estimate(value, value, value, 1)

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
-from plant_models.errors import PlantError, require
 from synth.yard.control_computer.economics.estimate import Estimate
 from synth.yard.control_computer.economics.hump_rates import HumpRates
 
@@ -43,29 +40,3 @@ class HumpDayFigures:
     def rates(self) -> HumpRates:
         """The figures without their intervals."""
         return HumpRates(on_track=self.on_track, **{name: getattr(self, name).value for name in NAMES})
-
-
-def figures_of_summary(name: str, summary: Mapping[str, Any]) -> HumpDayFigures:
-    """Those of a `summary.json` that `hump simulate` wrote, already parsed.
-
-    `PlantError` where a figure is missing or has no interval, as with a single train.
-    """
-    try:
-        told, cuts = summary["figures"], int(summary["cuts"])
-        on_track = int(told["overspeed"]["n"]) / cuts
-        made = {ours: estimate_of(theirs, told[theirs]) for ours, theirs in NAMES.items()}
-    except (KeyError, TypeError, ValueError, ZeroDivisionError) as missing:
-        if isinstance(missing, PlantError):
-            raise
-        raise PlantError(f"the summary of the hump variant {name!r} lacks or damages {missing}") from missing
-    return HumpDayFigures(name=name, on_track=on_track, **made)
-
-
-def estimate_of(name: str, told: Mapping[str, Any]) -> Estimate:
-    """One figure of a summary."""
-    ends = told["ci95"]
-    require(
-        None not in (told["value"], *ends),
-        f"the hump figure {name} has no interval; simulate at least two trains that reach their tracks",
-    )
-    return Estimate(float(told["value"]), float(ends[0]), float(ends[1]), int(told["n"]))

@@ -93,18 +93,6 @@ def whitt_h(queue: HumpQueue) -> float:
     return correction * allen_cunneen_h(queue)
 
 
-def kingman_bound_h(queue: HumpQueue) -> float:
-    """The mean wait is at most λ(σ_a² + σ_s²) / (2(1 − ρ)) for any arrivals (Kingman 1962); one lead only.
-
-    In coefficients of variation: τ(c_a²/ρ + ρ·c_s²) / (2(1 − ρ)). Infinite for no trains.
-    """
-    require(queue.leads == 1, f"leads is {queue.leads}; Kingman's bound is for 1 lead")
-    load = queue.load
-    if load == 0.0:
-        return math.inf
-    return queue.service_h * (queue.arrival_scv / load + load * queue.service_scv) / (2.0 * (1.0 - load))
-
-
 def mean_scv(queue: HumpQueue) -> float:
     """(c_a² + c_s²)/2."""
     return 0.5 * (queue.arrival_scv + queue.service_scv)

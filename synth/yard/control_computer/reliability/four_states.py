@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.errors import require
-from synth.yard.control_computer.reliability.rates import HOURS_PER_YEAR, require_not_negative, require_positive
+from synth.yard.control_computer.reliability.rates import require_not_negative, require_positive
 
 Floats = NDArray[np.float64]
 
@@ -110,9 +110,3 @@ class StateShares:
     def availability(self) -> float:
         """Share of time in which the computer controls, and does so rightly."""
         return self.ready
-
-    @property
-    def hours_per_year(self) -> tuple[float, float, float, float]:
-        """Mean hours of a year of 8760 h in each state, in the order of `State`."""
-        ready, failed, maintenance, repair = (HOURS_PER_YEAR * share for share in vars(self).values())
-        return ready, failed, maintenance, repair

@@ -11,7 +11,6 @@ from synth.yard.control_computer.reliability.failure_losses import HourPrices, Y
 from synth.yard.control_computer.reliability.four_states import FourStates, State
 from synth.yard.control_computer.reliability.maintenance_interval import CheckedComputer
 from synth.yard.control_computer.reliability.rates import HOURS_PER_YEAR, require_positive
-from synth.yard.control_computer.reliability.redundancy import Redundant
 
 
 @dataclass(frozen=True)
@@ -63,11 +62,6 @@ class Upkeep:
     def duplex(self) -> Duplex:
         """Two computers, checked one after the other."""
         return Duplex(self.failure_per_h, self.check_h)
-
-    @property
-    def pair(self) -> Redundant:
-        """The same two with failures that have a common cause."""
-        return Redundant(1, 2, self.failure_per_h, self.common_share)
 
     @property
     def prices(self) -> HourPrices:

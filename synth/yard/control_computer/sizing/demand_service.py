@@ -59,20 +59,6 @@ def mean_waits(streams: tuple[Stream, ...], discipline: Discipline) -> tuple[Mea
     return tuple(found[stream.name] for stream in streams)
 
 
-def conserved_work(streams: tuple[Stream, ...], waits: tuple[MeanWait, ...]) -> float:
-    """Σ ρ_i W_i, s: the same for every order of service that neither idles nor interrupts, ρ W₀/(1 − ρ).
-
-    Kleinrock, Queueing Systems II, 1976, section 3.4. `waits` belong to `streams`, one to one.
-    """
-    return math.fsum(stream.load * wait.start_s for stream, wait in zip(streams, waits, strict=True))
-
-
-def overall_wait_s(streams: tuple[Stream, ...], waits: tuple[MeanWait, ...]) -> float:
-    """The mean of `wait_s` over all requests, whatever their task."""
-    rate = math.fsum(stream.rate_per_s for stream in streams)
-    return math.fsum(s.rate_per_s * w.wait_s for s, w in zip(streams, waits, strict=True)) / rate
-
-
 def residual(streams: tuple[Stream, ...]) -> float:
     """Σ λ_i E[S_i²]/2, s."""
     return math.fsum(stream.residual_s for stream in streams)

@@ -40,16 +40,3 @@ class PeriodicTask:
             isinstance(self.priority, int) and self.priority >= 1,
             f"task {self.name}: priority is {self.priority!r}; it must be a whole number from 1, the most urgent, on",
         )
-
-    @property
-    def utilisation(self) -> float:
-        """The share of the processor's time that it takes at most."""
-        return self.work_s / self.period_s
-
-
-def rate_monotonic(tasks: tuple[PeriodicTask, ...]) -> tuple[PeriodicTask, ...]:
-    """The same tasks with priorities by period, the shortest first: the best order where deadlines are periods."""
-    from dataclasses import replace
-
-    ordered = sorted(tasks, key=lambda task: task.period_s)
-    return tuple(replace(task, priority=place) for place, task in enumerate(ordered, start=1))

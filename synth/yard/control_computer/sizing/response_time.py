@@ -56,14 +56,6 @@ def responses(tasks: tuple[PeriodicTask, ...]) -> tuple[Response, ...]:
     return tuple(Response(task, float(_longest(task, tasks))) for task in tasks)
 
 
-def deadlines_hold(tasks: tuple[PeriodicTask, ...]) -> bool:
-    """Whether every job of every task is in time; with an overloaded processor it is not."""
-    load = exact_load(tasks)
-    if load > 1 or (load == 1 and _held_up(tasks)):
-        return False
-    return all(response.in_time for response in responses(tasks))
-
-
 def exact_load(tasks: tuple[PeriodicTask, ...]) -> Fraction:
     """The share of the processor's time that all jobs take."""
     return sum((exact(task.work_s) / exact(task.period_s) for task in tasks), Fraction(0))

@@ -36,11 +36,6 @@ class ServiceLaw(Protocol):
         """The law of `factor` · X: with 1 / (operations a second) operations become seconds."""
 
 
-def squared_cv(law: ServiceLaw) -> float:
-    """The squared coefficient of variation, Var X / E[X]²."""
-    return law.second_moment / law.mean**2 - 1.0
-
-
 @dataclass(frozen=True)
 class Constant:
     """Always `mean`."""

@@ -8,7 +8,6 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant, PlantError
 from synth.frame.input_error import InputError
@@ -23,8 +22,6 @@ from synth.yard.measured_passes.identified_config import with_numbers
 from synth.yard.measured_passes.retune.tuned_books import Case, plants_of
 from synth.yard.measured_passes.unknowns import values_at
 from tuning_tables import ControllerTable
-
-Floats = NDArray[np.float64]
 
 MOST_FALSE = 0.025
 """Chance that any case is called better whose new table is not, of all cases together."""

@@ -1,4 +1,4 @@
-"""Where misrouted cuts go, what re-sorting costs, and the laws of braking."""
+"""Where misrouted cuts go, and the laws of braking."""
 
 from __future__ import annotations
 
@@ -14,9 +14,8 @@ from synth.yard.hump.models import Misroute, Resistance
 from synth.yard.hump.practice_rules import PracticeRules
 from synth.yard.hump.route_table import RouteTable
 from synth.yard.hump.strobe import Strobe
-from synth.yard.hump.technology import LeaderTrack, OwnTrack, RejectionOrCheapest, ShuntedMetres
-from tests.plant_models.hump.random_humps import random_hump, small_hump
-from tests.synth.yard.hump.full_humps import full_hump
+from synth.yard.hump.technology import LeaderTrack, RejectionOrCheapest
+from tests.plant_models.hump.random_humps import random_hump
 
 LOST = Misroute(7, 1, Why.NOT_SEPARATED, 6, (4, 5, 8), 2, 5)
 
@@ -25,11 +24,6 @@ def test_the_follower_goes_to_the_track_of_its_leader() -> None:
     assert LeaderTrack().track_for(LOST) == 5
     assert LeaderTrack().track_for(replace(LOST, leader_track=1)) == 4
     assert LeaderTrack().track_for(replace(LOST, leader=0, leader_track=None, track=8)) == 8
-
-
-def test_a_cut_keeps_its_own_track_if_it_can() -> None:
-    assert OwnTrack(LeaderTrack()).track_for(replace(LOST, track=8)) == 8
-    assert OwnTrack(LeaderTrack()).track_for(LOST) == 5
 
 
 def test_a_rejection_track_comes_first_and_then_the_cheapest() -> None:
@@ -41,25 +35,6 @@ def test_a_rejection_track_comes_first_and_then_the_cheapest() -> None:
 
     assert RejectionOrCheapest((9, 8), price).track_for(LOST) == 8
     assert RejectionOrCheapest((9,), price).track_for(LOST) == 5
-
-
-def test_shunted_metres_on_the_small_hump_by_hand() -> None:
-    """Tracks 2 and 3 begin at 220 m and part at 160 m; track 1 begins at 100 m and parts from both at 40 m."""
-    cost = ShuntedMetres(RouteTable(small_hump()))
-    assert cost(2, 2) == 0.0
-    assert cost(2, 3) == 2.0 * (60.0 + 60.0)
-    assert cost(3, 1) == cost(1, 3) == 2.0 * (180.0 + 60.0)
-    with pytest.raises(PlantError):
-        cost(1, 99)
-
-
-def test_the_nearer_the_dividing_switch_the_cheaper() -> None:
-    """Of a full hump of 16 tracks, track 1 is brought cheapest to 2, then to 3 and 4, then to 5 to 8."""
-    cost = ShuntedMetres(RouteTable(full_hump(4)))
-    groups = [{cost(1, track) for track in group} for group in ((2,), (3, 4), (5, 6, 7, 8), range(9, 17))]
-    assert all(len(group) == 1 for group in groups)
-    assert [min(group) for group in groups] == sorted(min(group) for group in groups)
-    assert len(set.union(*groups)) == 4
 
 
 @pytest.mark.parametrize("seed", range(20))

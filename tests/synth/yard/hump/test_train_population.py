@@ -10,7 +10,6 @@ import pytest
 from plant_models.errors import PlantError
 from plant_models.library import load_car, load_weight_categories
 from plant_models.rolling.car_mix import CarMix, MixedCar
-from synth.yard.hump.sorting_list_file import sorting_list_of_csv, to_sorting_csv
 from synth.yard.hump.train_population import TrainPopulation, chosen
 
 CATEGORIES = load_weight_categories()
@@ -56,7 +55,6 @@ def test_a_seed_is_a_train_and_a_longer_train_begins_with_the_shorter() -> None:
     assert train == POPULATION.train(5, 40)
     assert POPULATION.train(5, 60).cuts[:40] == train.cuts
     assert POPULATION.train(6, 40) != train
-    assert sorting_list_of_csv(to_sorting_csv(train, CATEGORIES), "train.csv", CATEGORIES) == train
 
 
 def test_a_share_of_none_is_never_chosen() -> None:

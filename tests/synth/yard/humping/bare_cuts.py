@@ -108,7 +108,7 @@ class BareTrains:
     @property
     def route(self) -> Ints:
         """By rows."""
-        return self.routes.of_tracks(self.tracks.reshape(-1))
+        return np.searchsorted(self.routes.tracks, self.tracks.reshape(-1))
 
     @property
     def length_m(self) -> Floats:

@@ -15,10 +15,10 @@ from synth.yard.humping.hump_position import Arrivals
 from synth.yard.humping.hump_routes import HumpRoutes, hump_routes
 from synth.yard.humping.humping import Hump, humped
 from synth.yard.humping.normal_hump_position import NormalHumpPosition
-from synth.yard.humping.route_rolling import route_rolling
 from synth.yard.humping.train_cuts import TrainCuts, trains
 from synth.yard.humping.train_memory import TrainMemory
 from tests.synth.yard.humping.made_slow_trains import crest_times_s, slow_body
+from tests.synth.yard.humping.rolling_cuts import route_rolling
 from tests.synth.yard.humping.slow_train import Heads, SlowCut, SlowTrain
 
 Floats = NDArray[np.float64]

@@ -16,11 +16,11 @@ from synth.yard.humping.hump_position import Arrivals
 from synth.yard.humping.hump_routes import hump_routes
 from synth.yard.humping.humping import Hump, humped
 from synth.yard.humping.normal_hump_position import NormalHumpPosition
-from synth.yard.humping.route_rolling import route_rolling
 from synth.yard.humping.train_cuts import TrainCuts
 from synth.yard.humping.train_cuts import trains as drawn_trains
 from synth.yard.humping.train_memory import TrainMemory
 from tests.plant_models.rolling.populations import CATEGORIES, MIX, population
+from tests.synth.yard.humping.rolling_cuts import route_rolling
 
 Floats = NDArray[np.float64]
 

@@ -19,12 +19,12 @@ from synth.yard.humping.expected_way import ExpectedWay
 from synth.yard.humping.motion import Cars, Moving, rolled_free
 from synth.yard.humping.resistance_prior import bend_spreads, resistance_prior
 from synth.yard.humping.rollability import MeasuredRollability, measured_rollability
-from synth.yard.humping.route_rolling import route_rolling
 from synth.yard.humping.speed_sensors import SpeedSensors
 from synth.yard.humping.train_cuts import TrainCuts, expected, trains
 from synth.yard.humping.train_memory import TrainMemory
 from tests.plant_models.rolling.populations import MIX, population
 from tests.synth.yard.humping.asked_cuts import large
+from tests.synth.yard.humping.rolling_cuts import route_rolling
 from tests.synth.yard.humping.test_train_cuts import PEOPLE, TRAINS
 
 Floats = NDArray[np.float64]

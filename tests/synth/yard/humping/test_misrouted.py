@@ -13,12 +13,12 @@ from synth.yard.humping.asked import Asked
 from synth.yard.humping.hump_routes import HumpRoutes, hump_routes
 from synth.yard.humping.humping import Hump, humped
 from synth.yard.humping.normal_hump_position import NormalHumpPosition
-from synth.yard.humping.route_rolling import route_rolling
 from synth.yard.humping.train_cuts import TrainCuts, trains
 from synth.yard.humping.train_memory import TrainMemory
 from tests.plant_models.hump.random_humps import random_hump
 from tests.plant_models.rolling.populations import CATEGORIES, MIX, population
 from tests.synth.yard.humping.made_trials import GivenHead
+from tests.synth.yard.humping.rolling_cuts import route_rolling
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -12,12 +12,13 @@ from plant_models.rolling.random_cuts import CutPopulation, DrawnCuts
 from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10062Law
 from plant_models.rolling.weather import Weather
 from synth.yard.free_roll import Rolled, rolling_cuts
-from synth.yard.humping.route_rolling import RouteRolling, rolling_on, route_rolling
+from synth.yard.humping.route_rolling import RouteRolling, rolling_on
 from synth.yard.humping.route_ways import route_ways
 from tests.oracles.rolling.made_cuts import MIX
 from tests.plant_models.rolling.populations import MIX as OTHER_MIX
 from tests.plant_models.rolling.populations import population
 from tests.synth.yard.humping.mixed_cuts import WIDEST, mixed_cuts, route, without_padding
+from tests.synth.yard.humping.rolling_cuts import route_rolling
 
 Floats = NDArray[np.float64]
 

@@ -16,9 +16,9 @@ from plant_models.rolling.car_mix import CarMix, MixedCar
 from plant_models.rolling.resistance_law import HumpNormLaw, Tb10062Law
 from plant_models.rolling.weather import Weather
 from synth.yard.hump.train_population import TrainPopulation
-from synth.yard.humping.route_rolling import route_rolling
 from synth.yard.humping.train_cuts import TrainCuts, expected, trains
 from tests.plant_models.rolling.populations import CATEGORIES, GONDOLA, LONG_TANK, MIX, TANK, population
+from tests.synth.yard.humping.rolling_cuts import route_rolling
 
 OWN_MIX = CarMix((MixedCar(GONDOLA, 0.5, 11.6), MixedCar(TANK, 0.3, 10.5), MixedCar(LONG_TANK, 0.2, 12.0)))
 TRAINS = TrainPopulation(OWN_MIX, CATEGORIES, {1: 0.4, 2: 0.2, 5: 0.4}, dict.fromkeys(range(1, 33), 1.0), 2.0, 10)

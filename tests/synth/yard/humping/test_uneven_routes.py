@@ -60,7 +60,7 @@ def test_places_of_the_routes() -> None:
     for routes in (bunch, own):
         last = routes.positions_of == 3
         assert (routes.standing_from_m[last] == [route.yard_from_m for route in np.array(routes.routes)[last]]).all()
-    row = int(bunch.of_tracks(np.array([1]))[0])
+    row = int(np.flatnonzero(bunch.tracks == 1)[0])
     assert bunch.standing_from_m[row] == bunch.routes[row].fouling_m(16) > bunch.release_m[row]
     assert bunch.ends_m[row] == bunch.routes[row].element(16).to_m
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import zlib
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -88,12 +87,6 @@ def output_figures(draws: Draws, name: str) -> OutputFigures:
         mean=mean,
         quantiles=tuple((p, *quantile_of(ordered, p)) for p in QUANTILES),
     )
-
-
-def share_where(draws: Draws, name: str, holds: Callable[[Floats], NDArray[np.bool_]]) -> Estimate:
-    """Share of the possible draws in which an output fulfils a condition, such as an NPV above 0."""
-    held = draws.found[name]
-    return share_of(holds(held[~np.isnan(held)]))
 
 
 def share_of(hits: NDArray[np.bool_]) -> Estimate:

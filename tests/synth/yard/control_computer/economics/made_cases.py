@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
-from synth.yard.control_computer.economics.economic_case import EconomicCase, Terms
+from synth.yard.control_computer.economics.economic_case import EconomicCase, Terms, evaluated, with_inputs
+from synth.yard.control_computer.economics.estimate import Estimate
 from synth.yard.control_computer.economics.hump_rates import HumpChange, HumpRates
 from synth.yard.control_computer.economics.prices import Prices
 from synth.yard.control_computer.economics.traffic import Handling, Traffic
@@ -92,3 +95,13 @@ def made_outcomes(
         gap_m=rates.gap_m * judged * train_effect * random.normal(1.0, 0.05, trains),
         speed_bins=wide, gap_bins=wide, passes=wide, strokes=wide, error2_m2_s2=wide.astype(float),
     )  # fmt: skip
+
+
+def case_figures(case: EconomicCase, inputs: Mapping[str, float]) -> dict[str, float]:
+    """The figures of `case` with some of its inputs changed."""
+    return evaluated(with_inputs(case, inputs)).figures()
+
+
+def half95(found: Estimate) -> float:
+    """Half the width of the interval."""
+    return 0.5 * (found.high95 - found.low95)

@@ -11,7 +11,6 @@ from plant_models.errors import PlantError
 from synth.yard.control_computer.economics.economic_case import (
     EconomicCase,
     Terms,
-    case_figures,
     evaluated,
     with_inputs,
 )
@@ -75,7 +74,6 @@ def test_inputs_by_name() -> None:
     assert (changed.prices.per_car_h, changed.prices.per_car, changed.terms.years) == (2.0, 1.0, 10)
     assert replace(changed, prices=CASE.prices, terms=CASE.terms) == CASE
     assert with_inputs(CASE, {}) == CASE
-    assert case_figures(CASE, {"terms.investment": 3e6}) == evaluated(CASE).figures()
 
 
 @pytest.mark.parametrize(

@@ -12,8 +12,8 @@ from scipy.integrate import solve_ivp
 
 from plant_models import PlantError
 from synth.studies.control_computer.lives import chain_cycles
+from synth.studies.control_computer.stationary import null_space_shares, stationary_shares
 from synth.yard.control_computer.reliability.four_states import FourStates, State, StateShares
-from synth.yard.control_computer.reliability.stationary import null_space_shares, stationary_shares
 
 PRINTED = FourStates(0.01, 0.2, 0.4, 4.0, 0.5)
 TO_REPAIR = replace(PRINTED, failed_check_to=State.REPAIR)
@@ -119,12 +119,6 @@ def test_without_checks_or_without_detection_a_chain_still_works() -> None:
     for chain in (unchecked, unaware):
         p = chain.stationary()
         np.testing.assert_allclose(astuple(p) @ chain.generator_per_h(), 0.0, atol=1e-14)
-
-
-def test_hours_of_a_year() -> None:
-    hours = PRINTED.stationary().hours_per_year
-    assert sum(hours) == pytest.approx(8760.0)
-    assert hours[State.FAILED_UNNOTICED] == pytest.approx(8760.0 * 0.0148148, rel=1e-5)
 
 
 def test_impossible_values_are_refused() -> None:

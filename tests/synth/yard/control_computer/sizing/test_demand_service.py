@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import pytest
@@ -11,9 +12,8 @@ from hypothesis import strategies as st
 from plant_models.errors import PlantError
 from synth.yard.control_computer.sizing.demand_service import (
     Discipline,
-    conserved_work,
+    MeanWait,
     mean_waits,
-    overall_wait_s,
     residual,
 )
 from synth.yard.control_computer.sizing.service_law import (
@@ -51,6 +51,17 @@ def test_the_figures_of_the_published_check() -> None:
     absolute = mean_waits(EXPONENTIAL, Discipline.ABSOLUTE)
     assert [wait.start_s for wait in relative] == pytest.approx([0.549, 0.901, 1.867], abs=5e-4)
     assert [wait.sojourn_s for wait in absolute] == pytest.approx([0.588, 1.456, 3.507], abs=5e-4)
+
+
+def conserved_work(streams: tuple[Stream, ...], waits: tuple[MeanWait, ...]) -> float:
+    """Σ ρ_i W_i, s: the same for every order of service that neither idles nor interrupts, ρ W₀/(1 − ρ)."""
+    return math.fsum(stream.load * wait.start_s for stream, wait in zip(streams, waits, strict=True))
+
+
+def overall_wait_s(streams: tuple[Stream, ...], waits: tuple[MeanWait, ...]) -> float:
+    """The mean of `wait_s` over all requests, whatever their task."""
+    rate = math.fsum(stream.rate_per_s for stream in streams)
+    return math.fsum(s.rate_per_s * w.wait_s for s, w in zip(streams, waits, strict=True)) / rate
 
 
 @given(mixes())

@@ -9,7 +9,7 @@ import pytest
 from scipy import stats
 
 from plant_models.errors import PlantError
-from synth.yard.control_computer.economics.estimate import Estimate, exactly
+from synth.yard.control_computer.economics.estimate import Estimate
 from synth.yard.control_computer.economics.uncertainty.ranges import (
     Constant,
     LogNormal,
@@ -47,7 +47,7 @@ def test_quantiles_that_were_told() -> None:
 
 
 def test_measured_figures() -> None:
-    assert range_of(exactly(2.0)) == Constant(2.0)
+    assert range_of(Estimate(2.0, 2.0, 2.0, 1)) == Constant(2.0)
     assert range_of(Estimate(2.0, 1.0, 4.0, 9)) == Measured(2.0, 1.0, 4.0)
     one_sided = range_of(Estimate(0.0, 0.0, 0.3, 9)).quantile(np.array([0.1, 0.5, 0.975]))
     np.testing.assert_allclose(one_sided, [0.0, 0.0, 0.3])

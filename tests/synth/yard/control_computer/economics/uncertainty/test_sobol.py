@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 from plant_models.errors import PlantError
-from synth.yard.control_computer.economics.economic_case import case_figures
 from synth.yard.control_computer.economics.uncertainty.ranges import Constant, LogNormal, Measured, Range, Uniform
 from synth.yard.control_computer.economics.uncertainty.sobol import SobolIndex, sobol_of
-from tests.synth.yard.control_computer.economics.made_cases import CASE
+from tests.synth.yard.control_computer.economics.made_cases import CASE, case_figures
 
 ISHIGAMI: dict[str, Range] = {name: Uniform(-math.pi, math.pi) for name in ("x1", "x2", "x3")}
 A, B = 7.0, 0.1

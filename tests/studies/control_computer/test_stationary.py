@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import expm
 
 from plant_models import PlantError
-from synth.yard.control_computer.reliability.stationary import null_space_shares, stationary_shares
+from synth.studies.control_computer.stationary import null_space_shares, stationary_shares
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -1,1 +1,0 @@
-"""Probabilities of exits that are too fast by so much that plain simulation hardly ever sees one."""
