@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from functools import cache
 
 import pytest
 
+from synth.studies.in_the_loop.controller_process import Controller, build_controller
+from tests.controller_code.changed_export import ChangedExport, changed_export
 from tests.controller_code.sample_book import approaching_book, estimating_book, sample_book, surface_book
 from tuning_tables.table_book import TableBook
 
 Tool = Callable[[str], str]
+ToChange = Callable[[Mapping[str, bytes], str], ChangedExport]
+Built = Callable[[TableBook], Controller]
 
 BOOKS: dict[str, Callable[[], TableBook]] = {
     "measured": sample_book,
@@ -41,3 +46,26 @@ def book(request: pytest.FixtureRequest) -> TableBook:
     """Tables of many shapes, without and with estimators, approaches and slopes."""
     made: TableBook = request.param()
     return made
+
+
+@pytest.fixture(scope="session")
+def to_change(tool: Tool, tmp_path_factory: pytest.TempPathFactory) -> ToChange:
+    """An export and the name of the file that is to be changed: all others are compiled once, however often asked."""
+
+    @cache
+    def compiled(files: tuple[tuple[str, bytes], ...], name: str) -> ChangedExport:
+        tool("gcc")
+        return changed_export(dict(files), name, tmp_path_factory.mktemp("to-change"))
+
+    return lambda files, name: compiled(tuple(files.items()), name)
+
+
+@pytest.fixture(scope="session")
+def built(tool: Tool, tmp_path_factory: pytest.TempPathFactory) -> Built:
+    """The controller of a book, built by gcc with the usual switches, once however often asked: it keeps nothing."""
+
+    @cache
+    def controller(book: TableBook) -> Controller:
+        return build_controller(book, tmp_path_factory.mktemp("built"), tool("gcc"))
+
+    return controller

@@ -1,8 +1,9 @@
-"""A book with tables of many shapes, whose numbers are as hard as numbers can be."""
+"""A book with tables of many shapes, whose numbers are as hard as numbers can be. Nothing in a book can be changed."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 from tuning_tables import (
     Approach,
@@ -22,6 +23,7 @@ from tuning_tables.table_book import TableBook
 FOUR_AXLES, SIX_AXLES = (0.0, 1.85, 8.65, 10.5), (0.0, 1.75, 3.5, 10.44, 12.19, 13.94)
 
 
+@cache
 def sample_book() -> TableBook:
     """Three targets of two classes; a lighter class in their shadow; other stages, degrees, ranges; odd numbers."""
     odd = table_of("odd", "Т", 85.0, FOUR_AXLES, 3.0)
@@ -51,6 +53,7 @@ def sample_book() -> TableBook:
     )
 
 
+@cache
 def estimating_book() -> TableBook:
     """The sample book with estimators: few and many breaks, one from before the path on, one with next to no noise.
 
@@ -69,6 +72,7 @@ def estimating_book() -> TableBook:
     return TableBook(tuple(replace(table, estimator=given.get(table.id)) for table in sample_book().tables))
 
 
+@cache
 def approaching_book(estimators: bool = True) -> TableBook:
     """The estimating book, or the sample book, with approaches: every entrance stage, 0 and the highest among them.
 
@@ -85,6 +89,7 @@ def approaching_book(estimators: bool = True) -> TableBook:
     return TableBook(tuple(with_approach(table, *given.get(table.id, (0.0, 0))) for table in book.tables))
 
 
+@cache
 def surface_book(of: TableBook | None = None) -> TableBook:
     """The approaching book, or another of the same shapes, with tables that decide at any time, with gauge and without.
 

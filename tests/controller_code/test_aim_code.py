@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import subprocess
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -13,15 +14,16 @@ import pytest
 
 from synth.studies.in_the_loop.builds import BUILDS, Build
 from synth.studies.in_the_loop.controller_process import CONTRACT, BuildError, compile_with
-from tests.controller_code.conftest import Tool
+from tests.controller_code.conftest import ToChange, Tool
 from tests.controller_code.sample_book import sample_book
 from tests.controller_code.test_export import FLOAT_H, PEDANTIC
 from tests.tuning_tables.aim.hard_questions import answers, hard_questions, sample_set
 from tests.tuning_tables.aim.made_tables import category_table, measured_table, random_table, reported_of
 from tuning_tables.aim import AimTables
+from tuning_tables.aim.aim_table import AimTable
 from tuning_tables.aim.block import aim_block, aim_block_size
 from tuning_tables.aim.c_source import aim_c_files
-from tuning_tables.aim.golden_aims import few_golden_aims, golden_aims
+from tuning_tables.aim.golden_aims import GoldenAims, few_golden_aims, golden_aims
 from tuning_tables.c_source import c_files
 from tuning_tables.export_prefix import RETARDER, ExportPrefix
 
@@ -199,30 +201,34 @@ MUTANTS = (
 )
 
 
-@pytest.mark.parametrize("small", [False, True], ids=["full", "small"])
-@pytest.mark.parametrize(
-    ("before", "after", "fault"), MUTANTS, ids=[f"{each[1][:30]}-{n}" for n, each in enumerate(MUTANTS)]
-)
-def test_the_self_test_finds_a_wrong_controller(
-    before: str, after: str, fault: str | None, small: bool, tmp_path: Path, tool: Tool
-) -> None:
-    tool("gcc")
+@cache
+def to_mutate(golden: Callable[[AimTable], GoldenAims]) -> Mapping[str, bytes]:
+    """An export that shows every fault of `MUTANTS`, and the program around it."""
     speeds = category_table().exit_speed_m_s.copy()
     speeds[0, 0] = np.float32(1.4)  # 0x1.666666p+0f
     speeds[3, -2:] = 1.75  # level at the end
     speeds[4] = 1.3  # less for more cars
     speeds[4, -2] = np.nan
     flat = replace(category_table(), exit_speed_m_s=speeds, reported=reported_of(speeds))
-    steep = category_table(1.5, 4, "СТ")
-    files = dict(
-        aim_c_files(AimTables((flat, measured_table(), steep)), RETARDER, few_golden_aims if small else golden_aims)
-    )
-    text = files["aim_table.c"].decode()
-    assert before in text
-    files["aim_table.c"] = text.replace(before, after, 1).encode()
-    command = built(files, tmp_path, Build("gcc", ("-O1",), ("-std=c99", "-w")))
-    found = told(command, "self-test").decode()
-    assert found.startswith(fault) if fault else found == "fault 0 at 0\n"
+    aims = AimTables((flat, measured_table(), category_table(1.5, 4, "СТ")))
+    return {**aim_c_files(aims, RETARDER, golden), "main.c": PROGRAM.encode("ascii")}
+
+
+@pytest.mark.parametrize("golden", [golden_aims, few_golden_aims], ids=["full", "small"])
+@pytest.mark.parametrize(
+    ("before", "after", "fault"), MUTANTS, ids=[f"{each[1][:30]}-{n}" for n, each in enumerate(MUTANTS)]
+)
+def test_the_self_test_finds_a_wrong_controller(
+    before: str,
+    after: str,
+    fault: str | None,
+    golden: Callable[[AimTable], GoldenAims],
+    tmp_path: Path,
+    to_change: ToChange,
+) -> None:
+    ran = to_change(to_mutate(golden), SOURCES[0]).self_test(before, after, tmp_path)
+    assert ran.returncode == 0
+    assert ran.stdout.startswith(fault) if fault else ran.stdout == "fault 0 at 0\n"
 
 
 def test_a_damaged_table_is_found_and_leads_nowhere(tmp_path: Path, tool: Tool) -> None:

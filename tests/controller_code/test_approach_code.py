@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,12 +9,11 @@ import numpy as np
 import pytest
 
 from synth.studies.in_the_loop.agreement import ask, choices_of, differences, follow
-from synth.studies.in_the_loop.controller_process import COMMAND, build_controller, compile_with, write_sources
-from tests.controller_code.conftest import Tool
+from synth.studies.in_the_loop.controller_process import COMMAND, sources_of
+from tests.controller_code.conftest import Built, ToChange
 from tests.controller_code.sample_book import approaching_book, table_of, with_approach
 from tuning_tables import Approach, Status
 from tuning_tables.c_source import c_files
-from tuning_tables.export_prefix import RETARDER
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 from tuning_tables.table_block import LAYOUT, block_of, block_size
 from tuning_tables.table_book import TableBook
@@ -48,11 +46,11 @@ def pairs() -> TableBook:
     return TableBook(tuple(tables))
 
 
-def test_c_takes_lines_between_equal_approaches_only(pairs: TableBook, tmp_path: Path, tool: Tool) -> None:
+def test_c_takes_lines_between_equal_approaches_only(pairs: TableBook, built: Built) -> None:
     statuses = {name: pairs.choose("Л", axles_of(name), BETWEEN_M_S).status for name in OTHERS}
     like = dict.fromkeys(("equal", "less than a float32 apart"), Status.BETWEEN)
     assert statuses == dict.fromkeys(OTHERS, Status.SLOWER) | like
-    controller = build_controller(pairs, tmp_path, tool("gcc"))
+    controller = built(pairs)
     commands = np.array([(LAYOUT, LIGHT, axles_of(name), BETWEEN_M_S) for name in OTHERS], COMMAND)
     found, words = controller.select(commands)
     own, own_words = choices_of(pairs, commands)
@@ -61,20 +59,18 @@ def test_c_takes_lines_between_equal_approaches_only(pairs: TableBook, tmp_path:
     assert controller.self_test() == "fault 0 at 0"
 
 
-def test_approaches_without_estimators_decide_as_python(tmp_path: Path, tool: Tool) -> None:
-    tool("gcc")
+def test_approaches_without_estimators_decide_as_python(built: Built) -> None:
     book = approaching_book(estimators=False)
     questions = ask(book, 200_000, 5_000, 14)
     before = (questions.readings["s_m"] < 0.0) & (questions.readings["s_m"] > -10.0)
     far = (questions.decisions - questions.readings["stage"])[before]
     assert min(np.count_nonzero(far < 0), np.count_nonzero(far == 0), np.count_nonzero(far > 0)) > 2_000
-    assert differences(build_controller(book, tmp_path), questions, follow(book, 1_000, 15)).none
+    assert differences(built(book), questions, follow(book, 1_000, 15)).none
 
 
-def test_the_controller_tells_approach_and_entrance_stage(tmp_path: Path, tool: Tool) -> None:
-    tool("gcc")
+def test_the_controller_tells_approach_and_entrance_stage(built: Built) -> None:
     book = approaching_book()
-    told = build_controller(book, tmp_path).approaches()
+    told = built(book).approaches()
     assert told[0] == (4.0, 1)
     assert told[10] == (float(np.float32(1e-3)), 0)
     assert told[5] == (0.0, 4)  # without approach: the highest stage of the table
@@ -109,19 +105,10 @@ def test_the_words_of_an_approach_come_last_and_only_where_there_is_one() -> Non
 )
 @pytest.mark.parametrize("self_test", [FULL, SMALL], ids=["full", "small"])
 def test_the_self_test_finds_a_wrong_gate(
-    before: str, after: str, fault: int, self_test: SelfTestSize, tmp_path: Path, tool: Tool
+    before: str, after: str, fault: int, self_test: SelfTestSize, tmp_path: Path, to_change: ToChange
 ) -> None:
-    tool("gcc")
     book = approaching_book(estimators=False)
-    write_sources(book, tmp_path)
-    for name, content in c_files(book, RETARDER, self_test).items():
-        (tmp_path / name).write_bytes(content)
-    source = (tmp_path / "retarder_table.c").read_text("ascii")
-    assert before in source
-    (tmp_path / "retarder_table.c").write_text(source.replace(before, after, 1), "ascii")
-    program = tmp_path / "controller"
-    compile_with(["gcc", "-std=c99", "-O1", *map(str, tmp_path.glob("*.c")), "-o", str(program)])
-    ran = subprocess.run([program, "self-test"], capture_output=True, text=True, timeout=60, check=False)
+    ran = to_change(sources_of(book, self_test), "retarder_table.c").self_test(before, after, tmp_path)
     assert ran.returncode == fault
 
 

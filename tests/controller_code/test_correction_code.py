@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import subprocess
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from numba import njit
 
 from synth.studies.in_the_loop.builds import BUILDS, Build
 from synth.studies.in_the_loop.controller_process import CONTRACT, compile_with
-from tests.controller_code.conftest import Tool
+from tests.controller_code.conftest import ToChange, Tool
 from tests.controller_code.sample_book import sample_book
 from tests.controller_code.test_export import FLOAT_H, PEDANTIC
 from tuning_tables.c_correction import correction_c_files
@@ -118,15 +118,16 @@ def right() -> npt.NDArray[np.float32]:
     return answers
 
 
-def built(folder: Path, build: Build, change: tuple[str, str] | None = None) -> list[str]:
+@cache
+def exported() -> Mapping[str, bytes]:
+    """The exported files and the program around them."""
+    return {**correction_c_files(CORRECTION), "main.c": PROGRAM.encode("ascii")}
+
+
+def built(folder: Path, build: Build) -> list[str]:
     """The command that runs a program with the exported files in it."""
-    for name, content in correction_c_files(CORRECTION).items():
-        text = content.decode()
-        if change and name == SOURCES[0]:
-            assert change[0] in text
-            text = text.replace(*change, 1)
-        (folder / name).write_text(text, newline="")
-    (folder / "main.c").write_text(PROGRAM)
+    for name, content in exported().items():
+        (folder / name).write_bytes(content)
     objects = []
     for name in SOURCES:
         objects.append(str(folder / f"{name}.o"))
@@ -250,11 +251,11 @@ MUTANTS = (
 
 @pytest.mark.parametrize(("before", "after", "fault"), MUTANTS, ids=[f"{n}" for n in range(len(MUTANTS))])
 def test_the_self_test_finds_a_wrong_controller(
-    before: str, after: str, fault: int, tmp_path: Path, tool: Tool
+    before: str, after: str, fault: int, tmp_path: Path, to_change: ToChange
 ) -> None:
-    tool("gcc")
-    command = built(tmp_path, Build("gcc", ("-O1",), ("-std=c99", "-w")), (before, after))
-    assert told(command, "self-test").decode().startswith(f"fault {fault} at")
+    ran = to_change(exported(), SOURCES[0]).self_test(before, after, tmp_path)
+    assert ran.returncode == 0
+    assert ran.stdout.startswith(f"fault {fault} at")
 
 
 def test_names_take_the_prefix_and_equal_corrections_give_equal_bytes() -> None:

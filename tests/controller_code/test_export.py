@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import subprocess
 import zlib
 from dataclasses import replace
 from pathlib import Path
@@ -15,15 +14,14 @@ import pytest
 from synth.studies.in_the_loop.controller_process import (
     CONTRACT,
     BuildError,
-    build_controller,
     compile_with,
+    sources_of,
     write_sources,
 )
-from tests.controller_code.conftest import Tool
+from tests.controller_code.conftest import Built, ToChange, Tool
 from tuning_tables import InvalidTable, decide_for, from_json, read_book, to_json, write_book
 from tuning_tables.c_literals import hex_float
 from tuning_tables.c_source import c_files, export_tag
-from tuning_tables.export_prefix import RETARDER
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 from tuning_tables.table_block import block_of, block_size
 from tuning_tables.table_book import TableBook
@@ -112,9 +110,8 @@ def test_cxx_takes_the_headers_and_since_17_the_code(
             compile_with([*compiler, str(tmp_path / "retarder_table.c")])
 
 
-def test_every_changed_byte_of_a_block_is_found(book: TableBook, tmp_path: Path, tool: Tool) -> None:
-    tool("gcc")
-    controller = build_controller(book, tmp_path)
+def test_every_changed_byte_of_a_block_is_found(book: TableBook, built: Built) -> None:
+    controller = built(book)
     right = block_of(book, 0).words
     assert controller.intact(right[None, :]).all()
     length = 4 * len(right)
@@ -159,31 +156,21 @@ def test_every_changed_byte_of_a_block_is_found(book: TableBook, tmp_path: Path,
 )  # fmt: skip
 @pytest.mark.parametrize("self_test", [FULL, SMALL], ids=["full", "small"])
 def test_the_self_test_finds_a_wrong_controller(
-    before: str, after: str, fault: str, self_test: SelfTestSize, book: TableBook, tmp_path: Path, tool: Tool
+    before: str, after: str, fault: str, self_test: SelfTestSize, book: TableBook, tmp_path: Path, to_change: ToChange
 ) -> None:
-    tool("gcc")
-    write_sources(book, tmp_path)
-    for name, content in c_files(book, RETARDER, self_test).items():
-        (tmp_path / name).write_bytes(content)
-    source = (tmp_path / "retarder_table.c").read_text("ascii")
     if block_size(book).gauge:
         before, after = (each.replace("line_speed(", "surface_speed(") for each in (before, after))
-    assert before in source
-    (tmp_path / "retarder_table.c").write_text(source.replace(before, after, 1), "ascii")
-    program = tmp_path / "controller"
-    compile_with(["gcc", "-std=c99", "-O1", *map(str, tmp_path.glob("*.c")), "-o", str(program)])
-    ran = subprocess.run([program, "self-test"], capture_output=True, text=True, timeout=60, check=False)
+    ran = to_change(sources_of(book, self_test), "retarder_table.c").self_test(before, after, tmp_path)
     assert ran.stdout.startswith(fault)
     assert ran.returncode == int(fault.split()[1])
 
 
-def test_json_book_and_c_hold_the_same_bits(book: TableBook, tmp_path: Path, tool: Tool) -> None:
-    tool("gcc")
+def test_json_book_and_c_hold_the_same_bits(book: TableBook, tmp_path: Path, built: Built) -> None:
     write_book(book.tables, tmp_path / "book.h5")
     way_round = TableBook(tuple(from_json(to_json(table)) for table in read_book(tmp_path / "book.h5")))
     assert way_round == book
     assert c_files(way_round) == c_files(book)
-    dumped = build_controller(way_round, tmp_path).dump()
+    dumped = built(way_round).dump()
     size = block_size(book)
     for table, held in zip(book.tables, dumped, strict=True):
         coefficients = held[size.coefficients].view(np.float32).reshape(size.stages, 2, size.powers)

@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 from synth.studies.in_the_loop.builds import SANITIZED
-from synth.studies.in_the_loop.controller_process import CONTRACT, build_controller, compile_with, write_sources
+from synth.studies.in_the_loop.controller_process import CONTRACT, compile_with, sources_of, write_sources
 from synth.studies.in_the_loop.hard_samples import hard_samples
-from tests.controller_code.conftest import Tool
+from tests.controller_code.conftest import Built, ToChange, Tool
 from tests.controller_code.sample_book import estimating_book, sample_book, table_of
 from tuning_tables import alarms_for, speed_for, unseen_samples
 from tuning_tables.c_source import c_files
@@ -71,22 +71,16 @@ def changed_code(code: str) -> list[tuple[str, str]]:
 
 
 @pytest.mark.slow
-def test_the_self_test_finds_every_wrong_operation(estimating: TableBook, tmp_path: Path, tool: Tool) -> None:
-    gcc = tool("gcc")
+def test_the_self_test_finds_every_wrong_operation(estimating: TableBook, tmp_path: Path, to_change: ToChange) -> None:
     wanted = ("light-2.0", "light-3.3", "odd", "shadow-1.5", "shadow-3.0")
-    write_sources(TableBook(tuple(table for table in estimating.tables if table.id in wanted)), tmp_path)
-    others = [str(tmp_path / f"{name}.o") for name in ("retarder_self_test", "controller_process")]
-    for made in others:
-        compile_with([gcc, "-std=c99", "-O1", "-c", made.removesuffix("o") + "c", "-o", made])
-    text = (tmp_path / "retarder_table.c").read_text("ascii")
+    book = TableBook(tuple(table for table in estimating.tables if table.id in wanted))
+    export = to_change(sources_of(book), "retarder_table.c")
+    text = export.content
     begin_at, end_at = text.index("#define LARGEST_SPEED_M_S"), text.index("static uint32_t crc_of_byte")
     code, rest = text[begin_at:end_at], text[end_at:]
 
     def self_test(changed: str) -> str:
-        (tmp_path / "retarder_table.c").write_text(text[:begin_at] + changed + rest, "ascii")
-        program = str(tmp_path / "changed")
-        compile_with([gcc, "-std=c99", "-O1", str(tmp_path / "retarder_table.c"), *others, "-o", program])
-        ran = subprocess.run([program, "self-test"], capture_output=True, text=True, timeout=60, check=False)
+        ran = export.self_test_of(text[:begin_at] + changed + rest, tmp_path)
         return ran.stdout.strip() or f"signal {-ran.returncode}"
 
     assert self_test(code) == "fault 0 at 0"
@@ -114,20 +108,15 @@ def test_the_self_test_finds_every_wrong_operation(estimating: TableBook, tmp_pa
     ],
 )  # fmt: skip
 def test_other_faults_are_found(
-    before: str, after: str, fault: str, estimating: TableBook, tmp_path: Path, tool: Tool
+    before: str, after: str, fault: str, estimating: TableBook, tmp_path: Path, to_change: ToChange
 ) -> None:
-    gcc = tool("gcc")
     # A neighbour whose estimator differs in the last bit of one break only.
     first = estimating.tables[1]
     assert first.estimator is not None
     work = (*first.estimator.drive_m2_s2[:-1], float(np.nextafter(np.float32(first.estimator.drive_m2_s2[-1]), 9.0)))
     other = replace(first, id="other", target_speed_m_s=3.5, estimator=replace(first.estimator, drive_m2_s2=work))
-    write_sources(TableBook((*estimating.tables, other)), tmp_path)
-    source = (tmp_path / "retarder_table.c").read_text("ascii")
-    assert before in source
-    (tmp_path / "retarder_table.c").write_text(source.replace(before, after, 1), "ascii")
-    compile_with([gcc, "-std=c99", "-O1", *map(str, tmp_path.glob("*.c")), "-o", str(tmp_path / "changed")])
-    ran = subprocess.run([tmp_path / "changed", "self-test"], capture_output=True, text=True, timeout=60, check=False)
+    book = TableBook((*estimating.tables, other))
+    ran = to_change(sources_of(book), "retarder_table.c").self_test(before, after, tmp_path)
     assert ran.stdout.startswith(fault)
 
 
@@ -189,11 +178,9 @@ def test_spoilt_tables_and_estimates_and_null_pointers_do_no_harm(
     assert int(ran.stdout) > 50  # some of them did decide
 
 
-def test_a_table_without_estimator_hands_every_bit_on(estimating: TableBook, tmp_path: Path, tool: Tool) -> None:
-    tool("gcc")
-    for place, book in enumerate((sample_book(), estimating)):
-        (tmp_path / str(place)).mkdir()
-        controller = build_controller(book, tmp_path / str(place))
+def test_a_table_without_estimator_hands_every_bit_on(estimating: TableBook, built: Built) -> None:
+    for book in (sample_book(), estimating):
+        controller = built(book)
         samples = hard_samples(book, 20_000, 10)
         samples["table"] = next(n for n, table in enumerate(book.tables) if table.estimator is None)
         samples["v_m_s"] = np.random.default_rng(1).integers(0, 2**32, len(samples), np.uint32).view(np.float32)

@@ -16,7 +16,7 @@ import pytest
 
 from synth.studies.in_the_loop.builds import BUILDS, Build
 from synth.studies.in_the_loop.controller_process import CONTRACT, BuildError, compile_with
-from tests.controller_code.conftest import Tool
+from tests.controller_code.conftest import ToChange, Tool
 from tests.controller_code.passage_tables import every_axle_book, passage_book, passage_table
 from tests.controller_code.pulse_questions import ANSWER, PAIR, Rows, asked, right
 from tests.controller_code.sample_book import sample_book
@@ -106,25 +106,19 @@ def questions(book: PassageBook = BOOK) -> tuple[Rows, Rows]:
 
 @cache
 def exported(book: PassageBook, ask: Ask) -> Mapping[str, bytes]:
-    """The exported files."""
-    return passage_c_files(book, RETARDER, ask)
+    """The exported files and the program around them."""
+    return {**passage_c_files(book, RETARDER, ask), "main.c": PROGRAM.encode("ascii")}
 
 
 def built(
     folder: Path,
     build: Build,
-    change: tuple[str, str] | None = None,
     book: PassageBook = BOOK,
     ask: Ask = golden_passages,
 ) -> list[str]:
     """The command that runs a program with the exported files in it."""
     for name, content in exported(book, ask).items():
-        text = content.decode()
-        if change and name == SOURCES[0]:
-            assert change[0] in text
-            text = text.replace(*change, 1)
-        (folder / name).write_text(text, newline="")
-    (folder / "main.c").write_text(PROGRAM)
+        (folder / name).write_bytes(content)
     objects = []
     for name in SOURCES:
         objects.append(str(folder / f"{name}.o"))
@@ -334,11 +328,11 @@ MUTANTS = (
 @pytest.mark.parametrize(("before", "after", "fault"), MUTANTS, ids=[f"{n}" for n in range(len(MUTANTS))])
 @pytest.mark.parametrize("ask", [golden_passages, few_golden_passages], ids=["full", "small"])
 def test_the_self_test_finds_a_wrong_controller(
-    before: str, after: str, fault: int, ask: Ask, tmp_path: Path, tool: Tool
+    before: str, after: str, fault: int, ask: Ask, tmp_path: Path, to_change: ToChange
 ) -> None:
-    tool("gcc")
-    command = built(tmp_path, Build("gcc", ("-O1",), ("-std=c99", "-w")), (before, after), ask=ask)
-    assert told(command, "self-test").decode().startswith(f"fault {fault} at")
+    ran = to_change(exported(BOOK, ask), SOURCES[0]).self_test(before, after, tmp_path)
+    assert ran.returncode == 0
+    assert ran.stdout.startswith(f"fault {fault} at")
 
 
 def test_damaged_golden_rows_are_told_from_a_wrong_rule(tmp_path: Path, tool: Tool) -> None:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import subprocess
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -17,13 +17,12 @@ from synth.studies.in_the_loop.controller_process import (
     READING,
     build_controller,
     compile_with,
-    write_sources,
+    sources_of,
 )
-from tests.controller_code.conftest import Tool
+from tests.controller_code.conftest import Built, ToChange, Tool
 from tests.controller_code.sample_book import approaching_book, sample_book, surface_book, table_of, with_slopes
 from tuning_tables import ControllerTable, Decisions, Status, ValidRange
 from tuning_tables.c_source import c_files
-from tuning_tables.export_prefix import RETARDER
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
 from tuning_tables.table_block import LAYOUT, block_of, block_size
 from tuning_tables.table_book import TableBook
@@ -63,6 +62,7 @@ WITHOUT: dict[str, Callable[[ControllerTable], ControllerTable]] = {
 """And beside one that decides at any time without a gauge."""
 
 
+@cache
 def pairs() -> TableBook:
     """A class of two targets for each case; the number of axles stands for the case."""
     tables = []
@@ -77,12 +77,12 @@ def pairs() -> TableBook:
     return TableBook(tuple(tables))
 
 
-def test_c_takes_lines_between_tables_of_equal_times_and_pressures_only(tmp_path: Path, tool: Tool) -> None:
+def test_c_takes_lines_between_tables_of_equal_times_and_pressures_only(built: Built) -> None:
     book, names = pairs(), [*OTHERS, *WITHOUT]
     statuses = {name: book.choose("Л", 4 + place, BETWEEN_M_S).status for place, name in enumerate(names)}
     like = dict.fromkeys(("other slopes", "less than a float32 apart", "both at any time"), Status.BETWEEN)
     assert statuses == dict.fromkeys(names, Status.SLOWER) | like
-    controller = build_controller(book, tmp_path, tool("gcc"))
+    controller = built(book)
     commands = np.array([(LAYOUT, LIGHT, 4 + place, BETWEEN_M_S) for place in range(len(names))], COMMAND)
     found, words = controller.select(commands)
     own, own_words = choices_of(book, commands)
@@ -95,13 +95,12 @@ def test_c_takes_lines_between_tables_of_equal_times_and_pressures_only(tmp_path
 
 
 @pytest.mark.parametrize("of", [sample_book, lambda: approaching_book(False)], ids=["measured", "approached"])
-def test_surfaces_of_other_books_decide_as_python(of: Callable[[], TableBook], tmp_path: Path, tool: Tool) -> None:
-    tool("gcc")
+def test_surfaces_of_other_books_decide_as_python(of: Callable[[], TableBook], built: Built) -> None:
     book = surface_book(of())
     questions = ask(book, 200_000, 5_000, 14)
     silent = questions.readings.copy()
     silent["pressure_kpa"] = np.nan
-    controller = build_controller(book, tmp_path)
+    controller = built(book)
     assert np.count_nonzero(controller.decide(silent) != questions.decisions) > 20_000  # the pressure matters
     assert differences(controller, questions, follow(book, 1_000, 15)).none
 
@@ -151,10 +150,9 @@ def test_the_words_come_last_and_only_where_they_are_needed() -> None:
     assert np.array_equal(numbers[1 + stages :].reshape(stages, 2), np.array(slopes, np.float32))
 
 
-def test_every_changed_word_is_refused(tmp_path: Path, tool: Tool) -> None:
-    tool("gcc")
+def test_every_changed_word_is_refused(built: Built) -> None:
     book = surface_book()
-    controller = build_controller(book, tmp_path)
+    controller = built(book)
     for number in range(len(book.tables)):
         words = block_of(book, number).words
         damaged = np.repeat(words[None, :], 32 * len(words), axis=0)
@@ -164,14 +162,13 @@ def test_every_changed_word_is_refused(tmp_path: Path, tool: Tool) -> None:
         assert not controller.intact(damaged).any()
 
 
-def test_pressures_at_and_beyond_their_bounds_are_clamped(tmp_path: Path, tool: Tool) -> None:
-    tool("gcc")
+def test_pressures_at_and_beyond_their_bounds_are_clamped(built: Built) -> None:
     table = with_slopes(table_of("one", "Л", 23.0, (0.0,), 2.0, degree=0), -0.0078125, -0.0078125)
     line = np.float32(3.9)  # upper at stage 1, 150 kPa; raised to stage 3 at most, 450 kPa
     asked = {0.0: 1.171875, -1.0: 1.171875, -3e38: 1.171875, 150.0: 0.0, 450.0: -2.34375,
              451.0: -2.34375, 3e38: -2.34375, np.inf: 0.0, -np.inf: 0.0, np.nan: 0.0}  # fmt: skip
     assert table.stages[1].upper == (float(line),)
-    controller = build_controller(TableBook((replace(table, valid=ValidRange((0.0, 9.0), (0.3, 9.0))),)), tmp_path)
+    controller = built(TableBook((replace(table, valid=ValidRange((0.0, 9.0), (0.3, 9.0))),)))
     for kpa, rise in asked.items():
         tie = np.float32(line + np.float32(rise))
         speeds = [tie, np.nextafter(tie, np.float32(9.0)), np.nextafter(tie, np.float32(0.0))]
@@ -218,6 +215,7 @@ MUTANTS = [
 """A part of the text, what stands there instead, and the fault that the self-test is to tell."""
 
 
+@cache
 def mutants() -> TableBook:
     """Tables that show every mutant: slopes of either line, and neighbours of other times or pressures either way."""
     tables = [table for table in surface_book(approaching_book(False)).tables if table.id.startswith(("light", "odd"))]
@@ -229,17 +227,7 @@ def mutants() -> TableBook:
 @pytest.mark.parametrize("self_test", [FULL, SMALL], ids=["full", "small"])
 @pytest.mark.parametrize(("before", "after", "fault"), MUTANTS)
 def test_the_self_test_finds_wrong_surfaces(
-    before: str, after: str, fault: int, self_test: SelfTestSize, tmp_path: Path, tool: Tool
+    before: str, after: str, fault: int, self_test: SelfTestSize, tmp_path: Path, to_change: ToChange
 ) -> None:
-    tool("gcc")
-    book = mutants()
-    write_sources(book, tmp_path)
-    for name, content in c_files(book, RETARDER, self_test).items():
-        (tmp_path / name).write_bytes(content)
-    source = (tmp_path / "retarder_table.c").read_text("ascii")
-    assert before in source
-    (tmp_path / "retarder_table.c").write_text(source.replace(before, after, 1), "ascii")
-    program = tmp_path / "controller"
-    compile_with(["gcc", "-std=c99", "-O1", *map(str, tmp_path.glob("*.c")), "-o", str(program)])
-    ran = subprocess.run([program, "self-test"], capture_output=True, text=True, timeout=60, check=False)
+    ran = to_change(sources_of(mutants(), self_test), "retarder_table.c").self_test(before, after, tmp_path)
     assert ran.returncode == fault

@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
 import pytest
 
-from synth.studies.in_the_loop.agreement import ask, differences, follow
+from synth.studies.in_the_loop.agreement import Questions, Tracks, ask, differences, follow
 from synth.studies.in_the_loop.controller_process import CONTRACT, Controller, compile_with
 from tests.controller_code.conftest import Tool
 from tests.controller_code.sample_book import estimating_book, park_book, sample_book
@@ -61,21 +62,37 @@ def both_in_one(folder: Path, small: bool) -> Path:
     return folder / "both"
 
 
+@pytest.fixture(scope="module")
+def compiled(tmp_path_factory: pytest.TempPathFactory, tool: Tool) -> Callable[[bool], Path]:
+    """`both_in_one` with the full or the small self-test, each compiled once."""
+
+    @cache
+    def program(small: bool) -> Path:
+        tool("gcc")
+        return both_in_one(tmp_path_factory.mktemp("both"), small)
+
+    return program
+
+
+@cache
+def asked(name: str) -> tuple[Questions, Tracks]:
+    """What the controller of a position is asked, and what Python answers."""
+    return ask(POSITIONS[name], 100_000, 5_000, 7), follow(POSITIONS[name], 20_000, 8)
+
+
 @pytest.mark.parametrize("small", [False, True], ids=["full", "small"])
-def test_both_answer_as_alone(small: bool, tmp_path: Path, tool: Tool) -> None:
-    tool("gcc")
-    program = both_in_one(tmp_path, small)
+def test_both_answer_as_alone(small: bool, compiled: Callable[[bool], Path]) -> None:
+    program = compiled(small)
     for name, book in POSITIONS.items():
         controller = Controller((str(program), name), block_size(book).words)
         assert controller.self_test() == "fault 0 at 0"
-        assert differences(controller, ask(book, 100_000, 5_000, 7), follow(book, 20_000, 8)).none
+        assert differences(controller, *asked(name)).none
 
 
-def test_every_name_that_the_linker_sees_has_the_prefix(tmp_path: Path, tool: Tool) -> None:
-    tool("gcc")
-    both_in_one(tmp_path, True)
+def test_every_name_that_the_linker_sees_has_the_prefix(compiled: Callable[[bool], Path]) -> None:
+    folder = compiled(True).parent
     for name in POSITIONS:
-        listed = compile_with(["nm", "-g", "--defined-only", str(tmp_path / f"{name}_table.c.o")])
+        listed = compile_with(["nm", "-g", "--defined-only", str(folder / f"{name}_table.c.o")])
         names = [line.split()[-1] for line in listed.splitlines() if len(line.split()) == 3]
         assert len(names) > 8
         assert all(each.startswith(f"{name}_") for each in names)

@@ -5,14 +5,18 @@ from __future__ import annotations
 import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
+from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tuning_tables.c_source import c_files
+from tuning_tables.export_prefix import RETARDER
+from tuning_tables.self_test_size import FULL, SelfTestSize
 from tuning_tables.table_block import block_size
 from tuning_tables.table_book import TableBook
 
@@ -105,14 +109,17 @@ class Controller:
         return ran.stdout
 
 
-def write_sources(book: TableBook, directory: Path) -> Mapping[str, bytes]:
-    """Write the export of `book` and the program around it into `directory`, which exists; the exported files."""
-    exported = c_files(book)
-    for name, content in exported.items():
-        (directory / name).write_bytes(content)
+@lru_cache(maxsize=8)
+def sources_of(book: TableBook, self_test: SelfTestSize = FULL) -> Mapping[str, bytes]:
+    """The export of `book` and the program around it, by name: made once for all the ways in which it is compiled."""
     program = (files("synth.studies.in_the_loop") / "controller_process.c").read_bytes()
-    (directory / "controller_process.c").write_bytes(program)
-    return exported
+    return MappingProxyType({**c_files(book, RETARDER, self_test), "controller_process.c": program})
+
+
+def write_sources(book: TableBook, directory: Path) -> None:
+    """Write `sources_of` the book into `directory`, which exists."""
+    for name, content in sources_of(book).items():
+        (directory / name).write_bytes(content)
 
 
 def build_controller(
