@@ -1,7 +1,8 @@
 """Books that are wrong although every sum in them is right: what a careless or hostile writer might leave."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -13,14 +14,25 @@ from tuning_tables.payload import payload_sha256
 from tuning_tables.seal import seal_of
 
 Edit = Callable[[h5py.File], None]
+Arrays = Mapping[str, npt.NDArray[Any]]
+NOTHING_KNOWN: Arrays = {}
 
 
-def forge(path: Path, edit: Edit) -> None:
-    """Apply `edit` to the open file of the book at `path`, then make payload_sha256 and seal right again."""
+def forge(path: Path, edit: Edit, known: Arrays = NOTHING_KNOWN) -> None:
+    """Apply `edit` to the open file of the book at `path`, then make payload_sha256 and seal right again.
+
+    `known`: the arrays of the datasets that `edit` leaves alone, which need not be read again.
+    """
     with h5py.File(path, "r+") as file:
         edit(file)
-        _correct_payload(file)
+        _correct_payload(file, known)
     reseal(path)
+
+
+def arrays_in(path: Path) -> Arrays:
+    """The values of all datasets of the book at `path`."""
+    with h5py.File(path) as file:
+        return {name: dataset[()] for name, dataset in file.items()}
 
 
 def reseal(path: Path) -> None:
@@ -42,13 +54,17 @@ def put(file: h5py.File, name: str, values: npt.ArrayLike) -> None:
         dataset.attrs[key] = attributes[key]
 
 
-def _correct_payload(file: h5py.File) -> None:
+def _correct_payload(file: h5py.File, known: Arrays) -> None:
     """Only where there is a payload to speak of: all columns, and attributes that JSON can hold."""
     attributes = {name: value.item() if isinstance(value, np.generic) else value for name, value in file.attrs.items()}
     attributes.pop("payload_sha256", None)
     try:
         layout = stored_layout(file.attrs.get("schema_version"), set(file))
-        arrays = {column.name: file[column.name][()] for column in layout.columns}
+        # One that was removed is not among the known ones: its name raises.
+        arrays = {
+            column.name: known[column.name] if column.name in known else file[column.name][()]
+            for column in layout.columns
+        }
         canonical_json(attributes)
     except (KeyError, ValueError):
         return
