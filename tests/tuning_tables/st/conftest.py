@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
+from functools import cache, lru_cache
 from pathlib import Path
+from types import MappingProxyType
 
 import pytest
 
 from tests.controller_code.sample_book import FOUR_AXLES, sample_book, table_of
 from tests.controller_code.sample_book import estimating_book as book_with_estimators
+from tests.tuning_tables.st.evaluator import Program
 from tuning_tables import read_json
+from tuning_tables.export_prefix import RETARDER
+from tuning_tables.self_test_size import FULL, SelfTestSize
+from tuning_tables.st_source import TABLE_FILE, st_files
 from tuning_tables.table_book import TableBook
 
 
@@ -36,6 +43,18 @@ def default_book() -> TableBook:
 def small_book() -> TableBook:
     """Two tables of one class, quick to test."""
     return TableBook(tuple(table_of(f"to {speed}", "Л", 23.0, FOUR_AXLES, speed, 3, 1) for speed in (2.0, 3.0)))
+
+
+@cache
+def texts_of(book: TableBook, self_test: SelfTestSize = FULL) -> Mapping[str, bytes]:
+    """The exported texts of a book, made once for all tests that change or run them."""
+    return MappingProxyType(dict(st_files(book, RETARDER, self_test)))
+
+
+@lru_cache(maxsize=8)
+def program_of(book: TableBook) -> Program:
+    """The exported tables of a book as a program, made once; it keeps nothing but the count of what it has done."""
+    return Program(texts_of(book)[TABLE_FILE])
 
 
 def shaped_book(stages: int, degree: int) -> TableBook:

@@ -10,18 +10,16 @@ import pytest
 from synth.studies.in_the_loop.agreement import ask
 from tests.controller_code.sample_book import approaching_book, sample_book, surface_book, with_slopes
 from tests.controller_code.test_surface_code import mutants, pairs
-from tests.tuning_tables.st.conftest import shaped_book
-from tests.tuning_tables.st.evaluator import Program
+from tests.tuning_tables.st.conftest import program_of, shaped_book, texts_of
 from tests.tuning_tables.st.storage import Real
 from tests.tuning_tables.st.test_decide import answers, decisions, loaded
 from tests.tuning_tables.st.test_select import require_equal, select
-from tests.tuning_tables.st.test_self_test import another, calls_of, next_number, run_all
+from tests.tuning_tables.st.test_self_test import another, calls_of, next_number, run_all, run_until_found
 from tests.tuning_tables.st.test_syntax import require_structured_text
 from tuning_tables import Decisions
-from tuning_tables.export_prefix import RETARDER
 from tuning_tables.golden_vectors import FEW, few_golden_vectors, golden_vectors
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
-from tuning_tables.st_source import SELF_TEST_FILE, TABLE_FILE, st_files
+from tuning_tables.st_source import SELF_TEST_FILE, TABLE_FILE
 from tuning_tables.table_block import block_size
 from tuning_tables.table_book import TableBook
 
@@ -51,7 +49,7 @@ def test_it_is_structured_text_and_its_self_test_finds_nothing_wrong(surfaces: T
     for book in (surfaces, timed):
         require_structured_text(book)
         for size in (FULL, SMALL):
-            outputs = run_all(st_files(book, RETARDER, size), calls_of(book))
+            outputs = run_all(texts_of(book, size), calls_of(book))
             assert outputs == {"DONE": True, "FAILED": 0, "FIRSTFAILED": -1, "FIRSTFAULT": -1}
 
 
@@ -69,7 +67,7 @@ def test_hard_readings_are_decided_alike(surfaces: TableBook, real: Real) -> Non
 
 
 def test_every_golden_vector_is_answered(surfaces: TableBook) -> None:
-    program = Program(st_files(surfaces)[TABLE_FILE])
+    program = program_of(surfaces)
     for number, source in enumerate(surfaces.tables):
         vectors = golden_vectors(source)
         asked = (vectors.stage, vectors.s_m, vectors.v_m_s, vectors.pressure_kpa)
@@ -92,8 +90,7 @@ def test_the_choice_is_that_of_python(surfaces: TableBook) -> None:
 
 
 def test_a_loaded_table_tells_when_it_decides(timed: TableBook) -> None:
-    text = st_files(timed)[TABLE_FILE]
-    program = Program(text)
+    text, program = texts_of(timed)[TABLE_FILE], program_of(timed)
     told = [bool(loaded(program, number)["ATANYTIME"].value) for number in range(len(timed.tables))]
     assert told == [True, False, False, False, False, False]
     assert "PRESSURE_KPA" not in program.new("RETARDER_DECIDE")
@@ -135,7 +132,7 @@ def test_wrong_surfaces_are_found_by_the_self_test(
         assert tables.count(right) == 1
         return tables.replace(right, wrong), test
 
-    assert run_all(st_files(wanted, RETARDER, size), calls_of(wanted), change)["FAILED"] > 0
+    assert run_until_found(texts_of(wanted, size), calls_of(wanted), change)["FAILED"] > 0
 
 
 @pytest.mark.parametrize(
@@ -150,11 +147,11 @@ def test_one_changed_constant_is_found(
         begin, end = next_number(tables, f"    {array} ", place)
         return tables[:begin] + another(tables[begin:end]) + tables[end:], test
 
-    assert run_all(st_files(wanted, RETARDER, size), calls_of(wanted), change)["FIRSTFAILED"] == table
+    assert run_until_found(texts_of(wanted, size), calls_of(wanted), change)["FIRSTFAILED"] == table
 
 
 def test_only_such_books_speak_of_it(wanted: TableBook, default_book: TableBook) -> None:
-    assert "at every sample if AtAnyTime of the table is TRUE" in st_files(wanted)[TABLE_FILE].decode("ascii")
+    assert "at every sample if AtAnyTime of the table is TRUE" in texts_of(wanted)[TABLE_FILE].decode("ascii")
     for name in (TABLE_FILE, SELF_TEST_FILE):
-        text = st_files(default_book)[name].decode("ascii")
+        text = texts_of(default_book)[name].decode("ascii")
         assert not any(word in text for word in ("AtAnyTime", "at any time", "Pressure_kpa", "gauge"))

@@ -7,16 +7,15 @@ import pytest
 
 from synth.studies.in_the_loop.agreement import ask
 from tests.controller_code.sample_book import approaching_book
-from tests.tuning_tables.st.evaluator import Program
+from tests.tuning_tables.st.conftest import program_of, texts_of
 from tests.tuning_tables.st.storage import Real
 from tests.tuning_tables.st.test_decide import decisions, loaded
 from tests.tuning_tables.st.test_select import require_equal, select
-from tests.tuning_tables.st.test_self_test import another, calls_of, next_number, run_all
+from tests.tuning_tables.st.test_self_test import another, calls_of, next_number, run_all, run_until_found
 from tests.tuning_tables.st.test_syntax import require_structured_text
-from tuning_tables.export_prefix import RETARDER
 from tuning_tables.golden_vectors import FEW, few_golden_vectors
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
-from tuning_tables.st_source import SELF_TEST_FILE, TABLE_FILE, st_files
+from tuning_tables.st_source import SELF_TEST_FILE, TABLE_FILE
 from tuning_tables.table_book import TableBook
 
 
@@ -37,7 +36,7 @@ def test_it_is_structured_text_and_its_self_test_finds_nothing_wrong(approached:
     for table in approached.tables:
         assert len(few_golden_vectors(table)) <= FEW * np.count_nonzero(table.has_line)
     for size in (FULL, SMALL):
-        outputs = run_all(st_files(approached, RETARDER, size), calls_of(approached))
+        outputs = run_all(texts_of(approached, size), calls_of(approached))
         assert outputs == {"DONE": True, "FAILED": 0, "FIRSTFAILED": -1, "FIRSTFAULT": -1}
 
 
@@ -57,7 +56,7 @@ def test_the_choice_is_that_of_python(approached: TableBook) -> None:
 
 
 def test_a_loaded_table_tells_its_approach(approached: TableBook) -> None:
-    program = Program(st_files(approached)[TABLE_FILE])
+    program = program_of(approached)
     for number, source in enumerate(approached.tables):
         table = loaded(program, number)
         assert table["ENTRANCESTAGE"].value == source.entrance_stage
@@ -84,7 +83,7 @@ def test_a_wrong_gate_is_found_by_the_self_test(few: TableBook, right: str, wron
         assert right in tables
         return tables.replace(right, wrong), test
 
-    assert run_all(st_files(few, RETARDER, size), calls_of(few), change)["FAILED"] > 0
+    assert run_until_found(texts_of(few, size), calls_of(few), change)["FAILED"] > 0
 
 
 @pytest.mark.parametrize(("array", "place"), [("ApproachOf", 1), ("EntranceStageOf", 0), ("EntranceStageOf", 2)])
@@ -93,12 +92,12 @@ def test_one_changed_constant_is_found(few: TableBook, array: str, place: int) -
         begin, end = next_number(tables, f"    {array} ", place)
         return tables[:begin] + another(tables[begin:end]) + tables[end:], test
 
-    outputs = run_all(st_files(few), calls_of(few), change)
+    outputs = run_until_found(texts_of(few), calls_of(few), change)
     assert outputs["FIRSTFAILED"] == place
 
 
 def test_the_interlock_is_stated_where_there_is_an_approach(few: TableBook, default_book: TableBook) -> None:
-    text = st_files(few)[TABLE_FILE].decode("ascii")
+    text = texts_of(few)[TABLE_FILE].decode("ascii")
     assert "only when the cut ahead has left the" in text
     for name in (TABLE_FILE, SELF_TEST_FILE):
-        assert "pproach" not in st_files(default_book)[name].decode("ascii")
+        assert "pproach" not in texts_of(default_book)[name].decode("ascii")

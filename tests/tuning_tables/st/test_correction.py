@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -62,6 +63,7 @@ def test_a_wrong_block_is_found_by_the_self_test(before: str, after: str) -> Non
     assert self_tested(text) == 0
 
 
+@cache
 def self_tested(text: str) -> int:
     """How many rows the self-test finds wrong."""
     program = Program(text.encode("ascii"))

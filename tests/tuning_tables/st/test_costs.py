@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 from tests.controller_code.sample_book import estimator_of, with_approach, with_slopes
+from tests.tuning_tables.st.conftest import texts_of
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Array, Kind, Record, Scalar, Value
 from tuning_tables import ControllerTable, Decisions
-from tuning_tables.export_prefix import RETARDER
 from tuning_tables.golden_tracks import golden_tracks
 from tuning_tables.self_test_size import FULL, SMALL
-from tuning_tables.st_source import TABLE_FILE, st_files
+from tuning_tables.st_source import TABLE_FILE
 from tuning_tables.table_book import TableBook
 
 PAGE = Path(__file__).parents[3] / "docs" / "structured-text.md"
@@ -55,7 +55,7 @@ def size(kind: Kind) -> int:
 
 @pytest.fixture(scope="module")
 def program(default_book: TableBook) -> Program:
-    return Program(st_files(default_book)[TABLE_FILE])
+    return Program(texts_of(default_book)[TABLE_FILE])
 
 
 def dearest_decision(program: Program, tables: int, **pressure: Value) -> list[int]:
@@ -77,18 +77,18 @@ def test_operations_of_a_decision(program: Program, default_book: TableBook) -> 
 
 
 def test_costs_of_slopes(program: Program, default_book: TableBook) -> None:
-    sloped = Program(st_files(sloped_book(default_book.tables))[TABLE_FILE])
+    sloped = Program(texts_of(sloped_book(default_book.tables))[TABLE_FILE])
     costs = [dearest_decision(sloped, len(default_book.tables), Pressure_kpa=np.float32(kpa)) for kpa in (-9.0, 900.0)]
     assert stated("a decision with slopes") == max(costs)
     names = ("RETARDER_TABLE", "RETARDER_LOAD")
     more = [size(sloped.types["RETARDER_TABLE"]) - size(program.types["RETARDER_TABLE"])]
     first, second = (
-        [size(Program(st_files(book)[TABLE_FILE]).types[names[1]]) for book in (TableBook(of), sloped_book(of))]
+        [size(Program(texts_of(book)[TABLE_FILE]).types[names[1]]) for book in (TableBook(of), sloped_book(of))]
         for of in (default_book.tables[:1], default_book.tables[:2])
     )
     more.append((second[1] - second[0]) - (first[1] - first[0]))
     assert stated("times of decision and slopes: more") == more
-    timed = Program(st_files(TableBook(tuple(map(at_any_time, default_book.tables))))[TABLE_FILE])
+    timed = Program(texts_of(TableBook(tuple(map(at_any_time, default_book.tables))))[TABLE_FILE])
     assert size(timed.types[names[0]]) - size(program.types[names[0]]) == stated("times of decision alone: more")[0]
 
 
@@ -115,7 +115,7 @@ def estimating(default_book: TableBook) -> TableBook:
 
 
 def test_operations_of_an_estimate(estimating: TableBook) -> None:
-    program = Program(st_files(estimating)[TABLE_FILE])
+    program = Program(texts_of(estimating)[TABLE_FILE])
     table, estimate, observer = (program.new(f"RETARDER_{name}") for name in ("TABLE", "ESTIMATE", "OBSERVE"))
     executed(program, "RETARDER_LOAD", TableNo=0, Table=table)
     worst = (0, 0)
@@ -132,14 +132,14 @@ def test_operations_of_an_estimate(estimating: TableBook) -> None:
 
 
 def test_bytes_of_an_estimator(estimating: TableBook, default_book: TableBook) -> None:
-    program, plain = (Program(st_files(book)[TABLE_FILE]) for book in (estimating, default_book))
+    program, plain = (Program(texts_of(book)[TABLE_FILE]) for book in (estimating, default_book))
     assert stated("one `RETARDER_ESTIMATE`") == [size(program.types["RETARDER_ESTIMATE"])]
     assert stated("one `RETARDER_TABLE` with estimator") == [size(program.types["RETARDER_TABLE"])]
-    three = Program(st_files(TableBook(estimating.tables[:3]))[TABLE_FILE])
-    few = Program(st_files(TableBook(estimating.tables[:4]))[TABLE_FILE])
+    three = Program(texts_of(TableBook(estimating.tables[:3]))[TABLE_FILE])
+    few = Program(texts_of(TableBook(estimating.tables[:4]))[TABLE_FILE])
     growth = size(few.types["RETARDER_LOAD"]) - size(three.types["RETARDER_LOAD"])
-    lines = Program(st_files(TableBook(default_book.tables[:4]))[TABLE_FILE])
-    fewer = Program(st_files(TableBook(default_book.tables[:3]))[TABLE_FILE])
+    lines = Program(texts_of(TableBook(default_book.tables[:4]))[TABLE_FILE])
+    fewer = Program(texts_of(TableBook(default_book.tables[:3]))[TABLE_FILE])
     # The fourth table brings its own constants, its touch pressure and number, and the second estimator.
     alone = growth - (size(lines.types["RETARDER_LOAD"]) - size(fewer.types["RETARDER_LOAD"])) - 6
     assert stated("constants of one estimator") == [alone]
@@ -148,7 +148,7 @@ def test_bytes_of_an_estimator(estimating: TableBook, default_book: TableBook) -
 
 def test_operations_of_a_choice(program: Program, default_book: TableBook) -> None:
     def choice(book: TableBook, speed: float) -> tuple[int, int]:
-        each = Program(st_files(book)[TABLE_FILE])
+        each = Program(texts_of(book)[TABLE_FILE])
         table = each.new("RETARDER_TABLE")
         return executed(each, "RETARDER_SELECT", Layout=2, Category=1, Axles=4, Commanded_m_s=speed, Table=table)
 
@@ -169,7 +169,7 @@ def test_operations_of_a_choice(program: Program, default_book: TableBook) -> No
 
 def test_operations_of_the_self_test(default_book: TableBook) -> None:
     for label, self_test in (("`RETARDER_SELF_TEST`, 6", FULL), ("`RETARDER_SELF_TEST`, small", SMALL)):
-        program = Program(b"".join(st_files(default_book, RETARDER, self_test).values()))
+        program = Program(b"".join(texts_of(default_book, self_test).values()))
         instance, worst = program.new("RETARDER_SELF_TEST"), (0, 0)
         while not instance["DONE"].value:
             program.done.clear()
@@ -179,9 +179,9 @@ def test_operations_of_the_self_test(default_book: TableBook) -> None:
 
 
 def test_bytes(default_book: TableBook) -> None:
-    files = st_files(default_book)
+    files = texts_of(default_book)
     program = Program(files[TABLE_FILE])
-    few = Program(st_files(TableBook(default_book.tables[:5]))[TABLE_FILE])
+    few = Program(texts_of(TableBook(default_book.tables[:5]))[TABLE_FILE])
     constants = sum(
         size(program.types[name]) - size(few.types[name]) for name in ("RETARDER_LOAD", "RETARDER_SELECT")
     ) - (size(program.types["RETARDER_LOAD"]) - size(few.types["RETARDER_LOAD"]))  # SELECT holds an instance of LOAD
@@ -189,11 +189,11 @@ def test_bytes(default_book: TableBook) -> None:
     assert stated("constants of one table") == [constants]
     one = default_book.tables[1]  # whose lines keep their order before the entrance, too
     alone, approached = (
-        Program(st_files(TableBook((table,)))[TABLE_FILE]).types for table in (one, with_approach(one, 4.0, 2))
+        Program(texts_of(TableBook((table,)))[TABLE_FILE]).types for table in (one, with_approach(one, 4.0, 2))
     )
     more = [size(approached[name]) - size(alone[name]) for name in ("RETARDER_TABLE", "RETARDER_LOAD")]
     assert stated("an approach: more") == more
     for label, self_test in (("self-test of one table", FULL), ("the same, small", SMALL)):
-        program = Program(b"".join(st_files(default_book, RETARDER, self_test).values()))
+        program = Program(b"".join(texts_of(default_book, self_test).values()))
         tests = [size(program.types[f"RETARDER_TEST_{number}"]) for number in range(len(default_book.tables))]
         assert stated(label) == [min(tests), max(tests), size(program.types["RETARDER_SELF_TEST"])]

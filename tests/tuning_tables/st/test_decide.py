@@ -7,11 +7,12 @@ import numpy.typing as npt
 import pytest
 
 from synth.studies.in_the_loop.agreement import ask
+from tests.tuning_tables.st.conftest import program_of, texts_of
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Fault, Frame, Real
 from tuning_tables import decide_many
 from tuning_tables.golden_vectors import golden_vectors
-from tuning_tables.st_source import TABLE_FILE, st_files
+from tuning_tables.st_source import TABLE_FILE
 from tuning_tables.table_book import TableBook
 
 READINGS = 1_000_000
@@ -50,7 +51,7 @@ def answers(
 
 def decisions(book: TableBook, readings: npt.NDArray[np.void], real: Real) -> npt.NDArray[np.int64]:
     """What the Structured Text of the book answers to readings, dtype READING."""
-    program = Program(st_files(book)[TABLE_FILE], real)
+    program = Program(texts_of(book)[TABLE_FILE], real)
     found = np.full(len(readings), -(2**31))
     for number in np.unique(readings["table"]).tolist():
         here = readings["table"] == number
@@ -78,7 +79,7 @@ def test_the_default_book_is_decided_alike(default_book: TableBook, real: Real) 
 
 
 def test_every_golden_vector_is_answered(default_book: TableBook) -> None:
-    program = Program(st_files(default_book)[TABLE_FILE])
+    program = program_of(default_book)
     for number, source in enumerate(default_book.tables):
         vectors = golden_vectors(source)
         found = answers(program, loaded(program, number), vectors.stage, vectors.s_m, vectors.v_m_s)
@@ -103,7 +104,7 @@ def test_every_golden_vector_is_answered(default_book: TableBook) -> None:
 )
 def test_a_wrong_rule_is_found(default_book: TableBook, right: str, wrong: str) -> None:
     questions = ask(default_book, 60_000, 10, 6)
-    text = st_files(default_book)[TABLE_FILE].decode("ascii")
+    text = texts_of(default_book)[TABLE_FILE].decode("ascii")
     assert right in text
     program = Program(text.replace(right, wrong).encode("ascii"))
     asked = questions.readings[(questions.readings["table"] == 3) & (np.abs(questions.readings["stage"]) < 32768)]
@@ -120,7 +121,7 @@ def test_a_wrong_rule_is_found(default_book: TableBook, right: str, wrong: str) 
 @pytest.mark.parametrize("stages", [-32768, -1, 0, 6, 32767])
 @pytest.mark.parametrize("powers", [-32768, 0, 5, 32767])
 def test_a_table_that_was_never_loaded_or_is_spoilt_holds(default_book: TableBook, stages: int, powers: int) -> None:
-    program = Program(st_files(default_book)[TABLE_FILE])
+    program = program_of(default_book)
     table = program.new("RETARDER_TABLE")
     for key, value in (("STAGES", stages), ("POWERS", powers)):
         table[key].store(value, None)
@@ -131,7 +132,7 @@ def test_a_table_that_was_never_loaded_or_is_spoilt_holds(default_book: TableBoo
 
 
 def test_no_such_table_leaves_none_behind(default_book: TableBook) -> None:
-    program = Program(st_files(default_book)[TABLE_FILE])
+    program = program_of(default_book)
     for number in (-32768, -1, 6, 32767):
         loader, table = program.new("RETARDER_LOAD"), loaded(program, 0)
         assert table["STAGES"].value == 5

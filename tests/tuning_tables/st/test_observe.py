@@ -12,12 +12,13 @@ import pytest
 from synth.studies.in_the_loop.controller_process import ANSWER_WORDS
 from synth.studies.in_the_loop.hard_samples import TRACK_SAMPLES, hard_samples
 from synth.studies.in_the_loop.observed import observed
+from tests.tuning_tables.st.conftest import program_of, texts_of
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Real
 from tests.tuning_tables.st.test_decide import loaded
 from tuning_tables.golden_tracks import golden_tracks
 from tuning_tables.held_numbers import HELD_NUMBERS, held_numbers
-from tuning_tables.st_source import TABLE_FILE, st_files
+from tuning_tables.st_source import TABLE_FILE
 from tuning_tables.table_book import TableBook
 
 Followed: TypeAlias = tuple[npt.NDArray[np.void], npt.NDArray[np.uint32]]
@@ -74,7 +75,7 @@ def differing(program: Program, tracks: Followed, numbers: Iterable[int]) -> int
 
 @pytest.mark.parametrize("real", [np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
 def test_hard_samples_are_estimated_alike(estimating_book: TableBook, tracks: Followed, real: Real) -> None:
-    program = Program(st_files(estimating_book)[TABLE_FILE], real)
+    program = Program(texts_of(estimating_book)[TABLE_FILE], real)
     numbers = np.unique(tracks[0]["table"]).tolist()
     assert len(numbers) == len(estimating_book.tables)
     assert differing(program, tracks, numbers) == 0
@@ -103,14 +104,14 @@ def test_hard_samples_are_estimated_alike(estimating_book: TableBook, tracks: Fo
     ],
 )
 def test_a_wrong_estimator_is_found(estimating_book: TableBook, tracks: Followed, right: str, wrong: str) -> None:
-    text = st_files(estimating_book)[TABLE_FILE].decode("ascii")
+    text = texts_of(estimating_book)[TABLE_FILE].decode("ascii")
     assert right in text
     program = Program(text.replace(right, wrong).encode("ascii"))
     assert differing(program, tracks, [0]) > 0
 
 
 def test_every_golden_track_is_estimated(estimating_book: TableBook) -> None:
-    program = Program(st_files(estimating_book)[TABLE_FILE])
+    program = program_of(estimating_book)
     for track in golden_tracks(estimating_book):
         samples = np.empty((1, len(track)), [(name, "f4") for name in ("s_m", "v_m_s", "overpressure_kpa")])
         samples["s_m"], samples["v_m_s"], samples["overpressure_kpa"] = track.samples[:3]
@@ -122,7 +123,7 @@ def test_every_golden_track_is_estimated(estimating_book: TableBook) -> None:
 
 def test_a_book_without_estimators_hands_the_speed_on(small_book: TableBook, estimating_book: TableBook) -> None:
     """The blocks have the same inputs and outputs, so that one program fits both."""
-    plain, full = (Program(st_files(book)[TABLE_FILE]) for book in (small_book, estimating_book))
+    plain, full = (program_of(book) for book in (small_book, estimating_book))
     for name in ("RETARDER_OBSERVE", "RETARDER_BEGIN", "RETARDER_DECIDE", "RETARDER_SELECT", "RETARDER_LOAD"):
         assert plain.blocks[name].inputs == full.blocks[name].inputs
         assert plain.blocks[name].references == full.blocks[name].references
@@ -138,7 +139,7 @@ def test_a_book_without_estimators_hands_the_speed_on(small_book: TableBook, est
 
 
 def test_every_table_is_loaded_with_its_estimator(estimating_book: TableBook) -> None:
-    program = Program(st_files(estimating_book)[TABLE_FILE])
+    program = program_of(estimating_book)
     for number, table in enumerate(estimating_book.tables):
         held, estimator = loaded(program, number), table.estimator
         breaks = held["BREAKS"].value
@@ -153,7 +154,7 @@ def test_every_table_is_loaded_with_its_estimator(estimating_book: TableBook) ->
 
 @pytest.mark.parametrize("breaks", [-32768, -1, 1, 41, 32767])
 def test_a_spoilt_number_of_breaks_is_not_followed(estimating_book: TableBook, breaks: int) -> None:
-    program = Program(st_files(estimating_book)[TABLE_FILE])
+    program = program_of(estimating_book)
     table, worker = loaded(program, 0), program.new("RETARDER_WORK")
     table["BREAKS"].store(breaks, None)
     observer, estimate = program.new("RETARDER_OBSERVE"), program.new("RETARDER_ESTIMATE")
@@ -166,9 +167,8 @@ def test_a_spoilt_number_of_breaks_is_not_followed(estimating_book: TableBook, b
 
 def test_lines_between_tables_of_two_estimators_are_not_taken(estimating_book: TableBook) -> None:
     """By `TableBook.choose`; the first two targets of the class share an estimator, the third has another."""
-    program = Program(st_files(estimating_book)[TABLE_FILE])
     for book in (estimating_book, TableBook(estimating_book.tables[::-1])):
-        program = Program(st_files(book)[TABLE_FILE])
+        program = program_of(book)
         for speed in (2.5, 3.0, 3.5, 3.9):
             selector, table = program.new("RETARDER_SELECT"), program.new("RETARDER_TABLE")
             program.call("RETARDER_SELECT", selector, Layout=2, Category=1, Axles=4,

@@ -10,10 +10,11 @@ import numpy.typing as npt
 import pytest
 
 from synth.studies.in_the_loop.agreement import Questions, ask
+from tests.tuning_tables.st.conftest import program_of, texts_of
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Real
 from tuning_tables import ControllerTable, Stage, decide_many
-from tuning_tables.st_source import TABLE_FILE, st_files
+from tuning_tables.st_source import TABLE_FILE
 from tuning_tables.table_block import HAS_LOWER, HAS_UPPER, block_size
 from tuning_tables.table_book import Status, TableBook
 
@@ -31,7 +32,7 @@ def select(
     prefix: str = "RETARDER",
 ) -> tuple[npt.NDArray[np.int64], Chosen]:
     """Statuses of the commands, and the tables chosen, as a dictionary of arrays with a row a command."""
-    program = Program(text or st_files(book)[TABLE_FILE], real)
+    program = Program(text or texts_of(book)[TABLE_FILE], real)
     selector, table = program.new(f"{prefix}_SELECT"), program.new(f"{prefix}_TABLE")
     program.call(
         f"{prefix}_SELECT",
@@ -79,7 +80,7 @@ def test_every_status_occurs(book: TableBook) -> None:
 
 
 def test_the_chosen_lines_between_two_tables_decide_as_python(default_book: TableBook) -> None:
-    program = Program(st_files(default_book)[TABLE_FILE])
+    program = program_of(default_book)
     speeds = np.array([2.25, 2.5, 3.1, 3.75], np.float32)
     rng = np.random.default_rng(3)
     for speed in speeds:
@@ -123,7 +124,7 @@ def test_the_order_of_the_book_does_not_count_for_different_targets(
 )
 def test_a_wrong_choice_is_found(hard_questions: Questions, right: str, wrong: str) -> None:
     book = hard_questions.book
-    text = st_files(book)[TABLE_FILE].decode("ascii")
+    text = texts_of(book)[TABLE_FILE].decode("ascii")
     assert right in text
     statuses, table = select(book, hard_questions.commands, text=text.replace(right, wrong).encode("ascii"))
     with pytest.raises(AssertionError):

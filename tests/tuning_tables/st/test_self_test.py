@@ -9,14 +9,13 @@ from typing import TypeAlias
 import numpy as np
 import pytest
 
-from tests.tuning_tables.st.conftest import shaped_book
+from tests.tuning_tables.st.conftest import shaped_book, texts_of
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.storage import Fault, Real
 from tuning_tables.distinct_estimators import distinct_estimators
-from tuning_tables.export_prefix import RETARDER
 from tuning_tables.golden_vectors import FEW, few_golden_vectors, golden_vectors
 from tuning_tables.self_test_size import FULL, SMALL, SelfTestSize
-from tuning_tables.st_source import SELF_TEST_FILE, TABLE_FILE, st_files
+from tuning_tables.st_source import SELF_TEST_FILE, TABLE_FILE
 from tuning_tables.table_book import TableBook
 
 Change: TypeAlias = Callable[[str, str], tuple[str, str]]
@@ -45,23 +44,38 @@ def run_all(
     return {name: instance[name].value.item() for name in OUTPUTS}
 
 
+def run_until_found(files: Mapping[str, bytes], calls: int, change: Change) -> dict[str, int]:
+    """As `run_all`, but no call after the one that finds something: it counts on from there, and takes nothing back.
+
+    That it goes on to its end then, and that what it has found stays, is tested where one constant is changed.
+    """
+    texts = change(files[TABLE_FILE].decode("ascii"), files[SELF_TEST_FILE].decode("ascii"))
+    program = Program("".join(texts).encode("ascii"))
+    instance = program.new("RETARDER_SELF_TEST")
+    for _ in range(calls):
+        program.call("RETARDER_SELF_TEST", instance, Restart=False)
+        if instance["FAILED"].value > 0:
+            break
+    return {name: instance[name].value.item() for name in OUTPUTS}
+
+
 @pytest.mark.parametrize("real", [np.float32, np.float64], ids=["binary32", "double rounded when assigned"])
 def test_nothing_is_wrong_with_the_export(default_book: TableBook, estimating_book: TableBook, real: Real) -> None:
     sound = {"DONE": True, "FAILED": 0, "FIRSTFAILED": -1, "FIRSTFAULT": -1}
     for book in (default_book, estimating_book):
-        assert run_all(st_files(book), calls_of(book), real=real) == sound
+        assert run_all(texts_of(book), calls_of(book), real=real) == sound
 
 
 def test_nothing_is_wrong_with_other_shapes(book: TableBook) -> None:
-    assert run_all(st_files(book), calls_of(book))["FAILED"] == 0
+    assert run_all(texts_of(book), calls_of(book))["FAILED"] == 0
     large = shaped_book(32, 1)
-    files = st_files(large)
+    files = texts_of(large)
     assert b"Stage_1 : " in files[SELF_TEST_FILE]  # more vectors than one array may have
     assert run_all(files, calls_of(large)) == {"DONE": True, "FAILED": 0, "FIRSTFAILED": -1, "FIRSTFAULT": -1}
 
 
 def test_it_takes_a_call_a_part_and_can_be_repeated(small_book: TableBook) -> None:
-    program = Program(b"".join(st_files(small_book).values()))
+    program = Program(b"".join(texts_of(small_book).values()))
     instance = program.new("RETARDER_SELF_TEST")
     seen = []
     for restart in (False, False, False, False, False, True, False, False, False):
@@ -71,7 +85,7 @@ def test_it_takes_a_call_a_part_and_can_be_repeated(small_book: TableBook) -> No
 
 
 def test_the_vectors_left_out_are_those_without_a_portable_literal(default_book: TableBook) -> None:
-    text = st_files(default_book)[SELF_TEST_FILE].decode("ascii")
+    text = texts_of(default_book)[SELF_TEST_FILE].decode("ascii")
     numbers = [int(count) for count in re.findall(r"constants and (\d+) readings", text)]
     for source, count in zip(default_book.tables, numbers, strict=True):
         vectors = golden_vectors(source)
@@ -91,7 +105,7 @@ def test_a_small_self_test_has_few_readings_a_line_and_finds_nothing_wrong(
             vectors = few_golden_vectors(table)
             assert len(vectors) <= FEW * np.count_nonzero(table.has_line)
             assert (vectors.answer == vectors.stage).any()
-        assert run_all(st_files(each, RETARDER, SMALL), calls_of(each))["FAILED"] == 0
+        assert run_all(texts_of(each, SMALL), calls_of(each))["FAILED"] == 0
 
 
 def constants_in(text: str) -> Iterator[tuple[int, int]]:
@@ -102,7 +116,7 @@ def constants_in(text: str) -> Iterator[tuple[int, int]]:
 
 
 def test_a_small_self_test_finds_every_changed_constant(small_book: TableBook) -> None:
-    files, calls = st_files(small_book, RETARDER, SMALL), calls_of(small_book)
+    files, calls = texts_of(small_book, SMALL), calls_of(small_book)
     spans = list(constants_in(files[TABLE_FILE].decode("ascii")))
     assert len(spans) == 54
     for begin, end in spans:
@@ -110,7 +124,7 @@ def test_a_small_self_test_finds_every_changed_constant(small_book: TableBook) -
         def change(tables: str, test: str, begin: int = begin, end: int = end) -> tuple[str, str]:
             return tables[:begin] + another(tables[begin:end]) + tables[end:], test
 
-        assert run_all(files, calls, change)["FAILED"] > 0
+        assert run_until_found(files, calls, change)["FAILED"] > 0
 
 
 def next_number(text: str, after: str, place: int) -> tuple[int, int]:
@@ -162,7 +176,7 @@ def test_one_changed_constant_is_found(
         assert another(tables[begin:end]) != tables[begin:end]
         return tables[:begin] + another(tables[begin:end]) + tables[end:], test
 
-    outputs = run_all(st_files(small_book, RETARDER, self_test), calls_of(small_book), change)
+    outputs = run_all(texts_of(small_book, self_test), calls_of(small_book), change)
     assert outputs["DONE"]
     assert outputs["FAILED"] >= 1
     assert outputs["FIRSTFAILED"] <= block
@@ -189,7 +203,7 @@ def test_one_changed_statement_is_found(small_book: TableBook, right: str, wrong
         assert right in tables
         return tables.replace(right, wrong), test
 
-    assert run_all(st_files(small_book, RETARDER, self_test), calls_of(small_book), change)["FAILED"] > 0
+    assert run_until_found(texts_of(small_book, self_test), calls_of(small_book), change)["FAILED"] > 0
 
 
 def test_a_fused_multiplication_and_addition_is_found(default_book: TableBook) -> None:
@@ -200,7 +214,7 @@ def test_a_fused_multiplication_and_addition_is_found(default_book: TableBook) -
         assert fused.count("Line * Path +") == 2
         return fused, test
 
-    files, calls = st_files(default_book), calls_of(default_book)
+    files, calls = texts_of(default_book), calls_of(default_book)
     assert run_all(files, calls, change)["FAILED"] == 0  # two roundings, as the statement is written
     assert run_all(files, calls, change, np.float64)["FAILED"] == len(default_book.tables)
 
@@ -234,7 +248,7 @@ def swapped_operators(code: str) -> Iterator[tuple[str, str]]:
 def test_every_wrong_operation_of_the_estimator_is_found(estimating_book: TableBook) -> None:
     """By the golden tracks in the self-test, or by an operation that has no result."""
     book = TableBook(estimating_book.tables[:1])
-    files = st_files(book)
+    files = texts_of(book)
     text, tests = (files[name].decode("ascii") for name in (TABLE_FILE, SELF_TEST_FILE))
     begin, end = (text.index(f"FUNCTION_BLOCK RETARDER_{name}") for name in ("WORK", "DECIDE"))
     test = tests[tests.index("FUNCTION_BLOCK RETARDER_TEST_ESTIMATOR_0") : tests.index("FUNCTION_BLOCK RETARDER_SELF")]
@@ -269,6 +283,6 @@ def test_one_changed_constant_of_an_estimator_is_found(estimating_book: TableBoo
         return tables[:begin] + another(tables[begin:finish]) + tables[finish:], test
 
     book = TableBook(tables)
-    outputs = run_all(st_files(book), calls_of(book), change)
+    outputs = run_all(texts_of(book), calls_of(book), change)
     assert outputs["DONE"]
     assert outputs["FAILED"] >= 1

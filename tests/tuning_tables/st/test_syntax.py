@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import pytest
 
-from tests.tuning_tables.st.conftest import oddly_named_book, shaped_book
+from tests.tuning_tables.st.conftest import oddly_named_book, shaped_book, texts_of
 from tests.tuning_tables.st.evaluator import Program
 from tests.tuning_tables.st.syntax import faults, parse, walk
 from tuning_tables import InvalidTable
@@ -38,7 +38,7 @@ BOOKS = {
 
 
 def require_structured_text(book: TableBook) -> None:
-    files = st_files(book)
+    files = texts_of(book)
     assert list(files) == [TABLE_FILE, SELF_TEST_FILE]
     for text in files.values():
         assert faults(parse(text)) == []
@@ -83,7 +83,7 @@ def test_the_usual_books_give_structured_text(
     ],
 )
 def test_a_broken_text_is_found(small_book: TableBook, right: str, wrong: str) -> None:
-    text = st_files(small_book)[TABLE_FILE].decode("ascii")
+    text = texts_of(small_book)[TABLE_FILE].decode("ascii")
     before, found, after = text.rpartition(right)
     assert found, right
     assert faults(parse((before + wrong + after).encode("ascii"))) != []
@@ -94,13 +94,13 @@ def test_a_broken_text_is_found(small_book: TableBook, right: str, wrong: str) -
     [("Table.Powers - 1]", "Table.Power - 1]"), ("Path : REAL;", "Path : INT;"), ("Stage_0[Index]", "Stage_9[Index]")],
 )
 def test_a_wrong_name_or_type_is_found(small_book: TableBook, right: str, wrong: str) -> None:
-    text = b"".join(st_files(small_book).values()).decode("ascii")
+    text = b"".join(texts_of(small_book).values()).decode("ascii")
     with pytest.raises(Exception, match=r"Power|INT|STAGE_9"):
         Program(text.replace(right, wrong, 1).encode("ascii"))
 
 
 def test_the_text_is_plain(book: TableBook, default_book: TableBook, estimating_book: TableBook) -> None:
-    for files in map(st_files, (book, default_book, oddly_named_book(), estimating_book)):
+    for files in map(texts_of, (book, default_book, oddly_named_book(), estimating_book)):
         for text in files.values():
             lines = text.decode("ascii").split("\n")
             assert lines[-1] == ""
@@ -113,7 +113,7 @@ def test_the_text_is_plain(book: TableBook, default_book: TableBook, estimating_
 
 
 def test_names_are_no_keywords_anywhere(default_book: TableBook, estimating_book: TableBook) -> None:
-    text = b"".join([*st_files(default_book).values(), *st_files(estimating_book).values()])
+    text = b"".join([*texts_of(default_book).values(), *texts_of(estimating_book).values()])
     names = {node.text.decode("ascii").upper() for node in walk(parse(text)) if node.type == "identifier"}
     assert {"STAGE", "PATH_M", "SPEED_M_S", "TABLE"} < names
     assert names & set(KEYWORDS.split()) == set()
@@ -122,7 +122,7 @@ def test_names_are_no_keywords_anywhere(default_book: TableBook, estimating_book
 
 def test_no_array_is_long(default_book: TableBook, estimating_book: TableBook) -> None:
     for book in (default_book, shaped_book(32, 9), estimating_book):
-        for text in st_files(book).values():
+        for text in texts_of(book).values():
             lengths = [int(end) + 1 for end in re.findall(rb"ARRAY\[0\.\.(\d+)\]", text)]
             assert max(lengths) <= 999
 
