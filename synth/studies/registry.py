@@ -7,14 +7,6 @@ from synth.studies.yard_studies import YARD_STUDIES
 
 POSITION_STUDIES: tuple[Study, ...] = (
     Study(
-        "accuracy-grid",
-        "How near are the tables to what physics leaves, over a whole grid of cases, and are all limits kept?",
-        122.0,
-        "estimator.md#the-whole-grid",
-        "synth.studies.accuracy_grid.study",
-        "synth.studies.accuracy_grid.picture",
-    ),
-    Study(
         "any-time",
         "What is gained when a command may be given at every sample, also during a change of stage?",
         480.0,
@@ -58,14 +50,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         79.0,
         "controllers.md#what-it-costs",
         "synth.studies.in_the_loop.cost_study",
-    ),
-    Study(
-        "convergence",
-        "How do value, lines and prediction change as the steps of the grid are halved?",
-        17.0,
-        "method.md#11-convergence",
-        "synth.studies.convergence.study",
-        "synth.studies.convergence.picture",
     ),
     Study(
         "correction",
@@ -142,14 +126,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         2400.0,
         "identify.md",
         "synth.studies.identification.study",
-    ),
-    Study(
-        "integration-error",
-        "What do the time steps of the closed loop cost in accuracy?",
-        8.0,
-        "method.md#8-closed-loop",
-        "synth.studies.integration_error",
-        "synth.studies.integration_error",
     ),
     Study(
         "interpolation",

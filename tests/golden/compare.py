@@ -27,8 +27,8 @@ def between(before: Record, now: Record, renamed: Renamed) -> Iterator[str]:
         yield f"exit code {before.code} → {now.code}"
     yield from changed(moved(before.files, renamed), now.files)
     yield from changed(moved(before.leaves, renamed), now.leaves)
-    lines = (record.printed.splitlines() for record in (before, now))
-    yield from (each for each in difflib.unified_diff(*lines, n=0, lineterm="") if each[:3] not in ("---", "+++"))
+    lines = difflib.unified_diff(before.printed.splitlines(), now.printed.splitlines(), n=0, lineterm="")
+    yield from (each for each in lines if each[:3] not in ("---", "+++"))
 
 
 def moved(entries: Mapping[str, Any], renamed: Renamed) -> dict[str, Any]:

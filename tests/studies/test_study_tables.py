@@ -21,9 +21,7 @@ from synth.solver.chain.chain import check_chain, persistent_chain
 from synth.solver.one_blas_thread import one_blas_thread
 from synth.solver.told_lines import SQUARED_ERROR_ALONE, knowing, mean_square, told_factors, told_lines
 from synth.solver.tuned_lines import fitted, polished
-from synth.studies.accuracy_grid.study import Class, Row, figures_of, plain_table
-from synth.studies.cases import Case, named_cases
-from synth.studies.convergence.study import METHOD, studied
+from synth.studies.cases import named_cases
 from synth.studies.tuned_table import CREATED, tuned_table
 
 
@@ -39,55 +37,17 @@ def test_the_table_of_a_study_is_that_of_a_tune() -> None:
         assert ours.stages == tuned_table_of_a_tune(setup, solution).table.stages
 
 
-@pytest.fixture(scope="module")
-def shared() -> tuple[Case, Class]:
-    """52 t to 3 m/s as the grid has it, with few passes."""
+def test_what_is_told_is_simulated_as_the_check_grid_predicts() -> None:
+    """Passes in time, and Chapman–Kolmogorov on a finer grid than the lines were polished on, friction by friction."""
     config = load_config(None)
     (case,) = named_cases(config, ("52:3",))
-    design = persistent_chain(case.plant, config.resolution)
-    check = check_chain(case.plant, finer_for_check(config.resolution))
-    trim = stratified_passes(2, 0, 3000)
-    passes = Row(stratified_passes(1, 0, 5000), random_passes(2, 0, 3000), trim, stratified_passes(3, 0, 1000))
-    return case, Class(config, case.plant, design, check, 0.5, passes, common_passes(case.plant, passes.fresh))
-
-
-def test_what_is_told_is_simulated_as_the_check_grid_predicts(shared: tuple[Case, Class]) -> None:
-    """Passes in time, and Chapman–Kolmogorov on a finer grid than the lines were polished on, friction by friction."""
-    case, mine = shared
     target, plant = case.target_m_s, case.plant
-    solution = solve(mine.design, Aim(target, SQUARED_ERROR_ALONE))
+    design, check = persistent_chain(plant, config.resolution), check_chain(plant, finer_for_check(config.resolution))
+    fresh = common_passes(plant, stratified_passes(1, 0, 5000))
+    solution = solve(design, Aim(target, SQUARED_ERROR_ALONE))
     fit = fitted(solution, 3)
-    lines = told_lines(mine.design, target, polished(solution, fit).lines, fit.curvature)
+    lines = told_lines(design, target, polished(solution, fit).lines, fit.curvature)
     factor, weight = told_factors(plant, 13)
-    squares = [mean_square(knowing(mine.check, target, float(each), 2), lines.at(float(each))) for each in factor]
-    sample = exit_statistics(run_told(mine.fresh.loop, mine.fresh.draws, by_lines(lines)), target)
+    squares = [mean_square(knowing(check, target, float(each), 2), lines.at(float(each))) for each in factor]
+    sample = exit_statistics(run_told(fresh.loop, fresh.draws, by_lines(lines)), target)
     assert sample.rms_m_s == pytest.approx(float(np.sqrt(weight @ np.array(squares))), rel=0.08)
-
-
-def test_figures_of_a_case_agree_with_one_another(shared: tuple[Case, Class]) -> None:
-    case, mine = shared
-    plain = plain_table(mine, case.target_m_s, mine.design, mine.config.resolution)
-    found = figures_of(mine, case.target_m_s, plain)
-    assert 0.95 < found.honesty < 1.05
-    assert 0.9 < found.honesty_estimated < 1.1
-    assert found.ratio == pytest.approx(found.estimated.rms_m_s / found.table.rms_m_s)
-    assert 0.99 < found.regret < 1.3
-    assert 0.99 < found.regret_estimated < 1.2
-    assert found.told_estimated.rms_m_s < found.told.rms_m_s
-    assert found.table.rms_m_s < found.baselines["relay"].rms_m_s
-    assert found.best_baseline == "energy rule"
-    assert 0.5 < found.table_s < found.estimated_s
-
-
-@pytest.mark.slow
-def test_a_refinement_that_changes_nothing_gives_the_same_bits() -> None:
-    config = load_config(None)
-    (case,) = named_cases(config, METHOD.smallest.cases)
-    found = studied(case, config, 3)
-    for refinement in found.refinements:
-        assert [level.share for level in refinement.levels] == [2.0, 1.0, 0.5]
-        assert refinement.levels[1].own_rms_m_s == found.default_own_rms_m_s
-        assert refinement.levels[-1].lines_move_m_s is None
-    path, speed, transient, together = (each.levels[0].own_rms_m_s for each in found.refinements)
-    assert len({path, speed, transient, together}) == 4
-    assert found.check_rms_m_s == pytest.approx(found.halved_check_rms_m_s, rel=0.03)
