@@ -1,10 +1,17 @@
-"""Hashes of the coefficients of many tables, by the one pipeline; run as a program, it prints them as JSON."""
+"""Hashes of the coefficients of many tables, by the one pipeline.
+
+Same bytes are promised on one kind of processor: with AVX-512 some last bits are others than without. Both are kept.
+Run as a program, it prints what is to be kept, JSON, with the hashes of the processor at hand.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import json
 from collections.abc import Iterator
+from pathlib import Path
+
+from llvmlite import binding
 
 from plant_models.library import position_names
 from synth.book.class_setup import class_setup, origin_of, validation_passes
@@ -19,6 +26,7 @@ from synth.sweep.tune_unit import tune_unit
 from tests.sweep.conftest import PLANT, SWEEP
 from tuning_tables import ControllerTable, to_json
 
+KEPT = Path(__file__).with_name("coefficients.json")
 CREATED = "2026-11-22T00:00:00Z"
 FEW = "[validation]\npasses = 1000\n"
 GONDOLA = '[[cut]]\ncar = "gondola-4"\nmass_t = 36\n'
@@ -77,5 +85,17 @@ def hashes() -> dict[str, dict[str, str]]:
     return {name: {table.id: coefficients_sha256(table) for table in each} for name, each in tables.items()}
 
 
+def kind_of_processor() -> str:
+    """Of two kinds that differ in last bits."""
+    return "with AVX-512" if binding.get_host_cpu_features().get("avx512f") else "without AVX-512"
+
+
+def kept() -> dict[str, dict[str, str]]:
+    """The hashes for the processor at hand, by configuration and table."""
+    found: dict[str, dict[str, str]] = json.loads(KEPT.read_bytes())[kind_of_processor()]
+    return found
+
+
 if __name__ == "__main__":
-    print(json.dumps(hashes(), indent=1, sort_keys=True))
+    known = json.loads(KEPT.read_bytes())
+    print(json.dumps({**known, kind_of_processor(): hashes()}, indent=1, sort_keys=True))

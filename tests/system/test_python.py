@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import dataclasses
-import json
 import os
 import re
 import subprocess
@@ -19,7 +18,7 @@ import pytest
 import synth
 from plant_models import Plant
 from synth.frame.input_error import InputError
-from tests.system.coefficients import coefficients_sha256
+from tests.system.coefficients import coefficients_sha256, kept
 from tuning_tables import ControllerTable, read_json
 
 ROOT = Path(__file__).parents[2]
@@ -191,8 +190,8 @@ def test_the_example_of_the_readme_runs_and_makes_the_table_of_the_default_book(
     printed = run(example + store, tmp_path)
     assert re.fullmatch(r"predicted 0\.0\d+ m/s, Simulated\(20000 passes, seed 1: rms .* m/s\)\n", printed)
     assert (tmp_path / "table.png").read_bytes().startswith(b"\x89PNG")
-    kept = json.loads((ROOT / "tests/system/coefficients.json").read_text())["example of the README"]
-    assert coefficients_sha256(read_json(tmp_path / "table.json")) == kept["gondola-4-52t-to-3-m-s"]
+    expected = kept()["example of the README"]["gondola-4-52t-to-3-m-s"]
+    assert coefficients_sha256(read_json(tmp_path / "table.json")) == expected
 
 
 def test_the_examples_of_the_page_run(tmp_path: Path) -> None:

@@ -38,6 +38,9 @@ cars = 1
 mass_t = 52.0
 """
 
+KNOWN_MEAN = f"[friction]\nmean_cv = 0.0\n{TEXT}"
+"""Tables for it keep no reserve for another mean friction."""
+
 
 @dataclass(frozen=True)
 class Yard:
@@ -68,8 +71,8 @@ def worn(assumed: Yard) -> Yard:
 
 @pytest.fixture(scope="session")
 def known() -> Yard:
-    """What the library says, with a mean friction that is taken as known: tables keep no reserve for another."""
-    return yard_of(source_of_text(f"[friction]\nmean_cv = 0.0\n{TEXT}", "test"))
+    """What the library says, with a mean friction that is taken as known."""
+    return yard_of(source_of_text(KNOWN_MEAN, "test"))
 
 
 @pytest.fixture(scope="session")

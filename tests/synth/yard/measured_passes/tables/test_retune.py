@@ -1,4 +1,4 @@
-"""Retuned tables against those tuned with the truth, and a log from which nothing is to be gained."""
+"""Retuned tables against those tuned with the truth, and a log from which nothing more is to be gained."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tuning_tables import ControllerTable, read_book, write_book
 from tuning_tables.pass_log.log_files import write_log
 from tuning_tables.pass_log.pass_log import PassLog
 
-from .conftest import CREATED, TEXT, Yard
+from .conftest import CREATED, KNOWN_MEAN, TEXT, Yard
 
 CASES = [("LS-1", 3.0), ("S-1", 3.0)]
 
@@ -69,12 +69,13 @@ def test_the_new_book_states_the_identified_plant(retuned: Retuned) -> None:
         assert table.validated is not None
 
 
-def test_a_log_of_the_unchanged_plant_is_refused(
-    assumed: Yard, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+def test_what_a_log_gave_is_not_offered_again(
+    retuned: Retuned, known: Yard, worse: Yard, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    write_log(log_of(assumed, assumed, 3), tmp_path / "log.h5")
-    write_book(tuple(assumed.tables.values()), tmp_path / "old.h5")
-    (tmp_path / "c.toml").write_text(TEXT)
+    """The same log and the tables that it gave: the new ones are these, so nothing is to be gained."""
+    write_log(log_of(worse, known, 3), tmp_path / "log.h5")
+    write_book(retuned.tables, tmp_path / "old.h5")
+    (tmp_path / "c.toml").write_text(KNOWN_MEAN)
     words = ["--table", str(tmp_path / "old.h5"), "--config", str(tmp_path / "c.toml")]
     out = tmp_path / "out"
     assert main(["retune", str(tmp_path / "log.h5"), *words, "-o", str(out)]) == 1
@@ -85,6 +86,12 @@ def test_a_log_of_the_unchanged_plant_is_refused(
     assert not any(case["changed"] for case in summary["cases"])
     assert {"report.html", "plots/retune-gains.png"} <= set(summary["files"])
 
+
+def test_a_replay_of_the_own_tables_commands_what_they_did(assumed: Yard, tmp_path: Path) -> None:
+    write_log(log_of(assumed, assumed, 3), tmp_path / "log.h5")
+    write_book(tuple(assumed.tables.values()), tmp_path / "old.h5")
+    (tmp_path / "c.toml").write_text(TEXT)
+    words = ["--table", str(tmp_path / "old.h5"), "--config", str(tmp_path / "c.toml")]
     assert main(["replay", str(tmp_path / "log.h5"), *words, "--own", words[1], "-o", str(tmp_path / "again")]) == 0
     told = json.loads((tmp_path / "again" / "summary.json").read_text())
     assert told["agreement"]["own"]["rows"]["same"] == told["agreement"]["own"]["rows"]["asked"] > 0
