@@ -1,5 +1,6 @@
 """A controller that imports the package gets numpy and the standard library, nothing else, and gets them soon."""
 
+import math
 import os
 import subprocess
 import sys
@@ -12,8 +13,11 @@ import pytest
 import tuning_tables
 from tuning_tables import ControllerTable, write_json
 
-LONGEST_SECONDS = 0.2
+MOST_TIMES = 2.0
+"""Of what a process takes that loads numpy and ends: 1.5 here, on a slow processor as on a fast one."""
+
 ATTEMPTS = 20  # a busy machine may be slow again and again, but a heavy import is slow every time
+NUMPY_ALONE = "import numpy"
 
 PROGRAM = """
 import sys
@@ -36,12 +40,12 @@ def only_numpy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def asked_in_a_new_process(packages: Path, table: Path) -> tuple[str, float]:
-    """What PROGRAM prints with these packages only, and the seconds from the start to the end of its process."""
+def asked_in_a_new_process(packages: Path, table: Path, program: str = PROGRAM) -> tuple[str, float]:
+    """What `program` prints with these packages only, and the seconds from the start to the end of its process."""
     environment = {"PYTHONPATH": str(packages), "PATH": os.environ["PATH"]}
     started = time.perf_counter()
     ended = subprocess.run(
-        [sys.executable, "-S", "-s", "-P", "-c", PROGRAM, str(table)],
+        [sys.executable, "-S", "-s", "-P", "-c", program, str(table)],
         env=environment,
         stdout=subprocess.PIPE,
         text=True,
@@ -62,10 +66,13 @@ def test_a_new_process_loads_and_asks_a_table_at_once(
     only_numpy: Path, linear_table: ControllerTable, tmp_path: Path
 ) -> None:
     write_json(linear_table, tmp_path / "table.json")
-    seconds: list[float] = []
-    while len(seconds) < ATTEMPTS and min(seconds, default=LONGEST_SECONDS) >= LONGEST_SECONDS:
-        seconds.append(asked_in_a_new_process(only_numpy, tmp_path / "table.json")[1])
-    assert min(seconds) < LONGEST_SECONDS
+    best, numpy_alone = math.inf, math.inf
+    for _ in range(ATTEMPTS):
+        numpy_alone = min(numpy_alone, asked_in_a_new_process(only_numpy, tmp_path / "table.json", NUMPY_ALONE)[1])
+        best = min(best, asked_in_a_new_process(only_numpy, tmp_path / "table.json")[1])
+        if best < MOST_TIMES * numpy_alone:
+            break
+    assert best < MOST_TIMES * numpy_alone
 
 
 def test_books_are_told_apart_from_what_needs_h5py(only_numpy: Path, tmp_path: Path) -> None:
