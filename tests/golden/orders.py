@@ -8,39 +8,15 @@ from dataclasses import dataclass
 from tests.sweep.conftest import MEASURED as MEASURED_SPEED
 from tests.sweep.conftest import PLANT, SWEEP
 from tests.system.conftest import CLASS, SECOND_CLASS
+from tests.system.test_aim import SMALL as AIM
+from tests.system.test_computer import FEW as COMPUTER
+from tests.system.test_hump_trials import SMALL as TRIAL
 
 SENSORS = """\
 [sensors]
 path_m = [-4.5, 0.0, 4.0, 8.0, 12.0, 16.0, 22.5]
 """
 DUMPER = CLASS.replace("rnz-2m-park", "rnz-2m-dumper").replace("[1.5]", "[2.0]").replace("high_m_s = 4.0", "")
-AIM = """\
-[cuts]
-categories = ["L", "T"]
-cars = [1, 3]
-[aim]
-free_distances_m = [50.0, 100.0, 200.0]
-[simulation]
-passes = 2000
-"""
-TRIAL = """\
-hump = "medium"
-[trains]
-number = 12
-cuts = 6
-most_cars = 3
-[exit_speeds]
-choices = 4
-[aim]
-design_cuts = 200
-"""
-COMPUTER = """\
-[service]
-simulated_requests = 3000
-[uncertainty]
-draws = 200
-sobol_points = 16
-"""
 
 INPUTS: Mapping[str, str] = {
     "park.toml": CLASS + SECOND_CLASS,
