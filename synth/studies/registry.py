@@ -25,7 +25,7 @@ POSITION_STUDIES: tuple[Study, ...] = (
     Study(
         "benchmark",
         "How fast do the kernels of a tune solve its problem, beside numpy and the limit of the machine?",
-        34.0,
+        300.0,
         "speed.md",
         "synth.studies.benchmark.study",
         "synth.studies.benchmark.picture",
