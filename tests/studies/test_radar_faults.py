@@ -24,9 +24,9 @@ from synth.studies.radar_faults.faults import (
     standing,
 )
 from synth.studies.radar_faults.study import chance, joined, moments_s
-from synth.studies.radar_faults.watched_passes import watched_passes
+from synth.studies.radar_faults.watched_passes import passes_by_weight, watched_passes
 from tests.synth.case_factory import make_plant, make_table
-from tuning_tables.estimator import HEAVIER_ALARM, LOST_ALARM, SENSOR_ALARM
+from tuning_tables.estimator import HEAVIER_ALARM, LIGHTER_ALARM, LOST_ALARM, SENSOR_ALARM
 
 
 @pytest.fixture(scope="module")
@@ -136,6 +136,42 @@ def test_alarms_are_those_of_the_fault(plant: Plant, loop: ClosedLoop, passes: R
     assert ((stuck.at_end & SENSOR_ALARM) != 0).mean() < 0.1
     weak = watched_passes(loop, controller, loop.draws(passes, cut_factor=0.4))
     assert ((weak.at_end & HEAVIER_ALARM) != 0).all()
+
+
+# ------------------------------------------------------------------------------- a table that takes over
+
+
+def test_an_equal_table_takes_over_without_a_trace(plant: Plant, loop: ClosedLoop, passes: RandomPasses) -> None:
+    """Which of two equal tables is in force changes no bit; weak cuts go to the heavier one, strong ones nowhere."""
+    _, controller = controllers_of(plant)
+    for factor, told, after in ((0.4, 0, 1), (0.4, 1, 1), (1.8, 1, 0), (1.8, 0, 0), (1.0, 0, 0)):
+        draws = loop.draws(passes, cut_factor=factor)
+        alone = watched_passes(loop, controller, draws)
+        both = passes_by_weight(loop, (controller, controller), told, draws)
+        assert (both.table == after).all()
+        assert np.array_equal(both.sample.exit_speed_m_s, alone.sample.exit_speed_m_s)
+        assert np.array_equal(both.at_end, alone.at_end)
+
+
+def test_the_lines_in_force_are_those_of_the_table_that_took_over(
+    plant: Plant, loop: ClosedLoop, passes: RandomPasses
+) -> None:
+    """A pass without alarm is that of its table alone; one that goes over leaves as the other table has it."""
+    _, controller = controllers_of(plant)
+    estimator = estimator_of(plant)
+    hard = tuple(2.5 * each for each in estimator.brake_m2_s2_per_kpa)
+    misled = replace(controller.table, estimator=replace(estimator, brake_m2_s2_per_kpa=hard))
+    other = TableController(replace(make_table("other", plant, 2.5), estimator=estimator))
+    draws = loop.draws(passes, cut_factor=1.0)
+    alone = [watched_passes(loop, each, draws).sample.exit_speed_m_s for each in (controller, other)]
+    assert (alone[0] != alone[1]).mean() > 0.9
+    calm = passes_by_weight(loop, (controller, other), 0, draws)
+    assert not (calm.seen & (LIGHTER_ALARM | HEAVIER_ALARM)).any()
+    assert np.array_equal(calm.sample.exit_speed_m_s, alone[0])
+    found = passes_by_weight(loop, (TableController(misled), other), 0, draws)
+    assert (found.table == 1).all()
+    from_other, from_own = (np.abs(found.sample.exit_speed_m_s - each) for each in (alone[1], alone[0]))
+    assert (from_other < from_own).mean() > 0.9  # the first metres are braked by the own lines
 
 
 # --------------------------------------------------------------------------------------- the faults

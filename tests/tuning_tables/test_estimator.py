@@ -23,6 +23,7 @@ from tuning_tables.estimator import (
     alarms,
     begin,
     observe,
+    table_after,
 )
 
 PERIOD_S = 0.1
@@ -243,6 +244,14 @@ def test_a_lost_cut_is_taken_for_slower_than_it_seems(estimator: Estimator) -> N
 
 def test_there_is_no_alarm_before_a_cut_was_seen(estimator: Estimator) -> None:
     assert alarms(estimator.parameters, begin()) == 0
+
+
+def test_a_neighbour_takes_over_where_the_weight_alone_is_in_doubt() -> None:
+    for word in range(16):
+        step = {4: -1, 8: 1}.get(word, 0)
+        for last in range(4):
+            for present in range(last + 1):
+                assert table_after(word, present, last) == min(max(present + step, 0), last)
 
 
 def test_compiled_it_gives_the_same_bits(estimator: Estimator) -> None:

@@ -47,7 +47,7 @@ EVENTS: dict[str, Callable[[TrainOutcomes], Ints]] = {
     "stopped_on_the_way": lambda found: found.stopped,
 }
 """Counts of cuts by train, under the names of `train_figures`. Over-speed is told of cuts that reached a track by
-themselves; here they are counted for each humped cut, for only so do the events of a cut add up to its loss."""
+themselves; here it is counted for each humped cut, as all other events are."""
 
 
 def failure_figures(sound: TrainOutcomes, failed: TrainOutcomes) -> tuple[ExtraFigure, ...]:
