@@ -19,11 +19,11 @@ from numpy.typing import NDArray
 from plant_models.library.near_miss import near_miss
 from synth.book.checked_design import checked_design
 from synth.book.class_setup import origin_of
-from synth.book.creation_time import creation_time
 from synth.book.rounded_table import with_prediction
 from synth.configuration.config_file import load_config as load_config_file
 from synth.configuration.resolved_config import ResolvedConfig
 from synth.configuration.settings import FitSettings, GridSettings
+from synth.frame.creation_time import creation_time
 from synth.frame.input_error import InputError
 from synth.kernels.cache import guarded
 from synth.problem.aim import Aim

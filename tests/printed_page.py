@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 
-from synth.cli import printed_page
-from synth.cli.printed_page import Exhibit, Verdict
-from synth.cli.printed_table import PrintedTable
+from synth.frame.terminal import printed_page
+from synth.frame.terminal.printed_page import Exhibit, Verdict
+from synth.frame.terminal.printed_table import PrintedTable
 
 WIDTHS = (60, 80, 100, 140)
 """Of the terminals that are tried."""

@@ -10,8 +10,8 @@ from synth.book.case_result import CaseResult
 from synth.book.failed_case import FailedCase, told_together
 from synth.book.judgement import Judgement, interval_text, judgement
 from synth.book.off_nominal.worst import worst_of
-from synth.book.printed_numbers import counted
 from synth.configuration.settings import AcceptanceSettings
+from synth.frame.printed_numbers import counted
 from synth.simulation.exit_statistics import ExitStatistics
 from synth.simulation.replicates import share_of
 from synth.simulation.unavoidable_error import UnavoidableError

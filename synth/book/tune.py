@@ -11,7 +11,6 @@ from synth.book.attempted_case import attempted
 from synth.book.case_result import CaseResult
 from synth.book.class_setup import TUNING_PASSES, Origin, class_setup, origin_of, validation_passes
 from synth.book.comparison.served_entry import entry_sweep
-from synth.book.creation_time import creation_time
 from synth.book.failed_case import FailedCase, require_none
 from synth.book.off_nominal.trial import trials
 from synth.book.pareto.case_front import pareto_front
@@ -24,6 +23,7 @@ from synth.book.tuned_table import Store, solutions
 from synth.book.watcher import Watcher
 from synth.book.work_queue import run_nested
 from synth.configuration.resolved_config import ResolvedConfig
+from synth.frame.creation_time import creation_time
 from synth.problem.aim import Aim
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.solver.chain.grid import require_memory

@@ -8,22 +8,25 @@ command imports what it needs.
 
 from __future__ import annotations
 
-import atexit
 import gc
 import os
 import sys
 from collections.abc import Callable, Sequence
 from typing import NoReturn
 
-OK, LIMITS_MISSED, INPUT_FAULT, DAMAGED, INTERRUPTED, PIPE_CLOSED = 0, 1, 2, 3, 130, 141
-UNFORESEEN, MACHINE_FAULT = 70, 74
-"""EX_SOFTWARE and EX_IOERR of sysexits.h."""
-
-MOST_FAULTS = 50
-"""Of one configuration, that are told."""
-
-LONGEST_WORD, LONGEST_LINE = 300, 2000
-"""Characters of what is told."""
+from synth.frame.terminal.telling import (
+    DAMAGED,
+    INPUT_FAULT,
+    INTERRUPTED,
+    LIMITS_MISSED,
+    MACHINE_FAULT,
+    OK,
+    PIPE_CLOSED,
+    UNFORESEEN,
+    leave,
+    say,
+    say_each,
+)
 
 TRACEBACK = "RETARDER_SYNTH_TRACEBACK"
 """Name of the environment variable that has the traceback of an unforeseen fault printed."""
@@ -38,20 +41,10 @@ def script() -> NoReturn:
     leave(main())
 
 
-def leave(code: int) -> NoReturn:
-    """End the process at once with `code`.
-
-    Python is not taken apart, which lasts a fifth of a second after a tune; but all that was registered for the end is
-    done, temporary directories removed among it.
-    """
-    atexit._run_exitfuncs()
-    os._exit(code)
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line (by default that of the process) and return its exit code."""
     from synth.cli.commands import run
-    from synth.cli.standard_streams import standard_streams
+    from synth.frame.terminal.standard_streams import standard_streams
 
     # See `synth.solver.one_blas_thread`; before BLAS is loaded it starts no threads at all.
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
@@ -72,7 +65,7 @@ def flush_stdout() -> int:
 
 def told(call: Callable[[], int]) -> int:
     """The exit code of `call()`, or that of the fault it raised, told in one sentence."""
-    from synth.cli.standard_streams import ReaderLeftError
+    from synth.frame.terminal.standard_streams import ReaderLeftError
 
     try:
         return call()
@@ -127,24 +120,3 @@ def told_of_unforeseen(fault: Exception) -> int:
         f"its input ({TRACEBACK}=1 shows where it comes from)"
     )
     return UNFORESEEN
-
-
-def say_each(sentences: Sequence[str]) -> None:
-    """One line on stderr for each of the first sentences, and how many are left."""
-    for sentence in sentences[:MOST_FAULTS]:
-        say(sentence)
-    if len(sentences) > MOST_FAULTS:
-        say(f"and {len(sentences) - MOST_FAULTS} more faults")
-
-
-def say(sentence: str) -> None:
-    """One line on stderr; long words, as paths can be, and long lines show their beginning and their end."""
-    from tuning_tables.excerpt import excerpt
-
-    words = (excerpt(printable(word), LONGEST_WORD) for word in sentence.split())
-    print(f"retarder-synth: {excerpt(' '.join(words), LONGEST_LINE)}", file=sys.stderr, flush=True)
-
-
-def printable(text: str) -> str:
-    """`text` with the codes of signs that would steer a terminal: files of others may hold such."""
-    return "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in text)

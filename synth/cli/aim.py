@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from synth.cli import LIMITS_MISSED, OK, say
+from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
 
 if TYPE_CHECKING:
     from synth.frame.results_directory import ResultsDirectory
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 def aim_command(path: Path | None, output: Path, passes: int | None, seed: int | None, as_json: bool) -> int:
     """Make the aim tables of the configuration in `path` in the directory `output`; the exit code."""
-    from synth.book.creation_time import require_date
     from synth.configuration.aim.aim_file import read_aim_file
+    from synth.frame.creation_time import require_date
     from synth.frame.results_directory import results_directory
 
     file = read_aim_file(path).with_simulation(passes, seed)
@@ -35,9 +35,9 @@ def aim_command(path: Path | None, output: Path, passes: int | None, seed: int |
 
 def aim_into(directory: ResultsDirectory, config: ResolvedAim, as_json: bool) -> int:
     """The work itself, and what is said about it."""
-    from synth.book.creation_time import creation_time
-    from synth.cli.interrupt import interruptible
-    from synth.cli.progress import Progress
+    from synth.frame.creation_time import creation_time
+    from synth.frame.terminal.interrupt import interruptible
+    from synth.frame.terminal.progress import Progress
     from synth.kernels.cache import cache_in_use, guarded
     from synth.present.aim_outputs import write_aim
     from synth.yard.aim.aim_acceptance import judge_aims

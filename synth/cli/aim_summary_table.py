@@ -7,10 +7,10 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from synth.book.printed_numbers import ABSENT, percent
-from synth.cli.printed_page import Verdict, print_page
-from synth.cli.printed_table import Column, PrintedTable
-from synth.cli.printed_words import NO_BREAK
+from synth.frame.printed_numbers import ABSENT, percent
+from synth.frame.terminal.printed_page import Verdict, print_page
+from synth.frame.terminal.printed_table import Column, PrintedTable
+from synth.frame.terminal.printed_words import NO_BREAK
 from synth.yard.aim.aim_acceptance import AimBookVerdict
 from synth.yard.aim.aim_book import AimBook
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
 import typer
+
+from synth.frame.arguments import whole_number
 
 LARGEST_STD_KPA = 100.0
 """What a pressure gauge takes."""
@@ -22,34 +23,11 @@ ExportSource = Annotated[
 Config = Annotated[
     Path | None, typer.Option("--config", metavar="C", help="Configuration with the plant; built-in unless given.")
 ]
-Json = Annotated[bool, typer.Option("--json", help="Machine-readable results on stdout.")]
 
 
 LogFile = Annotated[
     Path | None, typer.Option("--log", metavar="FILE.csv|.h5", help="Also log passes as a controller would.")
 ]
-
-
-def directory(word: str) -> Path:
-    """The directory called `word`; no word at all, as from an unset variable of a shell, is none."""
-    if not str(word):
-        raise typer.BadParameter("it is empty; give a directory, '.' for the current one")
-    return Path(word)
-
-
-def whole_number(low: int, high: int) -> Callable[[str], int]:
-    """The function that reads a whole number from `low` to `high`."""
-
-    def number(word: str) -> int:
-        try:
-            value = int(word)
-        except ValueError:
-            value = low - 1
-        if not low <= value <= high:
-            raise typer.BadParameter(f"it is {str(word)[:40]!r}; give a whole number from {low} to {high}")
-        return value
-
-    return number
 
 
 def pressure_std(word: str) -> float:

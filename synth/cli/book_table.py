@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from synth.book.printed_numbers import plus_minus
 from synth.cli import case_columns as of
-from synth.cli.printed_page import Exhibit, Verdict, print_page
-from synth.cli.printed_table import Column, PrintedTable
+from synth.frame.printed_numbers import plus_minus
+from synth.frame.terminal.printed_page import Exhibit, Verdict, print_page
+from synth.frame.terminal.printed_table import Column, PrintedTable
 
 if TYPE_CHECKING:
     from synth.book.permissions.overview import Overview

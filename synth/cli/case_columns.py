@@ -7,9 +7,9 @@ from typing import Any, Final
 
 from synth.book.permissions.overview import SHORT
 from synth.book.permissions.permission import Permission
-from synth.book.printed_numbers import plus_minus, ten_thousand
-from synth.cli.printed_table import Column
-from synth.cli.printed_words import NO_BREAK
+from synth.frame.printed_numbers import plus_minus, ten_thousand
+from synth.frame.terminal.printed_table import Column
+from synth.frame.terminal.printed_words import NO_BREAK
 
 Case = dict[str, Any]
 """An entry of `cases` of a summary.json. Figures of a case that has no table are missing or None."""

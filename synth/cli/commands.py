@@ -12,22 +12,22 @@ from synth.cli.arguments import (
     Config,
     ExportSource,
     GaugeStd,
-    Json,
     LogFile,
     LogPasses,
     Source,
     SourceOrDirectory,
-    directory,
-    whole_number,
     with_names,
 )
 from synth.cli.init_commands import add_init_command
+from synth.cli.listed import COMMANDS
 from synth.cli.measured_commands import add_measured_commands
-from synth.cli.measuring_commands import add_measuring_commands
 from synth.cli.yard_commands import add_yard_commands
+from synth.frame.arguments import Json, directory, whole_number
+from synth.frame.command_line import add_listed, listed_group
 
 app = typer.Typer(
     name="retarder-synth",
+    cls=listed_group(COMMANDS),
     help="Designs the controller of a hump-yard car retarder: switching lines, controller tables, and their proof.",
     add_completion=False,
     rich_markup_mode=None,
@@ -38,7 +38,7 @@ app = typer.Typer(
 
 def run(arguments: list[str]) -> int:
     """Run the command in `arguments`; the exit code. A fault of use is told in one line and gives 2."""
-    from synth.cli import INPUT_FAULT, say
+    from synth.frame.terminal.telling import INPUT_FAULT, say
 
     try:
         code = app(with_names(arguments), prog_name="retarder-synth", standalone_mode=False)
@@ -99,7 +99,7 @@ def tune(
 
 
 add_yard_commands(app)
-add_measuring_commands(app)
+add_listed(app, COMMANDS)
 add_measured_commands(app)
 
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from synth.cli import say
 from synth.frame.input_error import InputError
+from synth.frame.terminal.telling import say
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from synth.cli import OK
-from synth.cli.printed_page import print_page
+from synth.frame.terminal.printed_page import print_page
+from synth.frame.terminal.telling import OK
 from synth.yard.hump.number_ranges import ranges
 
 if TYPE_CHECKING:
@@ -104,8 +104,8 @@ def draw_command(source: Path, output: Path, track: int | None, as_json: bool) -
 
     hump = read_hump(source).entry
     route = drawn_route(hump.graph, track)
+    from synth.frame.picture.figure_file import figure_files
     from synth.kernels.cache import guarded
-    from synth.present.plots.figure_file import figure_files
     from synth.present.plots.hump.hump_picture import hump_picture
     from synth.yard.design_runners import roll_runners
 

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from synth.cli.arguments import Json, directory, whole_number
+from synth.frame.arguments import Json, directory, whole_number
 
 app = typer.Typer(help="Check, list and draw a hump; hump whole trains over it.")
 

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from synth.cli import LIMITS_MISSED, OK, say
-from synth.cli.processors import available
 from synth.frame.input_error import InputError
+from synth.frame.processors import available
+from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
 
 if TYPE_CHECKING:
     from synth.configuration.humping.trial_file import TrialFile
@@ -46,7 +46,7 @@ def simulate_command(
     source: Path | None, asked: AskedTrains, output: Path, workers: int | None, scheduler: str | None, as_json: bool
 ) -> int:
     """Hump the trains of `source` into the directory `output`; the exit code."""
-    from synth.book.creation_time import require_date
+    from synth.frame.creation_time import require_date
     from synth.frame.results_directory import results_directory
     from synth.sweep.trains.trial_inputs import FOLDER, files_read, write_inputs
 
@@ -69,8 +69,8 @@ def simulated(
     config: ResolvedTrial, directory: ResultsDirectory, workers: int | None, scheduler: str | None
 ) -> TrialResult | None:
     """The work itself; None where a batch could not be humped, which is told."""
-    from synth.book.creation_time import creation_time
-    from synth.cli.progress import Progress
+    from synth.frame.creation_time import creation_time
+    from synth.frame.terminal.progress import Progress
     from synth.kernels.cache import guarded
     from synth.present.humping_outputs import judged, write_trains
     from synth.sweep.trains.batch import orders_of
@@ -133,7 +133,7 @@ def told(result: TrialResult, output: Path, as_json: bool) -> int:
 
 def report_command(path: Path, as_json: bool) -> int:
     """Make figures, pictures and pages anew from the trains in the directory `path`; the exit code."""
-    from synth.book.creation_time import creation_time, require_date
+    from synth.frame.creation_time import creation_time, require_date
     from synth.frame.results_directory import results_directory
     from synth.present.humping_outputs import judged, write_trains
     from synth.sweep.trains.train_run import FOLDER as BATCHES
@@ -171,7 +171,7 @@ def speed_command(source: Path | None, asked: AskedTrains, train: int, output: P
     if as_json:
         print(json.dumps(program_document(program, files), indent=1, ensure_ascii=False))
         return OK
-    from synth.cli.printed_page import print_page
+    from synth.frame.terminal.printed_page import print_page
 
     print_page(
         f"train {train}: cuts: {len(program.rows)}; over the crest in {program.rows[-1].time_s:.0f} s at "

@@ -7,17 +7,17 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from synth.cli import LIMITS_MISSED, OK, say
-from synth.cli.processors import available
+from synth.frame.processors import available
+from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
 
 
 def identify_command(
     logs: Sequence[Path], mapping: Path | None, config_path: Path | None, output: Path, as_json: bool
 ) -> int:
     """Identify the numbers behind `logs`; 1 where a test says that the model does not hold."""
-    from synth.book.creation_time import creation_time, require_date
-    from synth.cli.interrupt import interruptible
+    from synth.frame.creation_time import creation_time, require_date
     from synth.frame.results_directory import results_directory
+    from synth.frame.terminal.interrupt import interruptible
     from synth.kernels.cache import guarded
     from synth.yard.measured_passes.config_source import config_source
     from synth.yard.measured_passes.loaded_passes import loaded_passes
@@ -39,7 +39,7 @@ def identify_command(
     if as_json:
         sys.stdout.write((output / "summary.json").read_text(encoding="utf-8"))
     else:
-        from synth.cli.printed_page import print_page
+        from synth.frame.terminal.printed_page import print_page
 
         left = f"{output}: config.toml, plots/, report.html, summary.json"
         print_page(*identify_sentences(found), *other_tests(found), left)

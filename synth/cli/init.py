@@ -91,12 +91,13 @@ def hump_file(name: str) -> tuple[str, str]:
 
 def computer_file(name: str) -> tuple[str, str]:
     """As `asked_for`: the configuration of a control computer, which has no types to be named."""
-    from synth.configuration.computer.template import default_computer_toml
+    from synth.computer.settings import ComputerSettings
     from synth.frame.input_error import InputError
+    from synth.frame.settings.template import template
 
     if name:
         raise InputError(f"init --computer {name}: the library has no control computers; leave the name out")
-    return "configuration", default_computer_toml()
+    return "configuration", template(ComputerSettings(), "Control computer of a hump", "computer")
 
 
 def sensors_file(name: str) -> tuple[str, str]:
@@ -112,7 +113,7 @@ def sensors_file(name: str) -> tuple[str, str]:
 def print_list(as_json: bool) -> int:
     """What the library holds."""
     from plant_models.library import KINDS
-    from synth.cli.printed_page import print_page
+    from synth.frame.terminal.printed_page import print_page
 
     titles = {kind.folder: titles_of(kind) for kind in KINDS}
     if as_json:

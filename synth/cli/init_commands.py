@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from synth.cli.arguments import Json
+from synth.frame.arguments import Json
 
 FILES = {
     "retarder": ("retarders", "File of a retarder type. With the name of a position: its configuration."),

@@ -6,9 +6,9 @@ import math
 from typing import Any, NamedTuple
 
 from synth.book.highest_stage import highest_stage
-from synth.cli.printed_page import Exhibit
-from synth.cli.printed_table import Column, PrintedTable
-from synth.cli.printed_words import NO_BREAK
+from synth.frame.terminal.printed_page import Exhibit
+from synth.frame.terminal.printed_table import Column, PrintedTable
+from synth.frame.terminal.printed_words import NO_BREAK
 from tuning_tables.passages.document import to_passage_document
 from tuning_tables.passages.passage_row import PassageRow
 from tuning_tables.passages.passage_table import PassageTable

@@ -8,8 +8,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from synth.cli import LIMITS_MISSED, OK, say
 from synth.frame.input_error import InputError
+from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,15 +27,15 @@ DOCUMENT = "loops.json"
 def loop_command(source: Path, output: Path, config_path: Path | None, as_json: bool) -> int:
     """Draw and tell the loops of the tables in `source`; 1 if python-control and the simulator do not agree on one."""
     from synth.book.forms.table_file import file_stem, files_at
-    from synth.cli.interrupt import interruptible
     from synth.configuration.config_file import BUILT_IN, load_config
     from synth.frame.results_directory import results_directory
+    from synth.frame.terminal.interrupt import interruptible
     from synth.kernels.cache import guarded
 
     config = load_config(config_path)
     closings = [closing(table, config, str(config_path or BUILT_IN)) for table in any_tables(source)]
     from synth.book.summary import plain
-    from synth.present.plots.figure_file import figure_files
+    from synth.frame.picture.figure_file import figure_files
 
     loops: list[AnyLoop] = []
     files: list[str] = []
@@ -124,8 +124,8 @@ def sentence(loop: AnyLoop) -> str:
 def print_loops(loops: Sequence[AnyLoop], files: str) -> None:
     """A table with one row for each loop, what its columns mean, and where the `files` are."""
     from synth.book.control_loop import TOLERANCE_M_S
-    from synth.cli.printed_page import Exhibit, print_page
-    from synth.cli.printed_table import Column, PrintedTable
+    from synth.frame.terminal.printed_page import Exhibit, print_page
+    from synth.frame.terminal.printed_table import Column, PrintedTable
 
     def difference(loop: AnyLoop) -> str:
         found = loop.difference

@@ -8,7 +8,8 @@ from typing import Annotated
 
 import typer
 
-from synth.cli.arguments import Config, Json, directory
+from synth.cli.arguments import Config
+from synth.frame.arguments import Json, directory
 
 Logs = Annotated[list[Path], typer.Argument(metavar="LOGS...", help="Files of measured passes, or folders of them.")]
 Mapping = Annotated[

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from synth.cli import say
+from synth.frame.terminal.telling import say
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,16 +24,16 @@ Drawn = TypeVar("Drawn")
 def plot_command(source: Path, output: Path, config_path: Path | None, as_json: bool) -> int:
     """Draw the tables in `source` into `output`; passes only for tables that a class of the configuration fits."""
     from synth.book.forms.table_file import file_stem, files_at
-    from synth.cli.interrupt import interruptible
     from synth.cli.loop import any_tables
     from synth.cli.tables_configuration import configuration_for
     from synth.frame.results_directory import results_directory
+    from synth.frame.terminal.interrupt import interruptible
     from tuning_tables.passages.passage_table import PassageTable
 
     tables = any_tables(source)
     config, place = configuration_for(config_path, [table for table in tables if isinstance(table, PassageTable)])
     around = Surroundings(config, place, config_path is not None)
-    from synth.present.plots.figure_file import figure_files
+    from synth.frame.picture.figure_file import figure_files
 
     written: list[str] = []
     reads = [*files_at(source), *filter(None, [config_path])]

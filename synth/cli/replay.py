@@ -6,9 +6,9 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from synth.cli import LIMITS_MISSED, OK, say
-from synth.cli.processors import available
-from synth.cli.tables_refused import require_a_table, tables_refused
+from synth.book.tables_refused import require_a_table, tables_refused
+from synth.frame.processors import available
+from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
 
 
 def replay_command(
@@ -16,12 +16,12 @@ def replay_command(
     output: Path, as_json: bool,
 ) -> int:  # fmt: skip
     """Run the passes in `logs` again under `tables`; 1 where the configuration does not describe the log."""
-    from synth.book.creation_time import creation_time, require_date
     from synth.book.forms.table_file import read_tables
     from synth.book.watcher import Teller
-    from synth.cli.interrupt import interruptible
     from synth.configuration.config_file import BUILT_IN, load_config
+    from synth.frame.creation_time import creation_time, require_date
     from synth.frame.results_directory import results_directory
+    from synth.frame.terminal.interrupt import interruptible
     from synth.kernels.cache import guarded
     from synth.yard.measured_passes.loaded_passes import loaded_passes
 
@@ -52,7 +52,7 @@ def replay_command(
     if as_json:
         sys.stdout.write((output / "summary.json").read_text(encoding="utf-8"))
     else:
-        from synth.cli.printed_page import print_page
+        from synth.frame.terminal.printed_page import print_page
 
         print_page(*replay_sentences(found), f"{output}: plots/, report.html, summary.json")
     return OK if is_described(found) else LIMITS_MISSED

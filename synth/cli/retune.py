@@ -6,9 +6,9 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from synth.cli import LIMITS_MISSED, OK, say
-from synth.cli.processors import available
-from synth.cli.tables_refused import tables_refused
+from synth.book.tables_refused import tables_refused
+from synth.frame.processors import available
+from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
 
 
 def retune_command(
@@ -16,11 +16,11 @@ def retune_command(
     as_json: bool,
 ) -> int:  # fmt: skip
     """Tune tables for what `logs` say; 1 where none is better beyond doubt than the old ones, or a case has none."""
-    from synth.book.creation_time import creation_time, require_date
     from synth.book.forms.table_file import read_tables
-    from synth.cli.interrupt import interruptible
-    from synth.cli.progress import Progress
+    from synth.frame.creation_time import creation_time, require_date
     from synth.frame.results_directory import results_directory
+    from synth.frame.terminal.interrupt import interruptible
+    from synth.frame.terminal.progress import Progress
     from synth.kernels.cache import guarded
     from synth.yard.measured_passes.config_source import config_source
     from synth.yard.measured_passes.loaded_passes import loaded_passes
@@ -49,7 +49,7 @@ def retune_command(
     if as_json:
         sys.stdout.write((output / "summary.json").read_text(encoding="utf-8"))
     else:
-        from synth.cli.printed_page import print_page
+        from synth.frame.terminal.printed_page import print_page
 
         files = ("tables/, book.h5, " if found.tables else "") + "plots/, report.html, summary.json"
         print_page(*retune_sentences(found), f"{output}: {files}")

@@ -8,9 +8,14 @@ from typing import Annotated
 
 import typer
 
-from synth.cli.arguments import Json, directory, whole_number
+from synth.cli.listed import SENSORS
+from synth.frame.arguments import Json, directory, whole_number
+from synth.frame.command_line import add_listed, listed_group
 
-app = typer.Typer(help="Point sensors along a retarder position: where they should stand, and tables for them.")
+app = typer.Typer(
+    cls=listed_group(SENSORS),
+    help="Point sensors along a retarder position: where they should stand, and tables for them.",
+)
 
 
 @app.command()
@@ -39,28 +44,4 @@ def tune(
     return sensors_tune_command(config, output, workers, as_json)
 
 
-@app.command()
-def plan(
-    config: Annotated[Path | None, typer.Argument(metavar="CONFIG.toml", help="Built-in unless given.")] = None,
-    output: Annotated[
-        Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where the results go.")
-    ] = Path("out/sensors-plan"),
-    sensors: Annotated[
-        str, typer.Option("--sensors", metavar="N-M|N,M", help="Numbers of sensors; the one behind the exit counts.")
-    ] = "2-12",
-    rms: Annotated[
-        float | None, typer.Option("--rms", metavar="M_S", help="Wanted rms, m/s; 1.1 times the radar's unless given.")
-    ] = None,
-    workers: Annotated[
-        int, typer.Option("--workers", parser=whole_number(1, 256), metavar="N", help="Layouts tried at a time.")
-    ] = 2,
-    as_json: Json = False,
-) -> int:
-    """Plan where point sensors stand: the least rms for each number, and the fewest for a wanted rms.
-
-    Compared with equal sections, with the rule that each change of stage ends inside its section, and with the radar.
-    Exit code 1 if none of the numbers gives the wanted rms.
-    """
-    from synth.cli.sensors_plan import sensors_plan_command
-
-    return sensors_plan_command(config, output, sensors, rms, workers, as_json)
+add_listed(app, SENSORS)

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from synth.cli import case_columns as of
 from synth.cli.book_table import places
-from synth.cli.printed_page import Verdict, print_page
-from synth.cli.printed_table import PrintedTable
+from synth.frame.terminal.printed_page import Verdict, print_page
+from synth.frame.terminal.printed_table import PrintedTable
 
 COLUMNS = (
     of.CASE, of.TARGET, of.RMS, of.UNAVOIDABLE, of.WITHIN_95, of.OUT_OF_BRAKE, of.HONESTY, of.SWITCHINGS, of.TIME,

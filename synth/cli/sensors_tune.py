@@ -8,9 +8,9 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from synth.cli import LIMITS_MISSED, OK, say
-from synth.cli.processors import available
-from synth.cli.tables_refused import require_a_table, tables_refused
+from synth.book.tables_refused import require_a_table, tables_refused
+from synth.frame.processors import available
+from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
 
 if TYPE_CHECKING:
     from synth.configuration.point_sensors.resolved_sensors import ResolvedSensors
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 def sensors_tune_command(path: Path | None, output: Path, workers: int | None, as_json: bool) -> int:
     """Tune the configuration in `path` for its point sensors into the directory `output`; the exit code."""
-    from synth.book.creation_time import require_date
+    from synth.frame.creation_time import require_date
     from synth.frame.results_directory import results_directory
 
     place, config, sensors = read_configuration(path)
@@ -63,17 +63,17 @@ def tune_into(
     as_json: bool,
 ) -> int:
     """The work itself, and what is said about it."""
-    from synth.cli.interrupt import interruptible
-    from synth.cli.progress import Progress
+    from synth.frame.terminal.interrupt import interruptible
+    from synth.frame.terminal.progress import Progress
     from synth.kernels.cache import cache_in_use, guarded
 
     started, cache = time.monotonic(), cache_in_use()
     with interruptible(directory), Progress(len(config.problems())) as progress:
         if cache is None or next(cache.rglob("*.nbi"), None) is None:
             progress.note("compiling the kernels for this machine, once; this takes a few minutes")
-        from synth.book.printed_numbers import counted
         from synth.book.sensors.sensor_acceptance import judge_sensors
         from synth.book.sensors.sensor_tune import tune_sensors
+        from synth.frame.printed_numbers import counted
         from synth.present.sensor_outputs import store_passages, write_sensors
 
         with tables_refused(place, config):

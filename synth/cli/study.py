@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from synth.cli import LIMITS_MISSED, OK, say
-from synth.cli.printed_page import print_page
 from synth.frame.input_error import InputError
+from synth.frame.terminal.printed_page import print_page
+from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
 
 if TYPE_CHECKING:
     from synth.studies.result import Result
@@ -105,7 +105,7 @@ def run_command(study: Study, words: list[str], wanted: Wanted) -> int:
 
 def result_files(result: Result) -> dict[str, bytes]:
     """NAME.json, NAME.md and the pictures, by name."""
-    from synth.present.plots.figure_file import figure_files
+    from synth.frame.picture.figure_file import figure_files
 
     texts = {f"{result.study.name}.json": result.json(), f"{result.study.name}.md": result.markdown()}
     files = {name: text.encode("utf-8") for name, text in texts.items()}

@@ -7,13 +7,12 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from synth.cli import LIMITS_MISSED, OK, say
-from synth.cli.processors import available
-from synth.cli.tune import sensors_left_aside
 from synth.frame.input_error import InputError
+from synth.frame.processors import available
+from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
 
 if TYPE_CHECKING:
-    from synth.cli.progress import Progress
+    from synth.frame.terminal.progress import Progress
     from synth.sweep.plan import Unit
     from synth.sweep.run import Task
     from synth.sweep.sweep_directory import SweepDirectory
@@ -42,7 +41,8 @@ def sweep_command(
 
 def run_command(path: Path, output: Path, workers: int | None, scheduler: str | None, as_json: bool) -> int:
     """Run or resume the sweep in the file `path` into the directory `output`."""
-    from synth.book.creation_time import require_date
+    from synth.book.configured import sensors_left_aside
+    from synth.frame.creation_time import require_date
     from synth.sweep.run import run_sweep, task_of
     from synth.sweep.sweep_directory import held_sweep
     from synth.sweep.sweep_file import load_sweep
@@ -93,7 +93,7 @@ class Pace:
     """Tells on stderr of every unit, with the rate so far and the time left by the work left; a context manager."""
 
     def __init__(self, task: Task) -> None:
-        from synth.cli.progress import Progress
+        from synth.frame.terminal.progress import Progress
 
         self.started = time.monotonic()
         self._units, self._missing = len(task.plan.units), len(task.missing)
@@ -137,7 +137,7 @@ def told(directory: SweepDirectory, summary: dict[str, Any], as_json: bool) -> N
     if as_json:
         sys.stdout.write(directory.summary.read_text(encoding="utf-8"))
         return
-    from synth.cli.printed_page import print_page
+    from synth.frame.terminal.printed_page import print_page
 
     page = []
     for each in summary["conditions"]:
@@ -170,7 +170,7 @@ def status_command(path: Path, as_json: bool) -> int:
     import json
     from dataclasses import asdict
 
-    from synth.cli.printed_page import print_page
+    from synth.frame.terminal.printed_page import print_page
     from synth.sweep.status import status_of
 
     status = status_of(path)
@@ -197,7 +197,7 @@ def failed_command(path: Path, as_json: bool) -> int:
     import json
     from dataclasses import asdict
 
-    from synth.cli.printed_page import print_page
+    from synth.frame.terminal.printed_page import print_page
     from synth.sweep.status import failed_units
 
     found = failed_units(path)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from synth.cli.printed_page import Exhibit, Verdict, print_page
-from synth.cli.printed_table import Column, PrintedTable
+from synth.frame.terminal.printed_page import Exhibit, Verdict, print_page
+from synth.frame.terminal.printed_table import Column, PrintedTable
 from synth.present.humping_outputs import TrialResult
 from synth.present.report.figure_table import ShownFigure, shown_figure
 

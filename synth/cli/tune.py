@@ -10,11 +10,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from synth.cli import LIMITS_MISSED, OK, say
-from synth.cli.processors import available
-from synth.cli.tables_refused import require_a_table, tables_refused
+from synth.book.tables_refused import require_a_table, tables_refused
 from synth.configuration.resolved_config import ResolvedConfig
-from synth.frame.input_error import InputError
+from synth.frame.processors import available
+from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
 
 if TYPE_CHECKING:
     from synth.frame.results_directory import ResultsDirectory
@@ -24,8 +23,9 @@ def tune_command(
     path: Path | None, output: Path, workers: int | None, permissions: bool, pareto: bool, as_json: bool
 ) -> int:
     """Tune the configuration in `path` into the directory `output`, and tell what else is asked; the exit code."""
-    from synth.book.creation_time import require_date
+    from synth.book.configured import require_room, sensors_left_aside
     from synth.configuration.config_file import BUILT_IN, load_config
+    from synth.frame.creation_time import require_date
     from synth.frame.results_directory import results_directory
 
     config = load_config(path)
@@ -34,19 +34,12 @@ def tune_command(
 
         require_tellable(config, str(path or BUILT_IN), "--permissions")
     workers = workers or min(len(config.cuts), available())
-    require_room(config, path, workers)
+    require_room(config, str(path or BUILT_IN), workers)
     require_date()
     with results_directory(output, "tune", filter(None, [path])) as directory:
         for warning in (*config.warnings, *sensors_left_aside(config)):
             say(f"warning: {warning}")
         return tune_into(directory, config, path, Asked(workers, permissions, pareto, as_json))
-
-
-def sensors_left_aside(config: ResolvedConfig) -> tuple[str, ...]:
-    """A word about point sensors in a configuration whose tables are made for a radar."""
-    if config.sensors is None:
-        return ()
-    return ("tables are made for the radar of [sensor]; 'retarder-synth sensors tune' makes those for [sensors]",)
 
 
 @dataclass(frozen=True)
@@ -61,8 +54,8 @@ class Asked:
 
 def tune_into(directory: ResultsDirectory, config: ResolvedConfig, path: Path | None, asked: Asked) -> int:
     """The work itself, and what is said about it."""
-    from synth.cli.interrupt import interruptible
-    from synth.cli.progress import Progress
+    from synth.frame.terminal.interrupt import interruptible
+    from synth.frame.terminal.progress import Progress
     from synth.kernels.cache import cache_in_use, guarded
 
     started = time.monotonic()
@@ -76,8 +69,8 @@ def tune_into(directory: ResultsDirectory, config: ResolvedConfig, path: Path | 
         wanted = config.output.plots or config.output.report
         studio = stack.enter_context(Studio(asked.workers if wanted else 1))
         from synth.book.acceptance import judge
-        from synth.book.printed_numbers import counted
         from synth.book.tune import no_notice, tune
+        from synth.frame.printed_numbers import counted
         from synth.present.outputs import store_table, write_outputs
 
         case_done = studio.case_done if wanted else no_notice
@@ -96,16 +89,3 @@ def tune_into(directory: ResultsDirectory, config: ResolvedConfig, path: Path | 
 
         print_book(summary, directory.path, book.permissions, (book.permissions_line, book.pareto_line))
     return OK if verdict.accepted else LIMITS_MISSED
-
-
-def require_room(config: ResolvedConfig, path: Path | None, workers: int) -> None:
-    """`InputError` if the grid would not fit into memory."""
-    from plant_models import PlantError
-    from synth.solver.chain.grid import require_memory
-
-    for label, plant in config.plants():
-        try:
-            require_memory(label, plant, config.grids(plant), workers)
-        except PlantError as error:
-            sentence = str(error).replace("grid: ", "grid.", 1)
-            raise InputError(f"{path or 'built-in configuration'}: {sentence}") from None

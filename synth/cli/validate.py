@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from synth.cli import LIMITS_MISSED, OK, say
-from synth.cli.processors import available
+from synth.frame.processors import available
+from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -54,9 +54,9 @@ def validate_command(
 ) -> int:
     """Simulate the tables in `path`; 1 if one that is not known to be infeasible is not shown to keep every limit."""
     from synth.book.forms.table_file import is_infeasible, summary_beside
-    from synth.cli.interrupt import interruptible
     from synth.cli.tables_configuration import configuration_for
     from synth.frame.input_error import InputError
+    from synth.frame.terminal.interrupt import interruptible
     from synth.kernels.cache import guarded
 
     passages, tables = tables_in(path)
@@ -148,11 +148,11 @@ def document(each: Revalidation, seed: int) -> dict[str, Any]:
 
 def print_found(found: list[Revalidation], seed: int, log: AskedLog | None) -> None:
     """A table with one row for each table, and what it comes to."""
-    from synth.book.printed_numbers import plus_minus, speed, ten_thousand
     from synth.cli.book_table import LEGEND
     from synth.cli.case_columns import OUT_OF_BRAKE_IN, PREDICTED, WITHIN
-    from synth.cli.printed_page import Exhibit, print_page
-    from synth.cli.printed_table import Column, PrintedTable
+    from synth.frame.printed_numbers import plus_minus, speed, ten_thousand
+    from synth.frame.terminal.printed_page import Exhibit, print_page
+    from synth.frame.terminal.printed_table import Column, PrintedTable
 
     def error(figure: str) -> Callable[[Revalidation], str]:
         return lambda each: plus_minus(

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from synth.cli import INPUT_FAULT, say
+from synth.frame.terminal.telling import INPUT_FAULT, say
 
 if TYPE_CHECKING:
     from synth.checker.finding import Finding
@@ -28,7 +28,7 @@ def verify_command(source: Path, passes: int, seed: int, as_json: bool) -> int:
     if as_json:
         print(json.dumps(document(verdict), indent=1, ensure_ascii=False))
     else:
-        from synth.cli.printed_page import print_page
+        from synth.frame.terminal.printed_page import print_page
 
         print_page(*words(verdict))
     return verdict.code

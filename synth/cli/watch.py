@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from synth.cli import LIMITS_MISSED, OK, say
+from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
 
 if TYPE_CHECKING:
     from synth.yard.measured_passes.fitting_passes import FittingPasses
@@ -31,11 +31,11 @@ class AskedWatch:
 
 def watch_command(asked: AskedWatch, as_json: bool) -> int:
     """Watch the passes in the logs; 1 if something has drifted."""
-    from synth.book.creation_time import creation_time, require_date
-    from synth.cli.interrupt import interruptible
-    from synth.cli.processors import available
     from synth.configuration.config_file import BUILT_IN, load_config
+    from synth.frame.creation_time import creation_time, require_date
+    from synth.frame.processors import available
     from synth.frame.results_directory import results_directory
+    from synth.frame.terminal.interrupt import interruptible
     from synth.kernels.cache import guarded
 
     config = load_config(asked.config)
@@ -64,7 +64,7 @@ def watch_command(asked: AskedWatch, as_json: bool) -> int:
     if as_json:
         print(written.json, end="")
     else:
-        from synth.cli.printed_page import print_page
+        from synth.frame.terminal.printed_page import print_page
 
         print_page(*written.verdict, f"watch.json, charts.csv, watch.png and report.html in {asked.output}")
     return OK if found.drift is None else LIMITS_MISSED

@@ -9,7 +9,8 @@ from typing import Annotated
 import typer
 
 from synth.cli import hump_commands, sensors_commands
-from synth.cli.arguments import Config, Json, directory, whole_number
+from synth.cli.arguments import Config
+from synth.frame.arguments import Json, directory, whole_number
 
 Configuration = Annotated[Path | None, typer.Argument(metavar="CONFIG.toml", help="Built-in unless given.")]
 Output = Annotated[Path, typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where the results go.")]
@@ -22,7 +23,6 @@ Seed = Annotated[
 def add_yard_commands(app: typer.Typer) -> None:
     """Add the commands of the yard to `app`."""
     app.command()(aim)
-    app.command()(computer)
     app.command()(watch)
     app.add_typer(hump_commands.app, name="hump")
     app.add_typer(sensors_commands.app, name="sensors")
@@ -50,29 +50,6 @@ def aim(
     from synth.cli.aim import aim_command
 
     return aim_command(config, output, passes, seed, as_json)
-
-
-def computer(
-    config: Configuration = None,
-    output: Output = Path("out/computer"),
-    draws: Annotated[
-        int | None,
-        typer.Option(
-            parser=whole_number(200, 1_000_000),
-            metavar="N",
-            help="Draws of the uncertain inputs; as configured unless given.",
-        ),
-    ] = None,
-    seed: Seed = None,
-    as_json: Json = False,
-) -> int:
-    """Size the control computer of a hump: how fast, how reliable, and what it pays.
-
-    Exit code 1 if it is slower than its tasks need, or misses a limit of the configuration.
-    """
-    from synth.cli.computer import computer_command
-
-    return computer_command(config, output, draws, seed, as_json)
 
 
 def watch(

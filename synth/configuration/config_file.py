@@ -6,12 +6,12 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from synth.configuration.file_fault import faults_in
 from synth.configuration.own_types import with_own_types
 from synth.configuration.resolved_config import ResolvedConfig, resolve
 from synth.configuration.settings import Settings
-from synth.configuration.toml_file import Tree, read_text, toml_tree
 from synth.frame.input_error import InputError
+from synth.frame.settings.file_fault import faults_in
+from synth.frame.settings.toml_file import Tree, read_text, toml_tree
 
 BUILT_IN = "built-in configuration"
 

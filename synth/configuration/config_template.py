@@ -21,13 +21,13 @@ from plant_models.library.sourced_value import SET_BY_USER
 from synth.configuration.cut_class import CutClass
 from synth.configuration.plant_settings import DEFAULT_POSITION, PositionSettings
 from synth.configuration.resolved_config import ResolvedConfig, resolve
-from synth.configuration.section import Section, setting_limits, setting_unit
 from synth.configuration.settings import (
     NUMERICAL_SECTIONS,
     OutputSettings,
     RegulatorSettings,
     Settings,
 )
+from synth.frame.settings.section import Section, setting_limits, setting_unit
 
 HEAD = """\
 # Configuration of retarder-synth. Every line shows its default and may be left out.

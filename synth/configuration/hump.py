@@ -14,8 +14,8 @@ from plant_models.library.near_miss import near_miss
 from plant_models.library.type_file import HUMPS
 from synth.configuration.plant_fault import in_file
 from synth.configuration.railml.read import from_railml
-from synth.configuration.toml_file import read_text, toml_tree
 from synth.frame.input_error import InputError
+from synth.frame.settings.toml_file import read_text, toml_tree
 
 RAILML_SUFFIXES: Final = (".railml", ".xml")
 

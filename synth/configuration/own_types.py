@@ -31,8 +31,8 @@ from plant_models.library import (
 )
 from plant_models.library.data_file import parse_toml
 from plant_models.library.near_miss import close_name
-from synth.configuration.toml_file import Tree, read_text
 from synth.frame.input_error import InputError
+from synth.frame.settings.toml_file import Tree, read_text
 from tuning_tables.excerpt import excerpt
 
 SUFFIX: Final = ".toml"

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from synth.configuration.section import Section
-from synth.configuration.value_forms import Grade, Numbers, Pairs
+from synth.frame.settings.section import Section
+from synth.frame.settings.value_forms import Grade, Numbers, Pairs
 
 DEFAULT_POSITION = "knp-5-bunch"
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -25,7 +24,6 @@ from synth.configuration.grid_warnings import grid_warnings
 from synth.configuration.plant_fault import in_file
 from synth.configuration.point_sensors.resolved_sensors import ResolvedSensors, require_served, resolve_sensors
 from synth.configuration.position_choice import require_held, resolve_position
-from synth.configuration.section import Section, setting_limits, setting_source, setting_unit
 from synth.configuration.settings import (
     NUMERICAL_SECTIONS,
     AcceptanceSettings,
@@ -39,6 +37,7 @@ from synth.configuration.settings import (
 )
 from synth.configuration.targets import resolve_targets
 from synth.frame.input_error import InputError
+from synth.frame.settings.numbers import numbers_of, range_warnings
 from synth.problem.aim import Aim
 from synth.problem.any_time_resolution import design_resolution
 from synth.problem.criterion import Criterion
@@ -47,8 +46,6 @@ from synth.problem.problem import Problem
 from synth.problem.resolution import Resolution, finer_for_check
 from tuning_tables.canonical import canonical_json
 from tuning_tables.excerpt import excerpt
-
-DIMENSIONLESS = "1"
 
 
 @dataclass(frozen=True)
@@ -183,7 +180,7 @@ def resolve(settings: Settings, file: str, library: Library = BUILT_IN) -> Resol
         *position.provenance,
         *(sensors.provenance if sensors is not None else ()),
         *(value for c in cuts for value in c.provenance),
-        *(value for name in NUMERICAL_SECTIONS for value in setting_values(name, getattr(settings, name))),
+        *(value for name in NUMERICAL_SECTIONS for value in numbers_of(getattr(settings, name), name)),
     )
     parameters = with_sources(parameters, settings, file)
     config = ResolvedConfig(
@@ -280,21 +277,3 @@ def require_plain_criterion(config: ResolvedConfig, file: str) -> None:
                 f"{file}: regulator.{said}, but criterion.p_overspeed and criterion.worst_friction_* can be kept only "
                 f"with {kept}; set that, or leave the requirement out"
             )
-
-
-def setting_values(name: str, section: Section) -> Iterator[SourcedValue]:
-    """The numerical settings of a section with unit, limits and origin."""
-    for key, field in type(section).model_fields.items():
-        if not setting_unit(field):
-            continue
-        value = getattr(section, key)
-        source = setting_source(field) if value == field.default else SET_BY_USER
-        yield SourcedValue(f"{name}.{key}", float(value), setting_unit(field), setting_limits(field), source, "")
-
-
-def range_warnings(parameters: tuple[SourcedValue, ...]) -> Iterator[str]:
-    """A sentence for every value outside its sensible range."""
-    for p in parameters:
-        if p.range is not None and not p.in_range:
-            unit = "" if p.unit == DIMENSIONLESS else f" {p.unit}"
-            yield f"{p.key} is {p.value!r}; its sensible range is {p.range[0]:g} to {p.range[1]:g}{unit}"

@@ -26,8 +26,8 @@ from synth.configuration.plant_settings import (
     TrackSettings,
 )
 from synth.configuration.point_sensors.settings import PointSensorSettings
-from synth.configuration.section import Section, setting
-from synth.configuration.value_forms import Source, Title
+from synth.frame.settings.section import Section, setting
+from synth.frame.settings.value_forms import Source, Title
 from synth.problem.criterion import Criterion
 from synth.problem.requirement import FrictionRange, OverspeedLimit, Requirement
 from synth.problem.resolution import LONG_PASS_M, Resolution

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 from synth.book.forms.aim_forms import aim_c_form, aim_csv_form, aim_json_form, aim_st_form
 from synth.book.summary import Document
+from synth.frame.picture.picture import Picture, picture_files
 from synth.frame.results_directory import ResultsDirectory
-from synth.present.plots.picture import Picture, picture_files
 from synth.present.report.aim_report import AimReport, aim_page
 from synth.yard.aim.aim_acceptance import AimBookVerdict
 from synth.yard.aim.aim_book import AimBook, order_of

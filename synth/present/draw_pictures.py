@@ -20,7 +20,7 @@ from types import TracebackType
 
 from synth.book.case_names import by_class
 from synth.book.case_result import CaseResult
-from synth.present.plots.picture import Picture
+from synth.frame.picture.picture import Picture
 
 Job = tuple[str, tuple[object, ...]]
 """Name of a function of `synth.present.plots.picture_book`, and its arguments."""

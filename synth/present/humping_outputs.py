@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from synth.book.summary import Document
+from synth.frame.picture.picture import Picture, picture_files
 from synth.frame.results_directory import ResultsDirectory
 from synth.present.hump_page.hump_page import hump_page
-from synth.present.plots.picture import Picture, picture_files
 from synth.present.report.humping_report import HumpingReport, humping_page
 from synth.yard.hump.event_log import to_log_csv
 from synth.yard.humping.controlled_train import ControlledTrain

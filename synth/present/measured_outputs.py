@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from synth.book.summary import Document
 from synth.configuration.resolved_config import ResolvedConfig
+from synth.frame.picture.picture import Picture, picture_files
 from synth.frame.results_directory import ResultsDirectory
-from synth.present.plots.picture import Picture, picture_files
 from synth.present.report.measured_report import Figures, MeasuredReport, measured_page
 from synth.yard.measured_passes.replay.replay import Replay
 from synth.yard.measured_passes.replay.replay_summary import is_described, replay_sentences, replay_summary

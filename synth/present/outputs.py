@@ -9,9 +9,9 @@ from synth.book.acceptance import Verdict
 from synth.book.forms.table_forms import c_form
 from synth.book.summary import Document, summary_of
 from synth.book.tune import Book
+from synth.frame.picture.picture import Picture, picture_files
 from synth.frame.results_directory import ResultsDirectory
 from synth.present.draw_pictures import Studio
-from synth.present.plots.picture import Picture, picture_files
 from synth.present.report import BookReport, report_page
 from tuning_tables import ControllerTable, read_json, to_csv, to_json, write_book
 from tuning_tables.canonical import canonical_json

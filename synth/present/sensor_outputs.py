@@ -8,8 +8,8 @@ from synth.book.acceptance import Verdict
 from synth.book.sensors.sensor_summary import sensor_summary
 from synth.book.sensors.sensor_tune import SensorBook
 from synth.book.summary import Document
+from synth.frame.picture.picture import Picture, picture_files
 from synth.frame.results_directory import ResultsDirectory
-from synth.present.plots.picture import Picture, picture_files
 from synth.present.report.sensor_report import SensorReport, sensor_page
 from tuning_tables import InvalidTable
 from tuning_tables.canonical import canonical_json

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from synth.book.summary import Document, plain
+from synth.frame.picture.picture import drawing_files
 from synth.frame.results_directory import ResultsDirectory
-from synth.present.plots.picture import drawing_files
 from synth.yard.humping.speed_program import SpeedProgram, locomotive_csv, uncoupler_csv
 
 

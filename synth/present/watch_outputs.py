@@ -9,12 +9,12 @@ from typing import Any
 
 from synth.book.summary import plain
 from synth.configuration.resolved_config import ResolvedConfig
+from synth.frame.page.document import Stamp, document, figure
+from synth.frame.page.markup import Markup, element, head_row, joined, table
+from synth.frame.picture.figure_file import draw
+from synth.frame.picture.picture import Picture, picture_files
 from synth.frame.results_directory import ResultsDirectory
 from synth.present.plots.control_charts import control_charts
-from synth.present.plots.figure_file import draw
-from synth.present.plots.picture import Picture, picture_files
-from synth.present.report.document import Stamp, document, figure
-from synth.present.report.markup import Markup, element, head_row, joined, table
 from synth.yard.measured_passes.drift.charts import RUN_LENGTH
 from synth.yard.measured_passes.drift.watch import Drift, Watch
 from tuning_tables.sheet import sheet

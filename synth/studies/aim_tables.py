@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from synth.book.creation_time import creation_time
-from synth.book.printed_numbers import percent
 from synth.configuration.aim.aim_file import BUILT_IN_AIM, parse_aim_file
+from synth.frame.creation_time import creation_time
 from synth.frame.input_error import InputError
+from synth.frame.printed_numbers import percent
 from synth.simulation.replicates import Interval
 from synth.studies.markdown_table import MarkdownTable, around, table
 from synth.studies.options import option

@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from synth.book.acceptance import judge
-from synth.book.printed_numbers import ABSENT, few, percent
 from synth.book.summary import summary_of
 from synth.book.tune import tune
 from synth.book.tuned_table import read_back
 from synth.book.watcher import Teller
 from synth.configuration.config_file import load_config
+from synth.frame.printed_numbers import ABSENT, few, percent
 from synth.simulation.replicates import Interval
 from synth.studies.cases import of_masses
 from synth.studies.markdown_table import MarkdownTable, around, table

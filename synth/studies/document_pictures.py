@@ -64,7 +64,7 @@ def is_stale(file: Path, result: Result, name: str) -> bool:
 
 def write_picture(file: Path, result: Result, name: str) -> None:
     """Draw the picture `name` of `result` into `file`."""
-    from synth.present.plots.figure_file import draw
+    from synth.frame.picture.figure_file import draw
 
     figure = figure_of(result, name)
     end = end_of(figure)  # of the figure as `is_stale` sees it: drawing one makes its ticks

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 
-from synth.configuration.toml_text import toml_text
 from synth.frame.results_directory import SUMMARY, ResultsDirectory
+from synth.frame.settings.toml_text import toml_text
 from synth.sweep.book_summary import BookFigures, Failure, book_summary, case_of, sweep_summary
 from synth.sweep.plan import Plan, Unit
 from synth.sweep.sweep_directory import HeldSweep, SweepDirectory
@@ -107,7 +107,7 @@ def write_condition(
     if file.settings.tables:
         results.write_all({within(condition, f"tables/{table.id}.json"): to_json(table) for table in tables})
     if condition.config.output.plots:
-        from synth.present.plots.figure_file import figure_files
+        from synth.frame.picture.figure_file import figure_files
         from synth.sweep.heat_map import heat_map
 
         refused = {(each.label, each.target_m_s) for each in figures.failures if each.target_m_s is not None}

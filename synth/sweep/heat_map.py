@@ -13,7 +13,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from synth.present.plots.house_style import GREY, INK, dress, mark_plainly, new_figure, place
+from synth.frame.picture.house_style import GREY, INK, dress, mark_plainly, new_figure, place
 from synth.sweep.sweep_file import Condition
 
 COLOURS = "viridis"

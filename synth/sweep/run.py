@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 from importlib.metadata import version
 from typing import Protocol
 
-from synth.book.creation_time import creation_time
+from synth.frame.creation_time import creation_time
 from synth.frame.input_error import InputError
 from synth.solver.chain.grid import available_memory_bytes
 from synth.sweep.bind import Failure, Outcome, bind

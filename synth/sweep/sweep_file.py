@@ -13,14 +13,14 @@ from pydantic_core import ErrorDetails
 from plant_models.library import BUILT_IN, Library
 from plant_models.library.near_miss import near_miss
 from synth.configuration.config_file import valid_settings
-from synth.configuration.file_fault import ALLOWED, key_path, shown
 from synth.configuration.own_types import with_own_types
 from synth.configuration.plant_settings import DEFAULT_CUTS, CutSettings
 from synth.configuration.resolved_config import ResolvedConfig, resolve
-from synth.configuration.section import setting_limits
 from synth.configuration.settings import Settings
-from synth.configuration.toml_file import Tree, read_text, toml_tree
 from synth.frame.input_error import InputError
+from synth.frame.settings.file_fault import ALLOWED, key_path, shown
+from synth.frame.settings.section import setting_limits
+from synth.frame.settings.toml_file import Tree, read_text, toml_tree
 from synth.sweep.sweep_settings import CONDITION_SECTIONS, SweepSettings, SweptCuts
 from tuning_tables.excerpt import excerpt
 

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, PlainValidator
 
-from synth.configuration.section import Section
+from synth.frame.settings.section import Section
 
 MOST_VALUES = 1000
 """Values of one range."""

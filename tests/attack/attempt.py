@@ -14,7 +14,8 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Final
 
-from synth.cli import MACHINE_FAULT, OK, UNFORESEEN, told
+from synth.cli import told
+from synth.frame.terminal.telling import MACHINE_FAULT, OK, UNFORESEEN
 from tests.attack.mutants import mutant
 
 LONGEST: Final = 700

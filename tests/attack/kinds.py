@@ -14,22 +14,23 @@ from typing import Final
 import h5py
 import numpy as np
 
-from synth.cli import say
 from synth.cli.hump import check_command
 from synth.cli.sensors_tune import read_configuration, require_room
+from synth.computer.command import COMMAND as COMPUTER
+from synth.computer.settings import ComputerSettings
 from synth.configuration.aim.aim_file import read_aim_file
 from synth.configuration.aim.template import default_aim_toml
-from synth.configuration.computer.computer_file import read_computer_file
-from synth.configuration.computer.template import default_computer_toml
 from synth.configuration.config_file import load_config
 from synth.configuration.hump import parse_hump
 from synth.configuration.humping.template import default_trial_toml
 from synth.configuration.humping.trial_file import read_trial_file
 from synth.configuration.point_sensors.template import default_sensors_toml
 from synth.configuration.railml.write import to_railml
+from synth.frame.asked_file import asked_of
+from synth.frame.settings.template import template
+from synth.frame.terminal.telling import say
 from synth.yard.aim.aimed_position import position_of
 from synth.yard.aim.resolved_aim import resolve_aim
-from synth.yard.control_computer.resolved_computer import resolve_computer
 from synth.yard.humping.resolved_trial import resolve_trial
 from synth.yard.measured_passes.loaded_passes import loaded_passes
 from tests.attack.attempt import Kind, Reading
@@ -93,7 +94,7 @@ def read_aim(folder: Path) -> str:
 
 def read_computer(folder: Path) -> str:
     """As `computer`."""
-    resolve_computer(read_computer_file(folder / "computer.toml"))
+    COMPUTER.resolve(asked_of(COMPUTER, folder / "computer.toml", COMPUTER.options(), "init --computer"))
     return ""
 
 
@@ -180,7 +181,9 @@ KINDS: Final[Mapping[str, Callable[[], Kind]]] = {
     "railml": lambda: file_kind("hump.railml", railml(), partial(read_hump_file, name="hump.railml")),
     "trial": lambda: file_kind("trial.toml", plain(default_trial_toml()), read_trial),
     "aim": lambda: file_kind("aim.toml", plain(default_aim_toml()), read_aim),
-    "computer": lambda: file_kind("computer.toml", plain(default_computer_toml()), read_computer),
+    "computer": lambda: file_kind(
+        "computer.toml", plain(template(ComputerSettings(), "Control computer of a hump", "computer")), read_computer
+    ),
     "sensors": lambda: file_kind("sensors.toml", plain(default_sensors_toml()), read_sensors),
     "mapping": mapping_kind,
     "list": list_kind,

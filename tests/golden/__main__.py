@@ -30,7 +30,7 @@ def record(target: Path, beginnings: list[str]) -> int:
                 started = time.monotonic()
                 found[order.line] = recorded(order, folder)
                 print(f"{found[order.line].code} {time.monotonic() - started:6.1f} s  {order.line}", flush=True)
-    target.write_bytes(document_of(found))
+                target.write_bytes(document_of(found))  # what a run that ends early has found is there
     return 0
 
 

@@ -80,7 +80,7 @@ ORDERS: tuple[Order, ...] = (
     Order(f"replay {LOG} --table measured/book.h5 --own {BOOK}", "replayed"),
     Order(f"retune {LOG} --table {BOOK}", "retuned"),
     Order("permissions measured.toml --workers 1", "permissions"),
-    Order("sensitivity measured.toml --points 65 --passes 100", "sensitivity"),
+    Order("sensitivity measured.toml --points 200 --passes 100", "sensitivity"),
     Order("sweep sweep.toml --workers 1", "swept"),
     Order("sweep status swept"),
     Order("sensors tune sensors.toml --workers 1", "passages"),

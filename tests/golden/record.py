@@ -25,7 +25,7 @@ class Record:
     """What one order came to.
 
     `printed`: stdout, then stderr, of which progress is left out. `files`: SHA-256 of every file by its path, but of
-    JSON, whose leaves stand in `leaves` by file and path: numbers, texts, true, false, null.
+    a JSON document, whose leaves stand in `leaves` by file and path: numbers, texts, true, false, null.
     """
 
     code: int
@@ -44,11 +44,20 @@ def recorded(order: Order, folder: Path) -> Record:
     leaves: dict[str, Any] = {}
     for path in sorted(written_to(folder / order.output)) if order.output else ():
         name, content = path.relative_to(folder).as_posix(), path.read_bytes()
-        if path.suffix == ".json":
-            leaves |= {f"{name}: {place}": leaf for place, leaf in leaves_of(json.loads(content), "")}
-        else:
+        document = parsed(content) if path.suffix == ".json" else None
+        if document is None:
             files[name] = hashlib.sha256(content).hexdigest()
+        else:
+            leaves |= {f"{name}: {place}": leaf for place, leaf in leaves_of(document, "")}
     return Record(done.returncode, printed, files, leaves)
+
+
+def parsed(content: bytes) -> Any:
+    """A JSON document; None for what is none, as a file of one document a line is."""
+    try:
+        return json.loads(content)
+    except ValueError:
+        return None
 
 
 def written_to(output: Path) -> Iterator[Path]:

@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from synth.computer.economics.hump_rates import RATES, HumpRates
+from synth.computer.sizing.demand_service import Discipline
 from synth.studies.control_computer.benefit import RateEstimates
 from synth.studies.control_computer.comparison import Comparison, joint_factor, judged, verdict
 from synth.studies.control_computer.controllers import Controllers, controllers
@@ -20,8 +22,6 @@ from synth.studies.control_computer.reliability import DUPLEXES, duplex_point, l
 from synth.studies.documents import result_of
 from synth.studies.humping.base_trial import Day
 from synth.studies.humping.runs import Group
-from synth.yard.control_computer.economics.hump_rates import HumpRates
-from synth.yard.control_computer.sizing.demand_service import Discipline
 from synth.yard.humping.made_trial import brake_of
 from synth.yard.humping.outcomes import joined
 from synth.yard.humping.resolved_trial import load_trial
@@ -126,7 +126,7 @@ def test_every_queue_keeps_a_million_requests(kept: ControlComputer) -> None:
 def test_the_rates_that_the_command_takes_are_there_and_changes_are_their_differences(kept: ControlComputer) -> None:
     variants, beside = kept.benefit.variants, kept.benefit.beside_today
     assert list(variants) == ["today", "asked", "new", "tables"]
-    names = [field.name for field in fields(HumpRates)]
+    names = list(RATES)
     assert names == [field.name for field in fields(RateEstimates)]
     for name in ("today", "new"):
         HumpRates(**{field: getattr(variants[name].rates, field).value for field in names})

@@ -168,7 +168,7 @@ def test_what_is_told_on_the_way(config: Path, tmp_path: Path) -> None:
 WORKERS_WITHOUT_A_CACHE = """
 import sys
 from pathlib import Path
-from synth.cli import leave
+from synth.frame.terminal.telling import leave
 from synth.sweep.local_workers import LocalWorkers
 from synth.sweep.plan import plan_of
 from synth.sweep.sweep_file import load_sweep

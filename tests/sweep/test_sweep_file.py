@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from synth.configuration.config_file import parse_config
-from synth.configuration.toml_text import toml_text
+from synth.frame.settings.toml_text import toml_text
 from synth.sweep.plan import plan_of
 from synth.sweep.sweep_file import parse_sweep
 from tests.sweep.conftest import MEASURED, PLANT, SWEEP, Ran

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from synth.book.case_names import by_class
 from synth.book.case_result import CaseResult
-from synth.present.plots.picture import Picture
+from synth.frame.picture.picture import Picture
 from synth.present.plots.picture_book import book_pictures, case_pictures, class_pictures
 
 

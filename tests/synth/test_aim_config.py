@@ -12,9 +12,9 @@ from plant_models.rolling.resistance_law import LARGEST_ERLANG_ORDER, HumpNormLa
 from synth.configuration.aim.aim_file import parse_aim_file, read_aim_file
 from synth.configuration.aim.settings import ResistanceSettings
 from synth.configuration.aim.template import default_aim_toml
-from synth.configuration.section import setting_limits
 from synth.configuration.type_template import type_toml
 from synth.frame.input_error import InputError
+from synth.frame.settings.section import setting_limits
 from synth.yard.aim.resolved_aim import ResolvedAim, resolve_aim
 
 

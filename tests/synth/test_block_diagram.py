@@ -9,6 +9,7 @@ import pytest
 from matplotlib.text import Text
 
 from plant_models import Plant
+from synth.frame.picture.figure_file import draw
 from synth.present.plots.block_diagram import block_diagram, branches, in_mathtext, parting
 from synth.present.plots.block_layout import (
     HEIGHT_IN,
@@ -21,7 +22,6 @@ from synth.present.plots.block_layout import (
     centre,
     corners,
 )
-from synth.present.plots.figure_file import draw
 from synth.simulation.controllers import TableController
 from synth.simulation.passage_loop import close_passage_loop
 from synth.simulation.structure.diagram import Sketch

@@ -17,12 +17,13 @@ from matplotlib.text import Text
 
 from synth.book.case_names import by_class, file_stem
 from synth.book.case_result import CaseResult
+from synth.book.command_panels import command_image
+from synth.frame.picture.figure_file import draw, figure_files
+from synth.frame.picture.house_style import MATHEMATICS, logarithmic_y, new_figure
+from synth.frame.picture.picture import picture_files
 from synth.present.plots.exit_density import bin_edges_m_s, exit_density, predicted_density
 from synth.present.plots.feasibility import feasibility
-from synth.present.plots.figure_file import draw, figure_files
-from synth.present.plots.house_style import MATHEMATICS, logarithmic_y, new_figure
-from synth.present.plots.picture import picture_files
-from synth.present.plots.policy_map import command_image, parts_in_stage, policy_map
+from synth.present.plots.policy_map import parts_in_stage, policy_map
 from synth.present.plots.rms_by_controller import rms_by_controller
 from synth.present.plots.sample_passes import outcome, sample_passes
 from synth.present.plots.surfaces import surfaces

@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from synth.cli.processors import available
+from synth.frame.processors import available
 
 
 def test_as_many_as_this_process_may_use(monkeypatch: pytest.MonkeyPatch) -> None:

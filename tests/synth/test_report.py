@@ -16,11 +16,11 @@ from synth.book.comparison.limit_cycle import hunting_report
 from synth.book.failed_case import FailedCase
 from synth.book.off_nominal.condition import CONDITIONS
 from synth.book.permissions.permission import Permission
-from synth.book.printed_numbers import counted, percent, quotient, span
-from synth.present.plots.picture import Drawing, Picture
+from synth.frame.page.markup import VOID, Markup, element
+from synth.frame.picture.picture import Drawing, Picture
+from synth.frame.printed_numbers import counted, percent, quotient, span
 from synth.present.report import BookReport, report_page
 from synth.present.report.checks_section import checks_section
-from synth.present.report.markup import VOID, Markup, element
 from synth.present.report.verdict import verdict
 from tests.synth.case_factory import make_case, make_permissions
 from tuning_tables import Estimator

@@ -16,12 +16,13 @@ import pytest
 
 from synth.book.permissions.overview import HINT
 from synth.book.permissions.refusal import tellable
+from synth.book.permissions.shown import AS_CONFIGURED
 from synth.checker.finding import Kind
 from synth.checker.stated_permissions import permission_faults
 from synth.checker.verdict import verify
 from synth.cli import main
 from synth.configuration.config_file import parse_config
-from tests.printed_page import Page, page_about, table_of, with_half
+from tests.printed_page import Page, page_about, table_of
 from tests.system.conftest import MEASURED
 
 SMALL = """\
@@ -110,50 +111,55 @@ def summary(folder: Path) -> dict[str, Any]:
     return read
 
 
+def told_figures(folder: Path) -> dict[str, dict[str, Any]]:
+    """Every figure of the only case, by permission."""
+    return {row["permission"]: row for row in summary(folder)["tables"]["figures"]}
+
+
 def test_every_permission_is_told_with_its_interval(ran: Path) -> None:
-    (case,) = summary(ran / "one")["cases"]
-    assert set(case["permissions"]) == ASKED
-    for each in case["permissions"].values():
-        low, high = each["ratio_ci95"]
-        assert low < each["ratio"] < high
-        assert each["passes"] == case["as_configured"]["passes"] == 8000
-        assert each["ratio"] == pytest.approx(each["rms_m_s"] / case["as_configured"]["rms_m_s"])
-        assert 0.85 < each["predicted_rms_m_s"] / each["rms_m_s"] < 1.15
+    told = told_figures(ran / "one")
+    assert set(told) == {*ASKED, AS_CONFIGURED}
+    configured = told[AS_CONFIGURED]["rms_m_s"]
+    for each in (told[name] for name in ASKED):
+        assert each["ratio"]["low95"] < each["ratio"]["value"] < each["ratio"]["high95"]
+        assert each["rms_m_s"]["n"] == configured["n"] == 8000
+        assert each["ratio"]["value"] == pytest.approx(each["rms_m_s"]["value"] / configured["value"])
+        assert 0.85 < each["predicted_rms_m_s"] / each["rms_m_s"]["value"] < 1.15
 
 
 def test_it_prints_the_figures_of_its_summary(ran: Path, pages: list[Page]) -> None:
     read = summary(ran / "one")
-    (case,), page = read["cases"], page_about(pages, ran / "one")
+    (row,), page = read["tables"]["permissions"], page_about(pages, ran / "one")
     (told,) = table_of(page)
-    configured = case["as_configured"]
-    wanted = {
-        "case": case["label"],
-        "target, m/s": f"{case['target_speed_m_s']:g}",
-        "rms as configured, m/s": with_half(configured["rms_m_s"], configured["rms_ci95_m_s"], 4),
-        **{name: with_half(each["ratio"], each["ratio_ci95"]) for name, each in case["permissions"].items()},
-    }
-    assert told == wanted
-    ratios = read["median_ratios"]
+    assert (told["case"], told["target, m/s"]) == (row["case"], f"{row['target_m_s']:g}")
+    assert told["rms as configured, m/s"] == in_brackets(row["configured_m_s"], 4)
+    for name in ASKED:
+        assert told[name] == in_brackets(row[name], 2)
+    ratios = read["figures"]["median_ratios"]
     medians = ", ".join(f"{name} {ratios[name]:.2f}" for name in told if name in ratios)
-    assert ratios.keys() == case["permissions"].keys()
-    assert str(page[1]).startswith(f"{configured['passes']} stratified passes a case. ")
+    assert ratios.keys() == ASKED
+    assert str(page[1]).startswith(f"{row['configured_m_s']['n']} stratified passes a case, ")
     assert str(page[1]).endswith(f"Medians: {medians}.")
 
 
-def test_commands_at_any_time_gain_and_no_approach_loses(ran: Path) -> None:
-    permissions = summary(ran / "one")["cases"][0]["permissions"]
-    assert permissions["commands at any time"]["ratio_ci95"][1] < 1.0
-    assert permissions["without the approach"]["ratio_ci95"][0] > 1.0
+def in_brackets(told: dict[str, float], digits: int) -> str:
+    """A figure with its interval, as people read it."""
+    value, low, high = (f"{told[key]:.{digits}f}" for key in ("value", "low95", "high95"))
+    return f"{value} [{low}, {high}]"
 
 
-def test_lines_for_the_measured_speed_lose(ran: Path) -> None:
-    permissions = summary(ran / "one")["cases"][0]["permissions"]
-    assert permissions["without the estimator"]["ratio_ci95"][0] > 1.0
+def test_commands_at_any_time_gain_and_no_approach_and_the_measured_speed_lose(ran: Path) -> None:
+    (row,) = summary(ran / "one")["tables"]["permissions"]
+    assert row["commands at any time"]["high95"] < 1.0
+    assert row["without the approach"]["low95"] > 1.0
+    assert row["without the estimator"]["low95"] > 1.0
 
 
 def test_all_files_are_named_with_their_hashes(ran: Path) -> None:
     files = summary(ran / "one")["files"]
-    assert set(files) == {"plots/permissions.png", "plots/permissions.svg"}
+    assert set(files) == {
+        "plots/permissions.png", "plots/permissions.svg", "report.html", "tables/figures.csv", "tables/permissions.csv",
+    }  # fmt: skip
     for name, digest in files.items():
         assert hashlib.sha256((ran / "one" / name).read_bytes()).hexdigest() == digest
 
@@ -168,10 +174,15 @@ def test_the_same_bytes_with_two_workers_and_as_json(
         written.append((tmp_path / workers / "summary.json").read_text(encoding="utf-8"))
         assert capsys.readouterr().out == written[-1]
     assert written[0] == written[1]
-    (case,), (of_tune,) = json.loads(written[0])["cases"], summary(tuned / "1")["cases"]
-    assert set(case["permissions"]) == {*ASKED, "approach of 4 m"} - {"without the approach"}
-    assert of_tune["permissions"] == case["permissions"]
-    assert of_tune["simulated"].items() >= case["as_configured"].items()
+    told, (of_tune,) = told_figures(tmp_path / "1"), summary(tuned / "1")["cases"]
+    assert set(told) == {*ASKED, "approach of 4 m", AS_CONFIGURED} - {"without the approach"}
+    assert told[AS_CONFIGURED]["rms_m_s"]["value"] == of_tune["simulated"]["rms_m_s"]
+    for name, each in of_tune["permissions"].items():
+        assert told[name]["ratio"]["value"] == each["ratio"]
+        assert told[name]["rms_m_s"] == {
+            "value": each["rms_m_s"], "low95": each["rms_ci95_m_s"][0], "high95": each["rms_ci95_m_s"][1],
+            "n": each["passes"],
+        }  # fmt: skip
 
 
 def test_a_tune_with_permissions_leaves_the_same_bytes_with_two_workers(tuned: Path) -> None:

@@ -21,9 +21,9 @@ import pytest
 
 from synth.cli import main
 from synth.cli.book_table import print_book
-from synth.cli.printed_page import Verdict, page_lines
-from synth.cli.printed_table import Column, PrintedTable, table_lines
-from synth.cli.printed_words import wrapped
+from synth.frame.terminal.printed_page import Verdict, page_lines
+from synth.frame.terminal.printed_table import Column, PrintedTable, table_lines
+from synth.frame.terminal.printed_words import wrapped
 from tests.printed_page import (
     WIDTHS,
     Page,

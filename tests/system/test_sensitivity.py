@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-import synth.cli.sensitivity as command
+import synth.book.sensitivity.command as command
 from synth.cli import main
 from tests.frame.results import results_in
 
@@ -38,6 +38,7 @@ mass_t = 22
 """
 """A park retarder, one light class and one target; a yard that knows its entry speeds and its c(n)."""
 
+LEFT = {"together", "noise"}
 SLOPE = ("retarder.force.slope_kn_per_kpa", "retarder.force.slope_kn_per_kpa_per_t")
 
 
@@ -57,60 +58,67 @@ def asked(folder: Path, name: str, *words: str) -> int:
     return main(["sensitivity", str(folder / "c.toml"), "-o", str(folder / name), "--points", "300", *words])
 
 
-def document(folder: Path) -> dict[str, Any]:
-    """sensitivity.json."""
-    read: dict[str, Any] = json.loads((folder / "sensitivity.json").read_bytes())
+def tables(folder: Path) -> dict[str, Any]:
+    """The tables of summary.json."""
+    read: dict[str, Any] = json.loads((folder / "summary.json").read_bytes())["tables"]
+    return read
+
+
+def figures(folder: Path) -> dict[str, Any]:
+    """The figures of its sentences."""
+    read: dict[str, Any] = json.loads((folder / "summary.json").read_bytes())["figures"]
     return read
 
 
 def test_the_slope_of_the_force_comes_first_for_the_bias(ran: Path) -> None:
-    bias = next(each for each in document(ran / "one")["overall"] if each["output"] == "bias_m_s")
-    assert bias["shares"][0]["key"] in SLOPE
-    assert bias["shares"][0]["decided"]
+    rows = [row for row in tables(ran / "one")["overall"] if row["key"] not in LEFT]
+    first = max(rows, key=lambda row: row["bias_m_s"]["value"])
+    assert first["key"] in SLOPE
+    assert first["bias_m_s"]["low95"] > 0.0
+    assert figures(ran / "one")["first_bias_m_s"] == first["key"]
 
 
 def test_shares_what_is_together_and_noise_are_all(ran: Path) -> None:
-    for each in document(ran / "one")["cases"][0]["outputs"]:
-        if each["shares"]:
-            parts = [share["share"] for share in each["shares"]]
-            parts += [each["noise"]["share"], each["together"]["share"]]
-            assert sum(parts) == pytest.approx(1.0, abs=1e-4)
-            assert each["noise"]["share"] < 0.2
-            assert min(parts) > -0.3
+    rows = tables(ran / "one")["cases"]
+    for output in ("rms_m_s", "bias_m_s", "overspeed"):
+        parts = {row["key"]: row[output]["value"] for row in rows if row[output] is not None}
+        if parts:
+            assert sum(parts.values()) == pytest.approx(1.0, abs=1e-9)
+            assert parts["noise"] < 0.2
+            assert min(parts.values()) > -0.3
 
 
 def test_what_the_configuration_sets_is_held(ran: Path) -> None:
-    told = document(ran / "one")
-    assert {"entry.low_m_s", "entry.high_m_s", "retarder.force.slope_factor_by_axles"} <= set(told["held"])
-    keys = {each["key"] for each in told["parameters"]}
-    assert keys.isdisjoint(told["held"])
+    told = tables(ran / "one")
+    held = {row["key"] for row in told["held"]}
+    assert {"entry.low_m_s", "entry.high_m_s", "retarder.force.slope_factor_by_axles"} <= held
+    keys = {row["key"] for row in told["overall"]} - LEFT
+    assert keys.isdisjoint(held)
     assert {"cut.mass_t", "friction.common_cv", "sensor.noise_m_s"} <= keys
-    for one in told["ranges"].values():
-        assert all(each["low"] <= each["nominal"] <= each["high"] for each in one.values())
+    assert {row["key"] for row in told["ranges"]} == keys
+    assert all(row["low"] <= row["nominal"] <= row["high"] for row in told["ranges"])
 
 
 def test_same_bytes_whatever_the_threads(ran: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
     monkeypatch.setattr(command, "available", lambda: 3)
     assert asked(ran, "three") == 0
-    assert len(results_in(ran / "one")) == 8
+    assert len(results_in(ran / "one")) == 11
     assert results_in(ran / "one") == results_in(ran / "three")
 
 
-def test_files_are_those_of_the_summary_and_csv_says_what_the_document_says(ran: Path) -> None:
+def test_files_are_those_of_the_summary_and_csv_says_what_it_says(ran: Path) -> None:
     summary = json.loads((ran / "one" / "summary.json").read_bytes())
     for name, digest in summary["files"].items():
         assert hashlib.sha256((ran / "one" / name).read_bytes()).hexdigest() == digest
-    with (ran / "one" / "sensitivity.csv").open(encoding="utf-8", newline="") as file:
+    with (ran / "one" / "tables" / "cases.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
-    shares = {(row["label"], row["output"], row["key"]): float(row["share"]) for row in rows}
-    told = document(ran / "one")
-    for case in told["cases"]:
-        for each in case["outputs"]:
-            for share in each["shares"]:
-                assert shares[case["label"], each["output"], share["key"]] == pytest.approx(share["share"], abs=1e-6)
+    for row, told in zip(rows, summary["tables"]["cases"], strict=True):
+        assert (row["case"], row["key"]) == (told["case"], told["key"])
+        assert float(row["bias_m_s"]) == told["bias_m_s"]["value"]
+        assert float(row["bias_m_s_low95"]) == told["bias_m_s"]["low95"]
     page = (ran / "one" / "report.html").read_text(encoding="utf-8")
-    assert told["measure_first"][0] in page
+    assert "measure first, for the rms exit error" in page
 
 
 def test_a_table_of_a_tune_gives_the_shares_of_the_table_made_here(
@@ -120,7 +128,8 @@ def test_a_table_of_a_tune_gives_the_shares_of_the_table_made_here(
     assert main(["tune", str(ran / "c.toml"), "-o", str(ran / "tuned")]) in (0, 1)
     capsys.readouterr()
     assert asked(ran, "given", "--table", str(ran / "tuned"), "--json") == 0
-    assert json.loads(capsys.readouterr().out) == document(ran / "one")
+    told = json.loads(capsys.readouterr().out)
+    assert (told["tables"], told["figures"]) == (tables(ran / "one"), figures(ran / "one"))
 
 
 def test_what_cannot_be_is_refused_in_a_sentence(ran: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -128,7 +137,7 @@ def test_what_cannot_be_is_refused_in_a_sentence(ran: Path, capsys: pytest.Captu
     assert "it holds the results of 'tune'" in capsys.readouterr().err
     assert main(["sensitivity", "--points", "100"]) == 2
     assert "a whole number from 200" in capsys.readouterr().err
-    assert asked(ran, "none", "--table", str(ran / "one" / "sensitivity.json")) in (2, 3)
+    assert asked(ran, "none", "--table", str(ran / "one" / "summary.json")) in (2, 3)
     err = capsys.readouterr().err
-    assert "sensitivity.json" in err
+    assert "summary.json" in err
     assert err.count("\n") == 1

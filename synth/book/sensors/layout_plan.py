@@ -89,12 +89,12 @@ def plan_layouts(
     problem: LayoutProblem, counts: Sequence[int], threads: int = 1, tell: Callable[[str], None] = lambda _: None
 ) -> tuple[PlannedLayout, ...]:
     """The best layout found for each number of deciding sensors, never worse than equal sections by its prediction."""
-    tell("searching places")
     asked = [*found_layouts(problem, counts, threads)]
+    tell(f"places found for {len(asked)} numbers of sensors")
     asked += [equal_layout(problem.first_m, problem.exit_m, count) for count in counts]
-    tell(f"tuning {len(asked)} layouts")
     with ThreadPoolExecutor(max_workers=threads) as pool:
         judged = list(pool.map(problem.judged, asked))
+    tell(f"{len(asked)} layouts tuned")
     pairs = zip(judged[: len(counts)], judged[len(counts) :], strict=True)
     return tuple(PlannedLayout(min(pair, key=lambda each: each.rms_m_s), pair[1]) for pair in pairs)
 

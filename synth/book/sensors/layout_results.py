@@ -71,12 +71,12 @@ def layout_results(
 ) -> LayoutResults:
     """Plans for each of these numbers of `sensors`, the one behind the exit counted, with what stands beside them."""
     plans = plan_layouts(problem, [number - 1 for number in sensors], threads, tell)
-    tell("tuning the layout by the rule, and the radar's tables")
     slowest = min(aim.target_speed_m_s for case in problem.cases for aim in case.aims)
     longest = max(problem.cases, key=lambda case: case.plant.exit_m)
     rule = problem.judged(rule_layout(longest.plant, problem.sensors, slowest))
     with ThreadPoolExecutor(max_workers=threads) as pool:
         radar = tuple(pool.map(lambda case: radar_rms(case, problem.resolution), problem.cases))
+    tell("the layout by the rule and the radar's tables tuned")
     anywhere = policy_anywhere(problem.cases[0], problem.sensors, problem.farthest_m)
     wanted = NEAR_RADAR * root_mean_square(radar) if wanted_rms_m_s is None else wanted_rms_m_s
     chosen = fewest_for(plans, wanted)

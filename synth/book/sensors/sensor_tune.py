@@ -11,7 +11,6 @@ import numpy as np
 from plant_models import Plant
 from synth.book.attempted_case import attempted
 from synth.book.class_setup import Origin, origin_of, validation_passes
-from synth.book.creation_time import creation_time
 from synth.book.failed_case import FailedCase, parted
 from synth.book.sensors.passage_table import passage_table
 from synth.book.sensors.sensor_case import HeardShares, SensorCase
@@ -21,6 +20,7 @@ from synth.book.watcher import Watcher
 from synth.book.work_queue import run_nested
 from synth.configuration.point_sensors.resolved_sensors import ResolvedSensors
 from synth.configuration.resolved_config import ResolvedConfig
+from synth.frame.creation_time import creation_time
 from synth.problem.aim import Aim
 from synth.simulation.exit_statistics import brake_power, exit_statistics
 from synth.simulation.passage_controller import of_table

@@ -9,10 +9,10 @@ from pydantic import ValidationError
 
 from plant_models.library import BUILT_IN, Library
 from synth.configuration.aim.settings import AimFileSettings
-from synth.configuration.file_fault import faults_in
 from synth.configuration.own_types import with_own_types
-from synth.configuration.toml_file import read_text, toml_tree
 from synth.frame.input_error import InputError
+from synth.frame.settings.file_fault import faults_in
+from synth.frame.settings.toml_file import read_text, toml_tree
 
 BUILT_IN_AIM = "built-in aim configuration"
 

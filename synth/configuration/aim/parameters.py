@@ -11,32 +11,32 @@ from plant_models.library import SourcedValue, TrackEntry, WeightCategory
 from plant_models.library.car_mix_entry import CarMixEntry
 from plant_models.library.sourced_value import JUDGEMENT, SET_BY_USER
 from synth.configuration.aim.settings import AimedSettings, AimFileSettings, CutsSettings
-from synth.configuration.resolved_config import setting_values
-from synth.configuration.section import TOOL_DEFAULT
+from synth.frame.settings.numbers import numbers_of
+from synth.frame.settings.section import TOOL_DEFAULT
 
 DEFAULT_EXIT_STD_M_S: Final = 0.1
 """Where neither an error of the exit speed nor tables are given."""
 
 
-def numbers_of(
+def aim_numbers(
     settings: AimFileSettings, track: TrackEntry, mix: CarMixEntry, members: tuple[WeightCategory, ...]
 ) -> Iterator[SourcedValue]:
     """Every number that the tables depend on, with its origin."""
     yield from track.provenance
-    yield from setting_values("weather", settings.weather)
+    yield from numbers_of(settings.weather, "weather")
     by_category = settings.resistance.law == "hump-norm"
     if by_category:
-        yield from setting_values("resistance", settings.resistance)
+        yield from numbers_of(settings.resistance, "resistance")
     yield from (replace(value, key=f"cuts.{value.key}") for value in mix.provenance)
     law = () if by_category else ("rolling_resistance.mean_n_per_kn", "rolling_resistance.std_n_per_kn")
     left_out = ("allowed_stage", "entrance_stage", *law)
     for member in members:
         yield from (replace(v, key=f"{member.latin}.{v.key}") for v in member.provenance if v.key not in left_out)
-    yield from setting_values("aim", settings.aim)
+    yield from numbers_of(settings.aim, "aim")
     yield from exit_values(settings)
     yield from choice_values(settings)
-    yield from (v for v in setting_values("simulation", settings.simulation) if v.key != "simulation.threads")
-    yield from setting_values("acceptance", settings.acceptance)
+    yield from (v for v in numbers_of(settings.simulation, "simulation") if v.key != "simulation.threads")
+    yield from numbers_of(settings.acceptance, "acceptance")
 
 
 def exit_values(settings: AimFileSettings) -> Iterator[SourcedValue]:

@@ -33,8 +33,8 @@ from synth.configuration.aim.settings import (
     WeatherSettings,
 )
 from synth.configuration.config_template import origin, quoted, source_lines, switch_lines
-from synth.configuration.resolved_config import setting_values
-from synth.configuration.section import Section, setting_unit
+from synth.frame.settings.numbers import numbers_of
+from synth.frame.settings.section import Section, setting_unit
 
 HEAD = """\
 # Aim configuration of retarder-synth (retarder-synth aim). Every line shows its default and may be left out.
@@ -139,7 +139,7 @@ def aim_lines() -> Iterator[str]:
 
 def setting_lines(name: str, section: Section) -> Iterator[str]:
     """The numerical settings of a section."""
-    values = {value.key.rpartition(".")[2]: value for value in setting_values(name, section)}
+    values = {value.key.rpartition(".")[2]: value for value in numbers_of(section, name)}
     for key, field in type(section).model_fields.items():
         if setting_unit(field):
             yield f"# {field.description}"

@@ -9,8 +9,8 @@ from pydantic import Field
 from plant_models.library import YARD_CATEGORIES
 from plant_models.library.sourced_value import JUDGEMENT
 from synth.configuration.aim.settings import DEFAULT_MIX, ResistanceSettings, WeatherSettings
-from synth.configuration.section import Section, setting
-from synth.configuration.value_forms import Title
+from synth.frame.settings.section import Section, setting
+from synth.frame.settings.value_forms import Title
 
 DEFAULT_HUMP = "large"
 

@@ -12,12 +12,12 @@ from pydantic import ValidationError
 
 from plant_models.library import BUILT_IN, Library
 from plant_models.library.hump_entry import HumpEntry, hump_names
-from synth.configuration.file_fault import faults_in
 from synth.configuration.hump import RAILML_SUFFIXES, read_graph
 from synth.configuration.humping.settings import HumpTrialSettings
 from synth.configuration.own_types import with_own_types
-from synth.configuration.toml_file import Tree, read_text, toml_tree
 from synth.frame.input_error import InputError
+from synth.frame.settings.file_fault import faults_in
+from synth.frame.settings.toml_file import Tree, read_text, toml_tree
 
 BUILT_IN_TRIAL = "built-in hump trial"
 HUMP_FORMAT = "hump"

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import Final, Literal
 
-from synth.configuration.section import Section
-from synth.configuration.value_forms import Numbers
+from synth.frame.settings.section import Section
+from synth.frame.settings.value_forms import Numbers
 
 DEFAULT_WHEEL_SENSOR: Final = "ds-2"
 

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from importlib.resources import files
 
 from plant_models.library.hump_entry import HumpEntry
+from synth.frame.page.markup import Markup, element
+from synth.frame.page.page_style import STYLE
 from synth.present.hump_page.plan_data import plan_data
 from synth.present.hump_page.train_data import train_data
-from synth.present.report.markup import Markup, element
-from synth.present.report.page_style import STYLE
 from synth.yard.humping.train_trace import TrainTrace
 
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:"

@@ -12,8 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch, Rectangle
 
+from synth.frame.picture.house_style import GREY, INK, MATHEMATICS, new_figure
 from synth.present.plots.block_layout import HEIGHT_IN, NAMES, SIZE_IN, WIDTH_IN, Place, Route, centre, corners
-from synth.present.plots.house_style import GREY, INK, MATHEMATICS, new_figure
 from synth.simulation.structure.diagram import Box, Sketch, Wire
 from synth.simulation.structure.part import Block
 

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from synth.present.plots.house_style import (
+from synth.frame.picture.house_style import (
     BLUE,
     GREY,
     INK,

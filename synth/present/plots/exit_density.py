@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from plant_models.frozen_arrays import frozen_arrays
 from synth.book.case_names import cut_name
 from synth.book.case_result import CaseResult
-from synth.present.plots.house_style import (
+from synth.frame.picture.house_style import (
     GREY,
     INK,
     SKY,

@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 
 from synth.book.case_names import by_class
 from synth.book.case_result import CaseResult
-from synth.present.plots.house_style import (
+from synth.frame.picture.house_style import (
     INK,
     LINE_COLOURS,
     LINE_MARKERS,

@@ -13,7 +13,7 @@ from synth.book.comparison.cycle_wave import cycle_wave
 from synth.book.comparison.describing_function import describing_function_analysis
 from synth.book.comparison.limit_cycle import Hunting, LimitCycle
 from synth.book.control_loop import ControlLoop
-from synth.present.plots.house_style import BLUE, GREEN, GREY, INK, VERMILLION, dress, legend_below, new_figure, place
+from synth.frame.picture.house_style import BLUE, GREEN, GREY, INK, VERMILLION, dress, legend_below, new_figure, place
 from synth.present.plots.table_picture import subject
 
 PERIODS = 2

@@ -10,7 +10,7 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from synth.book.control_loop import LINE_NODES, ControlLoop
-from synth.present.plots.house_style import (
+from synth.frame.picture.house_style import (
     BLUE,
     GREEN,
     GREY,

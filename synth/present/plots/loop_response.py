@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 
 from synth.book.control_loop import TOLERANCE_M_S, ControlLoop
 from synth.book.passage_control_loop import PassageControlLoop
-from synth.present.plots.house_style import BLUE, GREY, INK, VERMILLION, dress, legend_below, new_figure, place
+from synth.frame.picture.house_style import BLUE, GREY, INK, VERMILLION, dress, legend_below, new_figure, place
 from synth.present.plots.table_picture import subject
 
 AnyLoop = ControlLoop | PassageControlLoop

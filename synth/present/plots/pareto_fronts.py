@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from matplotlib.figure import Figure
 
 from synth.book.pareto.pareto_front import ParetoFront
-from synth.present.plots.house_style import BLUE, INK, dress, legend_below, new_figure, place
+from synth.frame.picture.house_style import BLUE, INK, dress, legend_below, new_figure, place
 
 COLUMNS = 3
 

@@ -8,11 +8,11 @@ from matplotlib.figure import Figure
 
 from synth.book.case_names import case_name, file_stem
 from synth.book.case_result import CaseResult
+from synth.frame.picture.figure_file import draw
+from synth.frame.picture.picture import Picture
 from synth.present.plots.exit_density import NARROW_M_S, WIDE_M_S, exit_density, prediction_origin
 from synth.present.plots.feasibility import feasibility
-from synth.present.plots.figure_file import draw
 from synth.present.plots.pareto_fronts import pareto_fronts
-from synth.present.plots.picture import Picture
 from synth.present.plots.policy_map import policy_map
 from synth.present.plots.rms_by_controller import rms_by_controller
 from synth.present.plots.sample_passes import sample_passes

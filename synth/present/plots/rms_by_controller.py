@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from synth.book.case_names import by_class
 from synth.book.case_result import CaseResult
 from synth.book.comparison.measured import Measured
-from synth.present.plots.house_style import (
+from synth.frame.picture.house_style import (
     BLACK,
     BLUE,
     GREEN,

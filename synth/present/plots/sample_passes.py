@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 
 from synth.book.case_names import cut_name, target_name
 from synth.book.case_result import CaseResult
-from synth.present.plots.house_style import (
+from synth.frame.picture.house_style import (
     GREY,
     INK,
     LINE_COLOURS,

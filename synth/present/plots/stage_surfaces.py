@@ -12,7 +12,7 @@ from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]  # ships
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]  # the same
 from numpy.typing import NDArray
 
-from synth.present.plots.house_style import BLUE, INK, VERMILLION, legend_below, new_figure
+from synth.frame.picture.house_style import BLUE, INK, VERMILLION, legend_below, new_figure
 from synth.solver.tabulate import lines_of
 from tuning_tables.table import ControllerTable
 

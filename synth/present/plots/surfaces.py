@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from synth.book.case_names import cut_name, target_name
 from synth.book.case_result import CaseResult
-from synth.present.plots.house_style import BLUE, INK, VERMILLION, legend_below, new_figure, speed_window_m_s
+from synth.frame.picture.house_style import BLUE, INK, VERMILLION, legend_below, new_figure
+from synth.present.plots.speed_window import speed_window_m_s
 from synth.present.plots.stage_surfaces import sheet, stage_surfaces
 from synth.solver.switching_lines import SwitchingLines
 from synth.solver.tabulate import lines_of

@@ -12,7 +12,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from plant_models import Plant
-from synth.present.plots.house_style import (
+from synth.book.command_panels import DOWN, HOLD, UP, label_panels, stage_panels
+from synth.frame.picture.house_style import (
     BLUE,
     GREY,
     INK,
@@ -26,7 +27,7 @@ from synth.present.plots.house_style import (
     new_figure,
     place,
 )
-from synth.present.plots.policy_map import DOWN, HOLD, UP, finite, label_panels, parts_in_stage, stage_panels
+from synth.present.plots.policy_map import finite, parts_in_stage
 from synth.present.plots.sample_passes import outcome
 from synth.present.plots.stage_surfaces import stage_surfaces
 from synth.present.plots.surfaces import PATH_POINTS, surface_figure

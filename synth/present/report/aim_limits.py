@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from synth.present.report.markup import Markup, element
+from synth.frame.page.markup import Markup, element
 from synth.yard.aim.aim_book import AimBook
 
 

@@ -6,12 +6,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
 
-from synth.present.plots.picture import Picture
+from synth.frame.page.document import Stamp, document, file_table, picture_sections
+from synth.frame.page.markup import Markup, element, joined
+from synth.frame.page.parameter_table import parameter_section
+from synth.frame.picture.picture import Picture
 from synth.present.report.aim_limits import aim_limits
 from synth.present.report.aim_tables import aim_tables
-from synth.present.report.document import Stamp, document, file_table, picture_sections
-from synth.present.report.markup import Markup, element, joined
-from synth.present.report.parameter_table import parameter_section
 from synth.yard.aim.aim_acceptance import AimBookVerdict
 from synth.yard.aim.aim_book import AimBook
 

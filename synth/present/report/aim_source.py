@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from synth.present.report.markup import Cell, Markup, element, head_row, joined, table
+from synth.frame.page.markup import Cell, Markup, element, head_row, joined, table
 from synth.yard.hump.number_ranges import ranges
 from synth.yard.humping.aim_choice import KNOWN, AimChoice
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from synth.book.printed_numbers import counted, percent
-from synth.present.report.markup import Cell, Markup, element, head_row, joined, table
+from synth.frame.page.markup import Cell, Markup, element, head_row, joined, table
+from synth.frame.printed_numbers import counted, percent
 from synth.yard.aim.aim_book import AimBook, MadeAim
 
 KNOWN = {"category": "category alone", "measured": "resistance measured"}

@@ -10,7 +10,7 @@ from synth.book.case_result import CaseResult
 from synth.book.failed_case import FailedCase
 from synth.book.pareto.pareto_front import ParetoFront
 from synth.book.permissions.overview import Overview, overview_of
-from synth.present.plots.picture import Picture
+from synth.frame.picture.picture import Picture
 
 
 @dataclass(frozen=True)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from synth.book.case_result import CaseResult
 from synth.book.failed_case import FailedCase
-from synth.book.printed_numbers import ABSENT, in_ten_thousand, interval, percent, quotient, quotient_interval, speed
+from synth.frame.page.markup import Cell, Markup, head_row, table
+from synth.frame.printed_numbers import ABSENT, in_ten_thousand, interval, percent, quotient, quotient_interval, speed
 from synth.present.report.book_report import BookReport
-from synth.present.report.markup import Cell, Markup, head_row, table
 from synth.present.report.permissions_section import GROUP, column_cell, column_head
 from synth.simulation.exit_statistics import BrakePower, ExitStatistics
 

@@ -9,9 +9,9 @@ from synth.book.case_names import case_name
 from synth.book.case_result import CaseResult
 from synth.book.comparison.limit_cycle import Hunting, hunting_report
 from synth.book.comparison.pressure_cycle import pressure_hunting
-from synth.book.printed_numbers import ABSENT, counted, percent
+from synth.frame.page.markup import Cell, Markup, element, head_row, joined, table
+from synth.frame.printed_numbers import ABSENT, counted, percent
 from synth.present.report.book_report import BookReport
-from synth.present.report.markup import Cell, Markup, element, head_row, joined, table
 
 HUNTING = (
     "Limit cycles predicted for the exported lines without noise: the regulator of the position steps between two "

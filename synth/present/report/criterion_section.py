@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from synth.book.case_names import case_name
+from synth.frame.page.markup import Markup, element, joined
 from synth.present.report.book_report import BookReport
-from synth.present.report.markup import Markup, element, joined
 
 
 def criterion_section(book: BookReport) -> Markup:

@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from synth.book.printed_numbers import ABSENT
-from synth.present.report.markup import Cell, Markup, head_row, table
+from synth.frame.page.markup import Cell, Markup, head_row, table
+from synth.frame.printed_numbers import ABSENT
 from synth.yard.humping.train_figures import TrainFigure
 
 TITLES = {

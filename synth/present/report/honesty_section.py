@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from statistics import median
 
 from synth.book.case_result import CaseResult
-from synth.book.printed_numbers import counted, span
+from synth.frame.page.markup import Markup, element
+from synth.frame.printed_numbers import counted, span
 from synth.present.report.book_report import BookReport
 from synth.present.report.case_table import HONEST
-from synth.present.report.markup import Markup, element
 
 
 def honesty_section(book: BookReport) -> Markup:

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from importlib.metadata import version
 
 from plant_models.library import SourcedValue
-from synth.present.plots.picture import Picture
+from synth.frame.page.document import Stamp, document, file_table, picture_sections
+from synth.frame.page.markup import Markup, element, joined
+from synth.frame.page.parameter_table import parameter_section
+from synth.frame.picture.picture import Picture
 from synth.present.report.aim_source import aim_section
-from synth.present.report.document import Stamp, document, file_table, picture_sections
 from synth.present.report.figure_table import figure_table
-from synth.present.report.markup import Markup, element, joined
-from synth.present.report.parameter_table import parameter_section
 from synth.yard.humping.aim_choice import AimChoice
 from synth.yard.humping.train_figures import TrainFigure
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from synth.book.printed_numbers import percent
+from synth.frame.page.markup import Markup, element
+from synth.frame.printed_numbers import percent
 from synth.present.report.book_report import BookReport
-from synth.present.report.markup import Markup, element
 
 
 def limits_of_use(book: BookReport) -> Markup:

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 
-from synth.present.plots.picture import Picture
-from synth.present.report.document import Stamp, document, file_table, picture_sections
-from synth.present.report.markup import Markup, element, head_row, joined, table
+from synth.frame.page.document import Stamp, document, file_table, picture_sections
+from synth.frame.page.markup import Markup, element, head_row, joined, table
+from synth.frame.picture.picture import Picture
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from synth.book.case_names import case_name
 from synth.book.case_result import CaseResult
 from synth.book.off_nominal.outcome import OffNominal
-from synth.book.printed_numbers import ABSENT, interval, percent, quotient, quotient_interval, speed
+from synth.frame.page.markup import Cell, Markup, element, head_row, table
+from synth.frame.printed_numbers import ABSENT, interval, percent, quotient, quotient_interval, speed
 from synth.present.report.book_report import BookReport
-from synth.present.report.markup import Cell, Markup, element, head_row, table
 
 LEAD = (
     "The same tables where plant or sensor are not what the tables were made for. In each cell: rms in m/s with its "

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from synth.frame.page.document import Stamp, document, file_table, picture_sections
+from synth.frame.page.markup import Markup, element, joined
+from synth.frame.page.parameter_table import parameter_section
 from synth.present.report.book_report import BookReport
 from synth.present.report.case_table import case_table
 from synth.present.report.checks_section import checks_section
 from synth.present.report.criterion_section import criterion_section
-from synth.present.report.document import Stamp, document, file_table, picture_sections
 from synth.present.report.honesty_section import honesty_section
 from synth.present.report.limits_of_use import limits_of_use
-from synth.present.report.markup import Markup, element, joined
 from synth.present.report.off_nominal_section import off_nominal_section
-from synth.present.report.parameter_table import parameter_section
 from synth.present.report.pareto_section import pareto_section
 from synth.present.report.permissions_section import permissions_section
 from synth.present.report.verdict import verdict

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from synth.book.pareto.pareto_front import ParetoFront, ParetoPoint, told
-from synth.book.printed_numbers import interval, quotient, quotient_interval, speed
-from synth.present.report.markup import Cell, Markup, element, head_row, joined, table
+from synth.frame.page.markup import Cell, Markup, element, head_row, joined, table
+from synth.frame.printed_numbers import interval, quotient, quotient_interval, speed
 
 HEAD = ("case", "price, m²/s³", "rms, m/s", "rms / rms without price", "predicted rms, m/s", "time, s", "switchings")
 

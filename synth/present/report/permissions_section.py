@@ -6,8 +6,8 @@ from typing import Final
 
 from synth.book.permissions.overview import SHORT, Overview, asked_of
 from synth.book.permissions.permission import CasePermissions, Permission
-from synth.book.printed_numbers import ABSENT, interval, quotient, quotient_interval, speed
-from synth.present.report.markup import Cell, Markup, element, head_row, joined, table
+from synth.frame.page.markup import Cell, Markup, element, head_row, joined, table
+from synth.frame.printed_numbers import ABSENT, interval, quotient, quotient_interval, speed
 
 GROUP: Final = "rms × if permitted"
 """What stands above the head of the column."""

@@ -8,14 +8,14 @@ from importlib.metadata import version
 
 from synth.book.acceptance import Verdict
 from synth.book.comparison.measured import honesty_of
-from synth.book.printed_numbers import in_ten_thousand, interval, quotient, quotient_interval, speed
 from synth.book.sensors.sensor_case import SensorCase
 from synth.book.sensors.sensor_tune import SensorBook
-from synth.present.plots.picture import Picture
+from synth.frame.page.document import Stamp, document, file_table, picture_sections
+from synth.frame.page.markup import Cell, Markup, element, head_row, joined, table
+from synth.frame.page.parameter_table import parameter_section
+from synth.frame.picture.picture import Picture
+from synth.frame.printed_numbers import in_ten_thousand, interval, quotient, quotient_interval, speed
 from synth.present.report.case_table import HONEST, failed_row, share_cell, time_cell, within_power
-from synth.present.report.document import Stamp, document, file_table, picture_sections
-from synth.present.report.markup import Cell, Markup, element, head_row, joined, table
-from synth.present.report.parameter_table import parameter_section
 
 COLUMNS = (
     "case", "mass, t", "target, m/s", "verdict", "rms, m/s", "95 % interval", "predicted", "predicted / simulated",

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from synth.book.case_names import case_name
 from synth.book.case_result import CaseResult
-from synth.book.printed_numbers import counted, in_ten_thousand, interval, speed
+from synth.frame.page.markup import Markup, element
+from synth.frame.printed_numbers import counted, in_ten_thousand, interval, speed
 from synth.present.report.book_report import BookReport
-from synth.present.report.markup import Markup, element
 
 
 def verdict(book: BookReport) -> Markup:

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from synth.present.plots.house_style import (
+from synth.frame.picture.house_style import (
     GREY,
     INK,
     LINE_COLOURS,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
-from synth.present.plots.house_style import LINE_COLOURS, LINE_MARKERS, dress, logarithmic_y, new_figure, place
+from synth.frame.picture.house_style import LINE_COLOURS, LINE_MARKERS, dress, logarithmic_y, new_figure, place
 
 if TYPE_CHECKING:
     from synth.studies.approach.findings import Approaches

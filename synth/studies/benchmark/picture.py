@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
-from synth.present.plots.house_style import BLUE, GREY, INK, VERMILLION, dress, logarithmic_x, new_figure, place
+from synth.frame.picture.house_style import BLUE, GREY, INK, VERMILLION, dress, logarithmic_x, new_figure, place
 
 if TYPE_CHECKING:
     from synth.studies.benchmark.findings import Benchmark

@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-from synth.configuration.computer.money_settings import HandlingSettings, PriceSettings, TrafficSettings
+from synth.computer.economics.prices import Prices
+from synth.computer.economics.traffic import Handling, Traffic
 from synth.studies.control_computer.regulator_benefit import Yard
-from synth.yard.control_computer.economics.prices import Prices
-from synth.yard.control_computer.economics.traffic import Handling, Traffic
 
-YARD = Yard(
-    traffic=Traffic(**TrafficSettings().model_dump()),
-    handling=Handling(**HandlingSettings().model_dump()),
-    prices=Prices(**PriceSettings().model_dump()),
-)
+YARD = Yard(traffic=Traffic(), handling=Handling(), prices=Prices())
 """Every number of it is assumed; none was chosen to give a result. 40 cuts of 1.8 cars a train, as in the trials."""

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 
+from synth.computer.economics.hump_day_change import HumpDayChange, change_of_trains, figures_of_trains
+from synth.computer.economics.hump_day_figures import NAMES
+from synth.frame.interval import Interval
 from synth.studies.control_computer.assumed_yard import YARD
 from synth.studies.control_computer.hump_runs import Humped, first_trains
 from synth.studies.control_computer.regulator_benefit import Benefit, regulator_benefit
@@ -15,9 +18,6 @@ from synth.studies.humping.runs import Group
 from synth.studies.humping.table_positions import table_positions
 from synth.studies.markdown_table import MarkdownTable, table
 from synth.studies.study import Tell
-from synth.yard.control_computer.economics.estimate import Estimate
-from synth.yard.control_computer.economics.hump_day_change import HumpDayChange, change_of_trains, figures_of_trains
-from synth.yard.control_computer.economics.hump_day_figures import NAMES
 from synth.yard.humping.outcomes import TrainOutcomes
 from synth.yard.humping.train_figures import share
 from synth.yard.humping.trial import HumpTrial
@@ -33,14 +33,14 @@ WIDER_RANGE = f"[exit_speeds]\nhighest_m_s = [{HIGHEST_M_S}, {HIGHEST_M_S}]\n"
 class RateEstimates:
     """The figures of `HumpRates`, each with its 95 % interval and what it was counted from."""
 
-    cars_per_h: Estimate
-    catch_ups: Estimate
-    misrouted: Estimate
-    on_track: Estimate
-    over_speeds_to_1_5: Estimate
-    over_speeds_to_2: Estimate
-    over_speeds_above_2: Estimate
-    gap_m: Estimate
+    cars_per_h: Interval
+    catch_ups: Interval
+    misrouted: Interval
+    on_track: Interval
+    over_speeds_to_1_5: Interval
+    over_speeds_to_2: Interval
+    over_speeds_above_2: Interval
+    gap_m: Interval
 
 
 @dataclass(frozen=True)
@@ -124,14 +124,14 @@ PLAIN = {"cars_per_h": 0, "gap_m": 1}
 """Figures that are no shares, and their decimals."""
 
 
-def shown(field: str, found: Estimate) -> str:
+def shown(field: str, found: Interval) -> str:
     """A figure of `WORDS`."""
     scale, digits = (1.0, PLAIN[field]) if field in PLAIN else (100.0, 2)
     ends = f"[{scale * found.low95:.{digits}f}, {scale * found.high95:.{digits}f}]"
     return f"{scale * found.value:.{digits}f} {ends}"
 
 
-def rounded(found: Estimate) -> str:
+def rounded(found: Interval) -> str:
     """With three digits."""
     return " ".join((spaced(found.value), f"[{spaced(found.low95)}, {spaced(found.high95)}]"))
 
@@ -179,12 +179,12 @@ def variant(name: str, found: TrainOutcomes) -> Variant:
     told = figures_of_trains(name, found)
     p, low, high, _ = share(found.judged.astype(float), found.cuts.astype(float))
     rates = {field: getattr(told, field) for field in NAMES}
-    rates["on_track"] = Estimate(p, low, high, int(found.cuts.sum()))
+    rates["on_track"] = Interval(p, low, high, int(found.cuts.sum()))
     control = "open loop" if name == "today" else "feedback"
     return Variant(name, control, STDS_M_S[name], LEAST_S[name], len(found), RateEstimates(**plain(rates)))
 
 
-def plain(rates: Mapping[str, Estimate]) -> dict[str, Estimate]:
+def plain(rates: Mapping[str, Interval]) -> dict[str, Interval]:
     """The same of plain numbers."""
     assert {field.name for field in fields(RateEstimates)} == set(rates)
-    return {name: Estimate(float(e.value), float(e.low95), float(e.high95), int(e.n)) for name, e in rates.items()}
+    return {name: Interval(float(e.value), float(e.low95), float(e.high95), int(e.n)) for name, e in rates.items()}

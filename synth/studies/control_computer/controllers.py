@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from synth.computer.sizing.carried_positions import PositionTimes, carried, most_positions
+from synth.computer.sizing.trackside_controllers import TracksideController, usual_controllers
 from synth.studies.markdown_table import ABSENT, MarkdownTable, table
-from synth.yard.control_computer.sizing.carried_positions import PositionTimes, carried, most_positions
-from synth.yard.control_computer.sizing.trackside_controllers import TracksideController, usual_controllers
 
 POSITIONS = (1, 3, 10, 38, 100, 1000)
 """3 on a route, 38 on the large hump with its park positions."""

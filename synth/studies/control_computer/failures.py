@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from synth.computer.reliability.failure_losses import ASSUMED_RISKS
 from synth.configuration.humping.trial_file import parse_trial_file
 from synth.studies.control_computer.failed_hump import (
     ByHand,
@@ -25,7 +26,6 @@ from synth.studies.control_computer.failure_costs_of_hump import (
 from synth.studies.control_computer.hump_runs import Humped
 from synth.studies.humping.runs import Group
 from synth.studies.markdown_table import ABSENT, MarkdownTable, table
-from synth.yard.control_computer.reliability.failure_losses import ASSUMED_RISKS
 from synth.yard.humping.made_trial import brake_of, made_trial
 from synth.yard.humping.outcomes import TrainOutcomes
 from synth.yard.humping.resolved_trial import resolve_trial

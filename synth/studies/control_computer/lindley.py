@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.yard.control_computer.sizing.batch_means import sampled_mean
+from synth.computer.sizing.batch_means import sampled_mean
 
 Floats = NDArray[np.float64]
 
@@ -45,5 +45,5 @@ def coverage(load: float, requests: int, runs: int, seed: int) -> Coverage:
     for _ in range(runs):
         arrival_s = np.cumsum(rng.exponential(1.0 / load, requests))
         found = sampled_mean(lindley_waits(arrival_s, rng.exponential(1.0, requests))[requests // WARM_UP :])
-        held += abs(found.mean - right) <= found.half_width
+        held += abs(found.value - right) <= found.half_width
     return Coverage(load, requests, runs, held / runs)

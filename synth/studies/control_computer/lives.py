@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.yard.control_computer.reliability.four_states import FourStates, State
+from synth.computer.reliability.four_states import FourStates, State
 
 Floats = NDArray[np.float64]
 Interval = tuple[float, float]

@@ -5,22 +5,22 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from plant_models.library.hump_entry import hump_names, load_hump
-from synth.studies.markdown_table import MarkdownTable, table
-from synth.yard.control_computer.sizing.inputs_outputs import (
+from synth.computer.sizing.inputs_outputs import (
     ChannelRules,
     Channels,
     counted_channels,
     source_channels,
     total_channels,
 )
-from synth.yard.control_computer.sizing.memory_need import (
+from synth.computer.sizing.memory_need import (
     ControllerCounts,
     Memory,
     MemoryTable,
     controller_memory,
     source_memory,
 )
-from synth.yard.control_computer.sizing.word_length import SOURCE_WORD_BITS, common_word_bits, hump_quantities
+from synth.computer.sizing.word_length import SOURCE_WORD_BITS, common_word_bits, hump_quantities
+from synth.studies.markdown_table import MarkdownTable, table
 
 CUTS = 60
 """Of the longest train, assumed."""

@@ -5,17 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import count
 
+from synth.computer.sizing.cyclic_service import Cycle, cyclic_speed, operations_for_use, used_share
+from synth.computer.sizing.demand_service import Discipline, mean_waits
+from synth.computer.sizing.needed_speed import AllowedWait, largest_tail, longest_mean_s, needed_speed
+from synth.computer.sizing.service_law import Constant, Erlang, ServiceLaw
+from synth.computer.sizing.task import Task, TaskMix
+from synth.computer.sizing.waiting_tail import start_tail
+from synth.frame.settings.changed import changed
 from synth.studies.control_computer.queues import LAWS, NAMES
 from synth.studies.markdown_table import MarkdownTable, table
-from synth.yard.control_computer.sizing.cyclic_service import Cycle, cyclic_speed, operations_for_use, used_share
-from synth.yard.control_computer.sizing.demand_service import Discipline, mean_waits
-from synth.yard.control_computer.sizing.needed_speed import AllowedWait, largest_tail, longest_mean_s, needed_speed
-from synth.yard.control_computer.sizing.service_law import Constant, Erlang, ServiceLaw
-from synth.yard.control_computer.sizing.task import Task, TaskMix
-from synth.yard.control_computer.sizing.waiting_tail import start_tail
 
 RATE_PER_S = 0.825
-CYCLE = Cycle(cycle_s=1.0, check_share=1.0)
+CYCLE = Cycle()
 """(1 − δ)/(1 + α) = 0.5, however it is divided."""
 
 OPERATIONS_A_CYCLE = {"open loop": 10_000.0, "feedback": 500_000.0}
@@ -137,7 +138,7 @@ def fewest_stages() -> int:
 
 def cyclic_use(control: str) -> CyclicUse:
     """Of open loop or feedback."""
-    speed = cyclic_speed(OPERATIONS_A_CYCLE[control], CYCLE)
+    speed = cyclic_speed(changed(CYCLE, operations=OPERATIONS_A_CYCLE[control]))
     low, high = (operations_for_use(use, speed, RATE_PER_S, CYCLE, True) for use in USES)
     less, more = (operations_for_use(use, speed, RATE_PER_S, CYCLE, False) for use in USES)
     share = used_share(one_task(Constant(FAST_OPERATIONS)), speed, CYCLE, checks_count=True)

@@ -5,18 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from synth.computer.sizing.batch_means import BATCHES
+from synth.computer.sizing.demand_service import Discipline, mean_waits
+from synth.computer.sizing.queue_simulation import CUT_SHARE, SimulatedWait, simulated_waits
+from synth.computer.sizing.service_law import Constant, Erlang, Exponential, Hyperexponential, ServiceLaw
+from synth.computer.sizing.task import Stream, total_load
+from synth.computer.sizing.waiting_tail import sojourn_tail, start_tail
+from synth.frame.interval import Interval
 from synth.studies.control_computer.comparison import FEWEST_EVENTS, Comparison, judged, verdict
 from synth.studies.control_computer.lindley import Coverage, coverage
 from synth.studies.markdown_table import ABSENT, MarkdownTable, table
 from synth.studies.study import Tell
 from synth.sweep.local_workers import LocalWorkers
 from synth.sweep.work import Answer, answered
-from synth.yard.control_computer.sizing.batch_means import BATCHES, SampledMean
-from synth.yard.control_computer.sizing.demand_service import Discipline, mean_waits
-from synth.yard.control_computer.sizing.queue_simulation import CUT_SHARE, SimulatedWait, simulated_waits
-from synth.yard.control_computer.sizing.service_law import Constant, Erlang, Exponential, Hyperexponential, ServiceLaw
-from synth.yard.control_computer.sizing.task import Stream, total_load
-from synth.yard.control_computer.sizing.waiting_tail import sojourn_tail, start_tail
 
 LAWS: dict[str, ServiceLaw] = {
     "constant": Constant(1.0),
@@ -179,7 +180,7 @@ def compared(run: QueueRun, found: tuple[SimulatedWait, ...]) -> list[TaskWaits]
                 task=told.task,
                 load=total_load(run.streams),
                 long_s=run.long_s,
-                kept=sum(each.start_s.count for each in found),
+                kept=sum(each.start_s.n for each in found),
                 start=beside(f"{name}, mean time to the start", told.start_s, 0.0, mean.start_s),
                 end=beside(f"{name}, mean time to the end", told.sojourn_s, 0.0, mean.sojourn_s),
                 long_start=beside(f"{name}, long to the start", start.value, start.error, mean.long_share, share=True),
@@ -189,11 +190,11 @@ def compared(run: QueueRun, found: tuple[SimulatedWait, ...]) -> list[TaskWaits]
     return rows
 
 
-def beside(what: str, formula: float, error: float, found: SampledMean, share: bool = False) -> Comparison:
+def beside(what: str, formula: float, error: float, found: Interval, share: bool = False) -> Comparison:
     """One comparison; a share that was hardly ever seen, or nearly always, is not told."""
-    rarer = min(found.mean, 1.0 - found.mean) * found.count
+    rarer = min(found.value, 1.0 - found.value) * found.n
     told = found.half_width > 0.0 and (not share or rarer >= FEWEST_EVENTS)
-    return Comparison(what, formula, error, found.mean, found.half_width, BATCHES - 1, found.count, told)
+    return Comparison(what, formula, error, found.value, found.half_width, BATCHES - 1, found.n, told)
 
 
 def with_joint_limits(tasks: Sequence[TaskWaits]) -> tuple[TaskWaits, ...]:

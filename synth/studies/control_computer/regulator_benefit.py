@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.errors import PlantError, require
-from synth.yard.control_computer.economics.estimate import Estimate
-from synth.yard.control_computer.economics.hump_day_change import TrainSums, same_trains
-from synth.yard.control_computer.economics.hump_rates import HumpRates
-from synth.yard.control_computer.economics.hump_work import HumpWork, hump_work
-from synth.yard.control_computer.economics.prices import Prices
-from synth.yard.control_computer.economics.savings import operating_savings, released_capital, total
-from synth.yard.control_computer.economics.traffic import Handling, Traffic
+from synth.computer.economics.hump_day_change import TrainSums, same_trains
+from synth.computer.economics.hump_rates import HumpRates
+from synth.computer.economics.hump_work import HumpWork, hump_work
+from synth.computer.economics.prices import Prices
+from synth.computer.economics.savings import operating_savings, released_capital, total
+from synth.computer.economics.traffic import Handling, Traffic
+from synth.frame.interval import Interval
 from synth.yard.humping.outcomes import TrainOutcomes
 
 Floats = NDArray[np.float64]
@@ -38,7 +38,7 @@ class Benefit:
 
     name: str
     unit: str
-    less: Estimate
+    less: Interval
 
 
 FIGURES: tuple[tuple[str, str, Callable[[HumpWork], float]], ...] = (
@@ -83,7 +83,7 @@ def regulator_benefit(
     names = [(name, unit) for name, unit, _ in FIGURES]
     names += [(SAVINGS[0], f"{yard.prices.currency} a year"), (SAVINGS[1], yard.prices.currency)]
     return tuple(
-        Benefit(name, unit, Estimate(v, min(float(a), v), max(float(b), v), trains))
+        Benefit(name, unit, Interval(v, min(float(a), v), max(float(b), v), trains))
         for (name, unit), v, a, b in zip(names, value.tolist(), low, high, strict=True)
     )
 

@@ -8,14 +8,9 @@ from dataclasses import astuple, dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from synth.studies.control_computer.comparison import Comparison, judged
-from synth.studies.control_computer.lives import Interval, chain_shares, duplex_ready
-from synth.studies.control_computer.stationary import null_space_shares, stationary_shares
-from synth.studies.markdown_table import MarkdownTable, table
-from synth.studies.study import Tell
-from synth.yard.control_computer.reliability.duplex import Duplex, single_availability
-from synth.yard.control_computer.reliability.four_states import FourStates, State
-from synth.yard.control_computer.reliability.maintenance_interval import (
+from synth.computer.reliability.duplex import Duplex, single_availability
+from synth.computer.reliability.four_states import FourStates, State
+from synth.computer.reliability.maintenance_interval import (
     CalendarHours,
     CheckedComputer,
     Counted,
@@ -23,6 +18,11 @@ from synth.yard.control_computer.reliability.maintenance_interval import (
     WorkingHours,
     small_rate_interval_h,
 )
+from synth.studies.control_computer.comparison import Comparison, judged
+from synth.studies.control_computer.lives import Interval, chain_shares, duplex_ready
+from synth.studies.control_computer.stationary import null_space_shares, stationary_shares
+from synth.studies.markdown_table import MarkdownTable, table
+from synth.studies.study import Tell
 
 Floats = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from synth.present.plots.house_style import BLUE, INK, ORANGE, dress, legend_below, logarithmic_y, new_figure, place
+from synth.frame.picture.house_style import BLUE, INK, ORANGE, dress, legend_below, logarithmic_y, new_figure, place
 
 if TYPE_CHECKING:
     from synth.studies.degree.study import CaseRow, Degrees

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 
-from synth.present.plots.house_style import BLACK, LINE_COLOURS, dress, new_figure, place
+from synth.frame.picture.house_style import BLACK, LINE_COLOURS, dress, new_figure, place
 
 if TYPE_CHECKING:
     from synth.studies.estimator.pair import Compared

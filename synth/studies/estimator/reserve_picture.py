@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from matplotlib.axes import Axes
 
-from synth.present.plots.house_style import (
+from synth.frame.picture.house_style import (
     BLACK,
     BLUE,
     GREEN,

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from synth.present.plots.house_style import (
+from synth.frame.picture.house_style import (
     BLUE,
     GREEN,
     INK,

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from synth.present.plots.house_style import (
+from synth.frame.picture.house_style import (
     GREY,
     LINE_COLOURS,
     LINE_MARKERS,

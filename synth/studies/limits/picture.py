@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from synth.present.plots.house_style import BLACK, SKY, dress, new_figure, place
+from synth.frame.picture.house_style import BLACK, SKY, dress, new_figure, place
 
 if TYPE_CHECKING:
     from synth.studies.limits.study import Limits, Row

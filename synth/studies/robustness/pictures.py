@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from synth.present.plots.house_style import (
+from synth.frame.picture.house_style import (
     BLUE,
     GREY,
     INK,

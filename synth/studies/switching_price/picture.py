@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from synth.present.plots.house_style import LINE_COLOURS, LINE_MARKERS, dress, legend_below, new_figure, place
+from synth.frame.picture.house_style import LINE_COLOURS, LINE_MARKERS, dress, legend_below, new_figure, place
 
 if TYPE_CHECKING:
     from synth.studies.switching_price.study import SwitchingPrice

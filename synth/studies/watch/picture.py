@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
-from synth.present.plots.house_style import BLUE, VERMILLION, dress, logarithmic_x, new_figure, place
+from synth.frame.picture.house_style import BLUE, VERMILLION, dress, logarithmic_x, new_figure, place
 
 if TYPE_CHECKING:
     from synth.studies.watch.findings import Watched

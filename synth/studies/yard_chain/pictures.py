@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from synth.present.plots.house_style import (
+from synth.frame.picture.house_style import (
     BLUE,
     LINE_COLOURS,
     ORANGE,

@@ -19,9 +19,9 @@ from synth.book.forms.table_file import file_stem
 from synth.configuration.hump import RAILML_SUFFIXES, hump_text
 from synth.configuration.humping.trial_file import TrialFile
 from synth.configuration.own_types import with_own_types
-from synth.configuration.toml_file import read_text, toml_tree
-from synth.configuration.toml_text import toml_text
 from synth.frame.results_directory import ResultsDirectory
+from synth.frame.settings.toml_file import read_text, toml_tree
+from synth.frame.settings.toml_text import toml_text
 from synth.yard.humping.position_choice import PositionChoice
 from synth.yard.humping.resolved_trial import ResolvedTrial
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import betainc
 
-from synth.book.printed_numbers import counted, percent
+from synth.frame.printed_numbers import counted, percent
 from synth.yard.aim.aim_book import MadeAim
 
 CHANCE = 0.025

@@ -27,7 +27,7 @@ from plant_models.rolling.resistance_law import HumpNormLaw, ResistanceLaw, Tb10
 from plant_models.rolling.weather import Weather
 from synth.configuration.aim.aim_file import AimFile
 from synth.configuration.aim.asked_cuts import members_of, require_cars
-from synth.configuration.aim.parameters import exit_std_of, numbers_of
+from synth.configuration.aim.parameters import aim_numbers, exit_std_of
 from synth.configuration.aim.settings import (
     AimAcceptanceSettings,
     AimedSettings,
@@ -39,8 +39,8 @@ from synth.configuration.aim.track_values import track_with_settings
 from synth.configuration.config_file import load_config
 from synth.configuration.plant_fault import in_file
 from synth.configuration.position_choice import require_held
-from synth.configuration.resolved_config import range_warnings
 from synth.frame.input_error import InputError
+from synth.frame.settings.numbers import range_warnings
 from synth.yard.aim.scene import AimScene, MeasuredStretch
 from tuning_tables.canonical import canonical_json
 
@@ -130,7 +130,7 @@ def resolve_aim(file: AimFile) -> ResolvedAim:
         require_distances(settings, scene)
         exit_std = exit_std_of(settings)
         book = book_of(file)
-    parameters = tuple(numbers_of(settings, track, mix, members))
+    parameters = tuple(aim_numbers(settings, track, mix, members))
     return ResolvedAim(
         place=place,
         title=settings.title or f"Aim tables of {position}, {track.title}",

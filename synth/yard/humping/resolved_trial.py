@@ -27,7 +27,7 @@ from synth.configuration.humping.trial_file import TrialFile, read_trial_file
 from synth.configuration.plant_fault import in_file
 from synth.configuration.position_choice import require_held
 from synth.configuration.railml.write import to_railml
-from synth.configuration.resolved_config import range_warnings
+from synth.frame.settings.numbers import range_warnings
 from synth.yard.hump.sorting_list import SortingList
 from synth.yard.hump.train_population import TrainPopulation
 from synth.yard.humping.aim_choice import AimChoice, aim_choices

@@ -16,7 +16,7 @@ from synth.configuration.humping.settings import (
     ExitSpeedSettings,
     HumpTrialSettings,
 )
-from synth.configuration.resolved_config import setting_values
+from synth.frame.settings.numbers import numbers_of
 from synth.yard.humping.position_choice import PositionChoice
 
 OF_POPULATION: Final = ("cuts", "cars_mean", "most_cars")
@@ -32,23 +32,23 @@ def trial_numbers(
     """Those of hump, cars, weather and control; those of the aim where it is `designed` for the trial on any route."""
     yield from (replace(value, key=f"hump.{value.key}") for value in hump.provenance)
     of_list = settings.trains.list is not None
-    for value in setting_values("trains", settings.trains):
+    for value in numbers_of(settings.trains, "trains"):
         if not (of_list and value.key.removeprefix("trains.") in OF_POPULATION):
             yield value
     yield from (replace(value, key=f"cars.{value.key.removeprefix('cars.')}") for value in mix.provenance)
     yield from category_values(settings, categories)
-    yield from setting_values("weather", settings.weather)
+    yield from numbers_of(settings.weather, "weather")
     if settings.resistance.law == "hump-norm":
-        yield from setting_values("resistance", settings.resistance)
+        yield from numbers_of(settings.resistance, "resistance")
     if settings.tracks.standing == "drawn":
-        yield from setting_values("tracks", settings.tracks)
+        yield from numbers_of(settings.tracks, "tracks")
     yield from hump_speed_values(settings)
     yield from slow_down_values(settings)
-    yield from setting_values("exit_speeds", settings.exit_speeds)
+    yield from numbers_of(settings.exit_speeds, "exit_speeds")
     if designed:
-        yield from setting_values("aim", settings.aim)
+        yield from numbers_of(settings.aim, "aim")
     if "measured" in (settings.aim.knowledge, settings.exit_speeds.knowledge):
-        yield from setting_values("sensors", settings.sensors)
+        yield from numbers_of(settings.sensors, "sensors")
     for key, limit in settings.acceptance.model_dump(exclude_none=True).items():
         yield SourcedValue(f"acceptance.{key}", limit, "1", (0.0, 1.0), SET_BY_USER, "")
 
@@ -66,7 +66,7 @@ def hump_speed_values(settings: HumpTrialSettings) -> Iterator[SourcedValue]:
     """Those of the hump speed: one speed, or what the program is made from."""
     constant = settings.hump_speed.constant_m_s
     if constant is None:
-        yield from setting_values("hump_speed", settings.hump_speed)
+        yield from numbers_of(settings.hump_speed, "hump_speed")
     else:
         yield SourcedValue("hump_speed.constant_m_s", constant, "m/s", (0.3, 4.0), SET_BY_USER, "")
 

@@ -10,7 +10,7 @@ from synth.configuration.config_file import BUILT_IN as BUILT_IN_PLACE
 from synth.configuration.config_file import valid_settings
 from synth.configuration.own_types import with_own_types
 from synth.configuration.resolved_config import ResolvedConfig, resolve
-from synth.configuration.toml_file import Tree, read_text, toml_tree
+from synth.frame.settings.toml_file import Tree, read_text, toml_tree
 
 
 @dataclass(frozen=True)

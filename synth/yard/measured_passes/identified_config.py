@@ -9,8 +9,8 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from synth.configuration.plant_settings import DEFAULT_CUTS
-from synth.configuration.toml_file import Tree
-from synth.configuration.toml_text import toml_text
+from synth.frame.settings.toml_file import Tree
+from synth.frame.settings.toml_text import toml_text
 from synth.yard.measured_passes import unknowns as asked
 from synth.yard.measured_passes.config_source import ConfigSource
 from synth.yard.measured_passes.configured_numbers import configured_numbers

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from plant_models.errors import PlantError
+from synth.computer.economics.hump_day_change import change_of_trains
+from synth.computer.economics.hump_rates import rates_after
+from synth.frame.settings.changed import changed
 from synth.studies.control_computer.regulator_benefit import FIGURES, Benefit, Yard, benefits, regulator_benefit
-from synth.yard.control_computer.economics.hump_day_change import change_of_trains
-from synth.yard.control_computer.economics.hump_rates import changed
-from tests.synth.yard.control_computer.economics.made_cases import (
+from tests.synth.computer.economics.made_cases import (
     CHANGE,
     HANDLING,
     PRICES,
@@ -21,9 +22,9 @@ from tests.synth.yard.control_computer.economics.made_cases import (
     made_outcomes,
 )
 
-YARD = Yard(replace(TRAFFIC, cars_per_day=4000.0), HANDLING, PRICES)
-BEFORE = replace(TODAY, catch_ups=0.03, misrouted=0.01)
-AFTER = changed(BEFORE, CHANGE)
+YARD = Yard(changed(TRAFFIC, cars_per_day=4000.0), HANDLING, PRICES)
+BEFORE = changed(TODAY, catch_ups=0.03, misrouted=0.01)
+AFTER = rates_after(BEFORE, CHANGE)
 
 
 def pair(seed: int, trains: int) -> tuple[Benefit, ...]:
@@ -83,9 +84,9 @@ def test_faults() -> None:
     today, new = made_outcomes(shared, BEFORE, 1), made_outcomes(shared, AFTER, 2)
     with pytest.raises(PlantError, match="replicates is 10"):
         regulator_benefit(today, new, YARD, replicates=10)
-    full = replace(YARD, traffic=replace(TRAFFIC, cars_per_day=6000.0))
+    full = replace(YARD, traffic=changed(TRAFFIC, cars_per_day=6000.0))
     with pytest.raises(PlantError, match="overloaded"):
         regulator_benefit(today, new, full)
-    nearly = replace(YARD, traffic=replace(TRAFFIC, cars_per_day=24.0 / 0.2825 * 60.0 * 0.9995))
+    nearly = replace(YARD, traffic=changed(TRAFFIC, cars_per_day=24.0 / 0.2825 * 60.0 * 0.9995))
     with pytest.raises(PlantError, match="in a bootstrap sample of the trains the hump is overloaded"):
         regulator_benefit(made_outcomes(shared, TODAY, 3), new, nearly)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,10 +16,10 @@ from synth.book.sensors.layout import equal_layout, fastest_m_s, first_sensor_m,
 from synth.book.sensors.layout_plan import LayoutProblem, fewest_for, plan_layouts
 from synth.book.sensors.layout_results import layout_results
 from synth.book.sensors.layout_search import LayoutSearch
-from synth.book.sensors.layout_summary import layout_summary
+from synth.book.sensors.plan_command import COMMAND
+from synth.book.sensors.plan_map import plan_map
 from synth.book.sensors.tuned_passages import passage_chains
-from synth.cli.sensors_plan_table import print_plan
-from synth.present.plots.sensors.plan_map import plan_map
+from synth.frame.exhibits import File, Table
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
@@ -27,7 +27,6 @@ from synth.solver.backward_induction import solve
 from synth.solver.chain.sensor_passages import with_point_sensors
 from synth.solver.evaluation import Evaluation
 from synth.solver.passage_speeds import passage_speeds
-from tests.printed_page import Page, require_column, table_of
 
 SENSORS = PointSensors((0.0,))
 TARGET_M_S = 2.5
@@ -145,20 +144,21 @@ def test_the_map_under_a_plan_brakes_what_is_fast_and_releases_what_is_slow(plan
     assert all(len(axes.collections) > 0 for axes in shown)  # the passages
 
 
-def test_what_is_printed_of_a_plan_is_its_summary(plant_22t: Plant, pages: list[Page]) -> None:
+def test_what_is_shown_of_a_plan(plant_22t: Plant) -> None:
     problem = LayoutProblem((LayoutCase(plant_22t, AIMS),), SENSORS, COARSE)
-    results = layout_results(problem, ("light",), (3,), None, 1, lambda _: None)
-    summary = layout_summary(results, "", "", {})
-    print_plan(results, Path("out"))
-    (plan,) = summary["plans"]
-    radar = summary["radar"]["rms_m_s"]
-    layouts = [plan["planned"], plan["equal_sections"], summary["rule"], {"rms_m_s": radar}]
-    told = table_of(pages[-1])
-    require_column(told, "layout", ["planned", "equal sections", "by the rule", "radar"])
-    require_column(told, "rms, m/s", [f"{each['rms_m_s']:.4f}" for each in layouts])
-    require_column(told, "sensors", [str(each["sensors"]) for each in layouts[:-1]] + [None])
-    places = [", ".join(f"{place:g}" for place in each["path_m"]) for each in layouts[:-1]]
-    require_column(told, "sensors at, m", [*places, None])
-    assert summary["wanted_rms_m_s"] == pytest.approx(1.1 * radar, abs=2e-5)
-    assert f"an rms of at most {summary['wanted_rms_m_s']:g} m/s" in str(pages[-1][1])
-    assert (summary["chosen"] is None) == (plan["planned"]["rms_m_s"] > summary["wanted_rms_m_s"])
+    told: list[str] = []
+    found = layout_results(problem, ("light",), (3,), None, 1, told.append)
+    assert len(told) == 3  # as many as the command counts
+    (chapter,) = COMMAND.show(found)
+    layouts, cases = (each for each in chapter.exhibits if isinstance(each, Table))
+    assert [row["layout"] for row in layouts.rows] == ["planned", "equal sections", "by the rule", "radar"]
+    assert [len(row["path_m"]) for row in layouts.rows[:-1]] == [row["sensors"] for row in layouts.rows[:-1]]
+    for row in layouts.rows:
+        of_cases = [case["rms_m_s"] for case in cases.rows if case["layout"] == row["layout"]]
+        assert row["rms_m_s"] == pytest.approx(math.sqrt(np.mean(np.square(of_cases))))
+    assert found.wanted_rms_m_s == pytest.approx(1.1 * layouts.rows[-1]["rms_m_s"])
+    (limit,) = COMMAND.limits(found)
+    assert f"an rms of at most {found.wanted_rms_m_s:.4f} m/s" in limit.sentence
+    assert limit.kept == (layouts.rows[0]["rms_m_s"] <= found.wanted_rms_m_s)
+    files = [each for each in chapter.exhibits if isinstance(each, File)]
+    assert len(files) == limit.kept

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from synth.book.case_names import file_stem
+from synth.frame.picture.picture import Picture
 from synth.present.plots.aim.chances import chances
 from synth.present.plots.aim.commands import commands_by_cars, commands_by_resistance
 from synth.present.plots.aim.gaps import gaps
 from synth.present.plots.aim.track import track
-from synth.present.plots.picture import Picture
 from synth.present.plots.picture_book import picture
 from synth.yard.aim.aim_book import AimBook
 from synth.yard.aim.aim_curves import AimCurves, Runners

@@ -6,9 +6,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from synth.book.printed_numbers import counted
+from synth.frame.picture.house_style import INK, dress, legend_below, new_figure, place
+from synth.frame.printed_numbers import counted
 from synth.present.plots.aim.series import graded
-from synth.present.plots.house_style import INK, dress, legend_below, new_figure, place
 from synth.yard.aim.aim_curves import AimCurves, Floats
 
 

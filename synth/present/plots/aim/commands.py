@@ -6,9 +6,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from synth.book.printed_numbers import counted
+from synth.frame.picture.house_style import dress, legend_below, new_figure, place
+from synth.frame.printed_numbers import counted
 from synth.present.plots.aim.series import graded, markers, named_lines
-from synth.present.plots.house_style import dress, legend_below, new_figure, place
 from synth.yard.aim.aim_book import AimBook, MadeAim
 
 MOST_RESISTANCES = 7

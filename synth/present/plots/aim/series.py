@@ -8,7 +8,7 @@ from matplotlib import colormaps
 from matplotlib.colors import to_hex
 from matplotlib.lines import Line2D
 
-from synth.present.plots.house_style import LINE_MARKERS
+from synth.frame.picture.house_style import LINE_MARKERS
 
 
 def graded(count: int) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 
 from plant_models.hump import Retarder, Route, Switch
 from plant_models.library.hump_entry import HumpEntry
-from synth.present.plots.house_style import (
+from synth.frame.picture.house_style import (
     BLUE,
     GREY,
     INK,

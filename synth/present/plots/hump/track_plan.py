@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from plant_models.hump import HumpGraph, Retarder, Switch, TrackSection
-from synth.present.plots.house_style import BLACK, BLUE, GREY, INK, ORANGE, SKY, VERMILLION
+from synth.frame.picture.house_style import BLACK, BLUE, GREY, INK, ORANGE, SKY, VERMILLION
 from synth.present.plots.hump.plan_layout import PlanLayout
 
 RAIL_WIDTH, ELEMENT_WIDTH = 0.8, 4.5

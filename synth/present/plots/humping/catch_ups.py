@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 
 from plant_models.hump import HumpGraph, Retarder, Signal, Switch
 from plant_models.library.hump_entry import HumpEntry
-from synth.book.printed_numbers import counted
-from synth.present.plots.house_style import INK, dress, legend_below, mark_plainly, new_figure, place
+from synth.frame.picture.house_style import INK, dress, legend_below, mark_plainly, new_figure, place
+from synth.frame.printed_numbers import counted
 from synth.present.plots.hump.hump_picture import ROW_IN, TALLEST_PLAN_IN, WIDTH_IN
 from synth.present.plots.hump.plan_layout import PlanLayout, plan_layout
 from synth.present.plots.hump.track_plan import draw_plan, plan_legend

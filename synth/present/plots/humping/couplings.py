@@ -10,8 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.typing import LineStyleType
 from numpy.typing import NDArray
 
-from synth.book.printed_numbers import counted
-from synth.present.plots.house_style import (
+from synth.frame.picture.house_style import (
     BLUE,
     INK,
     ORANGE,
@@ -22,6 +21,7 @@ from synth.present.plots.house_style import (
     new_figure,
     place,
 )
+from synth.frame.printed_numbers import counted
 from synth.yard.humping.outcomes import CLASSES_M_S, GAP_BINS_M, SPEED_BINS_M_S, TrainOutcomes
 
 Counts = NDArray[np.int64]

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from plant_models.hump import Retarder, Switch
-from synth.present.plots.house_style import BLUE, GREY, INK, ORANGE, SKY
+from synth.frame.picture.house_style import BLUE, GREY, INK, ORANGE, SKY
 from synth.yard.humping.hump_routes import HumpRoutes, Mark
 
 CLOSE_M = 3.0

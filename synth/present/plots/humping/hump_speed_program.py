@@ -11,7 +11,7 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from plant_models.frozen_arrays import frozen_arrays
-from synth.present.plots.house_style import BLUE, INK, SKY, dress, legend_below, new_figure, place
+from synth.frame.picture.house_style import BLUE, INK, SKY, dress, legend_below, new_figure, place
 from synth.yard.humping.train_trace import TrainTrace
 
 Floats = NDArray[np.float64]

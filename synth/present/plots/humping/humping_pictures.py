@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models.library.hump_entry import HumpEntry
+from synth.frame.picture.picture import Picture
 from synth.present.plots.humping.catch_ups import catch_ups
 from synth.present.plots.humping.couplings import couplings
 from synth.present.plots.humping.hump_speed_program import PushedTrain, hump_speed_program, pushed_train
 from synth.present.plots.humping.speed_path import speed_path
 from synth.present.plots.humping.time_path import time_path
-from synth.present.plots.picture import Picture
 from synth.present.plots.picture_book import picture
 from synth.yard.humping.hump_routes import HumpRoutes
 from synth.yard.humping.outcomes import TrainOutcomes

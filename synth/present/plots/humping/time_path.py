@@ -13,9 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from plant_models.hump import Retarder, Switch
-from synth.book.printed_numbers import counted
-from synth.present.plots.aim.series import graded
-from synth.present.plots.house_style import (
+from synth.frame.picture.house_style import (
     BLUE,
     GREEN,
     GREY,
@@ -28,6 +26,8 @@ from synth.present.plots.house_style import (
     new_figure,
     place,
 )
+from synth.frame.printed_numbers import counted
+from synth.present.plots.aim.series import graded
 from synth.present.plots.humping.element_strip import colour_of, draw_strip
 from synth.yard.humping.hump_routes import HumpRoutes
 from synth.yard.humping.train_trace import AlarmKind, TracedCut, TrainTrace

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from synth.present.plots.house_style import BLUE, GREY, INK, PALE_GREY, VERMILLION, dress, new_figure, place
-from synth.present.plots.picture import Picture
+from synth.frame.picture.house_style import BLUE, GREY, INK, PALE_GREY, VERMILLION, dress, new_figure, place
+from synth.frame.picture.picture import Picture
 from synth.present.plots.picture_book import picture
 from synth.yard.measured_passes import unknowns as asked
 from synth.yard.measured_passes.identify import Identified

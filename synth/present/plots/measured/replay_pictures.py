@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 from matplotlib.figure import Figure
 
-from synth.present.plots.house_style import BLUE, GREY, INK, VERMILLION, dress, legend_below, new_figure, place
-from synth.present.plots.picture import Picture
+from synth.frame.picture.house_style import BLUE, GREY, INK, VERMILLION, dress, legend_below, new_figure, place
+from synth.frame.picture.picture import Picture
 from synth.present.plots.picture_book import picture
 from synth.yard.measured_passes.replay.replay import Replay
 

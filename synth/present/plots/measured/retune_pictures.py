@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from matplotlib.figure import Figure
 
-from synth.present.plots.house_style import (
+from synth.frame.picture.house_style import (
     BLUE,
     GREY,
     LINE_COLOURS,
@@ -17,7 +17,7 @@ from synth.present.plots.house_style import (
     new_figure,
     place,
 )
-from synth.present.plots.picture import Picture
+from synth.frame.picture.picture import Picture
 from synth.present.plots.picture_book import picture
 from synth.solver.tabulate import lines_of
 from synth.yard.measured_passes.retune.predicted_gain import CaseGain

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from synth.book.sensors.sensor_case import SensorCase
-from synth.present.plots.house_style import (
+from synth.frame.picture.house_style import (
     INK,
     LINE_COLOURS,
     LINE_MARKERS,

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 
 from synth.book.case_names import file_stem
 from synth.book.sensors.sensor_case import SensorCase
+from synth.frame.picture.picture import Picture
 from synth.present.plots.exit_density import NARROW_M_S, WIDE_M_S, DrawnExits, density_figure
-from synth.present.plots.picture import Picture
 from synth.present.plots.picture_book import picture
 from synth.present.plots.sensors.passes_with_readings import passes_with_readings
 from synth.present.plots.sensors.switching_speeds import switching_speeds

@@ -14,7 +14,7 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from synth.book.highest_stage import highest_stage
-from synth.present.plots.house_style import (
+from synth.frame.picture.house_style import (
     BLUE,
     ENTRANCE_STYLE,
     GREY,

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from plant_models.library.hump_entry import load_hump
-from synth.present.plots.figure_file import draw
+from synth.frame.picture.figure_file import draw
 from synth.present.plots.humping.catch_ups import catch_ups
 from synth.present.plots.humping.couplings import couplings
 from synth.present.plots.humping.element_strip import levels

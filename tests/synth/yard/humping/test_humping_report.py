@@ -8,10 +8,10 @@ from html.parser import HTMLParser
 
 import pytest
 
+from synth.frame.page.markup import Cell
 from synth.present.plots.humping.humping_pictures import outcome_pictures
 from synth.present.report.figure_table import TITLES, cells, printed
 from synth.present.report.humping_report import HumpingReport, humping_page
-from synth.present.report.markup import Cell
 from synth.yard.humping.outcomes import outcomes
 from synth.yard.humping.train_figures import TrainFigure, train_figures
 from tests.synth.yard.humping.humped_trains import humped_trains

@@ -1,0 +1,113 @@
+"""The commands that are declared as a value of the frame; the others stand in `commands` and beside it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from synth.frame.command_line import Listed
+
+if TYPE_CHECKING:
+    from synth.frame.command import Command
+    from synth.frame.settings.options import Options
+
+    AnyCommand = Command[Any, Any, Any, Any]
+
+
+def computer() -> AnyCommand:
+    """Loaded when it is called, as all of these."""
+    from synth.computer.command import COMMAND
+
+    return COMMAND
+
+
+def computer_options() -> type[Options]:
+    """Of it."""
+    from synth.computer.uncertainty import ComputerOptions
+
+    return ComputerOptions
+
+
+def permissions() -> AnyCommand:
+    """See `computer`."""
+    from synth.book.permissions.command import COMMAND
+
+    return COMMAND
+
+
+def permissions_options() -> type[Options]:
+    """Of it."""
+    from synth.book.permissions.options import PermissionsOptions
+
+    return PermissionsOptions
+
+
+def sensitivity() -> AnyCommand:
+    """See `computer`."""
+    from synth.book.sensitivity.command import COMMAND
+
+    return COMMAND
+
+
+def sensitivity_options() -> type[Options]:
+    """Of it."""
+    from synth.book.sensitivity.options import SensitivityOptions
+
+    return SensitivityOptions
+
+
+def sensors_plan() -> AnyCommand:
+    """See `computer`."""
+    from synth.book.sensors.plan_command import COMMAND
+
+    return COMMAND
+
+
+def sensors_plan_options() -> type[Options]:
+    """Of it."""
+    from synth.book.sensors.plan_options import PlanOptions
+
+    return PlanOptions
+
+
+COMMANDS: Final = (
+    Listed(
+        "sensitivity",
+        sensitivity,
+        sensitivity_options,
+        "init",
+        "Tell which number of a configuration to measure first.\n\n"
+        "The table stays; the numbers vary over their ranges. Shares of the variance of rms, mean and over-speed by "
+        "number.",
+    ),
+    Listed(
+        "permissions",
+        permissions,
+        permissions_options,
+        "init",
+        "Tell what to ask of the hardware: what each permission would give in every case.\n\n"
+        "Commands during a change of stage, with and without a pressure gauge; an estimator; the approach. Simulated "
+        "on the same passes as the tables that a tune makes. Exit code 1 if one cannot be told.",
+    ),
+    Listed(
+        "computer",
+        computer,
+        computer_options,
+        "init --computer",
+        "Size the control computer of a hump: how fast, how reliable, and what it pays.\n\n"
+        "Exit code 1 if it is slower than its tasks need, or misses a limit of the configuration.",
+    ),
+)
+"""By themselves."""
+
+SENSORS: Final = (
+    Listed(
+        "sensors plan",
+        sensors_plan,
+        sensors_plan_options,
+        "init",
+        "Plan where point sensors stand: the least rms for each number, and the fewest for a wanted rms.\n\n"
+        "Compared with equal sections, with the rule that each change of stage ends inside its section, and with the "
+        "radar. Exit code 1 if none of the numbers gives the wanted rms.",
+    ),
+)
+"""Behind the word `sensors`."""

@@ -1,0 +1,145 @@
+"""How the figures of a hump differ between two variants, paired by train where both humped the same trains."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plant_models.errors import require
+from plant_models.frozen_arrays import frozen_arrays
+from synth.computer.economics.hump_day_figures import NAMES, HumpDayFigures
+from synth.computer.economics.hump_rates import RATES, HumpChange, HumpRates
+from synth.computer.economics.uncertainty.ranges import Range, range_of
+from synth.frame.interval import Interval
+from synth.yard.humping.outcomes import TrainOutcomes
+from synth.yard.humping.train_figures import FEWEST_TRAINS, train_figures
+
+Floats = NDArray[np.float64]
+
+SECONDS_PER_H = 3600.0
+
+
+@dataclass(frozen=True)
+class HumpDayChange:
+    """Each figure of `HumpRates` less that of today, with its 95 % interval; `paired`: by train."""
+
+    paired: bool
+    cars_per_h: Interval
+    catch_ups: Interval
+    misrouted: Interval
+    on_track: Interval
+    over_speeds_to_1_5: Interval
+    over_speeds_to_2: Interval
+    over_speeds_above_2: Interval
+    gap_m: Interval
+
+    @property
+    def change(self) -> HumpChange:
+        """The differences without their intervals."""
+        return HumpChange(**{name: getattr(self, name).value for name in RATES})
+
+
+@frozen_arrays
+@dataclass(frozen=True, eq=False)
+class TrainSums:
+    """Of n trains, what each figure of `HumpRates` counts and what it is a share of: `hits`, `base` (8, n)."""
+
+    hits: Floats
+    base: Floats
+
+    def rates(self, weight: Floats | None = None) -> HumpRates:
+        """The figures of all trains; `weight` (n,): how often each train counts, 1 if not told."""
+        counts = np.ones(self.hits.shape[1]) if weight is None else weight
+        ratios = (self.hits @ counts) / (self.base @ counts)
+        return HumpRates(**{name: float(ratio) for name, ratio in zip(RATES, ratios, strict=True)})
+
+
+def train_sums(found: TrainOutcomes) -> TrainSums:
+    """What the trains of a hump trial count, in the order of `HumpRates`."""
+    cuts, judged = found.cuts.astype(float), found.judged.astype(float)
+    hits = (
+        SECONDS_PER_H * found.span_cars,
+        found.caught,
+        found.misrouted.sum(axis=1),
+        judged,
+        *found.overspeed.T,
+        found.gap_m,
+    )
+    base = (found.span_s, cuts, cuts, cuts, judged, judged, judged, judged)
+    return TrainSums(np.array(hits, dtype=float), np.array(base, dtype=float))
+
+
+def figures_of_trains(name: str, found: TrainOutcomes) -> HumpDayFigures:
+    """The figures of trains that were humped, with the intervals that `train_figures` gives them."""
+    told = {figure.name: figure for figure in train_figures(found)}
+    require(len(found) >= FEWEST_TRAINS, f"the hump variant {name!r} has {len(found)} trains; an interval takes two")
+    made = {}
+    for ours, theirs in NAMES.items():
+        figure = told[theirs]
+        made[ours] = Interval(figure.value, figure.low95, figure.high95, figure.n)
+    return HumpDayFigures(name=name, on_track=float(found.judged.sum() / found.cuts.sum()), **made)
+
+
+def change_of_trains(today: TrainOutcomes, new: TrainOutcomes) -> HumpDayChange:
+    """New less today where both humped the same trains, in the same order (`PlantError` otherwise).
+
+    Ratios of sums over trains, linearised: residual of train k = (h'_k − r'b'_k)/b̄' − (h_k − r·b_k)/b̄; its standard
+    error over the trains with Student's quantile is half the interval. What the trains have in common cancels. It held
+    the truth in 93 to 96 % of 1000 sets of 100 trains, with shares from 0.01 to 0.07.
+    """
+    one, other = same_trains(today, new)
+    trains = one.hits.shape[1]
+    residual, value = np.zeros_like(one.hits), np.zeros(len(one.hits))
+    for sign, sums in ((-1.0, one), (1.0, other)):
+        ratio = sums.hits.sum(axis=1) / sums.base.sum(axis=1)
+        value += sign * ratio
+        residual += sign * (sums.hits - ratio[:, None] * sums.base) / sums.base.mean(axis=1)[:, None]
+    half = student_975(trains - 1) * residual.std(axis=1, ddof=1) / math.sqrt(trains)
+    made = [Interval(float(v), float(v - h), float(v + h), trains) for v, h in zip(value, half, strict=True)]
+    return HumpDayChange(True, *made)
+
+
+def same_trains(today: TrainOutcomes, new: TrainOutcomes) -> tuple[TrainSums, TrainSums]:
+    """The sums of both; `PlantError` unless they are of the same trains, at least two."""
+    require(
+        len(today) == len(new) and np.array_equal(today.train, new.train) and np.array_equal(today.cuts, new.cuts),
+        f"the variants humped {len(today)} and {len(new)} trains that are not the same; pairs must be",
+    )
+    require(len(today) >= FEWEST_TRAINS, f"the variants have {len(today)} trains; intervals take two or more")
+    return train_sums(today), train_sums(new)
+
+
+def change_of_figures(today: HumpDayFigures, new: HumpDayFigures) -> HumpDayChange:
+    """New less today from two sets of figures, as if their trains had nothing in common.
+
+    The halves of both intervals are added as squares, each towards its end. With common trains the interval
+    is wider than it need be, as long as what is good for a train in one variant is good for it in the other.
+    """
+    made = {name: unpaired(getattr(today, name), getattr(new, name)) for name in NAMES}
+    step = new.on_track - today.on_track
+    trains = min(today.cars_per_h.n, new.cars_per_h.n)
+    return HumpDayChange(paired=False, on_track=Interval(step, step, step, trains), **made)
+
+
+def ranges_of_change(found: HumpDayChange) -> dict[str, Range]:
+    """The differences as inputs of an `EconomicCase` by name, each within its interval and independent of the
+    others."""
+    return {f"change.{name}": range_of(getattr(found, name)) for name in RATES}
+
+
+def unpaired(today: Interval, new: Interval) -> Interval:
+    """New less today of independent figures (Zou and Donner, Statistics in Medicine 27 (2008), 1693)."""
+    value = new.value - today.value
+    low = math.hypot(new.value - new.low95, today.high95 - today.value)
+    high = math.hypot(new.high95 - new.value, today.value - today.low95)
+    return Interval(value, value - low, value + high, min(today.n, new.n))
+
+
+def student_975(freedom: int) -> float:
+    """97.5 % quantile of Student's law."""
+    from scipy.special import stdtrit  # start-up: scipy only where it is needed
+
+    return float(stdtrit(freedom, 0.975))

@@ -1,0 +1,172 @@
+"""What is shown of what the computer pays, at the configured values and over all uncertain inputs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from synth.computer.computer_results import ComputerResults, UncertainMoney
+from synth.computer.economics.savings import Item, total
+from synth.computer.economics.uncertainty.monte_carlo import OutputFigures
+from synth.computer.economics.uncertainty.sobol import SobolIndex
+from synth.computer.shown_sizing import FIGURES
+from synth.frame.exhibits import Chart, Column, Exhibit, Row, Sentence, Table, shown_value
+from synth.frame.interval import Interval
+from synth.frame.printed_numbers import decimals, per_cent, six_figures, three_figures, whole
+
+
+def or_never(value: float) -> str:
+    """Three figures; a time that never comes has none."""
+    if math.isinf(value):
+        return "never" if value > 0.0 else "at once"
+    return three_figures(value)
+
+
+ITEMS = (
+    Column("name", "item", words=True),
+    Column("quantity", "quantity"),
+    Column("unit", "unit", words=True),
+    Column("price", "price"),
+    Column("amount", "amount", form=whole),
+)
+WORK = (Column("figure", "of a day", words=True), Column("today", "today"), Column("new", "with the new control"))
+DRAWS = (
+    Column("output", "figure", words=True),
+    Column("q05", "5 %", form=or_never),
+    Column("q50", "median", form=or_never),
+    Column("q95", "95 %", form=or_never),
+    Column("mean", "mean"),
+    Column("never", "never", form=per_cent),
+    Column("draws", "draws"),
+)
+BARS = (
+    Column("input", "input", words=True),
+    Column("low_input", "its 5 %"),
+    Column("high_input", "its 95 %"),
+    Column("at_low", "result at 5 %", form=or_never),
+    Column("at_high", "result at 95 %", form=or_never),
+)
+SOBOL = (
+    Column("output", "output", words=True),
+    Column("input", "input", words=True),
+    Column("first", "alone", form=decimals(2)),
+    Column("total", "with others", form=decimals(2)),
+)
+
+
+def money(found: ComputerResults) -> Iterator[Exhibit]:
+    """Savings item by item, the pay-back, and what uncertain inputs leave open."""
+    economics = found.economics
+    yield from items("savings", "Savings of a year", economics.savings)
+    yield from items("capital", "Capital that is set free", economics.capital)
+    yield from figures(found)
+    yield Table("work", "The hump today and with the new control", WORK, list(work_rows(found)))
+    if found.money is not None:
+        yield from uncertain(found, found.money)
+
+
+def items(name: str, title: str, held: Sequence[Item]) -> Iterator[Exhibit]:
+    """Quantities, prices, amounts, and their sum."""
+    rows: list[Row] = [{**asdict(each), "amount": each.amount} for each in held]
+    rows.append({"name": "all", "amount": total(tuple(held))})
+    yield Table(name, title, ITEMS, rows)
+
+
+def figures(found: ComputerResults) -> Iterator[Exhibit]:
+    """What follows for the money."""
+    economics, settings = found.economics, found.config.settings
+    currency, rate = settings.prices.currency, economics.internal_rate
+    units = {"pay_back_rate_per_year": "1/a", "pay_back_years": "a", "discounted_pay_back_years": "a"}
+    rows = [
+        {"figure": name.replace("_", " "), "value": value, "unit": units.get(name, currency)}
+        for name, value in economics.figures().items()
+    ]
+    rows.append({"figure": "internal rate", "value": rate.per_year, "unit": "1/a"})
+    yield Table("economics", "Figures of the economics", FIGURES, rows)
+    loss = settings.reliability.loss_per_year()
+    yield Sentence(
+        f"Effect of a year: {whole(economics.effect_per_year)} {currency}, losses by failures of {whole(loss)} "
+        f"{currency} taken off. {economics.pay_back.statement} Net present value over {settings.terms.years} years: "
+        f"{whole(economics.net_present_value)} {currency}. {rate.statement}",
+        {"failure_loss_per_year": loss},
+        brief=True,
+    )
+
+
+def work_rows(found: ComputerResults) -> Iterator[Row]:
+    """The work of a day, before and after."""
+    today, new = asdict(found.economics.today), asdict(found.economics.new)
+    for name, value in today.items():
+        yield {"figure": name.replace("_", " "), "today": value, "new": new[name]}
+
+
+def uncertain(found: ComputerResults, over: UncertainMoney) -> Iterator[Exhibit]:
+    """Quantiles, impossible draws, shares of variance."""
+    case = found.config.case
+    impossible = over.draws.impossible
+    yield Table("draws", "Over all uncertain inputs", DRAWS, [draw_row(each) for each in over.figures], brief=True)
+    yield Sentence(
+        f"{over.draws.n} draws. Of these are impossible: {shown_value(impossible, per_cent)}, mostly "
+        " by overload of the hump; they are left out. Brackets: 95 % intervals of the draws.",
+        {"draws": over.draws.n, "impossible": impossible,
+         "why_impossible": [{"sentence": text, "draws": n} for text, n in over.draws.found.faults]},
+    )  # fmt: skip
+    yield Chart(
+        "computer-traffic",
+        "Pay-back over traffic",
+        "Net present value and reciprocal of the pay-back time over the cars humped a day. The band is what the "
+        "uncertain inputs leave open; numbers of cars that more than 5 % of the draws cannot hump are left out.",
+        lambda: _pictures().pay_back_over_traffic(found.config),
+    )
+    yield Chart(
+        "computer-tornado",
+        "Which input matters",
+        "Each uncertain input alone goes from its 5 % to its 95 % quantile. The widest bar is the number to find out "
+        "first.",
+        lambda: _pictures().tornado_bars(over.tornado, case.prices.currency),
+    )
+    middle = {"tornado_at_medians": over.tornado.at_medians}
+    yield Table("tornado", f"{over.tornado.output.replace('_', ' ')}, each input alone", BARS, bars_of(over))
+    yield Sentence(f"With every input at its median: {six_figures(over.tornado.at_medians)}.", middle)
+    if over.sobol:
+        ranked = sorted(over.sobol, key=lambda index: (index.output, -index.total))
+        title = "Share of the variance by input (Sobol indices, 95 % intervals)"
+        yield Table("sobol", title, SOBOL, [sobol_row(each, found) for each in ranked])
+    else:
+        yield Sentence(f"No shares of variance: {over.no_sobol}.")
+
+
+def draw_row(each: OutputFigures) -> Row:
+    """One output over the draws that are possible."""
+    low, middle, high = each.quantiles
+    return {"output": each.name.replace("_", " "), "q05": low, "q50": middle, "q95": high, "mean": each.mean,
+            "never": each.never, "draws": each.n}  # fmt: skip
+
+
+def bars_of(over: UncertainMoney) -> list[Row]:
+    """The bars of the tornado."""
+    return [asdict(bar) for bar in over.tornado.bars]
+
+
+def sobol_row(index: SobolIndex, found: ComputerResults) -> Row:
+    """One index of an input alone, and with what it does together with others."""
+    points = found.config.settings.uncertainty.sobol_points
+    return {
+        "output": index.output.replace("_", " "),
+        "input": index.input,
+        "first": holding(index.first, index.first_ci95, points),
+        "total": holding(index.total, index.total_ci95, points),
+    }
+
+
+def holding(value: float, ends: tuple[float, float], n: int) -> Interval:
+    """The index with its interval: a bootstrap's own ends may by chance leave it out."""
+    return Interval(value, min(ends[0], value), max(ends[1], value), n)
+
+
+def _pictures() -> Any:
+    from synth.computer import pictures  # matplotlib
+
+    return pictures

@@ -1,0 +1,121 @@
+"""How many retarder positions a controller carries: the longest response by their number, and the largest number."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from plant_models.errors import require
+from plant_models.library.sourced_value import JUDGEMENT
+from synth.computer.sizing.periodic_task import PeriodicTask
+from synth.computer.sizing.response_time import exact_load, responses
+from synth.computer.sizing.trackside_controllers import TracksideController
+from synth.frame.settings.section import Section, setting
+
+MOST_POSITIONS = 1_000_000
+
+
+class PositionTimes(Section):
+    """What every retarder position asks of the controller at the track."""
+
+    sample_s: float = setting(0.1, "s", 1e-4, 10.0, "sampling period", "of the library's radar")
+    answer_s: float = setting(0.02, "s", 1e-4, 10.0, "time to a command", "computing delay of the library's radar")
+    cut_s: float = setting(
+        2.0, "s", 0.1, 1000.0, "shortest time between two cuts", f"{JUDGEMENT}: as cuts are kept apart"
+    )
+    table_s: float = setting(0.1, "s", 1e-4, 100.0, "time to choose a table for a cut", f"{JUDGEMENT}: one sample")
+
+
+@dataclass(frozen=True)
+class Carried:
+    """So many positions on one controller: the longest times to an answer and to a table, s (inf: not all is done).
+
+    `used_share`: of the processor's time, or of the worst scan.
+    """
+
+    positions: int
+    times: PositionTimes
+    answer_s: float
+    table_s: float
+    used_share: float
+
+    @property
+    def answer_margin_s(self) -> float:
+        """What is left to the deadline of a sample; negative if it can be missed."""
+        return self.times.answer_s - self.answer_s
+
+    @property
+    def table_margin_s(self) -> float:
+        """What is left to the deadline of a table; negative if it can be missed."""
+        return self.times.table_s - self.table_s
+
+    @property
+    def in_time(self) -> bool:
+        """Whether no deadline is ever missed."""
+        return self.answer_margin_s >= 0.0 and self.table_margin_s >= 0.0
+
+
+def carried(controller: TracksideController, times: PositionTimes, positions: int) -> Carried:
+    """The longest responses with so many positions, which may all have a sample and a cut at the same moment.
+
+    In a scan all of that is one program. Else samples are more urgent than cuts; the positions of one kind are served
+    one after the other, so together they are one task with the work of all, whose response is that of the last. The
+    choice for one position is not interrupted, since a sample must not see half a table: it blocks.
+    """
+    require(
+        isinstance(positions, int) and 1 <= positions <= MOST_POSITIONS,
+        f"positions is {positions!r}; it must be a whole number from 1 to {MOST_POSITIONS}",
+    )
+    if controller.scan is not None:
+        work_s = positions * (controller.sample_s + controller.cut_s)
+        longest_s = controller.scan.longest_response_s(work_s)
+        return Carried(positions, times, longest_s, longest_s, controller.scan.used_share(work_s))
+    samples, cuts = _tasks(controller, times, positions)
+    used = exact_load((samples, cuts))
+    if used >= 1:
+        return Carried(positions, times, math.inf, math.inf, float(used))
+    answer, table = responses((samples, cuts))
+    return Carried(positions, times, answer.longest_s, table.longest_s, float(used))
+
+
+def most_positions(controller: TracksideController, times: PositionTimes) -> int:
+    """The largest number of positions that never misses a deadline; 0 if not even one is in time.
+
+    More positions make every response longer, so the number is found by bisection; at most `MOST_POSITIONS`.
+    """
+    if not carried(controller, times, 1).in_time:
+        return 0
+    low, high = 1, 2
+    while high <= MOST_POSITIONS and carried(controller, times, high).in_time:
+        low, high = high, 2 * high
+    high = min(high, MOST_POSITIONS + 1)
+    while high - low > 1:
+        middle = (low + high) // 2
+        if carried(controller, times, middle).in_time:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+def _tasks(controller: TracksideController, times: PositionTimes, positions: int) -> tuple[PeriodicTask, PeriodicTask]:
+    """All samples, all cuts."""
+    latency_s = controller.latency_s
+    samples = PeriodicTask(
+        name="samples",
+        period_s=times.sample_s,
+        work_s=positions * controller.sample_s,
+        deadline_s=times.answer_s,
+        priority=1,
+        jitter_s=latency_s,
+        blocking_s=controller.cut_s,
+    )
+    cuts = PeriodicTask(
+        name="cuts",
+        period_s=times.cut_s,
+        work_s=positions * controller.cut_s,
+        deadline_s=times.table_s,
+        priority=2,
+        jitter_s=latency_s,
+    )
+    return samples, cuts

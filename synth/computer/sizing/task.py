@@ -1,0 +1,119 @@
+"""A task that requests call up at random times, and the mix of tasks that one computer serves."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import groupby
+
+from plant_models.errors import require
+from synth.computer.sizing.service_law import ServiceLaw
+
+
+@dataclass(frozen=True)
+class Task:
+    """Requests come as a Poisson stream of `rate_per_s`; each asks for a random number of `operations`.
+
+    `priority`: 1 is the most urgent. `deadline_s`: how long after its request it should be done, None if nobody asks.
+    Raises `PlantError`.
+    """
+
+    name: str
+    rate_per_s: float
+    operations: ServiceLaw
+    priority: int = 1
+    deadline_s: float | None = None
+
+    def __post_init__(self) -> None:
+        require(
+            math.isfinite(self.rate_per_s) and self.rate_per_s > 0.0,
+            f"task {self.name}: rate_per_s is {self.rate_per_s!r}; it must be a finite number above 0",
+        )
+        require(
+            isinstance(self.priority, int) and self.priority >= 1,
+            f"task {self.name}: priority is {self.priority!r}; it must be a whole number from 1, the most urgent, on",
+        )
+        require(
+            self.deadline_s is None or (math.isfinite(self.deadline_s) and self.deadline_s > 0.0),
+            f"task {self.name}: deadline_s is {self.deadline_s!r}; it must be a finite number above 0, or not be given",
+        )
+
+    @property
+    def operations_per_s(self) -> float:
+        """What it asks for in the mean."""
+        return self.rate_per_s * self.operations.mean
+
+
+@dataclass(frozen=True)
+class Stream:
+    """A task on a computer of known speed: Poisson requests of `rate_per_s`, and the law of their `service` in s."""
+
+    name: str
+    rate_per_s: float
+    service: ServiceLaw
+    priority: int
+
+    @property
+    def load(self) -> float:
+        """ρ_i = λ_i E[S_i]: the share of the time that it takes."""
+        return self.rate_per_s * self.service.mean
+
+    @property
+    def residual_s(self) -> float:
+        """λ_i E[S_i²] / 2: the mean work that a request finds in a service of this stream, s."""
+        return 0.5 * self.rate_per_s * self.service.second_moment
+
+
+@dataclass(frozen=True)
+class TaskMix:
+    """The tasks of one computer; at least one, and names are unique. `PlantError` if not."""
+
+    tasks: tuple[Task, ...]
+
+    def __post_init__(self) -> None:
+        require(len(self.tasks) > 0, "task mix: there is no task; it must have at least one")
+        names = [task.name for task in self.tasks]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        require(not twice, f"task mix: {', '.join(twice)} is given twice; names must be unique")
+
+    @property
+    def operations_per_s(self) -> float:
+        """Σ λ_i L_i: the speed at which the computer would have no time left."""
+        return sum(task.operations_per_s for task in self.tasks)
+
+    def streams(self, speed_op_s: float) -> tuple[Stream, ...]:
+        """The tasks, in order, on a computer of `speed_op_s`; `PlantError` for a speed that is not above 0."""
+        require_speed(speed_op_s)
+        return tuple(
+            Stream(task.name, task.rate_per_s, task.operations.scaled(1.0 / speed_op_s), task.priority)
+            for task in self.tasks
+        )
+
+
+def require_speed(speed_op_s: float) -> None:
+    """Raise `PlantError` unless a computer can have this speed."""
+    require(
+        math.isfinite(speed_op_s) and speed_op_s > 0.0,
+        f"speed_op_s is {speed_op_s!r}; it must be a finite number above 0",
+    )
+
+
+def by_priority(streams: tuple[Stream, ...]) -> dict[int, tuple[Stream, ...]]:
+    """The streams of each priority, the most urgent first: those of one priority are one class of the queue."""
+    ordered = sorted(streams, key=lambda stream: stream.priority)
+    return {priority: tuple(each) for priority, each in groupby(ordered, key=lambda stream: stream.priority)}
+
+
+def total_load(streams: tuple[Stream, ...]) -> float:
+    """ρ: the share of the time that the streams take together."""
+    return math.fsum(stream.load for stream in streams)
+
+
+def require_not_overloaded(streams: tuple[Stream, ...]) -> None:
+    """Raise `PlantError`, which tells by how much, unless ρ < 1."""
+    load = total_load(streams)
+    require(
+        load < 1.0,
+        f"the computer is overloaded: its tasks take {load:.6g} of its time, {100.0 * (load - 1.0):.4g} % more than "
+        "there is; it must be less than 1, or requests wait for ever",
+    )

@@ -1,0 +1,117 @@
+"""Controllers at the track, and what they carry: how fast each is, how it is called, what code it runs."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from plant_models.errors import require
+from synth.computer.sizing.call_costs import CallCosts, c_costs, st_costs
+from synth.computer.sizing.scan_cycle import ScanCycle
+
+
+@dataclass(frozen=True)
+class TracksideController:
+    """A controller that runs code with `costs`.
+
+    One counted operation becomes `instructions` of its own, each of `cycles` in the worst mean, at `clock_hz`. With a
+    `scan` it runs all in a cycle; without, a sample calls the program at most `latency_s` after it is there, and it
+    interrupts what is less urgent. `source` says what of this is known and what assumed. Raises `PlantError`.
+    """
+
+    name: str
+    clock_hz: float
+    cycles: float
+    instructions: float
+    costs: CallCosts
+    source: str
+    scan: ScanCycle | None = None
+    latency_s: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name, value in (
+            ("clock_hz", self.clock_hz),
+            ("cycles", self.cycles),
+            ("instructions", self.instructions),
+        ):
+            require(
+                math.isfinite(value) and value > 0.0,
+                f"controller {self.name}: {name} is {value!r}; it must be a finite number above 0",
+            )
+        require(
+            math.isfinite(self.latency_s) and self.latency_s >= 0.0,
+            f"controller {self.name}: latency_s is {self.latency_s!r}; it must be a finite number from 0 on",
+        )
+
+    @property
+    def operation_s(self) -> float:
+        """Time of one counted operation."""
+        return self.instructions * self.cycles / self.clock_hz
+
+    @property
+    def sample_s(self) -> float:
+        """Work of one sample of one position."""
+        return self.costs.sample * self.operation_s
+
+    @property
+    def cut_s(self) -> float:
+        """Work of one cut at one position, besides its samples."""
+        return self.costs.cut * self.operation_s
+
+    def start_s(self, tables: int) -> float | None:
+        """Time to check so many tables at the start; None where the code has no checksum."""
+        return None if self.costs.intact is None else tables * self.costs.intact * self.operation_s
+
+
+def plc() -> TracksideController:
+    """A programmable controller of the lower middle class with a scan of 10 ms, in Structured Text."""
+    return TracksideController(
+        name="PLC, 10 ms scan",
+        clock_hz=1.0 / 384e-9,
+        cycles=1.0,
+        instructions=1.0,
+        costs=st_costs(),
+        scan=ScanCycle(period_s=0.010, overhead_s=0.001, input_s=0.003, output_s=0.001),
+        source=(
+            "384 ns: typical floating-point operation of a CPU 1511-1 PN, the dearest kind (Siemens, S7-1500 cycle and "
+            "reaction times, A5E03461503, 02/2014, table 3-2). Assumed: every counted operation takes that; 1 ms of "
+            "the scan for the system, input filter 3 ms, output 1 ms"
+        ),
+    )
+
+
+def cortex_m4() -> TracksideController:
+    """A microcontroller with a Cortex-M4 and its unit for binary32, in C."""
+    return TracksideController(
+        name="Cortex-M4, 168 MHz",
+        clock_hz=168e6,
+        cycles=2.0,
+        instructions=1.5,
+        costs=c_costs(),
+        latency_s=10e-6,
+        source=(
+            "assumed: 168 MHz, 2 cycles an instruction (most take 1, loads and branches 2 to 4, a division 14, flash "
+            "waits on top), 1.5 instructions for one of x86-64, which can operate on memory; interrupt within 10 µs"
+        ),
+    )
+
+
+def industrial_pc() -> TracksideController:
+    """An industrial PC with a real-time kernel, one core, in C."""
+    return TracksideController(
+        name="industrial PC, 2 GHz",
+        clock_hz=2e9,
+        cycles=2.0,
+        instructions=1.0,
+        costs=c_costs(),
+        latency_s=100e-6,
+        source=(
+            "assumed: one core of 2 GHz, 2 cycles an instruction with cold caches, and a real-time kernel that calls "
+            "the program within 0.1 ms; an ordinary kernel promises nothing"
+        ),
+    )
+
+
+def usual_controllers() -> tuple[TracksideController, ...]:
+    """One of each class; the user's own may stand beside them."""
+    return plc(), cortex_m4(), industrial_pc()

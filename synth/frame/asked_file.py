@@ -1,0 +1,18 @@
+"""What a user asks of a command: the file that he gives, and the options that he types."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from synth.frame.command import Asked, Command, O, P, R, S
+from synth.frame.settings.settings_file import BUILT_IN
+from synth.frame.settings.toml_file import read_text
+
+
+def asked_of(command: Command[S, O, P, R], path: Path | None, options: O, init: str) -> Asked[S, O]:
+    """The settings of the file at `path`, None: the defaults, with the `options` that were typed; `InputError`.
+
+    `init`: the command that prints such a file.
+    """
+    text, place = ("", BUILT_IN) if path is None else (read_text(path, init), str(path))
+    return Asked(command.read(text, place), options, place, Path(place).parent)

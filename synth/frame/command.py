@@ -1,0 +1,135 @@
+"""A command as a value: from declared settings to what is shown; `perform` runs it.
+
+A new command is one `Command`: its settings (file and command line), what it asks (`resolve`), what it finds
+(`compute`), by which limits that is judged, and what is shown of it. The directory, the lock, progress, Ctrl-C, pages,
+tables, pictures, hashes and exit codes are the frame's.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
+
+from plant_models.library import SourcedValue
+from synth.frame.exhibits import Chapter
+from synth.frame.settings.options import Options
+
+if TYPE_CHECKING:
+    from synth.frame.terminal.progress import Progress
+
+
+class WrittenOutput(Protocol):
+    """What is written besides figures."""
+
+    @property
+    def plots(self) -> bool:
+        """Draw the pictures."""
+        ...
+
+    @property
+    def report(self) -> bool:
+        """Write the page."""
+        ...
+
+
+S = TypeVar("S")
+O = TypeVar("O", bound=Options)  # noqa: E741  # the options of a command
+P = TypeVar("P")
+R = TypeVar("R")
+
+
+@dataclass(frozen=True)
+class Asked(Generic[S, O]):
+    """What a user asks for: the settings of the file and the options of the command line.
+
+    `place`: what messages call the file. Paths in it begin at `folder`.
+    """
+
+    settings: S
+    options: O
+    place: str
+    folder: Path
+
+
+@dataclass(frozen=True)
+class Head:
+    """What every page and summary says of a problem.
+
+    `canonical_json`: all that figures depend on, the same text for the same figures. `parameters`: every number with
+    unit, range and origin. `output`: what is written. `reads`: the files that are read besides the configuration.
+    """
+
+    title: str
+    canonical_json: str
+    parameters: tuple[SourcedValue, ...]
+    output: WrittenOutput
+    warnings: tuple[str, ...] = ()
+    reads: tuple[Path, ...] = ()
+
+    @property
+    def sha256(self) -> str:
+        """SHA-256 of `canonical_json` in UTF-8, hexadecimal."""
+        return hashlib.sha256(self.canonical_json.encode()).hexdigest()
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A sentence that tells figure and limit; `kept` None where the figures do not decide it."""
+
+    sentence: str
+    kept: bool | None
+
+
+@dataclass(frozen=True)
+class Steps:
+    """What progress counts: `word` is what is done, `noun` what the steps are called."""
+
+    count: int
+    word: str
+    noun: str
+
+
+def no_limits(result: object) -> Iterator[Limit]:
+    """The limits of a command that judges nothing."""
+    return iter(())
+
+
+@dataclass(frozen=True)
+class Command(Generic[S, O, P, R]):
+    """`read` makes settings of the text of a file and of what messages call it; `resolve` refuses all else that can be
+    refused (`InputError`, `PlantError`); `compute` tells each finished step.
+
+    `name`: as it is typed. `options`: a declared model. `limits_of_use`: what figures do not say.
+    """
+
+    name: str
+    read: Callable[[str, str], S]
+    options: type[O]
+    resolve: Callable[[Asked[S, O]], P]
+    head: Callable[[P], Head]
+    steps: Callable[[P], Steps]
+    compute: Callable[[P, Progress], R]
+    show: Callable[[R], Iterator[Chapter]]
+    limits: Callable[[R], Iterable[Limit]] = no_limits
+    limits_of_use: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """All limits of a command; none: nothing is judged, and it is accepted."""
+
+    limits: tuple[Limit, ...]
+
+    @property
+    def accepted(self) -> bool:
+        """Every limit is kept for sure."""
+        return all(limit.kept for limit in self.limits)
+
+    @property
+    def sentence(self) -> str:
+        """The limits that are not kept, or that all are."""
+        missed = [limit.sentence for limit in self.limits if not limit.kept]
+        return "; ".join(missed or [limit.sentence for limit in self.limits])

@@ -1,0 +1,124 @@
+"""Commands on the command line: the Typer function of each follows from its declaration.
+
+Only the command that is asked for is loaded; of the others the list shows name and help.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from inspect import Parameter, Signature
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+if TYPE_CHECKING:
+    from pydantic.fields import FieldInfo
+
+    from synth.frame.command import Command
+    from synth.frame.settings.options import Options
+
+
+@dataclass(frozen=True)
+class Listed:
+    """A command as the program lists it.
+
+    `words`: as it is typed, "sensors plan"; `load` imports the command, `options` its options alone; `init`: what
+    prints a configuration; `help`: what it does, a paragraph or two.
+    """
+
+    words: str
+    load: Callable[[], Command[Any, Any, Any, Any]]
+    options: Callable[[], type[Options]]
+    init: str
+    help: str
+
+    @property
+    def name(self) -> str:
+        """Its last word."""
+        return self.words.rpartition(" ")[2]
+
+    @property
+    def output(self) -> Path:
+        """Where its results go unless told."""
+        return Path("out") / self.words.replace(" ", "-")
+
+
+def listed_group(listed: Sequence[Listed]) -> type[TyperGroup]:
+    """A group of commands that has these among its own: with their options as soon as one of them is called."""
+    by_name = {each.name: each for each in listed}
+
+    class ListedGroup(TyperGroup):
+        """Commands of the frame, loaded when they are called."""
+
+        def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
+            name, command, rest = super().resolve_command(ctx, args)
+            return name, loaded(by_name[name]) if name in by_name else command, rest
+
+    return ListedGroup
+
+
+def add_listed(app: typer.Typer, listed: Sequence[Listed]) -> None:
+    """Have the help of `app` tell of these commands."""
+    for each in listed:
+        app.command(each.name, help=each.help)(lambda: 0)
+
+
+def loaded(listed: Listed) -> Any:
+    """The command with the options that it declares."""
+    app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+    options = tuple(option_parameters(listed.options()))
+    help_names = {"help_option_names": ["-h", "--help"]}
+    app.command(listed.name, help=listed.help, context_settings=help_names)(function(listed, options))
+    return typer.main.get_command(app)
+
+
+def option_parameters(options: type[Options]) -> Iterator[Parameter]:
+    """A keyword for each declared option."""
+    for key, field in options.model_fields.items():
+        yield Parameter(key, Parameter.KEYWORD_ONLY, default=None, annotation=annotation_of(field))
+
+
+def annotation_of(field: FieldInfo) -> Any:
+    """What Typer is told of an option; its words are read by the declared model."""
+    from synth.frame.settings.options import flag_of, metavar_of
+
+    default = "" if field.default is None else f" [default: {field.default}]"
+    option = typer.Option(flag_of(field), metavar=metavar_of(field), help=f"{field.description}{default}")
+    return Annotated[str | None, option]
+
+
+def function(listed: Listed, options: tuple[Parameter, ...]) -> Callable[..., int]:
+    """A function with the signature that Typer reads."""
+
+    def run(config: Path | None, output: Path, as_json: bool, **words: str | None) -> int:
+        from synth.frame.settings.options import read_options
+
+        typed = read_options(listed.options(), words)
+        from synth.frame.asked_file import asked_of
+        from synth.frame.perform import perform
+
+        command = listed.load()
+        return perform(command, asked_of(command, config, typed, listed.init), config, output, as_json)
+
+    parameters = [*common_parameters(listed), *options]
+    # mypy knows no such attribute, though every callable may have it
+    run.__signature__ = Signature(parameters)  # type: ignore[attr-defined]
+    run.__annotations__ = {each.name: each.annotation for each in parameters}
+    return run
+
+
+def common_parameters(listed: Listed) -> Iterator[Parameter]:
+    """What every command takes: a configuration, where the results go, and whether a program reads them."""
+    from synth.frame.arguments import Json, directory
+
+    source = typer.Argument(metavar="CONFIG.toml", help="Built-in unless given.")
+    output = typer.Option("-o", "--output", parser=directory, metavar="DIR", help="Where the results go.")
+    for name, default, annotation in (
+        ("config", None, Annotated[Path | None, source]),
+        ("output", listed.output, Annotated[Path, output]),
+        ("as_json", False, Json),
+    ):
+        yield Parameter(name, Parameter.KEYWORD_ONLY, default=default, annotation=annotation)

@@ -1,0 +1,130 @@
+"""What a result shows, stated once: tables of declared columns, sentences, charts and files, in chapters.
+
+An exhibit holds what was computed and computes nothing. Terminal, page, CSV and JSON are made from it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from synth.frame.interval import Interval
+from synth.frame.printed_numbers import ABSENT, three_figures
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Row = Mapping[str, Any]
+"""The figures of a row by the keys of the columns: numbers, `Interval`s, words, truth values; None is none."""
+
+Form = Callable[[float], str]
+"""How a number is printed."""
+
+
+def never(value: Any) -> bool:
+    """Nothing is."""
+    return False
+
+
+@dataclass(frozen=True)
+class Column:
+    """One figure of every row: `key` for programs, `heading` and `unit` for people.
+
+    `form` prints a number, and each of the three of an `Interval`; JSON and CSV keep all digits. `once`: a cell is
+    blank where it and the `once` columns before it repeat the row above. `spare`: 0 for what a reader cannot do
+    without; of the others a narrow terminal leaves out the highest first. `detail`: no terminal shows it. `words`: the
+    cells are words. `grey`: values that are printed as not decided.
+    """
+
+    key: str
+    heading: str
+    unit: str = ""
+    form: Form = three_figures
+    once: bool = False
+    spare: int = 0
+    detail: bool = False
+    words: bool = False
+    grey: Callable[[Any], bool] = never
+
+    @property
+    def title(self) -> str:
+        """The heading with its unit."""
+        return f"{self.heading}, {self.unit}" if self.unit else self.heading
+
+    def text(self, row: Row) -> str:
+        """What people read in `row`."""
+        return shown_value(row.get(self.key), self.form)
+
+
+def shown_value(value: Any, form: Form) -> str:
+    """A value in words: whole numbers as they are, others by `form`, intervals in brackets."""
+    match value:
+        case None:
+            return ABSENT
+        case bool():
+            return "yes" if value else "no"
+        case str():
+            return value
+        case int():
+            return str(value)
+        case Interval():
+            return f"{form(value.value)} [{form(value.low95)}, {form(value.high95)}]"
+        case tuple() | list():
+            return ", ".join(shown_value(each, form) for each in value)
+    return form(float(value))
+
+
+@dataclass(frozen=True)
+class Table:
+    """`name`: of its CSV file, and in JSON. `brief`: the terminal shows it too. `bad`: rows that a page marks."""
+
+    name: str
+    title: str
+    columns: Sequence[Column]
+    rows: Sequence[Row]
+    brief: bool = False
+    bad: Callable[[Row], bool] = never
+
+
+@dataclass(frozen=True)
+class Sentence:
+    """A sentence, or a few; `figures`: what JSON keeps of it by name. `brief`: the terminal shows it too."""
+
+    text: str
+    figures: Mapping[str, Any] = field(default_factory=dict)
+    brief: bool = False
+
+
+@dataclass(frozen=True)
+class Chart:
+    """`draw` makes the figure; it is called only where pictures are asked for. `name`: of its files."""
+
+    name: str
+    title: str
+    caption: str
+    draw: Callable[[], Figure]
+
+
+@dataclass(frozen=True)
+class File:
+    """A file of its own beside the others: a section of a configuration, for one."""
+
+    name: str
+    content: bytes
+
+
+Exhibit = Table | Sentence | Chart | File
+
+
+@dataclass(frozen=True)
+class Chapter:
+    """Exhibits under one heading."""
+
+    heading: str
+    exhibits: Sequence[Exhibit]
+
+
+def exhibits_of(chapters: Sequence[Chapter]) -> Iterator[Exhibit]:
+    """The exhibits of all chapters, in their order."""
+    return (each for chapter in chapters for each in chapter.exhibits)

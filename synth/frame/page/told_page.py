@@ -1,0 +1,75 @@
+"""The page of a run: the verdict first, then the chapters, the origin of every number, and the limits."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from importlib.metadata import version
+
+from synth.frame.exhibits import Chapter, Chart, Column, Exhibit, Row, Sentence, Table
+from synth.frame.page.document import Stamp, document, figure, file_table
+from synth.frame.page.markup import Cell, Markup, element, head_row, joined, table
+from synth.frame.page.parameter_table import parameter_section
+from synth.frame.picture.picture import Picture
+from synth.frame.told import Told
+
+WORDS = {True: "kept", False: "missed", None: "not decidable"}
+
+
+def page_of(told: Told, pictures: Mapping[str, Picture], hashes: Mapping[str, str]) -> str:
+    """One HTML document that loads nothing; `pictures` by name, `hashes`: SHA-256 of the other files by name."""
+    head = told.head
+    stamp = Stamp(head.title, told.created, version("retarder-synth"), head.sha256)
+    return document(stamp, verdict_box(told), tuple(sections(told, pictures, hashes)))
+
+
+def verdict_box(told: Told) -> Markup:
+    """Accepted or not, limit by limit; nothing where nothing is judged."""
+    if not told.verdict.limits:
+        return Markup()
+    accepted = told.verdict.accepted
+    items = (element("li", f"{WORDS[limit.kept]}: {limit.sentence}") for limit in told.verdict.limits)
+    head = element("p", element("strong", "Accepted" if accepted else "Not accepted"))
+    style = f"verdict {'accepted' if accepted else 'refused'}"
+    return element("section", head, element("ul", *items), class_=style, id="verdict")
+
+
+def sections(
+    told: Told, pictures: Mapping[str, Picture], hashes: Mapping[str, str]
+) -> Iterator[tuple[str, str, Markup]]:
+    """(anchor, heading, content) in the order of the page."""
+    for chapter in told.chapters:
+        yield anchor_of(chapter), chapter.heading, joined(shown(each, pictures) for each in chapter.exhibits)
+    yield "parameters", "Parameters", parameter_section(told.head.parameters)
+    if told.limits_of_use:
+        yield "limits", "Limits of use", element("ul", *(element("li", each) for each in told.limits_of_use))
+    yield "files", "Files", file_table(hashes)
+
+
+def anchor_of(chapter: Chapter) -> str:
+    """The heading as a name in links."""
+    return re.sub(r"[^a-z0-9]+", "-", chapter.heading.lower()).strip("-")
+
+
+def shown(exhibit: Exhibit, pictures: Mapping[str, Picture]) -> Markup:
+    """One exhibit; a chart that was not drawn and a file leave nothing here."""
+    match exhibit:
+        case Sentence():
+            return element("p", exhibit.text)
+        case Table():
+            return joined((element("h3", exhibit.title), shown_table(exhibit)))
+        case Chart() if exhibit.name in pictures:
+            return figure(pictures[exhibit.name])
+    return Markup()
+
+
+def shown_table(of: Table) -> Markup:
+    """The table with all its columns."""
+    rows = (([cell(column, row) for column in of.columns], "bad" if of.bad(row) else "") for row in of.rows)
+    return table(of.title, (head_row(*(column.title for column in of.columns)),), rows, kind="cases")
+
+
+def cell(column: Column, row: Row) -> Cell:
+    """One figure, or words."""
+    kind = "words" if column.words else "meta" if column.grey(row.get(column.key)) else ""
+    return Cell(column.text(row), kind=kind)

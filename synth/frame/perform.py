@@ -1,0 +1,90 @@
+"""The run of a command: refuse what can be refused, compute, judge, write, tell; the only skeleton of that."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from synth.frame.command import Asked, Command, O, P, R, S, Verdict
+from synth.frame.creation_time import creation_time, require_date
+from synth.frame.exhibits import Chart, File, Table, exhibits_of
+from synth.frame.results_directory import SUMMARY, ResultsDirectory, results_directory
+from synth.frame.terminal.interrupt import interruptible
+from synth.frame.terminal.progress import Progress
+from synth.frame.terminal.telling import LIMITS_MISSED, OK, say
+from synth.frame.told import Told
+
+if TYPE_CHECKING:
+    from synth.frame.picture.picture import Picture
+
+PAGE = "report.html"
+
+
+def perform(command: Command[S, O, P, R], asked: Asked[S, O], source: Path | None, output: Path, as_json: bool) -> int:
+    """Run `command` as `asked` in the file `source`, into the directory `output`; the exit code.
+
+    Raises `InputError` and `PlantError` before anything is written, `OSError` where the disk does.
+    """
+    require_date()
+    problem = command.resolve(asked)
+    head, steps = command.head(problem), command.steps(problem)
+    started, created = time.monotonic(), creation_time()
+    reads = [*filter(None, [source]), *head.reads]
+    with results_directory(output, command.name, reads) as directory:
+        for warning in head.warnings:
+            say(f"warning: {warning}")
+        with interruptible(directory, "summary"), Progress(steps.count, steps.word, steps.noun) as progress:
+            result = command.compute(problem, progress)
+            verdict = Verdict(tuple(command.limits(result)))
+            chapters = tuple(command.show(result))
+            told = Told(command.name, head, created, verdict, chapters, command.limits_of_use)
+            write(told, directory, progress.note)
+            progress.note(f"all files written after {time.monotonic() - started:.1f} s")
+        names = (*directory.written,)
+    if as_json:
+        sys.stdout.write((output / SUMMARY).read_text(encoding="utf-8"))
+    else:
+        from synth.frame.terminal.told_print import print_told
+
+        print_told(told, output, names)
+    return OK if verdict.accepted else LIMITS_MISSED
+
+
+def write(told: Told, directory: ResultsDirectory, tell: Callable[[str], None]) -> None:
+    """Write files, tables, pictures, page, and last of all the summary."""
+    from synth.frame.sheet import to_csv
+    from synth.frame.summary import summary_of
+
+    for each in exhibits_of(told.chapters):
+        if isinstance(each, File):
+            directory.write(each.name, each.content)
+        elif isinstance(each, Table):
+            directory.write(f"tables/{each.name}.csv", to_csv(each))
+    output = told.head.output
+    pictures = drawn(told, tell) if output.plots or output.report else {}
+    if output.plots:
+        from synth.frame.picture.picture import picture_files
+
+        directory.write_all(picture_files(pictures.values(), "plots"))
+    if output.report:
+        from synth.frame.page.told_page import page_of
+
+        directory.write(PAGE, page_of(told, pictures, directory.written).encode())
+    directory.finish(summary_of(told, directory.written))
+
+
+def drawn(told: Told, tell: Callable[[str], None]) -> dict[str, Picture]:
+    """The charts by name, drawn."""
+    from synth.frame.picture.figure_file import draw  # matplotlib
+    from synth.frame.picture.picture import Picture
+
+    found: dict[str, Picture] = {}
+    for chapter in told.chapters:
+        for each in chapter.exhibits:
+            if isinstance(each, Chart):
+                found[each.name] = Picture(each.name, chapter.heading, each.title, each.caption, draw(each.draw()))
+    tell(f"{len(found)} pictures drawn")
+    return found

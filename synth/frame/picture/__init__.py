@@ -1,0 +1,1 @@
+"""How pictures look, and the bytes of their files."""

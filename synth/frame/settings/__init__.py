@@ -1,0 +1,1 @@
+"""Declared settings: their files, faults, templates and lists."""

@@ -1,0 +1,162 @@
+"""What pydantic finds at fault in a file, as one sentence each: key, value, what is allowed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any, Final, get_args
+
+from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails
+
+from plant_models.errors import PlantError
+from plant_models.library.near_miss import near_miss
+from synth.frame.input_error import InputError
+from synth.frame.settings.section import Section, setting_limits
+from tuning_tables.excerpt import excerpt
+
+ALLOWED = {
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "string_type": "a string in quotes",
+    "bool_type": "true or false",
+    "finite_number": "a finite number",
+    "model_type": "a table",
+    "tuple_type": "a list",
+    "string_pattern_mismatch": "made of at most 61 letters, digits, dots, hyphens and underscores",
+}
+"""What a value must be, by pydantic's error type."""
+
+LENGTHS = {
+    "consist": "a list of 1 to 60 tables {car = …, cars = …, mass_per_car_t = …}",
+    "library": "a list of at most 20 folders",
+    "elements": "a list of 1 to 200 tables {from_m = …, to_m = …, grade_permille = …}",
+    "bends": "a list of at most 200 tables {from_m = …, to_m = …, switches = …, turn_deg = …}",
+    "categories": "a list of 1 to 31 weight categories",
+    "cars": "a list of 1 to 64 numbers of cars",
+    "free_distances_m": "a list of 1 to 100 distances",
+    "knowledge": "a list of 'category', 'measured' or both",
+    "category_shares": "a table of 1 to 31 shares, {L = 0.3, T = 0.7}",
+    "track_shares": "a table of 1 to 199 shares, {1 = 2.0, 2 = 1.0}",
+    "position": "at most 10 tables [[position]]",
+    "lowest_m_s": "a list of at most 10 speeds",
+    "highest_m_s": "a list of at most 10 speeds",
+    "most_entry_m_s": "a list of at most 10 speeds",
+}
+"""What a list that is too long or too short must be, by its key."""
+
+Location = Sequence[str | int]
+
+LONGEST_SENTENCE: Final = 400
+"""Characters of what is said of a value, which the sentence may repeat."""
+
+
+@contextmanager
+def in_file(place: str) -> Iterator[None]:
+    """Within, a `PlantError` becomes an `InputError` about the file that messages call `place`."""
+    try:
+        yield
+    except PlantError as error:
+        raise InputError(f"{place}: {excerpt(str(error), LONGEST_SENTENCE)}") from None
+
+
+def faults_in(error: ValidationError, root: type[Section]) -> list[str]:
+    """Every fault of a file that should be a `root` as a sentence; mistyped keys come before missing ones."""
+    found = error.errors(include_url=False)
+    own = [fault for fault in found if fault["type"] != "too_short" or not fault["input"]]  # else a sequel of another
+    return [fault_sentence(fault, root) for fault in sorted(own, key=lambda fault: fault["type"] != "extra_forbidden")]
+
+
+def fault_sentence(fault: ErrorDetails, root: type[Section]) -> str:
+    """One pydantic error as 'key is value; what is allowed'."""
+    location, kind, value = fault["loc"], fault["type"], fault["input"]
+    key = key_path(location)
+    if kind == "extra_forbidden":
+        return f"{key} = {shown(value)} is an unknown key; {hint(location, root)}"
+    if kind == "missing":
+        return f"{key} is missing; add it to {key_path(location[:-1]) or 'the file'}"
+    if kind == "value_error" and isinstance(value, dict | Section):  # a rule between the keys of a table
+        return rule_sentence(key, str(fault["ctx"]["error"]), section_at(location, root))
+    return f"{key} is {shown(value)}; it must be {allowed(fault, root)}"
+
+
+def rule_sentence(key: str, sentence: str, section: type[BaseModel]) -> str:
+    """A sentence about the table at `key`; where it begins with one of its keys, that is told in full."""
+    if not key:
+        return sentence
+    return f"{key}.{sentence}" if sentence.partition(" ")[0] in section.model_fields else f"{key}: {sentence}"
+
+
+def allowed(fault: ErrorDetails, root: type[Section]) -> str:
+    """What the value at fault must be."""
+    kind, context = fault["type"], fault.get("ctx", {})
+    if kind in ("greater_than_equal", "less_than_equal"):
+        limits = setting_limits(field_at(fault["loc"], root))
+        return f"from {limits[0]:g} to {limits[1]:g}" if limits else fault["msg"]
+    if kind == "value_error":
+        return str(context["error"]).removeprefix("it must be ")
+    if kind == "literal_error":
+        return str(context["expected"])
+    if kind in ("too_short", "too_long"):
+        return LENGTHS.get(str(fault["loc"][-1]), "a list of 1 to 1000 [[cut]] tables")
+    if fault["loc"] in (("cut",), ("position",)):
+        name = fault["loc"][0]
+        return f"a list of tables: write [[{name}]], not [{name}]"
+    return ALLOWED.get(kind, fault["msg"])
+
+
+def hint(location: Location, root: type[Section]) -> str:
+    """Which key was meant: one of the section's, or the same name in another section, else all that the section has."""
+    section, word = section_at(location[:-1], root), str(location[-1])
+    elsewhere = [key for key in dotted_keys(root, "") if key.split(".")[-1] == word]
+    if elsewhere:
+        return f"did you mean {elsewhere[0]}?"
+    return near_miss(word, section.model_fields)
+
+
+def section_at(location: Location, root: type[Section]) -> type[BaseModel]:
+    """The section that a location leads to."""
+    section: type[BaseModel] = root
+    for part in location:
+        if isinstance(part, str):
+            section = next(iter(sections_in(section.model_fields[part])))
+    return section
+
+
+def field_at(location: Location, root: type[Section]) -> FieldInfo:
+    """The field that a location ends at."""
+    return section_at(location[:-1], root).model_fields[str(location[-1])]
+
+
+def sections_in(field: FieldInfo) -> list[type[Section]]:
+    """The section that a field holds, or a list of; empty for a plain value."""
+    return [c for c in parts_of(field.annotation) if isinstance(c, type) and issubclass(c, Section)]
+
+
+def parts_of(annotation: Any) -> Iterator[Any]:
+    """A type, and all that it is made of."""
+    yield annotation
+    for part in get_args(annotation):
+        yield from parts_of(part)
+
+
+def dotted_keys(section: type[BaseModel], prefix: str) -> list[str]:
+    """Every key that a file may hold, as a dotted path."""
+    keys: list[str] = []
+    for name, field in section.model_fields.items():
+        inner = sections_in(field)
+        keys += dotted_keys(inner[0], f"{prefix}{name}.") if inner else [prefix + name]
+    return keys
+
+
+def key_path(location: Location) -> str:
+    """('cut', 0, 'mass_t') → 'cut[0].mass_t'."""
+    path = "".join(f"[{part}]" if isinstance(part, int) else f".{excerpt(part)}" for part in location)
+    return path.removeprefix(".")
+
+
+def shown(value: Any) -> str:
+    """A value as the file writes it, cut off if long."""
+    text = str(value).lower() if isinstance(value, bool) else repr(value)
+    return text if len(text) <= 80 else text[:77] + "…"

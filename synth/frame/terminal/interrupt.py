@@ -1,0 +1,43 @@
+"""Ctrl-C while threads compute: the process ends at once and leaves no unfinished file."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+import sys
+import threading
+from collections.abc import Iterator
+from types import FrameType
+from typing import TYPE_CHECKING
+
+from synth.frame.terminal.telling import INTERRUPTED, leave, say
+
+if TYPE_CHECKING:
+    from synth.frame.results_directory import ResultsDirectory
+
+
+@contextlib.contextmanager
+def interruptible(directory: ResultsDirectory | None = None, result: str = "book") -> Iterator[None]:
+    """Within, Ctrl-C ends the process with code 130, after removing unfinished files from `directory`.
+
+    Not by an exception: it would wait for threads that compute for seconds and cannot be told to stop.
+    """
+    if threading.current_thread() is not threading.main_thread():  # only the main thread may take signals
+        yield
+        return
+
+    def end(number: int, frame: FrameType | None) -> None:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        if directory is not None:
+            with contextlib.suppress(OSError):
+                directory.remove_leftovers()
+        say("interrupted" if directory is None else f"interrupted; {directory.path} holds no complete {result}")
+        with contextlib.suppress(OSError, ValueError):
+            sys.stdout.flush()
+        leave(INTERRUPTED)
+
+    before = signal.signal(signal.SIGINT, end)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)

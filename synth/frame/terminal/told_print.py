@@ -1,0 +1,45 @@
+"""A run on stdout: what is brief of its exhibits, the verdict, and where the files are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+from pathlib import Path
+
+from synth.frame.exhibits import Column, Row, Sentence, Table, exhibits_of
+from synth.frame.terminal.printed_page import Exhibit, Verdict, print_page
+from synth.frame.terminal.printed_table import Column as PrintedColumn
+from synth.frame.terminal.printed_table import PrintedTable
+from synth.frame.told import Told
+
+
+def print_told(told: Told, directory: Path, files: Sequence[str]) -> None:
+    """Print it; `files`: names of what was written."""
+    print_page(*printed(told), f"{directory}: {', '.join(folders_and_files(files))}")
+
+
+def printed(told: Told) -> Iterator[Exhibit]:
+    """The brief exhibits in their order, then the verdict."""
+    for each in exhibits_of(told.chapters):
+        if isinstance(each, Sentence) and each.brief:
+            yield each.text
+        if isinstance(each, Table) and each.brief:
+            yield PrintedTable(
+                tuple(printed_column(column) for column in each.columns if not column.detail),
+                each.rows,
+                "summary.json",
+                each.title,
+            )
+    if told.verdict.limits:
+        yield Verdict(told.verdict.accepted, told.verdict.sentence)
+
+
+def printed_column(column: Column) -> PrintedColumn[Row]:
+    """The column as a terminal has it."""
+    return PrintedColumn(column.title, partial(Column.text, column), column.words, column.once, column.spare)
+
+
+def folders_and_files(names: Sequence[str]) -> list[str]:
+    """The folders, then the files beside them."""
+    folders = sorted({f"{name.partition('/')[0]}/" for name in names if "/" in name})
+    return [*folders, *sorted(name for name in names if "/" not in name)]

@@ -1,0 +1,138 @@
+"""A small command of the frame: it throws coins."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from pydantic import Field
+from scipy.stats import binomtest
+
+from plant_models.errors import PlantError
+from synth.frame.command import Asked, Command, Head, Limit, Steps
+from synth.frame.exhibits import Chapter, Chart, Column, File, Sentence, Table
+from synth.frame.interval import Interval
+from synth.frame.printed_numbers import decimals
+from synth.frame.settings.numbers import numbers_of
+from synth.frame.settings.options import Options, configured
+from synth.frame.settings.output import OutputSettings
+from synth.frame.settings.section import Section, choice, optional, setting
+from synth.frame.settings.settings_file import parse_settings
+from synth.frame.terminal.progress import Progress
+from tuning_tables.canonical import canonical_json
+
+
+class CoinSettings(Section):
+    """The coin."""
+
+    heads: float = setting(0.5, "1", 0.0, 1.0, "probability of heads", "everybody")
+    throws: int = setting(200, "1", 10, 10_000, "throws of each player")
+    side: str = choice("heads", "what wins")
+
+
+class CoinFile(Section):
+    """A file about coins."""
+
+    title: str | None = Field(None, description="of the page")
+    players: tuple[str, ...] = Field(("Anna", "Bohdan"), strict=False, description="who throws")
+    coin: CoinSettings = CoinSettings()
+    least_share: float | None = optional("1", 0.0, 1.0, "every player must win so often", 0.4)
+    output: OutputSettings = OutputSettings()
+
+
+class CoinOptions(Options):
+    """Options of the command line."""
+
+    throws: int | None = configured("--throws", "N", CoinSettings, "throws", "Throws of each player")
+
+
+@dataclass(frozen=True)
+class Game:
+    """What is asked."""
+
+    settings: CoinFile
+    throws: int
+    head: Head
+
+
+def read(text: str, place: str) -> CoinFile:
+    """The file."""
+    return parse_settings(CoinFile, text, place)
+
+
+def resolve(asked: Asked[CoinFile, CoinOptions]) -> Game:
+    """A coin that has sides."""
+    settings, throws = asked.settings, asked.options.throws or asked.settings.coin.throws
+    if settings.coin.side not in ("heads", "tails"):
+        raise PlantError(f"{asked.place}: coin.side is {settings.coin.side!r}; a coin has heads and tails")
+    head = Head(
+        title=settings.title or "Coins",
+        canonical_json=canonical_json({"coin": settings.coin.model_dump(), "throws": throws}).decode(),
+        parameters=tuple(numbers_of(settings)),
+        output=settings.output,
+        warnings=("few throws",) if throws < 100 else (),
+    )
+    return Game(settings, throws, head)
+
+
+def compute(game: Game, progress: Progress) -> dict[str, Interval]:
+    """Shares by player."""
+    found = {}
+    for number, player in enumerate(game.settings.players):
+        dice = random.Random(number)
+        wins = sum(dice.random() < game.settings.coin.heads for _ in range(game.throws))
+        told = binomtest(wins, game.throws).proportion_ci()
+        found[player] = Interval(wins / game.throws, told.low, told.high, game.throws)
+        progress.done(player)
+    return found
+
+
+def limits(found: dict[str, Interval]) -> Iterator[Limit]:
+    """Nobody wins more than three times out of four."""
+    most = max(found.values(), key=lambda each: each.value)
+    kept = True if most.high95 <= 0.75 else False if most.low95 > 0.75 else None
+    yield Limit(f"the luckiest wins {most.value:.2f}, at most 0.75 asked", kept)
+
+
+def show(found: dict[str, Interval]) -> Iterator[Chapter]:
+    """Shares."""
+    columns = (
+        Column("player", "player", words=True),
+        Column("share", "share won", form=decimals(2)),
+        Column("throws", "throws", spare=1),
+        Column("told_by", "told by", detail=True, words=True),
+    )
+    rows = [
+        {"player": player, "share": share, "throws": share.n, "told_by": "=dice"} for player, share in found.items()
+    ]
+    last = {"player": "nobody"}
+    yield Chapter(
+        "Who wins",
+        (
+            Sentence("Players throw one after another.", {"players": len(found)}, brief=True),
+            Table("shares", "Shares won", columns, [*rows, last], brief=True, bad=lambda row: "share" not in row),
+        ),
+    )
+    yield Chapter("Pictures & more", (Chart("coins", "Coins", "Shares.", drawn), File("coins.txt", b"heads\n")))
+
+
+def drawn() -> object:
+    """A picture."""
+    from matplotlib.figure import Figure
+
+    return Figure()
+
+
+COMMAND = Command(
+    name="throw coins",
+    read=read,
+    options=CoinOptions,
+    resolve=resolve,
+    head=lambda game: game.head,
+    steps=lambda game: Steps(len(game.settings.players), "throwing", "players"),
+    compute=compute,
+    show=show,  # type: ignore[arg-type]  # drawn makes a figure
+    limits=limits,
+    limits_of_use=("Coins are not dice.",),
+)

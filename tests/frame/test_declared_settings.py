@@ -1,0 +1,136 @@
+"""Declared settings: their templates, lists and faults follow from the declaration, of every command of the frame."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from pydantic.fields import FieldInfo
+
+from plant_models import PlantError
+from plant_models.library.sourced_value import SET_BY_USER
+from synth.computer.settings import ComputerSettings
+from synth.frame.input_error import InputError
+from synth.frame.settings.changed import changed, with_inputs
+from synth.frame.settings.numbers import numbers_of
+from synth.frame.settings.section import Section, setting_limits, setting_unit
+from synth.frame.settings.settings_file import parse_settings
+from synth.frame.settings.template import template
+from synth.frame.settings.toml_text import toml_text
+from tests.frame.small_command import CoinFile
+
+FILES: tuple[Section, ...] = (CoinFile(), ComputerSettings())
+
+
+def declared(section: Section, path: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], Any, FieldInfo]]:
+    """(path, value, field) of every key of plain tables."""
+    for key, field in type(section).model_fields.items():
+        value = getattr(section, key)
+        if isinstance(value, Section):
+            yield from declared(value, (*path, key))
+        else:
+            yield (*path, key), value, field
+
+
+def nested(file: Section, path: tuple[str, ...], value: object) -> dict[str, Any]:
+    """The tables of a file that says only this value, and what stands beside it in its table."""
+    table: Any = file
+    for key in path[:-1]:
+        table = getattr(table, key)
+    beside = {} if table is file else table.model_dump(mode="json", exclude_none=True)
+    tree: Any = {key: each for key, each in beside.items() if not isinstance(each, dict | list)} | {path[-1]: value}
+    for key in reversed(path[:-1]):
+        tree = {key: tree}
+    found: dict[str, Any] = tree
+    return found
+
+
+LIMITED = [
+    pytest.param(file, path, field, id=f"{type(file).__name__}-{'.'.join(path)}")
+    for file in FILES
+    for path, _, field in declared(file, ())
+    if setting_limits(field)
+]
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda file: type(file).__name__)
+def test_a_template_reads_back_to_the_defaults_and_says_every_unit(file: Section) -> None:
+    text = template(file, "A thing", "do")
+    assert parse_settings(type(file), text, "t.toml") == file
+    for path, _, field in declared(file, ()):
+        assert path[-1] in text
+        assert (field.description or "") in text
+        assert setting_unit(field) in text
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda file: type(file).__name__)
+def test_every_number_has_a_unit_and_is_listed_once(file: Section) -> None:
+    told = [value.key for value in numbers_of(file)]
+    assert len(told) == len(set(told))
+    for path, value, field in declared(file, ()):
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            assert setting_unit(field), path
+            assert ".".join(path) in told
+
+
+@pytest.mark.parametrize(("file", "path", "field"), LIMITED)
+def test_a_value_beyond_its_limits_is_one_sentence(file: Section, path: tuple[str, ...], field: FieldInfo) -> None:
+    limits = setting_limits(field)
+    assert limits is not None
+    whole = field.annotation in (int, int | None)
+    beyond = (limits[0] - 1, limits[1] + max(1.0, abs(limits[1])))
+    for value in (int(each) if whole else float(each) for each in beyond):
+        if whole and not -(2**63) <= value < 2**63:
+            continue
+        with pytest.raises(InputError) as caught:
+            parse_settings(type(file), toml_text(nested(file, path, value)), "c.toml")
+        (said,) = caught.value.sentences
+        assert said == f"c.toml: {'.'.join(path)} is {value!r}; it must be from {limits[0]:g} to {limits[1]:g}"
+
+
+@pytest.mark.parametrize(("file", "path", "field"), LIMITED)
+def test_a_word_for_a_number_and_a_mistyped_key_are_one_sentence(
+    file: Section, path: tuple[str, ...], field: FieldInfo
+) -> None:
+    for tree, word in (
+        (nested(file, path, "many"), "a whole number" if field.annotation in (int, int | None) else "a number"),
+        (nested(file, (*path[:-1], f"{path[-1]}x"), 1.0), "did you mean"),
+    ):
+        with pytest.raises(InputError) as caught:
+            parse_settings(type(file), toml_text(tree), "c.toml")
+        (said,) = caught.value.sentences
+        assert said.startswith(f"c.toml: {'.'.join(path)}")
+        assert word in said
+
+
+def test_what_the_user_sets_is_his() -> None:
+    told = parse_settings(CoinFile, "[coin]\nheads = 0.25\n", "c.toml")
+    sources = {value.key: value.source for value in numbers_of(told)}
+    assert sources == {"coin.heads": SET_BY_USER, "coin.throws": "default of the tool"}
+
+
+def test_a_list_of_tables_is_the_tools_own_or_the_users() -> None:
+    usual = {value.key: value.source for value in numbers_of(ComputerSettings())}
+    assert usual["range.terms.investment.low"].startswith("engineering judgement")
+    own = parse_settings(
+        ComputerSettings, '[[range]]\ninput = "terms.years"\nlow = 5.0\nhigh = 20.0\nsource = "our book"\n', "c.toml"
+    )
+    (low, high) = (value for value in numbers_of(own) if value.key.startswith("range."))
+    assert (low.key, low.value, high.value, low.source) == ("range.terms.years.low", 5.0, 20.0, "our book")
+
+
+def test_changed_values_are_checked_as_those_of_a_file() -> None:
+    coin = CoinFile().coin
+    assert changed(coin, heads=0.25).heads == 0.25
+    with pytest.raises(PlantError, match=r"heads is 2\.0; it must be from 0 to 1"):
+        changed(coin, heads=2.0)
+    assert with_inputs(CoinFile(), {"coin.throws": 20.4}).coin.throws == 20
+    with pytest.raises(PlantError, match="is no input of"):
+        with_inputs(CoinFile(), {"coin.side": 1.0})
+
+
+def test_templates_are_toml_whatever_they_say() -> None:
+    for file in FILES:
+        assert tomllib.loads(template(file, "", ""))

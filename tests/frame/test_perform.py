@@ -1,0 +1,135 @@
+"""A command of the frame from words to files: every medium says the same, and what is refused leaves nothing."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from plant_models import PlantError
+from synth.frame.command_line import Listed, add_listed, listed_group
+from synth.frame.input_error import InputError
+from tests.frame.results import results_in
+from tests.frame.small_command import COMMAND, CoinOptions
+
+LISTED = Listed("throw coins", lambda: COMMAND, lambda: CoinOptions, "init --coin", "Throw coins.\n\nFor nothing.")
+
+
+@pytest.fixture
+def app(monkeypatch: pytest.MonkeyPatch) -> typer.Typer:
+    """A program with this command."""
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    made = typer.Typer(cls=listed_group([LISTED]))
+    made.command("other")(lambda: 0)
+    add_listed(made, [LISTED])
+    return made
+
+
+def run(app: typer.Typer, *words: str) -> tuple[int, str]:
+    """Exit code, and what is on stdout."""
+    found = CliRunner().invoke(app, ["coins", *words], standalone_mode=False, catch_exceptions=False)
+    return found.return_value, found.stdout
+
+
+def summary(folder: Path) -> dict[str, Any]:
+    """summary.json."""
+    read: dict[str, Any] = json.loads((folder / "summary.json").read_bytes())
+    return read
+
+
+def test_every_medium_tells_the_same_figures(app: typer.Typer, tmp_path: Path) -> None:
+    code, printed = run(app, "-o", str(tmp_path))
+    assert code == 0
+    told = summary(tmp_path)
+    share = told["tables"]["shares"][0]["share"]
+    with (tmp_path / "tables" / "shares.csv").open(encoding="utf-8", newline="") as file:
+        first, _, nobody = csv.DictReader(file)
+    columns = {"value": "share", "low95": "share_low95", "high95": "share_high95", "n": "share_n"}
+    assert {part: float(first[column]) for part, column in columns.items()} == share
+    assert first["told_by"] == "'=dice"  # no formula for a spreadsheet
+    assert set(nobody.values()) == {"nobody", ""}
+    words = f"{share['value']:.2f} [{share['low95']:.2f}, {share['high95']:.2f}]"
+    assert words in printed
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert words in page
+    assert 'class="bad"' in page
+    assert "=dice" in page
+    assert "=dice" not in printed
+    assert "Coins are not dice." in page
+    assert told["figures"] == {"players": 2}
+    assert told["tables"]["shares"][-1] == {"player": "nobody", "share": None, "throws": None, "told_by": None}
+
+
+def test_the_summary_names_every_file_with_its_hash_and_is_what_json_prints(app: typer.Typer, tmp_path: Path) -> None:
+    code, printed = run(app, "-o", str(tmp_path), "--json")
+    assert (code, printed) == (0, (tmp_path / "summary.json").read_text(encoding="utf-8"))
+    told = summary(tmp_path)
+    files = {"coins.txt", "plots/coins.png", "plots/coins.svg", "report.html", "tables/shares.csv"}
+    assert set(told["files"]) == files
+    for name, digest in told["files"].items():
+        assert hashlib.sha256((tmp_path / name).read_bytes()).hexdigest() == digest
+    assert (told["command"], told["accepted"], told["limits"][0]["kept"]) == ("throw coins", True, True)
+
+
+@pytest.mark.parametrize(
+    ("text", "kept"), [("[coin]\nheads = 0.95\n", False), ("[coin]\nheads = 0.75\n", None)], ids=["missed", "open"]
+)
+def test_a_limit_that_is_missed_or_open_gives_one(
+    app: typer.Typer, tmp_path: Path, text: str, kept: bool | None
+) -> None:
+    (tmp_path / "c.toml").write_text(text, encoding="utf-8")
+    code, printed = run(app, str(tmp_path / "c.toml"), "-o", str(tmp_path / "out"))
+    assert code == 1
+    assert "not accepted: the luckiest wins" in printed
+    assert [limit["kept"] for limit in summary(tmp_path / "out")["limits"]] == [kept]
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert ("missed: the luckiest" if kept is False else "not decidable: the luckiest") in page
+
+
+def test_the_same_question_gives_the_same_bytes_and_options_count(app: typer.Typer, tmp_path: Path) -> None:
+    for name, words in (("one", ()), ("two", ()), ("other", ("--throws", "50"))):
+        assert run(app, "-o", str(tmp_path / name), *words)[0] == 0
+    one, two, other = (results_in(tmp_path / name) for name in ("one", "two", "other"))
+    assert one == two
+    assert one["tables/shares.csv"] != other["tables/shares.csv"]
+    assert summary(tmp_path / "other")["warnings"] == ["few throws"]
+    assert summary(tmp_path / "other")["config"]["throws"] == 50
+
+
+def test_what_is_only_asked_is_written(app: typer.Typer, tmp_path: Path) -> None:
+    (tmp_path / "c.toml").write_text("[output]\nplots = false\nreport = false\n", encoding="utf-8")
+    assert run(app, str(tmp_path / "c.toml"), "-o", str(tmp_path / "out"))[0] == 0
+    assert set(summary(tmp_path / "out")["files"]) == {"coins.txt", "tables/shares.csv"}
+
+
+@pytest.mark.parametrize(
+    ("text", "words", "sentence"),
+    [
+        ("[coin]\nhead = 0.5\n", (), "coin.head = 0.5 is an unknown key; did you mean heads?"),
+        ("[coin]\nheads = 1.5\n", (), "coin.heads is 1.5; it must be from 0 to 1"),
+        ("[coin]\nside = 'edge'\n", (), "coin.side is 'edge'; a coin has heads and tails"),
+        ("", ("--throws", "3"), "--throws is '3'; it must be a whole number from 10 to 10000"),
+        ("", ("--throws", "many"), "--throws is 'many'; it must be a whole number from 10 to 10000"),
+    ],
+)
+def test_a_refusal_is_one_sentence_and_leaves_nothing(
+    app: typer.Typer, tmp_path: Path, text: str, words: tuple[str, ...], sentence: str
+) -> None:
+    (tmp_path / "c.toml").write_text(text, encoding="utf-8")
+    with pytest.raises((InputError, PlantError)) as caught:
+        run(app, str(tmp_path / "c.toml"), "-o", str(tmp_path / "out"), *words)
+    assert str(caught.value).endswith(sentence)
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_help_tells_what_is_declared(app: typer.Typer) -> None:
+    told = CliRunner().invoke(app, ["coins", "--help"]).stdout
+    assert "Throw coins." in told
+    assert "--throws N" in " ".join(told.split())
+    assert "Throws of each player; as configured unless given." in " ".join(told.split())

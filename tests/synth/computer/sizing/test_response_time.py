@@ -1,0 +1,202 @@
+"""Response times: textbook sets, and every set of small random tasks against a schedule simulated tick by tick."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from itertools import permutations
+
+import numpy as np
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from plant_models.errors import PlantError
+from synth.computer.sizing.periodic_task import PeriodicTask
+from synth.computer.sizing.response_time import exact_load, responses
+from synth.computer.sizing.scan_cycle import ScanCycle
+
+
+def task(period: float, work: float, priority: int, deadline: float | None = None) -> PeriodicTask:
+    """A task named by its priority."""
+    return PeriodicTask(str(priority), period, work, deadline if deadline is not None else period, priority)
+
+
+Jobs = list[list[tuple[int, int]]]
+"""For each task (when a job should come, when it is let in)."""
+
+
+def together(tasks: tuple[PeriodicTask, ...], offsets: tuple[int, ...], until: int) -> Jobs:
+    """The first jobs are let in at their `offsets`, as late as their jitter lets them be, all others in time."""
+    return [
+        [(start - late + turn * period, start if turn == 0 else max(start, start - late + turn * period))
+         for turn in range((until + late) // period + 1)]
+        for start, late, period in zip(
+            offsets, (int(t.jitter_s) for t in tasks), (int(t.period_s) for t in tasks), strict=True
+        )
+    ]  # fmt: skip
+
+
+def scheduled(tasks: tuple[PeriodicTask, ...], offsets: tuple[int, ...], until: int) -> list[int]:
+    """The longest response of each task in a schedule with whole times: the most urgent job runs at each tick."""
+    coming = together(tasks, offsets, until)
+    jobs: list[list[int]] = []  # priority, let in, should come, rest, task
+    longest = [0] * len(tasks)
+    for now in range(until):
+        for index, each in enumerate(tasks):
+            jobs += [[each.priority, now, due, int(each.work_s), index] for due, let in coming[index] if let == now]
+        if jobs:
+            job = min(jobs)
+            job[3] -= 1
+            if job[3] == 0:
+                longest[job[4]] = max(longest[job[4]], now + 1 - job[2])
+                jobs.remove(job)
+    return longest
+
+
+@pytest.mark.parametrize(
+    ("tasks", "right"),
+    [
+        # Burns and Wellings, Real-Time Systems and Programming Languages, the sets with T = 7, 12, 20 and 80, 40, 20
+        ((task(7, 3, 1), task(12, 3, 2), task(20, 5, 3)), (3, 6, 20)),
+        ((task(20, 5, 1), task(40, 10, 2), task(80, 40, 3)), (5, 15, 80)),
+        # Lehoczky 1990: the first job of the second task (114) is not its slowest
+        ((task(70, 26, 1), task(100, 62, 2, 120)), (26, 118)),
+    ],
+)
+def test_textbook_sets(tasks: tuple[PeriodicTask, ...], right: tuple[float, ...]) -> None:
+    assert tuple(response.longest_s for response in responses(tasks)) == right
+
+
+@st.composite
+def small_sets(draw: st.DrawFn) -> tuple[PeriodicTask, ...]:
+    """Up to four tasks with whole times and a load of at most 1."""
+    tasks: list[PeriodicTask] = []
+    load = 0.0
+    for priority in range(1, draw(st.integers(1, 4)) + 1):
+        period, work = draw(st.sampled_from([4, 5, 6, 8, 10, 12, 15])), draw(st.integers(1, 6))
+        if load + work / period > 1.0 - 1e-9:
+            continue
+        load += work / period
+        tasks.append(task(period, work, priority))
+    return tuple(tasks) or (task(4, 1, 1),)
+
+
+@given(small_sets())
+def test_the_longest_response_is_that_of_the_schedule_where_all_come_together(tasks: tuple[PeriodicTask, ...]) -> None:
+    hyperperiod = math.lcm(*(int(each.period_s) for each in tasks))
+    found = [response.longest_s for response in responses(tasks)]
+    assert found == scheduled(tasks, (0,) * len(tasks), hyperperiod + 1)
+
+
+SECOND_JOB = (task(8, 1, 1), task(10, 2, 2), task(8, 2, 3), task(12, 5, 4))
+"""With the jitter below, the second job of the last task is the slowest: a search found it."""
+
+
+@example(SECOND_JOB, [8, 8, 0, 9])
+@given(small_sets(), st.lists(st.integers(0, 9), min_size=4, max_size=4))
+def test_with_jitter_the_longest_response_is_that_after_the_latest_release(
+    tasks: tuple[PeriodicTask, ...], late: list[int]
+) -> None:
+    jittery = tuple(replace(each, jitter_s=float(j)) for each, j in zip(tasks, late, strict=False))
+    load = sum(each.work_s / each.period_s for each in jittery)
+    if load < 0.999:
+        hyperperiod = math.lcm(*(int(each.period_s) for each in jittery))
+        found = [response.longest_s for response in responses(jittery)]
+        assert found == scheduled(jittery, (0,) * len(jittery), 3 * hyperperiod + int(max(found)) + 1)
+
+
+def test_tasks_of_equal_priority_wait_for_each_other() -> None:
+    assert [response.longest_s for response in responses((task(20, 2, 1), task(20, 3, 1)))] == [5, 5]
+
+
+@given(small_sets(), st.integers(0, 2**32 - 1))
+def test_no_other_phases_are_worse(tasks: tuple[PeriodicTask, ...], seed: int) -> None:
+    offsets = tuple(int(o) for o in np.random.default_rng(seed).integers(0, 15, len(tasks)))
+    hyperperiod = math.lcm(*(int(each.period_s) for each in tasks))
+    for response, seen in zip(responses(tasks), scheduled(tasks, offsets, 2 * hyperperiod + 20), strict=True):
+        assert seen <= response.longest_s
+
+
+def test_jitter_and_blocking_by_hand() -> None:
+    urgent = PeriodicTask("urgent", 10.0, 2.0, 10.0, 1, jitter_s=1.0, blocking_s=3.0)
+    other = PeriodicTask("other", 20.0, 7.0, 20.0, 2)
+    first, second = responses((urgent, other))
+    assert first.longest_s == 1.0 + 3.0 + 2.0
+    # w = 7 + ⌈(w + 1)/10⌉ 2: 9 → 7 + 2 = 9, where (9 + 1)/10 is 1 exactly
+    assert second.longest_s == 9.0
+    assert responses((replace(urgent, jitter_s=1.01), other))[1].longest_s == 11.0
+
+
+def test_decimals_are_taken_as_they_are_written() -> None:
+    # 0.3 = 3 · 0.1 in decimals, not in binary: a float would count a fourth release
+    urgent, other = task(0.1, 0.05, 1), task(1.0, 0.15, 2)
+    assert responses((urgent, other))[1].longest_s == 0.3
+
+
+def test_verdicts_and_margins() -> None:
+    good, late = responses((task(7, 3, 1), task(12, 4, 2, 6)))
+    assert good.in_time
+    assert good.margin_s == 4.0
+    assert "kept, with 4 s to spare" in good.sentence
+    assert not late.in_time
+    assert late.margin_s == -1.0
+    assert "can be missed by 1 s" in late.sentence
+    assert all(each.in_time for each in responses((task(7, 3, 1), task(12, 3, 2), task(20, 5, 3))))
+
+
+def deadlines_hold(tasks: tuple[PeriodicTask, ...]) -> bool:
+    """Whether every job is in time: these tasks have no jitter, so the processor may be used up."""
+    return exact_load(tasks) <= 1 and all(each.in_time for each in responses(tasks))
+
+
+def rate_monotonic(tasks: tuple[PeriodicTask, ...]) -> tuple[PeriodicTask, ...]:
+    """The same tasks with priorities by period, the shortest first."""
+    ordered = sorted(tasks, key=lambda each: each.period_s)
+    return tuple(replace(each, priority=place) for place, each in enumerate(ordered, start=1))
+
+
+@given(small_sets())
+def test_rate_monotonic_order_is_the_best_where_deadlines_are_periods(tasks: tuple[PeriodicTask, ...]) -> None:
+    any_order = any(
+        deadlines_hold(tuple(replace(each, priority=place) for place, each in enumerate(order, start=1)))
+        for order in permutations(tasks)
+    )
+    assert deadlines_hold(rate_monotonic(tasks)) == any_order
+
+
+@given(small_sets())
+def test_below_the_bound_of_liu_and_layland_all_is_in_time(tasks: tuple[PeriodicTask, ...]) -> None:
+    count = len(tasks)
+    if sum(each.work_s / each.period_s for each in tasks) <= count * (2.0 ** (1.0 / count) - 1.0):
+        assert deadlines_hold(rate_monotonic(tasks))
+
+
+def test_an_overloaded_processor_says_by_how_much() -> None:
+    with pytest.raises(PlantError, match="25 % more"):
+        responses((task(4, 3, 1), task(4, 2, 2)))
+    full = (task(4, 2, 1), task(4, 2, 2))
+    assert [response.longest_s for response in responses(full)] == [2, 4]
+    with pytest.raises(PlantError, match="no time left"):
+        responses((replace(full[0], jitter_s=1.0), full[1]))
+
+
+@pytest.mark.parametrize("change", ["period_s", "work_s", "deadline_s", "priority"])
+def test_impossible_tasks_are_refused(change: str) -> None:
+    with pytest.raises(PlantError, match=f"{change} is 0"):
+        replace(task(4, 1, 1), **{change: 0})  # type: ignore[arg-type]  # the names of a table of cases
+
+
+def test_the_scan_response_is_the_worst_of_all_moments() -> None:
+    scan, work_s = ScanCycle(0.010, 0.001, 0.003, 0.002), 0.004
+    worst = 0.0
+    for change_s in np.linspace(0.0, 0.01, 2001):
+        seen_s = change_s + 0.003
+        read_s = 0.010 * math.ceil(seen_s / 0.010 - 1e-12)  # inputs are read when a cycle begins
+        worst = max(worst, read_s + 0.001 + work_s + 0.002 - change_s)
+    assert scan.longest_response_s(work_s) == pytest.approx(worst, abs=1e-5)
+    assert scan.longest_response_s(0.0091) == math.inf
+    assert scan.fits(0.009)
+    assert scan.used_share(work_s) == pytest.approx(0.5)
+    with pytest.raises(PlantError, match="overhead_s"):
+        ScanCycle(0.010, 0.010)
