@@ -6,6 +6,7 @@ import random
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from matplotlib.figure import Figure
 from pydantic import Field
 from scipy.stats import binomtest
 
@@ -117,10 +118,8 @@ def show(found: dict[str, Interval]) -> Iterator[Chapter]:
     yield Chapter("Pictures & more", (Chart("coins", "Coins", "Shares.", drawn), File("coins.txt", b"heads\n")))
 
 
-def drawn() -> object:
+def drawn() -> Figure:
     """A picture."""
-    from matplotlib.figure import Figure
-
     return Figure()
 
 
@@ -132,7 +131,7 @@ COMMAND = Command(
     head=lambda game: game.head,
     steps=lambda game: Steps(len(game.settings.players), "throwing", "players"),
     compute=compute,
-    show=show,  # type: ignore[arg-type]  # drawn makes a figure
+    show=show,
     limits=limits,
     limits_of_use=("Coins are not dice.",),
 )
