@@ -10,12 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from plant_models import Plant
-from synth.book.comparison.baselines import energy_rule
-from synth.simulation.closed_loop import LineController, TableController, close_loop, simulate, trace
-from synth.simulation.exit_statistics import clopper_pearson
-from synth.simulation.passes import PassTrace
-from synth.simulation.random_passes import RandomPasses, random_passes
-from synth.studies.robustness.sensor_fault import (
+from scripts.studies.robustness.sensor_fault import (
     Bias,
     DropOut,
     LostForGood,
@@ -24,6 +19,11 @@ from synth.studies.robustness.sensor_fault import (
     before_exit,
     reading_times_s,
 )
+from synth.book.comparison.baselines import energy_rule
+from synth.simulation.closed_loop import LineController, TableController, close_loop, simulate, trace
+from synth.simulation.exit_statistics import clopper_pearson
+from synth.simulation.passes import PassTrace
+from synth.simulation.random_passes import RandomPasses, random_passes
 from tests.synth.case_factory import make_plant, make_table
 from tuning_tables import ControllerTable
 from tuning_tables.stage import Stage

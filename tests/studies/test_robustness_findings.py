@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from synth.studies.robustness.findings import (
+from scripts.studies.robustness.findings import (
     EndsRow,
     OutcomeRow,
     SweepRow,
@@ -13,7 +13,7 @@ from synth.studies.robustness.findings import (
     crossed,
     without_mass,
 )
-from synth.studies.robustness.study import strongest
+from scripts.studies.robustness.study import strongest
 
 
 def outcome(ratio: float, retuned: float | None = None) -> OutcomeRow:

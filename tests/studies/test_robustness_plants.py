@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from plant_models import Friction, Plant, PlantError, WeightForce
+from scripts.studies.robustness.condition import aged_valves, conditions, friction, out_of_service, shifted_stages
+from scripts.studies.robustness.perturbation import all_off, one_off, sensible_ends
 from synth.configuration.config_file import load_config
 from synth.configuration.cut_class import CutClass
 from synth.configuration.plant_parameter import LEFT_OUT, Parameter, assumed_keys, parameters
@@ -19,8 +21,6 @@ from synth.kernels.loop.closed_loop import brake_rows
 from synth.simulation.closed_loop import LineController, TableController, close_loop, simulate
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.solver.switching_lines import SwitchingLines
-from synth.studies.robustness.condition import aged_valves, conditions, friction, out_of_service, shifted_stages
-from synth.studies.robustness.perturbation import all_off, one_off, sensible_ends
 from tests.synth.case_factory import make_plant, make_table
 
 SUPPLY = "retarder.pneumatics.supply_pressure_kpa"

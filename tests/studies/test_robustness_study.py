@@ -7,15 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from synth.book.rounded_table import predict
-from synth.configuration.config_file import load_config
-from synth.configuration.plant_parameter import Parameter
-from synth.problem.resolution import finer_for_check
-from synth.simulation.exit_statistics import rms_ratio
-from synth.simulation.random_passes import random_passes
-from synth.solver.chain.chain import check_chain
-from synth.studies.robustness.condition import aged_valves, friction
-from synth.studies.robustness.experiments import (
+from scripts.studies.robustness.condition import aged_valves, friction
+from scripts.studies.robustness.experiments import (
     hypercube,
     one_at_a_time,
     steepest,
@@ -23,10 +16,17 @@ from synth.studies.robustness.experiments import (
     together,
     tolerated,
 )
-from synth.studies.robustness.perturbation import Perturbation, ends_by
-from synth.studies.robustness.sensor_fault import Bias
-from synth.studies.robustness.trial import Trial, trial_of
-from synth.studies.tuned_table import tuned_table as retuned
+from scripts.studies.robustness.perturbation import Perturbation, ends_by
+from scripts.studies.robustness.sensor_fault import Bias
+from scripts.studies.robustness.trial import Trial, trial_of
+from scripts.studies.tuned_table import tuned_table as retuned
+from synth.book.rounded_table import predict
+from synth.configuration.config_file import load_config
+from synth.configuration.plant_parameter import Parameter
+from synth.problem.resolution import finer_for_check
+from synth.simulation.exit_statistics import rms_ratio
+from synth.simulation.random_passes import random_passes
+from synth.solver.chain.chain import check_chain
 from tests.synth.case_factory import make_plant, make_sample, make_table
 
 

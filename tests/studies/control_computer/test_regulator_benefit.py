@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from plant_models.errors import PlantError
-from synth.studies.control_computer.regulator_benefit import FIGURES, Benefit, Yard, benefits, regulator_benefit
+from scripts.studies.control_computer.regulator_benefit import FIGURES, Benefit, Yard, benefits, regulator_benefit
 from synth.yard.control_computer.economics.hump_day_change import change_of_trains
 from synth.yard.control_computer.economics.hump_rates import changed
 from tests.synth.yard.control_computer.economics.made_cases import (

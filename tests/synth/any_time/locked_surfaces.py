@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from scripts.studies.any_time.switching_surfaces import SwitchingSurfaces
 from synth.solver.any_time.drive_modes import DriveModes
 from synth.solver.switching_lines import SwitchingLines
-from synth.studies.any_time.switching_surfaces import SwitchingSurfaces
 
 
 def at_rest_only(lines: SwitchingLines, modes: DriveModes) -> SwitchingSurfaces:

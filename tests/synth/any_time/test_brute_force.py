@@ -14,13 +14,13 @@ import numpy as np
 import pytest
 
 from plant_models import Plant, RollingResistance
+from scripts.studies.any_time.surface_induction import solve_surfaces
 from synth.problem.aim import Aim
 from synth.problem.criterion import Criterion
 from synth.problem.resolution import Resolution
 from synth.solver.any_time.sampled_chain import SampledChain, sampled_chain
 from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
 from synth.solver.backward_induction import true_speed_weights
-from synth.studies.any_time.surface_induction import solve_surfaces
 from tests.synth.any_time.locked_surfaces import at_quanta
 
 Row = list[float]

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from plant_models import Plant
+from scripts.studies.any_time.surface_controller import SurfaceController
 from synth.simulation.closed_loop import LineController, close_loop
 from synth.simulation.random_passes import random_passes
 from synth.solver.any_time.drive_modes import drive_modes
 from synth.solver.any_time.polynomial_surfaces import PolynomialSurfaces
 from synth.solver.switching_lines import SwitchingLines
-from synth.studies.any_time.surface_controller import SurfaceController
 from tests.synth.any_time.locked_surfaces import at_rest_only
 from tests.synth.any_time.tabled import tabled
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from plant_models import Plant, RollingResistance, TrackProfile
+from scripts.studies.any_time.surface_controller import SurfaceController
 from synth.book.comparison.baselines import energy_rule, relay
 from synth.configuration.config_file import load_config
 from synth.kernels.any_time.closed_loop import AnyTimeLaw, run_any_time_passes
@@ -35,7 +36,6 @@ from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses, random_passes
 from synth.solver.any_time.drive_modes import drive_modes
 from synth.solver.switching_lines import SwitchingLines
-from synth.studies.any_time.surface_controller import SurfaceController
 from tests.synth.any_time.locked_surfaces import at_rest_only
 from tests.synth.any_time.test_loop import falling_lines
 from tests.synth.simulation.passage_cases import with_approach

@@ -10,14 +10,7 @@ import numpy as np
 import pytest
 
 from plant_models import Plant
-from synth.kernels.loop.closed_loop import Draws
-from synth.simulation.closed_loop import ClosedLoop, LineController, TableController, close_loop
-from synth.simulation.common_passes import common_passes
-from synth.simulation.passes import PassTrace
-from synth.simulation.random_passes import random_passes
-from synth.solver.any_time.polynomial_surfaces import CUBIC_AND_SLOPE, PolynomialSurfaces
-from synth.solver.tabulate import UNPREDICTED, tabulate
-from synth.studies.any_time.findings import (
+from scripts.studies.any_time.findings import (
     CaseRow,
     Polishing,
     Ratio,
@@ -28,8 +21,15 @@ from synth.studies.any_time.findings import (
     stuck_heads,
     stuck_rows,
 )
-from synth.studies.any_time.stuck_valves import NOTHING, STUCK, StuckLoop, StuckValves, where_stuck
-from synth.studies.any_time.wrong_plants import waiting_table, with_a_silent_gauge
+from scripts.studies.any_time.stuck_valves import NOTHING, STUCK, StuckLoop, StuckValves, where_stuck
+from scripts.studies.any_time.wrong_plants import waiting_table, with_a_silent_gauge
+from synth.kernels.loop.closed_loop import Draws
+from synth.simulation.closed_loop import ClosedLoop, LineController, TableController, close_loop
+from synth.simulation.common_passes import common_passes
+from synth.simulation.passes import PassTrace
+from synth.simulation.random_passes import random_passes
+from synth.solver.any_time.polynomial_surfaces import CUBIC_AND_SLOPE, PolynomialSurfaces
+from synth.solver.tabulate import UNPREDICTED, tabulate
 from tests.synth.any_time.tabled import ORIGIN, tabled
 from tests.synth.any_time.test_loop import falling_lines
 from tuning_tables import ControllerTable

@@ -9,6 +9,8 @@ import pytest
 
 from plant_models import Plant, Pneumatics
 from plant_models.approach import Approach
+from scripts.studies.any_time.surface_controller import SurfaceController
+from scripts.studies.any_time.surface_induction import solve_surfaces
 from synth.problem.aim import Aim
 from synth.problem.any_time_resolution import design_resolution
 from synth.problem.criterion import Criterion
@@ -24,8 +26,6 @@ from synth.solver.any_time.surface_polish import SurfacePolish, polish_surfaces
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import Chain, persistent_chain
 from synth.solver.policy_density import exit_density
-from synth.studies.any_time.surface_controller import SurfaceController
-from synth.studies.any_time.surface_induction import solve_surfaces
 from tests.synth.any_time.conftest import short_plant
 from tests.synth.any_time.locked_surfaces import at_quanta, at_rest_only
 from tests.synth.any_time.tabled import tabled

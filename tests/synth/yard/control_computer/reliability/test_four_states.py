@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from plant_models import PlantError
-from synth.studies.control_computer.lives import chain_cycles
-from synth.studies.control_computer.stationary import null_space_shares, stationary_shares
+from scripts.studies.control_computer.lives import chain_cycles
+from scripts.studies.control_computer.stationary import null_space_shares, stationary_shares
 from synth.yard.control_computer.reliability.four_states import FourStates, State, StateShares
 
 PRINTED = FourStates(0.01, 0.2, 0.4, 4.0, 0.5)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from plant_models.errors import PlantError
-from synth.studies.control_computer.lindley import coverage, lindley_waits
+from scripts.studies.control_computer.lindley import coverage, lindley_waits
 from synth.yard.control_computer.sizing.batch_means import sampled_mean
 from synth.yard.control_computer.sizing.demand_service import Discipline, mean_waits
 from synth.yard.control_computer.sizing.queue_simulation import Requests, drawn_requests, simulated, simulated_waits

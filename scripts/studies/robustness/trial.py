@@ -1,0 +1,57 @@
+"""One table on its nominal plant, and the same passes on any other plant."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from plant_models import Plant
+from scripts.studies.robustness.findings import OutcomeRow
+from scripts.studies.robustness.perturbation import Perturbation
+from synth.simulation.closed_loop import TableController, simulate
+from synth.simulation.exit_statistics import exit_statistics, rms_ratio
+from synth.simulation.passes import ExitSample
+from synth.simulation.random_passes import RandomPasses
+from tuning_tables import ControllerTable
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A table, the plant it was tuned for, common random passes, and how they end there."""
+
+    label: str
+    table: ControllerTable
+    plant: Plant
+    passes: RandomPasses
+    nominal: ExitSample
+
+    @property
+    def target_m_s(self) -> float:
+        """The commanded exit speed."""
+        return self.table.target_speed_m_s
+
+    def first(self, count: int) -> Trial:
+        """The same with the first `count` passes only."""
+        names = vars(self.nominal)
+        nominal = ExitSample(**{name: array[:count] for name, array in names.items()})
+        return Trial(self.label, self.table, self.plant, self.passes.part(0, count), nominal)
+
+    def sample(self, perturbation: Perturbation, table: ControllerTable | None = None) -> ExitSample:
+        """The passes under `perturbation`, by the trial's table or another; `PlantError` for an impossible plant."""
+        plant = perturbation.change(self.plant)
+        passes = perturbation.fault(self.passes, plant, self.nominal.transit_time_s)
+        return simulate(plant, TableController(table or self.table), passes)
+
+    def outcome(self, perturbation: Perturbation, table: ControllerTable | None = None) -> OutcomeRow:
+        """Figures of `sample`, compared with the nominal passes of the trial's table."""
+        sample = self.sample(perturbation, table)
+        s = exit_statistics(sample, self.target_m_s)
+        ratio, ratio_ci95 = rms_ratio(sample, self.nominal, self.target_m_s)
+        return OutcomeRow(
+            perturbation.name, perturbation.note, s.rms_m_s, s.rms_ci95_m_s, ratio, ratio_ci95, s.bias_m_s,
+            s.bias_ci95_m_s, s.overspeed, s.overspeed_ci95, s.stalled, s.stalled_ci95, s.switchings,
+        )  # fmt: skip
+
+
+def trial_of(label: str, table: ControllerTable, plant: Plant, passes: RandomPasses) -> Trial:
+    """The trial of `table`, tuned for `plant`."""
+    return Trial(label, table, plant, passes, simulate(plant, TableController(table), passes))
