@@ -12,7 +12,6 @@ POSITION_STUDIES: tuple[Study, ...] = (
         480.0,
         "any-time.md",
         "scripts.studies.any_time.study",
-        "scripts.studies.any_time.pictures",
     ),
     Study(
         "approach",

@@ -1,4 +1,4 @@
-"""What the study `any-time` has found: controllers on common passes, and the surfaces of one stage."""
+"""What the study `any-time` has found: controllers on common passes, and what permissions give."""
 
 from __future__ import annotations
 
@@ -7,20 +7,16 @@ from dataclasses import dataclass
 from enum import Enum
 
 from scripts.studies.markdown_table import MarkdownTable, around, table
-from scripts.studies.near_target import NEAR_M_S, NearTarget
+from scripts.studies.near_target import NEAR_M_S
 from scripts.studies.study import Findings
 from synth.book.permissions.permission import Permission
 from synth.simulation.replicates import Interval
 
-LINES, CUBIC = "at rest, lines", "at rest, cubic"
-SURFACES, POLISHED, PLAIN = "any time, surfaces", "any time, cubic and pressure", "any time, cubic"
+CUBIC, POLISHED, PLAIN = "at rest, cubic", "any time, cubic and pressure", "any time, cubic"
 ENERGY, ENERGY_AT_ANY_TIME = "energy rule", "energy rule, any time"
-NAMES = (LINES, CUBIC, SURFACES, POLISHED, PLAIN, ENERGY, ENERGY_AT_ANY_TIME)
-SHOWN = (SURFACES, POLISHED, PLAIN, ENERGY, ENERGY_AT_ANY_TIME)
-"""Controllers of the pictures of gains."""
-
-GAINING = (CUBIC, POLISHED, PLAIN)
-"""Tables of the table of gains."""
+RULES = (ENERGY, ENERGY_AT_ANY_TIME)
+NAMES = (CUBIC, POLISHED, PLAIN, *RULES)
+"""Controllers of the table of gains."""
 
 
 @dataclass(frozen=True)
@@ -85,22 +81,9 @@ class Told:
 
     rms_m_s: float
     rms_ci95_m_s: Interval
-    near: NearTarget
-    bias_m_s: float
     switchings: float
-    stalled: float
     ratio: Ratio
     near_ratio: Ratio
-
-
-@dataclass(frozen=True)
-class Polishing:
-    """Of the polished surfaces: evaluations, whether the search ended well, seconds, and the rms that is predicted."""
-
-    evaluations: int
-    converged: bool
-    seconds: float
-    predicted_rms_m_s: float
 
 
 @dataclass(frozen=True)
@@ -114,7 +97,6 @@ class CaseRow:
 
     case: str
     valves: float
-    polish: Polishing
     controllers: dict[str, Told]
     polished_to: dict[str, Ratio]
     gauge: dict[str, Ratio]
@@ -140,25 +122,6 @@ class PermissionRow:
 
 
 @dataclass(frozen=True)
-class SurfaceMap:
-    """Both surfaces of one commanded stage, over pressure (rows) and path (columns), None where there is no command.
-
-    `polished`: the polished lines, by side, power of the pressure and power of the path; None for no line.
-    """
-
-    case: str
-    exit_m: float
-    stage: int
-    stage_kpa: float
-    band_kpa: float
-    path_m: tuple[float, ...]
-    pressure_kpa: tuple[float, ...]
-    lower_m_s: tuple[tuple[float | None, ...], ...]
-    upper_m_s: tuple[tuple[float | None, ...], ...]
-    polished: tuple[tuple[tuple[float, ...], ...] | None, ...]
-
-
-@dataclass(frozen=True)
 class AnyTime(Findings):
     """All cases."""
 
@@ -167,52 +130,40 @@ class AnyTime(Findings):
     passes: int
     rows: tuple[CaseRow, ...]
     permissions: tuple[PermissionRow, ...]
-    surface: SurfaceMap | None
 
     def tables(self) -> Mapping[str, MarkdownTable]:
-        """`gains`: a row a case; `rms`: all controllers; `honesty`: what is predicted, and how a polish ended.
+        """`permissions`: what they give beside tables as configured; `gains`: all controllers, a row a case.
 
-        `permissions`: what they give beside tables as configured; `gauge`: what a wrong one costs; `wrong`: what else
-        may be wrong; `silent`, `stuck`: a gauge that shows nothing, valves that do not open.
+        `gauge`: what a wrong one costs; `wrong`: what else may be wrong; `silent`, `stuck`: a gauge that shows nothing,
+        valves that do not open.
         """
-        rules = (ENERGY, ENERGY_AT_ANY_TIME)
-        heads = ("valves", "case", *GAINING, *rules, f"{POLISHED} / {CUBIC}",
-                 *(f"{POLISHED} / {rule}" for rule in rules), "the same near the target")  # fmt: skip
-        every = ("valves", "case", *NAMES)
+        heads = ("valves", "case", *NAMES, f"{POLISHED} / {CUBIC}", *(f"{POLISHED} / {rule}" for rule in RULES),
+                 "the same near the target")  # fmt: skip
         asked_for = {name for row in self.permissions for name in row.ratios}
         names = [each.value for each in Permission if each.value in asked_for]
         granted = ("case", "rms, m/s / switchings", *names, "predicted / simulated, any time")
         told = (permission_cells(row, names) for row in self.permissions)
         wrong = ("valves", "case", *(f"shows × {factor}" for factor in self.rows[0].gauge))
-        honesty = ("valves", "case", "predicted / simulated", "evaluations", "ended well")
         asked = {"permissions": table("rms of the table as configured; ratios to it [95 %]", granted, told)}
         return {
             **(asked if self.permissions else {}),
             "gains": table("rms, m/s / switchings a pass; ratios of the rms [95 %]", heads, map(gain_cells, self.rows)),
-            "rms": table(
-                f"rms [within {NEAR_M_S:g} m/s of the target], mm/s / switchings", every, map(rms_cells, self.rows)
-            ),
             "gauge": table("rms with a wrong gauge / with a true one [95 %]", wrong, map(gauge_cells, self.rows)),
             "wrong": table(f"rms of {POLISHED} / {CUBIC} where something is wrong [95 %]", *wrong_rows(self.rows)),
             "silent": table("rms where the gauge shows nothing [95 %]", SILENT_HEADS, silent_rows(self.rows)),
             "stuck": table("rms, m/s; ratios [95 %]; % of cuts", stuck_heads(), stuck_rows(self.rows)),
-            "honesty": table(f"{POLISHED}: rms of the prediction and of passes", honesty, map(honest_cells, self.rows)),
         }
 
     def sentences(self) -> tuple[str, ...]:
-        """How much was simulated, and how long it took."""
-        longest = max(row.polish.seconds for row in self.rows)
-        return (
-            f"{self.passes} stratified passes a controller, seed {self.seed}",
-            f"the longest polish took {longest:.1f} s",
-        )
+        """How much was simulated."""
+        return (f"{self.passes} stratified passes a controller, seed {self.seed}",)
 
 
 def gain_cells(row: CaseRow) -> tuple[str, ...]:
     """The cells of one case."""
-    c, rules = row.controllers, (ENERGY, ENERGY_AT_ANY_TIME)
-    rms = [f"{c[name].rms_m_s:.4f} / {c[name].switchings:.1f}" for name in (*GAINING, *rules)]
-    to_rules = (row.polished_to[rule].cell for rule in rules)
+    c = row.controllers
+    rms = [f"{c[name].rms_m_s:.4f} / {c[name].switchings:.1f}" for name in NAMES]
+    to_rules = (row.polished_to[rule].cell for rule in RULES)
     ratios = [c[POLISHED].ratio.cell, *to_rules, c[POLISHED].near_ratio.cell]
     return (f"× {row.valves:g}", row.case, *rms, *ratios)
 
@@ -266,20 +217,3 @@ def permission_cells(row: PermissionRow, names: Sequence[str]) -> tuple[str, ...
     figures = f"{row.rms_m_s:.4f} / {row.switchings:.1f}"
     given = (f"{row.ratios[name].cell} / {row.switchings_of[name]:.1f}" for name in names)
     return (row.case, figures, *given, f"{row.honesty:.2f}")
-
-
-def rms_cells(row: CaseRow) -> tuple[str, ...]:
-    """All controllers of one case."""
-    told = [row.controllers[name] for name in NAMES]
-    cells = (f"{1e3 * t.rms_m_s:.1f} [{1e3 * t.near.rms_m_s:.1f}] / {t.switchings:.1f}" for t in told)
-    return (f"× {row.valves:g}", row.case, *cells)
-
-
-def honest_cells(row: CaseRow) -> tuple[str, ...]:
-    """Predicted over simulated rms, with the interval of the simulation."""
-    told, polish = row.controllers[POLISHED], row.polish
-    low, high = told.rms_ci95_m_s
-    honesty = around(polish.predicted_rms_m_s / told.rms_m_s,
-                     (polish.predicted_rms_m_s / high, polish.predicted_rms_m_s / low), 2)  # fmt: skip
-    ended = "yes" if polish.converged else "no"
-    return (f"× {row.valves:g}", row.case, honesty, str(polish.evaluations), ended)

@@ -1,46 +1,37 @@
 """What is gained when a command may be given at every sample, also during a pressure transient.
 
-On the same fresh passes: stage-locked lines of the solver, stage-locked polished cubics, surfaces of the solver for
-commands at any time, polished polynomial surfaces (cubic in path, linear in pressure; and without pressure), and the
-energy rule.
+On the same fresh passes: cubics for commands at rest, polished surfaces for commands at any time (cubic in path, linear
+in pressure; and without pressure), and the energy rule.
 """
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from plant_models import Plant, PlantError
 from scripts.studies.any_time.findings import (
     CUBIC,
     ENERGY,
     ENERGY_AT_ANY_TIME,
-    LINES,
     PLAIN,
     POLISHED,
-    SURFACES,
+    RULES,
     AnyTime,
     CaseRow,
     PermissionRow,
-    Polishing,
     Ratio,
     SilentGauge,
     StuckFigures,
-    SurfaceMap,
     Told,
 )
 from scripts.studies.any_time.stuck_valves import where_stuck
-from scripts.studies.any_time.surface_controller import SurfaceController
-from scripts.studies.any_time.surface_induction import solve_surfaces
-from scripts.studies.any_time.switching_surfaces import SwitchingSurfaces
 from scripts.studies.any_time.wrong_plants import ratios_to_rest, with_a_silent_gauge
 from scripts.studies.cases import OTHER_PLANTS, Case, named_cases
 from scripts.studies.entrance import from_the_entrance
-from scripts.studies.near_target import near_ratio, near_target
+from scripts.studies.near_target import near_ratio
 from scripts.studies.options import option
 from scripts.studies.study import Method, Tell
 from scripts.studies.tuned_table import lines_of_solution, rounded
@@ -65,9 +56,9 @@ from synth.solver.any_time.polynomial_surfaces import (
     PolynomialSurfaces,
     surfaces_of_lines,
 )
-from synth.solver.any_time.sampled_chain import check_sampled_chain, sampled_chain
+from synth.solver.any_time.sampled_chain import sampled_chain
 from synth.solver.any_time.surface_evaluation import SurfaceEvaluation
-from synth.solver.any_time.surface_polish import SurfacePolish, polish_surfaces
+from synth.solver.any_time.surface_polish import polish_surfaces
 from synth.solver.backward_induction import solve
 from synth.solver.chain.chain import persistent_chain
 from synth.solver.polynomial_lines import PolynomialLines
@@ -80,9 +71,6 @@ NO_DATE = "2000-01-01T00:00:00Z"
 
 GAUGE_FACTORS = (0.85, 0.95, 1.05, 1.15)
 """Pressures that a wrong gauge shows, over the true one."""
-
-SURFACE_NODES = 60
-"""Places of the path at which kept surfaces are told."""
 
 
 @dataclass(frozen=True)
@@ -99,36 +87,27 @@ class Options:
     threads: int = option(2, "scenarios followed side by side; no figure depends on it", (1, 64))
     books: int = option(len(OTHER_PLANTS) + 1, "plants whose permissions are told, the one given as the last to join",
                         (0, len(OTHER_PLANTS) + 1))  # fmt: skip
-    shown: str = option("52:3", "case whose surfaces are kept, with the first valves")
-    shown_stage: int = option(2, "stage whose surfaces are kept", (0, 7))
 
 
 @dataclass(frozen=True)
 class Bench:
-    """One case with its valves: closed loops, locked lines, and the evaluation of surfaces for it."""
+    """One case with its valves: the cubics for commands at rest, and the evaluation of surfaces for it."""
 
     case: Case
     config: ResolvedConfig
-    lines: LineController
     cubics: PolynomialLines
     evaluation: SurfaceEvaluation
-    check: SurfaceEvaluation
 
     @property
-    def aim(self) -> Aim:
-        """The target of the case."""
-        return Aim(self.case.target_m_s, self.config.criterion)
+    def at_rest(self) -> LineController:
+        """The regulator of the cubics."""
+        return LineController(self.cubics.at(self.cubics.nodes_m(301)))
 
-    def polished(self, degrees: tuple[int, ...]) -> SurfacePolish:
+    def polished(self, degrees: tuple[int, ...]) -> PolynomialSurfaces:
         """Surfaces polished from the stage-locked cubics."""
         stages = np.asarray(self.case.plant.position.stage_pressures_kpa[: len(self.cubics.has_line)])
-        return polish_surfaces(surfaces_of_lines(self.cubics, stages, degrees), self.evaluation, self.aim)
-
-    def predicted_rms_m_s(self, surfaces: PolynomialSurfaces) -> float:
-        """By the exact density on the grid of the check."""
-        chain = self.check.chain
-        density = self.check.density(surfaces.at(chain.grid.path_m[:-1], chain.modes))
-        return density.rms_m_s(self.case.target_m_s)
+        aim = Aim(self.case.target_m_s, self.config.criterion)
+        return polish_surfaces(surfaces_of_lines(self.cubics, stages, degrees), self.evaluation, aim).surfaces
 
     def controller(self, surfaces: PolynomialSurfaces, gauge_factor: float = 1.0) -> TableController:
         """The table of `surfaces` with a gauge that shows so many times the pressure."""
@@ -139,7 +118,7 @@ class Bench:
         self, surfaces: PolynomialSurfaces, passes: CommonPasses
     ) -> tuple[dict[str, Ratio], SilentGauge, dict[str, StuckFigures]]:
         """What `surfaces` lose beside the cubics at rest where something is wrong, the gauge silent, a valve stuck."""
-        case, at_rest = self.case, LineController(self.cubics.at(self.cubics.nodes_m(301)))
+        case, at_rest = self.case, self.at_rest
         seed, target = self.config.validation.seed + FRESH, case.target_m_s
         table = rounded(self.config, case.plant, surfaces, target)
         return (
@@ -155,19 +134,15 @@ def run(options: Options, tell: Tell) -> AnyTime:
     seed = config.validation.seed + FRESH
     fresh = stratified_passes(seed, 0, options.passes)
     rows: list[CaseRow] = []
-    surface: SurfaceMap | None = None
     for valves in options.valves:
         for name in options.cases:
             (case,) = named_cases(config, (name,))
             bench = bench_of(replace(case, plant=quicker(case.plant, valves)), config, options)
-            row, found = studied(bench, valves, options, fresh)
-            if name == options.shown and valves == options.valves[0]:
-                surface = found
-            tell(f"{row.case}, valves × {valves:g}: {row.polish.seconds:.1f} s of polish")
-            rows.append(row)
+            rows.append(studied(bench, valves, fresh))
+            tell(f"{case.name}, valves × {valves:g}")
     books = [load_config(options.config), *(parse_config(text, name) for name, text in OTHER_PLANTS)]
     permissions = [row for book in books[len(books) - options.books :] for row in permission_rows(book, options, tell)]
-    return AnyTime(config.sha256, seed, options.passes, tuple(rows), tuple(permissions), surface)
+    return AnyTime(config.sha256, seed, options.passes, tuple(rows), tuple(permissions))
 
 
 def permission_rows(config: ResolvedConfig, options: Options, tell: Tell) -> list[PermissionRow]:
@@ -204,50 +179,34 @@ def bench_of(case: Case, config: ResolvedConfig, options: Options) -> Bench:
     cubics = lines_of_solution(solution, config.fit.degree)
     steps = design_resolution(case.plant, case.target_m_s, options.coarser)
     evaluation = SurfaceEvaluation(sampled_chain(case.plant, steps), options.threads)
-    check = SurfaceEvaluation(check_sampled_chain(case.plant, steps), options.threads)
-    return Bench(case, config, LineController(solution.lines), cubics, evaluation, check)
+    return Bench(case, config, cubics, evaluation)
 
 
-def studied(bench: Bench, valves: float, options: Options, fresh: RandomPasses) -> tuple[CaseRow, SurfaceMap]:
-    """All controllers of one case, and its surfaces."""
-    started = time.perf_counter()
-    polish, plain = bench.polished(CUBIC_AND_SLOPE), bench.polished(CUBIC_ALONE)
-    seconds = 0.5 * (time.perf_counter() - started)
-    chain = bench.evaluation.chain
-    solved = solve_surfaces(chain, bench.aim)
-    passes = common_passes(bench.case.plant, fresh)
-    samples = samples_of(bench, solved, polish.surfaces, plain.surfaces, passes)
-    target = bench.case.target_m_s
+def studied(bench: Bench, valves: float, fresh: RandomPasses) -> CaseRow:
+    """All controllers of one case."""
+    polished, plain = bench.polished(CUBIC_AND_SLOPE), bench.polished(CUBIC_ALONE)
+    passes, target = common_passes(bench.case.plant, fresh), bench.case.target_m_s
+    samples = samples_of(bench, polished, plain, passes)
     told = {name: told_of(sample, samples[CUBIC], target) for name, sample in samples.items()}
-    beside = (ENERGY, ENERGY_AT_ANY_TIME, PLAIN)
-    others = {name: Ratio(*rms_ratio(samples[POLISHED], samples[name], target)) for name in beside}
-    predicted = bench.predicted_rms_m_s(polish.surfaces)
-    polishing = Polishing(polish.evaluations, polish.converged, seconds, predicted)
-    shown = {factor: passes.run(bench.controller(polish.surfaces, factor)) for factor in GAUGE_FACTORS}
+    others = {rule: Ratio(*rms_ratio(samples[POLISHED], samples[rule], target)) for rule in RULES}
+    shown = {factor: passes.run(bench.controller(polished, factor)) for factor in GAUGE_FACTORS}
     gauge = {f"{factor:g}": Ratio(*rms_ratio(each, samples[POLISHED], target)) for factor, each in shown.items()}
-    wrong = bench.where_wrong(polish.surfaces, passes) if valves == 1.0 else ({}, None, {})
-    row = CaseRow(bench.case.name, valves, polishing, told, others, gauge, *wrong)
-    return row, surface_map(bench.case, solved, polish.surfaces, options.shown_stage)
+    wrong = bench.where_wrong(polished, passes) if valves == 1.0 else ({}, None, {})
+    return CaseRow(bench.case.name, valves, told, others, gauge, *wrong)
 
 
 def samples_of(
-    bench: Bench,
-    solved: SwitchingSurfaces,
-    polished: PolynomialSurfaces,
-    plain: PolynomialSurfaces,
-    passes: CommonPasses,
+    bench: Bench, polished: PolynomialSurfaces, plain: PolynomialSurfaces, passes: CommonPasses
 ) -> dict[str, ExitSample]:
     """The `passes` by every controller."""
-    case, nodes = bench.case, bench.cubics.nodes_m(301)
     rehearsal = random_passes(bench.config.validation.seed + TUNING, 0, BASELINE_PASSES)
     (rule,) = (family for family in FAMILIES if family.name == ENERGY)
     energy = {
-        when: tune(rule.deciding(when), passes.of_others(rehearsal), case.target_m_s).controller for when in Decisions
+        when: tune(rule.deciding(when), passes.of_others(rehearsal), bench.case.target_m_s).controller
+        for when in Decisions
     }
     controllers: dict[str, Regulator] = {
-        LINES: bench.lines,
-        CUBIC: LineController(bench.cubics.at(nodes)),
-        SURFACES: SurfaceController(solved),
+        CUBIC: bench.at_rest,
         POLISHED: bench.controller(polished),
         PLAIN: bench.controller(plain),
         ENERGY: energy[Decisions.AT_REST],
@@ -260,31 +219,9 @@ def told_of(sample: ExitSample, reference: ExitSample, target_m_s: float) -> Tol
     """What is told of one controller."""
     found = exit_statistics(sample, target_m_s)
     return Told(
-        found.rms_m_s, found.rms_ci95_m_s, near_target(sample, target_m_s), found.bias_m_s, found.switchings,
-        found.stalled, Ratio(*rms_ratio(sample, reference, target_m_s)),
+        found.rms_m_s, found.rms_ci95_m_s, found.switchings, Ratio(*rms_ratio(sample, reference, target_m_s)),
         Ratio(*near_ratio(sample, reference, target_m_s)),
     )  # fmt: skip
 
 
-def surface_map(case: Case, solved: SwitchingSurfaces, polished: PolynomialSurfaces, stage: int) -> SurfaceMap:
-    """Both surfaces of one stage at some places of the path, rounded to a tenth of a millimetre a second."""
-    pressure, modes = solved.of_stage(stage)
-    every = np.unique(np.linspace(0, len(solved.nodes_m) - 1, SURFACE_NODES).round().astype(int))
-
-    def rows(lines: NDArray[np.float64]) -> tuple[tuple[float | None, ...], ...]:
-        return tuple(
-            tuple(round(v, 4) if np.isfinite(v) else None for v in row) for row in lines[modes][:, every].tolist()
-        )
-
-    def series(side: int) -> tuple[tuple[float, ...], ...] | None:
-        powers = polished.powers()[stage, side]
-        return tuple(tuple(row) for row in powers.tolist()) if polished.has_line[stage, side] else None
-
-    return SurfaceMap(
-        case.name, case.plant.exit_m, stage, case.plant.position.stage_pressures_kpa[stage],
-        solved.modes.drive.band_kpa, tuple(solved.nodes_m[every].tolist()), tuple(pressure.tolist()),
-        rows(solved.lower_m_s), rows(solved.upper_m_s), (series(0), series(1)),
-    )  # fmt: skip
-
-
-METHOD = Method(Options, Options(None, ("22:3",), (1.0,), 200, 1.0, 2, 0, "22:3", 1), AnyTime, run)
+METHOD = Method(Options, Options(None, ("22:3",), (1.0,), 200, 3.0, 2, 0), AnyTime, run)
