@@ -12,7 +12,7 @@ from scripts.studies.peers.kernels.prediction import Prediction
 from scripts.studies.peers.kernels.pulses import Pulses
 from synth.kernels.any_time.closed_loop import AnyTimeLaw
 from synth.simulation.closed_loop import ClosedLoop, LineController
-from synth.simulation.controllers import NO_SURFACES, estimator_arrays, fixed
+from synth.simulation.controllers import estimator_arrays, fixed
 from synth.solver.switching_lines import SwitchingLines
 from tuning_tables import Decisions, Estimator
 
@@ -89,4 +89,4 @@ def no_table() -> AnyTimeLaw:
     """A law without a table, for a kernel that does not ask it."""
     lines = LineController(SwitchingLines(np.array([0.0, 1.0]), np.full((2, 2), -np.inf), np.full((2, 2), np.inf)))
     slopes = fixed(np.empty((0, 2)), np.float32), fixed(np.empty(0), np.float32)
-    return AnyTimeLaw(lines.rule, *slopes, 0, 1.0, NO_SURFACES)
+    return AnyTimeLaw(lines.rule, *slopes, 0, 1.0)

@@ -93,7 +93,7 @@ def run_stuck_pass(
         waits = asking.by_gauge and not reached(pressure, stage_kpa[stage], drive.valves)
         if not waits and not (asking.by_times and sample < rests_at):
             measured = measure(v, noise_z[sample % noise_z.shape[0]], sensor)
-            wanted = wanted_stage(law, stage, top, pressure, wait, s, measured)
+            wanted = wanted_stage(law, stage, top, pressure, s, measured)
             stage = admitted(stage, wanted, s, drive.entrance_stage)
         if stage != before:
             switchings += 1

@@ -87,7 +87,7 @@ def wanted_by(
             peer.prediction, path, hardware.sampled, period, stage, pressure, wait, factor, cell, s, v, memory.ahead
         )
         return predicted
-    tabled: int = wanted_stage(peer.table, stage, hardware.sampled.stage_kpa.shape[0] - 1, pressure, wait, s, v)
+    tabled: int = wanted_stage(peer.table, stage, hardware.sampled.stage_kpa.shape[0] - 1, pressure, s, v)
     return tabled
 
 
