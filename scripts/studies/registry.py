@@ -174,11 +174,10 @@ POSITION_STUDIES: tuple[Study, ...] = (
     ),
     Study(
         "robustness",
-        "What does a table do on another plant than it was tuned for: wrong parameters, worn parts, faulty sensors?",
+        "What does a table do on another plant than it was tuned for, and would one tuned for that plant do better?",
         157.0,
         "robustness.md",
         "scripts.studies.robustness.study",
-        "scripts.studies.robustness.pictures",
     ),
     Study(
         "software-in-the-loop",

@@ -12,7 +12,7 @@ from plant_models import Plant
 from scripts.studies.any_time.study import quicker
 from scripts.studies.estimator.wrong import wrongs
 from scripts.studies.limits.change import FREE_DEGREE, QUIET_M_S, changes
-from scripts.studies.robustness.sensor_fault import no_fault
+from scripts.studies.sensor_fault import no_fault
 
 
 def differences(one: Any, other: Any, name: str = "") -> Iterator[tuple[str, Any, Any]]:

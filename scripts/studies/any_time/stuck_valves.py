@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scripts.studies.any_time.findings import Ratio, StuckFigures, Way, Ways
 from scripts.studies.any_time.kernels.stuck_valves import Asking, Stuck, run_stuck_passes
 from scripts.studies.near_target import near_target
-from scripts.studies.robustness.sensor_fault import at_random
+from scripts.studies.sensor_fault import at_random
 from synth.kernels.any_time.closed_loop import AnyTimeLaw
 from synth.kernels.loop import closed_loop as kernel
 from synth.simulation.closed_loop import ClosedLoop, LineController, TableController, empty_exits, sample_of, trace_of

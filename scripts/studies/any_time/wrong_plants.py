@@ -11,8 +11,8 @@ import numpy as np
 from plant_models import Plant
 from scripts.studies.any_time.findings import Ratio, SilentGauge
 from scripts.studies.estimator.wrong import Wrong, braking_otherwise, simulated
-from scripts.studies.robustness.condition import aged_valves
-from scripts.studies.robustness.sensor_fault import DropOut, LostReadings, at_random
+from scripts.studies.plant_changes import aged_valves
+from scripts.studies.sensor_fault import DropOut, LostReadings, at_random
 from synth.simulation.closed_loop import Controller, LineController, TableController, simulate
 from synth.simulation.common_passes import CommonPasses
 from synth.simulation.exit_statistics import rms_ratio

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plant_models import Plant
-from scripts.studies.robustness.condition import friction, times
-from scripts.studies.robustness.sensor_fault import LostForGood, SensorFault, at_random, no_fault
+from scripts.studies.plant_changes import friction, times
+from scripts.studies.sensor_fault import LostForGood, SensorFault, at_random, no_fault
 from synth.simulation.closed_loop import Controller, simulate
 from synth.simulation.passes import ExitSample
 from synth.simulation.random_passes import RandomPasses

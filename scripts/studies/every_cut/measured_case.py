@@ -8,7 +8,7 @@ from functools import partial
 
 from scripts.studies.every_cut.cut_figures import Beside, BesideWithout, CutFigures, Outcome, Untuned
 from scripts.studies.every_cut.random_case import RandomCase
-from scripts.studies.robustness.condition import friction
+from scripts.studies.plant_changes import friction
 from scripts.studies.tuned_table import CREATED
 from synth.book.attempted_case import attempted
 from synth.book.class_setup import TUNING_PASSES, ClassSetup, class_setup, origin_of, validation_passes

@@ -23,7 +23,7 @@ from scripts.studies.radar_faults.figures import fault_row
 from scripts.studies.radar_faults.findings import CaseRow, CategoryRow, RadarFaults
 from scripts.studies.radar_faults.tables import TunedCase, cases_of, table_of, tuned_case
 from scripts.studies.radar_faults.watched_passes import WatchedPasses, watched_passes
-from scripts.studies.robustness.sensor_fault import FAULT_STREAM
+from scripts.studies.sensor_fault import FAULT_STREAM
 from scripts.studies.side_by_side import side_by_side
 from scripts.studies.study import Method, Tell
 from synth.configuration.config_file import load_config

@@ -29,17 +29,9 @@ class Trial:
         """The commanded exit speed."""
         return self.table.target_speed_m_s
 
-    def first(self, count: int) -> Trial:
-        """The same with the first `count` passes only."""
-        names = vars(self.nominal)
-        nominal = ExitSample(**{name: array[:count] for name, array in names.items()})
-        return Trial(self.label, self.table, self.plant, self.passes.part(0, count), nominal)
-
     def sample(self, perturbation: Perturbation, table: ControllerTable | None = None) -> ExitSample:
         """The passes under `perturbation`, by the trial's table or another; `PlantError` for an impossible plant."""
-        plant = perturbation.change(self.plant)
-        passes = perturbation.fault(self.passes, plant, self.nominal.transit_time_s)
-        return simulate(plant, TableController(table or self.table), passes)
+        return simulate(perturbation.change(self.plant), TableController(table or self.table), self.passes)
 
     def outcome(self, perturbation: Perturbation, table: ControllerTable | None = None) -> OutcomeRow:
         """Figures of `sample`, compared with the nominal passes of the trial's table."""

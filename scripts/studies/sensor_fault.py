@@ -1,8 +1,7 @@
 """Faults of the speed sensor, as data: what they do to the random numbers that a pass's readings are made of.
 
-The closed loop knows nothing of faults: a reading is speed + noise·z, a shifted z is a bias, z = NaN a reading that is
-missing, to which the tables' rule answers HOLD. Random numbers repeat after 256 readings (25.6 s at 0.1 s), and a fault
-with them.
+The closed loop knows nothing of faults: a reading is speed + noise·z, and z = NaN is a reading that is missing, to
+which the tables' rule answers HOLD. Random numbers repeat after 256 readings (25.6 s at 0.1 s), and a fault with them.
 """
 
 from __future__ import annotations
@@ -30,20 +29,6 @@ FAULT_STREAM = 0x7A11
 def no_fault(passes: RandomPasses, plant: Plant, transit_s: Floats) -> RandomPasses:
     """The passes as they are."""
     return passes
-
-
-@dataclass(frozen=True)
-class Bias:
-    """The sensor reads `bias_m_s` too much, before it rounds. Raises `ValueError` on a plant without sensor noise."""
-
-    bias_m_s: float
-
-    def __call__(self, passes: RandomPasses, plant: Plant, transit_s: Floats) -> RandomPasses:
-        """See `SensorFault`."""
-        noise = plant.sensor.noise_m_s
-        if noise == 0.0:
-            raise ValueError("sensor bias: the sensor has no noise, so a shift of its noise cannot stand for a bias")
-        return replace(passes, noise_z=(passes.noise_z + np.float32(self.bias_m_s / noise)).astype(np.float32))
 
 
 @dataclass(frozen=True)
@@ -91,15 +76,6 @@ def at_random(seed: int) -> Callable[[Floats], Floats]:
 
     def starts_s(transit_s: Floats) -> Floats:
         return stream(seed).random(len(transit_s)) * transit_s
-
-    return starts_s
-
-
-def before_exit(duration_s: float) -> Callable[[Floats], Floats]:
-    """The last `duration_s` of the pass, as it would be without the fault."""
-
-    def starts_s(transit_s: Floats) -> Floats:
-        return transit_s - duration_s
 
     return starts_s
 
